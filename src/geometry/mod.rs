@@ -1,0 +1,11 @@
+//! Floor 1: points, tubes and cross-sections; predicates, intersections, distances and search trees.
+
+mod tube;
+
+pub use tube::{Section, Tube};
+
+/// A point in space; the unit is the network's.
+pub type Point3 = nalgebra::Point3<f64>;
+
+/// A displacement or direction.
+pub type Vec3 = nalgebra::Vector3<f64>;

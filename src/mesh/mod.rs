@@ -1,0 +1,70 @@
+//! Floor 2: what concerns one mesh, wherever it came from: arrays, adjacency, quality, smoothing, validity.
+
+use crate::geometry::Point3;
+
+/// A triangle surface. A closed surface is oriented outwards: seen from outside, vertices run counter-clockwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriMesh {
+    /// Vertex positions.
+    pub points: Vec<Point3>,
+    /// Vertex indices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A tetrahedral mesh. Tetrahedra `[a, b, c, d]` are positive: `orient3d(a, b, c, d) > 0`, that is
+/// `det(b − a, c − a, d − a) > 0`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TetMesh {
+    /// Vertex positions.
+    pub points: Vec<Point3>,
+    /// Vertex indices of each tetrahedron.
+    pub tets: Vec<[u32; 4]>,
+}
+
+/// The faces of a positive tetrahedron: face `i` lies opposite vertex `i` and, seen from outside, runs
+/// counter-clockwise.
+pub const TET_FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+/// A tetrahedral mesh whose boundary is labelled: what the pipeline makes and the writers write.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VolumeMesh {
+    /// Points and tetrahedra.
+    pub mesh: TetMesh,
+    /// Block of each tetrahedron (clusters first, then connectors).
+    pub tet_block: Vec<i32>,
+    /// Every boundary face exactly once, oriented outwards.
+    pub boundary: Vec<[u32; 3]>,
+    /// Block of the tetrahedron under each boundary face.
+    pub boundary_block: Vec<i32>,
+    /// Patch of each boundary face: `WALL`, or another patch of `patches`.
+    pub boundary_patch: Vec<i32>,
+    /// The patches, in ascending order of their id.
+    pub patches: Vec<Patch>,
+}
+
+/// Patch id of the vessel wall. The first inlet has id 2, the others follow: further inlets, then outlets.
+pub const WALL: i32 = 1;
+
+/// A named part of the boundary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Patch {
+    /// Id, as in `VolumeMesh::boundary_patch`.
+    pub id: i32,
+    /// `wall`, `inlet`, `inlet_1`, …, `outlet_0`, `outlet_1`, …
+    pub name: String,
+    /// What a cap closes; none for the wall.
+    pub cap: Option<Cap>,
+}
+
+/// A flat disc that closes a vessel: an inlet or outlet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cap {
+    /// Index of the terminal node in the network as it was read.
+    pub node: u32,
+    /// Centre of the disc.
+    pub center: Point3,
+    /// Unit normal, out of the mesh.
+    pub normal: crate::geometry::Vec3,
+    /// Radius of the vessel there.
+    pub radius: f64,
+}
