@@ -38,8 +38,7 @@ fn rust_files(dir: &Path, out: &mut Vec<PathBuf>) {
 /// Rooms that a piece of source names: `crate::room` and, in the binary, `anastomesh::room`; also the first names of a
 /// group `crate::{a::X, b::Y}`.
 fn rooms_named(source: &str) -> Vec<String> {
-    let code: String =
-        source.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
+    let code: String = source.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
     let mut rooms = Vec::new();
     for root in ["crate::", "anastomesh::"] {
         for (at, _) in code.match_indices(root) {
