@@ -1,5 +1,10 @@
 //! Floor 2: what concerns one mesh, wherever it came from: arrays, adjacency, quality, smoothing, validity.
 
+pub mod adjacency;
+pub mod quality;
+#[cfg(test)]
+pub(crate) mod shapes;
+
 use crate::geometry::Point3;
 
 /// A triangle surface. A closed surface is oriented outwards: seen from outside, vertices run counter-clockwise.

@@ -1,0 +1,270 @@
+//! Shape of tetrahedra and triangles: radius ratio, dihedral and corner angles, and their distribution over a mesh.
+
+use super::{TET_FACES, TetMesh, TriMesh};
+use crate::geometry::{Point3, Vec3};
+
+/// Number of equal bins over [0, 1] in `TetQuality::histogram`.
+pub const HISTOGRAM_BINS: usize = 20;
+
+/// The six edges of a tetrahedron, as pairs of its vertices.
+pub const TET_EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// Six times the signed volume, `det(b − a, c − a, d − a)` in floating point: its sign is a hint, not a proof.
+#[inline]
+pub fn volume6(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
+    (b - a).cross(&(c - a)).dot(&(d - a))
+}
+
+/// Radius ratio 3·r_in/R_circ, with the sign of the volume: 1 for the regular tetrahedron, 0 for a flat one.
+#[inline]
+pub fn radius_ratio(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
+    let (u, v, w) = (b - a, c - a, d - a);
+    let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
+    let volume = uv.dot(&w);
+    let doubled_area = vw.norm() + wu.norm() + uv.norm() + (vw + wu + uv).norm();
+    let center = vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared();
+    // r = |V6| / ΣA2 and R = |center| / (2 |V6|), where V6 is six volumes and A2 two areas.
+    let product = doubled_area * center.norm();
+    if product > 0.0 { 6.0 * volume * volume.abs() / product } else { 0.0 }
+}
+
+/// The six dihedral angles in radians, in the order of `TET_EDGES`; each in [0, π].
+pub fn dihedral_angles(corners: [&Point3; 4]) -> [f64; 6] {
+    let [a, b, c, d] = corners;
+    let normals = TET_FACES.map(|f| {
+        let [p, q, r] = f.map(|i| corners[i]);
+        (q - p).cross(&(r - p))
+    });
+    let volume = volume6(a, b, c, d).abs();
+    TET_EDGES.map(|[i, j]| {
+        // The faces at an edge are those opposite the two other vertices; |n₁ × n₂| = |edge| · 6V exactly in reals,
+        // and does not cancel when the angle is near 0 or π.
+        let [k, l] = opposite_pair(i, j);
+        ((corners[j] - corners[i]).norm() * volume).atan2(-normals[k].dot(&normals[l]))
+    })
+}
+
+/// The two vertices of a tetrahedron that are neither `i` nor `j`, in ascending order.
+#[inline]
+pub fn opposite_pair(i: usize, j: usize) -> [usize; 2] {
+    match (i.min(j), i.max(j)) {
+        (0, 1) => [2, 3],
+        (0, 2) => [1, 3],
+        (0, 3) => [1, 2],
+        (1, 2) => [0, 3],
+        (1, 3) => [0, 2],
+        _ => [0, 1],
+    }
+}
+
+/// Smallest and largest dihedral angle in radians.
+pub fn dihedral_range(corners: [&Point3; 4]) -> (f64, f64) {
+    let angles = dihedral_angles(corners);
+    angles.iter().fold((f64::INFINITY, 0.0), |(lo, hi), &x| (lo.min(x), hi.max(x)))
+}
+
+/// Vector area of a triangle: along its normal, as long as its area.
+#[inline]
+pub fn triangle_area_vector(a: &Point3, b: &Point3, c: &Point3) -> Vec3 {
+    (b - a).cross(&(c - a)) * 0.5
+}
+
+/// Area of a triangle.
+pub fn triangle_area(a: &Point3, b: &Point3, c: &Point3) -> f64 {
+    triangle_area_vector(a, b, c).norm()
+}
+
+/// Unit normal of a triangle (counter-clockwise seen from where it points to); none when its area is zero.
+pub fn triangle_normal(a: &Point3, b: &Point3, c: &Point3) -> Option<Vec3> {
+    triangle_area_vector(a, b, c).try_normalize(0.0)
+}
+
+/// Smallest corner angle of a triangle in radians.
+pub fn triangle_min_angle(a: &Point3, b: &Point3, c: &Point3) -> f64 {
+    let (ab, bc, ca) = (b - a, c - b, a - c);
+    let area = ab.cross(&ca).norm();
+    let corner = |u: &Vec3, v: &Vec3| area.atan2(-u.dot(v));
+    corner(&ab, &ca).min(corner(&bc, &ab)).min(corner(&ca, &bc))
+}
+
+/// Shape of all tetrahedra of a mesh.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct TetQuality {
+    /// Number of tetrahedra.
+    pub tets: usize,
+    /// Mean radius ratio.
+    pub mean: f64,
+    /// First percentile of the radius ratio (linear between the two nearest ranks).
+    pub percentile_1: f64,
+    /// Smallest radius ratio.
+    pub min: f64,
+    /// Counts of the radius ratio in equal bins over [0, 1]; negative ones are in the first bin.
+    pub histogram: [u64; HISTOGRAM_BINS],
+    /// Smallest dihedral angle, degrees.
+    pub dihedral_min: f64,
+    /// Largest dihedral angle, degrees.
+    pub dihedral_max: f64,
+}
+
+impl TetQuality {
+    /// Measures a mesh. A mesh without tetrahedra has zeros everywhere.
+    pub fn of(mesh: &TetMesh) -> Self {
+        let mut ratios = Vec::with_capacity(mesh.tets.len());
+        let mut histogram = [0; HISTOGRAM_BINS];
+        let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
+        for t in &mesh.tets {
+            let p = t.map(|v| &mesh.points[v as usize]);
+            let q = radius_ratio(p[0], p[1], p[2], p[3]);
+            histogram[((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1)] += 1;
+            ratios.push(q);
+            let (lo, hi) = dihedral_range(p);
+            (low, high) = (low.min(lo), high.max(hi));
+        }
+        if ratios.is_empty() {
+            low = 0.0;
+        }
+        Self {
+            tets: ratios.len(),
+            mean: ratios.iter().sum::<f64>() / ratios.len().max(1) as f64,
+            percentile_1: percentile(&mut ratios, 0.01),
+            min: ratios.iter().copied().reduce(f64::min).unwrap_or(0.0),
+            histogram,
+            dihedral_min: low.to_degrees(),
+            dihedral_max: high.to_degrees(),
+        }
+    }
+}
+
+/// Shape of all triangles of a surface.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct TriQuality {
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Total area.
+    pub area: f64,
+    /// Mean over the triangles of the smallest angle, degrees.
+    pub mean_min_angle: f64,
+    /// First percentile of the smallest angle, degrees.
+    pub percentile_1: f64,
+    /// Smallest angle, degrees.
+    pub min_angle: f64,
+}
+
+impl TriQuality {
+    /// Measures a surface. One without triangles has zeros everywhere.
+    pub fn of(mesh: &TriMesh) -> Self {
+        let mut area = 0.0;
+        let mut angles: Vec<f64> = Vec::with_capacity(mesh.triangles.len());
+        for t in &mesh.triangles {
+            let [a, b, c] = t.map(|v| &mesh.points[v as usize]);
+            area += triangle_area(a, b, c);
+            angles.push(triangle_min_angle(a, b, c).to_degrees());
+        }
+        Self {
+            triangles: angles.len(),
+            area,
+            mean_min_angle: angles.iter().sum::<f64>() / angles.len().max(1) as f64,
+            percentile_1: percentile(&mut angles, 0.01),
+            min_angle: angles.iter().copied().reduce(f64::min).unwrap_or(0.0),
+        }
+    }
+}
+
+/// The `share`-quantile, linear between the two nearest ranks; 0 for no values. Reorders `values`.
+fn percentile(values: &mut [f64], share: f64) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let rank = share * (values.len() - 1) as f64;
+    let (_, &mut low, above) = values.select_nth_unstable_by(rank as usize, f64::total_cmp);
+    let high = above.iter().copied().reduce(f64::min).unwrap_or(low);
+    low + (high - low) * rank.fract()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn regular() -> [Point3; 4] {
+        [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]].map(Point3::from)
+    }
+
+    #[test]
+    fn the_regular_tetrahedron_is_best() {
+        let [a, b, c, d] = regular();
+        let sign = volume6(&a, &b, &c, &d).signum();
+        assert!((radius_ratio(&a, &b, &c, &d) - sign).abs() < 1e-14);
+        let expected = (1.0_f64 / 3.0).acos();
+        for angle in dihedral_angles([&a, &b, &c, &d]) {
+            assert!((angle - expected).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_corner_of_a_cube_has_known_values() {
+        let [a, b, c, d] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Point3::from);
+        // r = 3V/S = (1/2) / (3/2 + √3/2) and R = √3/2.
+        let r = 0.5 / (1.5 + 3.0_f64.sqrt() / 2.0);
+        let expected = 3.0 * r / (3.0_f64.sqrt() / 2.0);
+        assert!((radius_ratio(&a, &b, &c, &d) - expected).abs() < 1e-14);
+        let (lo, hi) = dihedral_range([&a, &b, &c, &d]);
+        assert!((lo - (1.0 / 3.0_f64.sqrt()).acos()).abs() < 1e-14);
+        assert!((hi - std::f64::consts::FRAC_PI_2).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_flat_tetrahedron_is_worthless_and_its_angles_are_0_and_180() {
+        let [a, b, c, d] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
+        assert!(radius_ratio(&a, &b, &c, &d).abs() < 1e-300);
+        let (lo, hi) = dihedral_range([&a, &b, &c, &d]);
+        assert!(lo.abs() < 1e-15 && (hi - std::f64::consts::PI).abs() < 1e-15);
+        assert!(radius_ratio(&a, &a, &a, &a).abs() < 1e-300);
+    }
+
+    #[test]
+    fn percentile_is_linear_between_ranks() {
+        let mut values: Vec<f64> = (0..=50).rev().map(f64::from).collect();
+        assert!((percentile(&mut values, 0.01) - 0.5).abs() < 1e-14);
+        assert!(percentile(&mut [], 0.01).abs() < 1e-300);
+        assert!((percentile(&mut [3.0], 0.01) - 3.0).abs() < 1e-300);
+    }
+
+    #[test]
+    fn the_summary_counts_every_tetrahedron_once() {
+        let mesh = TetMesh { points: regular().to_vec(), tets: vec![[0, 1, 2, 3], [0, 2, 1, 3]] };
+        let quality = TetQuality::of(&mesh);
+        assert_eq!(quality.tets, 2);
+        assert_eq!(quality.histogram.iter().sum::<u64>(), 2);
+        assert!(quality.mean.abs() < 1e-14 && (quality.min + 1.0).abs() < 1e-14);
+        assert_eq!(TetQuality::of(&TetMesh::default()).tets, 0);
+    }
+
+    #[test]
+    fn triangle_angles() {
+        let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 3.0_f64.sqrt(), 0.0]].map(Point3::from);
+        assert!((triangle_min_angle(&a, &b, &c).to_degrees() - 30.0).abs() < 1e-12);
+        assert!((triangle_area(&a, &b, &c) - 3.0_f64.sqrt() / 2.0).abs() < 1e-14);
+        assert_eq!(triangle_normal(&a, &b, &c), Some(Vec3::z()));
+        assert_eq!(triangle_normal(&a, &a, &c), None);
+    }
+
+    proptest! {
+        /// The angles at the edges agree with the angle between the faces seen along the edge.
+        #[test]
+        fn dihedral_angles_agree_with_their_definition(x in prop::array::uniform12(-1.0..1.0_f64)) {
+            let p: [Point3; 4] = std::array::from_fn(|i| Point3::new(x[3 * i], x[3 * i + 1], x[3 * i + 2]));
+            prop_assume!(volume6(&p[0], &p[1], &p[2], &p[3]).abs() > 1e-4);
+            let angles = dihedral_angles([&p[0], &p[1], &p[2], &p[3]]);
+            for (n, [i, j]) in TET_EDGES.into_iter().enumerate() {
+                let [k, l] = opposite_pair(i, j);
+                let e = (p[j] - p[i]).normalize();
+                let flat = |q: Point3| { let u = q - p[i]; u - e * u.dot(&e) };
+                prop_assert!((flat(p[k]).angle(&flat(p[l])) - angles[n]).abs() < 1e-6);
+            }
+            let ratio = radius_ratio(&p[0], &p[1], &p[2], &p[3]);
+            prop_assert!(ratio.abs() <= 1.0 + 1e-12);
+            prop_assert!((ratio + radius_ratio(&p[0], &p[2], &p[1], &p[3])).abs() < 1e-9);
+        }
+    }
+}

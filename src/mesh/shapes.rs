@@ -1,0 +1,154 @@
+//! Meshes for tests, made by formula.
+
+use super::{TetMesh, TriMesh};
+use crate::geometry::{Point3, Vec3};
+use rustc_hash::FxHashMap;
+
+/// The unit cube as n × n × n cells of six tetrahedra each (Kuhn's subdivision).
+pub fn cube_lattice(n: u32) -> TetMesh {
+    let id = |x: u32, y: u32, z: u32| (z * (n + 1) + y) * (n + 1) + x;
+    let mut mesh = TetMesh::default();
+    for z in 0..=n {
+        for y in 0..=n {
+            for x in 0..=n {
+                mesh.points.push(Point3::from([x, y, z].map(|i| f64::from(i) / f64::from(n))));
+            }
+        }
+    }
+    for cell in 0..n * n * n {
+        let corner = [cell % n, cell / n % n, cell / n / n];
+        for [i, j, odd] in [[0, 1, 0], [1, 2, 0], [2, 0, 0], [1, 0, 1], [2, 1, 1], [0, 2, 1]] {
+            let mut way = [corner; 4];
+            way[1][i] += 1;
+            way[2][i] += 1;
+            way[2][j] += 1;
+            way[3] = corner.map(|x| x + 1);
+            let [a, b, c, d] = way.map(|[x, y, z]| id(x, y, z));
+            mesh.tets.push(if odd == 0 { [a, b, c, d] } else { [a, c, b, d] });
+        }
+    }
+    mesh
+}
+
+/// The unit sphere: an icosahedron whose triangles are cut in four `level` times.
+pub fn sphere_surface(level: usize) -> TriMesh {
+    let phi = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let mut points: Vec<Point3> = Vec::new();
+    for (x, y) in [(-1.0, phi), (1.0, phi), (-1.0, -phi), (1.0, -phi)] {
+        points.push(Point3::new(x, y, 0.0));
+    }
+    for (y, z) in [(-1.0, phi), (1.0, phi), (-1.0, -phi), (1.0, -phi)] {
+        points.push(Point3::new(0.0, y, z));
+    }
+    for (x, z) in [(phi, -1.0), (phi, 1.0), (-phi, -1.0), (-phi, 1.0)] {
+        points.push(Point3::new(x, 0.0, z));
+    }
+    let mut triangles = vec![
+        [0, 11, 5],
+        [0, 5, 1],
+        [0, 1, 7],
+        [0, 7, 10],
+        [0, 10, 11],
+        [1, 5, 9],
+        [5, 11, 4],
+        [11, 10, 2],
+        [10, 7, 6],
+        [7, 1, 8],
+        [3, 9, 4],
+        [3, 4, 2],
+        [3, 2, 6],
+        [3, 6, 8],
+        [3, 8, 9],
+        [4, 9, 5],
+        [2, 4, 11],
+        [6, 2, 10],
+        [8, 6, 7],
+        [9, 8, 1],
+    ];
+    for _ in 0..level {
+        let mut middle: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+        let mut next = Vec::with_capacity(4 * triangles.len());
+        for [a, b, c] in triangles {
+            let [ab, bc, ca] = [[a, b], [b, c], [c, a]].map(|[u, v]: [u32; 2]| {
+                *middle.entry([u.min(v), u.max(v)]).or_insert_with(|| {
+                    points.push(nalgebra::center(&points[u as usize], &points[v as usize]));
+                    points.len() as u32 - 1
+                })
+            });
+            next.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        triangles = next;
+    }
+    for p in &mut points {
+        *p /= p.coords.norm();
+    }
+    TriMesh { points, triangles }
+}
+
+/// A disc of three-cornered rings swept along z: a solid tube of radius 1 and height `layers · step`, `rings` rings of
+/// vertices around the axis, `6 · ring` of them in each.
+pub fn tube_lattice(rings: u32, layers: u32, step: f64) -> TetMesh {
+    let mut mesh = TetMesh::default();
+    let (disc, flat) = disc_lattice(rings);
+    let count = disc.len() as u32;
+    for layer in 0..=layers {
+        mesh.points.extend(disc.iter().map(|p| p + Vec3::z() * (f64::from(layer) * step)));
+    }
+    for layer in 0..layers {
+        for triangle in &flat {
+            // A prism cut by the order of its vertices conforms with its neighbours.
+            let mut t = *triangle;
+            t.rotate_left((0..3).min_by_key(|&i| triangle[i]).unwrap_or(0));
+            let [a, b, c] = t.map(|v| v + layer * count);
+            let [d, e, f] = [a + count, b + count, c + count];
+            if b < c {
+                mesh.tets.extend([[a, b, c, f], [a, b, f, e], [a, e, f, d]]);
+            } else {
+                mesh.tets.extend([[a, b, c, e], [a, e, c, f], [a, e, f, d]]);
+            }
+        }
+    }
+    mesh
+}
+
+fn disc_lattice(rings: u32) -> (Vec<Point3>, Vec<[u32; 3]>) {
+    let mut points = vec![Point3::origin()];
+    let start = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
+    for ring in 1..=rings {
+        for i in 0..6 * ring {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(6 * ring)).sin_cos();
+            points.push(Point3::new(cos, sin, 0.0) * (f64::from(ring) / f64::from(rings)));
+        }
+    }
+    let mut triangles = Vec::new();
+    for ring in 1..=rings {
+        let outer = |i: u32| start(ring) + i % (6 * ring);
+        let inner = |i: u32| if ring == 1 { 0 } else { start(ring - 1) + i % (6 * (ring - 1)) };
+        for sector in 0..6 {
+            for i in 0..ring {
+                let (o, n) = (sector * ring + i, sector * (ring - 1) + i);
+                triangles.push([inner(n), outer(o), outer(o + 1)]);
+                if i + 1 < ring {
+                    triangles.push([inner(n), outer(o + 1), inner(n + 1)]);
+                }
+            }
+        }
+    }
+    (points, triangles)
+}
+
+/// Moves the points for which `movable` is true by up to `size` in each coordinate, by a fixed pseudo-random sequence.
+pub fn perturb(points: &mut [Point3], movable: &[bool], size: f64, seed: u64) {
+    let mut state = seed;
+    let mut next = || {
+        // SplitMix64
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    for (p, _) in points.iter_mut().zip(movable).filter(|(_, m)| **m) {
+        *p += Vec3::new(next(), next(), next()) * size;
+    }
+}
