@@ -1,7 +1,13 @@
 //! Floor 1: points, tubes and cross-sections; predicates, intersections, distances and search trees.
 
+mod aabb;
+mod bvh;
+mod distance;
 mod tube;
 
+pub use aabb::Aabb;
+pub use bvh::Bvh;
+pub use distance::{SegmentPair, TubePair, point_segment, point_triangle, point_tube, segment_segment, tube_tube};
 pub use tube::{Section, Tube};
 
 /// A point in space; the unit is the network's.

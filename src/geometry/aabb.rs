@@ -1,0 +1,77 @@
+//! Axis-aligned boxes.
+
+use super::Point3;
+
+/// An axis-aligned box; closed, so boxes that touch overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Smallest coordinates.
+    pub min: Point3,
+    /// Largest coordinates.
+    pub max: Point3,
+}
+
+impl Aabb {
+    /// The box that holds nothing: it overlaps no box, and its union with a box is that box.
+    pub const EMPTY: Self = Self {
+        min: Point3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+        max: Point3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
+    };
+
+    /// The smallest box that holds all points; `EMPTY` for none.
+    pub fn of_points<'a>(points: impl IntoIterator<Item = &'a Point3>) -> Self {
+        let mut aabb = Self::EMPTY;
+        for p in points {
+            aabb.include(p);
+        }
+        aabb
+    }
+
+    /// Grows the box so that it holds `p`.
+    pub fn include(&mut self, p: &Point3) {
+        self.min = self.min.inf(p);
+        self.max = self.max.sup(p);
+    }
+
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
+    }
+
+    /// The box grown by `margin` on every side.
+    #[must_use]
+    pub fn grown(&self, margin: f64) -> Self {
+        let m = super::Vec3::repeat(margin);
+        Self { min: self.min - m, max: self.max + m }
+    }
+
+    /// Whether the two boxes have a point in common.
+    #[inline]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.min.x <= other.max.x
+            && other.min.x <= self.max.x
+            && self.min.y <= other.max.y
+            && other.min.y <= self.max.y
+            && self.min.z <= other.max.z
+            && other.min.z <= self.max.z
+    }
+
+    /// Whether the box holds `p`.
+    pub fn contains(&self, p: &Point3) -> bool {
+        (0..3).all(|i| self.min[i] <= p[i] && p[i] <= self.max[i])
+    }
+
+    /// Twice the centre: enough to order boxes by.
+    pub(super) fn doubled_centre(&self) -> [f64; 3] {
+        [self.min.x + self.max.x, self.min.y + self.max.y, self.min.z + self.max.z]
+    }
+
+    /// Length of the diagonal; 0 for the empty box.
+    pub fn diagonal(&self) -> f64 {
+        if self.min.x > self.max.x {
+            return 0.0;
+        }
+        (self.max - self.min).norm()
+    }
+}

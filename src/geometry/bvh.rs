@@ -1,0 +1,258 @@
+//! A bounding volume hierarchy over axis-aligned boxes.
+//!
+//! Balanced by construction (split at the median), so its depth is the logarithm of the number of boxes whatever the
+//! boxes are, and all walks are iterative. The same boxes always give the same tree and the same order of answers.
+
+use super::Aabb;
+
+/// Boxes in a leaf at most.
+const LEAF: usize = 4;
+
+/// Deep enough for 2^32 boxes in any walk.
+const STACK: usize = 128;
+
+#[derive(Clone, Copy, Debug)]
+struct BvhNode {
+    aabb: Aabb,
+    /// A leaf's range in `items`; an inner node has `count` 0 and its right child at `first`, the left one follows it.
+    first: u32,
+    count: u32,
+}
+
+/// A search tree over boxes; boxes are named by their index in the slice that the tree was built from.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    nodes: Vec<BvhNode>,
+    items: Vec<u32>,
+    /// The boxes in the order of `items`.
+    boxes: Vec<Aabb>,
+}
+
+impl Bvh {
+    /// Builds the tree. Boxes must not hold NaN; `Aabb::EMPTY` is legal and never found.
+    pub fn new(boxes: &[Aabb]) -> Self {
+        let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
+        let mut nodes = Vec::with_capacity(boxes.len() / 2 + 1);
+        // Ranges still to be built, the left one on top so that a left child follows its parent; `parent` is set for
+        // right children, which tell the parent where they are.
+        let mut pending: Vec<(usize, usize, Option<usize>)> = Vec::new();
+        if !boxes.is_empty() {
+            pending.push((0, boxes.len(), None));
+        }
+        while let Some((start, end, parent)) = pending.pop() {
+            let index = nodes.len();
+            if let Some(parent) = parent {
+                let node: &mut BvhNode = &mut nodes[parent];
+                node.first = index as u32;
+            }
+            let range = &mut items[start..end];
+            let aabb = range.iter().fold(Aabb::EMPTY, |sum, &i| sum.union(&boxes[i as usize]));
+            let leaf = range.len() <= LEAF;
+            nodes.push(BvhNode { aabb, first: start as u32, count: if leaf { range.len() as u32 } else { 0 } });
+            if !leaf {
+                let middle = split_at_median(boxes, range);
+                pending.push((start + middle, end, Some(index)));
+                pending.push((start, start + middle, None));
+            }
+        }
+        let boxes = items.iter().map(|&i| boxes[i as usize]).collect();
+        Self { nodes, items, boxes }
+    }
+
+    /// Number of boxes.
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Whether there is no box.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// Calls `found` for every box that overlaps `aabb`.
+    pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
+        let mut stack = [0_u32; STACK];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth];
+            let node = &self.nodes[index as usize];
+            if !node.aabb.overlaps(aabb) {
+                continue;
+            }
+            if node.count == 0 {
+                stack[depth] = node.first;
+                stack[depth + 1] = index + 1;
+                depth += 2;
+                continue;
+            }
+            for i in node.range() {
+                if self.boxes[i].overlaps(aabb) {
+                    found(self.items[i]);
+                }
+            }
+        }
+    }
+
+    /// Calls `found(a, b)`, a < b, once for every pair of overlapping boxes of this tree.
+    pub fn self_pairs(&self, mut found: impl FnMut(u32, u32)) {
+        let mut pending: Vec<(u32, u32)> = Vec::new();
+        if !self.nodes.is_empty() {
+            pending.push((0, 0));
+        }
+        while let Some((i, j)) = pending.pop() {
+            let (a, b) = (&self.nodes[i as usize], &self.nodes[j as usize]);
+            if i != j {
+                if a.aabb.overlaps(&b.aabb) && !self.descend(i, a, j, b, &mut pending) {
+                    for m in a.range() {
+                        for n in b.range() {
+                            self.pair(m, n, &mut found);
+                        }
+                    }
+                }
+            } else if a.count == 0 {
+                pending.extend([(i + 1, a.first), (a.first, a.first), (i + 1, i + 1)]);
+            } else {
+                for m in a.range() {
+                    for n in m + 1..a.range().end {
+                        self.pair(m, n, &mut found);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Calls `found(a, b)` once for every box `a` of this tree and box `b` of the other that overlap.
+    pub fn pairs(&self, other: &Self, mut found: impl FnMut(u32, u32)) {
+        let mut pending: Vec<(u32, u32)> = Vec::new();
+        if !self.nodes.is_empty() && !other.nodes.is_empty() {
+            pending.push((0, 0));
+        }
+        while let Some((i, j)) = pending.pop() {
+            let (a, b) = (&self.nodes[i as usize], &other.nodes[j as usize]);
+            if !a.aabb.overlaps(&b.aabb) || self.descend(i, a, j, b, &mut pending) {
+                continue;
+            }
+            for m in a.range() {
+                for n in b.range() {
+                    if self.boxes[m].overlaps(&other.boxes[n]) {
+                        found(self.items[m], other.items[n]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Replaces a pair of nodes by pairs with the children of the larger one; false when both are leaves.
+    #[allow(clippy::unused_self)]
+    fn descend(&self, i: u32, a: &BvhNode, j: u32, b: &BvhNode, pending: &mut Vec<(u32, u32)>) -> bool {
+        if a.count > 0 && b.count > 0 {
+            return false;
+        }
+        if b.count > 0 || (a.count == 0 && a.aabb.diagonal() >= b.aabb.diagonal()) {
+            pending.extend([(a.first, j), (i + 1, j)]);
+        } else {
+            pending.extend([(i, b.first), (i, j + 1)]);
+        }
+        true
+    }
+
+    fn pair(&self, m: usize, n: usize, found: &mut impl FnMut(u32, u32)) {
+        if self.boxes[m].overlaps(&self.boxes[n]) {
+            let (a, b) = (self.items[m], self.items[n]);
+            found(a.min(b), a.max(b));
+        }
+    }
+}
+
+impl BvhNode {
+    fn range(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// Reorders `items` so that the first half lies below the second along the axis on which their centres spread most.
+fn split_at_median(boxes: &[Aabb], items: &mut [u32]) -> usize {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for &i in items.iter() {
+        let centre = boxes[i as usize].doubled_centre();
+        for k in 0..3 {
+            low[k] = low[k].min(centre[k]);
+            high[k] = high[k].max(centre[k]);
+        }
+    }
+    let spread = |k: usize| high[k] - low[k];
+    let axis = (1..3).fold(0, |best, k| if spread(k) > spread(best) { k } else { best });
+    let key = |i: u32| boxes[i as usize].doubled_centre()[axis];
+    let middle = items.len() / 2;
+    // The index breaks ties, so the order of equal centres is the same on every run.
+    items.select_nth_unstable_by(middle, |&i, &j| key(i).total_cmp(&key(j)).then(i.cmp(&j)));
+    middle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+    use proptest::prelude::*;
+
+    fn any_box() -> impl Strategy<Value = Aabb> {
+        // Small integers: many touching and equal boxes.
+        (prop::array::uniform3(-9_i8..9), prop::array::uniform3(0_i8..4)).prop_map(|(p, d)| {
+            let at = |i: usize| f64::from(p[i]);
+            let to = |i: usize| f64::from(p[i] + d[i]);
+            Aabb { min: Point3::new(at(0), at(1), at(2)), max: Point3::new(to(0), to(1), to(2)) }
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn finds_what_a_full_search_finds(
+            a in prop::collection::vec(any_box(), 0..80),
+            b in prop::collection::vec(any_box(), 0..80),
+        ) {
+            let (ta, tb) = (Bvh::new(&a), Bvh::new(&b));
+            let mut own = Vec::new();
+            ta.self_pairs(|i, j| own.push((i, j)));
+            own.sort_unstable();
+            let mut cross = Vec::new();
+            ta.pairs(&tb, |i, j| cross.push((i, j)));
+            cross.sort_unstable();
+            let mut queried = Vec::new();
+            for (j, aabb) in b.iter().enumerate() {
+                ta.query(aabb, |i| queried.push((i, j as u32)));
+            }
+            queried.sort_unstable();
+            let mut expect_own = Vec::new();
+            let mut expect_cross = Vec::new();
+            for i in 0..a.len() {
+                expect_own.extend((i + 1..a.len()).filter(|&j| a[i].overlaps(&a[j])).map(|j| (i as u32, j as u32)));
+                expect_cross.extend((0..b.len()).filter(|&j| a[i].overlaps(&b[j])).map(|j| (i as u32, j as u32)));
+            }
+            prop_assert_eq!(own, expect_own);
+            prop_assert_eq!(&cross, &expect_cross);
+            prop_assert_eq!(queried, expect_cross);
+        }
+    }
+
+    #[test]
+    fn many_equal_boxes_stay_balanced() {
+        let boxes = vec![Aabb { min: Point3::origin(), max: Point3::origin() }; 5000];
+        let tree = Bvh::new(&boxes);
+        let mut count = 0;
+        tree.query(&boxes[0], |_| count += 1);
+        assert_eq!(count, 5000);
+        assert!(tree.nodes.len() < 5000);
+    }
+
+    #[test]
+    fn empty_boxes_are_never_found() {
+        let unit = Aabb { min: Point3::origin(), max: Point3::new(1.0, 1.0, 1.0) };
+        let tree = Bvh::new(&[Aabb::EMPTY, unit, Aabb::EMPTY, unit, unit, Aabb::EMPTY]);
+        let mut found = Vec::new();
+        tree.query(&unit, |i| found.push(i));
+        found.sort_unstable();
+        assert_eq!(found, [1, 3, 4]);
+        assert_eq!(tree.len(), 6);
+    }
+}
