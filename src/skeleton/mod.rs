@@ -1,5 +1,16 @@
 //! Floor 2: the vessel skeleton, a graph whose nodes are points with a radius and whose edges are vessels.
 
+mod branch;
+mod check;
+mod error;
+mod graph;
+#[cfg(test)]
+mod tests;
+
+pub use branch::{Branch, Branches, Place};
+pub use error::{LARGEST, SkeletonError};
+pub use graph::{Adjacency, Component, Components};
+
 use crate::geometry::{Point3, Tube};
 
 /// Index of a node in its skeleton.
