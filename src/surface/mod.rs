@@ -1,1 +1,273 @@
-//! (room under construction)
+//! Floor 3: 3.2.2 of the paper. The wall of a cluster: the level set of a convolution field, contoured on a sparse grid
+//! and relaxed into well-shaped triangles.
+
+mod cases;
+mod contour;
+mod erf;
+mod field;
+mod halfedge;
+mod relax;
+#[cfg(test)]
+mod tests;
+
+pub use field::Field;
+
+use crate::geometry::{Point3, Tube, Vec3};
+use crate::mesh::TriMesh;
+use halfedge::HalfEdges;
+use relax::Relaxation;
+
+/// How a surface is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceParams {
+    /// Edge of a grid cell, in the unit of the tubes: `2 r_min / ρ`.
+    pub voxel: f64,
+    /// Kernel width σ / r.
+    pub kappa: f64,
+    /// Where the grid lies: its origin, in cells. Another shift gives another triangulation of the same wall.
+    pub shift: [f64; 3],
+    /// Edge length to aim at, in cells.
+    pub edge: f64,
+    /// Rounds of relaxation.
+    pub rounds: u32,
+    /// Most cells that the wall may cross.
+    pub max_cells: usize,
+}
+
+impl SurfaceParams {
+    /// Usual parameters for a cell edge.
+    pub fn with_voxel(voxel: f64) -> Self {
+        Self { voxel, kappa: 0.5, shift: [0.0; 3], edge: 0.9, rounds: 4, max_cells: 20_000_000 }
+    }
+}
+
+/// Why there is no surface.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SurfaceError {
+    /// There is no tube with a length.
+    #[error("no tube has a length")]
+    Empty,
+    /// A tube has a coordinate or radius that is not finite, or a radius that is not positive.
+    #[error("tube {tube} has a coordinate or radius that is not finite, or a radius that is not positive")]
+    InvalidTube {
+        /// Index of the tube.
+        tube: u32,
+    },
+    /// A parameter is out of its range.
+    #[error("{name} = {value} is out of range")]
+    InvalidParameter {
+        /// Its name.
+        name: &'static str,
+        /// What it was.
+        value: f64,
+    },
+    /// The wall would cross too many cells.
+    #[error("the wall crosses about {cells:.3e} grid cells, more than the limit of {limit}")]
+    TooLarge {
+        /// Estimated or counted cells.
+        cells: f64,
+        /// The limit.
+        limit: usize,
+    },
+    /// The grid is too coarse to see a tube.
+    #[error("the grid (cell {voxel}) does not see tube {tube}")]
+    Unresolved {
+        /// Index of the tube.
+        tube: u32,
+        /// The cell edge.
+        voxel: f64,
+    },
+    /// The tubes do not make one connected vessel.
+    #[error("tubes {} and {} are not connected: the wall has {components} components", tubes[0], tubes[1])]
+    Disconnected {
+        /// Number of components.
+        components: u32,
+        /// One tube of each of two components.
+        tubes: [u32; 2],
+    },
+    /// Contouring gave a surface that is not a closed manifold, which is a bug.
+    #[error("the contour is not a closed manifold at edge {} – {}", edge[0], edge[1])]
+    NotManifold {
+        /// Vertices of the edge (equal: of the vertex).
+        edge: [u32; 2],
+    },
+}
+
+/// The wall of the vessels `tubes`: one closed 2-manifold, oriented outwards, at the tubes' radii.
+///
+/// # Errors
+/// Tubes or parameters that make no sense; a wall that is too large for the limit, not resolved by the grid, or not one
+/// piece.
+pub fn vessel_surface(tubes: &[Tube], params: &SurfaceParams) -> Result<TriMesh, SurfaceError> {
+    check(params)?;
+    let mut field = Field::new(tubes, params.kappa)?;
+    let estimate = estimated_cells(tubes, params.voxel);
+    if estimate > params.max_cells as f64 {
+        return Err(SurfaceError::TooLarge { cells: estimate, limit: params.max_cells });
+    }
+    let mesh = contour_field(tubes, &mut field, params)?;
+    let mut surface = HalfEdges::new(&mesh).map_err(|edge| SurfaceError::NotManifold { edge })?;
+    let mut relaxation = Relaxation::new(&mut surface, &mut field, params.edge * params.voxel, Vec::new());
+    relaxation.run(params.rounds as usize);
+    relaxation.compensate_chords();
+    Ok(surface.to_mesh().0)
+}
+
+/// Euler characteristic `V − E + F` of a closed triangle surface: 2 per component, less 2 per handle.
+pub fn euler_characteristic(mesh: &TriMesh) -> i64 {
+    mesh.points.len() as i64 - mesh.triangles.len() as i64 / 2
+}
+
+fn check(params: &SurfaceParams) -> Result<(), SurfaceError> {
+    let positive = [("voxel", params.voxel), ("edge", params.edge)];
+    for (name, value) in positive {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(SurfaceError::InvalidParameter { name, value });
+        }
+    }
+    match params.shift.iter().find(|x| !(x.abs() <= 1.0)) {
+        Some(&value) => Err(SurfaceError::InvalidParameter { name: "shift", value }),
+        None => Ok(()),
+    }
+}
+
+/// About how many cells the wall crosses: one and a half per cell face of its area.
+fn estimated_cells(tubes: &[Tube], voxel: f64) -> f64 {
+    let area: f64 = tubes.iter().map(|t| std::f64::consts::PI * (t.ra + t.rb) * t.length()).sum();
+    1.5 * area / (voxel * voxel)
+}
+
+/// The contour of the field on the grid: the outer surfaces that carry the tubes, which have to be one.
+fn contour_field(tubes: &[Tube], field: &mut Field, params: &SurfaceParams) -> Result<TriMesh, SurfaceError> {
+    let grid = Grid::new(field, params)?;
+    let mut seeds = Vec::with_capacity(2 * tubes.len());
+    let mut owners = Vec::with_capacity(2 * tubes.len());
+    for (i, tube) in tubes.iter().enumerate() {
+        if tube.length() > 0.0 {
+            let found = grid.seeds(field, tube);
+            let found = found.ok_or(SurfaceError::Unresolved { tube: i as u32, voxel: params.voxel })?;
+            seeds.extend(found);
+            owners.extend([i as u32; 2]);
+        }
+    }
+    let (mut mesh, at_seeds) = contour::contour(&seeds, params.max_cells, |n| field.value(&grid.point(n)) - 1.0)?;
+    for p in &mut mesh.points {
+        *p = grid.origin + p.coords * grid.voxel;
+    }
+    outer_component(mesh, &at_seeds, &owners)
+}
+
+/// Keeps the one component that is turned outwards; voids inside the vessels are dropped.
+fn outer_component(mesh: TriMesh, at_seeds: &[u32], owners: &[u32]) -> Result<TriMesh, SurfaceError> {
+    let component = components(&mesh);
+    let count = component.iter().max().map_or(0, |&c| c as usize + 1);
+    if count == 1 {
+        return Ok(mesh);
+    }
+    let mut volume = vec![0.0; count];
+    let Some(&reference) = mesh.points.first() else { return Err(SurfaceError::Empty) };
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|v| mesh.points[v as usize] - reference);
+        volume[component[t[0] as usize] as usize] += a.dot(&b.cross(&c));
+    }
+    let outer: Vec<u32> = (0..count as u32).filter(|&c| volume[c as usize] > 0.0).collect();
+    let owner = |c: u32| at_seeds.iter().position(|&v| component[v as usize] == c).map_or(0, |i| owners[i]);
+    match outer[..] {
+        [] => Err(SurfaceError::Empty),
+        [one] => Ok(restricted(&mesh, &component, one)),
+        [a, b, ..] => Err(SurfaceError::Disconnected { components: outer.len() as u32, tubes: [owner(a), owner(b)] }),
+    }
+}
+
+/// Component of every vertex, numbered by first vertex.
+fn components(mesh: &TriMesh) -> Vec<u32> {
+    fn root(parent: &mut [u32], mut v: u32) -> u32 {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    }
+    let mut parent: Vec<u32> = (0..mesh.points.len() as u32).collect();
+    for t in &mesh.triangles {
+        for v in [t[1], t[2]] {
+            let (a, b) = (root(&mut parent, t[0]), root(&mut parent, v));
+            parent[a.max(b) as usize] = a.min(b);
+        }
+    }
+    let mut number = 0;
+    let mut out = vec![0; parent.len()];
+    for v in 0..parent.len() as u32 {
+        let r = root(&mut parent, v);
+        if r == v {
+            out[v as usize] = number;
+            number += 1;
+        } else {
+            out[v as usize] = out[r as usize];
+        }
+    }
+    out
+}
+
+fn restricted(mesh: &TriMesh, component: &[u32], keep: u32) -> TriMesh {
+    let mut map = vec![u32::MAX; mesh.points.len()];
+    let mut out = TriMesh::default();
+    for (v, p) in mesh.points.iter().enumerate() {
+        if component[v] == keep {
+            map[v] = out.points.len() as u32;
+            out.points.push(*p);
+        }
+    }
+    let kept = mesh.triangles.iter().filter(|t| component[t[0] as usize] == keep);
+    out.triangles.extend(kept.map(|t| t.map(|v| map[v as usize])));
+    out
+}
+
+/// The grid on which the field is sampled.
+struct Grid {
+    origin: Point3,
+    voxel: f64,
+}
+
+impl Grid {
+    fn new(field: &Field, params: &SurfaceParams) -> Result<Self, SurfaceError> {
+        let (lo, hi) = field.bounds();
+        let cells = (hi - lo).amax() / params.voxel;
+        if cells >= f64::from(contour::MAX_COORDINATE) {
+            return Err(SurfaceError::TooLarge { cells, limit: contour::MAX_COORDINATE as usize });
+        }
+        let origin = nalgebra::center(&lo, &hi) + Vec3::from(params.shift) * params.voxel;
+        Ok(Self { origin, voxel: params.voxel })
+    }
+
+    fn point(&self, n: contour::Node) -> Point3 {
+        self.origin + Vec3::new(f64::from(n[0]), f64::from(n[1]), f64::from(n[2])) * self.voxel
+    }
+
+    /// The cells where lines from the middle of the tube, both ways across it, leave the vessels; none when no node near
+    /// the middle is inside.
+    fn seeds(&self, field: &mut Field, tube: &Tube) -> Option<[contour::Node; 2]> {
+        let at = (tube.point(0.5) - self.origin) / self.voxel;
+        let low: contour::Node = std::array::from_fn(|i| at[i].floor() as i32);
+        let mut corners: [contour::Node; 8] =
+            std::array::from_fn(|c| std::array::from_fn(|i| low[i] + (c >> i & 1) as i32));
+        let distance = |n: &contour::Node| (0..3).map(|i| (f64::from(n[i]) - at[i]).powi(2)).sum::<f64>();
+        corners.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let start = *corners.iter().find(|&&n| field.value(&self.point(n)) < 1.0)?;
+        let axis = (tube.b - tube.a).iamin();
+        let mut march = |step: i32| {
+            let mut n = start;
+            // The field ends within its bounds, so this does.
+            loop {
+                let mut m = n;
+                m[axis] += step;
+                if field.value(&self.point(m)) >= 1.0 {
+                    return if step > 0 { n } else { m };
+                }
+                n = m;
+            }
+        };
+        Some([march(1), march(-1)])
+    }
+}

@@ -1,0 +1,313 @@
+//! Contouring on a sparse grid: from seed cells along the wall, evaluating only the nodes of cells that it crosses.
+//!
+//! The patches of the marching-cubes cells form a closed 2-manifold for every sign field (`cases`). Their dual is what is
+//! built: one vertex per patch, at the mean of its crossings, and one quadrilateral per crossed grid edge, split along
+//! its better diagonal. It has as many triangles as marching cubes and no slivers. The dual is a simplicial manifold but
+//! for one case: two patches that share both segments of an ambiguous face would be joined by two edges. Each of these
+//! gets a vertex of its own in the middle, and the quadrilaterals beside it are split from a vertex at their crossing.
+
+use rustc_hash::FxHashMap;
+
+use super::SurfaceError;
+use super::cases::{CASES, FACE_EDGES, NONE, edge_corners};
+use crate::geometry::{Point3, Vec3};
+use crate::mesh::TriMesh;
+
+/// A grid node, or the cell of which it is the lowest corner.
+pub(crate) type Node = [i32; 3];
+
+/// Coordinates have to stay within ± this.
+pub(crate) const MAX_COORDINATE: i32 = 1 << 20;
+
+/// Nodes and cells of 4 × 4 × 4 of the grid.
+struct Tile {
+    value: [f64; 64],
+    first_vertex: [u32; 64],
+    evaluated: u64,
+    visited: u64,
+}
+
+/// Contours the zero level of `value` (negative inside) from `seeds`, cells that the level crosses. Positions are in
+/// grid units. With the mesh comes, for every seed, a vertex in its cell.
+///
+/// # Errors
+/// `TooLarge` when more than `max_cells` cells are crossed or the grid's coordinates overflow.
+pub(crate) fn contour(
+    seeds: &[Node],
+    max_cells: usize,
+    value: impl FnMut(Node) -> f64,
+) -> Result<(TriMesh, Vec<u32>), SurfaceError> {
+    let mut grid = Grid { tiles: Vec::new(), index: FxHashMap::default(), last: (u64::MAX, 0), value };
+    let cells = grid.flood(seeds, max_cells)?;
+    let mut dual = Dual { mesh: TriMesh::default(), midpoints: FxHashMap::default() };
+    dual.vertices(&mut grid, &cells);
+    for &(cell, _) in &cells {
+        for d in 0..3 {
+            dual.crossing(&mut grid, cell, d);
+        }
+    }
+    let at_seeds = seeds.iter().map(|&seed| grid.first_vertex(seed)).collect();
+    Ok((dual.mesh, at_seeds))
+}
+
+struct Grid<F> {
+    tiles: Vec<Tile>,
+    index: FxHashMap<u64, u32>,
+    last: (u64, u32),
+    value: F,
+}
+
+impl<F: FnMut(Node) -> f64> Grid<F> {
+    /// Tile and place within it.
+    #[inline]
+    fn locate(&mut self, n: Node) -> (usize, usize) {
+        let c = n.map(|x| (x + 2 * MAX_COORDINATE) as u64);
+        let key = (c[0] >> 2) | (c[1] >> 2) << 21 | (c[2] >> 2) << 42;
+        let place = (c[0] & 3 | (c[1] & 3) << 2 | (c[2] & 3) << 4) as usize;
+        if self.last.0 != key {
+            let tiles = &mut self.tiles;
+            let tile = *self.index.entry(key).or_insert_with(|| {
+                tiles.push(Tile { value: [0.0; 64], first_vertex: [u32::MAX; 64], evaluated: 0, visited: 0 });
+                tiles.len() as u32 - 1
+            });
+            self.last = (key, tile);
+        }
+        (self.last.1 as usize, place)
+    }
+
+    #[inline]
+    fn node(&mut self, n: Node) -> f64 {
+        let (tile, place) = self.locate(n);
+        if self.tiles[tile].evaluated >> place & 1 == 0 {
+            let value = (self.value)(n);
+            let tile = &mut self.tiles[tile];
+            tile.evaluated |= 1 << place;
+            tile.value[place] = value;
+            return value;
+        }
+        self.tiles[tile].value[place]
+    }
+
+    fn corners(&mut self, cell: Node) -> [f64; 8] {
+        std::array::from_fn(|c| self.node(corner(cell, c)))
+    }
+
+    fn mask(&mut self, cell: Node) -> u8 {
+        let v = self.corners(cell);
+        (0..8).fold(0, |mask, c| mask | u8::from(v[c] < 0.0) << c)
+    }
+
+    /// All crossed cells that are joined to the seeds through crossed faces, with their sign masks.
+    fn flood(&mut self, seeds: &[Node], max_cells: usize) -> Result<Vec<(Node, u8)>, SurfaceError> {
+        let mut cells = Vec::new();
+        let mut stack = Vec::new();
+        for &seed in seeds {
+            self.visit(seed, &mut stack)?;
+            while let Some(cell) = stack.pop() {
+                let mask = self.mask(cell);
+                if mask == 0 || mask == u8::MAX {
+                    continue;
+                }
+                if cells.len() == max_cells {
+                    return Err(SurfaceError::TooLarge { cells: max_cells as f64 + 1.0, limit: max_cells });
+                }
+                cells.push((cell, mask));
+                for (face, edges) in FACE_EDGES.iter().enumerate() {
+                    let case = &CASES[mask as usize];
+                    if edges.iter().any(|&e| case.patch_of_edge[e as usize] != NONE) {
+                        let mut next = cell;
+                        next[face / 2] += if face % 2 == 1 { 1 } else { -1 };
+                        self.visit(next, &mut stack)?;
+                    }
+                }
+            }
+        }
+        Ok(cells)
+    }
+
+    /// Puts a cell on the stack unless it has been there.
+    fn visit(&mut self, cell: Node, stack: &mut Vec<Node>) -> Result<(), SurfaceError> {
+        if cell.iter().any(|x| x.abs() >= MAX_COORDINATE) {
+            return Err(SurfaceError::TooLarge { cells: f64::INFINITY, limit: MAX_COORDINATE as usize });
+        }
+        let (tile, place) = self.locate(cell);
+        let visited = &mut self.tiles[tile].visited;
+        if *visited >> place & 1 == 0 {
+            *visited |= 1 << place;
+            stack.push(cell);
+        }
+        Ok(())
+    }
+
+    /// Where the level crosses the grid edge from `n` along axis `d`.
+    fn crossing(&mut self, n: Node, d: usize) -> Point3 {
+        let mut end = n;
+        end[d] += 1;
+        let (v0, v1) = (self.node(n), self.node(end));
+        let mut p = position(n);
+        p[d] += (v0 / (v0 - v1)).clamp(0.02, 0.98);
+        p
+    }
+
+    fn first_vertex(&mut self, cell: Node) -> u32 {
+        let (tile, place) = self.locate(cell);
+        self.tiles[tile].first_vertex[place]
+    }
+}
+
+fn corner(cell: Node, c: usize) -> Node {
+    [cell[0] + (c & 1) as i32, cell[1] + (c >> 1 & 1) as i32, cell[2] + (c >> 2 & 1) as i32]
+}
+
+fn position(n: Node) -> Point3 {
+    Point3::new(f64::from(n[0]), f64::from(n[1]), f64::from(n[2]))
+}
+
+fn shifted(n: Node, axis: usize, by: i32) -> Node {
+    let mut m = n;
+    m[axis] += by;
+    m
+}
+
+/// One corner of the polygon round a crossed grid edge.
+#[derive(Clone, Copy)]
+struct Around {
+    cell: Node,
+    mask: u8,
+    vertex: u32,
+}
+
+struct Dual {
+    mesh: TriMesh,
+    /// Vertices in the middle of doubled edges, by face (cell, axis) and the inside node that the segment cuts off.
+    midpoints: FxHashMap<(Node, usize, Node), u32>,
+}
+
+impl Dual {
+    /// One vertex per patch, at the mean of the patch's crossings.
+    fn vertices<F: FnMut(Node) -> f64>(&mut self, grid: &mut Grid<F>, cells: &[(Node, u8)]) {
+        for &(cell, mask) in cells {
+            let case = &CASES[mask as usize];
+            let value = grid.corners(cell);
+            let mut sums = [(Vec3::zeros(), 0.0); 4];
+            for e in 0..12 {
+                let patch = case.patch_of_edge[e];
+                if patch != NONE {
+                    let [p, q] = edge_corners(e);
+                    let mut at = Vec3::new((p & 1) as f64, (p >> 1 & 1) as f64, (p >> 2 & 1) as f64);
+                    at[e / 4] += (value[p] / (value[p] - value[q])).clamp(0.02, 0.98);
+                    let sum = &mut sums[patch as usize];
+                    sum.0 += at;
+                    sum.1 += 1.0;
+                }
+            }
+            let (tile, place) = grid.locate(cell);
+            grid.tiles[tile].first_vertex[place] = self.mesh.points.len() as u32;
+            for (sum, count) in &sums[..case.patches as usize] {
+                self.mesh.points.push(position(cell) + sum / *count);
+            }
+        }
+    }
+
+    /// The polygon of the grid edge from `n` along axis `d`, if the level crosses it.
+    fn crossing<F: FnMut(Node) -> f64>(&mut self, grid: &mut Grid<F>, n: Node, d: usize) {
+        let inside = grid.node(n) < 0.0;
+        if inside == (grid.node(shifted(n, d, 1)) < 0.0) {
+            return;
+        }
+        let (u, v) = ((d + 1) % 3, (d + 2) % 3);
+        // Counter-clockwise seen from the far end of the edge.
+        let cells = [n, shifted(n, u, -1), shifted(shifted(n, u, -1), v, -1), shifted(n, v, -1)];
+        let edges = [4 * d, 4 * d + 1, 4 * d + 3, 4 * d + 2];
+        let ring: [Around; 4] = std::array::from_fn(|i| {
+            let mask = grid.mask(cells[i]);
+            let patch = CASES[mask as usize].patch_of_edge[edges[i]];
+            Around { cell: cells[i], mask, vertex: grid.first_vertex(cells[i]) + u32::from(patch) }
+        });
+        // The faces between consecutive cells: axis across, and which of the two cells is the upper one.
+        let across = [u, v, u, v];
+        let upper_first = [true, true, false, false];
+        let middles: [Option<u32>; 4] = std::array::from_fn(|i| {
+            let (a, b) = (ring[i], ring[(i + 1) % 4]);
+            let (upper, lower) = if upper_first[i] { (a, b) } else { (b, a) };
+            doubled(upper, lower, across[i]).then(|| self.midpoint(grid, upper.cell, across[i], n, d, inside))
+        });
+        let mut quad = ring.map(|a| a.vertex);
+        if middles.iter().all(Option::is_none) {
+            if !inside {
+                quad.reverse();
+            }
+            self.split_quad(quad);
+            return;
+        }
+        let mut polygon: Vec<u32> = Vec::with_capacity(8);
+        for i in 0..4 {
+            polygon.push(quad[i]);
+            polygon.extend(middles[i]);
+        }
+        if !inside {
+            polygon.reverse();
+        }
+        let center = self.mesh.points.len() as u32;
+        self.mesh.points.push(grid.crossing(n, d));
+        for i in 0..polygon.len() {
+            self.mesh.triangles.push([center, polygon[i], polygon[(i + 1) % polygon.len()]]);
+        }
+    }
+
+    /// The vertex in the middle of the segment that crosses the edge (n, d) on the lower face across `axis` of `cell`.
+    fn midpoint<F: FnMut(Node) -> f64>(
+        &mut self,
+        grid: &mut Grid<F>,
+        cell: Node,
+        axis: usize,
+        n: Node,
+        d: usize,
+        inside: bool,
+    ) -> u32 {
+        let corner = if inside { n } else { shifted(n, d, 1) };
+        if let Some(&vertex) = self.midpoints.get(&(cell, axis, corner)) {
+            return vertex;
+        }
+        // The other edge of the face at the inside corner that the segment cuts off.
+        let other = 3 - axis - d;
+        let start = if corner[other] == cell[other] { corner } else { shifted(corner, other, -1) };
+        let p = nalgebra::center(&grid.crossing(n, d), &grid.crossing(start, other));
+        let vertex = self.mesh.points.len() as u32;
+        self.mesh.points.push(p);
+        self.midpoints.insert((cell, axis, corner), vertex);
+        vertex
+    }
+
+    /// Two triangles whose smallest angle is as large as a diagonal can make it.
+    fn split_quad(&mut self, [a, b, c, d]: [u32; 4]) {
+        let cosine = |x: u32, y: u32, z: u32| {
+            let p = |i: u32| self.mesh.points[i as usize];
+            largest_cosine(&p(x), &p(y), &p(z))
+        };
+        let ac = cosine(a, b, c).max(cosine(a, c, d));
+        let bd = cosine(a, b, d).max(cosine(b, c, d));
+        let halves = if ac <= bd { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+        self.mesh.triangles.extend(halves);
+    }
+}
+
+/// Whether two cells share both segments of the face between them within one patch each.
+fn doubled(upper: Around, lower: Around, axis: usize) -> bool {
+    let (cu, cl) = (&CASES[upper.mask as usize], &CASES[lower.mask as usize]);
+    if cu.ambiguous >> (2 * axis) & 1 == 0 {
+        return false;
+    }
+    let one = |patches: &[u8; 12], face: usize| {
+        let [a, b, c, d] = FACE_EDGES[face].map(|e| patches[e as usize]);
+        a == b && b == c && c == d
+    };
+    one(&cu.patch_of_edge, 2 * axis) && one(&cl.patch_of_edge, 2 * axis + 1)
+}
+
+/// The cosine of a triangle's smallest angle.
+fn largest_cosine(a: &Point3, b: &Point3, c: &Point3) -> f64 {
+    let (x, y, z) = ((c - b).norm_squared(), (a - c).norm_squared(), (b - a).norm_squared());
+    let at = |o: f64, p: f64, q: f64| (p + q - o) / (2.0 * (p * q).sqrt()).max(f64::MIN_POSITIVE);
+    at(x, y, z).max(at(y, z, x)).max(at(z, x, y))
+}

@@ -1,0 +1,267 @@
+//! The convolution field of a set of tubes (equation 13 of the paper, in its scale-invariant form).
+//!
+//! Every tube adds the line integral of a Gaussian along its axis, `exp(−d²/2σ²) · ½ (erf((L−s)/√2σ) + erf(s/√2σ))`,
+//! with σ = κ·r and r taken at the point's projection (s along the axis, d from it). An infinite tube has the level
+//! `exp(−1/2κ²)` at exactly its radius, whatever the radius, and the pieces of a polyline add up to the whole. What is
+//! contoured is the distance form `g = √(−2κ² ln F)`: on one tube it is the distance from the axis over the radius, so
+//! the surface is `g = 1` and `g` is almost linear across it.
+
+use rustc_hash::FxHashMap;
+
+use super::SurfaceError;
+use super::erf::Table;
+use crate::geometry::{Point3, Tube, Vec3};
+
+/// Contributions below this fraction of the level are left out.
+const NEGLIGIBLE: f64 = 3e-4;
+/// Up to so many tubes a search structure costs more than it saves.
+const FEW: usize = 6;
+/// Bits per coordinate of a search cell's key.
+const KEY_BITS: u32 = 21;
+
+/// One tube, ready for evaluation.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    a: Point3,
+    axis: Vec3,
+    length: f64,
+    ra: f64,
+    slope: f64,
+    reach: f64,
+}
+
+/// The distance form of the convolution field: below 1 inside the vessels, 1 on the wall, above 1 outside.
+#[derive(Debug)]
+pub struct Field {
+    pieces: Vec<Piece>,
+    kappa: f64,
+    /// Square of the largest distance, in radii, at which a tube counts.
+    cutoff2: f64,
+    /// The value far from all tubes.
+    far: f64,
+    erf: &'static Table,
+    locator: Option<Locator>,
+}
+
+/// Which pieces count near a point, found once per cell of a coarse grid.
+#[derive(Debug)]
+struct Locator {
+    origin: Point3,
+    size: f64,
+    cells: FxHashMap<u64, (u32, u32)>,
+    blocks: FxHashMap<u64, (u32, u32)>,
+    lists: Vec<u32>,
+}
+
+impl Field {
+    /// The field of `tubes` for the kernel width `kappa` (σ over r).
+    ///
+    /// # Errors
+    /// `InvalidTube` for a coordinate or radius that is not finite or a radius that is not positive, `InvalidParameter`
+    /// for a kernel width outside (0, 2], `Empty` when no tube has a length.
+    pub fn new(tubes: &[Tube], kappa: f64) -> Result<Self, SurfaceError> {
+        if !(kappa > 0.0 && kappa <= 2.0) {
+            return Err(SurfaceError::InvalidParameter { name: "kappa", value: kappa });
+        }
+        let cutoff2 = 1.0 - 2.0 * kappa * kappa * NEGLIGIBLE.ln();
+        let mut pieces = Vec::with_capacity(tubes.len());
+        for (i, t) in tubes.iter().enumerate() {
+            let finite = t.a.iter().chain(t.b.iter()).all(|x| x.is_finite()) && t.ra.is_finite() && t.rb.is_finite();
+            if !finite || t.ra <= 0.0 || t.rb <= 0.0 {
+                return Err(SurfaceError::InvalidTube { tube: i as u32 });
+            }
+            let length = t.length();
+            if length > 0.0 {
+                pieces.push(Piece {
+                    a: t.a,
+                    axis: (t.b - t.a) / length,
+                    length,
+                    ra: t.ra,
+                    slope: (t.rb - t.ra) / length,
+                    reach: t.max_radius() * cutoff2.sqrt(),
+                });
+            }
+        }
+        if pieces.is_empty() {
+            return Err(SurfaceError::Empty);
+        }
+        let locator = (pieces.len() > FEW).then(|| Locator::new(&pieces));
+        Ok(Self { pieces, kappa, cutoff2, far: cutoff2.sqrt(), erf: Table::get(), locator })
+    }
+
+    /// The kernel width.
+    pub fn kappa(&self) -> f64 {
+        self.kappa
+    }
+
+    /// The box outside which every value is the far value: lower and upper corner.
+    pub fn bounds(&self) -> (Point3, Point3) {
+        let (mut lo, mut hi) = (self.pieces[0].a, self.pieces[0].a);
+        for piece in &self.pieces {
+            let b = piece.a + piece.axis * piece.length;
+            for i in 0..3 {
+                lo[i] = lo[i].min(piece.a[i].min(b[i]) - piece.reach);
+                hi[i] = hi[i].max(piece.a[i].max(b[i]) + piece.reach);
+            }
+        }
+        (lo, hi)
+    }
+
+    /// The distance form at `p`.
+    pub fn value(&mut self, p: &Point3) -> f64 {
+        let mut sum = 0.0;
+        if let Some(locator) = &mut self.locator {
+            let (start, end) = locator.range(&self.pieces, p);
+            for &i in &locator.lists[start as usize..end as usize] {
+                sum += self.pieces[i as usize].value(p, self.kappa, self.cutoff2, self.erf);
+            }
+        } else {
+            for piece in &self.pieces {
+                sum += piece.value(p, self.kappa, self.cutoff2, self.erf);
+            }
+        }
+        self.distance(sum)
+    }
+
+    /// The distance form at `p` and its gradient (zero far from all tubes and on an axis).
+    pub fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
+        let (mut sum, mut gradient) = (0.0, Vec3::zeros());
+        let mut add = |piece: &Piece| {
+            if let Some((f, g)) = piece.value_and_gradient(p, self.kappa, self.cutoff2, self.erf) {
+                sum += f;
+                gradient += g;
+            }
+        };
+        if let Some(locator) = &mut self.locator {
+            let (start, end) = locator.range(&self.pieces, p);
+            for &i in &locator.lists[start as usize..end as usize] {
+                add(&self.pieces[i as usize]);
+            }
+        } else {
+            self.pieces.iter().for_each(&mut add);
+        }
+        let g = self.distance(sum);
+        if g >= self.far || g <= 1e-6 {
+            return (g, Vec3::zeros());
+        }
+        (g, gradient * (-self.kappa * self.kappa / (g * sum)))
+    }
+
+    /// `√(−2κ² ln F)`, between 0 (F ≥ 1) and the far value.
+    #[inline]
+    fn distance(&self, sum: f64) -> f64 {
+        if sum >= 1.0 {
+            0.0
+        } else if sum <= 0.0 {
+            self.far
+        } else {
+            (-2.0 * self.kappa * self.kappa * sum.ln()).sqrt().min(self.far)
+        }
+    }
+}
+
+impl Piece {
+    /// Position along the axis, squared distance from it and radius; none out of reach.
+    #[inline]
+    fn locate(&self, p: &Point3, cutoff2: f64) -> Option<(Vec3, f64, f64, f64)> {
+        let w = p - self.a;
+        let s = w.dot(&self.axis);
+        if s < -self.reach || s > self.length + self.reach {
+            return None;
+        }
+        let d2 = (w.norm_squared() - s * s).max(0.0);
+        let r = self.ra + self.slope * s.clamp(0.0, self.length);
+        (d2 < cutoff2 * r * r).then_some((w, s, d2, r))
+    }
+
+    #[inline]
+    fn value(&self, p: &Point3, kappa: f64, cutoff2: f64, table: &Table) -> f64 {
+        let Some((_, s, d2, r)) = self.locate(p, cutoff2) else { return 0.0 };
+        let q = std::f64::consts::FRAC_1_SQRT_2 / (kappa * r);
+        (-d2 * q * q).exp() * 0.5 * (table.erf((self.length - s) * q) + table.erf(s * q))
+    }
+
+    #[inline]
+    fn value_and_gradient(&self, p: &Point3, kappa: f64, cutoff2: f64, table: &Table) -> Option<(f64, Vec3)> {
+        let (w, s, d2, r) = self.locate(p, cutoff2)?;
+        let q = std::f64::consts::FRAC_1_SQRT_2 / (kappa * r);
+        // Relative change of sigma along the axis; none beyond the ends, where the radius is held.
+        let growth = if s > 0.0 && s < self.length { self.slope / r } else { 0.0 };
+        let across = (-d2 * q * q).exp();
+        let (e1, m1) = table.erf_and_slope((self.length - s) * q);
+        let (e0, m0) = table.erf_and_slope(s * q);
+        let along = 0.5 * (e1 + e0);
+        let along_slope = 0.5 * q * (m0 * (1.0 - s * growth) - m1 * (1.0 + (self.length - s) * growth));
+        let axial = across * (2.0 * d2 * q * q * growth * along + along_slope);
+        let radial = -2.0 * q * q * across * along;
+        Some((across * along, (w - self.axis * s) * radial + self.axis * axial))
+    }
+
+    /// Distance of `p` from the axis segment.
+    fn distance(&self, p: &Point3) -> f64 {
+        let w = p - self.a;
+        (w - self.axis * w.dot(&self.axis).clamp(0.0, self.length)).norm()
+    }
+}
+
+impl Locator {
+    /// Cells per block edge: a cell's list is picked from its block's, a block's from all pieces.
+    const BLOCK: u64 = 8;
+
+    fn new(pieces: &[Piece]) -> Self {
+        let mut reaches: Vec<f64> = pieces.iter().map(|p| p.reach).collect();
+        reaches.sort_by(f64::total_cmp);
+        let mut lo = pieces[0].a;
+        for piece in pieces {
+            let b = piece.a + piece.axis * piece.length;
+            for i in 0..3 {
+                lo[i] = lo[i].min(piece.a[i].min(b[i]) - 2.0 * piece.reach);
+            }
+        }
+        let size = reaches[reaches.len() / 8];
+        Self { origin: lo, size, cells: FxHashMap::default(), blocks: FxHashMap::default(), lists: Vec::new() }
+    }
+
+    /// The pieces that reach the cell of `p`, as a range of `lists`.
+    fn range(&mut self, pieces: &[Piece], p: &Point3) -> (u32, u32) {
+        let limit = ((1u64 << KEY_BITS) - 1) as f64;
+        let c: [u64; 3] =
+            std::array::from_fn(|i| ((p[i] - self.origin[i]) / self.size).floor().clamp(0.0, limit) as u64);
+        let key = pack(c);
+        if let Some(&range) = self.cells.get(&key) {
+            return range;
+        }
+        let block = c.map(|x| x / Self::BLOCK);
+        let (start, end) = if let Some(&range) = self.blocks.get(&pack(block)) {
+            range
+        } else {
+            let range = self.pick(pieces, None, block, self.size * Self::BLOCK as f64);
+            self.blocks.insert(pack(block), range);
+            range
+        };
+        let range = self.pick(pieces, Some((start, end)), c, self.size);
+        self.cells.insert(key, range);
+        range
+    }
+
+    /// Appends the pieces that reach the cube `cell` of edge `size`, out of the range `from` or out of all.
+    fn pick(&mut self, pieces: &[Piece], from: Option<(u32, u32)>, cell: [u64; 3], size: f64) -> (u32, u32) {
+        let center = self.origin + Vec3::from_fn(|i, _| (cell[i] as f64 + 0.5) * size);
+        let half = 0.5 * size * 3f64.sqrt() * (1.0 + 1e-9);
+        let start = self.lists.len() as u32;
+        let (first, last) = from.unwrap_or((0, pieces.len() as u32));
+        for k in first..last {
+            let i = if from.is_some() { self.lists[k as usize] } else { k };
+            let piece = &pieces[i as usize];
+            // The kernel reaches `reach` across and `reach` along: sqrt(2) covers the corner of that cylinder.
+            if piece.distance(&center) <= half + piece.reach * std::f64::consts::SQRT_2 {
+                self.lists.push(i);
+            }
+        }
+        (start, self.lists.len() as u32)
+    }
+}
+
+fn pack(c: [u64; 3]) -> u64 {
+    c[0] | c[1] << KEY_BITS | c[2] << (2 * KEY_BITS)
+}

@@ -1,0 +1,363 @@
+//! A closed triangle surface that can be edited: flip, split and collapse of edges in constant time.
+//!
+//! Half-edge `3 f + i` runs from corner `i` of triangle `f` to its next corner. Only closed 2-manifolds are held, and
+//! every operation keeps them so.
+
+use crate::geometry::{Point3, Vec3};
+use crate::mesh::TriMesh;
+
+/// No half-edge; also marks what has been removed.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// A closed 2-manifold triangle surface under edit.
+#[derive(Clone, Debug)]
+pub(crate) struct HalfEdges {
+    /// Vertex positions, removed vertices included.
+    pub points: Vec<Point3>,
+    /// Where each half-edge starts; `NONE` for those of removed triangles.
+    from: Vec<u32>,
+    /// The half-edge on the other side of each half-edge.
+    twin: Vec<u32>,
+    /// One half-edge that starts at each vertex; `NONE` for removed vertices.
+    out: Vec<u32>,
+}
+
+/// The half-edge after `h` in its triangle.
+#[inline]
+pub(crate) fn next(h: u32) -> u32 {
+    if h % 3 == 2 { h - 2 } else { h + 1 }
+}
+
+/// The half-edge before `h` in its triangle.
+#[inline]
+pub(crate) fn prev(h: u32) -> u32 {
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
+}
+
+impl HalfEdges {
+    /// Links the triangles of a closed, consistently oriented surface; the error is an edge (vertex pair) that does not
+    /// have exactly one triangle on either side, or a vertex (twice) with several fans or none.
+    pub(crate) fn new(mesh: &TriMesh) -> Result<Self, [u32; 2]> {
+        let n = mesh.points.len();
+        let from: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
+        let mut start = vec![0u32; n + 1];
+        for &v in &from {
+            start[v as usize + 1] += 1;
+        }
+        for i in 0..n {
+            start[i + 1] += start[i];
+        }
+        let mut fill = start.clone();
+        let mut starting = vec![0u32; from.len()];
+        for (h, &v) in from.iter().enumerate() {
+            starting[fill[v as usize] as usize] = h as u32;
+            fill[v as usize] += 1;
+        }
+        let to = |h: u32| from[next(h) as usize];
+        let at = |v: u32| &starting[start[v as usize] as usize..start[v as usize + 1] as usize];
+        let mut twin = vec![NONE; from.len()];
+        for h in 0..from.len() as u32 {
+            let (a, b) = (from[h as usize], to(h));
+            let mut matching = at(b).iter().filter(|&&o| to(o) == a);
+            let same = at(a).iter().filter(|&&o| to(o) == b).count();
+            match (matching.next(), matching.next(), same) {
+                (Some(&o), None, 1) => twin[h as usize] = o,
+                _ => return Err([a, b]),
+            }
+        }
+        let out: Vec<u32> = (0..n as u32).map(|v| at(v).first().copied().unwrap_or(NONE)).collect();
+        let surface = Self { points: mesh.points.clone(), from, twin, out };
+        for v in 0..n as u32 {
+            if surface.fan(v).count() != at(v).len() {
+                return Err([v, v]);
+            }
+        }
+        Ok(surface)
+    }
+
+    /// The surface without what has been removed, vertices and triangles in their order; and the new index of every
+    /// vertex (`NONE` for removed ones).
+    pub(crate) fn to_mesh(&self) -> (TriMesh, Vec<u32>) {
+        let mut map = vec![NONE; self.points.len()];
+        let mut mesh = TriMesh::default();
+        for (v, &h) in self.out.iter().enumerate() {
+            if h != NONE {
+                map[v] = mesh.points.len() as u32;
+                mesh.points.push(self.points[v]);
+            }
+        }
+        for t in self.from.chunks_exact(3) {
+            if t[0] != NONE {
+                mesh.triangles.push([map[t[0] as usize], map[t[1] as usize], map[t[2] as usize]]);
+            }
+        }
+        (mesh, map)
+    }
+
+    /// Number of half-edges, removed ones included.
+    pub(crate) fn len(&self) -> u32 {
+        self.from.len() as u32
+    }
+
+    /// Whether a half-edge is part of the surface.
+    #[inline]
+    pub(crate) fn is_live(&self, h: u32) -> bool {
+        self.from[h as usize] != NONE
+    }
+
+    /// Whether a vertex is part of the surface.
+    #[inline]
+    pub(crate) fn has_vertex(&self, v: u32) -> bool {
+        self.out[v as usize] != NONE
+    }
+
+    /// Start of a half-edge.
+    #[inline]
+    pub(crate) fn from(&self, h: u32) -> u32 {
+        self.from[h as usize]
+    }
+
+    /// End of a half-edge.
+    #[inline]
+    pub(crate) fn to(&self, h: u32) -> u32 {
+        self.from[next(h) as usize]
+    }
+
+    /// The vertex opposite a half-edge in its triangle.
+    #[inline]
+    pub(crate) fn apex(&self, h: u32) -> u32 {
+        self.from[prev(h) as usize]
+    }
+
+    /// The other side of the edge.
+    #[inline]
+    pub(crate) fn twin(&self, h: u32) -> u32 {
+        self.twin[h as usize]
+    }
+
+    /// The half-edges that start at `v`, clockwise.
+    pub(crate) fn fan(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
+        let first = self.out[v as usize];
+        let mut at = first;
+        std::iter::from_fn(move || {
+            if at == NONE {
+                return None;
+            }
+            let h = at;
+            at = next(self.twin[h as usize]);
+            if at == first {
+                at = NONE;
+            }
+            Some(h)
+        })
+    }
+
+    /// Number of edges at `v`.
+    pub(crate) fn valence(&self, v: u32) -> usize {
+        self.fan(v).count()
+    }
+
+    /// Whether an edge joins the two vertices.
+    pub(crate) fn joined(&self, a: u32, b: u32) -> bool {
+        self.fan(a).any(|h| self.to(h) == b)
+    }
+
+    #[inline]
+    fn point(&self, v: u32) -> &Point3 {
+        &self.points[v as usize]
+    }
+
+    /// Length of an edge.
+    #[inline]
+    pub(crate) fn length(&self, h: u32) -> f64 {
+        (self.point(self.to(h)) - self.point(self.from(h))).norm()
+    }
+
+    /// Twice the area vector of the triangle of a half-edge.
+    #[inline]
+    pub(crate) fn area_vector(&self, h: u32) -> Vec3 {
+        let a = self.point(self.from(h));
+        (self.point(self.to(h)) - a).cross(&(self.point(self.apex(h)) - a))
+    }
+
+    fn place(&mut self, first: u32, corners: [u32; 3]) {
+        for (h, v) in (first..).zip(corners) {
+            self.from[h as usize] = v;
+            self.out[v as usize] = h;
+        }
+    }
+
+    fn link(&mut self, a: u32, b: u32) {
+        self.twin[a as usize] = b;
+        self.twin[b as usize] = a;
+    }
+
+    /// Whether flipping leaves a manifold: both ends keep three edges, and the new edge is not there yet.
+    pub(crate) fn can_flip(&self, h: u32) -> bool {
+        let o = self.twin(h);
+        self.fan(self.from(h)).nth(3).is_some()
+            && self.fan(self.to(h)).nth(3).is_some()
+            && self.apex(h) != self.apex(o)
+            && !self.joined(self.apex(h), self.apex(o))
+    }
+
+    /// Replaces the edge by the other diagonal of its two triangles; `can_flip` has to hold.
+    pub(crate) fn flip(&mut self, h: u32) {
+        let o = self.twin(h);
+        let (a, b, c, d) = (self.from(h), self.to(h), self.apex(h), self.apex(o));
+        let (bc, ca, ad, db) = (self.twin(next(h)), self.twin(prev(h)), self.twin(next(o)), self.twin(prev(o)));
+        let (x, y) = (h - h % 3, o - o % 3);
+        self.place(x, [a, d, c]);
+        self.place(y, [d, b, c]);
+        self.link(x, ad);
+        self.link(x + 1, y + 2);
+        self.link(x + 2, ca);
+        self.link(y, db);
+        self.link(y + 1, bc);
+    }
+
+    /// Whether collapsing leaves a manifold (link condition): the two ends have the two apexes as their only common
+    /// neighbours, and no vertex is left with less than three edges.
+    pub(crate) fn can_collapse(&self, h: u32) -> bool {
+        let (a, b) = (self.from(h), self.to(h));
+        let common = self.fan(a).filter(|&e| self.joined(self.to(e), b)).count();
+        let apexes = [self.apex(h), self.apex(self.twin(h))];
+        common == 2
+            && apexes[0] != apexes[1]
+            && apexes.iter().all(|&v| self.fan(v).nth(3).is_some())
+            && self.valence(a) + self.valence(b) >= 7
+    }
+
+    /// Removes the start of `h` by moving it into the end; `can_collapse` has to hold.
+    pub(crate) fn collapse(&mut self, h: u32) {
+        let o = self.twin(h);
+        let (a, b, c, d) = (self.from(h), self.to(h), self.apex(h), self.apex(o));
+        let (bc, ca, ad, db) = (self.twin(next(h)), self.twin(prev(h)), self.twin(next(o)), self.twin(prev(o)));
+        let mut e = self.out[a as usize];
+        loop {
+            self.from[e as usize] = b;
+            e = next(self.twin[e as usize]);
+            if self.from[e as usize] == b {
+                break;
+            }
+        }
+        for f in [h - h % 3, o - o % 3] {
+            for k in f..f + 3 {
+                self.from[k as usize] = NONE;
+                self.twin[k as usize] = NONE;
+            }
+        }
+        self.link(bc, ca);
+        self.link(ad, db);
+        self.out[a as usize] = NONE;
+        self.out[b as usize] = ca;
+        self.out[c as usize] = bc;
+        self.out[d as usize] = ad;
+        // `ca` is the twin of c→a: it starts at a, now b; `ad` is the twin of a→d: it starts at d.
+        debug_assert!(self.from(ca) == b && self.from(bc) == c && self.from(ad) == d);
+    }
+
+    /// Puts a vertex on the edge; returns it.
+    pub(crate) fn split(&mut self, h: u32, p: Point3) -> u32 {
+        let o = self.twin(h);
+        let (a, b, c, d) = (self.from(h), self.to(h), self.apex(h), self.apex(o));
+        let (bc, ca, ad, db) = (self.twin(next(h)), self.twin(prev(h)), self.twin(next(o)), self.twin(prev(o)));
+        let m = self.points.len() as u32;
+        self.points.push(p);
+        self.out.push(NONE);
+        let (x, y, z) = (h - h % 3, o - o % 3, self.len());
+        let w = z + 3;
+        self.from.resize(self.from.len() + 6, NONE);
+        self.twin.resize(self.twin.len() + 6, NONE);
+        self.place(x, [a, m, c]);
+        self.place(z, [m, b, c]);
+        self.place(y, [b, m, d]);
+        self.place(w, [m, a, d]);
+        for (p, q) in
+            [(x, w), (x + 1, z + 2), (x + 2, ca), (z, y), (z + 1, bc), (y + 1, w + 2), (y + 2, db), (w + 1, ad)]
+        {
+            self.link(p, q);
+        }
+        m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn icosahedron() -> TriMesh {
+        let g = 0.5 * (1.0 + 5f64.sqrt());
+        let p = [
+            [-1.0, g, 0.0],
+            [1.0, g, 0.0],
+            [-1.0, -g, 0.0],
+            [1.0, -g, 0.0],
+            [0.0, -1.0, g],
+            [0.0, 1.0, g],
+            [0.0, -1.0, -g],
+            [0.0, 1.0, -g],
+            [g, 0.0, -1.0],
+            [g, 0.0, 1.0],
+            [-g, 0.0, -1.0],
+            [-g, 0.0, 1.0],
+        ];
+        let triangles = vec![
+            [0, 11, 5],
+            [0, 5, 1],
+            [0, 1, 7],
+            [0, 7, 10],
+            [0, 10, 11],
+            [1, 5, 9],
+            [5, 11, 4],
+            [11, 10, 2],
+            [10, 7, 6],
+            [7, 1, 8],
+            [3, 9, 4],
+            [3, 4, 2],
+            [3, 2, 6],
+            [3, 6, 8],
+            [3, 8, 9],
+            [4, 9, 5],
+            [2, 4, 11],
+            [6, 2, 10],
+            [8, 6, 7],
+            [9, 8, 1],
+        ];
+        TriMesh { points: p.map(Point3::from).to_vec(), triangles }
+    }
+
+    #[test]
+    fn open_or_pinched_surfaces_are_refused() {
+        let mut mesh = icosahedron();
+        assert!(HalfEdges::new(&mesh).is_ok());
+        mesh.triangles.pop();
+        assert!(HalfEdges::new(&mesh).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn any_sequence_of_operations_keeps_a_closed_manifold(steps in prop::collection::vec((0u8..3, any::<u32>()), 1..60)) {
+            let mut s = HalfEdges::new(&icosahedron()).unwrap();
+            for (what, pick) in steps {
+                let h = pick % s.len();
+                if !s.is_live(h) {
+                    continue;
+                }
+                match what {
+                    0 if s.can_flip(h) => s.flip(h),
+                    1 if s.can_collapse(h) => s.collapse(h),
+                    2 => {
+                        let p = nalgebra::center(&s.points[s.from(h) as usize], &s.points[s.to(h) as usize]);
+                        s.split(h, p);
+                    }
+                    _ => continue,
+                }
+                let (mesh, _) = s.to_mesh();
+                prop_assert!(HalfEdges::new(&mesh).is_ok());
+                prop_assert_eq!(super::super::euler_characteristic(&mesh), 2);
+            }
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! From the contour to a surface of well-shaped triangles at the right radius: edges are split, collapsed and flipped
+//! towards equal lengths and six neighbours, vertices move within the surface and are projected back onto the level.
+//! (Isotropic remeshing after Botsch and Kobbelt 2004, projected by Newton steps on the field.)
+
+use super::field::Field;
+use super::halfedge::{HalfEdges, next, prev};
+use crate::geometry::{Point3, Vec3};
+
+/// Where a vertex may go.
+pub(crate) trait Level {
+    /// Value (the level is at 1) and gradient of a function that grows outwards.
+    fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3);
+}
+
+impl Level for Field {
+    fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
+        Field::value_and_gradient(self, p)
+    }
+}
+
+/// What is worked on, and where.
+pub(crate) struct Relaxation<'a, L> {
+    /// The surface.
+    pub surface: &'a mut HalfEdges,
+    /// The level set that its vertices lie on.
+    pub level: &'a mut L,
+    /// The edge length to aim at.
+    pub edge: f64,
+    /// Vertices that neither move nor vanish; an edge between two of them stays. Empty: all are free.
+    pub locked: Vec<bool>,
+    /// Unit normal of the level set at every vertex.
+    normals: Vec<Vec3>,
+}
+
+/// Edges longer or shorter than these multiples of the aim are split or collapsed.
+const SPLIT_ABOVE: f64 = 1.45;
+const COLLAPSE_BELOW: f64 = 0.62;
+/// A vertex moves at most so far (of the edge length) in one projection.
+const MAX_STEP: f64 = 0.5;
+
+impl<'a, L: Level> Relaxation<'a, L> {
+    pub(crate) fn new(surface: &'a mut HalfEdges, level: &'a mut L, edge: f64, locked: Vec<bool>) -> Self {
+        let normals = vec![Vec3::zeros(); surface.points.len()];
+        let mut this = Self { surface, level, edge, locked, normals };
+        this.project();
+        this
+    }
+
+    /// Rounds of splitting, collapsing, flipping and smoothing, then the passes that only better the worst angles.
+    pub(crate) fn run(&mut self, rounds: usize) {
+        for _ in 0..rounds {
+            self.split_long();
+            self.collapse_short();
+            self.flip(Criterion::Valence);
+            self.smooth();
+        }
+        for _ in 0..2 {
+            self.flip(Criterion::Angle);
+            self.smooth();
+        }
+        self.flip(Criterion::Angle);
+        self.project();
+    }
+
+    /// Moves each vertex outwards by a quarter of the normal part of its distance from its neighbours' mean: vertices on
+    /// the level make an inscribed polyhedron, and this is, to second order, what it lacks (h²/16r on a tube; negative
+    /// in saddles).
+    pub(crate) fn compensate_chords(&mut self) {
+        let moves: Vec<Vec3> = (0..self.surface.points.len() as u32)
+            .map(|v| {
+                if !self.is_free(v) {
+                    return Vec3::zeros();
+                }
+                let n = self.normals[v as usize];
+                n * (0.25 * (self.surface.points[v as usize] - self.neighbour_mean(v)).dot(&n))
+            })
+            .collect();
+        for (p, m) in self.surface.points.iter_mut().zip(moves) {
+            *p += m;
+        }
+    }
+
+    fn is_free(&self, v: u32) -> bool {
+        self.surface.has_vertex(v) && !self.is_locked(v)
+    }
+
+    #[inline]
+    fn is_locked(&self, v: u32) -> bool {
+        self.locked.get(v as usize).copied().unwrap_or(false)
+    }
+
+    fn neighbour_mean(&self, v: u32) -> Point3 {
+        let (mut sum, mut count) = (Vec3::zeros(), 0.0);
+        for h in self.surface.fan(v) {
+            sum += self.surface.points[self.surface.to(h) as usize].coords;
+            count += 1.0;
+        }
+        Point3::from(sum / count)
+    }
+
+    /// One Newton step of every free vertex onto the level; keeps the normals.
+    fn project(&mut self) {
+        for v in 0..self.surface.points.len() as u32 {
+            if self.is_free(v) {
+                let p = self.surface.points[v as usize];
+                self.surface.points[v as usize] = self.projected(v, p);
+            }
+        }
+    }
+
+    fn projected(&mut self, v: u32, p: Point3) -> Point3 {
+        let (value, gradient) = self.level.value_and_gradient(&p);
+        let g2 = gradient.norm_squared();
+        if g2 <= 0.0 {
+            return p;
+        }
+        self.normals[v as usize] = gradient / g2.sqrt();
+        let step = gradient * ((1.0 - value) / g2);
+        let limit = MAX_STEP * self.edge;
+        let length = step.norm();
+        p + if length > limit { step * (limit / length) } else { step }
+    }
+
+    /// Moves every free vertex, within the tangent plane, towards the area-weighted centre of its triangles, then
+    /// projects it.
+    fn smooth(&mut self) {
+        let targets: Vec<Point3> = (0..self.surface.points.len() as u32).map(|v| self.smoothed(v)).collect();
+        for (v, target) in targets.into_iter().enumerate() {
+            if self.is_free(v as u32) {
+                self.surface.points[v] = self.projected(v as u32, target);
+            }
+        }
+    }
+
+    fn smoothed(&self, v: u32) -> Point3 {
+        let p = self.surface.points[v as usize];
+        if !self.is_free(v) {
+            return p;
+        }
+        let (mut sum, mut weight) = (Vec3::zeros(), 0.0);
+        for h in self.surface.fan(v) {
+            let a = self.surface.points[self.surface.to(h) as usize] - p;
+            let b = self.surface.points[self.surface.apex(h) as usize] - p;
+            let area = a.cross(&b).norm();
+            sum += (a + b) * (area / 3.0);
+            weight += area;
+        }
+        if weight <= 0.0 {
+            return p;
+        }
+        let n = self.normals[v as usize];
+        let step = sum / weight;
+        p + (step - n * step.dot(&n))
+    }
+
+    fn split_long(&mut self) {
+        let limit = SPLIT_ABOVE * self.edge;
+        for h in 0..self.surface.len() {
+            if !self.is_editable(h) {
+                continue;
+            }
+            let (a, b) = (self.surface.from(h), self.surface.to(h));
+            if a < b && self.surface.length(h) > limit {
+                let middle = nalgebra::center(&self.surface.points[a as usize], &self.surface.points[b as usize]);
+                let m = self.surface.split(h, middle);
+                self.normals.push(self.normals[a as usize]);
+                if !self.locked.is_empty() {
+                    self.locked.push(false);
+                }
+                self.surface.points[m as usize] = self.projected(m, middle);
+            }
+        }
+    }
+
+    /// An edge that is there and not held by two locked ends.
+    fn is_editable(&self, h: u32) -> bool {
+        self.surface.is_live(h) && !(self.is_locked(self.surface.from(h)) && self.is_locked(self.surface.to(h)))
+    }
+
+    fn collapse_short(&mut self) {
+        let limit = COLLAPSE_BELOW * self.edge;
+        for h in 0..self.surface.len() {
+            if !self.surface.is_live(h) || self.surface.length(h) > limit || self.is_locked(self.surface.from(h)) {
+                continue;
+            }
+            let (a, b) = (self.surface.from(h), self.surface.to(h));
+            let target = if self.is_locked(b) {
+                self.surface.points[b as usize]
+            } else {
+                nalgebra::center(&self.surface.points[a as usize], &self.surface.points[b as usize])
+            };
+            if self.surface.can_collapse(h) && self.collapse_is_sound(h, target) {
+                self.surface.collapse(h);
+                if !self.is_locked(b) {
+                    self.surface.points[b as usize] = self.projected(b, target);
+                }
+            }
+        }
+    }
+
+    /// No triangle turns over and no edge becomes too long when both ends of `h` meet in `target`.
+    fn collapse_is_sound(&self, h: u32, target: Point3) -> bool {
+        let (a, b) = (self.surface.from(h), self.surface.to(h));
+        let limit = SPLIT_ABOVE * self.edge;
+        [(a, b), (b, a)].iter().all(|&(v, other)| {
+            self.surface.fan(v).all(|e| {
+                let (x, y) = (self.surface.to(e), self.surface.apex(e));
+                if x == other || y == other {
+                    return true;
+                }
+                let (px, py) = (self.surface.points[x as usize], self.surface.points[y as usize]);
+                let old = self.surface.area_vector(e);
+                let new = (px - target).cross(&(py - target));
+                new.dot(&old) > 0.5 * new.norm() * old.norm() && (px - target).norm() < limit
+            })
+        })
+    }
+
+    fn flip(&mut self, criterion: Criterion) {
+        for h in 0..self.surface.len() {
+            if self.is_editable(h) && h < self.surface.twin(h) {
+                let wanted = match criterion {
+                    Criterion::Valence => self.flip_evens_valence(h),
+                    Criterion::Angle => self.flip_opens_angle(h),
+                };
+                if wanted && self.surface.can_flip(h) && self.flip_is_sound(h) {
+                    self.surface.flip(h);
+                }
+            }
+        }
+    }
+
+    fn flip_evens_valence(&self, h: u32) -> bool {
+        let s = &*self.surface;
+        let o = s.twin(h);
+        let v = [s.from(h), s.to(h), s.apex(h), s.apex(o)].map(|v| s.valence(v) as i64);
+        let badness = |x: [i64; 4]| x.iter().map(|n| (n - 6) * (n - 6)).sum::<i64>();
+        badness([v[0] - 1, v[1] - 1, v[2] + 1, v[3] + 1]) < badness(v)
+    }
+
+    fn flip_opens_angle(&self, h: u32) -> bool {
+        let s = &*self.surface;
+        let o = s.twin(h);
+        let [a, b, c, d] = [s.from(h), s.to(h), s.apex(h), s.apex(o)].map(|v| s.points[v as usize]);
+        let before = largest_cosine(&a, &b, &c).max(largest_cosine(&b, &a, &d));
+        let after = largest_cosine(&a, &d, &c).max(largest_cosine(&d, &b, &c));
+        after < before - 1e-3
+    }
+
+    /// The two new triangles look the way the old ones did, and the new edge is not a ridge.
+    fn flip_is_sound(&self, h: u32) -> bool {
+        let s = &*self.surface;
+        let o = s.twin(h);
+        let [a, b, c, d] = [s.from(h), s.to(h), s.apex(h), s.apex(o)].map(|v| s.points[v as usize]);
+        let old = (s.area_vector(h) + s.area_vector(o)).normalize();
+        let (n1, n2) = ((d - a).cross(&(c - a)), (b - d).cross(&(c - d)));
+        let (l1, l2) = (n1.norm(), n2.norm());
+        n1.dot(&old) > 0.7 * l1 && n2.dot(&old) > 0.7 * l2 && n1.dot(&n2) > 0.5 * l1 * l2
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Criterion {
+    Valence,
+    Angle,
+}
+
+/// The cosine of a triangle's smallest angle.
+pub(crate) fn largest_cosine(a: &Point3, b: &Point3, c: &Point3) -> f64 {
+    let (x, y, z) = ((c - b).norm_squared(), (a - c).norm_squared(), (b - a).norm_squared());
+    let at = |o: f64, p: f64, q: f64| (p + q - o) / (2.0 * (p * q).sqrt()).max(f64::MIN_POSITIVE);
+    at(x, y, z).max(at(y, z, x)).max(at(z, x, y))
+}
