@@ -1,0 +1,70 @@
+//! Progress bars, on a terminal only.
+
+use std::io::IsTerminal;
+use std::sync::Mutex;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::pipeline::{Observer, Stage};
+
+/// One bar per stage on standard error, and notes as lines; without a terminal only the notes.
+#[derive(Debug)]
+pub struct Bars {
+    shown: bool,
+    quiet: bool,
+    current: Mutex<Option<ProgressBar>>,
+}
+
+impl Bars {
+    /// `quiet` suppresses the notes as well.
+    pub fn new(quiet: bool) -> Self {
+        Self { shown: !quiet && std::io::stderr().is_terminal(), quiet, current: Mutex::new(None) }
+    }
+
+    fn current(&self) -> Option<ProgressBar> {
+        self.current.lock().ok().and_then(|bar| bar.clone())
+    }
+}
+
+impl Observer for Bars {
+    fn begin(&self, stage: Stage, steps: u64) {
+        if !self.shown {
+            return;
+        }
+        let (length, template) = match steps {
+            0 => (None, "{prefix:>10} {spinner} {elapsed}"),
+            n => (Some(n), "{prefix:>10} {wide_bar} {pos}/{len} {per_sec} {eta}"),
+        };
+        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr_with_hz(10));
+        bar.set_style(style);
+        bar.set_prefix(stage.name());
+        if let Ok(mut current) = self.current.lock() {
+            *current = Some(bar);
+        }
+    }
+
+    fn step(&self) {
+        if let Some(bar) = self.current() {
+            bar.inc(1);
+        }
+    }
+
+    fn end(&self, _stage: Stage) {
+        if let Ok(mut current) = self.current.lock()
+            && let Some(bar) = current.take()
+        {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn note(&self, message: &str) {
+        if self.quiet {
+            return;
+        }
+        match self.current() {
+            Some(bar) => bar.suspend(|| eprintln!("{message}")),
+            None => eprintln!("{message}"),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! How a run tells of its progress.
+
+/// The stages of a run, in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// Nodes of valence above 3 are split (3.1), overlapping vessels are looked for.
+    Prepare,
+    /// Vessels are cut, clusters formed (3.2.1).
+    Partition,
+    /// Clusters are meshed (3.2.2).
+    Clusters,
+    /// Connectors are woven and meshed (3.2.3).
+    Connectors,
+    /// Blocks become one mesh.
+    Merge,
+    /// Joints are smoothed (3.2.4).
+    Joints,
+    /// The mesh is verified.
+    Check,
+    /// The mesh is written.
+    Write,
+}
+
+impl Stage {
+    /// Its name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Prepare => "prepare",
+            Stage::Partition => "partition",
+            Stage::Clusters => "clusters",
+            Stage::Connectors => "connectors",
+            Stage::Merge => "merge",
+            Stage::Joints => "joints",
+            Stage::Check => "check",
+            Stage::Write => "write",
+        }
+    }
+}
+
+/// Listens to a run. Called from several threads.
+pub trait Observer: Sync {
+    /// A stage begins; `steps` is the number of `step` calls to come, 0 when there are none.
+    fn begin(&self, _stage: Stage, _steps: u64) {}
+    /// One step of the current stage is done.
+    fn step(&self) {}
+    /// A stage is over.
+    fn end(&self, _stage: Stage) {}
+    /// Something that a person should read.
+    fn note(&self, _message: &str) {}
+}
+
+/// Listens to nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Observer for Silent {}

@@ -1,0 +1,131 @@
+//! What a run of the mesher did, for people and as JSON.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+/// A block that did not come out at the first try.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Retry {
+    /// `cluster 12` or `connector 7`.
+    pub block: String,
+    /// Nodes of the block, as indices in the file that was read (the first 20).
+    pub nodes: Vec<u32>,
+    /// The stage that failed and why.
+    pub reason: String,
+    /// What was done about it.
+    pub remedy: String,
+}
+
+/// A block that could not be meshed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FailedBlock {
+    /// `cluster 12` or `connector 7`.
+    pub block: String,
+    /// Nodes of the block, as indices in the file that was read (the first 20).
+    pub nodes: Vec<u32>,
+    /// The stage that failed and why, at the last try.
+    pub reason: String,
+    /// File with the input that reproduces the failure, when one could be written.
+    pub dump: Option<String>,
+}
+
+/// Counts of the blocks.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct BlockCounts {
+    /// Number of clusters.
+    pub clusters: usize,
+    /// Number of connectors.
+    pub connectors: usize,
+    /// Nodes in the largest cluster.
+    pub largest_cluster_nodes: usize,
+}
+
+/// Two vessels that overlap, or two triangles of the wall that meet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Meeting {
+    /// The two edges, each as a pair of node indices in the file that was read.
+    pub edges: [[u32; 2]; 2],
+    /// Smallest distance of their axes.
+    pub distance: f64,
+    /// Sum of their radii there.
+    pub radii: f64,
+}
+
+/// Size of the mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct MeshSize {
+    /// Number of tetrahedra.
+    pub tets: usize,
+    /// Number of points.
+    pub points: usize,
+    /// Number of triangles of the wall.
+    pub wall_triangles: usize,
+    /// Number of triangles of the caps.
+    pub cap_triangles: usize,
+}
+
+/// Seconds of wall time per stage.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StageTime {
+    /// Name of the stage.
+    pub stage: &'static str,
+    /// Wall time, seconds.
+    pub seconds: f64,
+}
+
+/// Everything that a run has to say.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct RunReport {
+    /// Nodes and edges of the network after cleaning and splitting.
+    pub network: [usize; 2],
+    /// Nodes made by the splitting of valence > 3.
+    pub nodes_split: usize,
+    /// Vessels that overlap.
+    pub overlaps: Vec<Meeting>,
+    /// The blocks.
+    pub blocks: BlockCounts,
+    /// Blocks that needed another try.
+    pub retries: Vec<Retry>,
+    /// Blocks that are missing from the mesh.
+    pub failed: Vec<FailedBlock>,
+    /// Size of the mesh.
+    pub mesh: MeshSize,
+    /// Wall time.
+    pub stages: Vec<StageTime>,
+}
+
+impl RunReport {
+    /// The report as lines for people.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        let (b, m) = (&self.blocks, &self.mesh);
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            out,
+            "{} clusters (largest {} nodes), {} connectors, {} blocks retried, {} failed",
+            b.clusters,
+            b.largest_cluster_nodes,
+            b.connectors,
+            self.retries.len(),
+            self.failed.len()
+        );
+        for retry in &self.retries {
+            let _ = writeln!(out, "  retried {} (nodes {:?}): {}; {}", retry.block, retry.nodes, retry.reason, retry.remedy);
+        }
+        for failed in &self.failed {
+            let _ = writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason);
+            if let Some(dump) = &failed.dump {
+                let _ = writeln!(out, "    its input is in {dump}");
+            }
+        }
+        let _ = writeln!(
+            out,
+            "{} tetrahedra, {} points, {} wall triangles, {} cap triangles",
+            m.tets, m.points, m.wall_triangles, m.cap_triangles
+        );
+        let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
+        let _ = writeln!(out, "{}", times.join(", "));
+        out
+    }
+}

@@ -1,0 +1,107 @@
+//! Labels on the boundary: which face is wall, which closes a vessel.
+
+use rustc_hash::FxHashMap;
+
+use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL, adjacency};
+
+/// The faces of one patch other than the wall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchFaces {
+    /// The patch.
+    pub patch: Patch,
+    /// Its faces, vertices in any order.
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// Why the boundary cannot be labelled. Any of these is a fault of the program.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LabelError {
+    /// A face of a patch is not a face of the boundary.
+    #[error("face {face:?} of patch {patch} does not lie on the boundary")]
+    NotOnBoundary {
+        /// The patch's id.
+        patch: i32,
+        /// The face.
+        face: [u32; 3],
+    },
+    /// A face belongs to two patches.
+    #[error("face {face:?} belongs to patch {first} and to patch {second}")]
+    Twice {
+        /// The face.
+        face: [u32; 3],
+        /// One patch's id.
+        first: i32,
+        /// The other's.
+        second: i32,
+    },
+}
+
+/// Gives every boundary face of `mesh` its patch: the one that lists it, else the wall.
+///
+/// # Errors
+/// When a listed face is not on the boundary or is listed twice.
+pub fn label(mesh: TetMesh, tet_block: Vec<i32>, patches: Vec<PatchFaces>) -> Result<VolumeMesh, LabelError> {
+    let mut listed: FxHashMap<[u32; 3], i32> = FxHashMap::default();
+    for PatchFaces { patch, faces } in &patches {
+        for &face in faces {
+            if let Some(first) = listed.insert(sorted(face), patch.id) {
+                return Err(LabelError::Twice { face, first, second: patch.id });
+            }
+        }
+    }
+    let faces = adjacency::boundary_faces(&mesh.tets);
+    let mut out = VolumeMesh { mesh, ..VolumeMesh::default() };
+    for face in &faces {
+        out.boundary.push(face.vertices);
+        out.boundary_block.push(tet_block[face.tet as usize]);
+        out.boundary_patch.push(listed.remove(&sorted(face.vertices)).unwrap_or(WALL));
+    }
+    // What is left was listed but is not there; name the smallest so that the message does not depend on the hashing.
+    if let Some((&face, &patch)) = listed.iter().min() {
+        return Err(LabelError::NotOnBoundary { patch, face });
+    }
+    out.tet_block = tet_block;
+    out.patches.push(Patch { id: WALL, name: "wall".into(), cap: None });
+    out.patches.extend(patches.into_iter().map(|p| p.patch));
+    out.patches.sort_by_key(|p| p.id);
+    Ok(out)
+}
+
+fn sorted(mut face: [u32; 3]) -> [u32; 3] {
+    face.sort_unstable();
+    face
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+
+    fn mesh() -> TetMesh {
+        let p = |x, y, z| Point3::new(x, y, z);
+        TetMesh { points: vec![p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(0., 0., 1.)], tets: vec![[0, 1, 2, 3]] }
+    }
+
+    fn patch(id: i32, faces: Vec<[u32; 3]>) -> PatchFaces {
+        PatchFaces { patch: Patch { id, name: format!("outlet_{}", id - 3), cap: None }, faces }
+    }
+
+    #[test]
+    fn faces_that_no_patch_lists_are_wall() {
+        let labelled = label(mesh(), vec![7], vec![patch(3, vec![[2, 1, 0]])]).expect("on the boundary");
+        assert_eq!(labelled.boundary.len(), 4);
+        assert_eq!(labelled.boundary_patch.iter().filter(|&&p| p == WALL).count(), 3);
+        let capped = labelled.boundary_patch.iter().position(|&p| p == 3).expect("labelled");
+        assert_eq!(sorted(labelled.boundary[capped]), [0, 1, 2]);
+        assert_eq!(labelled.boundary_block, [7; 4]);
+    }
+
+    #[test]
+    fn a_face_inside_or_listed_twice_is_an_error() {
+        let inside = label(mesh(), vec![0], vec![patch(3, vec![[0, 1, 5]])]);
+        assert!(matches!(inside, Err(LabelError::NotOnBoundary { patch: 3, .. })));
+        let twice = label(mesh(), vec![0], vec![patch(3, vec![[0, 1, 2]]), patch(4, vec![[0, 2, 1]])]);
+        assert!(matches!(twice, Err(LabelError::Twice { first: 3, second: 4, .. })));
+    }
+}
