@@ -29,26 +29,20 @@ pub struct NotATerminal {
 /// When a root is not a terminal of the skeleton.
 pub fn assign(skeleton: &Skeleton, roots: &[u32]) -> Result<TerminalPatches, NotATerminal> {
     let adjacency = skeleton.adjacency();
-    let (component, count) = skeleton.components();
-    let terminals: Vec<NodeId> =
-        (0..skeleton.nodes.len() as u32).map(NodeId).filter(|&n| adjacency.edges_at(n).len() == 1).collect();
-    let original = |n: NodeId| skeleton.nodes[n.0 as usize].original;
+    let components = skeleton.components(&adjacency);
+    let terminals = adjacency.terminals();
+    let original = |n: NodeId| skeleton.node(n).original;
     if let Some(&node) = roots.iter().find(|&&root| !terminals.iter().any(|&t| original(t) == root)) {
         return Err(NotATerminal { node });
     }
     let mut inlets: Vec<NodeId> = terminals.iter().copied().filter(|&t| roots.contains(&original(t))).collect();
-    let mut rooted = vec![false; count];
-    for inlet in &inlets {
-        rooted[component[inlet.0 as usize] as usize] = true;
+    let component = |n: NodeId| components.of_node[n.index()] as usize;
+    let mut rooted = vec![false; components.list.len()];
+    for &inlet in &inlets {
+        rooted[component(inlet)] = true;
     }
-    let mut widest: BTreeMap<u32, NodeId> = BTreeMap::new();
-    for &t in terminals.iter().filter(|t| !rooted[component[t.0 as usize] as usize]) {
-        let best = widest.entry(component[t.0 as usize]).or_insert(t);
-        if skeleton.nodes[t.0 as usize].radius > skeleton.nodes[best.0 as usize].radius {
-            *best = t;
-        }
-    }
-    inlets.extend(widest.into_values());
+    let widest = skeleton.roots(&adjacency, &components);
+    inlets.extend(widest.into_iter().flatten().filter(|&n| !rooted[component(n)]));
     inlets.sort_unstable();
     Ok(TerminalPatches { of: names(&terminals, &inlets) })
 }
@@ -66,4 +60,41 @@ fn names(terminals: &[NodeId], inlets: &[NodeId]) -> BTreeMap<NodeId, (i32, Stri
         of.insert(outlet, (id, format!("outlet_{k}")));
     }
     of
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+    use crate::skeleton::{Edge, Node};
+
+    /// A Y whose terminals are nodes 0, 2 and 3 with radii 2, 1 and 3.
+    fn y() -> Skeleton {
+        let radii = [2.0, 2.0, 1.0, 3.0];
+        let node = |i: usize| Node { position: Point3::new(i as f64, 0.0, 0.0), radius: radii[i], original: 10 + i as u32 };
+        let edge = |a: u32, b: u32| Edge { nodes: [NodeId(a), NodeId(b)], radii: [radii[a as usize], radii[b as usize]] };
+        Skeleton { nodes: (0..4).map(node).collect(), edges: vec![edge(0, 1), edge(1, 2), edge(1, 3)] }
+    }
+
+    fn name(patches: &TerminalPatches, node: u32) -> (i32, &str) {
+        let (id, name) = &patches.of[&NodeId(node)];
+        (*id, name)
+    }
+
+    #[test]
+    fn the_widest_terminal_is_the_inlet() {
+        let patches = assign(&y(), &[]).expect("no root asked for");
+        assert_eq!([name(&patches, 3), name(&patches, 0), name(&patches, 2)], [(2, "inlet"), (3, "outlet_0"), (4, "outlet_1")]);
+    }
+
+    #[test]
+    fn a_root_asked_for_is_the_inlet() {
+        let patches = assign(&y(), &[12]).expect("a terminal");
+        assert_eq!([name(&patches, 2), name(&patches, 0), name(&patches, 3)], [(2, "inlet"), (3, "outlet_0"), (4, "outlet_1")]);
+    }
+
+    #[test]
+    fn a_root_inside_is_refused() {
+        assert_eq!(assign(&y(), &[11]), Err(NotATerminal { node: 11 }));
+    }
 }

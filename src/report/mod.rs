@@ -1,1 +1,3 @@
-//! (room under construction)
+//! Floor 3: what the verbs say, as models with a text and a JSON form.
+
+pub mod run;

@@ -50,13 +50,14 @@ pub fn label(mesh: TetMesh, tet_block: Vec<i32>, patches: Vec<PatchFaces>) -> Re
             }
         }
     }
-    let faces = adjacency::boundary_faces(&mesh.tets);
-    let mut out = VolumeMesh { mesh, ..VolumeMesh::default() };
-    for face in &faces {
-        out.boundary.push(face.vertices);
-        out.boundary_block.push(tet_block[face.tet as usize]);
-        out.boundary_patch.push(listed.remove(&sorted(face.vertices)).unwrap_or(WALL));
+    let mut out = VolumeMesh::default();
+    for handle in adjacency::tet_adjacency(&mesh.tets, mesh.points.len()).boundary() {
+        let face = adjacency::face_vertices(&mesh.tets, handle);
+        out.boundary.push(face);
+        out.boundary_block.push(tet_block[handle as usize / 4]);
+        out.boundary_patch.push(listed.remove(&sorted(face)).unwrap_or(WALL));
     }
+    out.mesh = mesh;
     // What is left was listed but is not there; name the smallest so that the message does not depend on the hashing.
     if let Some((&face, &patch)) = listed.iter().min() {
         return Err(LabelError::NotOnBoundary { patch, face });

@@ -1,0 +1,40 @@
+//! What a run is asked to do.
+
+/// Parameters of a run of the mesher.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct MeshPlan {
+    /// Resolution ρ: voxels across the thinnest vessel of a cluster; larger is finer.
+    pub rho: f64,
+    /// Terminals that are inlets, as indices of nodes in the file that was read. Components without one take the
+    /// terminal of largest radius.
+    pub roots: Vec<u32>,
+    /// Leave out blocks that fail instead of stopping.
+    pub keep_going: bool,
+    /// Folder for the inputs of blocks that fail; none writes no dumps.
+    pub dump_dir: Option<std::path::PathBuf>,
+}
+
+impl Default for MeshPlan {
+    fn default() -> Self {
+        Self { rho: 3.0, roots: Vec::new(), keep_going: false, dump_dir: None }
+    }
+}
+
+/// A plan that cannot be run.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// ρ outside of what makes sense.
+    #[error("rho = {0} is not usable: it must lie between 1.5 and 64 (3 to 5 are usual; larger is finer)")]
+    Rho(f64),
+}
+
+impl MeshPlan {
+    /// # Errors
+    /// When a parameter is out of its range.
+    pub fn validate(&self) -> Result<(), PlanError> {
+        // Written so that NaN fails too.
+        if (1.5..=64.0).contains(&self.rho) { Ok(()) } else { Err(PlanError::Rho(self.rho)) }
+    }
+}
