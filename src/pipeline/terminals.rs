@@ -71,8 +71,10 @@ mod tests {
     /// A Y whose terminals are nodes 0, 2 and 3 with radii 2, 1 and 3.
     fn y() -> Skeleton {
         let radii = [2.0, 2.0, 1.0, 3.0];
-        let node = |i: usize| Node { position: Point3::new(i as f64, 0.0, 0.0), radius: radii[i], original: 10 + i as u32 };
-        let edge = |a: u32, b: u32| Edge { nodes: [NodeId(a), NodeId(b)], radii: [radii[a as usize], radii[b as usize]] };
+        let node =
+            |i: usize| Node { position: Point3::new(i as f64, 0.0, 0.0), radius: radii[i], original: 10 + i as u32 };
+        let edge =
+            |a: u32, b: u32| Edge { nodes: [NodeId(a), NodeId(b)], radii: [radii[a as usize], radii[b as usize]] };
         Skeleton { nodes: (0..4).map(node).collect(), edges: vec![edge(0, 1), edge(1, 2), edge(1, 3)] }
     }
 
@@ -84,13 +86,19 @@ mod tests {
     #[test]
     fn the_widest_terminal_is_the_inlet() {
         let patches = assign(&y(), &[]).expect("no root asked for");
-        assert_eq!([name(&patches, 3), name(&patches, 0), name(&patches, 2)], [(2, "inlet"), (3, "outlet_0"), (4, "outlet_1")]);
+        assert_eq!(
+            [name(&patches, 3), name(&patches, 0), name(&patches, 2)],
+            [(2, "inlet"), (3, "outlet_0"), (4, "outlet_1")]
+        );
     }
 
     #[test]
     fn a_root_asked_for_is_the_inlet() {
         let patches = assign(&y(), &[12]).expect("a terminal");
-        assert_eq!([name(&patches, 2), name(&patches, 0), name(&patches, 3)], [(2, "inlet"), (3, "outlet_0"), (4, "outlet_1")]);
+        assert_eq!(
+            [name(&patches, 2), name(&patches, 0), name(&patches, 3)],
+            [(2, "inlet"), (3, "outlet_0"), (4, "outlet_1")]
+        );
     }
 
     #[test]

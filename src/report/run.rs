@@ -111,7 +111,11 @@ impl RunReport {
             self.failed.len()
         );
         for retry in &self.retries {
-            let _ = writeln!(out, "  retried {} (nodes {:?}): {}; {}", retry.block, retry.nodes, retry.reason, retry.remedy);
+            let _ = writeln!(
+                out,
+                "  retried {} (nodes {:?}): {}; {}",
+                retry.block, retry.nodes, retry.reason, retry.remedy
+            );
         }
         for failed in &self.failed {
             let _ = writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason);
