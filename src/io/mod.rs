@@ -1,1 +1,3 @@
-//! (room under construction)
+//! Floor 3: readers and writers, one file per format.
+
+pub mod vtk_xml;
