@@ -3,6 +3,8 @@
 mod aabb;
 mod bvh;
 mod distance;
+pub mod hilbert;
+pub mod predicates;
 mod tube;
 
 pub use aabb::Aabb;
