@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 
 use super::SurfaceError;
 use super::cases::{CASES, FACE_EDGES, NONE, edge_corners};
+use super::relax::largest_cosine;
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::TriMesh;
 
@@ -23,6 +24,7 @@ pub(crate) const MAX_COORDINATE: i32 = 1 << 20;
 struct Tile {
     value: [f64; 64],
     first_vertex: [u32; 64],
+    mask: [u8; 64],
     evaluated: u64,
     visited: u64,
 }
@@ -41,12 +43,14 @@ pub(crate) fn contour(
     let cells = grid.flood(seeds, max_cells)?;
     let mut dual = Dual { mesh: TriMesh::default(), midpoints: FxHashMap::default() };
     dual.vertices(&mut grid, &cells);
-    for &(cell, _) in &cells {
+    for &(cell, mask) in &cells {
         for d in 0..3 {
-            dual.crossing(&mut grid, cell, d);
+            if (mask ^ mask >> (1 << d)) & 1 == 1 {
+                dual.crossing(&mut grid, cell, d, mask & 1 == 1);
+            }
         }
     }
-    let at_seeds = seeds.iter().map(|&seed| grid.first_vertex(seed)).collect();
+    let at_seeds = seeds.iter().map(|&seed| grid.crossed(seed).0).collect();
     Ok((dual.mesh, at_seeds))
 }
 
@@ -67,7 +71,13 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
         if self.last.0 != key {
             let tiles = &mut self.tiles;
             let tile = *self.index.entry(key).or_insert_with(|| {
-                tiles.push(Tile { value: [0.0; 64], first_vertex: [u32::MAX; 64], evaluated: 0, visited: 0 });
+                tiles.push(Tile {
+                    value: [0.0; 64],
+                    first_vertex: [u32::MAX; 64],
+                    mask: [0; 64],
+                    evaluated: 0,
+                    visited: 0,
+                });
                 tiles.len() as u32 - 1
             });
             self.last = (key, tile);
@@ -111,6 +121,8 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
                 if cells.len() == max_cells {
                     return Err(SurfaceError::TooLarge { cells: max_cells as f64 + 1.0, limit: max_cells });
                 }
+                let (tile, place) = self.locate(cell);
+                self.tiles[tile].mask[place] = mask;
                 cells.push((cell, mask));
                 for (face, edges) in FACE_EDGES.iter().enumerate() {
                     let case = &CASES[mask as usize];
@@ -149,9 +161,10 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
         p
     }
 
-    fn first_vertex(&mut self, cell: Node) -> u32 {
+    /// First vertex and sign mask of a crossed cell.
+    fn crossed(&mut self, cell: Node) -> (u32, u8) {
         let (tile, place) = self.locate(cell);
-        self.tiles[tile].first_vertex[place]
+        (self.tiles[tile].first_vertex[place], self.tiles[tile].mask[place])
     }
 }
 
@@ -209,20 +222,16 @@ impl Dual {
         }
     }
 
-    /// The polygon of the grid edge from `n` along axis `d`, if the level crosses it.
-    fn crossing<F: FnMut(Node) -> f64>(&mut self, grid: &mut Grid<F>, n: Node, d: usize) {
-        let inside = grid.node(n) < 0.0;
-        if inside == (grid.node(shifted(n, d, 1)) < 0.0) {
-            return;
-        }
+    /// The polygon of the crossed grid edge from `n`, which is `inside` or not, along axis `d`.
+    fn crossing<F: FnMut(Node) -> f64>(&mut self, grid: &mut Grid<F>, n: Node, d: usize, inside: bool) {
         let (u, v) = ((d + 1) % 3, (d + 2) % 3);
         // Counter-clockwise seen from the far end of the edge.
         let cells = [n, shifted(n, u, -1), shifted(shifted(n, u, -1), v, -1), shifted(n, v, -1)];
         let edges = [4 * d, 4 * d + 1, 4 * d + 3, 4 * d + 2];
         let ring: [Around; 4] = std::array::from_fn(|i| {
-            let mask = grid.mask(cells[i]);
+            let (first, mask) = grid.crossed(cells[i]);
             let patch = CASES[mask as usize].patch_of_edge[edges[i]];
-            Around { cell: cells[i], mask, vertex: grid.first_vertex(cells[i]) + u32::from(patch) }
+            Around { cell: cells[i], mask, vertex: first + u32::from(patch) }
         });
         // The faces between consecutive cells: axis across, and which of the two cells is the upper one.
         let across = [u, v, u, v];
@@ -303,11 +312,4 @@ fn doubled(upper: Around, lower: Around, axis: usize) -> bool {
         a == b && b == c && c == d
     };
     one(&cu.patch_of_edge, 2 * axis) && one(&cl.patch_of_edge, 2 * axis + 1)
-}
-
-/// The cosine of a triangle's smallest angle.
-fn largest_cosine(a: &Point3, b: &Point3, c: &Point3) -> f64 {
-    let (x, y, z) = ((c - b).norm_squared(), (a - c).norm_squared(), (b - a).norm_squared());
-    let at = |o: f64, p: f64, q: f64| (p + q - o) / (2.0 * (p * q).sqrt()).max(f64::MIN_POSITIVE);
-    at(x, y, z).max(at(y, z, x)).max(at(z, x, y))
 }

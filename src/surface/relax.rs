@@ -3,7 +3,7 @@
 //! (Isotropic remeshing after Botsch and Kobbelt 2004, projected by Newton steps on the field.)
 
 use super::field::Field;
-use super::halfedge::{HalfEdges, next, prev};
+use super::halfedge::HalfEdges;
 use crate::geometry::{Point3, Vec3};
 
 /// Where a vertex may go.
