@@ -94,6 +94,11 @@ impl HalfEdges {
         (mesh, map)
     }
 
+    /// The triangle (by its first half-edge over three) that each triangle of `to_mesh` was.
+    pub(crate) fn live_triangles(&self) -> Vec<u32> {
+        (0..self.len() / 3).filter(|&f| self.is_live(3 * f)).collect()
+    }
+
     /// Number of half-edges, removed ones included.
     pub(crate) fn len(&self) -> u32 {
         self.from.len() as u32

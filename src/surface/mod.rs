@@ -5,8 +5,8 @@ mod cases;
 mod contour;
 mod erf;
 mod field;
-mod halfedge;
-mod relax;
+pub(crate) mod halfedge;
+pub(crate) mod relax;
 #[cfg(test)]
 mod tests;
 

@@ -46,6 +46,18 @@ impl<'a, L: Level> Relaxation<'a, L> {
         this
     }
 
+    /// The rounds for a surface that is good but for a seam within it: flips go by angle only.
+    pub(crate) fn mend(&mut self, rounds: usize) {
+        for _ in 0..rounds {
+            self.split_long();
+            self.collapse_short();
+            self.flip(Criterion::Angle);
+            self.smooth();
+        }
+        self.flip(Criterion::Angle);
+        self.project();
+    }
+
     /// Rounds of splitting, collapsing, flipping and smoothing, then the passes that only better the worst angles.
     pub(crate) fn run(&mut self, rounds: usize) {
         for _ in 0..rounds {

@@ -1,0 +1,351 @@
+//! Terminals end in flat discs (3.2.2 of the paper, without the round tip). The tip beyond the plane is taken off, a
+//! regular ring is put on the plane and filled, a strip is woven between the wall that is left and the ring, and the
+//! wall near it is relaxed on the level set.
+
+mod disc;
+mod weave;
+
+use crate::geometry::{Point3, Section, Vec3};
+use crate::mesh::TriMesh;
+use crate::partition::{ClusterEnd, EndKind};
+use crate::skeleton::NodeId;
+use crate::surface::Field;
+use crate::surface::halfedge::HalfEdges;
+use crate::surface::relax::{Level, Relaxation};
+use disc::{Disc, disc};
+use std::f64::consts::TAU;
+use weave::{Corner, weave};
+
+/// A closed wall whose terminals are flat discs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CappedSurface {
+    /// The surface: closed, 2-manifold, oriented outwards.
+    pub mesh: TriMesh,
+    /// For every triangle the index, into the ends that were given, of the cap it belongs to; none for the wall.
+    pub cap: Vec<Option<u32>>,
+}
+
+/// Why an end could not be capped.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CapError {
+    /// The surface is not a closed 2-manifold.
+    #[error("the wall is not a closed manifold at edge {} – {}", edge[0], edge[1])]
+    NotManifold {
+        /// Vertices of the edge (equal: of the vertex).
+        edge: [u32; 2],
+    },
+    /// One end could not be capped.
+    #[error("end {end} at {origin} cannot be capped: {reason}")]
+    End {
+        /// Index of the end.
+        end: u32,
+        /// The terminal's node; none for a cut.
+        node: Option<NodeId>,
+        /// Centre of the cap that was to be.
+        origin: Point3,
+        /// Why.
+        reason: CapFailure,
+    },
+}
+
+/// What is wrong at an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CapFailure {
+    /// The vessel does not reach beyond the plane.
+    #[error("no tip lies beyond the plane")]
+    NoTip,
+    /// What lies beyond the plane is not only this vessel's tip.
+    #[error("the tip is joined to another vessel")]
+    Merged,
+    /// What is left of the wall does not end in one loop.
+    #[error("the wall does not end in one loop")]
+    Loops,
+    /// The disc could not be triangulated.
+    #[error("the disc could not be triangulated")]
+    Disc,
+}
+
+/// The strip between wall and ring starts so far (in edge lengths) before the plane.
+const MARGIN: f64 = 0.4;
+/// The wall is relaxed up to so far (in edge lengths) before the plane.
+const RELAXED: f64 = 3.5;
+/// Mean edge length of a relaxed wall over the length that was aimed at.
+const MEAN_EDGE: f64 = 0.92;
+/// Least number of corners of a ring.
+const LEAST_CORNERS: u32 = 8;
+
+/// Replaces the tips beyond the `ends` by flat discs. `field` is the field that the wall is a level set of, `edge` the
+/// usual edge length of the wall.
+///
+/// # Errors
+/// A surface that is not closed; an end whose tip is missing, joined to another vessel, or does not leave one loop.
+pub fn cap_terminals(
+    surface: &TriMesh,
+    field: &mut Field,
+    ends: &[ClusterEnd],
+    edge: f64,
+) -> Result<CappedSurface, CapError> {
+    let halves = HalfEdges::new(surface).map_err(|edge| CapError::NotManifold { edge })?;
+    let mut cutter = Cutter {
+        surface: &halves,
+        removed: vec![false; surface.triangles.len()],
+        points: surface.points.clone(),
+        added: Vec::new(),
+        cap: Vec::new(),
+    };
+    for (i, end) in ends.iter().enumerate() {
+        cutter.cut(&end.section, i as u32, edge).map_err(|reason| CapError::End {
+            end: i as u32,
+            node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
+            origin: end.section.origin,
+            reason,
+        })?;
+    }
+    let (mesh, cap) = cutter.finish();
+    relaxed(&mesh, cap, field, ends, edge)
+}
+
+/// The surface while tips are taken off and discs put on.
+struct Cutter<'a> {
+    surface: &'a HalfEdges,
+    removed: Vec<bool>,
+    points: Vec<Point3>,
+    added: Vec<[u32; 3]>,
+    cap: Vec<Option<u32>>,
+}
+
+impl Cutter<'_> {
+    /// Takes one tip off and puts the disc on.
+    fn cut(&mut self, section: &Section, end: u32, edge: f64) -> Result<(), CapFailure> {
+        let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
+        let mut tip = self.beyond(section, seed, MARGIN * edge)?;
+        let rim = self.rim(section, &mut tip, edge)?;
+        let low: Vec<Point3> = rim.iter().map(|&v| self.points[v as usize]).collect();
+        let corners = ((TAU * section.radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS);
+        let ring = disc(section.radius, corners, phase(section, &low, corners)).ok_or(CapFailure::Disc)?;
+        self.put(section, end, &rim, &low, corners, &ring);
+        Ok(())
+    }
+
+    fn triangle(&self, face: u32) -> [Point3; 3] {
+        [0, 1, 2].map(|i| self.points[self.surface.from(3 * face + i) as usize])
+    }
+
+    /// The triangle through which the axis leaves the vessel beyond the plane.
+    fn tip(&self, section: &Section) -> Option<u32> {
+        let (u, w) = section.frame();
+        let reach = 4.0 * section.radius;
+        let mut best = (reach, None);
+        for face in 0..self.removed.len() as u32 {
+            let local = self.triangle(face).map(|p| {
+                let d = p - section.origin;
+                Vec3::new(d.dot(&u), d.dot(&w), d.dot(&section.axis))
+            });
+            let side = |a: &Vec3, b: &Vec3| a.x * b.y - a.y * b.x;
+            let [a, b, c] = &local;
+            let (wa, wb, wc) = (side(b, c), side(c, a), side(a, b));
+            let total = wa + wb + wc;
+            // Seen from outside, along the axis from above, an exit is counter-clockwise.
+            if wa >= 0.0 && wb >= 0.0 && wc >= 0.0 && total > 0.0 {
+                let height = (wa * a.z + wb * b.z + wc * c.z) / total;
+                if height > 0.0 && height < best.0 {
+                    best = (height, Some(face));
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Marks the connected triangles round `seed` that reach above `margin` before the plane as removed.
+    fn beyond(&mut self, section: &Section, seed: u32, margin: f64) -> Result<Vec<u32>, CapFailure> {
+        let (wide, long) = (2.0 * section.radius + margin, 4.0 * section.radius + margin);
+        let mut tip = vec![seed];
+        self.removed[seed as usize] = true;
+        let mut at = 0;
+        while at < tip.len() {
+            let face = tip[at];
+            at += 1;
+            for p in self.triangle(face) {
+                let height = section.height(&p);
+                if height > long || (p - section.origin - section.axis * height).norm() > wide {
+                    return Err(CapFailure::Merged);
+                }
+            }
+            for h in 3 * face..3 * face + 3 {
+                let next = self.surface.twin(h) / 3;
+                let reaches = self.triangle(next).iter().any(|p| section.height(p) > -margin);
+                if reaches && !self.removed[next as usize] {
+                    self.removed[next as usize] = true;
+                    tip.push(next);
+                }
+            }
+        }
+        Ok(tip)
+    }
+
+    /// The loop in which the wall now ends, counter-clockwise about the axis; removes more where it is pinched, has
+    /// teeth, or is not one loop.
+    fn rim(&mut self, section: &Section, tip: &mut Vec<u32>, edge: f64) -> Result<Vec<u32>, CapFailure> {
+        for _ in 0..20 {
+            let boundary = self.boundary(tip);
+            let extra = self.spoilers(&boundary);
+            if extra.is_empty() {
+                return self.walk(&boundary);
+            }
+            for face in extra {
+                if self.triangle(face).iter().any(|p| section.height(p) < -4.0 * edge) {
+                    return Err(CapFailure::Loops);
+                }
+                if !self.removed[face as usize] {
+                    self.removed[face as usize] = true;
+                    tip.push(face);
+                }
+            }
+        }
+        Err(CapFailure::Loops)
+    }
+
+    /// The half-edges of the kept wall along the removed tip.
+    fn boundary(&self, tip: &[u32]) -> Vec<u32> {
+        let sides = tip.iter().flat_map(|&f| 3 * f..3 * f + 3).map(|h| self.surface.twin(h));
+        sides.filter(|&h| !self.removed[h as usize / 3]).collect()
+    }
+
+    /// Kept triangles to remove as well: teeth (two sides on the boundary) and fans of pinched vertices.
+    fn spoilers(&self, boundary: &[u32]) -> Vec<u32> {
+        let mut faces: Vec<u32> = boundary.iter().map(|h| h / 3).collect();
+        faces.sort_unstable();
+        let mut extra: Vec<u32> = faces.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
+        let mut starts: Vec<u32> = boundary.iter().map(|&h| self.surface.from(h)).collect();
+        starts.sort_unstable();
+        for w in starts.windows(2).filter(|w| w[0] == w[1]) {
+            extra.extend(self.surface.fan(w[0]).map(|h| h / 3).filter(|&f| !self.removed[f as usize]));
+        }
+        extra.sort_unstable();
+        extra.dedup();
+        extra
+    }
+
+    /// The boundary as one loop of vertices, against the direction of its half-edges.
+    fn walk(&self, boundary: &[u32]) -> Result<Vec<u32>, CapFailure> {
+        let mut pairs: Vec<(u32, u32)> = boundary.iter().map(|&h| (self.surface.to(h), self.surface.from(h))).collect();
+        pairs.sort_unstable();
+        let Some(&(start, _)) = pairs.first() else { return Err(CapFailure::Loops) };
+        let mut rim = Vec::with_capacity(pairs.len());
+        let mut v = start;
+        loop {
+            rim.push(v);
+            let i = pairs.binary_search_by_key(&v, |p| p.0).map_err(|_| CapFailure::Loops)?;
+            v = pairs[i].1;
+            if v == start {
+                break;
+            }
+            if rim.len() > pairs.len() {
+                return Err(CapFailure::Loops);
+            }
+        }
+        if rim.len() == pairs.len() && rim.len() >= 3 { Ok(rim) } else { Err(CapFailure::Loops) }
+    }
+
+    /// Adds the disc and the strip between it and the rim.
+    fn put(&mut self, section: &Section, end: u32, rim: &[u32], low: &[Point3], corners: u32, ring: &Disc) {
+        let (u, w) = section.frame();
+        let first = self.points.len() as u32;
+        self.points.extend(ring.points.iter().map(|&[x, y]| section.origin + u * x + w * y));
+        let high = &self.points[first as usize..(first + corners) as usize];
+        let strip = weave(low, high, &section.origin, &section.axis);
+        let vertex = |corner: Corner| match corner {
+            Corner::Low(i) => rim[i as usize],
+            Corner::High(j) => first + j,
+        };
+        self.added.extend(strip.into_iter().map(|t| t.map(vertex)));
+        self.cap.resize(self.added.len(), None);
+        self.added.extend(ring.triangles.iter().map(|t| t.map(|v| first + v)));
+        self.cap.resize(self.added.len(), Some(end));
+    }
+
+    /// The mesh with the triangles that are left and those added, without the vertices that are no longer used.
+    fn finish(self) -> (TriMesh, Vec<Option<u32>>) {
+        let kept = (0..self.removed.len() as u32).filter(|&f| !self.removed[f as usize]);
+        let mut triangles: Vec<[u32; 3]> = kept.map(|f| [0, 1, 2].map(|i| self.surface.from(3 * f + i))).collect();
+        let mut cap = vec![None; triangles.len()];
+        triangles.extend(self.added);
+        cap.extend(self.cap);
+        let mut map = vec![u32::MAX; self.points.len()];
+        for &v in triangles.iter().flatten() {
+            map[v as usize] = 0;
+        }
+        let mut points = Vec::with_capacity(self.points.len());
+        for (v, slot) in map.iter_mut().enumerate() {
+            if *slot == 0 {
+                *slot = points.len() as u32;
+                points.push(self.points[v]);
+            }
+        }
+        for v in triangles.iter_mut().flatten() {
+            *v = map[*v as usize];
+        }
+        (TriMesh { points, triangles }, cap)
+    }
+}
+
+/// The angle of the first ring point at which a regular ring fits the loop's points best.
+fn phase(section: &Section, low: &[Point3], corners: u32) -> f64 {
+    let (u, w) = section.frame();
+    let m = f64::from(corners);
+    let (mut s, mut c) = (0.0, 0.0);
+    for p in low {
+        let d = p - section.origin;
+        let angle = m * d.dot(&w).atan2(d.dot(&u));
+        s += angle.sin();
+        c += angle.cos();
+    }
+    // Ring points go between those of the loop.
+    (s.atan2(c) + std::f64::consts::PI) / m
+}
+
+/// The level set raised by what a polyhedron of this edge length lacks.
+struct Raised<'a> {
+    field: &'a mut Field,
+    by: f64,
+}
+
+impl Level for Raised<'_> {
+    fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
+        let (value, gradient) = self.field.value_and_gradient(p);
+        (value - self.by, gradient)
+    }
+}
+
+/// Relaxes the wall next to each disc; discs and everything further away stay.
+fn relaxed(
+    mesh: &TriMesh,
+    cap: Vec<Option<u32>>,
+    field: &mut Field,
+    ends: &[ClusterEnd],
+    edge: f64,
+) -> Result<CappedSurface, CapError> {
+    let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
+    let mut on_disc = vec![false; mesh.points.len()];
+    for (t, _) in mesh.triangles.iter().zip(&cap).filter(|(_, c)| c.is_some()) {
+        t.iter().for_each(|&v| on_disc[v as usize] = true);
+    }
+    for end in ends {
+        let section = &end.section;
+        let chord = MEAN_EDGE * edge / section.radius;
+        let mut level = Raised { field: &mut *field, by: chord * chord / 16.0 };
+        let near = |p: &Point3| {
+            let height = section.height(p);
+            let across = (p - section.origin - section.axis * height).norm();
+            height > -RELAXED * edge && height < edge && across < 1.5 * section.radius + edge
+        };
+        on_disc.resize(surface.points.len(), false);
+        let locked = surface.points.iter().zip(&on_disc).map(|(p, &disc)| disc || !near(p)).collect();
+        Relaxation::new(&mut surface, &mut level, edge, locked).mend(4);
+    }
+    let faces = surface.live_triangles();
+    let cap = faces.iter().map(|&f| cap.get(f as usize).copied().flatten()).collect();
+    Ok(CappedSurface { mesh: surface.to_mesh().0, cap })
+}
