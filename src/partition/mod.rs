@@ -1,7 +1,26 @@
 //! Floor 3: 3.2.1 of the paper. Long vessels are cut; what stays together is a cluster.
 
+mod assemble;
+mod check;
+mod clearance;
+mod course;
+mod params;
+mod path;
+mod settle;
+mod summary;
+mod window;
+
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
 use crate::geometry::{Section, Tube};
-use crate::skeleton::{BranchId, NodeId};
+use crate::skeleton::{BranchId, NodeId, Skeleton};
+
+pub use check::{PartitionFlaw, check_partition};
+pub use params::{PartitionError, PartitionParams};
+pub use summary::{PartitionSummary, UncutCounts};
 
 /// Index of a cluster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
@@ -18,6 +37,75 @@ pub struct Partition {
     pub clusters: Vec<Cluster>,
     /// Cuts, by `CutId`; each joins two clusters (or a cluster to itself round a loop) by one connector.
     pub cuts: Vec<Cut>,
+    /// Where on its branch each cut stands: arc lengths of the planes of side 0 and side 1, by `CutId`.
+    pub cut_arcs: Vec<[f64; 2]>,
+    /// The pieces of the branches that the clusters hold, by branch and arc length. With the cuts they cover every
+    /// branch exactly once.
+    pub pieces: Vec<Piece>,
+    /// The branches that are in one cluster from end to end, and why.
+    pub uncut: Vec<(BranchId, UncutReason)>,
+    /// What may go wrong in a cluster.
+    pub warnings: Vec<PartitionWarning>,
+}
+
+/// A piece of a branch in a cluster.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// The cluster.
+    pub cluster: ClusterId,
+    /// The branch.
+    pub branch: BranchId,
+    /// Arc lengths between which it lies.
+    pub arc: [f64; 2],
+    /// Its tubes, in the direction of the branch, without overruns: a range of `Cluster::tubes`.
+    pub tubes: Range<u32>,
+}
+
+/// Why a branch is not cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[non_exhaustive]
+pub enum UncutReason {
+    /// It ends in a terminal and is not long.
+    Terminal,
+    /// The caller forbade it.
+    Forbidden,
+    /// Too short (equation 11, and room for a connector).
+    Length,
+    /// Too short for the angle at which it leaves another branch (equation 12).
+    Angle,
+    /// Nowhere straight enough for a connector.
+    Bend,
+    /// Nowhere clear of another vessel of its cluster.
+    Clearance {
+        /// The branch in its way at the first place that was tried.
+        near: BranchId,
+    },
+}
+
+/// Something that a cluster's mesh may suffer from.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub enum PartitionWarning {
+    /// A terminal's overrun was shortened, as a vessel is in its way.
+    ShortOverrun {
+        /// The cluster.
+        cluster: ClusterId,
+        /// The terminal.
+        node: NodeId,
+        /// The branch in the way.
+        near: BranchId,
+        /// Length of the overrun in radii.
+        radii: f64,
+    },
+    /// A terminal lies within or too close to another vessel of its cluster: its cap may fail.
+    CapNotClear {
+        /// The cluster.
+        cluster: ClusterId,
+        /// The terminal.
+        node: NodeId,
+        /// The other vessel.
+        near: BranchId,
+    },
 }
 
 /// Branches that are meshed together.
@@ -67,4 +155,32 @@ pub struct Cut {
     /// The vessel between the two cut planes: sections from side 0's plane to side 1's, axes along the way from 0 to 1;
     /// between two consecutive sections the axis is straight (or turns by little) and the radius linear.
     pub path: Vec<Section>,
+}
+
+/// Cuts a skeleton into clusters and connectors (3.2.1 of the paper, read for graphs with loops).
+///
+/// The skeleton is a cleaned one. Branches, not edges, are cut. The result depends on nothing but the arguments;
+/// clusters are ordered by their lowest node, cuts by branch and place.
+///
+/// # Errors
+/// If a parameter is not positive or the skeleton has an edge without length, radius or node.
+pub fn partition(skeleton: &Skeleton, params: &PartitionParams) -> Result<Partition, PartitionError> {
+    params.check()?;
+    params::check_skeleton(skeleton)?;
+    let adjacency = skeleton.adjacency();
+    let branches = skeleton.branches(&adjacency);
+    let courses: Vec<_> = branches.list.iter().map(|b| course::Course::new(skeleton, b)).collect();
+    let cutter = window::Cutter::new(skeleton, &adjacency, &courses, params);
+    let mut slots = Vec::new();
+    let mut uncut = Vec::new();
+    for branch in 0..courses.len() as u32 {
+        if let Some(reason) = cutter.slots(branch, &mut slots) {
+            uncut.push((BranchId(branch), reason));
+        }
+    }
+    let terminal = |node| cutter.end_kind(node) == window::BranchEnd::Terminal;
+    let terminals = courses.iter().map(|c| c.branch.ends().map(terminal)).collect();
+    let mut settler = settle::Settler::new(skeleton.nodes.len(), &courses, params, slots, terminals);
+    uncut.extend(settler.settle());
+    Ok(assemble::assemble(&settler, uncut))
 }

@@ -1,0 +1,79 @@
+//! Whether the tip of a vessel stays clear of another vessel.
+//!
+//! Equation 12 says where the wall of a vessel leaves the wall of its neighbour at a junction. The same question, asked
+//! of any other vessel: how far is its axis from the solid cylinder that the tip fills? The neighbour at the junction
+//! is then no exception, and bends need no angle.
+
+use crate::geometry::{Aabb, Point3, Section, Tube, segment_segment};
+
+/// How far a tip reaches back from its end plane, in radii: trimming and flattening work there.
+const BACK: f64 = 0.5;
+
+/// The end of a vessel: the solid cylinder about its end plane, from shortly before it to the end of the overrun.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tip {
+    section: Section,
+    /// Heights over the plane between which it reaches.
+    reach: [f64; 2],
+}
+
+impl Tip {
+    pub fn new(section: Section, overrun: f64) -> Self {
+        Self { section, reach: [-BACK * section.radius, overrun] }
+    }
+
+    fn axis_point(&self, height: f64) -> Point3 {
+        self.section.origin + self.section.axis * height
+    }
+
+    /// Distance that has to lie between the cylinder and the axis of a vessel of radius `other`: two parallel vessels
+    /// are then `blending` × the sum of their radii apart.
+    fn margin(&self, other: f64, blending: f64) -> f64 {
+        blending * other + (blending - 1.0) * self.section.radius
+    }
+
+    /// A box that meets the box of every vessel in the way, if that is grown by `blending` × its radius.
+    pub fn aabb(&self, blending: f64) -> Aabb {
+        let ends = self.reach.map(|h| self.axis_point(h));
+        Aabb::of_points(&ends).grown(blending * self.section.radius)
+    }
+
+    /// Whether the vessel is far enough off.
+    pub fn clears(&self, tube: &Tube, blending: f64) -> bool {
+        let radius = self.section.radius;
+        let ends = self.reach.map(|h| self.axis_point(h));
+        let near = segment_segment([&ends[0], &ends[1]], [&tube.a, &tube.b]);
+        if near.distance >= radius + self.margin(tube.max_radius(), blending) {
+            return true;
+        }
+        // Alternating projection between two convex sets, the cylinder and the segment, ends at their distance.
+        let span = tube.b - tube.a;
+        let square = span.norm_squared();
+        let mut t = near.t;
+        let mut gap = f64::INFINITY;
+        for _ in 0..24 {
+            let p = tube.a + span * t;
+            let q = self.closest(&p);
+            let found = (p - q).norm();
+            let settled = found >= gap * (1.0 - 1e-4);
+            gap = gap.min(found);
+            if gap < self.margin(tube.radius(t), blending) {
+                return false;
+            }
+            if settled || square == 0.0 {
+                break;
+            }
+            t = ((q - tube.a).dot(&span) / square).clamp(0.0, 1.0);
+        }
+        true
+    }
+
+    /// The point of the cylinder that is closest to `p`.
+    fn closest(&self, p: &Point3) -> Point3 {
+        let height = self.section.height(p);
+        let aside = p - self.axis_point(height);
+        let distance = aside.norm();
+        let lateral = if distance > self.section.radius { aside * (self.section.radius / distance) } else { aside };
+        self.axis_point(height.clamp(self.reach[0], self.reach[1])) + lateral
+    }
+}

@@ -1,0 +1,380 @@
+//! Which cuts are made, and where their planes stand, so that every cluster's ends are clear of its other vessels.
+//!
+//! What a cluster holds is known only when its cuts are, and a cut depends on what its clusters hold. All candidate
+//! cuts are made at first; then planes whose vessel is not clear move away from their cluster, and cuts for which there
+//! is no such place are given up, which joins two clusters. Both only ever go one way, so it ends.
+
+use super::clearance::Tip;
+use super::course::{Course, Way};
+use super::window::{Slot, room};
+use super::{PartitionParams, UncutReason};
+use crate::geometry::{Aabb, Bvh, Section, Tube};
+use crate::skeleton::{BranchId, NodeId};
+
+/// A piece of a branch that is in one cluster.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub branch: u32,
+    /// The cuts at its start and end; none at the branch's own ends.
+    pub slots: [Option<u32>; 2],
+    /// Its cluster, named by an element of the union.
+    pub root: u32,
+}
+
+/// Something in the way: a part of a branch, or the overrun beyond its terminal.
+#[derive(Clone, Copy, Debug)]
+struct Obstacle {
+    branch: u32,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// The edge of this index in the branch.
+    Edge(u32),
+    /// The overrun at the branch's start or end.
+    Overrun(Way),
+}
+
+pub(super) struct Settler<'a> {
+    pub courses: &'a [Course<'a>],
+    pub params: &'a PartitionParams,
+    pub slots: Vec<Slot>,
+    /// The slots of each branch are `first_slot[branch]..first_slot[branch + 1]`.
+    pub first_slot: Vec<u32>,
+    pub runs: Vec<Run>,
+    /// The runs of each branch are `first_run[branch]..first_run[branch + 1]`.
+    pub first_run: Vec<u32>,
+    /// Terminals at the branch's start and end.
+    pub terminals: Vec<[bool; 2]>,
+    union: Union,
+    /// Smallest radius of each cluster, by root.
+    r_min: Vec<f64>,
+    obstacles: Vec<Obstacle>,
+    tree: Bvh,
+    blending: f64,
+}
+
+/// Step of a plane that moves, in radii; it grows after a while.
+const STEP: f64 = 0.25;
+const STEPS: u32 = 96;
+const STEADY_STEPS: u32 = 24;
+
+impl<'a> Settler<'a> {
+    pub fn new(
+        nodes: usize,
+        courses: &'a [Course<'a>],
+        params: &'a PartitionParams,
+        slots: Vec<Slot>,
+        terminals: Vec<[bool; 2]>,
+    ) -> Self {
+        let first_slot: Vec<u32> =
+            (0..=courses.len() as u32).map(|b| slots.partition_point(|s| s.branch < b) as u32).collect();
+        let blending = params.blending();
+        let (obstacles, tree) = obstacles(courses, &terminals, params, blending);
+        let union = Union::new(slots.len() + courses.len() + nodes);
+        let mut settler = Self {
+            courses,
+            params,
+            r_min: vec![f64::INFINITY; union.parent.len()],
+            union,
+            slots,
+            first_slot,
+            runs: Vec::new(),
+            first_run: Vec::new(),
+            terminals,
+            obstacles,
+            tree,
+            blending,
+        };
+        settler.join_pieces();
+        settler
+    }
+
+    /// Element of the `i`-th piece of a branch, counted with all of its slots.
+    fn piece(&self, branch: u32, i: u32) -> u32 {
+        self.first_slot[branch as usize] + branch + i
+    }
+
+    /// Element of a node.
+    fn node(&self, node: NodeId) -> u32 {
+        (self.slots.len() + self.courses.len()) as u32 + node.0
+    }
+
+    fn join_pieces(&mut self) {
+        for branch in 0..self.courses.len() as u32 {
+            let [a, b] = self.courses[branch as usize].branch.ends();
+            let count = self.first_slot[branch as usize + 1] - self.first_slot[branch as usize];
+            self.union.join(self.piece(branch, 0), self.node(a));
+            self.union.join(self.piece(branch, count), self.node(b));
+        }
+    }
+
+    /// Moves planes and gives up cuts until every end is clear; returns why cuts were given up, by branch.
+    pub fn settle(&mut self) -> Vec<(BranchId, UncutReason)> {
+        let mut given_up = Vec::new();
+        let mut dirty = vec![true; self.union.parent.len()];
+        loop {
+            self.gather();
+            let mut changed: Vec<u32> = Vec::new();
+            for run in 0..self.runs.len() {
+                let Run { branch, slots, root } = self.runs[run];
+                if !dirty[root as usize] {
+                    continue;
+                }
+                for (way, slot) in [(Way::Back, slots[0]), (Way::Onward, slots[1])] {
+                    let Some(slot) = slot.map(|s| s as usize).filter(|&s| self.slots[s].alive) else { continue };
+                    let stands = self.slots[slot].planes[way.side()];
+                    let Err(reason) = self.clear_at(run, way, stands) else { continue };
+                    changed.push(slot as u32);
+                    if let Some(s) = self.clear_place(run, way, slot) {
+                        self.slots[slot].planes[way.side()] = s;
+                    } else {
+                        self.slots[slot].alive = false;
+                        given_up.push((BranchId(branch), UncutReason::Clearance { near: reason }));
+                    }
+                }
+            }
+            if changed.is_empty() {
+                break;
+            }
+            self.mark(&changed, &mut dirty);
+        }
+        given_up
+    }
+
+    /// Joins what cuts that were given up no longer part, and marks the clusters of all changed slots.
+    fn mark(&mut self, changed: &[u32], dirty: &mut [bool]) {
+        dirty.fill(false);
+        let pieces = |s: &Self, slot: u32| {
+            let branch = s.slots[slot as usize].branch;
+            let i = slot - s.first_slot[branch as usize];
+            [s.piece(branch, i), s.piece(branch, i + 1)]
+        };
+        for &slot in changed {
+            if !self.slots[slot as usize].alive {
+                let [a, b] = pieces(self, slot);
+                self.union.join(a, b);
+            }
+        }
+        for &slot in changed {
+            for piece in pieces(self, slot) {
+                dirty[self.union.root(piece) as usize] = true;
+            }
+        }
+    }
+
+    /// Finds the runs and the smallest radius of each cluster.
+    fn gather(&mut self) {
+        self.union.flatten();
+        self.runs.clear();
+        self.first_run.clear();
+        for branch in 0..self.courses.len() as u32 {
+            self.first_run.push(self.runs.len() as u32);
+            let slots = self.first_slot[branch as usize]..self.first_slot[branch as usize + 1];
+            let mut start = None;
+            for slot in slots.clone().filter(|&s| self.slots[s as usize].alive) {
+                let root = self.union.root(self.piece(branch, slot - slots.start));
+                self.runs.push(Run { branch, slots: [start, Some(slot)], root });
+                start = Some(slot);
+            }
+            let root = self.union.root(self.piece(branch, slots.end - slots.start));
+            self.runs.push(Run { branch, slots: [start, None], root });
+        }
+        self.first_run.push(self.runs.len() as u32);
+        self.r_min.fill(f64::INFINITY);
+        for run in &self.runs {
+            let [lo, hi] = self.range(run);
+            let least = self.courses[run.branch as usize].radius_range(lo, hi)[0];
+            let r = &mut self.r_min[run.root as usize];
+            *r = r.min(least);
+        }
+    }
+
+    /// Where a run starts and ends.
+    pub fn range(&self, run: &Run) -> [f64; 2] {
+        let lo = run.slots[0].map_or(0.0, |s| self.slots[s as usize].planes[1]);
+        let hi = run.slots[1]
+            .map_or_else(|| self.courses[run.branch as usize].length(), |s| self.slots[s as usize].planes[0]);
+        [lo, hi]
+    }
+
+    /// Length of the overrun of a vessel of radius `radius` in the cluster `root`.
+    pub fn overrun(&self, radius: f64, root: u32) -> f64 {
+        self.params.overrun_length(radius, self.r_min[root as usize])
+    }
+
+    /// Next place for a plane, away from its cluster, at which its vessel is clear.
+    fn clear_place(&self, run: usize, way: Way, slot: usize) -> Option<f64> {
+        let Slot { branch, planes, .. } = self.slots[slot];
+        let course = &self.courses[branch as usize];
+        let mut planes = planes;
+        let mut step = STEP * course.radius(planes[way.side()], way);
+        for i in 0..STEPS {
+            planes[way.side()] += way.sign() * step;
+            if planes[1] - planes[0] < room(course, self.params, planes[0], planes[1]) {
+                return None;
+            }
+            if self.clear_at(run, way, planes[way.side()]).is_ok() {
+                return Some(planes[way.side()]);
+            }
+            if i >= STEADY_STEPS {
+                step *= 1.1;
+            }
+        }
+        None
+    }
+
+    /// Whether a run that ended at `s` would be clear of the other vessels of its cluster there; if not, one of these.
+    fn clear_at(&self, run: usize, way: Way, s: f64) -> Result<(), BranchId> {
+        let Run { branch, root, .. } = self.runs[run];
+        let section = self.courses[branch as usize].section(s, way);
+        self.tip_clear(run, way, s, &section, self.overrun(section.radius, root))
+    }
+
+    /// The same for an end with a given overrun.
+    pub fn tip_clear(&self, run: usize, way: Way, s: f64, section: &Section, overrun: f64) -> Result<(), BranchId> {
+        let tip = Tip::new(*section, overrun);
+        let mut near = None;
+        self.tree.query(&tip.aabb(self.blending), |i| {
+            let obstacle = self.obstacles[i as usize];
+            if near.is_none_or(|b| obstacle.branch < b) && self.in_the_way(run, way, s, &tip, &obstacle) {
+                near = Some(obstacle.branch);
+            }
+        });
+        near.map_or(Ok(()), |b| Err(BranchId(b)))
+    }
+
+    fn in_the_way(&self, own: usize, way: Way, s: f64, tip: &Tip, obstacle: &Obstacle) -> bool {
+        let root = self.runs[own].root;
+        let branch = obstacle.branch as usize;
+        let course = &self.courses[branch];
+        for run in self.first_run[branch] as usize..self.first_run[branch + 1] as usize {
+            if self.runs[run].root != root {
+                continue;
+            }
+            let slots = self.runs[run].slots;
+            let mut reach = self.range(&self.runs[run]);
+            if run == own {
+                reach[way.end_index()] = s;
+            }
+            // The overruns follow the course closely enough.
+            if slots[0].is_some() {
+                reach[0] -= self.overrun(course.radius(reach[0], Way::Back), root);
+            }
+            if slots[1].is_some() {
+                reach[1] += self.overrun(course.radius(reach[1], Way::Onward), root);
+            }
+            let tube = match obstacle.kind {
+                Kind::Edge(i) => {
+                    let i = i as usize;
+                    if run == own {
+                        // What leads to the tip is not in its way, only what comes back to it.
+                        let r = course.radii[i][0].max(course.radii[i][1]).max(course.radius(s, way));
+                        let lead = s - way.sign() * 3.5 * r;
+                        match way {
+                            Way::Onward => reach[1] = lead,
+                            Way::Back => reach[0] = lead,
+                        }
+                    }
+                    course.clipped(i, reach[0], reach[1])
+                }
+                Kind::Overrun(end) => {
+                    let here = slots[end.end_index()].is_none() && !(run == own && end == way);
+                    here.then(|| terminal_overrun(course, end, self.params))
+                }
+            };
+            if tube.is_some_and(|tube| !tip.clears(&tube, self.blending)) {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+impl Way {
+    /// Index of the end of a piece that lies this way.
+    pub fn end_index(self) -> usize {
+        match self {
+            Way::Onward => 1,
+            Way::Back => 0,
+        }
+    }
+}
+
+/// The longest overrun that a terminal may have.
+fn terminal_overrun(course: &Course, end: Way, params: &PartitionParams) -> Tube {
+    let s = if end == Way::Onward { course.length() } else { 0.0 };
+    let section = course.section(s, end);
+    let r = section.radius;
+    let length = params.overrun_length(r, r);
+    Tube { a: section.origin, b: section.origin + section.axis * length, ra: r, rb: r }
+}
+
+fn obstacles(
+    courses: &[Course],
+    terminals: &[[bool; 2]],
+    params: &PartitionParams,
+    blending: f64,
+) -> (Vec<Obstacle>, Bvh) {
+    let count = courses.iter().map(|c| c.radii.len() + 2).sum();
+    let mut list = Vec::with_capacity(count);
+    let mut boxes = Vec::with_capacity(count);
+    for (branch, course) in courses.iter().enumerate() {
+        let mut add = |kind: Kind, tube: &Tube| {
+            list.push(Obstacle { branch: branch as u32, kind });
+            boxes.push(Aabb::of_points([&tube.a, &tube.b]).grown(blending * tube.max_radius()));
+        };
+        for (i, [ra, rb]) in course.radii.iter().enumerate() {
+            let tube = Tube { a: course.points[i], b: course.points[i + 1], ra: *ra, rb: *rb };
+            add(Kind::Edge(i as u32), &tube);
+        }
+        for (end, terminal) in [Way::Back, Way::Onward].into_iter().zip(terminals[branch]) {
+            if terminal {
+                add(Kind::Overrun(end), &terminal_overrun(course, end, params));
+            }
+        }
+    }
+    let tree = Bvh::new(&boxes);
+    (list, tree)
+}
+
+/// Disjoint sets.
+struct Union {
+    parent: Vec<u32>,
+}
+
+impl Union {
+    fn new(count: usize) -> Self {
+        Self { parent: (0..count as u32).collect() }
+    }
+
+    fn root(&self, mut x: u32) -> u32 {
+        while self.parent[x as usize] != x {
+            x = self.parent[x as usize];
+        }
+        x
+    }
+
+    /// The smaller root stays; `flatten` keeps the ways short.
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.compress(a), self.compress(b));
+        self.parent[a.max(b) as usize] = a.min(b);
+    }
+
+    fn compress(&mut self, mut x: u32) -> u32 {
+        while self.parent[x as usize] != x {
+            let up = self.parent[self.parent[x as usize] as usize];
+            self.parent[x as usize] = up;
+            x = up;
+        }
+        x
+    }
+
+    fn flatten(&mut self) {
+        for x in 0..self.parent.len() as u32 {
+            // Parents are smaller than their children, so they are flat already.
+            self.parent[x as usize] = self.parent[self.parent[x as usize] as usize];
+        }
+    }
+}
