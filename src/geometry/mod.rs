@@ -5,11 +5,13 @@ mod bvh;
 mod distance;
 pub mod hilbert;
 pub mod predicates;
+mod tri_tri;
 mod tube;
 
 pub use aabb::Aabb;
 pub use bvh::Bvh;
 pub use distance::{SegmentPair, TubePair, point_segment, point_triangle, point_tube, segment_segment, tube_tube};
+pub use tri_tri::{Contact, Improper, classify, self_contacts, self_intersections};
 pub use tube::{Section, Tube};
 
 /// A point in space; the unit is the network's.

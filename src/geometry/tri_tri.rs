@@ -1,0 +1,306 @@
+//! Exact intersection of triangles of a mesh.
+//!
+//! Two triangles of a sound surface have nothing in common but the vertices they share. The intersection of two
+//! triangles is convex, and each of its corners lies on exactly one feature (vertex, edge or inside) of either triangle;
+//! such a pair of features is a *hit*. The hits are found with exact predicates alone, and their number tells the rest:
+//! none, a point, a segment, or an area.
+
+use super::predicates::{collinear, orient2d, orient3d};
+use super::{Aabb, Bvh, Point3};
+use rayon::prelude::*;
+
+/// How two triangles lie to each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contact {
+    /// They have no point in common.
+    Apart,
+    /// They have the vertices in common that they share by id (and the edge between two such), and nothing else.
+    Neighbours,
+    /// They meet as no two triangles of a sound surface do.
+    Improper(Improper),
+}
+
+/// How two triangles meet that should not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Improper {
+    /// Two vertices with different ids at the same point, and nothing more.
+    CoincidentPoint,
+    /// A vertex on an edge, and nothing more.
+    VertexOnEdge,
+    /// A vertex inside the other triangle, and nothing more.
+    VertexOnFace,
+    /// Two edges that cross in a point, and nothing more.
+    EdgeOnEdge,
+    /// A segment in common.
+    Crossing,
+    /// An area in common.
+    CoplanarOverlap,
+    /// One vertex is shared by id, and a segment from there is in common.
+    BeyondSharedVertex,
+    /// Two vertices are shared by id, and the triangles lie in one plane on the same side of their edge.
+    Folded,
+    /// The same three vertices.
+    SameVertices,
+    /// One of the triangles has no area.
+    Degenerate,
+}
+
+/// The corners of the intersection of two triangles, as a set of pairs of features: bit 7 i + j stands for feature i of
+/// the first and j of the second; features 0 to 2 are the vertices, 3 to 5 the edges (3 + i runs from vertex i to vertex
+/// i + 1), 6 the inside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Hits(u64);
+
+const INSIDE: usize = 6;
+
+impl Hits {
+    fn add(&mut self, first: usize, second: usize) {
+        self.0 |= 1 << (7 * first + second);
+    }
+
+    fn count(self) -> u32 {
+        self.0.count_ones()
+    }
+
+    /// What a single hit is called.
+    fn point_contact(self) -> Improper {
+        let bit = self.0.trailing_zeros() as usize;
+        match (bit / 7, bit % 7) {
+            (0..=2, 0..=2) => Improper::CoincidentPoint,
+            (0..=2, 3..=5) | (3..=5, 0..=2) => Improper::VertexOnEdge,
+            (3..=5, 3..=5) => Improper::EdgeOnEdge,
+            _ => Improper::VertexOnFace,
+        }
+    }
+}
+
+/// A triangle with the ids of its vertices.
+#[derive(Clone, Copy)]
+struct Triangle<'a> {
+    ids: [u32; 3],
+    corners: [&'a Point3; 3],
+}
+
+impl<'a> Triangle<'a> {
+    fn new(points: &'a [Point3], ids: [u32; 3]) -> Self {
+        Self { ids, corners: ids.map(|v| &points[v as usize]) }
+    }
+
+    /// On which side of the plane of this triangle a point lies: the sign of `orient3d`.
+    fn side(&self, p: &Point3) -> i8 {
+        let [a, b, c] = self.corners;
+        sign(orient3d(a, b, c, p))
+    }
+
+    /// The sides of the three vertices of another triangle; a vertex of both is on the plane.
+    fn sides(&self, other: &Self) -> [i8; 3] {
+        std::array::from_fn(|i| if self.ids.contains(&other.ids[i]) { 0 } else { self.side(other.corners[i]) })
+    }
+
+    /// Index of the corner with this id.
+    fn index_of(&self, id: u32) -> Option<usize> {
+        self.ids.iter().position(|&v| v == id)
+    }
+}
+
+/// How triangles `a` and `b` (vertex ids) lie to each other. Exact for finite coordinates in the range of the
+/// predicates; symmetric in `a` and `b`.
+pub fn classify(points: &[Point3], a: [u32; 3], b: [u32; 3]) -> Contact {
+    let (p, q) = (Triangle::new(points, a), Triangle::new(points, b));
+    let shared = a.iter().filter(|v| b.contains(v)).count() as u32;
+    if shared == 3 {
+        return Contact::Improper(Improper::SameVertices);
+    }
+    let apart = if shared == 0 { Contact::Apart } else { Contact::Neighbours };
+    let q_sides = p.sides(&q);
+    if separated(q_sides, shared) {
+        return apart;
+    }
+    let p_sides = q.sides(&p);
+    if separated(p_sides, shared) {
+        return apart;
+    }
+    let hits = match (q_sides == [0; 3], p_sides == [0; 3]) {
+        (false, false) => Some(hits_across(&p, &q, p_sides, q_sides)),
+        (true, true) => hits_in_plane(&p, &q),
+        // The plane of a triangle without area is no plane: everything is on it.
+        _ => None,
+    };
+    let Some(hits) = hits else { return Contact::Improper(Improper::Degenerate) };
+    let improper = match (shared, hits.count()) {
+        (shared, count) if shared == count => return apart,
+        (0, 1) => hits.point_contact(),
+        (0, 2) => Improper::Crossing,
+        (1, 2) => Improper::BeyondSharedVertex,
+        (2, _) => Improper::Folded,
+        _ => Improper::CoplanarOverlap,
+    };
+    Contact::Improper(improper)
+}
+
+/// Whether the vertices that are not shared lie strictly on one side: then there is nothing beyond what is shared.
+fn separated(sides: [i8; 3], shared: u32) -> bool {
+    let count = |s: i8| sides.iter().filter(|&&side| side == s).count() as u32;
+    count(1) == 3 - shared || count(-1) == 3 - shared
+}
+
+/// Hits of two triangles whose planes cross: each corner of the intersection is where a vertex or an edge of one meets
+/// the plane of the other.
+fn hits_across(p: &Triangle, q: &Triangle, p_sides: [i8; 3], q_sides: [i8; 3]) -> Hits {
+    let mut hits = Hits::default();
+    half_across(p, q, p_sides, |of_p, of_q| hits.add(of_p, of_q));
+    half_across(q, p, q_sides, |of_q, of_p| hits.add(of_p, of_q));
+    hits
+}
+
+fn half_across(p: &Triangle, q: &Triangle, p_sides: [i8; 3], mut hit: impl FnMut(usize, usize)) {
+    for i in 0..3 {
+        let next = (i + 1) % 3;
+        if p_sides[i] == 0 {
+            if let Some(feature) = feature_at(q, p.ids[i], p.corners[i]) {
+                hit(i, feature);
+            }
+        } else if p_sides[next] == -p_sides[i] {
+            if let Some(feature) = pierced_feature(q, p.corners[i], p.corners[next]) {
+                hit(3 + i, feature);
+            }
+        }
+    }
+}
+
+/// The feature of `q` at which the line through `a` and `b`, which lie strictly on either side, goes through it.
+fn pierced_feature(q: &Triangle, a: &Point3, b: &Point3) -> Option<usize> {
+    let turn = |j: usize| sign(orient3d(a, b, q.corners[j], q.corners[(j + 1) % 3]));
+    feature_of_turns([turn(0), turn(1), turn(2)])
+}
+
+/// The feature of `q` at which a point of its plane lies; none outside.
+fn feature_at(q: &Triangle, id: u32, point: &Point3) -> Option<usize> {
+    if let Some(j) = q.index_of(id) {
+        return Some(j);
+    }
+    let axes = projection(q)?;
+    feature_in(q, axes, point)
+}
+
+fn feature_in(q: &Triangle, axes: [usize; 2], point: &Point3) -> Option<usize> {
+    let turn = |j: usize| turn2(axes, q.corners[j], q.corners[(j + 1) % 3], point);
+    feature_of_turns([turn(0), turn(1), turn(2)])
+}
+
+/// The feature of a triangle in which a point of its plane lies, from the side of the point at each edge.
+fn feature_of_turns(turns: [i8; 3]) -> Option<usize> {
+    if turns.contains(&1) && turns.contains(&-1) {
+        return None;
+    }
+    match turns.map(|t| t == 0) {
+        [false, false, false] => Some(INSIDE),
+        [true, false, false] => Some(3),
+        [false, true, false] => Some(4),
+        [false, false, true] => Some(5),
+        // On two edges: at the vertex between them.
+        [true, false, true] => Some(0),
+        [true, true, false] => Some(1),
+        [false, true, true] => Some(2),
+        [true, true, true] => None,
+    }
+}
+
+/// Hits of two triangles in one plane; none when one has no area.
+fn hits_in_plane(p: &Triangle, q: &Triangle) -> Option<Hits> {
+    let axes = projection(q)?;
+    projection(p)?;
+    let mut hits = Hits::default();
+    for i in 0..3 {
+        let of_q = q.index_of(p.ids[i]).or_else(|| feature_in(q, axes, p.corners[i]));
+        if let Some(feature) = of_q {
+            hits.add(i, feature);
+        }
+        let of_p = p.index_of(q.ids[i]).or_else(|| feature_in(p, axes, q.corners[i]));
+        if let Some(feature) = of_p {
+            hits.add(feature, i);
+        }
+        for j in 0..3 {
+            if edges_cross(p, i, q, j, axes) {
+                hits.add(3 + i, 3 + j);
+            }
+        }
+    }
+    Some(hits)
+}
+
+/// Whether edge `i` of `p` and edge `j` of `q`, in one plane, cross inside both.
+fn edges_cross(p: &Triangle, i: usize, q: &Triangle, j: usize, axes: [usize; 2]) -> bool {
+    let (i2, j2) = ((i + 1) % 3, (j + 1) % 3);
+    if [p.ids[i], p.ids[i2]].iter().any(|v| *v == q.ids[j] || *v == q.ids[j2]) {
+        return false;
+    }
+    let (a, b, c, d) = (p.corners[i], p.corners[i2], q.corners[j], q.corners[j2]);
+    let opposite = |s: i8, t: i8| s != 0 && s == -t;
+    opposite(turn2(axes, a, b, c), turn2(axes, a, b, d)) && opposite(turn2(axes, c, d, a), turn2(axes, c, d, b))
+}
+
+/// Two coordinates in which the triangle has an area; none when it has none.
+fn projection(t: &Triangle) -> Option<[usize; 2]> {
+    let [a, b, c] = t.corners;
+    [[0, 1], [1, 2], [2, 0]].into_iter().find(|&axes| turn2(axes, a, b, c) != 0)
+}
+
+fn turn2([i, j]: [usize; 2], a: &Point3, b: &Point3, c: &Point3) -> i8 {
+    sign(orient2d([a[i], a[j]], [b[i], b[j]], [c[i], c[j]]))
+}
+
+fn sign(x: f64) -> i8 {
+    i8::from(x > 0.0) - i8::from(x < 0.0)
+}
+
+/// Pairs tested at a time.
+const BATCH: usize = 1 << 16;
+
+/// Every pair `(i, j)`, i < j, of triangles that meet improperly, and `(i, i)` for every triangle without area, which is
+/// left out of the pairs; ascending. Coordinates must be finite.
+///
+/// Neighbours are recognised by the ids of their vertices. The answer does not depend on the number of threads.
+pub fn self_intersections(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32)> {
+    self_contacts(points, triangles).into_iter().map(|(i, j, _)| (i, j)).collect()
+}
+
+/// As `self_intersections`, with the kind of each.
+pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32, Improper)> {
+    let mut found: Vec<(u32, u32, Improper)> = Vec::new();
+    let mut boxes = Vec::with_capacity(triangles.len());
+    for (i, t) in triangles.iter().enumerate() {
+        let [a, b, c] = t.map(|v| &points[v as usize]);
+        if collinear(a, b, c) {
+            found.push((i as u32, i as u32, Improper::Degenerate));
+            boxes.push(Aabb::EMPTY);
+        } else {
+            boxes.push(Aabb::of_points([a, b, c]));
+        }
+    }
+    let mut batch: Vec<(u32, u32)> = Vec::with_capacity(BATCH);
+    Bvh::new(&boxes).self_pairs(|i, j| {
+        batch.push((i, j));
+        if batch.len() == BATCH {
+            test_pairs(points, triangles, &batch, &mut found);
+            batch.clear();
+        }
+    });
+    test_pairs(points, triangles, &batch, &mut found);
+    found.sort_unstable();
+    found
+}
+
+fn test_pairs(points: &[Point3], triangles: &[[u32; 3]], pairs: &[(u32, u32)], found: &mut Vec<(u32, u32, Improper)>) {
+    let test = |&(i, j): &(u32, u32)| match classify(points, triangles[i as usize], triangles[j as usize]) {
+        Contact::Improper(kind) => Some((i, j, kind)),
+        Contact::Apart | Contact::Neighbours => None,
+    };
+    found.par_extend(pairs.par_iter().with_min_len(1 << 12).filter_map(test));
+}
+
+#[cfg(test)]
+#[path = "tri_tri_tests.rs"]
+mod tests;
