@@ -1,6 +1,7 @@
 //! Floor 2: what concerns one mesh, wherever it came from: arrays, adjacency, quality, smoothing, validity.
 
 pub mod adjacency;
+pub mod check;
 pub mod quality;
 #[cfg(test)]
 pub(crate) mod shapes;

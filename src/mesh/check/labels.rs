@@ -1,0 +1,268 @@
+//! Lines about the labels of the boundary: wall and caps.
+
+use super::cells::{face_offender, same_turn};
+use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally};
+use crate::geometry::Vec3;
+use crate::mesh::quality::triangle_area_vector;
+use crate::mesh::{Cap, Patch, VolumeMesh, WALL};
+use rustc_hash::FxHashMap;
+
+/// How far, in radii, a cap's vertices may lie from its plane.
+const FLATNESS: f64 = 1e-9;
+/// How far, in radii, a cap's centre may lie from its node.
+const OFF_CENTRE: f64 = 0.1;
+/// By which share a cap's area may differ from that of the disc.
+const AREA: f64 = 0.05;
+
+/// The labelled triangles against the faces of the boundary.
+pub(super) fn labels_match(volume: &VolumeMesh, faces: &[[u32; 3]]) -> LineResult {
+    let mut tally = Tally::new(Line::LabelsMatchBoundary);
+    let points = &volume.mesh.points;
+    let (real, labelled) = (by_vertices(faces), by_vertices(&volume.boundary));
+    let (mut i, mut j) = (0, 0);
+    while i < real.len() || j < labelled.len() {
+        let key = |list: &[([u32; 3], u32)], at: usize| list.get(at).map_or([u32::MAX; 3], |entry| entry.0);
+        let (a, b) = (key(&real, i), key(&labelled, j));
+        if a == b {
+            let (face, label) = (faces[real[i].1 as usize], volume.boundary[labelled[j].1 as usize]);
+            if !same_turn(face, label) {
+                tally.add(|| face_offender(points, label));
+            }
+            (i, j) = (i + 1, j + 1);
+        } else if a < b {
+            tally.add(|| face_offender(points, a));
+            i += 1;
+        } else {
+            tally.add(|| face_at(volume, b));
+            j += 1;
+        }
+    }
+    tally.done()
+}
+
+/// A labelled triangle that may name points that do not exist.
+fn face_at(volume: &VolumeMesh, face: [u32; 3]) -> Offender {
+    let points = &volume.mesh.points;
+    if face.iter().all(|&v| (v as usize) < points.len()) {
+        face_offender(points, face)
+    } else {
+        Offender::new(OffenderKind::Face, &face, None)
+    }
+}
+
+/// The triangles' sorted vertices with their indices, ascending.
+fn by_vertices(triangles: &[[u32; 3]]) -> Vec<([u32; 3], u32)> {
+    let mut keys: Vec<_> = triangles
+        .iter()
+        .enumerate()
+        .map(|(i, t)| {
+            let mut key = *t;
+            key.sort_unstable();
+            (key, i as u32)
+        })
+        .collect();
+    keys.sort_unstable();
+    keys
+}
+
+/// The lines about patches and caps; the labelled triangles must name points that exist.
+pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) -> Vec<LineResult> {
+    let own = own_patch(volume);
+    let no_caps = volume.patches.iter().all(|patch| patch.cap.is_none());
+    if no_caps && expectation.is_none_or(|expected| !expected.terminals.is_empty()) {
+        // Labels by others: they name parts of the boundary, but say of none what cap it is.
+        let mut lines = vec![own];
+        lines.extend(CAP_LINES.map(|line| LineResult::skipped(line, Skipped::NoCaps)));
+        if let Some(expected) = expectation {
+            lines[2] = cap_per_terminal(volume, expected);
+        }
+        return lines;
+    }
+    let mut lines = vec![own, wall_or_cap(volume)];
+    lines.push(match expectation {
+        Some(expected) => cap_per_terminal(volume, expected),
+        None => LineResult::skipped(Line::CapPerTerminal, Skipped::NoExpectation),
+    });
+    lines.extend(cap_shapes(volume));
+    lines
+}
+
+const CAP_LINES: [Line; 7] = [
+    Line::WallOrCap,
+    Line::CapPerTerminal,
+    Line::CapDisc,
+    Line::CapFlat,
+    Line::CapCentred,
+    Line::CapArea,
+    Line::CapNormal,
+];
+
+fn wall_or_cap(volume: &VolumeMesh) -> LineResult {
+    let mut caps: Vec<i32> = volume.patches.iter().filter(|p| p.cap.is_some()).map(|p| p.id).collect();
+    caps.sort_unstable();
+    let mut tally = Tally::new(Line::WallOrCap);
+    for (i, &face) in volume.boundary.iter().enumerate() {
+        let known = volume.boundary_patch.get(i).is_some_and(|&id| id == WALL || caps.binary_search(&id).is_ok());
+        if !known {
+            tally.add(|| face_at(volume, face));
+        }
+    }
+    tally.done()
+}
+
+fn patch_offender(id: i32, cap: Option<&Cap>) -> Offender {
+    Offender { kind: OffenderKind::Patch, ids: vec![i64::from(id)], position: cap.map(|cap| cap.center.coords.into()) }
+}
+
+fn own_patch(volume: &VolumeMesh) -> LineResult {
+    let mut tally = Tally::new(Line::OwnPatch);
+    let mut by_id: Vec<&Patch> = volume.patches.iter().collect();
+    by_id.sort_by_key(|patch| patch.id);
+    for pair in by_id.windows(2).filter(|pair| pair[0].id == pair[1].id) {
+        tally.add(|| patch_offender(pair[1].id, pair[1].cap.as_ref()));
+    }
+    by_id.sort_by(|a, b| a.name.cmp(&b.name));
+    for pair in by_id.windows(2).filter(|pair| pair[0].name == pair[1].name && pair[0].id != pair[1].id) {
+        tally.add(|| patch_offender(pair[1].id, pair[1].cap.as_ref()));
+    }
+    for patch in volume.patches.iter().filter(|p| p.id == WALL && p.cap.is_some()) {
+        tally.add(|| patch_offender(patch.id, patch.cap.as_ref()));
+    }
+    tally.done()
+}
+
+/// Terminals without a cap, with several, and caps of nodes that are no terminals.
+fn cap_per_terminal(volume: &VolumeMesh, expected: &Expectation) -> LineResult {
+    let mut caps: Vec<u32> = volume.patches.iter().filter_map(|p| p.cap.map(|cap| cap.node)).collect();
+    let mut terminals = expected.terminals.clone();
+    caps.sort_unstable();
+    terminals.sort_unstable();
+    let mut tally = Tally::new(Line::CapPerTerminal);
+    let (mut i, mut j) = (0, 0);
+    while i < terminals.len() || j < caps.len() {
+        let (a, b) = (terminals.get(i).copied(), caps.get(j).copied());
+        if a == b {
+            (i, j) = (i + 1, j + 1);
+            continue;
+        }
+        let terminal_first = b.is_none() || a.is_some_and(|a| Some(a) < b);
+        let node = if terminal_first { a } else { b };
+        tally.add(|| Offender::new(OffenderKind::Node, &[node.unwrap_or_default()], None));
+        if terminal_first {
+            i += 1;
+        } else {
+            j += 1;
+        }
+    }
+    tally.done()
+}
+
+/// Shape of every cap.
+fn cap_shapes(volume: &VolumeMesh) -> Vec<LineResult> {
+    let mut tallies = [Line::CapDisc, Line::CapFlat, Line::CapCentred, Line::CapArea, Line::CapNormal].map(Tally::new);
+    let triangles = triangles_by_patch(volume);
+    for patch in &volume.patches {
+        let Some(cap) = &patch.cap else { continue };
+        let own = triangles.get(&patch.id).map_or(&[][..], Vec::as_slice);
+        let shape = CapShape::measure(volume, cap, own);
+        let disc = PI * cap.radius * cap.radius;
+        let holds = [
+            is_disc(own),
+            shape.off_plane <= FLATNESS * cap.radius,
+            shape.off_centre <= OFF_CENTRE * cap.radius,
+            (shape.area - disc).abs() <= AREA * disc,
+            shape.faces_outwards,
+        ];
+        for (tally, _) in tallies.iter_mut().zip(holds).filter(|(_, holds)| !holds) {
+            tally.add(|| patch_offender(patch.id, Some(cap)));
+        }
+    }
+    tallies.map(Tally::done).into()
+}
+
+use std::f64::consts::PI;
+
+/// The triangles of each patch but the wall, in file order.
+fn triangles_by_patch(volume: &VolumeMesh) -> FxHashMap<i32, Vec<[u32; 3]>> {
+    let mut triangles: FxHashMap<i32, Vec<[u32; 3]>> = FxHashMap::default();
+    for (&face, &id) in volume.boundary.iter().zip(&volume.boundary_patch) {
+        if id != WALL {
+            triangles.entry(id).or_default().push(face);
+        }
+    }
+    triangles
+}
+
+struct CapShape {
+    area: f64,
+    /// Distance of the disc's centroid from the node.
+    off_centre: f64,
+    /// Largest distance of a vertex from the plane midway through the vertices, along the cap's normal.
+    off_plane: f64,
+    faces_outwards: bool,
+}
+
+impl CapShape {
+    fn measure(volume: &VolumeMesh, cap: &Cap, triangles: &[[u32; 3]]) -> Self {
+        let (mut area, mut moment) = (0.0, Vec3::zeros());
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut faces_outwards = !triangles.is_empty();
+        for t in triangles {
+            let corners = t.map(|v| &volume.mesh.points[v as usize]);
+            let normal = triangle_area_vector(corners[0], corners[1], corners[2]);
+            faces_outwards &= normal.dot(&cap.normal) > 0.0;
+            let a = normal.norm();
+            area += a;
+            for p in corners {
+                let from_node = p - cap.center;
+                moment += from_node * (a / 3.0);
+                let height = from_node.dot(&cap.normal);
+                (low, high) = (low.min(height), high.max(height));
+            }
+        }
+        // A cap without triangles or area fails on every count.
+        Self { area, off_centre: (moment / area).norm(), off_plane: (high - low).abs() / 2.0, faces_outwards }
+    }
+}
+
+/// Whether triangles form one disc: joined by edges, every edge in one triangle or two that run along it in opposite
+/// directions, one boundary loop, Euler number 1.
+fn is_disc(triangles: &[[u32; 3]]) -> bool {
+    let Ok(count) = u32::try_from(triangles.len()) else { return false };
+    let mut directed: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
+    let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
+    for (t, i) in (0..count).flat_map(|t| (0..3).map(move |i| (t, i))) {
+        let face = triangles[t as usize];
+        directed.push(([face[i], face[(i + 1) % 3]], t));
+    }
+    directed.sort_unstable();
+    if count == 0 || directed.windows(2).any(|pair| pair[0].0 == pair[1].0) {
+        return false;
+    }
+    let find = |edge: [u32; 2]| directed.binary_search_by_key(&edge, |entry| entry.0).ok().map(|i| directed[i].1);
+    let mut sets = super::disjoint_sets::DisjointSets::new(triangles.len());
+    let mut rim: Vec<[u32; 2]> = Vec::new();
+    for &([a, b], t) in &directed {
+        match find([b, a]) {
+            Some(other) => sets.join(t, other),
+            None => rim.push([a, b]),
+        }
+    }
+    let connected = (0..count).all(|t| sets.root(t) == 0);
+    let edges = (directed.len() + rim.len()) / 2;
+    connected && vertices.len() + triangles.len() == edges + 1 && is_one_loop(&rim)
+}
+
+/// Whether directed edges, ascending, form one simple loop.
+fn is_one_loop(rim: &[[u32; 2]]) -> bool {
+    let Some(&[start, mut at]) = rim.first() else { return false };
+    let mut steps = 1;
+    while at != start && steps <= rim.len() {
+        let Ok(next) = rim.binary_search_by_key(&at, |edge| edge[0]) else { return false };
+        at = rim[next][1];
+        steps += 1;
+    }
+    at == start && steps == rim.len()
+}

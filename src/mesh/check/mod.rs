@@ -1,0 +1,143 @@
+//! Whether a mesh is valid: every line of the definition, checked exactly.
+//!
+//! A mesh is valid when every tetrahedron is positive by the exact predicate; each interior face is shared by two
+//! tetrahedra on opposite sides; the boundary is a closed 2-manifold that does not meet itself; no point is duplicate or
+//! unused; there is one component per component of the skeleton, whose boundary has the genus that the skeleton's loops
+//! ask for; and every terminal has its flat cap while every other boundary face is wall.
+
+mod cells;
+mod disjoint_sets;
+mod labels;
+mod result;
+mod surface;
+
+#[cfg(test)]
+mod tests;
+
+pub use result::{
+    CheckReport, Counts, Expectation, Intersection, KEPT_OFFENDERS, Line, LineResult, Offender, OffenderKind, Outcome,
+    Skipped, Verdict,
+};
+
+use super::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
+use super::quality::TetQuality;
+use super::{TetMesh, VolumeMesh};
+use surface::Boundary;
+
+/// Checks a labelled mesh.
+pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> CheckReport {
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run()
+}
+
+/// Checks a mesh without labels; the lines about labels are not checked.
+pub fn check_tets(mesh: &TetMesh, expectation: Option<&Expectation>) -> CheckReport {
+    Check { mesh, volume: None, expectation }.run()
+}
+
+const LABEL_LINES: [Line; 9] = [
+    Line::LabelsMatchBoundary,
+    Line::WallOrCap,
+    Line::OwnPatch,
+    Line::CapPerTerminal,
+    Line::CapDisc,
+    Line::CapFlat,
+    Line::CapCentred,
+    Line::CapArea,
+    Line::CapNormal,
+];
+
+struct Check<'a> {
+    mesh: &'a TetMesh,
+    volume: Option<&'a VolumeMesh>,
+    expectation: Option<&'a Expectation>,
+}
+
+impl Check<'_> {
+    fn run(&self) -> CheckReport {
+        let mesh = self.mesh;
+        let counts = Counts { points: mesh.points.len(), tets: mesh.tets.len(), ..Counts::default() };
+        let mut lines = vec![cells::not_empty(mesh), cells::finite_points(mesh), cells::indices_in_range(mesh)];
+        // Without sound arrays nothing else has a meaning.
+        if let Some(line) = first_failure(&lines) {
+            let missing = Line::ALL.into_iter().filter(|l| lines.iter().all(|result| result.line != *l));
+            let rest: Vec<LineResult> = missing.map(|l| LineResult::skipped(l, Skipped::Because(line))).collect();
+            lines.extend(rest);
+            return CheckReport::new(counts, lines, None, Vec::new());
+        }
+        self.run_on_sound_arrays(counts, lines)
+    }
+
+    fn run_on_sound_arrays(&self, mut counts: Counts, mut lines: Vec<LineResult>) -> CheckReport {
+        let mesh = self.mesh;
+        let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
+        lines.push(cells::no_repeated_vertex(mesh));
+        lines.push(cells::no_duplicate_tets(mesh, &adjacency));
+        lines.push(cells::positive_tets(mesh));
+        lines.push(cells::faces_shared_by_two(mesh, &adjacency));
+        lines.push(cells::opposite_sides(mesh, &adjacency));
+        lines.push(cells::no_duplicate_points(mesh));
+        lines.push(cells::no_unused_points(mesh));
+        counts.components = cells::component_count(&adjacency);
+        counts.volume = cells::volume(mesh);
+        lines.push(self.components(counts.components));
+        let faces = boundary_of(mesh, &adjacency);
+        drop(adjacency);
+        let boundary = Boundary::new(&mesh.points, &faces);
+        counts.boundary_faces = faces.len();
+        counts.boundary_components = boundary.part_count();
+        lines.push(boundary.edges_closed());
+        lines.push(boundary.single_fans());
+        let (line, intersections) = boundary.self_intersections();
+        lines.push(line);
+        let open = [Line::BoundaryEdges, Line::BoundaryFans].into_iter().find(|&line| fails(&lines, line));
+        lines.push(self.loops(&boundary, open));
+        drop(boundary);
+        lines.extend(self.labels(&faces));
+        counts.caps = self.volume.map_or(0, |v| v.patches.iter().filter(|p| p.cap.is_some()).count());
+        CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections)
+    }
+
+    fn components(&self, found: usize) -> LineResult {
+        let Some(expected) = self.expectation else {
+            return LineResult::skipped(Line::Components, Skipped::NoExpectation);
+        };
+        let mut tally = result::Tally::new(Line::Components);
+        tally.compare(vec![expected.loops.len() as u32], vec![found as u32]);
+        tally.done()
+    }
+
+    /// The genus is defined for closed manifolds alone: `open` is the line that says the boundary is none.
+    fn loops(&self, boundary: &Boundary, open: Option<Line>) -> LineResult {
+        match (self.expectation, open) {
+            (None, _) => LineResult::skipped(Line::Loops, Skipped::NoExpectation),
+            (_, Some(line)) => LineResult::skipped(Line::Loops, Skipped::Because(line)),
+            (Some(expected), None) => boundary.loops(&expected.loops),
+        }
+    }
+
+    fn labels(&self, faces: &[[u32; 3]]) -> Vec<LineResult> {
+        let Some(volume) = self.volume else {
+            return LABEL_LINES.map(|line| LineResult::skipped(line, Skipped::NoLabels)).into();
+        };
+        let mut lines = vec![labels::labels_match(volume, faces)];
+        if volume.boundary.as_flattened().iter().all(|&v| (v as usize) < volume.mesh.points.len()) {
+            lines.extend(labels::cap_lines(volume, self.expectation));
+        } else {
+            let why = Skipped::Because(Line::LabelsMatchBoundary);
+            lines.extend(LABEL_LINES[1..].iter().map(|&line| LineResult::skipped(line, why)));
+        }
+        lines
+    }
+}
+
+fn first_failure(lines: &[LineResult]) -> Option<Line> {
+    lines.iter().find(|result| result.outcome == Outcome::Fail).map(|result| result.line)
+}
+
+fn fails(lines: &[LineResult], line: Line) -> bool {
+    lines.iter().any(|result| result.line == line && result.outcome == Outcome::Fail)
+}
+
+fn boundary_of(mesh: &TetMesh, adjacency: &TetAdjacency) -> Vec<[u32; 3]> {
+    adjacency.boundary().map(|handle| face_vertices(&mesh.tets, handle)).collect()
+}

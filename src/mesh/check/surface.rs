@@ -1,0 +1,178 @@
+//! Lines about the boundary as a surface.
+
+use super::cells::{centroid, face_offender};
+use super::disjoint_sets::DisjointSets;
+use super::result::{Intersection, Line, LineResult, Offender, OffenderKind, Tally};
+use crate::geometry::{Point3, self_contacts};
+use crate::mesh::adjacency::{NONE, TriAdjacency, tri_adjacency};
+
+/// The boundary faces with their edges matched.
+pub(super) struct Boundary<'a> {
+    points: &'a [Point3],
+    faces: &'a [[u32; 3]],
+    edges: TriAdjacency,
+}
+
+/// A boundary surface: faces joined by vertices.
+struct Part {
+    vertex: u32,
+    vertices: i64,
+    faces: i64,
+}
+
+impl<'a> Boundary<'a> {
+    pub(super) fn new(points: &'a [Point3], faces: &'a [[u32; 3]]) -> Self {
+        Self { points, faces, edges: tri_adjacency(faces, points.len()) }
+    }
+
+    /// Start and end of an edge (`3 · face + i`).
+    fn ends(&self, handle: u32) -> [u32; 2] {
+        let face = &self.faces[handle as usize / 3];
+        let i = handle as usize % 3;
+        [face[i], face[(i + 1) % 3]]
+    }
+
+    fn undirected(&self, handle: u32) -> [u32; 2] {
+        let [a, b] = self.ends(handle);
+        [a.min(b), a.max(b)]
+    }
+
+    /// Edges of more than two faces, grouped by their vertices.
+    fn crowded_edges(&self) -> Vec<([u32; 2], u32)> {
+        let mut edges: Vec<_> = self.edges.crowded.iter().map(|&handle| (self.undirected(handle), handle)).collect();
+        edges.sort_unstable();
+        edges
+    }
+
+    pub(super) fn edges_closed(&self) -> LineResult {
+        let mut wrong: Vec<[u32; 2]> = Vec::new();
+        for (handle, &other) in self.edges.neighbors.as_flattened().iter().enumerate() {
+            let handle = handle as u32;
+            // Open and crowded edges have no partner; partners have to run the other way.
+            if other == NONE || (handle < other && self.ends(handle) == self.ends(other)) {
+                wrong.push(self.undirected(handle));
+            }
+        }
+        wrong.sort_unstable();
+        wrong.dedup();
+        let mut tally = Tally::new(Line::BoundaryEdges);
+        for edge in wrong {
+            let place = Some(centroid(self.points, &edge));
+            tally.add(|| Offender::new(OffenderKind::Edge, &edge, place));
+        }
+        tally.done()
+    }
+
+    /// Vertices at which the boundary faces form more than one fan.
+    pub(super) fn single_fans(&self) -> LineResult {
+        let mut corners = DisjointSets::new(3 * self.faces.len());
+        let mut join = |a: u32, b: u32| {
+            for v in self.ends(a) {
+                if let (Some(i), Some(j)) = (self.corner(a / 3, v), self.corner(b / 3, v)) {
+                    corners.join(i, j);
+                }
+            }
+        };
+        for (handle, &other) in self.edges.neighbors.as_flattened().iter().enumerate() {
+            if other != NONE && (handle as u32) < other {
+                join(handle as u32, other);
+            }
+        }
+        for pair in self.crowded_edges().windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            join(pair[0].1, pair[1].1);
+        }
+        let mut fans = vec![0_u8; self.points.len()];
+        for (corner, &v) in self.faces.as_flattened().iter().enumerate() {
+            if corners.root(corner as u32) == corner as u32 {
+                fans[v as usize] = fans[v as usize].saturating_add(1);
+            }
+        }
+        let mut tally = Tally::new(Line::BoundaryFans);
+        for (v, _) in fans.iter().enumerate().filter(|&(_, &fans)| fans > 1) {
+            tally.add(|| Offender::new(OffenderKind::Point, &[v as u32], Some(self.points[v])));
+        }
+        tally.done()
+    }
+
+    fn corner(&self, face: u32, vertex: u32) -> Option<u32> {
+        let i = self.faces[face as usize].iter().position(|&v| v == vertex)?;
+        Some(3 * face + i as u32)
+    }
+
+    /// The boundary surfaces, by their smallest vertex.
+    fn parts(&self) -> Vec<Part> {
+        let mut sets = DisjointSets::new(self.points.len());
+        let mut on = vec![false; self.points.len()];
+        for &[a, b, c] in self.faces {
+            sets.join(a, b);
+            sets.join(b, c);
+            for v in [a, b, c] {
+                on[v as usize] = true;
+            }
+        }
+        let mut slot = vec![NONE; self.points.len()];
+        let mut parts: Vec<Part> = Vec::new();
+        for v in (0..self.points.len() as u32).filter(|&v| on[v as usize]) {
+            let root = sets.root(v) as usize;
+            if slot[root] == NONE {
+                slot[root] = parts.len() as u32;
+                parts.push(Part { vertex: v, vertices: 0, faces: 0 });
+            }
+            parts[slot[root] as usize].vertices += 1;
+        }
+        for face in self.faces {
+            parts[slot[sets.root(face[0]) as usize] as usize].faces += 1;
+        }
+        parts
+    }
+
+    pub(super) fn part_count(&self) -> usize {
+        self.parts().len()
+    }
+
+    /// Compares the genera of the boundary surfaces, which must be closed manifolds, with the expected loops.
+    pub(super) fn loops(&self, expected: &[u32]) -> LineResult {
+        let mut tally = Tally::new(Line::Loops);
+        let mut expected = expected.to_vec();
+        expected.sort_unstable();
+        let mut found = Vec::new();
+        for part in self.parts() {
+            // In a closed triangle surface 2 E = 3 F, so χ = V − F / 2 = 2 − 2 genus.
+            let genus = 1 - (2 * part.vertices - part.faces) / 4;
+            found.push((genus.max(0) as u32, part.vertex));
+        }
+        let mut genera: Vec<u32> = found.iter().map(|&(genus, _)| genus).collect();
+        genera.sort_unstable();
+        let mut left = expected.clone();
+        found.retain(|(genus, _)| match left.iter().position(|g| g == genus) {
+            Some(i) => {
+                left.swap_remove(i);
+                false
+            }
+            None => true,
+        });
+        for (_, vertex) in found {
+            let place = Some(self.points[vertex as usize]);
+            tally.add(|| Offender::new(OffenderKind::Point, &[vertex], place));
+        }
+        tally.compare(expected, genera);
+        tally.done()
+    }
+
+    pub(super) fn self_intersections(&self) -> (LineResult, Vec<Intersection>) {
+        let mut tally = Tally::new(Line::NoSelfIntersection);
+        let contacts = self_contacts(self.points, self.faces);
+        let mut intersections = Vec::with_capacity(contacts.len());
+        for (i, j, kind) in contacts {
+            let faces = [self.faces[i as usize], self.faces[j as usize]];
+            intersections.push(Intersection { faces, kind });
+            if i == j {
+                tally.add(|| face_offender(self.points, faces[0]));
+            } else {
+                let place = Some(centroid(self.points, faces.as_flattened()));
+                tally.add(|| Offender::new(OffenderKind::FacePair, faces.as_flattened(), place));
+            }
+        }
+        (tally.done(), intersections)
+    }
+}
