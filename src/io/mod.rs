@@ -1,3 +1,6 @@
 //! Floor 3: readers and writers, one file per format.
 
+mod atomic;
+pub mod mesh_file;
 pub mod vtk_xml;
+pub mod vtu;

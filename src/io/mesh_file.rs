@@ -1,0 +1,129 @@
+//! Meshes in files: which format, safe writing, and what goes into a file beside the mesh.
+
+use super::atomic::AtomicFile;
+use super::vtu;
+use crate::mesh::VolumeMesh;
+use crate::mesh::check::Expectation;
+use std::io::{self, Cursor, Seek, Write};
+use std::path::{Path, PathBuf};
+
+/// A format of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshFormat {
+    /// VTK unstructured grid, `.vtu`.
+    Vtu,
+    /// Gmsh 4.1, `.msh`.
+    Msh,
+}
+
+impl MeshFormat {
+    /// The format that a file name asks for by its extension.
+    ///
+    /// # Errors
+    /// `UnknownFormat` when no format has the extension.
+    pub fn of(path: &Path) -> Result<Self, MeshFileError> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "vtu" => Ok(Self::Vtu),
+            "msh" => Ok(Self::Msh),
+            _ => Err(MeshFileError::UnknownFormat { path: path.to_path_buf() }),
+        }
+    }
+}
+
+/// What a mesh file says beside the mesh itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshNotes {
+    /// What a check has to find.
+    pub expectation: Option<Expectation>,
+    /// The program that made the mesh and its version.
+    pub generator: String,
+    /// The options it was made with.
+    pub options: String,
+}
+
+/// A mesh as it was read from a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshFile {
+    /// The mesh. Boundary and patches are empty when the file labels no boundary.
+    pub volume: VolumeMesh,
+    /// Whether the file labels a boundary.
+    pub labelled: bool,
+    /// What else the file says.
+    pub notes: MeshNotes,
+}
+
+/// Why a mesh file could not be read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshFileError {
+    /// No format has this extension.
+    #[error("{}: the extension names no known mesh format (known: .vtu, .msh)", path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The operating system refused to read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+    /// The operating system refused to write.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+}
+
+/// Makes sure, before any work is done, that a mesh can be written to `path`: the format is known, and a file can be
+/// made in its folder. Leaves nothing behind.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
+    MeshFormat::of(path)?;
+    AtomicFile::create(path).map(drop).map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })
+}
+
+/// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn write_mesh(path: &Path, mesh: &VolumeMesh, notes: &MeshNotes) -> Result<(), MeshFileError> {
+    let format = MeshFormat::of(path)?;
+    let write = || {
+        let mut file = AtomicFile::create(path)?;
+        write_format(&mut file, format, mesh, notes)?;
+        file.commit()
+    };
+    write().map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })
+}
+
+/// Writes a mesh to a stream, such as standard output; the file is put together in memory first.
+///
+/// # Errors
+/// What the stream reports.
+pub fn write_mesh_to(out: &mut impl Write, format: MeshFormat, mesh: &VolumeMesh, notes: &MeshNotes) -> io::Result<()> {
+    let mut bytes = Cursor::new(Vec::new());
+    write_format(&mut bytes, format, mesh, notes)?;
+    out.write_all(bytes.get_ref())
+}
+
+fn write_format(
+    out: &mut (impl Write + Seek),
+    format: MeshFormat,
+    mesh: &VolumeMesh,
+    notes: &MeshNotes,
+) -> io::Result<()> {
+    match format {
+        MeshFormat::Vtu => vtu::write_vtu(out, mesh, notes),
+        MeshFormat::Msh => Err(io::Error::from(io::ErrorKind::Unsupported)),
+    }
+}
