@@ -2,12 +2,14 @@
 
 mod branch;
 mod check;
+mod clean;
 mod error;
 mod graph;
 #[cfg(test)]
 mod tests;
 
 pub use branch::{Branch, Branches, Place};
+pub use clean::{CleanReport, clean};
 pub use error::{LARGEST, SkeletonError};
 pub use graph::{Adjacency, Component, Components};
 
