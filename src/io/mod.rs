@@ -2,5 +2,6 @@
 
 mod atomic;
 pub mod mesh_file;
+pub mod network;
 pub mod vtk_xml;
 pub mod vtu;
