@@ -5,6 +5,7 @@ pub mod check;
 pub mod quality;
 #[cfg(test)]
 pub(crate) mod shapes;
+pub mod smooth;
 
 use crate::geometry::Point3;
 

@@ -15,7 +15,7 @@ pub fn volume6(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     (b - a).cross(&(c - a)).dot(&(d - a))
 }
 
-/// Radius ratio 3·r_in/R_circ, with the sign of the volume: 1 for the regular tetrahedron, 0 for a flat one.
+/// Radius ratio `3·r_in / R_circ`, with the sign of the volume: 1 for the regular tetrahedron, 0 for a flat one.
 #[inline]
 pub fn radius_ratio(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     let (u, v, w) = (b - a, c - a, d - a);

@@ -3,6 +3,7 @@
 
 pub mod complex;
 pub mod flips;
+pub mod optimize;
 pub mod star;
 
 pub use complex::Complex;

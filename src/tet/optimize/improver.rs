@@ -1,0 +1,148 @@
+//! The state of an improvement and its plan: which passes, in which order.
+
+use super::smoothing::StarEnergy;
+use super::{OptimizeOptions, OptimizeReport};
+use crate::mesh::quality::radius_ratio;
+use crate::tet::complex::{Complex, NONE};
+use crate::tet::flips::Flipper;
+use crate::tet::star::Star;
+
+/// A complex under improvement, with the radius ratio of each tetrahedron at hand.
+#[derive(Debug)]
+pub struct Improver {
+    pub(super) c: Complex,
+    /// Radius ratio by slot; of no meaning for ghosts and dead slots.
+    pub(super) quality: Vec<f64>,
+    /// Whether a vertex may be moved or removed.
+    pub(super) movable: Vec<bool>,
+    pub(super) options: OptimizeOptions,
+    pub(super) report: OptimizeReport,
+    /// Attempts left.
+    pub(super) budget: usize,
+    pub(super) flipper: Flipper,
+    pub(super) star: Star,
+    pub(super) energy: StarEnergy,
+    pub(super) cavity: super::cavity::Cavity,
+    worst_first: Vec<(f64, u32)>,
+}
+
+impl Improver {
+    /// Takes a complex to improve.
+    pub fn new(c: Complex, options: &OptimizeOptions) -> Self {
+        let mut improver = Self {
+            movable: movable_vertices(&c, options.fixed_points),
+            quality: vec![0.0; c.slots()],
+            options: *options,
+            report: OptimizeReport::default(),
+            budget: 0,
+            flipper: Flipper::default(),
+            star: Star::default(),
+            energy: StarEnergy::default(),
+            cavity: super::cavity::Cavity::default(),
+            worst_first: Vec::new(),
+            c,
+        };
+        improver.budget = options.attempts_per_tet.saturating_mul(improver.c.slots());
+        improver.report.worst_before = improver.measure();
+        improver
+    }
+
+    /// Runs all passes.
+    pub fn run(&mut self) {
+        for round in 0..self.options.rounds {
+            let moved = self.smooth_stars_below(self.options.smooth_below);
+            let flipped = self.flip_below(self.options.flip_below);
+            if moved + flipped == 0 && round > 0 {
+                break;
+            }
+        }
+        self.treat_stubborn();
+        self.smooth_stars_below(self.options.smooth_below);
+        self.lift_worst(self.options.flip_below);
+        self.report.worst_after = self.measure();
+        self.report.budget_spent = self.budget == 0;
+    }
+
+    /// The improved complex and what was done to it.
+    pub fn finish(self) -> (Complex, OptimizeReport) {
+        (self.c, self.report)
+    }
+
+    /// Takes one attempt from the budget; false when none is left.
+    #[inline]
+    pub(super) fn spend(&mut self) -> bool {
+        let left = self.budget > 0;
+        self.budget = self.budget.saturating_sub(1);
+        left
+    }
+
+    /// Computes the radius ratio of every tetrahedron anew; returns the smallest.
+    pub(super) fn measure(&mut self) -> f64 {
+        let mut worst = f64::INFINITY;
+        self.quality.resize(self.c.slots(), 0.0);
+        for t in 0..self.c.slots() as u32 {
+            if self.c.is_real(t) {
+                let q = self.ratio(t);
+                self.quality[t as usize] = q;
+                worst = worst.min(q);
+            }
+        }
+        worst
+    }
+
+    #[inline]
+    fn ratio(&self, t: u32) -> f64 {
+        let [a, b, c, d] = self.c.verts(t).map(|v| &self.c.points[v as usize]);
+        radius_ratio(a, b, c, d)
+    }
+
+    /// Computes the radius ratio of these tetrahedra anew.
+    pub(super) fn remeasure(&mut self, tets: &[u32]) {
+        self.quality.resize(self.c.slots(), 0.0);
+        for &t in tets {
+            self.quality[t as usize] = self.ratio(t);
+        }
+    }
+
+    /// The tetrahedra below a radius ratio, the worst first.
+    pub(super) fn worst_first(&mut self, below: f64) -> Vec<(f64, u32)> {
+        let mut list = std::mem::take(&mut self.worst_first);
+        list.clear();
+        let real = (0..self.c.slots() as u32).filter(|&t| self.c.is_real(t));
+        list.extend(real.map(|t| (self.quality[t as usize], t)).filter(|x| x.0 < below));
+        list.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        list
+    }
+
+    /// Gives the list back, so that its room is used again.
+    pub(super) fn keep_list(&mut self, list: Vec<(f64, u32)>) {
+        self.worst_first = list;
+    }
+
+    /// Whether an entry of a list still describes the tetrahedron in its slot.
+    #[inline]
+    pub(super) fn is_current(&self, (q, t): (f64, u32)) -> bool {
+        self.c.is_real(t) && self.quality[t as usize].to_bits() == q.to_bits()
+    }
+
+    /// Smallest radius ratio among tetrahedra.
+    pub(super) fn worst_of(&self, tets: &[u32]) -> f64 {
+        tets.iter().map(|&t| self.quality[t as usize]).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Vertices that are not fixed, are used, and lie neither on the boundary nor on a frozen face.
+fn movable_vertices(c: &Complex, fixed: usize) -> Vec<bool> {
+    let mut movable: Vec<bool> = (0..c.points.len()).map(|v| v >= fixed && c.vertex_tet(v as u32) != NONE).collect();
+    for t in c.real_tets() {
+        for i in 0..4 {
+            let half = 4 * t + i;
+            if c.is_frozen(half) || c.is_ghost(c.mate(half) >> 2) {
+                for v in c.face(half) {
+                    movable[v as usize] = false;
+                }
+            }
+        }
+    }
+    movable
+}

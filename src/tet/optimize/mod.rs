@@ -1,0 +1,118 @@
+//! Improvement of a tetrahedral mesh whose surface stays as it is: smoothing of the inner vertices, edge and face
+//! removal, insertion and contraction of vertices where those do not suffice. (Freitag, Ollivier-Gooch 1997;
+//! Klingner, Shewchuk, 'Aggressive tetrahedral mesh improvement', 2007.)
+//!
+//! Every change keeps all tetrahedra positive by the exact predicate, and every change of the connection raises the
+//! worst radius ratio of the tetrahedra that it touches.
+
+mod cavity;
+mod flipping;
+mod improver;
+mod smoothing;
+
+pub use improver::Improver;
+
+use super::complex::{Complex, ComplexError};
+use crate::mesh::TetMesh;
+use crate::mesh::quality::radius_ratio;
+
+/// What to improve and how much work to spend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OptimizeOptions {
+    /// The first so many points stay where they are, with index and bits. Points on the boundary or on a frozen face
+    /// stay too.
+    pub fixed_points: usize,
+    /// Rounds of smoothing followed by flips.
+    pub rounds: usize,
+    /// Inner vertices are smoothed when a tetrahedron around them has a radius ratio below this.
+    pub smooth_below: f64,
+    /// Flips are tried on tetrahedra whose radius ratio is below this.
+    pub flip_below: f64,
+    /// Vertices are inserted and contracted where tetrahedra stay below this radius ratio.
+    pub stubborn_below: f64,
+    /// Upper limit of attempted changes, per tetrahedron of the mesh that comes in.
+    pub attempts_per_tet: usize,
+}
+
+impl Default for OptimizeOptions {
+    fn default() -> Self {
+        Self {
+            fixed_points: 0,
+            rounds: 3,
+            smooth_below: 0.75,
+            flip_below: 0.5,
+            stubborn_below: 0.3,
+            attempts_per_tet: 20,
+        }
+    }
+}
+
+/// What was done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct OptimizeReport {
+    /// Steps of vertices.
+    pub moved: usize,
+    /// Faces and edges removed.
+    pub flips: usize,
+    /// Vertices inserted.
+    pub inserted: usize,
+    /// Vertices contracted away.
+    pub contracted: usize,
+    /// Smallest radius ratio before.
+    pub worst_before: f64,
+    /// Smallest radius ratio after.
+    pub worst_after: f64,
+    /// The limit of attempts was reached: more could have been improved.
+    pub budget_spent: bool,
+}
+
+/// Improves a mesh; its boundary faces and fixed points stay. Points that are not fixed may be moved, added, removed
+/// and renumbered; those that no tetrahedron uses are dropped.
+///
+/// # Errors
+/// When the arrays are not a mesh of positive, conforming tetrahedra; the mesh is then unchanged.
+pub fn optimize(mesh: &mut TetMesh, options: &OptimizeOptions) -> Result<OptimizeReport, ComplexError> {
+    let mut complex = Complex::from_mesh(mesh.points.clone(), &mesh.tets)?;
+    let report = optimize_complex(&mut complex, options);
+    *mesh = complex.into_mesh();
+    drop_unused_points(mesh, options.fixed_points);
+    Ok(report)
+}
+
+/// Improves a complex in place, ghosts, frozen faces and all. Points that are no longer used stay in the list.
+pub fn optimize_complex(complex: &mut Complex, options: &OptimizeOptions) -> OptimizeReport {
+    let mut improver = Improver::new(std::mem::take(complex), options);
+    improver.run();
+    let (improved, report) = improver.finish();
+    *complex = improved;
+    report
+}
+
+/// Radius ratio of a tetrahedron of real vertices, if it is positive by the exact predicate.
+#[inline]
+pub(super) fn score(c: &Complex, v: &[u32; 4]) -> Option<f64> {
+    let [p, q, r, s] = v.map(|i| &c.points[i as usize]);
+    (c.orient(v) > 0.0).then(|| radius_ratio(p, q, r, s))
+}
+
+/// Drops the points from `fixed` on that no tetrahedron has, keeping the order of the others.
+fn drop_unused_points(mesh: &mut TetMesh, fixed: usize) {
+    let mut target = vec![u32::MAX; mesh.points.len()];
+    for &v in mesh.tets.iter().flatten() {
+        target[v as usize] = 0;
+    }
+    target[..fixed.min(mesh.points.len())].fill(0);
+    let mut count = 0;
+    for (old, slot) in target.iter_mut().enumerate().filter(|(_, slot)| **slot == 0) {
+        *slot = count;
+        mesh.points[count as usize] = mesh.points[old];
+        count += 1;
+    }
+    mesh.points.truncate(count as usize);
+    for v in mesh.tets.iter_mut().flatten() {
+        *v = target[*v as usize];
+    }
+}
+
+#[cfg(test)]
+mod tests;

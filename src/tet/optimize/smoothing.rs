@@ -1,0 +1,291 @@
+//! Moves of inner vertices: Newton steps on the shape energy of the star, and a direct search that lifts its worst
+//! radius ratio.
+
+use super::Improver;
+use super::score;
+use crate::geometry::{Point3, Vec3, predicates::orient3d};
+use crate::mesh::quality::radius_ratio;
+use crate::tet::complex::Complex;
+use nalgebra::Matrix3;
+
+/// Newton steps per vertex and visit.
+const NEWTON_STEPS: usize = 2;
+/// Halvings of a step that does not lower the energy.
+const HALVINGS: usize = 4;
+/// Relative fall of the energy below which a vertex counts as settled.
+const SETTLED: f64 = 1e-3;
+/// Rounds of the direct search; its step halves in a round that finds nothing.
+const SEARCH_ROUNDS: usize = 12;
+
+/// The star of an inner vertex as a function of the vertex's displacement x: with Q the sum of squared edge lengths
+/// and V six times the volume, the energy is the sum of Q³ / (432 V²), that is 1 / (mean ratio)³, at least 1 each.
+/// Both Q and V are cheap polynomials in x.
+#[derive(Clone, Debug, Default)]
+pub struct StarEnergy {
+    cells: Vec<Cell>,
+    /// The faces opposite the vertex, seen from it in such order that (vertex, f₀, f₁, f₂) is positive.
+    faces: Vec<[Point3; 3]>,
+    tets: Vec<u32>,
+}
+
+/// V(x) = height − normal·x, Q(x) = 3 |x − center|² + rest.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    normal: Vec3,
+    height: f64,
+    center: Vec3,
+    rest: f64,
+}
+
+impl Cell {
+    fn new(origin: &Point3, [p, q, r]: &[Point3; 3]) -> Self {
+        let (a, b, c) = (p - origin, q - origin, r - origin);
+        let normal = (b - a).cross(&(c - a));
+        let center = (a + b + c) / 3.0;
+        // Spokes: Σ|x − a|² = 3|x − m|² + Σ|a − m|², and three times the latter is the sum over the rim's edges.
+        let rim = (b - a).norm_squared() + (c - b).norm_squared() + (a - c).norm_squared();
+        Self { normal, height: normal.dot(&a), center, rest: rim * (4.0 / 3.0) }
+    }
+
+    #[inline]
+    fn volume(&self, x: &Vec3) -> f64 {
+        self.height - self.normal.dot(x)
+    }
+
+    #[inline]
+    fn energy(&self, x: &Vec3) -> f64 {
+        let v = self.volume(x);
+        if v <= 0.0 {
+            return f64::INFINITY;
+        }
+        let q = 3.0 * (x - self.center).norm_squared() + self.rest;
+        q * q * q / (432.0 * v * v)
+    }
+}
+
+impl StarEnergy {
+    /// Gathers the tetrahedra around vertex `v`, none of which may be a ghost.
+    fn gather(&mut self, c: &Complex, v: u32, tets: &[u32]) {
+        let origin = c.points[v as usize];
+        self.cells.clear();
+        self.faces.clear();
+        self.tets.clear();
+        for &t in tets {
+            let Some(i) = c.slot_of(t, v) else { continue };
+            let face = c.face(4 * t + i as u32).map(|w| c.points[w as usize]);
+            self.cells.push(Cell::new(&origin, &face));
+            self.faces.push(face);
+            self.tets.push(t);
+        }
+    }
+
+    fn energy(&self, x: &Vec3, limit: f64) -> f64 {
+        let mut sum = 0.0;
+        for cell in &self.cells {
+            sum += cell.energy(x);
+            if sum > limit {
+                return f64::INFINITY;
+            }
+        }
+        sum
+    }
+
+    /// Newton's step at displacement `x`.
+    fn newton_step(&self, x: &Vec3) -> Option<Vec3> {
+        let mut gradient = Vec3::zeros();
+        let mut hessian = Matrix3::zeros();
+        for cell in &self.cells {
+            let v = cell.volume(x);
+            let d = x - cell.center;
+            let q = 3.0 * d.norm_squared() + cell.rest;
+            let f = q * q * q / (432.0 * v * v);
+            let (dq, dv) = (d * (6.0 / q), cell.normal * (-1.0 / v));
+            let g = dq * 3.0 - dv * 2.0;
+            gradient += g * f;
+            // Without the term −3 dq dqᵀ the sum is positive definite; with it, steps are longer but may go uphill.
+            hessian += (g * g.transpose() + dv * dv.transpose() * 2.0) * f;
+            let diagonal = 18.0 / q * f;
+            for i in 0..3 {
+                hessian[(i, i)] += diagonal;
+            }
+        }
+        hessian.cholesky().map(|h| -h.solve(&gradient))
+    }
+
+    fn stays_positive(&self, p: &Point3) -> bool {
+        self.faces.iter().all(|[a, b, c]| orient3d(p, a, b, c) > 0.0)
+    }
+
+    /// Smallest radius ratio of the star with its vertex at `p`, or anything below `floor` if it is not above.
+    fn worst(&self, p: &Point3, floor: f64) -> f64 {
+        let mut worst = f64::INFINITY;
+        for [a, b, c] in &self.faces {
+            worst = worst.min(radius_ratio(p, a, b, c));
+            if worst <= floor {
+                break;
+            }
+        }
+        worst
+    }
+}
+
+impl Improver {
+    /// Smooths every movable vertex around which a tetrahedron has a radius ratio below `below`; returns the number
+    /// of vertices moved. Vertices go in ascending order, each seeing where the ones before it have gone.
+    pub(super) fn smooth_stars_below(&mut self, below: f64) -> usize {
+        let mut due = vec![false; self.c.points.len()];
+        for t in self.c.real_tets() {
+            if self.quality[t as usize] < below {
+                for v in self.c.verts(t) {
+                    due[v as usize] = self.movable[v as usize];
+                }
+            }
+        }
+        let mut moved = 0;
+        for v in 0..due.len() as u32 {
+            if due[v as usize] && self.spend() && self.smooth_vertex(v) {
+                moved += 1;
+            }
+        }
+        self.measure();
+        self.report.moved += moved;
+        moved
+    }
+
+    /// Lowers the energy of a movable vertex's star. Leaves the cached qualities alone.
+    fn smooth_vertex(&mut self, v: u32) -> bool {
+        let tets = self.star.around(&self.c, v);
+        self.energy.gather(&self.c, v, tets);
+        let star = &self.energy;
+        let start = self.c.points[v as usize];
+        let mut x = Vec3::zeros();
+        let before = star.energy(&x, f64::INFINITY);
+        let mut energy = before;
+        for _ in 0..NEWTON_STEPS {
+            let Some(mut step) = star.newton_step(&x) else { break };
+            let mut lower = None;
+            for _ in 0..HALVINGS {
+                let e = star.energy(&(x + step), energy);
+                if e < energy {
+                    lower = Some(e);
+                    break;
+                }
+                step *= 0.5;
+            }
+            let Some(e) = lower else { break };
+            x += step;
+            let settled = e > energy * (1.0 - SETTLED);
+            energy = e;
+            if settled {
+                break;
+            }
+        }
+        let target = start + x;
+        if energy < before * (1.0 - SETTLED) && star.stays_positive(&target) {
+            self.c.points[v as usize] = target;
+            return true;
+        }
+        false
+    }
+
+    /// For tetrahedra below a radius ratio, the worst first: moves their vertices to lift the worst of the star.
+    pub(super) fn lift_worst(&mut self, below: f64) -> usize {
+        let list = self.worst_first(below);
+        let mut lifted = 0;
+        for &(q, t) in &list {
+            if !self.c.is_real(t) || self.quality[t as usize] >= below.min(q * 1.05) {
+                continue;
+            }
+            for v in self.c.verts(t) {
+                if self.movable[v as usize] && self.spend() && self.lift_vertex(v) {
+                    lifted += 1;
+                }
+            }
+        }
+        self.keep_list(list);
+        self.report.moved += lifted;
+        lifted
+    }
+
+    /// Lifts the worst radius ratio of a movable vertex's star by a direct search; keeps the cached qualities right.
+    pub(super) fn lift_vertex(&mut self, v: u32) -> bool {
+        let tets = self.star.around(&self.c, v);
+        self.energy.gather(&self.c, v, tets);
+        let start = self.c.points[v as usize];
+        let before = self.energy.worst(&start, f64::NEG_INFINITY);
+        let (best, worst) = search(&self.energy, start, before);
+        if worst > before && self.energy.stays_positive(&best) {
+            self.c.points[v as usize] = best;
+            let tets = std::mem::take(&mut self.energy.tets);
+            self.remeasure(&tets);
+            self.energy.tets = tets;
+            return true;
+        }
+        false
+    }
+
+    /// Where a new vertex would do best inside a star-shaped room with these faces, starting from `p`, and the worst
+    /// radius ratio there.
+    pub(super) fn best_in_room(&mut self, p: Point3, faces: &[[u32; 3]]) -> (Point3, f64) {
+        self.energy.faces.clear();
+        self.energy.faces.extend(faces.iter().map(|f| f.map(|w| self.c.points[w as usize])));
+        let before = self.energy.worst(&p, f64::NEG_INFINITY);
+        search(&self.energy, p, before)
+    }
+
+    /// Whether all tetrahedra from a new vertex at `p` to these faces are positive.
+    pub(super) fn sees(&self, p: &Point3, faces: &[[u32; 3]]) -> bool {
+        faces.iter().all(|f| {
+            let [a, b, c] = f.map(|w| &self.c.points[w as usize]);
+            orient3d(p, a, b, c) > 0.0
+        })
+    }
+
+    /// Radius ratio of a tetrahedron, if it is positive.
+    #[inline]
+    pub(super) fn score(&self, v: &[u32; 4]) -> Option<f64> {
+        score(&self.c, v)
+    }
+}
+
+/// Searches for a place with a better worst radius ratio: along the axes and away from and towards the worst face,
+/// with a step that halves when nothing is found.
+fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
+    let reach = star.faces.iter().map(|f| (f[0] - start).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
+    let (mut best, mut worst) = (start, before);
+    let mut step = 0.25 * reach;
+    let mut last = None;
+    for _ in 0..SEARCH_ROUNDS {
+        let from = best;
+        let guide = steepest(star, &from).map_or(Vec3::zeros(), |g| g * step);
+        let axes = [Vec3::x(), Vec3::y(), Vec3::z()].map(|e| e * step);
+        let tries = [last.unwrap_or(guide), guide, axes[0], -axes[0], axes[1], -axes[1], axes[2], -axes[2]];
+        last = None;
+        for d in tries {
+            let p = from + d;
+            let w = star.worst(&p, worst);
+            if w > worst {
+                (best, worst, last) = (p, w, Some(d));
+                break;
+            }
+        }
+        if last.is_none() {
+            step *= 0.5;
+        }
+    }
+    (best, worst)
+}
+
+/// Unit direction in which the worst tetrahedron of the star grows its height: away from its face.
+fn steepest(star: &StarEnergy, p: &Point3) -> Option<Vec3> {
+    let mut worst = (f64::INFINITY, 0);
+    for (i, [a, b, c]) in star.faces.iter().enumerate() {
+        let q = radius_ratio(p, a, b, c);
+        if q < worst.0 {
+            worst = (q, i);
+        }
+    }
+    let [a, b, c] = star.faces.get(worst.1)?;
+    // (p, a, b, c) positive: p lies on the side to which the normal of a, c, b points.
+    (c - a).cross(&(b - a)).try_normalize(0.0)
+}

@@ -1,0 +1,158 @@
+use super::*;
+use crate::mesh::adjacency::{boundary_faces, vertices_of};
+use crate::mesh::quality::TetQuality;
+use crate::mesh::shapes::{cube_lattice, perturb, tube_lattice};
+use proptest::prelude::*;
+
+/// A mesh whose inner points are numbered last and shaken, and the number of its boundary points.
+fn shaken(mut mesh: TetMesh, size: f64, seed: u64) -> (TetMesh, usize) {
+    let on = vertices_of(&boundary_faces(&mesh), mesh.points.len());
+    let mut order: Vec<u32> = (0..mesh.points.len() as u32).collect();
+    order.sort_by_key(|&v| !on[v as usize]);
+    let mut place = vec![0; order.len()];
+    for (new, &old) in order.iter().enumerate() {
+        place[old as usize] = new as u32;
+    }
+    mesh.points = order.iter().map(|&v| mesh.points[v as usize]).collect();
+    for v in mesh.tets.iter_mut().flatten() {
+        *v = place[*v as usize];
+    }
+    let fixed = on.iter().filter(|on| **on).count();
+    let inner: Vec<bool> = (0..order.len()).map(|v| v >= fixed).collect();
+    // Shake each point as far as it can go without turning a tetrahedron over: halve its way until it fits.
+    let rest = mesh.points.clone();
+    perturb(&mut mesh.points, &inner, size, seed);
+    for v in fixed..order.len() {
+        let around: Vec<usize> = (0..mesh.tets.len()).filter(|&t| mesh.tets[t].contains(&(v as u32))).collect();
+        let mut points = rest.clone();
+        points[..v].copy_from_slice(&mesh.points[..v]);
+        let goal = mesh.points[v];
+        for share in [1.0, 0.5, 0.25, 0.0] {
+            points[v] = rest[v] + (goal - rest[v]) * share;
+            let whole = TetMesh { points: points.clone(), tets: around.iter().map(|&t| mesh.tets[t]).collect() };
+            if Complex::from_mesh(whole.points, &whole.tets).is_ok() {
+                break;
+            }
+        }
+        mesh.points[v] = points[v];
+    }
+    (mesh, fixed)
+}
+
+fn sorted_boundary(mesh: &TetMesh) -> Vec<[u32; 3]> {
+    let mut faces = boundary_faces(mesh);
+    for f in &mut faces {
+        let least = (0..3).min_by_key(|&i| f[i]).unwrap_or(0);
+        f.rotate_left(least);
+    }
+    faces.sort_unstable();
+    faces
+}
+
+fn improve_and_check(mesh: &TetMesh, fixed: usize) -> (TetMesh, OptimizeReport) {
+    let mut improved = mesh.clone();
+    let options = OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::default() };
+    let report = optimize(&mut improved, &options).unwrap();
+    // Positive, conforming: or else it is not a complex.
+    Complex::from_mesh(improved.points.clone(), &improved.tets).unwrap().sanity_check().unwrap();
+    assert_eq!(improved.points[..fixed], mesh.points[..fixed]);
+    assert_eq!(sorted_boundary(&improved), sorted_boundary(mesh));
+    let (before, after) = (TetQuality::of(mesh), TetQuality::of(&improved));
+    assert!(after.min >= before.min && (after.min - report.worst_after).abs() < 1e-12);
+    (improved, report)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn the_surface_stays_nothing_inverts_the_worst_rises(size in 0.0..0.3_f64, seed in any::<u64>(), tube in any::<bool>()) {
+        let mesh = if tube { tube_lattice(3, 6, 0.3) } else { cube_lattice(4) };
+        let (mesh, fixed) = shaken(mesh, size, seed);
+        improve_and_check(&mesh, fixed);
+    }
+}
+
+#[test]
+fn a_shaken_tube_becomes_good() {
+    let (mesh, fixed) = shaken(tube_lattice(4, 10, 0.25), 0.25, 5);
+    let before = TetQuality::of(&mesh);
+    let (improved, report) = improve_and_check(&mesh, fixed);
+    let after = TetQuality::of(&improved);
+    assert!(before.min < 0.02, "{before:?}");
+    assert!(after.mean > 0.75 && after.min > 0.15 && after.dihedral_min > 10.0, "{after:?} {report:?}");
+}
+
+#[test]
+fn the_same_mesh_gives_the_same_mesh() {
+    let (mesh, fixed) = shaken(cube_lattice(4), 0.2, 11);
+    assert_eq!(improve_and_check(&mesh, fixed).0, improve_and_check(&mesh, fixed).0);
+}
+
+#[test]
+fn a_flat_sliver_under_the_surface_goes() {
+    // Four corners of a square, two of them a little higher: the upper diagonal is on the surface, the lower inside.
+    let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 1e-9], [1.0, 1.0, 0.0], [0.0, 1.0, 1e-9], [0.5, 0.5, -1.0]];
+    let points = points.map(crate::geometry::Point3::from).to_vec();
+    let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3], [0, 2, 1, 4], [0, 3, 2, 4]] };
+    assert!(TetQuality::of(&mesh).min < 1e-8);
+    let (improved, _) = improve_and_check(&mesh, 5);
+    assert!(TetQuality::of(&improved).min > 0.5);
+}
+
+#[test]
+fn vertices_are_inserted_and_contracted_where_that_helps() {
+    let (mesh, fixed) = shaken(cube_lattice(4), 0.25, 8);
+    let mut improved = mesh.clone();
+    let options = OptimizeOptions { fixed_points: fixed, rounds: 0, stubborn_below: 0.7, ..OptimizeOptions::default() };
+    let report = optimize(&mut improved, &options).unwrap();
+    assert!(report.inserted > 0 && report.contracted > 0, "{report:?}");
+    Complex::from_mesh(improved.points.clone(), &improved.tets).unwrap().sanity_check().unwrap();
+    assert_eq!(sorted_boundary(&improved), sorted_boundary(&mesh));
+    assert!(TetQuality::of(&improved).min > TetQuality::of(&mesh).min);
+}
+
+#[test]
+fn frozen_faces_inside_stay() {
+    let (mesh, fixed) = shaken(cube_lattice(4), 0.2, 3);
+    let mut complex = Complex::from_mesh(mesh.points.clone(), &mesh.tets).unwrap();
+    let inner: Vec<u32> = complex
+        .real_tets()
+        .flat_map(|t| 4 * t..4 * t + 4)
+        .filter(|&h| !complex.is_ghost(complex.mate(h) >> 2))
+        .step_by(37)
+        .collect();
+    let kept: Vec<_> = inner.iter().map(|&h| complex.face(h).map(|v| complex.points[v as usize])).collect();
+    for &h in &inner {
+        complex.freeze(h);
+    }
+    optimize_complex(&mut complex, &OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::default() });
+    complex.sanity_check().unwrap();
+    let faces: Vec<_> = complex
+        .real_tets()
+        .flat_map(|t| 4 * t..4 * t + 4)
+        .map(|h| complex.face(h).map(|v| complex.points[v as usize]))
+        .collect();
+    for k in kept {
+        assert!(faces.iter().any(|f| k.iter().all(|p| f.contains(p))));
+    }
+}
+
+#[test]
+fn an_exhausted_budget_ends_the_work() {
+    let (mesh, fixed) = shaken(cube_lattice(4), 0.25, 1);
+    let options = OptimizeOptions { fixed_points: fixed, attempts_per_tet: 0, ..OptimizeOptions::default() };
+    let mut same = mesh.clone();
+    let report = optimize(&mut same, &options).unwrap();
+    assert!(report.budget_spent && report.flips + report.moved == 0);
+    assert_eq!(same.points, mesh.points);
+}
+
+#[test]
+fn what_is_not_a_mesh_is_refused_and_left_alone() {
+    let mut mesh = cube_lattice(2);
+    mesh.tets[5].swap(0, 1);
+    let same = mesh.clone();
+    assert!(optimize(&mut mesh, &OptimizeOptions::default()).is_err());
+    assert_eq!(mesh, same);
+}
