@@ -1,6 +1,7 @@
 //! Meshes in files: which format, safe writing, and what goes into a file beside the mesh.
 
 use super::atomic::AtomicFile;
+use super::vtk_xml::VtkError;
 use super::vtu;
 use crate::mesh::VolumeMesh;
 use crate::mesh::check::Expectation;
@@ -80,6 +81,75 @@ pub enum MeshFileError {
         /// Its reason.
         source: io::Error,
     },
+    /// What is in the file is no mesh.
+    #[error("{}: {fault}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        #[source]
+        fault: ContentFault,
+    },
+}
+
+/// Why the content of a file is no mesh.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ContentFault {
+    /// It is no sound VTK XML file.
+    #[error(transparent)]
+    Vtk(#[from] VtkError),
+    /// Something that every such file has is not there.
+    #[error("'{what}' is missing")]
+    Missing {
+        /// Name of the element, array or section.
+        what: &'static str,
+    },
+    /// An array is as long as the others do not say.
+    #[error("array '{array}' has {found} values instead of {expected}")]
+    Length {
+        /// Its name.
+        array: String,
+        /// How long it had to be.
+        expected: usize,
+        /// How long it is.
+        found: usize,
+    },
+    /// The offsets of the cells do not ascend by their sizes.
+    #[error("cell {cell} has another number of points than its type")]
+    BadOffset {
+        /// The first such cell.
+        cell: usize,
+    },
+    /// There are cells that are neither tetrahedra nor triangles.
+    #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]
+    UnsupportedCell {
+        /// Type of the cell, in the numbers of the format.
+        kind: i64,
+        /// The first such cell.
+        cell: usize,
+    },
+}
+
+/// Reads a mesh from a file, in the format that its extension names.
+///
+/// # Errors
+/// `UnknownFormat`, `Read` with the system's reason, or `Content` with what is wrong.
+pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
+    let format = MeshFormat::of(path)?;
+    let bytes = std::fs::read(path).map_err(|source| MeshFileError::Read { path: path.to_path_buf(), source })?;
+    read_mesh_from(&bytes, format).map_err(|fault| MeshFileError::Content { path: path.to_path_buf(), fault })
+}
+
+/// Reads a mesh from the bytes of a file.
+///
+/// # Errors
+/// When the bytes are no such file, or it is incomplete.
+pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, ContentFault> {
+    match format {
+        MeshFormat::Vtu => vtu::read_vtu(bytes),
+        MeshFormat::Msh => Err(ContentFault::Missing { what: "MeshFormat" }),
+    }
 }
 
 /// Makes sure, before any work is done, that a mesh can be written to `path`: the format is known, and a file can be

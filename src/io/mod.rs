@@ -5,3 +5,4 @@ pub mod mesh_file;
 pub mod network;
 pub mod vtk_xml;
 pub mod vtu;
+mod vtu_read;

@@ -12,6 +12,8 @@ use std::fmt::Write as _;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 
+pub use super::vtu_read::read_vtu;
+
 /// Values in a compressed block: a multiple of 12, so that points, triangles and tetrahedra do not straddle blocks.
 const BLOCK: usize = 98_304;
 
@@ -358,3 +360,7 @@ fn compress(array: &Array, range: Range<usize>) -> io::Result<Vec<u8>> {
     encoder.write_all(&raw)?;
     encoder.finish()
 }
+
+#[cfg(test)]
+#[path = "vtu_tests.rs"]
+pub(super) mod tests;

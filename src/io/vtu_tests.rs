@@ -1,0 +1,134 @@
+//! What is written can be read again, unchanged, for any number of threads.
+
+use super::*;
+use crate::geometry::{Point3, Vec3};
+use crate::io::mesh_file::{MeshFile, MeshFormat, ensure_writable, read_mesh, write_mesh, write_mesh_to};
+use crate::mesh::check::Expectation;
+use crate::mesh::shapes::tube_lattice;
+use crate::mesh::{Cap, Patch, WALL};
+
+/// A tube with its foot labelled as inlet; every second tetrahedron is in block 1.
+pub(in crate::io) fn labelled_tube(layers: u32) -> (VolumeMesh, MeshNotes) {
+    let mesh = tube_lattice(3, layers, 0.3);
+    let boundary = crate::mesh::adjacency::boundary_faces(&mesh);
+    let foot = |f: &[u32; 3]| f.iter().all(|&v| mesh.points[v as usize].z < 0.1);
+    let cap = Cap { node: 4_000_000_000, center: Point3::new(0.1, 1e-17, 0.0), normal: -Vec3::z(), radius: 1.25 };
+    let volume = VolumeMesh {
+        tet_block: (0..mesh.tets.len() as i32).map(|i| i % 2).collect(),
+        boundary_block: (0..boundary.len() as i32).map(|i| i % 3).collect(),
+        boundary_patch: boundary.iter().map(|f| if foot(f) { 3 } else { WALL }).collect(),
+        patches: vec![
+            Patch { id: WALL, name: "wall".into(), cap: None },
+            Patch { id: 3, name: "outlet_0".into(), cap: Some(cap) },
+        ],
+        boundary,
+        mesh,
+    };
+    let notes = MeshNotes {
+        expectation: Some(Expectation { loops: vec![0, 2], terminals: vec![7, 4_000_000_000] }),
+        generator: "anastomesh 0.1.0".into(),
+        options: "rho = 3 # größer".into(),
+    };
+    (volume, notes)
+}
+
+fn bytes_of(volume: &VolumeMesh, notes: &MeshNotes) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_mesh_to(&mut bytes, MeshFormat::Vtu, volume, notes).unwrap();
+    bytes
+}
+
+#[test]
+fn what_is_written_is_read() {
+    // Enough layers for several compressed blocks.
+    for layers in [1, 900] {
+        let (volume, notes) = labelled_tube(layers);
+        let file = read_vtu(&bytes_of(&volume, &notes)).unwrap();
+        assert_eq!(file, MeshFile { volume, labelled: true, notes });
+    }
+}
+
+#[test]
+fn an_empty_mesh_and_one_without_caps() {
+    let (mut volume, _) = labelled_tube(2);
+    volume.patches[1].cap = None;
+    let notes = MeshNotes::default();
+    let file = read_vtu(&bytes_of(&volume, &notes)).unwrap();
+    assert_eq!(file, MeshFile { volume, labelled: true, notes });
+    let file = read_vtu(&bytes_of(&VolumeMesh::default(), &MeshNotes::default())).unwrap();
+    assert_eq!(file, MeshFile::default());
+}
+
+#[test]
+fn a_mesh_of_loops_alone_expects_no_terminals() {
+    let (volume, mut notes) = labelled_tube(1);
+    notes.expectation = Some(Expectation { loops: vec![1], terminals: Vec::new() });
+    let file = read_vtu(&bytes_of(&volume, &notes)).unwrap();
+    assert_eq!(file.notes.expectation, notes.expectation);
+}
+
+#[test]
+fn bytes_do_not_depend_on_threads() {
+    let (volume, notes) = labelled_tube(500);
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| bytes_of(&volume, &notes))
+    };
+    let one = with(1);
+    assert!(one == with(2) && one == with(7));
+}
+
+#[test]
+fn every_cut_is_noticed() {
+    let (volume, notes) = labelled_tube(3);
+    let whole = bytes_of(&volume, &notes);
+    let body = whole.len() - APPENDED_CLOSE.len();
+    for cut in (0..body).step_by(97).chain([body - 1]) {
+        assert!(read_vtu(&whole[..cut]).is_err(), "cut at {cut} of {body}");
+    }
+}
+
+#[test]
+fn files_of_other_programs() {
+    // Two pieces, a line among the cells, labels under another name and without names for them, one bad index.
+    let text = r#"<VTKFile type="UnstructuredGrid"><UnstructuredGrid>
+        <Piece NumberOfPoints="4" NumberOfCells="3">
+        <Points><DataArray type="Float32" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>
+        <Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 0 1 2 3 0 2 1</DataArray>
+        <DataArray type="Int32" Name="offsets" format="ascii">2 6 9</DataArray>
+        <DataArray type="UInt8" Name="types" format="ascii">3 10 5</DataArray></Cells>
+        <CellData><DataArray type="Int64" Name="ModelFaceID" format="ascii">0 0 2</DataArray></CellData></Piece>
+        <Piece NumberOfPoints="4" NumberOfCells="1">
+        <Points><DataArray type="Float32" NumberOfComponents="3" format="ascii">0 0 5 1 0 5 0 1 5 0 0 6</DataArray></Points>
+        <Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 -9</DataArray>
+        <DataArray type="Int32" Name="offsets" format="ascii">4</DataArray>
+        <DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells>
+        <CellData><DataArray type="Int64" Name="ModelFaceID" format="ascii">0</DataArray></CellData></Piece>
+        </UnstructuredGrid></VTKFile>"#;
+    let file = read_vtu(text.as_bytes()).unwrap();
+    assert_eq!(file.volume.mesh.points.len(), 8);
+    assert_eq!(file.volume.mesh.tets, [[0, 1, 2, 3], [4, 5, 6, u32::MAX]]);
+    assert_eq!((file.volume.boundary, file.volume.boundary_patch), (vec![[0, 2, 1]], vec![2]));
+    assert_eq!(file.volume.patches[0].name, "inlet");
+    let hexahedron = text.replace("3 10 5", "12 10 5");
+    assert!(read_vtu(hexahedron.as_bytes()).is_err());
+    let short = text.replace("2 6 9", "2 5 9");
+    assert!(read_vtu(short.as_bytes()).is_err());
+    let wild = text.replace("2 6 9", "2 -6 9");
+    assert!(read_vtu(wild.as_bytes()).is_err());
+}
+
+#[test]
+fn files_appear_whole_and_paths_are_tried_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tube.vtu");
+    let (volume, notes) = labelled_tube(2);
+    ensure_writable(&path).unwrap();
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    write_mesh(&path, &volume, &notes).unwrap();
+    assert_eq!(read_mesh(&path).unwrap().volume, volume);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    for wrong in ["missing/tube.vtu", "tube.docx", "tube"] {
+        assert!(ensure_writable(&folder.path().join(wrong)).is_err(), "{wrong}");
+    }
+}
