@@ -1,3 +1,26 @@
-//! (room under construction)
+//! Floor 4: one block, cluster or connector, from its piece of skeleton to tetrahedra (3.2.2 and 3.2.3 of the paper).
+//!
+//! A cluster is contoured, closed at its terminals, filled with tetrahedra and trimmed at its cuts; what trimming
+//! exposes at a cut is an [`EndSurface`]. A connector is a tube between two end surfaces, which it takes over vertex
+//! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
 
-pub mod cap;
+mod cap;
+mod end_surface;
+mod error;
+mod flatten;
+mod path;
+mod region;
+mod relax;
+mod shape;
+mod trim;
+mod weave;
+
+pub use cap::{CapError, CapFailure, CappedSurface, cap_terminals};
+pub use end_surface::{EndFault, EndSurface};
+pub use error::{BlockError, FlattenFailure};
+pub use path::AxisPath;
+pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
+pub use weave::{WeaveCost, weave};
+
+#[cfg(test)]
+mod fixtures;

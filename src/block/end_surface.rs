@@ -1,0 +1,211 @@
+//! End surface: the disc of triangles that trimming exposes at a cut (3.2.2), and what has to hold for it.
+
+use crate::geometry::{Point3, Section};
+use crate::partition::CutId;
+
+/// The triangles exposed at a cut.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EndSurface {
+    /// The cut.
+    pub cut: CutId,
+    /// Which side of the cut this is.
+    pub side: u8,
+    /// The cut plane; its axis points out of the cluster.
+    pub section: Section,
+    /// Triangles, indices into the cluster's points, oriented out of the cluster.
+    pub triangles: Vec<[u32; 3]>,
+    /// The boundary loop, counter-clockwise about the section's axis, starting at its smallest vertex.
+    pub rim: Vec<u32>,
+}
+
+/// What an end surface violates.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EndFault {
+    /// A triangle whose projection on the cut plane is not positive.
+    #[error("triangle {0} is not projection flat")]
+    Fold(u32),
+    /// A directed edge is used twice, or the boundary is not one simple loop, or the Euler number is not 1.
+    #[error("not a disc")]
+    NotADisc,
+    /// The projected boundary loop crosses itself.
+    #[error("rim edges {0} and {1} cross in projection")]
+    RimCrosses(u32, u32),
+}
+
+/// Plane coordinates of points in a section's frame, on an integer grid so fine that snapping is invisible and so
+/// coarse that `cross` is exact.
+pub(super) struct Plane {
+    section: Section,
+    u: crate::geometry::Vec3,
+    w: crate::geometry::Vec3,
+    scale: f64,
+}
+
+/// Grid coordinates stay below 2^26 in magnitude: differences below 2^27, products below 2^54, sums below 2^55.
+const GRID: f64 = (1u64 << 25) as f64;
+
+impl Plane {
+    /// `extent`: a bound on the distance from the axis of the points that will be projected.
+    pub(super) fn new(section: &Section, extent: f64) -> Self {
+        let (u, w) = section.frame();
+        Self { section: *section, u, w, scale: GRID / extent }
+    }
+
+    pub(super) fn snap(&self, p: &Point3) -> [i64; 2] {
+        let d = p - self.section.origin;
+        let grid = |x: f64| (x * self.scale).round().clamp(-2.0 * GRID, 2.0 * GRID) as i64;
+        [grid(d.dot(&self.u)), grid(d.dot(&self.w))]
+    }
+}
+
+/// Twice the signed area of a triangle of grid points, exact.
+pub(super) fn cross(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Whether two segments that share no end point meet.
+fn segments_meet(a: [i64; 2], b: [i64; 2], c: [i64; 2], d: [i64; 2]) -> bool {
+    let within = |p: [i64; 2], q: [i64; 2], x: [i64; 2]| {
+        (0..2).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]))
+    };
+    let (s1, s2) = (cross(a, b, c).signum(), cross(a, b, d).signum());
+    let (s3, s4) = (cross(c, d, a).signum(), cross(c, d, b).signum());
+    (s1 != s2 && s3 != s4 && s1 * s2 <= 0 && s3 * s4 <= 0)
+        || (s1 == 0 && within(a, b, c))
+        || (s2 == 0 && within(a, b, d))
+        || (s3 == 0 && within(c, d, a))
+        || (s4 == 0 && within(c, d, b))
+}
+
+/// The first pair of edges of a closed polygon that meet elsewhere than in a common end point.
+pub(super) fn crossing(polygon: &[[i64; 2]]) -> Option<(u32, u32)> {
+    let n = polygon.len();
+    for i in 0..n {
+        let (a, b) = (polygon[i], polygon[(i + 1) % n]);
+        if a == b {
+            return Some((i as u32, i as u32));
+        }
+        for j in i + 1..n {
+            let (c, d) = (polygon[j], polygon[(j + 1) % n]);
+            let crosses = if (i + 1) % n == j {
+                folds_back(a, b, d)
+            } else if (j + 1) % n == i {
+                folds_back(c, d, b)
+            } else {
+                segments_meet(a, b, c, d)
+            };
+            if crosses {
+                return Some((i as u32, j as u32));
+            }
+        }
+    }
+    None
+}
+
+/// Whether b→c runs back over a→b.
+fn folds_back(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> bool {
+    cross(a, b, c) == 0 && (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1]) > 0
+}
+
+/// The boundary loop of an oriented triangle set, if the set is one disc: no directed edge twice, one simple loop,
+/// Euler number 1, connected. Starts at its smallest vertex.
+pub(super) fn disc_rim(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
+    let mut edges: Vec<(u32, u32)> = Vec::with_capacity(3 * triangles.len());
+    for t in triangles {
+        edges.extend([(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
+    }
+    edges.sort_unstable();
+    if edges.windows(2).any(|w| w[0] == w[1]) {
+        return None;
+    }
+    let boundary: Vec<(u32, u32)> =
+        edges.iter().copied().filter(|&(a, b)| edges.binary_search(&(b, a)).is_err()).collect();
+    // Sorted by tail, so that a tail that occurs twice is a pinched vertex.
+    if boundary.is_empty() || boundary.windows(2).any(|w| w[0].0 == w[1].0) {
+        return None;
+    }
+    let mut rim = vec![boundary[0].0];
+    let mut at = boundary[0].1;
+    while at != rim[0] {
+        if rim.len() > boundary.len() {
+            return None;
+        }
+        rim.push(at);
+        let k = boundary.binary_search_by_key(&at, |e| e.0).ok()?;
+        at = boundary[k].1;
+    }
+    if rim.len() != boundary.len() || !edge_connected(triangles, &edges) {
+        return None;
+    }
+    let mut vertices: Vec<u32> = edges.iter().map(|e| e.0).collect();
+    vertices.dedup();
+    let edge_count = usize::midpoint(edges.len(), boundary.len());
+    (vertices.len() + triangles.len() == edge_count + 1).then_some(rim)
+}
+
+/// Whether the triangles hang together; `edges` are all their directed edges, sorted.
+fn edge_connected(triangles: &[[u32; 3]], edges: &[(u32, u32)]) -> bool {
+    let owner: rustc_hash::FxHashMap<(u32, u32), u32> = triangles
+        .iter()
+        .enumerate()
+        .flat_map(|(i, t)| (0..3).map(move |k| ((t[k], t[(k + 1) % 3]), i as u32)))
+        .collect();
+    let mut seen = vec![false; triangles.len()];
+    let mut stack = vec![0u32];
+    seen[0] = true;
+    let mut count = 1;
+    while let Some(i) = stack.pop() {
+        let t = triangles[i as usize];
+        for k in 0..3 {
+            let back = (t[(k + 1) % 3], t[k]);
+            if edges.binary_search(&back).is_err() {
+                continue;
+            }
+            if let Some(&j) = owner.get(&back)
+                && !seen[j as usize]
+            {
+                seen[j as usize] = true;
+                count += 1;
+                stack.push(j);
+            }
+        }
+    }
+    count == triangles.len()
+}
+
+impl EndSurface {
+    /// Checks that the surface is one disc and projection flat: positive triangles whose boundary loop is a simple
+    /// polygon cover every point of the plane at most once.
+    ///
+    /// # Errors
+    /// The first fault.
+    pub fn check(&self, points: &[Point3]) -> Result<(), EndFault> {
+        let extent = self
+            .triangles
+            .iter()
+            .flatten()
+            .map(|&v| (points[v as usize] - self.section.origin).norm())
+            .fold(self.section.radius, f64::max);
+        let plane = Plane::new(&self.section, extent);
+        for (i, t) in self.triangles.iter().enumerate() {
+            let [a, b, c] = t.map(|v| plane.snap(&points[v as usize]));
+            if cross(a, b, c) <= 0 {
+                return Err(EndFault::Fold(i as u32));
+            }
+        }
+        if disc_rim(&self.triangles).as_ref() != Some(&self.rim) {
+            return Err(EndFault::NotADisc);
+        }
+        let polygon: Vec<[i64; 2]> = self.rim.iter().map(|&v| plane.snap(&points[v as usize])).collect();
+        crossing(&polygon).map_or(Ok(()), |(i, j)| Err(EndFault::RimCrosses(i, j)))
+    }
+
+    /// The vertices of the surface, ascending.
+    pub fn vertices(&self) -> Vec<u32> {
+        let mut v: Vec<u32> = self.triangles.iter().flatten().copied().collect();
+        v.sort_unstable();
+        v.dedup();
+        v
+    }
+}

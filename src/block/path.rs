@@ -1,0 +1,106 @@
+//! The axis of a connector: a polyline of sections with rotation-minimising frames.
+
+use crate::geometry::{Point3, Section, Vec3};
+
+/// A vessel's axis by arc length, with a frame that does not twist.
+#[derive(Clone, Debug)]
+pub struct AxisPath {
+    stations: Vec<Station>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Station {
+    s: f64,
+    origin: Point3,
+    axis: Vec3,
+    u: Vec3,
+    radius: f64,
+}
+
+/// A place on the axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Point of the axis.
+    pub origin: Point3,
+    /// Unit tangent.
+    pub axis: Vec3,
+    /// First unit vector across the axis.
+    pub u: Vec3,
+    /// Second unit vector across the axis, `axis × u`.
+    pub w: Vec3,
+    /// Radius of the vessel.
+    pub radius: f64,
+}
+
+/// Which end of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathEnd {
+    /// Arc length 0.
+    Start,
+    /// The whole length.
+    End,
+}
+
+impl AxisPath {
+    /// Lays frames along sections. `None` if there are fewer than two sections or they do not span any length.
+    pub fn new(sections: &[Section]) -> Option<Self> {
+        let first = sections.first()?;
+        let station = |s: f64, x: &Section, u: Vec3| Station { s, origin: x.origin, axis: x.axis, u, radius: x.radius };
+        let mut stations = vec![station(0.0, first, first.frame().0)];
+        for next in &sections[1..] {
+            let last = stations[stations.len() - 1];
+            let step = next.origin - last.origin;
+            let length = step.norm();
+            if length > 1e-12 * next.radius {
+                stations.push(station(last.s + length, next, transport(&last, next.axis, step)));
+            }
+        }
+        (stations.len() > 1).then_some(Self { stations })
+    }
+
+    /// Length of the axis between its first and last section.
+    pub fn length(&self) -> f64 {
+        self.stations[self.stations.len() - 1].s
+    }
+
+    /// The place at arc length `s`; straight beyond either end.
+    pub fn at(&self, s: f64) -> Place {
+        let k = self.stations.partition_point(|x| x.s <= s).clamp(1, self.stations.len() - 1);
+        let (a, b) = (&self.stations[k - 1], &self.stations[k]);
+        let t = (s - a.s) / (b.s - a.s);
+        let c = t.clamp(0.0, 1.0);
+        let axis = (a.axis * (1.0 - c) + b.axis * c).normalize();
+        let along = if t < 0.0 { a.axis * (s - a.s) } else { b.axis * (s - b.s).max(0.0) };
+        let origin = a.origin + (b.origin - a.origin) * c + along;
+        let u = a.u * (1.0 - c) + b.u * c;
+        let u = (u - axis * axis.dot(&u)).normalize();
+        Place { origin, axis, u, w: axis.cross(&u), radius: a.radius + (b.radius - a.radius) * c }
+    }
+
+    /// Arc length, angle and distance from the axis of a point near an end.
+    pub fn locate(&self, p: &Point3, end: PathEnd) -> (f64, f64, f64) {
+        let s0 = if end == PathEnd::Start { 0.0 } else { self.length() };
+        let place = self.at(s0);
+        let d = p - place.origin;
+        let (x, y) = (d.dot(&place.u), d.dot(&place.w));
+        (s0 + d.dot(&place.axis), y.atan2(x), x.hypot(y))
+    }
+}
+
+impl Place {
+    /// The point at an angle and a distance from the axis.
+    pub fn point(&self, theta: f64, distance: f64) -> Point3 {
+        self.origin + (self.u * theta.cos() + self.w * theta.sin()) * distance
+    }
+}
+
+/// Carries a frame vector to the next station by two reflections (Wang, Jüttler, Zheng, Liu 2008).
+fn transport(from: &Station, axis: Vec3, step: Vec3) -> Vec3 {
+    let reflect = |x: Vec3, v: Vec3| {
+        let n2 = v.norm_squared();
+        if n2 > 0.0 { x - v * (2.0 * v.dot(&x) / n2) } else { x }
+    };
+    let (u, t) = (reflect(from.u, step), reflect(from.axis, step));
+    let u = reflect(u, axis - t);
+    (u - axis * axis.dot(&u)).normalize()
+}
