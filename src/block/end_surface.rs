@@ -66,9 +66,8 @@ pub(super) fn cross(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
 
 /// Whether two segments that share no end point meet.
 fn segments_meet(a: [i64; 2], b: [i64; 2], c: [i64; 2], d: [i64; 2]) -> bool {
-    let within = |p: [i64; 2], q: [i64; 2], x: [i64; 2]| {
-        (0..2).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]))
-    };
+    let within =
+        |p: [i64; 2], q: [i64; 2], x: [i64; 2]| (0..2).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]));
     let (s1, s2) = (cross(a, b, c).signum(), cross(a, b, d).signum());
     let (s3, s4) = (cross(c, d, a).signum(), cross(c, d, b).signum());
     (s1 != s2 && s3 != s4 && s1 * s2 <= 0 && s3 * s4 <= 0)

@@ -46,14 +46,8 @@ struct Flattener<'a> {
 
 /// Makes a flat end surface, or says why not.
 pub(super) fn flatten(region: &Region, points: &[Point3], seed: u32, attempt: Attempt) -> Result<Flat, FlattenFailure> {
-    let mut f = Flattener {
-        region,
-        points,
-        attempt,
-        removed: vec![false; region.tets.len()],
-        exposed: Vec::new(),
-        checked: 0,
-    };
+    let mut f =
+        Flattener { region, points, attempt, removed: vec![false; region.tets.len()], exposed: Vec::new(), checked: 0 };
     f.cut(seed)?;
     for _ in 0..ROUNDS {
         f.remove_folds()?;

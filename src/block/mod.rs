@@ -4,18 +4,22 @@
 //! exposes at a cut is an [`EndSurface`]. A connector is a tube between two end surfaces, which it takes over vertex
 //! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
 
-mod cap;
+pub mod cap;
+mod connector_surface;
 mod end_surface;
 mod error;
 mod flatten;
 mod path;
 mod region;
 mod relax;
+mod rings;
 mod shape;
 mod trim;
+mod wall;
 mod weave;
 
 pub use cap::{CapError, CapFailure, CappedSurface, cap_terminals};
+pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
 pub use end_surface::{EndFault, EndSurface};
 pub use error::{BlockError, FlattenFailure};
 pub use path::AxisPath;
@@ -23,4 +27,8 @@ pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
 pub use weave::{WeaveCost, weave};
 
 #[cfg(test)]
+mod connector_tests;
+#[cfg(test)]
 mod fixtures;
+#[cfg(test)]
+mod trim_tests;

@@ -153,7 +153,8 @@ fn neighbour(handle: u32) -> u32 {
 }
 
 fn inside(ground: &Ground, tet: u32, section: &Section, reach: Reach) -> bool {
-    let sum = ground.tets[tet as usize].iter().map(|&v| ground.points[v as usize].coords).sum::<crate::geometry::Vec3>();
+    let sum =
+        ground.tets[tet as usize].iter().map(|&v| ground.points[v as usize].coords).sum::<crate::geometry::Vec3>();
     let d = sum / 4.0 - section.origin.coords;
     let height = d.dot(&section.axis);
     height > -reach.depth && (d - section.axis * height).norm() < reach.lateral

@@ -1,0 +1,168 @@
+//! Connector surfaces between synthetic and trimmed end surfaces.
+
+use super::fixtures::{direction, jitter, lattice_tube, neighbours, section};
+use super::rings::chord_factor;
+use super::trim_tests::closed_euler;
+use super::{
+    ConnectorEnd, ConnectorSurface, CutEnd, Division, EndSurface, TrimOptions, connector_surface, trim, weave,
+};
+use crate::geometry::{Point3, Section, Tube, Vec3};
+use crate::mesh::TriMesh;
+use crate::mesh::quality::triangle_min_angle;
+use crate::partition::CutId;
+
+/// A fan-shaped end surface: `n` rim vertices of a circle, raised and turned by up to `noise` steps.
+fn fan(at: &Section, side: u8, n: usize, noise: f64, seed: u64) -> (EndSurface, Vec<Point3>) {
+    let (u, w) = at.frame();
+    let step = std::f64::consts::TAU / n as f64;
+    let mut points = vec![at.origin + at.axis * (0.1 * at.radius)];
+    for i in 0..n {
+        let id = i as u64;
+        let a = step * (i as f64 + noise * jitter(seed, 4 * id));
+        let r = at.radius * (1.0 + 0.1 * noise * jitter(seed, 4 * id + 1));
+        let z = at.radius * step * noise * jitter(seed, 4 * id + 2);
+        points.push(at.origin + (u * a.cos() + w * a.sin()) * r + at.axis * z);
+    }
+    let triangles = (0..n as u32).map(|i| [0, 1 + i, 1 + (i + 1) % n as u32]).collect();
+    let surface = EndSurface { cut: CutId(0), side, section: *at, triangles, rim: (1..=n as u32).collect() };
+    (surface, points)
+}
+
+fn flipped(s: &Section) -> Section {
+    Section { axis: -s.axis, ..*s }
+}
+
+fn join(path: &[Section], counts: [usize; 2], noise: f64, seed: u64) -> ConnectorSurface {
+    let a = fan(&path[0], 0, counts[0], noise, seed);
+    let b = fan(&flipped(&path[path.len() - 1]), 1, counts[1], noise, seed + 1);
+    let ends = [ConnectorEnd { surface: &a.0, points: &a.1 }, ConnectorEnd { surface: &b.0, points: &b.1 }];
+    let out = connector_surface(path, ends, Division::Rings(1.0)).expect("connector");
+    assert_taken_over(&out, ends);
+    out
+}
+
+/// End triangles and vertices bit for bit.
+fn assert_taken_over(out: &ConnectorSurface, ends: [ConnectorEnd; 2]) {
+    for (p, v) in out.surface.points.iter().zip(&out.shared) {
+        assert_eq!(*p, ends[v.side as usize].points[v.vertex as usize]);
+    }
+    let mut k = 0;
+    for (side, end) in ends.iter().enumerate() {
+        for t in &end.surface.triangles {
+            let copy = out.surface.triangles[k].map(|v| out.shared[v as usize]);
+            assert!(copy.iter().all(|v| usize::from(v.side) == side));
+            assert_eq!(copy.map(|v| v.vertex), [t[0], t[2], t[1]]);
+            k += 1;
+        }
+    }
+    assert_eq!(k, out.end_triangles as usize);
+    assert_eq!(closed_euler(&out.surface.triangles), Some(2));
+    assert!(volume(&out.surface) > 0.0);
+}
+
+fn volume(s: &TriMesh) -> f64 {
+    let p = |v: u32| s.points[v as usize].coords;
+    s.triangles.iter().map(|t| p(t[0]).dot(&p(t[1]).cross(&p(t[2]))) / 6.0).sum()
+}
+
+/// Smallest angle of the wall's triangles in degrees.
+fn wall_angle(c: &ConnectorSurface) -> f64 {
+    let p = |v: u32| &c.surface.points[v as usize];
+    let wall = &c.surface.triangles[c.end_triangles as usize..];
+    wall.iter().map(|t| triangle_min_angle(p(t[0]), p(t[1]), p(t[2])).to_degrees()).fold(180.0, f64::min)
+}
+
+fn straight(seed: u64, length: f64, r: [f64; 2]) -> Vec<Section> {
+    let axis = direction(seed);
+    let o = Point3::new(jitter(seed, 1), jitter(seed, 2), jitter(seed, 3));
+    vec![section(o, axis, r[0]), section(o + axis * length, axis, r[1])]
+}
+
+#[test]
+fn clean_rims_of_equal_count_give_good_walls() {
+    for seed in 0..20 {
+        let out = join(&straight(seed, 3.0, [1.0, 1.0]), [14, 14], 0.0, seed);
+        assert!(wall_angle(&out) > 35.0, "{}", wall_angle(&out));
+    }
+}
+
+#[test]
+fn ragged_rims_and_different_counts_are_joined() {
+    let mut worst = 180.0f64;
+    for seed in 0..60 {
+        let counts = [[10, 12], [8, 14], [20, 12], [9, 9]][seed as usize % 4];
+        let out = join(&straight(seed, 2.0 + (seed % 5) as f64 * 0.7, [1.0, 0.8]), counts, 0.5, seed);
+        worst = worst.min(wall_angle(&out));
+    }
+    assert!(worst > 15.0, "{worst}");
+}
+
+#[test]
+fn the_volume_of_a_long_connector_is_that_of_its_vessel() {
+    for n in [9, 12, 18] {
+        let out = join(&straight(3, 40.0, [1.0, 1.0]), [n, n], 0.0, 3);
+        let wanted = std::f64::consts::PI * 40.0;
+        let radius_error = (volume(&out.surface) / wanted).sqrt() - 1.0;
+        assert!(radius_error.abs() < 0.005, "{n}: {radius_error}");
+    }
+    assert!(chord_factor(6) > 1.06);
+}
+
+#[test]
+fn bent_and_tapered_paths_are_followed() {
+    for turn in [0.3f64, 0.8, 1.5] {
+        let bend = 3.0;
+        let path: Vec<Section> = (0..=8)
+            .map(|i| {
+                let a = turn * f64::from(i) / 8.0;
+                let o = Point3::new(bend * (1.0 - a.cos()), 0.0, bend * a.sin());
+                section(o, Vec3::new(a.sin(), 0.0, a.cos()), 1.0 - 0.03 * f64::from(i))
+            })
+            .collect();
+        let out = join(&path, [12, 10], 0.4, 7);
+        assert!(wall_angle(&out) > 15.0, "{turn}: {}", wall_angle(&out));
+    }
+}
+
+#[test]
+fn a_window_too_short_for_rings_is_woven_directly() {
+    let out = join(&straight(5, 0.4, [1.0, 1.0]), [12, 12], 0.2, 5);
+    assert_eq!(out.rings, 0);
+}
+
+#[test]
+fn trimmed_tubes_are_joined() {
+    let (mut worst, mut joined) = (180.0f64, 0);
+    for seed in 0..24 {
+        let rho = 3.0 + (seed % 3) as f64;
+        let h = 2.0 / rho;
+        let path = straight(seed, 3.0, [1.0, 1.0]);
+        let axis = path[0].axis;
+        let tube = |a: Point3, b: Point3| Tube { a, b, ra: 1.0, rb: 1.0 };
+        let lower = lattice_tube(&tube(path[0].origin - axis * 4.0, path[0].origin + axis * 1.5), h, 0.2, seed);
+        let upper = lattice_tube(&tube(path[1].origin - axis * 1.5, path[1].origin + axis * 4.0), h, 0.2, seed + 1);
+        let options = TrimOptions { edge: h, relax: true, depth: 2.0 };
+        let cut = |side, section| CutEnd { cut: CutId(0), side, section };
+        let a = trim(&lower, &neighbours(&lower), &[cut(0, path[0])], &[], &options);
+        let b = trim(&upper, &neighbours(&upper), &[cut(1, flipped(&path[1]))], &[], &options);
+        let (Ok(a), Ok(b)) = (a, b) else { continue };
+        let ends = [
+            ConnectorEnd { surface: &a.ends[0], points: &a.mesh.points },
+            ConnectorEnd { surface: &b.ends[0], points: &b.mesh.points },
+        ];
+        let Ok(out) = connector_surface(&path, ends, Division::Rings(1.0)) else { continue };
+        assert_taken_over(&out, ends);
+        joined += 1;
+        worst = worst.min(wall_angle(&out));
+    }
+    assert!(joined >= 22, "{joined}");
+    // Staircase rims, far worse than those of a contoured wall.
+    assert!(worst > 8.0, "{worst}");
+}
+
+#[test]
+fn weaving_needs_two_loops() {
+    let points = vec![Point3::origin(); 3];
+    assert!(weave(&points, &[0, 1], &[0, 1, 2], Point3::origin(), Vec3::z()).is_none());
+    assert!(weave(&points, &[0, 1, 2], &[0, 1, 2], Point3::origin(), Vec3::z()).is_none());
+}

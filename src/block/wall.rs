@@ -1,0 +1,157 @@
+//! The wall of a connector after weaving: edge flips and sliding of ring vertices until shapes stop improving.
+
+use super::path::AxisPath;
+use super::rings::RingVertex;
+use super::shape::triangle_ratio;
+use crate::geometry::{Point3, Vec3};
+use rustc_hash::FxHashMap;
+
+/// Rounds of flips and slides.
+const ROUNDS: usize = 3;
+
+/// The wall: triangles between two rims. Vertices from `first_free` on are ring vertices, whose places on the path are
+/// in `rings`.
+pub(super) struct Wall<'a> {
+    pub path: &'a AxisPath,
+    pub points: Vec<Point3>,
+    pub triangles: Vec<[u32; 3]>,
+    pub first_free: u32,
+    pub rings: Vec<RingVertex>,
+}
+
+impl Wall<'_> {
+    /// Improves the wall. The rims' edges and vertices stay.
+    pub(super) fn improve(&mut self) {
+        for _ in 0..ROUNDS {
+            let flips = self.flip();
+            let slides = self.slide();
+            if flips + slides == 0 {
+                break;
+            }
+        }
+    }
+
+    fn at(&self, v: u32) -> Point3 {
+        self.points[v as usize]
+    }
+
+    /// Radius ratio, negative when the triangle faces the axis.
+    fn shape(&self, t: [u32; 3]) -> f64 {
+        let p = t.map(|v| self.at(v));
+        let normal = (p[1] - p[0]).cross(&(p[2] - p[0]));
+        let radial: Vec3 = t.iter().map(|&v| self.radial(v)).sum();
+        let cosine = normal.dot(&radial) / (normal.norm() * radial.norm()).max(f64::MIN_POSITIVE);
+        triangle_ratio(&p) * (cosine / 0.7).min(1.0)
+    }
+
+    /// Direction from the axis to a vertex, roughly.
+    fn radial(&self, v: u32) -> Vec3 {
+        let s = if v >= self.first_free {
+            self.rings[(v - self.first_free) as usize].s
+        } else {
+            let from_start = self.at(v) - self.path.at(0.0).origin;
+            let from_end = self.at(v) - self.path.at(self.path.length()).origin;
+            if from_start.norm_squared() <= from_end.norm_squared() {
+                from_start.dot(&self.path.at(0.0).axis)
+            } else {
+                self.path.length() + from_end.dot(&self.path.at(self.path.length()).axis)
+            }
+        };
+        (self.at(v) - self.path.at(s).origin).normalize()
+    }
+
+    /// Flips edges where that makes the worse of the two triangles better.
+    fn flip(&mut self) -> usize {
+        let mut owner: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+        for (i, t) in self.triangles.iter().enumerate() {
+            for k in 0..3 {
+                owner.insert((t[k], t[(k + 1) % 3]), i as u32);
+            }
+        }
+        let mut flips = 0;
+        for i in 0..self.triangles.len() {
+            for k in 0..3 {
+                let t = self.triangles[i];
+                let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+                let Some(&j) = owner.get(&(b, a)) else { continue };
+                let u = self.triangles[j as usize];
+                let Some(d) = u.iter().copied().find(|&v| v != a && v != b) else { continue };
+                if c == d || owner.contains_key(&(c, d)) || owner.contains_key(&(d, c)) {
+                    continue;
+                }
+                let (first, second) = ([a, d, c], [d, b, c]);
+                let before = self.shape(t).min(self.shape(u));
+                if self.shape(first).min(self.shape(second)) <= before + 1e-3 {
+                    continue;
+                }
+                owner.remove(&(a, b));
+                owner.remove(&(b, a));
+                for (at, t) in [(i as u32, first), (j, second)] {
+                    self.triangles[at as usize] = t;
+                    for k in 0..3 {
+                        owner.insert((t[k], t[(k + 1) % 3]), at);
+                    }
+                }
+                flips += 1;
+            }
+        }
+        flips
+    }
+
+    /// Slides ring vertices along the tube towards their neighbours' mean where that makes the worst triangle at the
+    /// vertex better.
+    fn slide(&mut self) -> usize {
+        let n = self.rings.len();
+        let mut stars: Vec<Vec<u32>> = vec![Vec::new(); n];
+        for (i, t) in self.triangles.iter().enumerate() {
+            for &v in t.iter().filter(|&&v| v >= self.first_free) {
+                stars[(v - self.first_free) as usize].push(i as u32);
+            }
+        }
+        let mut slides = 0;
+        for _ in 0..3 {
+            for (k, star) in stars.iter().enumerate() {
+                slides += usize::from(self.slide_vertex(k, star));
+            }
+        }
+        slides
+    }
+
+    fn slide_vertex(&mut self, k: usize, star: &[u32]) -> bool {
+        if star.is_empty() {
+            return false;
+        }
+        let v = self.first_free + k as u32;
+        let (from, place) = (self.at(v), self.rings[k]);
+        let mut mean = Vec3::zeros();
+        for &t in star {
+            for &w in self.triangles[t as usize].iter().filter(|&&w| w != v) {
+                mean += self.at(w) - from;
+            }
+        }
+        mean /= 2.0 * star.len() as f64;
+        let before = self.worst(star);
+        let frame = self.path.at(place.s);
+        let (radial, sine) = (place.theta.cos(), place.theta.sin());
+        let tangent = frame.w * radial - frame.u * sine;
+        for share in [1.0, 0.5] {
+            let next = RingVertex {
+                s: place.s + share * mean.dot(&frame.axis),
+                theta: place.theta + share * mean.dot(&tangent) / place.distance,
+                distance: place.distance,
+            };
+            self.points[v as usize] = self.path.at(next.s).point(next.theta, next.distance);
+            self.rings[k] = next;
+            if self.worst(star) > before + 1e-3 {
+                return true;
+            }
+        }
+        self.points[v as usize] = from;
+        self.rings[k] = place;
+        false
+    }
+
+    fn worst(&self, star: &[u32]) -> f64 {
+        star.iter().map(|&t| self.shape(self.triangles[t as usize])).fold(1.0, f64::min)
+    }
+}
