@@ -55,7 +55,7 @@ impl Improver {
         if self.lift_corners(t) {
             return true;
         }
-        if self.contract_corner(t) {
+        if !self.options.keep_points && self.contract_corner(t) {
             self.report.contracted += 1;
             return true;
         }
@@ -241,7 +241,10 @@ impl Improver {
     /// Whether every vertex that the cavity swallows may go.
     fn keeps_all(&self, k: &Cavity) -> bool {
         let on_outline = |v: u32| k.faces.iter().any(|f| f.contains(&v));
-        k.tets.iter().flat_map(|&t| self.c.verts(t)).all(|v| on_outline(v) || self.movable[v as usize])
+        k.tets
+            .iter()
+            .flat_map(|&t| self.c.verts(t))
+            .all(|v| on_outline(v) || (!self.options.keep_points && self.movable[v as usize]))
     }
 
     /// Exchanges `k.tets` for `k.new`.

@@ -30,6 +30,8 @@ pub struct OptimizeOptions {
     pub flip_below: f64,
     /// Vertices are inserted and contracted where tetrahedra stay below this radius ratio.
     pub stubborn_below: f64,
+    /// Every point keeps its index: none is removed, new ones come after all others.
+    pub keep_points: bool,
     /// Upper limit of attempted changes, per tetrahedron of the mesh that comes in.
     pub attempts_per_tet: usize,
 }
@@ -42,6 +44,7 @@ impl Default for OptimizeOptions {
             smooth_below: 0.75,
             flip_below: 0.5,
             stubborn_below: 0.3,
+            keep_points: false,
             attempts_per_tet: 20,
         }
     }
@@ -67,15 +70,17 @@ pub struct OptimizeReport {
 }
 
 /// Improves a mesh; its boundary faces and fixed points stay. Points that are not fixed may be moved, added, removed
-/// and renumbered; those that no tetrahedron uses are dropped.
+/// and renumbered (unless `keep_points` says otherwise); those that no tetrahedron uses are dropped.
 ///
 /// # Errors
 /// When the arrays are not a mesh of positive, conforming tetrahedra; the mesh is then unchanged.
 pub fn optimize(mesh: &mut TetMesh, options: &OptimizeOptions) -> Result<OptimizeReport, ComplexError> {
+    let count = mesh.points.len();
     let mut complex = Complex::from_mesh(mesh.points.clone(), &mesh.tets)?;
     let report = optimize_complex(&mut complex, options);
     *mesh = complex.into_mesh();
-    drop_unused_points(mesh, options.fixed_points);
+    let kept = if options.keep_points { count } else { options.fixed_points };
+    drop_unused_points(mesh, kept);
     Ok(report)
 }
 

@@ -1,0 +1,197 @@
+//! Smoothing of the joints (3.2.4 of the paper): first the wall around the rim of an end surface by Taubin's steps, then
+//! the cells inside with the wall fixed.
+//!
+//! Each joint owns the tetrahedra within a few rings of its end surface; where two joints are close, the rings meet
+//! half-way. What is owned by different joints is disjoint, vertices shared with others do not move, so joints are
+//! worked on in parallel and the result does not depend on the number of threads.
+
+mod region;
+mod wall;
+
+use rayon::prelude::*;
+
+use crate::mesh::TetMesh;
+use crate::mesh::smooth::Taubin;
+use region::Region;
+
+/// One end surface at which two blocks meet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Joint {
+    /// Its vertices, rim and inside, as indices into the whole mesh.
+    pub vertices: Vec<u32>,
+}
+
+/// How joints are smoothed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointOptions {
+    /// Rings of tetrahedra around an end surface that belong to its joint. Vertices one ring further in may move.
+    pub rings: u8,
+    /// Taubin's steps for the wall.
+    pub taubin: Taubin,
+    /// Wall vertices are moved along the wall when a tetrahedron around them has a radius ratio below this.
+    pub lift_below: f64,
+    /// Rounds of wall and inside.
+    pub rounds: usize,
+}
+
+impl Default for JointOptions {
+    fn default() -> Self {
+        Self { rings: 4, taubin: Taubin { iterations: 3, ..Taubin::default() }, lift_below: 0.4, rounds: 2 }
+    }
+}
+
+/// What was done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct JointReport {
+    /// Joints that were given.
+    pub joints: usize,
+    /// Tetrahedra that belong to a joint.
+    pub tets: usize,
+    /// Moves of wall vertices.
+    pub wall_moves: usize,
+    /// Joints whose inside could not be improved because a tetrahedron there was not positive or did not conform.
+    pub refused: usize,
+    /// Smallest radius ratio in the joints before; infinite without joints.
+    pub worst_before: f64,
+    /// Smallest radius ratio in the joints after.
+    pub worst_after: f64,
+}
+
+/// Improves the inside of a mesh whose first so many points, and whose boundary faces, stay. All points keep their
+/// index; new ones may be appended. False when the mesh could not be improved and is unchanged.
+///
+/// The tetrahedralizer's optimiser is such a function; it is passed in because the stitching does not know it.
+pub type Improve<'a> = dyn Fn(&mut TetMesh, usize) -> bool + Sync + 'a;
+
+/// Smooths the joints of a merged mesh.
+///
+/// `tet_block` holds the block of each tetrahedron and is kept up: a tetrahedron that stays keeps its block, one that
+/// is new takes the block to which most of the former tetrahedra around its vertices belong (the smaller index where two
+/// are equal). Vertices for which `frozen` is true (those of caps) do not move, nor do boundary faces change. Points
+/// keep their index; new ones are appended.
+///
+/// No tetrahedron is inverted, by the exact predicate; a move of the wall is made only if the worst radius ratio around
+/// does not fall, or stays above both that of the whole joint and `options.lift_below`.
+pub fn smooth_joints(
+    mesh: &mut TetMesh,
+    tet_block: &mut Vec<i32>,
+    joints: &[Joint],
+    frozen: &[bool],
+    options: &JointOptions,
+    improve: &Improve,
+) -> JointReport {
+    let owned = owned_tets(mesh, joints, options.rings);
+    let degree = degrees(mesh);
+    let whole = &*mesh;
+    let blocks = &*tet_block;
+    let results: Vec<(Region, JointReport)> = owned
+        .par_iter()
+        .filter(|tets| !tets.is_empty())
+        .map(|tets| {
+            let mut region = Region::new(whole, blocks, tets, &degree, frozen);
+            let report = smooth_region(&mut region, options, improve);
+            (region, report)
+        })
+        .collect();
+    let mut report = JointReport {
+        joints: joints.len(),
+        worst_before: f64::INFINITY,
+        worst_after: f64::INFINITY,
+        ..JointReport::default()
+    };
+    let mut gaps = Vec::new();
+    for (region, one) in results {
+        report.tets += one.tets;
+        report.wall_moves += one.wall_moves;
+        report.refused += one.refused;
+        report.worst_before = report.worst_before.min(one.worst_before);
+        report.worst_after = report.worst_after.min(one.worst_after);
+        region.write_back(mesh, tet_block, &mut gaps);
+    }
+    close_gaps(mesh, tet_block, &mut gaps);
+    report
+}
+
+fn smooth_region(region: &mut Region, options: &JointOptions, improve: &Improve) -> JointReport {
+    let mut report =
+        JointReport { tets: region.mesh.tets.len(), worst_before: region.worst(), ..JointReport::default() };
+    for round in 0..options.rounds {
+        let mut walls = wall::Walls::new(region);
+        let mut moves = 0;
+        if round == 0 {
+            moves += walls.taubin(region, &options.taubin, options.lift_below);
+        }
+        moves += walls.lift(region, options.lift_below);
+        report.wall_moves += moves;
+        if round > 0 && moves == 0 {
+            break;
+        }
+        if !region.improve(improve) {
+            report.refused = 1;
+            break;
+        }
+    }
+    report.worst_after = region.worst();
+    report
+}
+
+/// For each joint the tetrahedra that it owns: those of whose vertices all lie within `rings` edges of some joint, and
+/// the nearest vertex nearest to this one.
+fn owned_tets(mesh: &TetMesh, joints: &[Joint], rings: u8) -> Vec<Vec<u32>> {
+    const FAR: (u8, u32) = (u8::MAX, u32::MAX);
+    // Distance in edges, and the joint with the smallest index among the nearest.
+    let mut nearest = vec![FAR; mesh.points.len()];
+    for (j, joint) in joints.iter().enumerate() {
+        for &v in &joint.vertices {
+            let slot = &mut nearest[v as usize];
+            *slot = (*slot).min((0, j as u32));
+        }
+    }
+    for ring in 0..rings.min(u8::MAX - 1) {
+        for t in &mesh.tets {
+            let Some(owner) = t.iter().map(|&v| nearest[v as usize]).filter(|n| n.0 == ring).min() else { continue };
+            for &v in t {
+                let slot = &mut nearest[v as usize];
+                *slot = (*slot).min((ring + 1, owner.1));
+            }
+        }
+    }
+    let mut owned = vec![Vec::new(); joints.len()];
+    for (t, corners) in mesh.tets.iter().enumerate() {
+        let near = corners.map(|v| nearest[v as usize]);
+        if near.iter().all(|n| n.0 <= rings) {
+            let owner = near.into_iter().min().unwrap_or(FAR).1;
+            owned[owner as usize].push(t as u32);
+        }
+    }
+    owned
+}
+
+/// Number of tetrahedra around each vertex.
+fn degrees(mesh: &TetMesh) -> Vec<u32> {
+    let mut degree = vec![0; mesh.points.len()];
+    for &v in mesh.tets.iter().flatten() {
+        degree[v as usize] += 1;
+    }
+    degree
+}
+
+/// Removes the tetrahedra listed in `gaps`, keeping the order of the others.
+fn close_gaps(mesh: &mut TetMesh, tet_block: &mut Vec<i32>, gaps: &mut [u32]) {
+    gaps.sort_unstable();
+    let mut next_gap = gaps.iter().copied().peekable();
+    let mut kept = 0;
+    for t in 0..mesh.tets.len() {
+        if next_gap.next_if_eq(&(t as u32)).is_some() {
+            continue;
+        }
+        mesh.tets[kept] = mesh.tets[t];
+        tet_block[kept] = tet_block[t];
+        kept += 1;
+    }
+    mesh.tets.truncate(kept);
+    tet_block.truncate(kept);
+}
+
+#[cfg(test)]
+mod tests;
