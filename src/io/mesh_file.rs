@@ -2,7 +2,7 @@
 
 use super::atomic::AtomicFile;
 use super::vtk_xml::VtkError;
-use super::vtu;
+use super::{msh, vtu};
 use crate::mesh::VolumeMesh;
 use crate::mesh::check::Expectation;
 use std::io::{self, Cursor, Seek, Write};
@@ -121,6 +121,27 @@ pub enum ContentFault {
         /// The first such cell.
         cell: usize,
     },
+    /// The file ends before it is complete.
+    #[error("the file ends too early: it was not written or copied completely")]
+    CutShort,
+    /// Something else stands where a number or name has to be.
+    #[error("no number or name of the format before byte {byte}")]
+    BadNumber {
+        /// Where.
+        byte: usize,
+    },
+    /// Two nodes have the same tag.
+    #[error("two nodes have the tag {tag}")]
+    RepeatedTag {
+        /// The tag.
+        tag: u64,
+    },
+    /// A version of the format that is not read.
+    #[error("version {version} of the format is not supported; Gmsh writes 4.1 with -format msh41")]
+    UnsupportedVersion {
+        /// The version.
+        version: String,
+    },
     /// There are cells that are neither tetrahedra nor triangles.
     #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]
     UnsupportedCell {
@@ -148,7 +169,7 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
 pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, ContentFault> {
     match format {
         MeshFormat::Vtu => vtu::read_vtu(bytes),
-        MeshFormat::Msh => Err(ContentFault::Missing { what: "MeshFormat" }),
+        MeshFormat::Msh => msh::read_msh(bytes),
     }
 }
 
@@ -194,6 +215,6 @@ fn write_format(
 ) -> io::Result<()> {
     match format {
         MeshFormat::Vtu => vtu::write_vtu(out, mesh, notes),
-        MeshFormat::Msh => Err(io::Error::from(io::ErrorKind::Unsupported)),
+        MeshFormat::Msh => msh::write_msh(out, mesh, notes),
     }
 }

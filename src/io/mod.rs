@@ -2,6 +2,8 @@
 
 mod atomic;
 pub mod mesh_file;
+pub mod msh;
+mod msh_read;
 pub mod network;
 pub mod vtk_xml;
 pub mod vtu;
