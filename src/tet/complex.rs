@@ -135,6 +135,29 @@ impl Complex {
         Self { points, vertex_tet: vec![NONE; n], ..Self::default() }
     }
 
+    /// Makes room for `tets` tetrahedra.
+    pub fn reserve(&mut self, tets: usize) {
+        self.verts.reserve(tets);
+        self.mates.reserve(tets);
+        self.frozen.reserve(tets);
+    }
+
+    /// The same complex over other points: vertex `v` becomes `order[v]`, a permutation.
+    pub(super) fn renumbered(mut self, points: Vec<Point3>, order: &[u32]) -> Self {
+        for v in self.verts.iter_mut().flatten() {
+            if let Some(&new) = order.get(*v as usize) {
+                *v = new;
+            }
+        }
+        let mut vertex_tet = vec![NONE; points.len()];
+        for (&new, &t) in order.iter().zip(&self.vertex_tet) {
+            vertex_tet[new as usize] = t;
+        }
+        self.vertex_tet = vertex_tet;
+        self.points = points;
+        self
+    }
+
     /// Glues tetrahedra and closes their boundary with ghosts. The boundary may be any shape, also one that touches
     /// itself in edges or vertices.
     ///
@@ -331,6 +354,12 @@ impl Complex {
         self.points.push(p);
         self.vertex_tet.push(NONE);
         self.points.len() as u32 - 1
+    }
+
+    /// Takes back the point added last, which no tetrahedron may have.
+    pub(super) fn pop_point(&mut self) {
+        self.points.pop();
+        self.vertex_tet.pop();
     }
 
     /// Takes a slot for a tetrahedron, unglued.

@@ -1,0 +1,95 @@
+//! Delaunay tetrahedralization: incremental insertion along a Hilbert curve in random rounds (Amenta, Choi, Rote,
+//! 'Incremental constructions con BRIO', 2003), location by walking, Bowyer–Watson cavities, all decided exactly.
+//!
+//! Cospherical points are decided by a symbolic perturbation of their lifts (Devillers, Teillaud, 'Perturbations and
+//! Delaunay triangulations in 3D', 2003), which depends on coordinates alone: the answer is unique, whatever the order
+//! of the points, and has no flat tetrahedra.
+
+mod insert;
+mod perturb;
+
+use super::complex::Complex;
+use super::error::TetError;
+use crate::geometry::Point3;
+use crate::geometry::hilbert::hilbert_keys;
+use crate::geometry::predicates::{collinear, in_exact_range, orient3d};
+use insert::Inserter;
+pub use perturb::in_sphere_perturbed;
+
+/// The Delaunay tetrahedralization of points, with ghosts around their convex hull. Vertices are numbered as the
+/// points are.
+///
+/// # Errors
+/// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`].
+pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
+    validate(points)?;
+    let order = brio(points);
+    let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
+    let mut inserter = Inserter::new(sorted);
+    let seed = seed_tet(inserter.points()).ok_or(TetError::Flat)?;
+    inserter.start(seed);
+    let mut duplicates: Vec<(u32, u32)> = Vec::new();
+    for v in 0..order.len() as u32 {
+        if !seed.contains(&v)
+            && let Err(twin) = inserter.insert(v)
+        {
+            let (a, b) = (order[v as usize], order[twin as usize]);
+            duplicates.push((a.min(b), a.max(b)));
+        }
+    }
+    duplicates.sort_unstable();
+    if let Some(&(first, second)) = duplicates.first() {
+        let position = points[first as usize];
+        return Err(TetError::DuplicatePoints { first, second, position, count: duplicates.len() });
+    }
+    Ok(inserter.finish(points.to_vec(), &order))
+}
+
+fn validate(points: &[Point3]) -> Result<(), TetError> {
+    if points.is_empty() {
+        return Err(TetError::Empty { points: 0, triangles: 0 });
+    }
+    // Half-faces are numbered 4 × tetrahedron + face in a `u32`; there are about seven tetrahedra to a point.
+    if points.len() > (u32::MAX / 64) as usize {
+        return Err(TetError::TooLarge { points: points.len() });
+    }
+    match points.iter().position(|p| !p.iter().all(|&x| in_exact_range(x))) {
+        Some(i) => Err(TetError::OutOfRange { point: i as u32, position: points[i] }),
+        None => Ok(()),
+    }
+}
+
+/// Order of insertion: rounds of doubling size, chosen by a hash of the index, each along the Hilbert curve.
+fn brio(points: &[Point3]) -> Vec<u32> {
+    let keys = hilbert_keys(points);
+    let rounds = points.len().max(2).ilog2().saturating_sub(6);
+    let mut order: Vec<(u32, u64, u32)> = (0..points.len() as u32)
+        .map(|i| {
+            let coins = hash(u64::from(i)).trailing_zeros().min(rounds);
+            (rounds - coins, keys[i as usize], i)
+        })
+        .collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, _, i)| i).collect()
+}
+
+/// A well-mixed function of an integer (splitmix64).
+pub(super) fn hash(x: u64) -> u64 {
+    let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// Four points that span a positive tetrahedron, the first such in order.
+fn seed_tet(p: &[Point3]) -> Option<[u32; 4]> {
+    let b = (1..p.len()).find(|&i| p[i] != p[0])?;
+    let c = (b + 1..p.len()).find(|&i| !collinear(&p[0], &p[b], &p[i]))?;
+    let d = (b + 1..p.len()).find(|&i| orient3d(&p[0], &p[b], &p[c], &p[i]) != 0.0)?;
+    let flip = orient3d(&p[0], &p[b], &p[c], &p[d]) < 0.0;
+    let (b, c, d) = (b as u32, c as u32, d as u32);
+    Some(if flip { [0, c, b, d] } else { [0, b, c, d] })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,40 @@
+//! The in-sphere test without ties.
+
+use crate::geometry::Point3;
+use crate::geometry::predicates::{insphere, orient3d};
+use std::cmp::Ordering;
+
+/// Whether `e` lies inside the sphere through the positive tetrahedron `p`. When all five lie on one sphere, the lift
+/// of each is raised by an infinitesimal, larger by orders of magnitude the later the point comes in lexicographic
+/// order; points must be distinct. Exact.
+#[inline]
+pub fn in_sphere_perturbed(p: [&Point3; 4], e: &Point3) -> bool {
+    let s = insphere(p[0], p[1], p[2], p[3], e);
+    if s == 0.0 { tie(p, e) } else { s > 0.0 }
+}
+
+/// The in-sphere determinant is linear in the lifts; its coefficient of a point's lift is the orientation of the other
+/// four. The first that is not zero, from the largest perturbation down, decides. That of `e` never is zero, since
+/// `p` is positive, so the search ends there at the latest.
+#[cold]
+fn tie(p: [&Point3; 4], e: &Point3) -> bool {
+    let mut all = [(p[0], 0), (p[1], 1), (p[2], 2), (p[3], 3), (e, 4)];
+    all.sort_unstable_by(|a, b| lexicographic(b.0, a.0));
+    for (_, i) in all {
+        if i == 4 {
+            // Raised above the others, e lies outside.
+            return false;
+        }
+        let mut q = p;
+        q[i] = e;
+        let o = orient3d(q[0], q[1], q[2], q[3]);
+        if o != 0.0 {
+            return o > 0.0;
+        }
+    }
+    false
+}
+
+fn lexicographic(a: &Point3, b: &Point3) -> Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
+}

@@ -1,0 +1,161 @@
+//! Steiner points: a new vertex in a cavity that respects what is frozen.
+
+use super::Recovery;
+use super::march::{Crossing, first_crossing, piercing_edge};
+use crate::geometry::Point3;
+use crate::geometry::predicates::{insphere, orient3d};
+use crate::tet::complex::{Complex, GHOST, face_of};
+use crate::tet::delaunay::hash;
+use crate::tet::input::SurfaceEdges;
+
+/// Largest cavity.
+const MAX_CAVITY: usize = 256;
+
+/// Digs cavities for single points; keeps its buffers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cavity {
+    tets: Vec<u32>,
+    new: Vec<[u32; 4]>,
+    created: Vec<u32>,
+}
+
+impl Cavity {
+    /// Inserts `p`, which lies strictly inside tetrahedron `t`. The cavity does not cross frozen faces, keeps the edges
+    /// of the surface and loses no vertex. Returns the new vertex.
+    pub(super) fn insert(&mut self, c: &mut Complex, edges: &SurfaceEdges, t: u32, p: Point3) -> Option<u32> {
+        let inside = (0..4).all(|i| sees(c, &face_of(&c.verts(t), i), &p));
+        if !inside {
+            return None;
+        }
+        self.dig(c, t, &p);
+        while let Some(bad) = self.flaw(c, edges, &p) {
+            if bad == t {
+                self.tets.clear();
+                self.tets.push(t);
+                break;
+            }
+            self.tets.retain(|&x| x != bad);
+        }
+        let v = c.points.len() as u32;
+        self.new.clear();
+        for &x in &self.tets {
+            for i in 0..4u32 {
+                let half = 4 * x + i;
+                if !self.tets.contains(&(c.mate(half) >> 2)) {
+                    let [a, b, d] = c.face(half);
+                    self.new.push([a, d, b, v]);
+                }
+            }
+        }
+        c.add_point(p);
+        if c.replace(&self.tets, &self.new, &mut self.created) {
+            Some(v)
+        } else {
+            c.pop_point();
+            None
+        }
+    }
+
+    fn dig(&mut self, c: &Complex, t: u32, p: &Point3) {
+        self.tets.clear();
+        self.tets.push(t);
+        let mut head = 0;
+        while head < self.tets.len() && self.tets.len() < MAX_CAVITY {
+            let cur = self.tets[head];
+            head += 1;
+            for i in 0..4 {
+                let half = 4 * cur + i;
+                let n = c.mate(half) >> 2;
+                if c.is_frozen(half) || c.is_ghost(n) || self.tets.contains(&n) {
+                    continue;
+                }
+                let [a, b, d, e] = c.verts(n).map(|v| &c.points[v as usize]);
+                if insphere(a, b, d, e, p) > 0.0 {
+                    self.tets.push(n);
+                }
+            }
+        }
+    }
+
+    /// A tetrahedron that must leave the cavity: one with a wall that `p` does not see, or one that hides a vertex or
+    /// an edge of the surface inside the cavity.
+    fn flaw(&self, c: &Complex, edges: &SurfaceEdges, p: &Point3) -> Option<u32> {
+        let mut walls: Vec<[u32; 3]> = Vec::new();
+        for &x in &self.tets {
+            for i in 0..4u32 {
+                let half = 4 * x + i;
+                if !self.tets.contains(&(c.mate(half) >> 2)) {
+                    let f = c.face(half);
+                    if !sees(c, &f, p) {
+                        return Some(x);
+                    }
+                    walls.push(f);
+                }
+            }
+        }
+        self.tets.iter().rev().copied().find(|&x| {
+            let v = c.verts(x);
+            let hidden = v.iter().any(|y| !walls.iter().any(|w| w.contains(y)));
+            hidden
+                || (0..4).any(|i| {
+                    (0..i).any(|j| {
+                        edges.contains(v[i], v[j]) && !walls.iter().any(|w| w.contains(&v[i]) && w.contains(&v[j]))
+                    })
+                })
+        })
+    }
+}
+
+/// Whether `p` lies strictly behind a face that runs counter-clockwise seen from its front.
+fn sees(c: &Complex, f: &[u32; 3], p: &Point3) -> bool {
+    if f.contains(&GHOST) {
+        return false;
+    }
+    let [a, b, d] = f.map(|v| &c.points[v as usize]);
+    orient3d(a, b, d, p) < 0.0
+}
+
+impl Recovery<'_> {
+    /// Puts a point into a tetrahedron that blocks each of the lost edges, or else each of the lost triangles.
+    pub(super) fn add_steiner_points(&mut self, edges: &[[u32; 2]], triangles: &[u32], round: u32) -> usize {
+        let mut added = 0;
+        if edges.is_empty() {
+            for &f in triangles {
+                let mut tri = self.surface.triangles[f as usize];
+                tri.rotate_left(round as usize % 3);
+                if let Some((t, _, _)) = piercing_edge(self.c, &mut self.star, &mut self.ring, tri) {
+                    added += usize::from(self.insert_in(t, round));
+                }
+            }
+        }
+        for &[a, b] in edges {
+            let (a, b) = if round.is_multiple_of(2) { (a, b) } else { (b, a) };
+            match first_crossing(self.c, &mut self.star, a, b) {
+                Crossing::Face(half) => {
+                    let t = if round % 4 < 2 { self.c.mate(half) >> 2 } else { half >> 2 };
+                    added += usize::from(self.insert_in(t, round));
+                }
+                Crossing::Edge(t, _, _) => added += usize::from(self.insert_in(t, round)),
+                _ => {}
+            }
+        }
+        added
+    }
+
+    /// Inserts a point somewhere inside `t`, other places in other rounds.
+    fn insert_in(&mut self, t: u32, round: u32) -> bool {
+        if self.c.is_ghost(t) {
+            return false;
+        }
+        let v = self.c.verts(t);
+        let mut sum = 0.0;
+        let mut p = crate::geometry::Vec3::zeros();
+        for (k, x) in v.iter().enumerate() {
+            let coin = hash(u64::from(round) * 4 + k as u64 + (u64::from(*x) << 20)) >> 40;
+            let w = 1.0 + coin as f64 / (1u64 << 24) as f64;
+            p += self.c.points[*x as usize].coords * w;
+            sum += w;
+        }
+        self.cavity.insert(self.c, self.edges, t, Point3::from(p / sum)).is_some()
+    }
+}

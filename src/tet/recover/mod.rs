@@ -1,0 +1,225 @@
+//! Recovery: every edge and triangle of the surface becomes an edge and face of the complex.
+//!
+//! What the Delaunay tetrahedralization already has is frozen first. Missing edges are then recovered by flipping away
+//! what crosses them, missing triangles by removing the edges that pierce them; where flips are stuck, a Steiner point
+//! off the surface gives them room. Each tier has a work budget. What is left over goes to the caller's next tier.
+
+mod blocked;
+mod cavity;
+mod march;
+
+use super::complex::Complex;
+use super::flips::{Flipper, Refusal};
+use super::input::SurfaceEdges;
+use super::star::{EdgeRing, Star};
+use crate::mesh::TriMesh;
+use cavity::Cavity;
+use march::{Crossing, first_crossing, piercing_edge};
+
+/// Depth to which a flip that is blocked may clear its way by others.
+const DEPTH: u32 = 3;
+
+/// Flips tried for one edge or triangle before it is given up for the round.
+const BUDGET: u32 = 400;
+
+/// Rounds of Steiner points.
+const ROUNDS: u32 = 12;
+
+/// What recovery did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecoverySummary {
+    /// Edges that the Delaunay tetrahedralization lacked.
+    pub missing_edges: usize,
+    /// Triangles that it lacked.
+    pub missing_triangles: usize,
+    /// Steiner points added, on either side of the surface.
+    pub steiner_points: usize,
+}
+
+/// What recovery could not recover.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Unrecovered {
+    pub edges: Vec<[u32; 2]>,
+    pub triangles: Vec<u32>,
+}
+
+/// Recovers all of the surface in `c`, whose first vertices are the surface's points; freezes its faces.
+pub(super) fn recover(
+    c: &mut Complex,
+    surface: &TriMesh,
+    edges: &SurfaceEdges,
+) -> Result<RecoverySummary, Unrecovered> {
+    let mut r = Recovery {
+        c,
+        surface,
+        edges,
+        star: Star::default(),
+        flipper: Flipper::default(),
+        ring: EdgeRing::default(),
+        cavity: Cavity::default(),
+        budget: 0,
+    };
+    let mut summary = RecoverySummary::default();
+    let (mut lost_edges, mut lost_faces) = r.survey();
+    summary.missing_edges = lost_edges.len();
+    summary.missing_triangles = lost_faces.len();
+    for round in 0..=ROUNDS {
+        lost_edges.retain(|&e| !r.recover_edge(e));
+        if lost_edges.is_empty() {
+            lost_faces.retain(|&f| !r.recover_face(f));
+        } else {
+            r.freeze_present(&mut lost_faces);
+        }
+        if lost_edges.is_empty() && lost_faces.is_empty() {
+            return Ok(summary);
+        }
+        if round < ROUNDS {
+            summary.steiner_points += r.add_steiner_points(&lost_edges, &lost_faces, round);
+        }
+    }
+    Err(Unrecovered { edges: lost_edges, triangles: lost_faces })
+}
+
+struct Recovery<'a> {
+    c: &'a mut Complex,
+    surface: &'a TriMesh,
+    edges: &'a SurfaceEdges,
+    star: Star,
+    flipper: Flipper,
+    ring: EdgeRing,
+    cavity: Cavity,
+    budget: u32,
+}
+
+impl Recovery<'_> {
+    /// Freezes the triangles that are faces; returns the edges and triangles that are missing.
+    fn survey(&mut self) -> (Vec<[u32; 2]>, Vec<u32>) {
+        let n = self.surface.points.len();
+        let mut first = vec![0u32; n + 1];
+        let lowest = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]) as usize;
+        for t in &self.surface.triangles {
+            first[lowest(t) + 1] += 1;
+        }
+        for v in 0..n {
+            first[v + 1] += first[v];
+        }
+        let mut at = first.clone();
+        let mut by_lowest = vec![0u32; self.surface.triangles.len()];
+        for (i, t) in self.surface.triangles.iter().enumerate() {
+            let slot = &mut at[lowest(t)];
+            by_lowest[*slot as usize] = i as u32;
+            *slot += 1;
+        }
+        let mut seen = vec![u32::MAX; self.c.points.len()];
+        let (mut lost_edges, mut lost_faces, mut found) = (Vec::new(), Vec::new(), Vec::new());
+        for v in 0..n as u32 {
+            let triangles = &by_lowest[first[v as usize] as usize..first[v as usize + 1] as usize];
+            let edges = self.edges.from(v);
+            if triangles.is_empty() && edges.is_empty() {
+                continue;
+            }
+            found.clear();
+            for &t in self.star.around(self.c, v) {
+                let w = self.c.verts(t);
+                for x in w {
+                    if let Some(s) = seen.get_mut(x as usize) {
+                        *s = v;
+                    }
+                }
+                for &i in triangles {
+                    let tri = self.surface.triangles[i as usize];
+                    if tri.iter().all(|x| w.contains(x))
+                        && let Some(k) = (0..4).find(|&k| !tri.contains(&w[k]))
+                    {
+                        found.push((i, 4 * t + k as u32));
+                    }
+                }
+            }
+            lost_edges.extend(edges.iter().filter(|e| seen[e[1] as usize] != v));
+            for &i in triangles {
+                match found.iter().find(|f| f.0 == i) {
+                    Some(&(_, half)) => self.c.freeze(half),
+                    None => lost_faces.push(i),
+                }
+            }
+        }
+        lost_faces.sort_unstable();
+        (lost_edges, lost_faces)
+    }
+
+    /// Freezes those of the lost triangles that have become faces meanwhile.
+    fn freeze_present(&mut self, lost: &mut Vec<u32>) {
+        lost.retain(|&f| match self.star.find_face(self.c, self.surface.triangles[f as usize]) {
+            Some(half) => {
+                self.c.freeze(half);
+                false
+            }
+            None => true,
+        });
+    }
+
+    /// Flips away what crosses an edge, from either end.
+    fn recover_edge(&mut self, [a, b]: [u32; 2]) -> bool {
+        self.budget = BUDGET;
+        let (mut from, mut to) = (a, b);
+        let mut stuck = 0;
+        while self.budget > 0 && stuck < 2 {
+            self.budget -= 1;
+            let progress = match first_crossing(self.c, &mut self.star, from, to) {
+                Crossing::Exists => return true,
+                Crossing::Face(half) => self.clear_face(half, DEPTH),
+                Crossing::Edge(t, p, q) => self.clear_edge(t, p, q, DEPTH),
+                Crossing::Vertex(_) | Crossing::Nothing => false,
+            };
+            if progress {
+                stuck = 0;
+            } else {
+                stuck += 1;
+                std::mem::swap(&mut from, &mut to);
+            }
+        }
+        matches!(first_crossing(self.c, &mut self.star, a, b), Crossing::Exists)
+    }
+
+    /// Removes the edges that pierce a triangle whose edges exist; freezes the triangle.
+    fn recover_face(&mut self, triangle: u32) -> bool {
+        let tri = self.surface.triangles[triangle as usize];
+        self.budget = BUDGET;
+        let mut stuck = 0;
+        let mut k = 0;
+        while self.budget > 0 && stuck < 3 {
+            self.budget -= 1;
+            if let Some(half) = self.star.find_face(self.c, tri) {
+                self.c.freeze(half);
+                return true;
+            }
+            let side = [tri[k % 3], tri[(k + 1) % 3], tri[(k + 2) % 3]];
+            let pierced = piercing_edge(self.c, &mut self.star, &mut self.ring, side);
+            if pierced.is_some_and(|(t, p, q)| self.clear_edge(t, p, q, DEPTH)) {
+                stuck = 0;
+            } else {
+                stuck += 1;
+                k += 1;
+            }
+        }
+        match self.star.find_face(self.c, tri) {
+            Some(half) => {
+                self.c.freeze(half);
+                true
+            }
+            None => false,
+        }
+    }
+}
+
+impl SurfaceEdges {
+    /// The edges whose smaller vertex is `v`.
+    pub(super) fn from(&self, v: u32) -> &[[u32; 2]] {
+        self.range(v).map_or(&[], |r| &self.edges[r])
+    }
+}
+
+/// Whether trying something else may help.
+fn blocked(refusal: Refusal) -> bool {
+    matches!(refusal, Refusal::NotValid | Refusal::RingTooLarge)
+}

@@ -1,0 +1,209 @@
+use super::*;
+use crate::geometry::Vec3;
+use crate::mesh::shapes::sphere_surface;
+use proptest::prelude::*;
+
+/// A tube of radius 1 along z with flat caps: `n` points around, `rings` rings, caps fanned from a centre or, without
+/// one, triangulated as a strip of their ring alone (exactly coplanar and nearly cocircular).
+pub(super) fn tube(n: u32, rings: u32, length: f64, centre: bool, direction: Vec3) -> TriMesh {
+    let w = direction.normalize();
+    let u = w.cross(&if w.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() }).normalize();
+    let v = w.cross(&u);
+    let mut s = TriMesh::default();
+    for r in 0..rings {
+        for i in 0..n {
+            let angle = f64::from(i) / f64::from(n) * std::f64::consts::TAU;
+            let z = length * f64::from(r) / f64::from(rings - 1);
+            s.points.push(Point3::from(u * angle.cos() + v * angle.sin() + w * z));
+        }
+    }
+    let at = |r: u32, i: u32| r * n + i % n;
+    for r in 0..rings - 1 {
+        for i in 0..n {
+            s.triangles.push([at(r, i), at(r, i + 1), at(r + 1, i + 1)]);
+            s.triangles.push([at(r, i), at(r + 1, i + 1), at(r + 1, i)]);
+        }
+    }
+    if centre {
+        s.points.push(Point3::origin());
+        s.points.push(Point3::from(w * length));
+        let (low, high) = (n * rings, n * rings + 1);
+        for i in 0..n {
+            s.triangles.push([low, at(0, i + 1), at(0, i)]);
+            s.triangles.push([high, at(rings - 1, i), at(rings - 1, i + 1)]);
+        }
+    } else {
+        for i in 1..n - 1 {
+            s.triangles.push([at(0, 0), at(0, i + 1), at(0, i)]);
+            s.triangles.push([at(rings - 1, 0), at(rings - 1, i), at(rings - 1, i + 1)]);
+        }
+    }
+    s
+}
+
+fn torus(n: u32, m: u32) -> TriMesh {
+    let mut s = TriMesh::default();
+    for i in 0..n {
+        for j in 0..m {
+            let (a, b) = (f64::from(i) / f64::from(n), f64::from(j) / f64::from(m));
+            let (a, b) = (a * std::f64::consts::TAU, b * std::f64::consts::TAU);
+            let r = 2.0 + 0.7 * b.cos();
+            s.points.push(Point3::new(r * a.cos(), r * a.sin(), 0.7 * b.sin()));
+        }
+    }
+    let at = |i: u32, j: u32| (i % n) * m + j % m;
+    for i in 0..n {
+        for j in 0..m {
+            s.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            s.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    s
+}
+
+fn cube(n: u32) -> TriMesh {
+    // Faces of an n-grid; diagonals all one way, so neither Delaunay tie is favoured.
+    let mut s = TriMesh::default();
+    let mut id = std::collections::BTreeMap::new();
+    let mut vertex = |p: [u32; 3], s: &mut TriMesh| {
+        *id.entry(p).or_insert_with(|| {
+            s.points.push(Point3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])));
+            s.points.len() as u32 - 1
+        })
+    };
+    for axis in 0..3 {
+        for (level, flip) in [(0, true), (n, false)] {
+            for i in 0..n {
+                for j in 0..n {
+                    let corner = |di: u32, dj: u32| {
+                        let mut p = [0; 3];
+                        p[axis] = level;
+                        p[(axis + 1) % 3] = i + di;
+                        p[(axis + 2) % 3] = j + dj;
+                        p
+                    };
+                    let [a, b, c, d] =
+                        [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)].map(|p| vertex(p, &mut s));
+                    for t in [[a, b, c], [a, c, d]] {
+                        s.triangles.push(if flip { [t[0], t[2], t[1]] } else { t });
+                    }
+                }
+            }
+        }
+    }
+    s
+}
+
+fn flipped(mut s: TriMesh) -> TriMesh {
+    for t in &mut s.triangles {
+        t.swap(1, 2);
+    }
+    s
+}
+
+fn joined(mut a: TriMesh, b: &TriMesh, scale: f64, shift: Vec3) -> TriMesh {
+    let n = a.points.len() as u32;
+    a.points.extend(b.points.iter().map(|p| Point3::from(p.coords * scale + shift)));
+    a.triangles.extend(b.triangles.iter().map(|t| t.map(|v| v + n)));
+    a
+}
+
+fn fills(s: &TriMesh) -> TetMesh {
+    let mut last = TetMesh::default();
+    for interior in [Interior::None, Interior::Lattice { cell: None, clearance: None }] {
+        for optimize in [false, true] {
+            let options = TetOptions::default().interior(interior.clone()).optimize(optimize);
+            last = tetrahedralize(s, &options).unwrap();
+            certify::certify(&last, s).unwrap();
+            Complex::from_mesh(last.points.clone(), &last.tets).unwrap().sanity_check().unwrap();
+        }
+    }
+    last
+}
+
+#[test]
+fn spheres_and_tori_are_filled() {
+    for level in 1..4 {
+        fills(&sphere_surface(level));
+    }
+    fills(&torus(24, 9));
+}
+
+#[test]
+fn tubes_with_flat_caps_are_filled() {
+    for n in [3, 4, 6, 8, 13] {
+        for centre in [false, true] {
+            for direction in [Vec3::z(), Vec3::new(1.0, 2.0, 3.0), Vec3::new(-0.3, 0.1, 0.7)] {
+                fills(&tube(n, 5, 3.0, centre, direction));
+            }
+        }
+    }
+}
+
+#[test]
+fn grids_on_a_cube_are_filled() {
+    for n in 1..5 {
+        fills(&cube(n));
+    }
+}
+
+#[test]
+fn nested_shells_and_several_components_are_filled() {
+    let ball = sphere_surface(2);
+    let hollow = joined(ball.clone(), &flipped(ball.clone()), 0.5, Vec3::zeros());
+    let two = joined(hollow, &ball, 0.3, Vec3::new(5.0, 0.0, 0.0));
+    fills(&two);
+}
+
+#[test]
+fn wrong_surfaces_are_typed_errors() {
+    let s = sphere_surface(1);
+    let error = |s: &TriMesh| tetrahedralize(s, &TetOptions::default()).unwrap_err();
+    assert!(matches!(error(&TriMesh::default()), TetError::Empty { .. }));
+    assert!(matches!(error(&flipped(s.clone())), TetError::InsideOut { .. }));
+    let mut open = s.clone();
+    open.triangles.pop();
+    assert!(matches!(error(&open), TetError::Open { count: 3, .. }));
+    let mut twisted = s.clone();
+    twisted.triangles[0].swap(0, 1);
+    assert!(matches!(error(&twisted), TetError::NotOriented { count: 3, .. }));
+    let mut crowded = s.clone();
+    crowded.triangles.push(s.triangles[0]);
+    assert!(matches!(error(&crowded), TetError::NotManifold { .. }));
+    let mut bad = s.clone();
+    bad.triangles[3][1] = 10_000;
+    assert!(matches!(error(&bad), TetError::BadTriangle { triangle: 3, .. }));
+    let mut nan = s.clone();
+    nan.points[5].y = f64::INFINITY;
+    assert!(matches!(error(&nan), TetError::OutOfRange { point: 5, .. }));
+    let twin = joined(s.clone(), &s, 1.0, Vec3::zeros());
+    assert!(matches!(error(&twin), TetError::DuplicatePoints { .. }));
+    // A solid ball inside a solid ball: the inner shell does not separate inside from outside.
+    let inside = joined(s.clone(), &s, 0.5, Vec3::zeros());
+    assert!(tetrahedralize(&inside, &TetOptions::default()).is_err());
+}
+
+#[test]
+fn surfaces_that_meet_themselves_end_in_an_error() {
+    let s = sphere_surface(2);
+    let crossing = joined(s.clone(), &s, 1.0, Vec3::new(0.9, 0.1, 0.05));
+    assert!(tetrahedralize(&crossing, &TetOptions::default()).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn deformed_spheres_are_filled(bumps in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, -0.4..0.4f64), 1..6)) {
+        let mut s = sphere_surface(3);
+        for p in &mut s.points {
+            // Star-shaped, so it cannot meet itself.
+            let mut r = 1.0;
+            for &(x, y, z, size) in &bumps {
+                r += size / bumps.len() as f64 * (4.0 * p.coords.dot(&Vec3::new(x, y, z))).sin();
+            }
+            *p = Point3::from(p.coords * r);
+        }
+        fills(&s);
+    }
+}
