@@ -32,7 +32,10 @@ struct Leaving {
     branch: u32,
     way: Way,
     direction: Vec3,
+    /// Radius over the window in which the direction is measured.
     radius: f64,
+    /// Radius at the node.
+    root_radius: f64,
 }
 
 /// Looks for places to cut, branch by branch.
@@ -46,6 +49,8 @@ pub(super) struct Cutter<'a> {
     leaving: Vec<Leaving>,
 }
 
+/// How much of equation 11's distance is counted in radii of the vessel itself, the rest in those of its neighbours.
+const OWN_SHARE: f64 = 0.6;
 /// Over how many radii of the node the direction of a branch is measured.
 const DIRECTION_WINDOW: f64 = 3.0;
 /// How much of the vessel a terminal keeps at least when its branch is cut, in radii.
@@ -70,7 +75,7 @@ impl<'a> Cutter<'a> {
             first[i] += first[i - 1];
         }
         let mut next = first.clone();
-        let blank = Leaving { branch: 0, way: Way::Onward, direction: Vec3::zeros(), radius: 0.0 };
+        let blank = Leaving { branch: 0, way: Way::Onward, direction: Vec3::zeros(), radius: 0.0, root_radius: 0.0 };
         let mut leaving = vec![blank; 2 * courses.len()];
         for (branch, course) in courses.iter().enumerate() {
             for (node, way) in course.branch.ends().into_iter().zip([Way::Onward, Way::Back]) {
@@ -86,7 +91,8 @@ impl<'a> Cutter<'a> {
         let window = DIRECTION_WINDOW * skeleton.nodes[node.0 as usize].radius;
         let half = (0.5 * window).min(0.5 * course.length());
         let s = if way == Way::Onward { half } else { course.length() - half };
-        Leaving { branch, way, direction: course.leaving(way, window), radius: course.radius(s, way) }
+        let root_radius = course.radius(if way == Way::Onward { 0.0 } else { course.length() }, way);
+        Leaving { branch, way, direction: course.leaving(way, window), radius: course.radius(s, way), root_radius }
     }
 
     pub fn end_kind(&self, node: NodeId) -> BranchEnd {
@@ -110,12 +116,14 @@ impl<'a> Cutter<'a> {
         let Some(own) = around.iter().find(|l| l.branch == branch && l.way == way) else {
             return [self.params.node_distance * radius, 0.0];
         };
-        let angle = around
-            .iter()
-            .filter(|l| !(l.branch == branch && l.way == way))
-            .map(|other| separation(own, other))
-            .fold(0.0, f64::max);
-        [self.params.node_distance * radius, self.params.angle_margin * angle]
+        let (mut angle, mut thickest) = (0.0_f64, 0.0_f64);
+        for other in around.iter().filter(|l| !(l.branch == branch && l.way == way)) {
+            angle = angle.max(separation(own, other));
+            thickest = thickest.max(other.root_radius);
+        }
+        // What has to be passed is the wall of the thickest neighbour; with equal radii that is equation 11.
+        let wall = (self.params.node_distance - OWN_SHARE) * thickest + OWN_SHARE * own.root_radius;
+        [wall.min(self.params.node_distance * radius), self.params.angle_margin * angle]
     }
 
     /// The places where `branch` is to be cut, in order along it, or why there is none.
