@@ -201,21 +201,34 @@ impl<'a> Course<'a> {
         back.cross(&onward).norm().atan2(back.dot(&onward))
     }
 
-    /// Maximal parts of [lo, hi] that stay a radius away from every node where the vessel turns by more than
-    /// `max_turn` over one radius.
+    /// Maximal parts of [lo, hi] that stay off every node where the vessel turns by more than `max_turn` over one
+    /// radius: by one radius or so, and further off sharp turns, whose two limbs are like branches at a junction
+    /// (equation 12 with equal radii is r tan(turn / 2)).
     pub fn straight_parts(&self, lo: f64, hi: f64, max_turn: f64) -> Vec<[f64; 2]> {
         let mut parts = Vec::new();
         let mut start = lo;
         for i in 1..self.points.len() - 1 {
-            let s = self.arc()[i];
-            let reach = self.radii[i - 1][1].max(self.radii[i][0]);
-            if s + reach <= start || s - reach >= hi || self.turn(i) <= max_turn {
+            let turn = self.turn(i);
+            if turn <= max_turn {
                 continue;
             }
-            if s - reach > start {
-                parts.push([start, s - reach]);
+            let radius = self.radii[i - 1][1].max(self.radii[i][0]);
+            let reach = radius * (0.8 + 1.25 * (0.5 * turn).tan().abs());
+            let (from, to) = (self.arc()[i] - reach, self.arc()[i] + reach);
+            if to <= lo || from >= hi {
+                continue;
             }
-            start = s + reach;
+            // A sharp turn may reach back over parts before it.
+            while parts.last().is_some_and(|p: &[f64; 2]| p[0] >= from) {
+                parts.pop();
+            }
+            if let Some(last) = parts.last_mut() {
+                last[1] = last[1].min(from);
+            }
+            if from > start {
+                parts.push([start, from]);
+            }
+            start = start.max(to);
         }
         if hi > start {
             parts.push([start, hi]);

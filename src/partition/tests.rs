@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::geometry::{Point3, Vec3, segment_segment};
+use crate::geometry::{Point3, Vec3, point_segment, segment_segment};
 use crate::skeleton::{Edge, Node};
 
 /// A skeleton of points with radii and edges between them.
@@ -430,13 +430,31 @@ fn any_network() -> impl Strategy<Value = Skeleton> {
     )
 }
 
+/// Smallest distance of the rim of an end's tip from the axes of all vessels but its own, in radii of these.
+fn rim_clearance(cluster: &Cluster, end: &ClusterEnd, own: &Range<u32>) -> f64 {
+    let (u, w) = end.section.frame();
+    let (r, length) = (end.section.radius, cluster.tubes[end.overrun[0] as usize].length());
+    let mut least = f64::INFINITY;
+    for i in (0..cluster.tubes.len() as u32).filter(|i| !own.contains(i) && !end.overrun.contains(i)) {
+        let tube = &cluster.tubes[i as usize];
+        for height in [-0.4 * r, 0.0, 0.5 * length, length] {
+            for k in 0..12 {
+                let (sin, cos) = (f64::from(k) / 12.0 * std::f64::consts::TAU).sin_cos();
+                let rim = end.section.origin + end.section.axis * height + (u * cos + w * sin) * r;
+                let (t, distance) = point_segment(&rim, &tube.a, &tube.b);
+                least = least.min(distance / tube.radius(t));
+            }
+        }
+    }
+    least
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
     fn every_partition_is_sound(s in any_network(), rho in 2.5..6.0_f64, shift in -1.0..1.0_f64, some in any::<u8>()) {
-        let edges: Vec<_> = s.edges.iter().map(|e| s.nodes[e.nodes[0].0 as usize].position - s.nodes[e.nodes[1].0 as usize].position).collect();
-        prop_assume!(edges.iter().all(|d| d.norm() > 1e-6));
+        prop_assume!(s.edge_ids().all(|e| s.length(e) > 1e-6));
         let params = PartitionParams {
             rho,
             shifted_cuts: (0..u32::from(some % 9)).map(|b| (BranchId(b), shift)).collect(),
@@ -449,9 +467,30 @@ proptest! {
         prop_assert!(p == partition(&s, &params).unwrap());
     }
 
+    /// No vessel of a cluster comes close to the tip of another one that ends in a cut.
+    #[test]
+    fn tips_are_clear(s in any_network()) {
+        prop_assume!(s.edge_ids().all(|e| s.length(e) > 1e-6));
+        let p = partition(&s, &PartitionParams::default()).unwrap();
+        for piece in &p.pieces {
+            let cluster = &p.clusters[piece.cluster.0 as usize];
+            let own = piece.tubes.start..piece.tubes.end;
+            let ends = cluster.ends.iter().filter(|e| matches!(e.kind, EndKind::Cut { .. }));
+            for end in ends.filter(|e| own.contains(&e.overrun[0].wrapping_sub(1)) || own.end == e.overrun[0] || own.end + 1 == e.overrun[0]) {
+                let EndKind::Cut { cut, .. } = end.kind else { continue };
+                if p.cuts[cut.0 as usize].branch != piece.branch {
+                    continue;
+                }
+                let least = rim_clearance(cluster, end, &own);
+                prop_assert!(least > 1.12, "{least} {end:?}");
+            }
+        }
+    }
+
     /// Units do not matter.
     #[test]
     fn partitions_scale(s in any_network()) {
+        prop_assume!(s.edge_ids().all(|e| s.length(e) > 1e-6));
         let scale = 1024.0;
         let mut larger = s.clone();
         for node in &mut larger.nodes {

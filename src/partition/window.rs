@@ -170,7 +170,10 @@ impl<'a> Cutter<'a> {
         let mut pending = vec![(lo, hi, 0.0, course.length())];
         while let Some((lo, hi, piece_lo, piece_hi)) = pending.pop() {
             let clipped = parts.iter().map(|p| [p[0].max(lo), p[1].min(hi)]);
-            let best = clipped.filter(|p| self.roomy(course, p[0], p[1])).reduce(|a, b| {
+            // Another cut only for a fair length of connector; the first one as soon as there is room.
+            let least = if piece_lo > 0.0 || piece_hi < course.length() { 2.0 } else { 1.0 };
+            let fits = |p: &[f64; 2]| p[1] > p[0] && p[1] - p[0] >= least * room(course, self.params, p[0], p[1]);
+            let best = clipped.filter(fits).reduce(|a, b| {
                 // Not the first of nearly equal ones by rounding.
                 if b[1] - b[0] > (a[1] - a[0]) * (1.0 + 1e-9) { b } else { a }
             });
