@@ -172,7 +172,7 @@ fn blend_radii(skeleton: &mut Skeleton, report: &mut CleanReport) {
         let &[e, f] = adjacency.edges(node) else { continue };
         let slots = [e, f].map(|id| (id.index(), skeleton.edge(id).end(node)));
         let [a, b] = slots.map(|(edge, end)| skeleton.edges[edge].radii[end]);
-        if a != b {
+        if (a - b).abs() > 0.0 {
             for (edge, end) in slots {
                 skeleton.edges[edge].radii[end] = 0.5 * (a + b);
             }

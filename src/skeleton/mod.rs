@@ -5,13 +5,16 @@ mod check;
 mod clean;
 mod error;
 mod graph;
+mod overlap;
 #[cfg(test)]
 mod tests;
+mod walk;
 
 pub use branch::{Branch, Branches, Place};
 pub use clean::{CleanReport, clean};
 pub use error::{LARGEST, SkeletonError};
 pub use graph::{Adjacency, Component, Components};
+pub use overlap::{Overlap, Overlaps};
 
 use crate::geometry::{Point3, Tube};
 

@@ -354,7 +354,9 @@ fn read_radii(
     }
     let mut radii = array.into_floats();
     if is_diameter(name) {
-        radii.iter_mut().for_each(|r| *r *= 0.5);
+        for radius in &mut radii {
+            *radius *= 0.5;
+        }
     }
     Ok(Some(radii))
 }
