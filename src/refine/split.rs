@@ -1,0 +1,215 @@
+//! 3.1: nodes of valence above 3 become chains of nodes of valence 3.
+
+use crate::geometry::Point3;
+use crate::skeleton::{Edge, EdgeId, Node, NodeId, Skeleton};
+use serde::Serialize;
+
+/// How often the shift is halved when it would make an edge too short.
+const HALVINGS: u32 = 8;
+
+/// A node that was split.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SplitNode {
+    /// The node; it keeps its id and moves upstream.
+    pub node: NodeId,
+    /// The new nodes, in the order in which they follow downstream.
+    pub made: Vec<NodeId>,
+    /// Length of the shortest new edge, in radii of the node; 2 where there is room.
+    pub shortest_link: f64,
+}
+
+/// What splitting did.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SplitReport {
+    /// The nodes that were split, in ascending order.
+    pub nodes: Vec<SplitNode>,
+}
+
+/// Splits every node of more than three edges until none is left.
+///
+/// The thickest vessel of the node (the parent, in a tree) gives the direction: the old node moves up to one radius
+/// upstream and keeps the thickest vessel and the one that points most upstream; a new node up to one radius downstream
+/// takes the others, and is split in turn. The shift is at most half of the thickest vessel, and is halved while it
+/// makes an edge shorter than half of what it was and than half a radius. The new edge carries what Murray's law gives
+/// for the vessels behind it, at most the radius of the node. Terminals stay where they are; a new node's `original` is
+/// that of the node that was split.
+///
+/// The skeleton must satisfy `Skeleton::check`; the result does, too.
+pub fn split(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
+    let adjacency = skeleton.adjacency();
+    let mut out = skeleton.clone();
+    let mut report = SplitReport::default();
+    for node in skeleton.node_ids().filter(|&n| adjacency.valence(n) > 3) {
+        report.nodes.push(split_node(&mut out, node, adjacency.edges(node).to_vec()));
+    }
+    (out, report)
+}
+
+fn split_node(skeleton: &mut Skeleton, node: NodeId, mut edges: Vec<EdgeId>) -> SplitNode {
+    let radius = skeleton.node(node).radius;
+    let mut done = SplitNode { node, made: Vec::new(), shortest_link: f64::INFINITY };
+    let mut links = Vec::new();
+    let mut current = node;
+    while edges.len() > 3 {
+        let (made, link, rest) = split_once(skeleton, current, &edges);
+        done.made.push(made);
+        links.push(link);
+        current = made;
+        edges = rest;
+        edges.push(link);
+    }
+    for link in links {
+        done.shortest_link = done.shortest_link.min(skeleton.length(link) / radius);
+    }
+    done
+}
+
+/// Splits off one new node; returns it, the edge that leads to it, and the edges that moved to it.
+fn split_once(skeleton: &mut Skeleton, node: NodeId, edges: &[EdgeId]) -> (NodeId, EdgeId, Vec<EdgeId>) {
+    let centre = *skeleton.node(node);
+    let parent = thickest(skeleton, edges);
+    let away = |s: &Skeleton, e: EdgeId| s.node(s.edge(e).other(node)).position - centre.position;
+    let upstream = away(skeleton, parent).normalize();
+    let cosine = |e: EdgeId| away(skeleton, e).normalize().dot(&upstream);
+    let children: Vec<EdgeId> = edges.iter().copied().filter(|&e| e != parent).collect();
+    let kept = children.iter().copied().fold(children[0], |best, e| if cosine(e) > cosine(best) { e } else { best });
+    let rest: Vec<EdgeId> = children.into_iter().filter(|&e| e != kept).collect();
+
+    let far = |e: EdgeId| skeleton.node(skeleton.edge(e).other(node)).position;
+    let shift = room(&centre, far(parent), far(kept), &rest.iter().map(|&e| far(e)).collect::<Vec<_>>());
+    let radius = murray(skeleton, node, &rest).min(centre.radius);
+    let made = NodeId(skeleton.nodes.len() as u32);
+    skeleton.nodes.push(Node { position: centre.position - upstream * shift, radius, original: centre.original });
+    skeleton.nodes[node.index()].position = centre.position + upstream * shift;
+    for &edge in &rest {
+        let end = skeleton.edge(edge).end(node);
+        skeleton.edges[edge.index()].nodes[end] = made;
+    }
+    let link = EdgeId(skeleton.edges.len() as u32);
+    skeleton.edges.push(Edge { nodes: [node, made], radii: [radius, radius] });
+    (made, link, rest)
+}
+
+/// The edge of the largest mean radius; the first among equals.
+fn thickest(skeleton: &Skeleton, edges: &[EdgeId]) -> EdgeId {
+    let radius = |e: EdgeId| skeleton.edge(e).mean_radius();
+    edges.iter().copied().fold(edges[0], |best, e| if radius(e) > radius(best) { e } else { best })
+}
+
+/// Radius of a vessel that feeds the given ones (the cubes add up), from their radii at `node`.
+fn murray(skeleton: &Skeleton, node: NodeId, edges: &[EdgeId]) -> f64 {
+    let largest = edges.iter().map(|&e| radius_at(skeleton, e, node)).fold(0.0, f64::max);
+    // Divided by the largest, so that no unit of length under- or overflows.
+    let cubes: f64 = edges.iter().map(|&e| (radius_at(skeleton, e, node) / largest).powi(3)).sum();
+    largest * cubes.cbrt()
+}
+
+fn radius_at(skeleton: &Skeleton, edge: EdgeId, node: NodeId) -> f64 {
+    let edge = skeleton.edge(edge);
+    edge.radii[edge.end(node)]
+}
+
+/// How far the old node can move towards `parent` and the new one away from it.
+fn room(centre: &Node, parent: Point3, kept: Point3, rest: &[Point3]) -> f64 {
+    let toward = parent - centre.position;
+    let length = toward.norm();
+    let mut shift = centre.radius.min(0.5 * length);
+    let fits = |shift: f64| {
+        let (up, down) = (centre.position + toward * (shift / length), centre.position - toward * (shift / length));
+        let long_enough = |from: &Point3, to: &Point3| {
+            let before = (to - centre.position).norm();
+            (to - from).norm() >= 0.5 * before.min(centre.radius)
+        };
+        long_enough(&up, &kept) && rest.iter().all(|to| long_enough(&down, to))
+    };
+    for _ in 0..HALVINGS {
+        if fits(shift) {
+            break;
+        }
+        shift *= 0.5;
+    }
+    shift
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Vessels from the origin to the given points.
+    fn star(ends: &[[f64; 3]], radii: &[f64]) -> Skeleton {
+        let mut nodes = vec![Node { position: Point3::origin(), radius: radii[0], original: 0 }];
+        let mut edges = Vec::new();
+        for (i, (&end, &radius)) in ends.iter().zip(radii).enumerate() {
+            let id = i as u32 + 1;
+            nodes.push(Node { position: end.into(), radius, original: id });
+            edges.push(Edge { nodes: [NodeId(0), NodeId(id)], radii: [radius; 2] });
+        }
+        Skeleton { nodes, edges }
+    }
+
+    fn check(before: &Skeleton, after: &Skeleton, report: &SplitReport) {
+        assert_eq!(after.check(), Ok(()));
+        let (a, b) = (before.adjacency(), after.adjacency());
+        assert!(after.node_ids().all(|n| b.valence(n) <= 3));
+        let count = |s: &Skeleton, a: &crate::skeleton::Adjacency| {
+            let components = s.components(a).list;
+            (components.len(), components.iter().map(crate::skeleton::Component::loops).sum::<usize>())
+        };
+        assert_eq!(count(before, &a), count(after, &b));
+        for node in before.node_ids() {
+            if a.valence(node) <= 3 {
+                assert_eq!(before.node(node), after.node(node));
+            }
+        }
+        for edge in before.edge_ids() {
+            assert_eq!(before.edge(edge).radii, after.edge(edge).radii);
+        }
+        for split in &report.nodes {
+            assert_eq!(split.made.len(), a.valence(split.node) - 3);
+            assert!(split.made.iter().all(|&m| after.node(m).original == before.node(split.node).original));
+        }
+    }
+
+    #[test]
+    fn four_vessels_become_two_junctions_two_radii_apart() {
+        let s = star(&[[0.0, 0.0, 9.0], [9.0, 0.0, -9.0], [-9.0, 0.0, -9.0], [0.0, 9.0, 1.0]], &[1.0, 0.6, 0.6, 0.5]);
+        let (after, report) = split(&s);
+        check(&s, &after, &report);
+        assert!((after.nodes[0].position - Point3::new(0.0, 0.0, 1.0)).norm() < 1e-12);
+        assert!((after.nodes[5].position - Point3::new(0.0, 0.0, -1.0)).norm() < 1e-12);
+        // The vessel that leaves sideways stays upstream, the two that go on share the new node by Murray's law.
+        assert_eq!(after.edges[3].nodes, [NodeId(0), NodeId(4)]);
+        assert_eq!(after.edges[1].nodes, [NodeId(5), NodeId(2)]);
+        assert!((after.nodes[5].radius - (2.0 * 0.6_f64.powi(3)).cbrt()).abs() < 1e-12);
+        assert!((report.nodes[0].shortest_link - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn short_vessels_are_not_swallowed() {
+        let s = star(&[[0.0, 0.0, 0.2], [0.0, 0.1, -1.0], [0.1, 0.0, -1.0], [0.0, 0.0, -1.0]], &[1.0; 4]);
+        let (after, report) = split(&s);
+        check(&s, &after, &report);
+        for edge in s.edge_ids() {
+            assert!(after.length(edge) >= 0.5 * s.length(edge).min(1.0) - 1e-12);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_graph_is_split(
+            points in prop::collection::vec(prop::array::uniform3(-50.0..50.0_f64), 12),
+            ends in prop::collection::vec((0..12_u32, 0..12_u32, 1..5_u8), 1..40),
+        ) {
+            let nodes = points.iter().enumerate();
+            let nodes = nodes.map(|(i, &p)| Node { position: p.into(), radius: 1.0, original: i as u32 }).collect();
+            let edge = |&(a, b, r): &(u32, u32, u8)| Edge { nodes: [NodeId(a), NodeId(b)], radii: [f64::from(r); 2] };
+            let raw = Skeleton { nodes, edges: ends.iter().map(edge).collect() };
+            if let Ok((s, _)) = crate::skeleton::clean(&raw) {
+                let (after, report) = split(&s);
+                prop_assert_eq!(&split(&after).0, &after);
+                check(&s, &after, &report);
+            }
+        }
+    }
+}
