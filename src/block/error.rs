@@ -1,6 +1,10 @@
 //! What can go wrong with one block.
 
+use super::cap::CapError;
+use super::connector::ConnectorAttempt;
 use crate::partition::{ClusterId, CutId};
+use crate::surface::SurfaceError;
+use crate::tet::TetError;
 
 /// Why no end surface could be exposed at a cut.
 #[non_exhaustive]
@@ -23,10 +27,52 @@ pub enum FlattenFailure {
     Budget,
 }
 
-/// Failure of one block. Every variant says which block, and where in space there is a place to look at.
+/// Failure of one block. Every variant says which block, and where there is a place to look at.
 #[non_exhaustive]
-#[derive(Clone, Debug, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BlockError {
+    /// A parameter makes no sense.
+    #[error("block parameter {name} = {value} is out of range")]
+    Parameter {
+        /// Its name.
+        name: &'static str,
+        /// What it was.
+        value: f64,
+    },
+    /// The wall could not be made.
+    #[error("cluster {}: {source}", cluster.0)]
+    Surface {
+        /// The cluster.
+        cluster: ClusterId,
+        /// Why.
+        source: SurfaceError,
+    },
+    /// The wall has other handles than the skeleton has loops: neighbours fused, or a loop closed over.
+    #[error("cluster {}: the wall has {handles} handles, the skeleton {loops} loops", cluster.0)]
+    Genus {
+        /// The cluster.
+        cluster: ClusterId,
+        /// Genus of the wall.
+        handles: i64,
+        /// Independent loops of the cluster's tubes.
+        loops: i64,
+    },
+    /// A terminal could not be capped.
+    #[error("cluster {}: {source}", cluster.0)]
+    Cap {
+        /// The cluster.
+        cluster: ClusterId,
+        /// Which end, and why.
+        source: CapError,
+    },
+    /// A cluster's surface could not be filled.
+    #[error("cluster {}: {source}", cluster.0)]
+    Tetrahedra {
+        /// The cluster.
+        cluster: ClusterId,
+        /// Why.
+        source: TetError,
+    },
     /// Trimming or flattening failed at one end of a cluster.
     #[error("cluster {}, cut {}: {failure} near {at:?}", cluster.0, cut.0)]
     End {
@@ -40,5 +86,15 @@ pub enum BlockError {
         at: [f64; 3],
         /// What failed.
         failure: FlattenFailure,
+    },
+    /// No way of building a connector works.
+    #[error("connector of cut {} near {at:?}: {}", cut.0, attempts.last().map_or_else(String::new, |a| a.failure.to_string()))]
+    Connector {
+        /// The cut.
+        cut: CutId,
+        /// Middle of the cut's path.
+        at: [f64; 3],
+        /// What was tried, in order, and why it failed.
+        attempts: Vec<ConnectorAttempt>,
     },
 }

@@ -5,10 +5,14 @@
 //! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
 
 pub mod cap;
+mod cluster;
+mod connector;
 mod connector_surface;
+mod dump;
 mod end_surface;
 mod error;
 mod flatten;
+mod params;
 mod path;
 mod region;
 mod relax;
@@ -19,9 +23,13 @@ mod wall;
 mod weave;
 
 pub use cap::{CapError, CapFailure, CappedSurface, cap_terminals};
+pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
+pub use connector::{ConnectorAttempt, ConnectorFailure, ConnectorMesh, mesh_connector};
 pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
+pub use dump::{BlockDump, BlockOutcome, ClusterDump, ConnectorDump, dump_cluster, dump_connector};
 pub use end_surface::{EndFault, EndSurface};
 pub use error::{BlockError, FlattenFailure};
+pub use params::{BlockParams, EndStyle};
 pub use path::AxisPath;
 pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
 pub use weave::{WeaveCost, weave};

@@ -1,0 +1,241 @@
+//! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
+
+use super::cap::{CapError, CappedSurface, cap_terminals};
+use super::end_surface::{EndSurface, disc_rim};
+use super::error::{BlockError, FlattenFailure};
+use super::params::{BlockParams, EndStyle};
+use super::trim::{CutEnd, TrimOptions, Trimmed, trim};
+use crate::geometry::{Point3, Section, Tube};
+use crate::mesh::adjacency::tet_adjacency;
+use crate::mesh::{TetMesh, TriMesh};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind};
+use crate::skeleton::NodeId;
+use crate::surface::{Field, SurfaceParams, euler_characteristic, vessel_surface};
+use crate::tet::{TetOptions, tetrahedralize};
+use rustc_hash::FxHashMap;
+
+/// The flat disc that closes a terminal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CapFaces {
+    /// The terminal.
+    pub node: NodeId,
+    /// The plane; its axis points out of the mesh.
+    pub section: Section,
+    /// Boundary triangles, oriented outwards.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A meshed cluster.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ClusterMesh {
+    /// Points and tetrahedra.
+    pub mesh: TetMesh,
+    /// One end surface per cut end, in the order of `Cluster::ends`.
+    pub ends: Vec<EndSurface>,
+    /// One cap per terminal, in the order of `Cluster::ends`.
+    pub caps: Vec<CapFaces>,
+    /// Cell edge of the contouring grid.
+    pub voxel: f64,
+    /// Mean edge length of the wall.
+    pub edge: f64,
+    /// Triangles of the wall before trimming, caps included.
+    pub surface_triangles: usize,
+}
+
+impl ClusterMesh {
+    /// The end surface at one side of a cut.
+    pub fn end(&self, cut: CutId, side: u8) -> Option<&EndSurface> {
+        self.ends.iter().find(|e| e.cut == cut && e.side == side)
+    }
+}
+
+/// Meshes one cluster.
+///
+/// # Errors
+/// Any stage's, with the cluster's id; the caller may retry with other [`BlockParams`].
+pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
+    let (surface, voxel) = cluster_surface(id, cluster, params)?;
+    let edge = mean_edge(&surface.mesh);
+    let options = TetOptions::default();
+    let filled =
+        tetrahedralize(&surface.mesh, &options).map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
+    let caps = caps(cluster, &surface);
+    let surface_triangles = surface.mesh.triangles.len();
+    let mut out = ClusterMesh { mesh: filled, caps, voxel, edge, surface_triangles, ends: Vec::new() };
+    match params.ends {
+        EndStyle::Trimmed => trim_cluster(id, cluster, params, &mut out)?,
+        EndStyle::Disc => out.ends = disc_ends(id, cluster, &surface, &out.mesh)?,
+    }
+    Ok(out)
+}
+
+/// The closed wall of a cluster with its caps, and the cell edge it was contoured with: what [`mesh_cluster`] fills.
+///
+/// # Errors
+/// The wall cannot be made, is not of the skeleton's topology, or cannot be capped.
+pub fn cluster_surface(
+    id: ClusterId,
+    cluster: &Cluster,
+    params: &BlockParams,
+) -> Result<(CappedSurface, f64), BlockError> {
+    params.check()?;
+    let voxel = 2.0 * smallest_radius(cluster) / params.rho * params.voxel_factor;
+    let surface_params =
+        SurfaceParams { kappa: params.kappa, shift: params.shift, ..SurfaceParams::with_voxel(voxel) };
+    let failed = |source| BlockError::Surface { cluster: id, source };
+    let wall = vessel_surface(&cluster.tubes, &surface_params).map_err(failed)?;
+    let (handles, loops) = (1 - euler_characteristic(&wall) / 2, independent_loops(&cluster.tubes));
+    if handles != loops {
+        return Err(BlockError::Genus { cluster: id, handles, loops });
+    }
+    let closed: Vec<ClusterEnd> = capped_ends(cluster, params.ends).map(|(_, e)| e.clone()).collect();
+    let mut field = Field::new(&cluster.tubes, params.kappa).map_err(failed)?;
+    let mut capped = cap_terminals(&wall, &mut field, &closed, surface_params.edge * voxel)
+        .map_err(|source| BlockError::Cap { cluster: id, source: name_end(source, cluster, params.ends) })?;
+    // Cap indices count the ends that were closed; from here on they count all ends.
+    let index: Vec<u32> = capped_ends(cluster, params.ends).map(|(i, _)| i).collect();
+    for cap in capped.cap.iter_mut().flatten() {
+        *cap = index[*cap as usize];
+    }
+    Ok((capped, voxel))
+}
+
+/// The ends that are closed by discs, with their indices in `Cluster::ends`.
+fn capped_ends(cluster: &Cluster, style: EndStyle) -> impl Iterator<Item = (u32, &ClusterEnd)> {
+    let closed = move |e: &ClusterEnd| style == EndStyle::Disc || matches!(e.kind, EndKind::Terminal(_));
+    (0..).zip(&cluster.ends).filter(move |(_, e)| closed(e))
+}
+
+fn name_end(error: CapError, cluster: &Cluster, style: EndStyle) -> CapError {
+    match error {
+        CapError::End { end, node, origin, reason } => {
+            let end = capped_ends(cluster, style).nth(end as usize).map_or(end, |(i, _)| i);
+            CapError::End { end, node, origin, reason }
+        }
+        other => other,
+    }
+}
+
+/// The smallest radius in a cluster, cuts included.
+fn smallest_radius(cluster: &Cluster) -> f64 {
+    let tubes = cluster.tubes.iter().map(Tube::min_radius);
+    tubes.chain(cluster.ends.iter().map(|e| e.section.radius)).fold(f64::INFINITY, f64::min)
+}
+
+/// Independent loops of the graph of tubes, whose ends are the same node when they are the same point.
+fn independent_loops(tubes: &[Tube]) -> i64 {
+    let mut nodes: FxHashMap<[u64; 3], usize> = FxHashMap::default();
+    let mut parent: Vec<usize> = Vec::new();
+    let mut loops = 0;
+    for t in tubes {
+        let mut root = |p: &Point3| {
+            // Adding zero makes −0 and 0 the same point.
+            let key = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
+            let mut i = *nodes.entry(key).or_insert_with(|| {
+                parent.push(parent.len());
+                parent.len() - 1
+            });
+            while parent[i] != i {
+                parent[i] = parent[parent[i]];
+                i = parent[i];
+            }
+            i
+        };
+        let (a, b) = (root(&t.a), root(&t.b));
+        if a == b {
+            loops += i64::from(t.a != t.b);
+        } else {
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    loops
+}
+
+fn mean_edge(surface: &TriMesh) -> f64 {
+    let p = |v: u32| surface.points[v as usize];
+    let sum: f64 = surface.triangles.iter().map(|t| (0..3).map(|k| (p(t[k]) - p(t[(k + 1) % 3])).norm()).sum::<f64>()).sum();
+    sum / (3 * surface.triangles.len().max(1)) as f64
+}
+
+fn faces_of(surface: &CappedSurface, end: u32) -> Vec<[u32; 3]> {
+    surface.mesh.triangles.iter().zip(&surface.cap).filter(|(_, c)| **c == Some(end)).map(|(t, _)| *t).collect()
+}
+
+fn caps(cluster: &Cluster, surface: &CappedSurface) -> Vec<CapFaces> {
+    (0..)
+        .zip(&cluster.ends)
+        .filter_map(|(i, end)| match end.kind {
+            EndKind::Terminal(node) => {
+                Some(CapFaces { node, section: end.section, triangles: faces_of(surface, i) })
+            }
+            EndKind::Cut { .. } => None,
+        })
+        .collect()
+}
+
+/// The cut ends with their indices in `Cluster::ends`.
+fn cut_ends(cluster: &Cluster) -> Vec<(u32, CutEnd)> {
+    (0..)
+        .zip(&cluster.ends)
+        .filter_map(|(i, end)| match end.kind {
+            EndKind::Cut { cut, side } => Some((i, CutEnd { cut, side, section: end.section })),
+            EndKind::Terminal(_) => None,
+        })
+        .collect()
+}
+
+fn trim_cluster(
+    id: ClusterId,
+    cluster: &Cluster,
+    params: &BlockParams,
+    out: &mut ClusterMesh,
+) -> Result<(), BlockError> {
+    let (index, ends): (Vec<u32>, Vec<CutEnd>) = cut_ends(cluster).into_iter().unzip();
+    if ends.is_empty() {
+        return Ok(());
+    }
+    let neighbours = tet_adjacency(&out.mesh.tets, out.mesh.points.len()).neighbors;
+    let mut frozen: Vec<u32> = out.caps.iter().flat_map(|c| c.triangles.iter().flatten().copied()).collect();
+    frozen.sort_unstable();
+    frozen.dedup();
+    let options = TrimOptions { edge: out.edge, relax: params.relax_ends, depth: params.depth };
+    let end_error = |i: usize, failure| end_error(id, index[i], &ends[i], failure);
+    let Trimmed { mesh, renumbered, ends: surfaces } =
+        trim(&out.mesh, &neighbours, &ends, &frozen, &options).map_err(|(i, f)| end_error(i, f))?;
+    for cap in &mut out.caps {
+        for v in cap.triangles.iter_mut().flatten() {
+            *v = renumbered[*v as usize];
+            if *v == u32::MAX {
+                // Trimming took a part of a cap: a cut plane reaches into another vessel's end.
+                return Err(end_error(0, FlattenFailure::LeavesVessel));
+            }
+        }
+    }
+    out.mesh = mesh;
+    out.ends = surfaces;
+    Ok(())
+}
+
+fn end_error(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> BlockError {
+    BlockError::End { cluster, end, cut: cut.cut, at: cut.section.origin.coords.into(), failure }
+}
+
+/// End surfaces that are discs of the surface.
+fn disc_ends(
+    id: ClusterId,
+    cluster: &Cluster,
+    surface: &CappedSurface,
+    mesh: &TetMesh,
+) -> Result<Vec<EndSurface>, BlockError> {
+    cut_ends(cluster)
+        .into_iter()
+        .map(|(i, end)| {
+            let failed = || end_error(id, i, &end, FlattenFailure::NotADisc);
+            let triangles = faces_of(surface, i);
+            let rim = disc_rim(&triangles).ok_or_else(failed)?;
+            let surface = EndSurface { cut: end.cut, side: end.side, section: end.section, triangles, rim };
+            surface.check(&mesh.points).map_err(|_| failed())?;
+            Ok(surface)
+        })
+        .collect()
+}

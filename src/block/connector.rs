@@ -1,0 +1,84 @@
+//! One connector: the tube between two end surfaces, filled (3.2.3).
+
+use super::connector_surface::{
+    ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface,
+};
+use super::error::BlockError;
+use super::params::BlockParams;
+use crate::mesh::TetMesh;
+use crate::partition::{Cut, CutId};
+use crate::tet::{TetError, TetOptions, tetrahedralize};
+
+/// A meshed connector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConnectorMesh {
+    /// Points and tetrahedra. The first points are those of `shared`, bit for bit.
+    pub mesh: TetMesh,
+    /// For each of the first points, which vertex of which cluster it is: side 0's, then side 1's.
+    pub shared: Vec<EndVertex>,
+    /// Rings between the two rims.
+    pub rings: u32,
+    /// Attempts that failed before this one.
+    pub failed: Vec<ConnectorAttempt>,
+}
+
+/// An attempt at a connector that failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConnectorAttempt {
+    /// How the tube was divided.
+    pub division: Division,
+    /// Why it failed.
+    pub failure: ConnectorFailure,
+}
+
+/// Why an attempt at a connector failed.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ConnectorFailure {
+    /// The surface could not be woven.
+    #[error(transparent)]
+    Surface(ConnectorFault),
+    /// The surface could not be filled.
+    #[error(transparent)]
+    Tetrahedra(TetError),
+}
+
+/// Divisions in the order in which they are tried.
+const DIVISIONS: [Division; 5] =
+    [Division::Rings(1.0), Division::Rings(0.75), Division::Rings(1.35), Division::Rings(0.5), Division::Direct];
+
+/// Meshes one connector from side 0's end surface to side 1's.
+///
+/// # Errors
+/// [`BlockError::Connector`] with every attempt, or a parameter out of range.
+pub fn mesh_connector(
+    id: CutId,
+    cut: &Cut,
+    ends: [ConnectorEnd; 2],
+    params: &BlockParams,
+) -> Result<ConnectorMesh, BlockError> {
+    params.check()?;
+    let mut failed = Vec::new();
+    let mut tried: Vec<u32> = Vec::new();
+    for division in DIVISIONS {
+        let failure = match connector_surface(&cut.path, ends, division) {
+            // Where there is little room, several divisions come down to the same rings.
+            Ok(surface) if tried.contains(&surface.rings) => continue,
+            Ok(surface) => {
+                tried.push(surface.rings);
+                match tetrahedralize(&surface.surface, &TetOptions::default()) {
+                    Ok(mesh) => return Ok(filled(surface, mesh, failed)),
+                    Err(e) => ConnectorFailure::Tetrahedra(e),
+                }
+            }
+            Err(e) => ConnectorFailure::Surface(e),
+        };
+        failed.push(ConnectorAttempt { division, failure });
+    }
+    let at = cut.path.get(cut.path.len() / 2).map_or([f64::NAN; 3], |s| s.origin.coords.into());
+    Err(BlockError::Connector { cut: id, at, attempts: failed })
+}
+
+fn filled(surface: ConnectorSurface, mesh: TetMesh, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {
+    ConnectorMesh { mesh, shared: surface.shared, rings: surface.rings, failed }
+}

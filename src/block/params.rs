@@ -1,0 +1,71 @@
+//! How blocks are made, and what a retry may change.
+
+use super::error::BlockError;
+
+/// How a cluster ends at a cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum EndStyle {
+    /// Tetrahedra beyond the plane are taken off and what that exposes is made flat (3.2.2).
+    #[default]
+    Trimmed,
+    /// The wall is closed by a flat disc on the plane, as at a terminal. Nothing to trim, so nothing can go wrong there.
+    Disc,
+}
+
+/// Parameters of a block.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct BlockParams {
+    /// Resolution ρ: voxels across the thinnest vessel of the cluster.
+    pub rho: f64,
+    /// Factor on the voxel; below 1 is finer. For retries.
+    pub voxel_factor: f64,
+    /// Origin of the contouring grid in voxels, each in [−1, 1]. For retries: another shift, another triangulation.
+    pub shift: [f64; 3],
+    /// Kernel width σ / r of the convolution. For retries: thinner kernels fuse less.
+    pub kappa: f64,
+    /// How clusters end at cuts.
+    pub ends: EndStyle,
+    /// Whether end surfaces are relaxed after flattening.
+    pub relax_ends: bool,
+    /// How deep below its plane an end surface may go, in radii of the cut.
+    pub depth: f64,
+}
+
+impl Default for BlockParams {
+    fn default() -> Self {
+        Self {
+            rho: 3.0,
+            voxel_factor: 1.0,
+            shift: [0.0; 3],
+            kappa: 0.5,
+            ends: EndStyle::Trimmed,
+            relax_ends: true,
+            depth: 1.5,
+        }
+    }
+}
+
+impl BlockParams {
+    /// Usual parameters at a resolution.
+    pub fn with_rho(rho: f64) -> Self {
+        Self { rho, ..Self::default() }
+    }
+
+    pub(super) fn check(&self) -> Result<(), BlockError> {
+        let positive = [
+            ("rho", self.rho),
+            ("voxel_factor", self.voxel_factor),
+            ("kappa", self.kappa),
+            ("depth", self.depth),
+        ];
+        for (name, value) in positive {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(BlockError::Parameter { name, value });
+            }
+        }
+        match self.shift.iter().find(|x| !(x.abs() <= 1.0)) {
+            Some(&value) => Err(BlockError::Parameter { name: "shift", value }),
+            None => Ok(()),
+        }
+    }
+}
