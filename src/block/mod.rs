@@ -35,6 +35,8 @@ pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
 pub use weave::{WeaveCost, weave};
 
 #[cfg(test)]
+mod cluster_tests;
+#[cfg(test)]
 mod connector_tests;
 #[cfg(test)]
 mod fixtures;

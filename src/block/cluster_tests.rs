@@ -1,0 +1,137 @@
+//! Whole blocks: clusters from tubes, connectors between their end surfaces, dumps.
+
+use super::fixtures::direction;
+use super::trim_tests::assert_mesh;
+use super::{
+    BlockDump, BlockError, BlockOutcome, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, dump_cluster,
+    dump_connector, mesh_cluster, mesh_connector,
+};
+use crate::geometry::{Point3, Section, Tube, Vec3};
+use crate::mesh::TetMesh;
+use crate::mesh::quality::radius_ratio;
+use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
+use crate::skeleton::{BranchId, NodeId};
+
+/// A star of vessels from a node: one per direction, ending in a cut or a terminal at 4 radii.
+fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
+    let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
+    for &(axis, radius, kind) in arms {
+        let origin = center + axis * 4.0;
+        cluster.tubes.push(Tube { a: center, b: origin, ra: radius, rb: radius });
+        cluster.tubes.push(Tube { a: origin, b: origin + axis * (1.7 * radius), ra: radius, rb: radius });
+        let overrun = vec![cluster.tubes.len() as u32 - 1];
+        cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius }, kind, overrun });
+    }
+    cluster
+}
+
+fn cut(cut: u32, side: u8) -> EndKind {
+    EndKind::Cut { cut: CutId(cut), side }
+}
+
+/// A bifurcation turned by `seed`; end 0 is side 0 of cut 0.
+fn bifurcation(seed: u64) -> Cluster {
+    let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
+    let arm = |x: f64, z: f64| turn * Vec3::new(x, 0.1, z).normalize();
+    star(
+        Point3::origin(),
+        &[
+            (arm(0.0, 1.0), 1.0, cut(0, 0)),
+            (arm(0.8, -0.7), 0.8, EndKind::Terminal(NodeId(1))),
+            (arm(-0.8, -0.6), 0.7, cut(1, 0)),
+        ],
+    )
+}
+
+fn worst_ratio(mesh: &TetMesh) -> f64 {
+    mesh.tets
+        .iter()
+        .map(|t| {
+            let p = t.map(|v| mesh.points[v as usize]);
+            radius_ratio(&p[0], &p[1], &p[2], &p[3])
+        })
+        .fold(1.0, f64::min)
+}
+
+fn meshed(seed: u64, params: &BlockParams) -> (Cluster, ClusterMesh) {
+    let cluster = bifurcation(seed);
+    let mesh = mesh_cluster(ClusterId(0), &cluster, params).expect("cluster");
+    assert_mesh(&mesh.mesh, 2);
+    assert_eq!((mesh.ends.len(), mesh.caps.len()), (2, 1));
+    for end in &mesh.ends {
+        assert_eq!(end.check(&mesh.mesh.points), Ok(()));
+    }
+    for v in mesh.caps[0].triangles.iter().flatten() {
+        assert!(mesh.caps[0].section.height(&mesh.mesh.points[*v as usize]).abs() < 1e-9);
+    }
+    (cluster, mesh)
+}
+
+#[test]
+fn bifurcations_are_meshed_and_joined() {
+    for seed in 0..6 {
+        let style = if seed % 3 == 2 { EndStyle::Disc } else { EndStyle::Trimmed };
+        let params = BlockParams { ends: style, ..BlockParams::with_rho(3.0 + (seed % 2) as f64) };
+        let (cluster, lower) = meshed(seed, &params);
+        // A second cluster opposite to the first one's cut 0, three radii away.
+        let first = cluster.ends[0].section;
+        let center = first.origin + first.axis * 7.0;
+        let facing = star(center, &[(-first.axis, 1.0, cut(0, 1)), (first.axis, 1.0, EndKind::Terminal(NodeId(3)))]);
+        let upper = mesh_cluster(ClusterId(1), &facing, &params).expect("facing cluster");
+        let path = vec![first, Section { origin: facing.ends[0].section.origin, ..first }];
+        let gap = Cut { branch: BranchId(0), sides: [(ClusterId(0), 0), (ClusterId(1), 0)], path };
+        let ends = [
+            ConnectorEnd { surface: &lower.ends[0], points: &lower.mesh.points },
+            ConnectorEnd { surface: &upper.ends[0], points: &upper.mesh.points },
+        ];
+        let connector = mesh_connector(CutId(0), &gap, ends, &params).expect("connector");
+        assert_mesh(&connector.mesh, 2);
+        assert!(connector.failed.is_empty());
+        for (p, v) in connector.mesh.points.iter().zip(&connector.shared) {
+            assert_eq!(*p, ends[v.side as usize].points[v.vertex as usize]);
+        }
+        assert!(worst_ratio(&connector.mesh) > 0.03, "{}", worst_ratio(&connector.mesh));
+
+        let dump = dump_connector(CutId(0), &gap, ends, &params);
+        let again = BlockDump::from_json(&dump.to_json().expect("json")).expect("dump");
+        assert_eq!(again, dump);
+        let Ok(BlockOutcome::Connector(copy)) = again.run() else { panic!("connector runs again") };
+        assert_eq!(copy.mesh, connector.mesh);
+    }
+}
+
+#[test]
+fn a_dumped_cluster_runs_again_to_the_same_bits() {
+    let params = BlockParams { shift: [0.1, 0.2, 0.3], ..BlockParams::default() };
+    let (cluster, mesh) = meshed(11, &params);
+    let text = dump_cluster(ClusterId(0), &cluster, &params).to_json().expect("json");
+    let Ok(BlockOutcome::Cluster(copy)) = BlockDump::from_json(&text).expect("dump").run() else {
+        panic!("cluster runs again")
+    };
+    assert_eq!(copy, mesh);
+}
+
+#[test]
+fn fused_neighbours_are_told_by_the_genus() {
+    // Two arms of a fork that run close and parallel: the space between them closes at the far end, not at the fork.
+    let center = Point3::origin();
+    let mut cluster = star(
+        center,
+        &[(Vec3::new(0.35, 0.0, 1.0).normalize(), 1.0, cut(0, 0)), (-Vec3::z(), 1.0, EndKind::Terminal(NodeId(1)))],
+    );
+    let p = |x: f64, z: f64| Point3::new(x, 0.0, z);
+    let side = [p(0.0, 0.0), p(-4.5, 1.0), p(-4.5, 6.0), p(2.0, 6.5)];
+    for pair in side.windows(2) {
+        cluster.tubes.push(Tube { a: pair[0], b: pair[1], ra: 1.0, rb: 1.0 });
+    }
+    let result = mesh_cluster(ClusterId(4), &cluster, &BlockParams::default());
+    let expected = BlockError::Genus { cluster: ClusterId(4), handles: 1, loops: 0 };
+    assert_eq!(result.err(), Some(expected));
+}
+
+#[test]
+fn parameters_out_of_range_are_told() {
+    let params = BlockParams { rho: f64::NAN, ..BlockParams::default() };
+    let result = mesh_cluster(ClusterId(0), &bifurcation(0), &params);
+    assert!(matches!(result, Err(BlockError::Parameter { name: "rho", .. })));
+}
