@@ -80,8 +80,7 @@ pub fn cluster_surface(
 ) -> Result<(CappedSurface, f64), BlockError> {
     params.check()?;
     let voxel = 2.0 * smallest_radius(cluster) / params.rho * params.voxel_factor;
-    let surface_params =
-        SurfaceParams { kappa: params.kappa, shift: params.shift, ..SurfaceParams::with_voxel(voxel) };
+    let surface_params = SurfaceParams { kappa: params.kappa, shift: params.shift, ..SurfaceParams::with_voxel(voxel) };
     let failed = |source| BlockError::Surface { cluster: id, source };
     let wall = vessel_surface(&cluster.tubes, &surface_params).map_err(failed)?;
     let (handles, loops) = (1 - euler_characteristic(&wall) / 2, independent_loops(&cluster.tubes));
@@ -153,7 +152,8 @@ fn independent_loops(tubes: &[Tube]) -> i64 {
 
 fn mean_edge(surface: &TriMesh) -> f64 {
     let p = |v: u32| surface.points[v as usize];
-    let sum: f64 = surface.triangles.iter().map(|t| (0..3).map(|k| (p(t[k]) - p(t[(k + 1) % 3])).norm()).sum::<f64>()).sum();
+    let sum: f64 =
+        surface.triangles.iter().map(|t| (0..3).map(|k| (p(t[k]) - p(t[(k + 1) % 3])).norm()).sum::<f64>()).sum();
     sum / (3 * surface.triangles.len().max(1)) as f64
 }
 
@@ -165,9 +165,7 @@ fn caps(cluster: &Cluster, surface: &CappedSurface) -> Vec<CapFaces> {
     (0..)
         .zip(&cluster.ends)
         .filter_map(|(i, end)| match end.kind {
-            EndKind::Terminal(node) => {
-                Some(CapFaces { node, section: end.section, triangles: faces_of(surface, i) })
-            }
+            EndKind::Terminal(node) => Some(CapFaces { node, section: end.section, triangles: faces_of(surface, i) }),
             EndKind::Cut { .. } => None,
         })
         .collect()

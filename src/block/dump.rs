@@ -152,9 +152,7 @@ impl BlockDump {
     /// The block's.
     pub fn run(&self) -> Result<BlockOutcome, BlockError> {
         match self {
-            Self::Cluster(d) => {
-                mesh_cluster(ClusterId(d.cluster), &d.cluster(), &d.params).map(BlockOutcome::Cluster)
-            }
+            Self::Cluster(d) => mesh_cluster(ClusterId(d.cluster), &d.cluster(), &d.params).map(BlockOutcome::Cluster),
             Self::Connector(d) => d.run().map(BlockOutcome::Connector),
         }
     }

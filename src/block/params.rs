@@ -52,12 +52,8 @@ impl BlockParams {
     }
 
     pub(super) fn check(&self) -> Result<(), BlockError> {
-        let positive = [
-            ("rho", self.rho),
-            ("voxel_factor", self.voxel_factor),
-            ("kappa", self.kappa),
-            ("depth", self.depth),
-        ];
+        let positive =
+            [("rho", self.rho), ("voxel_factor", self.voxel_factor), ("kappa", self.kappa), ("depth", self.depth)];
         for (name, value) in positive {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(BlockError::Parameter { name, value });
