@@ -3,7 +3,7 @@
 use super::complex::{Complex, NONE};
 use super::error::TetError;
 use super::star::Star;
-use crate::mesh::{TetMesh, TriMesh};
+use crate::mesh::TriMesh;
 
 const UNSEEN: u8 = 2;
 
@@ -12,7 +12,7 @@ const UNSEEN: u8 = 2;
 ///
 /// # Errors
 /// [`TetError::NotSeparating`] when a triangle has the same side on both sides, or faces inwards.
-pub(super) fn carve(c: &Complex, surface: &TriMesh) -> Result<TetMesh, TetError> {
+pub(super) fn carve(c: &Complex, surface: &TriMesh) -> Result<Complex, TetError> {
     let side = sides(c);
     check_sides(c, surface, &side)?;
     let n = surface.points.len();
@@ -20,10 +20,11 @@ pub(super) fn carve(c: &Complex, surface: &TriMesh) -> Result<TetMesh, TetError>
     for (v, slot) in id.iter_mut().enumerate().take(n) {
         *slot = v as u32;
     }
-    let inner: Vec<u32> = c.real_tets().filter(|&t| side[t as usize] == 1).collect();
-    for v in inner.iter().flat_map(|&t| c.verts(t)) {
-        if v as usize >= n {
-            id[v as usize] = 0;
+    for t in c.real_tets().filter(|&t| side[t as usize] == 1) {
+        for v in c.verts(t) {
+            if v as usize >= n {
+                id[v as usize] = 0;
+            }
         }
     }
     let mut points = surface.points.clone();
@@ -33,8 +34,7 @@ pub(super) fn carve(c: &Complex, surface: &TriMesh) -> Result<TetMesh, TetError>
             points.push(c.points[v]);
         }
     }
-    let tets = inner.iter().map(|&t| c.verts(t).map(|v| id[v as usize])).collect();
-    Ok(TetMesh { points, tets })
+    Ok(c.part(points, &id, |t| side[t as usize] == 1))
 }
 
 /// For every tetrahedron 0 outside, 1 inside: the parity of frozen faces on the way from infinity.

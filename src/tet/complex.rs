@@ -7,8 +7,8 @@
 
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
+use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::{TET_FACES, TetMesh};
-use rustc_hash::FxHashMap;
 
 /// The vertex at infinity, last vertex of every ghost tetrahedron.
 pub const GHOST: u32 = u32::MAX;
@@ -184,22 +184,54 @@ impl Complex {
 
     /// Glues all faces that two tetrahedra share; returns the half-faces that are left over.
     fn glue_all(&mut self) -> Result<Vec<u32>, ComplexError> {
-        let mut seen: FxHashMap<[u32; 3], u32> = FxHashMap::default();
-        seen.reserve(self.verts.len() * 2);
-        for t in 0..self.verts.len() as u32 {
+        let adjacency = tet_adjacency(&self.verts, self.points.len());
+        if let Some(&half) = adjacency.crowded.first() {
+            return Err(ComplexError::FaceNotConforming { face: self.face(half) });
+        }
+        let mut open = Vec::new();
+        for half in 0..4 * self.verts.len() as u32 {
+            let mate = adjacency.neighbors[(half >> 2) as usize][(half & 3) as usize];
+            if mate == NONE {
+                open.push(half);
+            } else if mate > half && !opposed(self.face(half), self.face(mate)) {
+                return Err(ComplexError::FaceNotConforming { face: self.face(half) });
+            }
+        }
+        self.mates = adjacency.neighbors;
+        Ok(open)
+    }
+
+    /// The part of the complex whose tetrahedra have `keep`, with the vertices `id[v]` (others are [`NONE`]) at
+    /// `points`; ghosts close it. Frozen faces stay frozen.
+    pub(super) fn part(&self, points: Vec<Point3>, id: &[u32], keep: impl Fn(u32) -> bool) -> Self {
+        let mut part = Self::new(points);
+        let mut new_tet = vec![NONE; self.slots()];
+        let kept: Vec<u32> = self.real_tets().filter(|&t| keep(t)).collect();
+        // Ghosts are about a tenth.
+        part.reserve(kept.len() + kept.len() / 8);
+        for &t in &kept {
+            new_tet[t as usize] = part.alloc(self.verts(t).map(|v| id[v as usize]));
+        }
+        let mut open = Vec::new();
+        for (new, &t) in kept.iter().enumerate() {
+            part.frozen[new] = self.frozen[t as usize];
             for i in 0..4 {
-                let half = 4 * t + i;
-                let face = self.face(half);
-                match seen.insert(face_key(face), half) {
-                    None => {}
-                    Some(other) if self.mate(other) == NONE && opposed(face, self.face(other)) => {
-                        self.glue(half, other);
-                    }
-                    Some(_) => return Err(ComplexError::FaceNotConforming { face }),
+                let mate = self.mates[t as usize][i];
+                let n = new_tet[(mate >> 2) as usize];
+                if n == NONE {
+                    open.push(4 * new as u32 + i as u32);
+                } else {
+                    part.mates[new][i] = 4 * n + (mate & 3);
                 }
             }
         }
-        Ok((0..4 * self.verts.len() as u32).filter(|&h| self.mate(h) == NONE).collect())
+        part.add_ghosts(&open);
+        for &half in &open {
+            if part.is_frozen(half) {
+                part.freeze(half);
+            }
+        }
+        part
     }
 
     /// Stands a ghost on each of the open half-faces and glues the ghosts to each other.
@@ -248,6 +280,28 @@ impl Complex {
     pub fn into_mesh(self) -> TetMesh {
         let tets = self.real_tets().map(|t| self.verts[t as usize]).collect();
         TetMesh { points: self.points, tets }
+    }
+
+    /// As [`Complex::into_mesh`], without the points from `fixed` on that no tetrahedron has.
+    pub fn into_compact_mesh(self, fixed: usize) -> TetMesh {
+        let mut mesh = self.into_mesh();
+        let mut id = vec![NONE; mesh.points.len()];
+        for &v in mesh.tets.iter().flatten() {
+            id[v as usize] = 0;
+        }
+        let mut count = 0;
+        for (v, slot) in id.iter_mut().enumerate() {
+            if v < fixed || *slot == 0 {
+                mesh.points[count as usize] = mesh.points[v];
+                *slot = count;
+                count += 1;
+            }
+        }
+        mesh.points.truncate(count as usize);
+        for v in mesh.tets.iter_mut().flatten() {
+            *v = id[*v as usize];
+        }
+        mesh
     }
 
     /// Number of slots; tetrahedra are numbered below it, deleted ones included.

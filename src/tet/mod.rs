@@ -110,12 +110,13 @@ pub fn tetrahedralize_with_summary(surface: &TriMesh, options: &TetOptions) -> R
     drop(points);
     let recovery = recover::recover(&mut complex, surface, &edges)
         .map_err(|u| TetError::NotRecovered { edges: u.edges, triangles: u.triangles })?;
-    let mut mesh = carve::carve(&complex, surface)?;
+    let mut carved = carve::carve(&complex, surface)?;
     drop(complex);
     if options.optimize {
         let improvement = optimize::OptimizeOptions { fixed_points: surface.points.len(), ..Default::default() };
-        optimize::optimize(&mut mesh, &improvement)?;
+        optimize::optimize_complex(&mut carved, &improvement);
     }
+    let mesh = carved.into_compact_mesh(surface.points.len());
     certify::certify(&mesh, surface)?;
     Ok(Tetrahedralization { mesh, recovery })
 }

@@ -1,0 +1,66 @@
+//! Delaunay tetrahedralization of random points, and a torus from surface to improved mesh.
+
+use anastomesh::geometry::Point3;
+use anastomesh::mesh::TriMesh;
+use anastomesh::tet::{Interior, TetOptions, delaunay::delaunay, tetrahedralize};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use std::hint::black_box;
+
+fn random_points(n: usize) -> Vec<Point3> {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut coordinate = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..n).map(|_| Point3::new(coordinate(), coordinate(), coordinate())).collect()
+}
+
+fn torus(n: u32, m: u32) -> TriMesh {
+    let mut s = TriMesh::default();
+    let turn = |i: u32, n: u32| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
+    for i in 0..n {
+        for j in 0..m {
+            let (a, b) = (turn(i, n), turn(j, m));
+            let r = 2.0 + 0.7 * b.cos();
+            s.points.push(Point3::new(r * a.cos(), r * a.sin(), 0.7 * b.sin()));
+        }
+    }
+    let at = |i: u32, j: u32| (i % n) * m + j % m;
+    for i in 0..n {
+        for j in 0..m {
+            s.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            s.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    s
+}
+
+fn points(c: &mut Criterion) {
+    let mut group = c.benchmark_group("delaunay");
+    group.sample_size(10);
+    for n in [10_000, 100_000] {
+        let p = random_points(n);
+        group.throughput(Throughput::Elements(n as u64));
+        group.bench_function(format!("{n} random points"), |b| b.iter(|| delaunay(black_box(&p)).map(|c| c.slots())));
+    }
+    group.finish();
+}
+
+fn surface(c: &mut Criterion) {
+    let mut group = c.benchmark_group("tetrahedralize");
+    group.sample_size(10);
+    let s = torus(120, 42);
+    let options = TetOptions::default();
+    group.throughput(Throughput::Elements(s.triangles.len() as u64));
+    for (name, options) in [
+        ("torus, no interior points", options.clone().interior(Interior::None).optimize(false)),
+        ("torus, lattice", options.clone().optimize(false)),
+        ("torus, lattice, improved", options),
+    ] {
+        group.bench_function(name, |b| b.iter(|| tetrahedralize(black_box(&s), &options).map(|m| m.tets.len())));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, points, surface);
+criterion_main!(benches);
