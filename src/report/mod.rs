@@ -1,3 +1,4 @@
 //! Floor 3: what the verbs say, as models with a text and a JSON form.
 
+pub mod info;
 pub mod run;

@@ -1,0 +1,284 @@
+//! What `info` says about a network.
+
+use crate::geometry::Aabb;
+use crate::skeleton::{CleanReport, Overlaps, Skeleton};
+use serde::Serialize;
+use std::fmt;
+
+/// Overlaps that the text lists; the JSON form has all.
+const LISTED: usize = 10;
+
+/// Least, quartiles and largest of some numbers; all 0 when there are none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// Smallest.
+    pub min: f64,
+    /// A quarter is smaller.
+    pub quarter: f64,
+    /// Half is smaller.
+    pub median: f64,
+    /// Three quarters are smaller.
+    pub three_quarters: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+impl Spread {
+    /// Of these numbers.
+    pub fn of(mut values: Vec<f64>) -> Self {
+        values.sort_unstable_by(f64::total_cmp);
+        let Some(last) = values.len().checked_sub(1) else {
+            return Self::default();
+        };
+        let at = |share: f64| values[(share * last as f64).round() as usize];
+        Self { min: at(0.0), quarter: at(0.25), median: at(0.5), three_quarters: at(0.75), max: at(1.0) }
+    }
+}
+
+/// Five significant digits, whatever the unit.
+fn digits(x: f64) -> String {
+    let magnitude = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };
+    if (-3.0..7.0).contains(&magnitude) {
+        format!("{x:.*}", (4.0 - magnitude).max(0.0) as usize)
+    } else {
+        format!("{x:.4e}")
+    }
+}
+
+impl fmt::Display for Spread {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [a, b, c, d, e] = [self.min, self.quarter, self.median, self.three_quarters, self.max].map(digits);
+        write!(f, "{a} .. {e} (quartiles {b}, {c}, {d})")
+    }
+}
+
+/// A guess at the unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UnitGuess {
+    /// m.
+    Metres,
+    /// mm.
+    Millimetres,
+    /// µm.
+    Micrometres,
+}
+
+impl UnitGuess {
+    /// From the largest radius and the extent: no vessel is thicker than 20 mm, no network larger than 2 m.
+    fn of(largest_radius: f64, extent: f64) -> Self {
+        if largest_radius > 20.0 || extent > 2000.0 {
+            Self::Micrometres
+        } else if largest_radius < 0.02 && extent < 2.0 {
+            Self::Metres
+        } else {
+            Self::Millimetres
+        }
+    }
+}
+
+impl fmt::Display for UnitGuess {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Metres => "metres",
+            Self::Millimetres => "millimetres",
+            Self::Micrometres => "micrometres",
+        })
+    }
+}
+
+/// What a network holds. Lengths are in the network's unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NetworkInfo {
+    /// What the reader decided.
+    pub notes: Vec<String>,
+    /// What cleaning did; everything below is about the cleaned network.
+    pub cleaned: CleanReport,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of edges.
+    pub edges: usize,
+    /// Number of branches: chains through nodes of valence 2.
+    pub branches: usize,
+    /// Number of connected pieces.
+    pub components: usize,
+    /// Nodes of the largest piece.
+    pub largest_component: usize,
+    /// Number of independent loops.
+    pub loops: usize,
+    /// Number of nodes of valence 1.
+    pub terminals: usize,
+    /// How many nodes have 0, 1, 2, … edges.
+    pub valences: Vec<usize>,
+    /// Radii at the ends of the edges.
+    pub radius: Spread,
+    /// Lengths of the edges.
+    pub edge_length: Spread,
+    /// Edges shorter than their mean radius.
+    pub edges_shorter_than_radius: usize,
+    /// Lengths of the branches.
+    pub branch_length: Spread,
+    /// Length of each branch over its mean radius.
+    pub branch_length_in_radii: Spread,
+    /// Length of all edges together.
+    pub total_length: f64,
+    /// Lowest and highest coordinates of the nodes.
+    pub bounding_box: [[f64; 3]; 2],
+    /// A guess at the unit of length from the sizes.
+    pub unit_guess: UnitGuess,
+    /// Where vessels run into each other.
+    pub overlaps: Overlaps,
+}
+
+impl NetworkInfo {
+    /// Looks at a cleaned network; `notes` are passed on.
+    pub fn new(skeleton: &Skeleton, cleaned: CleanReport, notes: Vec<String>) -> Self {
+        let adjacency = skeleton.adjacency();
+        let components = skeleton.components(&adjacency).list;
+        let branches = skeleton.branches(&adjacency).list;
+        let mut valences = Vec::new();
+        for node in skeleton.node_ids() {
+            let valence = adjacency.valence(node);
+            valences.resize(valences.len().max(valence + 1), 0);
+            valences[valence] += 1;
+        }
+        let lengths: Vec<f64> = skeleton.edge_ids().map(|e| skeleton.length(e)).collect();
+        let short = skeleton.edges.iter().zip(&lengths).filter(|(e, length)| **length < e.mean_radius()).count();
+        let aabb = Aabb::of_points(skeleton.nodes.iter().map(|n| &n.position));
+        let radius = Spread::of(skeleton.edges.iter().flat_map(|e| e.radii).collect());
+        Self {
+            notes,
+            cleaned,
+            nodes: skeleton.nodes.len(),
+            edges: skeleton.edges.len(),
+            branches: branches.len(),
+            components: components.len(),
+            largest_component: components.iter().map(|c| c.nodes.len()).max().unwrap_or(0),
+            loops: components.iter().map(crate::skeleton::Component::loops).sum(),
+            terminals: valences.get(1).copied().unwrap_or(0),
+            valences,
+            radius,
+            edges_shorter_than_radius: short,
+            branch_length: Spread::of(branches.iter().map(crate::skeleton::Branch::length).collect()),
+            branch_length_in_radii: Spread::of(branches.iter().map(|b| b.length() / b.mean_radius(skeleton)).collect()),
+            total_length: lengths.iter().sum(),
+            edge_length: Spread::of(lengths),
+            bounding_box: [aabb.min.into(), aabb.max.into()],
+            unit_guess: UnitGuess::of(radius.max, aabb.diagonal()),
+            overlaps: skeleton.overlaps(&adjacency),
+        }
+    }
+
+    fn write_cleaning(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let done = [
+            (self.cleaned.coincident.len(), "nodes at the place of another one merged"),
+            (self.cleaned.zero_length.len(), "edges without length dropped"),
+            (self.cleaned.contracted.len(), "edges shorter than a millionth of their radius contracted"),
+            (self.cleaned.repeated.len(), "repeated edges dropped"),
+            (self.cleaned.isolated.len(), "nodes without an edge dropped"),
+            (self.cleaned.blended.len(), "jumps of the radius inside a branch evened out"),
+        ];
+        for (count, what) in done.iter().filter(|(count, _)| *count > 0) {
+            writeln!(f, "cleaned: {count} {what}")?;
+        }
+        Ok(())
+    }
+
+    fn write_overlaps(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let all = &self.overlaps.pairs;
+        let beside = all.iter().filter(|o| o.shares_node()).count();
+        writeln!(f, "overlaps: {} pairs of edges, {beside} of them leave one node side by side", all.len())?;
+        for o in all.iter().take(LISTED) {
+            let [[a, b], [c, d]] = o.nodes.map(|ends| ends.map(|n| n.0));
+            let at = <[f64; 3]>::from(nalgebra::center(&o.points[0], &o.points[1])).map(digits).join(" ");
+            let (distance, radii) = (digits(o.distance), digits(o.radii));
+            writeln!(f, "  {a}-{b} and {c}-{d}: {distance} apart, radii {radii}, at {at}")?;
+        }
+        if all.len() > LISTED {
+            writeln!(f, "  and {} more", all.len() - LISTED)?;
+        }
+        let (met, far) = (self.overlaps.unconnected.len(), self.overlaps.far);
+        writeln!(
+            f,
+            "          {met} pairs that share no node meet, neighbours along a vessel included; {far} of them far"
+        )?;
+        if !self.overlaps.complete {
+            writeln!(f, "          (not all pairs were looked at: there are too many)")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for NetworkInfo {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        for note in &self.notes {
+            writeln!(f, "read: {note}")?;
+        }
+        self.write_cleaning(f)?;
+        writeln!(f, "nodes: {} ({} terminals)", self.nodes, self.terminals)?;
+        writeln!(f, "edges: {} in {} branches", self.edges, self.branches)?;
+        writeln!(f, "components: {} (the largest has {} nodes)", self.components, self.largest_component)?;
+        writeln!(f, "loops: {}", self.loops)?;
+        let present = self.valences.iter().enumerate().filter(|(_, count)| **count > 0);
+        let valences: Vec<String> = present.map(|(valence, count)| format!("{valence}: {count}")).collect();
+        writeln!(f, "nodes by number of edges: {}", valences.join(", "))?;
+        writeln!(f, "radius: {}", self.radius)?;
+        writeln!(
+            f,
+            "edge length: {}; {} edges are shorter than their radius",
+            self.edge_length, self.edges_shorter_than_radius
+        )?;
+        writeln!(f, "branch length: {}", self.branch_length)?;
+        writeln!(f, "branch length in radii: {}", self.branch_length_in_radii)?;
+        writeln!(f, "total length: {}", digits(self.total_length))?;
+        let [low, high] = self.bounding_box.map(|p| p.map(digits).join(" "));
+        writeln!(f, "bounding box: {low} to {high}")?;
+        writeln!(f, "unit: perhaps {} (a guess from the largest radius and the extent)", self.unit_guess)?;
+        self.write_overlaps(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+    use crate::skeleton::{Edge, Node, NodeId, clean};
+
+    /// A trunk of two edges with a ring of three at its end, and a vessel of its own that crosses the trunk.
+    fn network() -> Skeleton {
+        let points = [[0, 0, 0], [1, 0, 0], [9, 0, 0], [20, 9, 0], [20, -9, 0], [4, -9, 1], [4, 9, 1]];
+        let node = |(i, p): (usize, &[i8; 3])| Node {
+            position: Point3::from(p.map(f64::from)),
+            radius: 2.0,
+            original: i as u32,
+        };
+        let edge = |&(a, b): &(u32, u32)| Edge { nodes: [NodeId(a), NodeId(b)], radii: [2.0; 2] };
+        let ends = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 2), (5, 6), (6, 5)];
+        Skeleton { nodes: points.iter().enumerate().map(node).collect(), edges: ends.iter().map(edge).collect() }
+    }
+
+    #[test]
+    fn counts_and_spreads() {
+        let (skeleton, report) = clean(&network()).unwrap();
+        let info = NetworkInfo::new(&skeleton, report, vec!["a note".into()]);
+        assert_eq!((info.nodes, info.edges, info.branches, info.components), (7, 6, 3, 2));
+        assert_eq!((info.loops, info.terminals, info.largest_component), (1, 3, 5));
+        assert_eq!(info.valences, [0, 3, 3, 1]);
+        assert_eq!(info.edges_shorter_than_radius, 1);
+        assert_eq!(info.bounding_box, [[0.0, -9.0, 0.0], [20.0, 9.0, 1.0]]);
+        assert_eq!(info.unit_guess, UnitGuess::Millimetres);
+        assert_eq!(info.overlaps.pairs.iter().filter(|o| !o.shares_node()).count(), 2);
+        let text = info.to_string();
+        assert!(text.contains("read: a note\ncleaned: 1 repeated edges dropped\nnodes: 7 (3 terminals)\n"), "{text}");
+        let json = serde_json::to_value(&info).unwrap();
+        assert_eq!(json["loops"], 1);
+        assert_eq!(json["overlaps"]["pairs"][0]["points"][0].as_array().map(Vec::len), Some(3));
+    }
+
+    #[test]
+    fn spread_of_few_and_many() {
+        assert_eq!(Spread::of(Vec::new()), Spread::default());
+        let spread = Spread::of((0..=100).rev().map(f64::from).collect());
+        assert_eq!(spread, Spread { min: 0.0, quarter: 25.0, median: 50.0, three_quarters: 75.0, max: 100.0 });
+    }
+}

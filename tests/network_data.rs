@@ -1,0 +1,69 @@
+//! Real networks made by others, which are not in the repository: skipped where the folder `../shared/data` (or
+//! `$ANASTOMESH_SHARED/data`) is absent.
+
+use anastomesh::io::network::{NetworkOptions, read_network};
+use anastomesh::report::info::NetworkInfo;
+use anastomesh::skeleton::{Skeleton, clean};
+use anastomesh::{refine, skeleton::CleanReport};
+use std::path::{Path, PathBuf};
+
+fn data() -> Option<PathBuf> {
+    let shared = std::env::var_os("ANASTOMESH_SHARED").map(PathBuf::from);
+    let data = shared.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared")).join("data");
+    if data.is_dir() {
+        return Some(data);
+    }
+    eprintln!("skipped: {} is absent", data.display());
+    None
+}
+
+fn read(path: &Path, radius_array: Option<&str>) -> (Skeleton, CleanReport) {
+    let options = NetworkOptions { radius_array: radius_array.map(str::to_owned) };
+    let network = read_network(path, &options).unwrap_or_else(|e| panic!("{e}"));
+    clean(&network.skeleton).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+#[test]
+fn every_network_is_read_cleaned_and_split() {
+    let Some(data) = data() else { return };
+    let mut count = 0;
+    for folder in ["kidney", "skeletons"] {
+        let entries = std::fs::read_dir(data.join(folder)).expect("a folder of networks");
+        for path in entries.map(|e| e.expect("an entry").path()) {
+            if matches!(path.extension().and_then(|e| e.to_str()), Some("swc" | "vtp")) {
+                let (skeleton, _) = read(&path, None);
+                assert_eq!(skeleton.check(), Ok(()), "{}", path.display());
+                let (after, report) = refine::split(&skeleton);
+                assert_eq!(after.check(), Ok(()), "{}", path.display());
+                let adjacency = after.adjacency();
+                assert!(after.node_ids().all(|n| adjacency.valence(n) <= 3), "{}", path.display());
+                let shortest = report.nodes.iter().map(|s| s.shortest_link).fold(f64::INFINITY, f64::min);
+                eprintln!("{}: {} nodes split, shortest link {shortest:.3} r", path.display(), report.nodes.len());
+                count += 1;
+            }
+        }
+    }
+    assert_eq!(count, 17);
+}
+
+/// The counts in the data's own README (edges that share no node) were made from the closest points of the axes; ours
+/// take the taper into account and are equal or a little higher.
+#[test]
+fn overlaps_are_those_that_are_known() {
+    let Some(data) = data() else { return };
+    let info = |file: &str, radius: Option<&str>| {
+        let (skeleton, cleaned) = read(&data.join(file), radius);
+        NetworkInfo::new(&skeleton, cleaned, Vec::new())
+    };
+    let counts = |i: &NetworkInfo| (i.overlaps.unconnected.len(), i.overlaps.far);
+    assert_eq!(counts(&info("kidney/subtree_289_clear.vtp", None)).0, 0);
+    assert_eq!(counts(&info("kidney/subtree_989.vtp", None)).0, 34);
+    assert_eq!(counts(&info("kidney/tree_refined.vtp", None)).0, 1948);
+    assert_eq!(counts(&info("skeletons/vascularmd_ICA.swc", None)), (85, 26));
+    assert_eq!(counts(&info("skeletons/brava_BG001.swc", None)), (410, 71));
+    assert_eq!(counts(&info("skeletons/opencco_tree3D_synth.vtp", Some("Radius"))), (170, 4));
+    let secomb = info("skeletons/secomb_mesentery_546.vtp", Some("Radius"));
+    assert_eq!((counts(&secomb).0, secomb.loops, secomb.cleaned.repeated.len()), (32, 158, 1));
+    let crossings = secomb.overlaps.pairs.iter().filter(|o| !o.shares_node() && o.distance < 1e-3 * o.radii);
+    assert_eq!(crossings.count(), 22);
+}
