@@ -104,7 +104,7 @@ pub fn cap_terminals(
         })?;
     }
     let (mesh, cap) = cutter.finish();
-    relaxed(&mesh, cap, field, ends, edge)
+    relaxed(&mesh, &cap, field, ends, edge)
 }
 
 /// The surface while tips are taken off and discs put on.
@@ -322,15 +322,17 @@ impl Level for Raised<'_> {
 /// Relaxes the wall next to each disc; discs and everything further away stay.
 fn relaxed(
     mesh: &TriMesh,
-    cap: Vec<Option<u32>>,
+    cap: &[Option<u32>],
     field: &mut Field,
     ends: &[ClusterEnd],
     edge: f64,
 ) -> Result<CappedSurface, CapError> {
     let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
     let mut on_disc = vec![false; mesh.points.len()];
-    for (t, _) in mesh.triangles.iter().zip(&cap).filter(|(_, c)| c.is_some()) {
-        t.iter().for_each(|&v| on_disc[v as usize] = true);
+    for (t, _) in mesh.triangles.iter().zip(cap).filter(|(_, c)| c.is_some()) {
+        for &v in t {
+            on_disc[v as usize] = true;
+        }
     }
     for end in ends {
         let section = &end.section;

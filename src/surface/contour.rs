@@ -20,13 +20,18 @@ pub(crate) type Node = [i32; 3];
 /// Coordinates have to stay within ± this.
 pub(crate) const MAX_COORDINATE: i32 = 1 << 20;
 
-/// Nodes and cells of 4 × 4 × 4 of the grid.
+/// Bits and mask of a coordinate within its tile, and places in a tile.
+const BITS: u32 = 3;
+const WITHIN: u64 = (1 << BITS) - 1;
+const PLACES: usize = 1 << (3 * BITS);
+
+/// Nodes and cells of 8 × 8 × 8 of the grid.
 struct Tile {
-    value: [f64; 64],
-    first_vertex: [u32; 64],
-    mask: [u8; 64],
-    evaluated: u64,
-    visited: u64,
+    value: [f64; PLACES],
+    first_vertex: [u32; PLACES],
+    mask: [u8; PLACES],
+    evaluated: [u64; PLACES / 64],
+    visited: [u64; PLACES / 64],
 }
 
 /// Contours the zero level of `value` (negative inside) from `seeds`, cells that the level crosses. Positions are in
@@ -40,9 +45,8 @@ pub(crate) fn contour(
     value: impl FnMut(Node) -> f64,
 ) -> Result<(TriMesh, Vec<u32>), SurfaceError> {
     let mut grid = Grid { tiles: Vec::new(), index: FxHashMap::default(), last: (u64::MAX, 0), value };
-    let cells = grid.flood(seeds, max_cells)?;
     let mut dual = Dual { mesh: TriMesh::default(), midpoints: FxHashMap::default() };
-    dual.vertices(&mut grid, &cells);
+    let cells = grid.flood(seeds, max_cells, &mut dual.mesh.points)?;
     for &(cell, mask) in &cells {
         for d in 0..3 {
             if (mask ^ mask >> (1 << d)) & 1 == 1 {
@@ -66,17 +70,17 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
     #[inline]
     fn locate(&mut self, n: Node) -> (usize, usize) {
         let c = n.map(|x| (x + 2 * MAX_COORDINATE) as u64);
-        let key = (c[0] >> 2) | (c[1] >> 2) << 21 | (c[2] >> 2) << 42;
-        let place = (c[0] & 3 | (c[1] & 3) << 2 | (c[2] & 3) << 4) as usize;
+        let key = (c[0] >> BITS) | (c[1] >> BITS) << 21 | (c[2] >> BITS) << 42;
+        let place = (c[0] & WITHIN | (c[1] & WITHIN) << BITS | (c[2] & WITHIN) << (2 * BITS)) as usize;
         if self.last.0 != key {
             let tiles = &mut self.tiles;
             let tile = *self.index.entry(key).or_insert_with(|| {
                 tiles.push(Tile {
-                    value: [0.0; 64],
-                    first_vertex: [u32::MAX; 64],
-                    mask: [0; 64],
-                    evaluated: 0,
-                    visited: 0,
+                    value: [0.0; PLACES],
+                    first_vertex: [u32::MAX; PLACES],
+                    mask: [0; PLACES],
+                    evaluated: [0; PLACES / 64],
+                    visited: [0; PLACES / 64],
                 });
                 tiles.len() as u32 - 1
             });
@@ -88,33 +92,52 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
     #[inline]
     fn node(&mut self, n: Node) -> f64 {
         let (tile, place) = self.locate(n);
-        if self.tiles[tile].evaluated >> place & 1 == 0 {
-            let value = (self.value)(n);
-            let tile = &mut self.tiles[tile];
-            tile.evaluated |= 1 << place;
-            tile.value[place] = value;
-            return value;
+        self.value_at(tile, place, n)
+    }
+
+    #[inline]
+    fn value_at(&mut self, tile: usize, place: usize, n: Node) -> f64 {
+        let known = &mut self.tiles[tile].evaluated[place / 64];
+        if *known >> (place % 64) & 1 == 0 {
+            *known |= 1 << (place % 64);
+            self.tiles[tile].value[place] = (self.value)(n);
         }
         self.tiles[tile].value[place]
     }
 
+    /// The values at the corners of a cell.
     fn corners(&mut self, cell: Node) -> [f64; 8] {
-        std::array::from_fn(|c| self.node(corner(cell, c)))
+        let mut v = [0.0; 8];
+        let (tile, place) = self.locate(cell);
+        let last = WITHIN as usize;
+        let inner = place & last != last && place >> BITS & last != last && place >> (2 * BITS) != last;
+        for (c, v) in v.iter_mut().enumerate() {
+            let n = corner(cell, c);
+            *v = if inner {
+                let offset = (c & 1) | (c >> 1 & 1) << BITS | (c >> 2) << (2 * BITS);
+                self.value_at(tile, place + offset, n)
+            } else {
+                self.node(n)
+            };
+        }
+        v
     }
 
-    fn mask(&mut self, cell: Node) -> u8 {
-        let v = self.corners(cell);
-        (0..8).fold(0, |mask, c| mask | u8::from(v[c] < 0.0) << c)
-    }
-
-    /// All crossed cells that are joined to the seeds through crossed faces, with their sign masks.
-    fn flood(&mut self, seeds: &[Node], max_cells: usize) -> Result<Vec<(Node, u8)>, SurfaceError> {
+    /// All crossed cells that are joined to the seeds through crossed faces, with their sign masks. Their patches'
+    /// vertices are appended to `points`.
+    fn flood(
+        &mut self,
+        seeds: &[Node],
+        max_cells: usize,
+        points: &mut Vec<Point3>,
+    ) -> Result<Vec<(Node, u8)>, SurfaceError> {
         let mut cells = Vec::new();
         let mut stack = Vec::new();
         for &seed in seeds {
             self.visit(seed, &mut stack)?;
             while let Some(cell) = stack.pop() {
-                let mask = self.mask(cell);
+                let value = self.corners(cell);
+                let mask = (0..8).fold(0, |mask, c| mask | u8::from(value[c] < 0.0) << c);
                 if mask == 0 || mask == u8::MAX {
                     continue;
                 }
@@ -123,6 +146,8 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
                 }
                 let (tile, place) = self.locate(cell);
                 self.tiles[tile].mask[place] = mask;
+                self.tiles[tile].first_vertex[place] = points.len() as u32;
+                patch_vertices(cell, mask, &value, points);
                 cells.push((cell, mask));
                 for (face, edges) in FACE_EDGES.iter().enumerate() {
                     let case = &CASES[mask as usize];
@@ -143,9 +168,9 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
             return Err(SurfaceError::TooLarge { cells: f64::INFINITY, limit: MAX_COORDINATE as usize });
         }
         let (tile, place) = self.locate(cell);
-        let visited = &mut self.tiles[tile].visited;
-        if *visited >> place & 1 == 0 {
-            *visited |= 1 << place;
+        let visited = &mut self.tiles[tile].visited[place / 64];
+        if *visited >> (place % 64) & 1 == 0 {
+            *visited |= 1 << (place % 64);
             stack.push(cell);
         }
         Ok(())
@@ -166,6 +191,24 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
         let (tile, place) = self.locate(cell);
         (self.tiles[tile].first_vertex[place], self.tiles[tile].mask[place])
     }
+}
+
+/// One vertex per patch of a cell, at the mean of the patch's crossings.
+fn patch_vertices(cell: Node, mask: u8, value: &[f64; 8], points: &mut Vec<Point3>) {
+    let case = &CASES[mask as usize];
+    let mut sums = [(Vec3::zeros(), 0.0); 4];
+    for e in 0..12 {
+        let patch = case.patch_of_edge[e];
+        if patch != NONE {
+            let [p, q] = edge_corners(e);
+            let mut at = Vec3::new((p & 1) as f64, (p >> 1 & 1) as f64, (p >> 2 & 1) as f64);
+            at[e / 4] += (value[p] / (value[p] - value[q])).clamp(0.02, 0.98);
+            let sum = &mut sums[patch as usize];
+            sum.0 += at;
+            sum.1 += 1.0;
+        }
+    }
+    points.extend(sums[..case.patches as usize].iter().map(|(sum, count)| position(cell) + sum / *count));
 }
 
 fn corner(cell: Node, c: usize) -> Node {
@@ -197,31 +240,6 @@ struct Dual {
 }
 
 impl Dual {
-    /// One vertex per patch, at the mean of the patch's crossings.
-    fn vertices<F: FnMut(Node) -> f64>(&mut self, grid: &mut Grid<F>, cells: &[(Node, u8)]) {
-        for &(cell, mask) in cells {
-            let case = &CASES[mask as usize];
-            let value = grid.corners(cell);
-            let mut sums = [(Vec3::zeros(), 0.0); 4];
-            for e in 0..12 {
-                let patch = case.patch_of_edge[e];
-                if patch != NONE {
-                    let [p, q] = edge_corners(e);
-                    let mut at = Vec3::new((p & 1) as f64, (p >> 1 & 1) as f64, (p >> 2 & 1) as f64);
-                    at[e / 4] += (value[p] / (value[p] - value[q])).clamp(0.02, 0.98);
-                    let sum = &mut sums[patch as usize];
-                    sum.0 += at;
-                    sum.1 += 1.0;
-                }
-            }
-            let (tile, place) = grid.locate(cell);
-            grid.tiles[tile].first_vertex[place] = self.mesh.points.len() as u32;
-            for (sum, count) in &sums[..case.patches as usize] {
-                self.mesh.points.push(position(cell) + sum / *count);
-            }
-        }
-    }
-
     /// The polygon of the crossed grid edge from `n`, which is `inside` or not, along axis `d`.
     fn crossing<F: FnMut(Node) -> f64>(&mut self, grid: &mut Grid<F>, n: Node, d: usize, inside: bool) {
         let (u, v) = ((d + 1) % 3, (d + 2) % 3);

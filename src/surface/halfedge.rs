@@ -162,6 +162,15 @@ impl HalfEdges {
         self.fan(v).count()
     }
 
+    /// Number of edges at every vertex.
+    pub(crate) fn valences(&self) -> Vec<i32> {
+        let mut out = vec![0; self.points.len()];
+        for &v in self.from.iter().filter(|&&v| v != NONE) {
+            out[v as usize] += 1;
+        }
+        out
+    }
+
     /// Whether an edge joins the two vertices.
     pub(crate) fn joined(&self, a: u32, b: u32) -> bool {
         self.fan(a).any(|h| self.to(h) == b)

@@ -37,7 +37,7 @@ pub struct SurfaceParams {
 impl SurfaceParams {
     /// Usual parameters for a cell edge.
     pub fn with_voxel(voxel: f64) -> Self {
-        Self { voxel, kappa: 0.4, shift: [0.0; 3], edge: 0.95, rounds: 4, max_cells: 20_000_000 }
+        Self { voxel, kappa: 0.4, shift: [0.0; 3], edge: 0.95, rounds: 3, max_cells: 20_000_000 }
     }
 }
 
@@ -126,7 +126,7 @@ fn check(params: &SurfaceParams) -> Result<(), SurfaceError> {
             return Err(SurfaceError::InvalidParameter { name, value });
         }
     }
-    match params.shift.iter().find(|x| !(x.abs() <= 1.0)) {
+    match params.shift.iter().find(|x| x.is_nan() || x.abs() > 1.0) {
         Some(&value) => Err(SurfaceError::InvalidParameter { name: "shift", value }),
         None => Ok(()),
     }

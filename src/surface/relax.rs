@@ -229,25 +229,24 @@ impl<'a, L: Level> Relaxation<'a, L> {
     }
 
     fn flip(&mut self, criterion: Criterion) {
+        let by_valence = matches!(criterion, Criterion::Valence);
+        let mut valence = if by_valence { self.surface.valences() } else { Vec::new() };
         for h in 0..self.surface.len() {
             if self.is_editable(h) && h < self.surface.twin(h) {
-                let wanted = match criterion {
-                    Criterion::Valence => self.flip_evens_valence(h),
-                    Criterion::Angle => self.flip_opens_angle(h),
-                };
+                let s = &*self.surface;
+                let quad = [s.from(h), s.to(h), s.apex(h), s.apex(s.twin(h))].map(|v| v as usize);
+                let wanted =
+                    if by_valence { flip_evens_valence(quad.map(|v| valence[v])) } else { self.flip_opens_angle(h) };
                 if wanted && self.surface.can_flip(h) && self.flip_is_sound(h) {
                     self.surface.flip(h);
+                    if by_valence {
+                        for (v, change) in quad.into_iter().zip([-1, -1, 1, 1]) {
+                            valence[v] += change;
+                        }
+                    }
                 }
             }
         }
-    }
-
-    fn flip_evens_valence(&self, h: u32) -> bool {
-        let s = &*self.surface;
-        let o = s.twin(h);
-        let v = [s.from(h), s.to(h), s.apex(h), s.apex(o)].map(|v| s.valence(v) as i64);
-        let badness = |x: [i64; 4]| x.iter().map(|n| (n - 6) * (n - 6)).sum::<i64>();
-        badness([v[0] - 1, v[1] - 1, v[2] + 1, v[3] + 1]) < badness(v)
     }
 
     fn flip_opens_angle(&self, h: u32) -> bool {
@@ -269,6 +268,13 @@ impl<'a, L: Level> Relaxation<'a, L> {
         let (l1, l2) = (n1.norm(), n2.norm());
         n1.dot(&old) > 0.7 * l1 && n2.dot(&old) > 0.7 * l2 && n1.dot(&n2) > 0.5 * l1 * l2
     }
+}
+
+/// Whether six neighbours each come nearer when the first two vertices of a quadrilateral lose an edge to the others.
+fn flip_evens_valence(valence: [i32; 4]) -> bool {
+    let badness = |x: [i32; 4]| x.iter().map(|n| (n - 6) * (n - 6)).sum::<i32>();
+    let [a, b, c, d] = valence;
+    badness([a - 1, b - 1, c + 1, d + 1]) < badness(valence)
 }
 
 #[derive(Clone, Copy)]
