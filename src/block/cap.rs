@@ -71,6 +71,10 @@ pub enum CapFailure {
 const MARGIN: f64 = 0.4;
 /// The wall is relaxed up to so far (in edge lengths) before the plane.
 const RELAXED: f64 = 3.5;
+/// A tip is longer than so many radii only where it runs into another vessel.
+const LONGEST_TIP: f64 = 3.0;
+/// What lies further (in radii) from the axis than this belongs to another vessel.
+const WIDTH: f64 = 1.1;
 /// Mean edge length of a relaxed wall over the length that was aimed at.
 const MEAN_EDGE: f64 = 0.92;
 /// Least number of corners of a ring.
@@ -122,6 +126,9 @@ impl Cutter<'_> {
         let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
         let mut tip = self.beyond(section, seed, MARGIN * edge)?;
         let rim = self.rim(section, &mut tip, edge)?;
+        if rim.iter().any(|&v| section.height(&self.points[v as usize]) > section.radius) {
+            return Err(CapFailure::Merged);
+        }
         let low: Vec<Point3> = rim.iter().map(|&v| self.points[v as usize]).collect();
         let corners = ((TAU * section.radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS);
         let ring = disc(section.radius, corners, phase(section, &low, corners)).ok_or(CapFailure::Disc)?;
@@ -136,7 +143,7 @@ impl Cutter<'_> {
     /// The triangle through which the axis leaves the vessel beyond the plane.
     fn tip(&self, section: &Section) -> Option<u32> {
         let (u, w) = section.frame();
-        let reach = 4.0 * section.radius;
+        let reach = LONGEST_TIP * section.radius;
         let mut best = (reach, None);
         for face in 0..self.removed.len() as u32 {
             let local = self.triangle(face).map(|p| {
@@ -158,24 +165,26 @@ impl Cutter<'_> {
         best.1
     }
 
-    /// Marks the connected triangles round `seed` that reach above `margin` before the plane as removed.
+    /// Marks the connected triangles round `seed` that reach above `margin` before the plane as removed, within the
+    /// vessel's own cylinder: where another vessel leans on the tip, the wall will rise from the ring to that vessel.
     fn beyond(&mut self, section: &Section, seed: u32, margin: f64) -> Result<Vec<u32>, CapFailure> {
-        let (wide, long) = (2.0 * section.radius + margin, 4.0 * section.radius + margin);
+        let (wide, long) = (WIDTH * section.radius + margin, section.radius * LONGEST_TIP + margin);
+        let across = |p: &Point3, height: f64| (p - section.origin - section.axis * height).norm();
         let mut tip = vec![seed];
         self.removed[seed as usize] = true;
         let mut at = 0;
         while at < tip.len() {
             let face = tip[at];
             at += 1;
-            for p in self.triangle(face) {
-                let height = section.height(&p);
-                if height > long || (p - section.origin - section.axis * height).norm() > wide {
-                    return Err(CapFailure::Merged);
-                }
+            if self.triangle(face).iter().any(|p| section.height(p) > long) {
+                return Err(CapFailure::Merged);
             }
             for h in 3 * face..3 * face + 3 {
                 let next = self.surface.twin(h) / 3;
-                let reaches = self.triangle(next).iter().any(|p| section.height(p) > -margin);
+                let reaches = self.triangle(next).iter().any(|p| {
+                    let height = section.height(p);
+                    height > -margin && across(p, height) < wide
+                });
                 if reaches && !self.removed[next as usize] {
                     self.removed[next as usize] = true;
                     tip.push(next);
@@ -341,7 +350,7 @@ fn relaxed(
         let near = |p: &Point3| {
             let height = section.height(p);
             let across = (p - section.origin - section.axis * height).norm();
-            height > -RELAXED * edge && height < edge && across < 1.5 * section.radius + edge
+            height > -RELAXED * edge && height < 0.0 && across < 1.5 * section.radius + edge
         };
         on_disc.resize(surface.points.len(), false);
         let locked = surface.points.iter().zip(&on_disc).map(|(p, &disc)| disc || !near(p)).collect();

@@ -13,11 +13,11 @@ pub(crate) enum Corner {
 
 /// How far, in steps of the upper loop, the first rung may be from the nearest one.
 const SPREAD: usize = 2;
-/// Badness of a triangle that is turned inwards.
+/// Badness of a triangle that is turned over.
 const INVERTED: f64 = 1e6;
 
-/// The strip between two closed loops, both counter-clockwise about `axis`, the upper one further along it. Triangles
-/// look away from the axis through `center`. Empty when a loop has less than three points.
+/// The strip between two closed loops, both counter-clockwise about the `axis` through `center`; where the upper loop is
+/// further along the axis, triangles look away from it. Empty when a loop has less than three points.
 pub(crate) fn weave(low: &[Point3], high: &[Point3], center: &Point3, axis: &Vec3) -> Vec<[Corner; 3]> {
     let (n, m) = (low.len(), high.len());
     if n < 3 || m < 3 {
@@ -62,14 +62,14 @@ fn cheapest(low: &[Point3], high: &[Point3], first: usize, center: &Point3, axis
         for j in 0..=m {
             let here = cost[at(i, j)];
             if i < n {
-                let c = here + badness(l(i), l(i + 1), h(j), center, axis);
+                let c = here + badness([l(i), l(i + 1), h(j)], h(j) - nalgebra::center(l(i), l(i + 1)), center, axis);
                 if c < cost[at(i + 1, j)] {
                     cost[at(i + 1, j)] = c;
                     by_low[at(i + 1, j)] = true;
                 }
             }
             if j < m {
-                let c = here + badness(h(j + 1), h(j), l(i), center, axis);
+                let c = here + badness([h(j + 1), h(j), l(i)], nalgebra::center(h(j), h(j + 1)) - l(i), center, axis);
                 if c < cost[at(i, j + 1)] {
                     cost[at(i, j + 1)] = c;
                     by_low[at(i, j + 1)] = false;
@@ -88,15 +88,16 @@ fn cheapest(low: &[Point3], high: &[Point3], first: usize, center: &Point3, axis
     (cost[at(n, m)], steps)
 }
 
-/// One for an equilateral triangle that looks away from the axis, large for slivers and those that look inwards.
-fn badness(a: &Point3, b: &Point3, c: &Point3, center: &Point3, axis: &Vec3) -> f64 {
+/// One for an equilateral triangle, large for slivers and for those whose loop edge runs backwards round the axis:
+/// the strip's outside is that of the tangent times `rise`, the way from the lower loop to the upper one.
+fn badness([a, b, c]: [&Point3; 3], rise: Vec3, center: &Point3, axis: &Vec3) -> f64 {
     let normal = (b - a).cross(&(c - a));
     let lengths = (b - a).norm_squared() + (c - b).norm_squared() + (a - c).norm_squared();
-    let out = (a - center) + (b - center) + (c - center);
-    let radial = out - axis * out.dot(axis);
+    let tangent = axis.cross(&((a - center) + (b - center) + (c - center)));
+    let outside = tangent.cross(&rise);
     let area = normal.norm();
     let shape = lengths / (2.0 * 3f64.sqrt() * area).max(1e-9 * lengths);
-    if normal.dot(&radial) <= 0.05 * area * radial.norm() { INVERTED + shape } else { shape * shape }
+    if normal.dot(&outside) <= 0.05 * area * outside.norm() { INVERTED + shape } else { shape * shape }
 }
 
 #[cfg(test)]
