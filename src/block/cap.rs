@@ -11,7 +11,7 @@ use crate::partition::{ClusterEnd, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::Field;
 use crate::surface::halfedge::HalfEdges;
-use crate::surface::relax::{Level, Relaxation};
+use crate::surface::relax::{Hold, Level, Relaxation};
 use disc::{Disc, disc};
 use std::f64::consts::TAU;
 use weave::{Corner, weave};
@@ -126,7 +126,7 @@ impl Cutter<'_> {
         let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
         let mut tip = self.beyond(section, seed, MARGIN * edge)?;
         let rim = self.rim(section, &mut tip, edge)?;
-        if rim.iter().any(|&v| section.height(&self.points[v as usize]) > section.radius) {
+        if rim.iter().any(|&v| section.height(&self.points[v as usize]) > LONGEST_TIP * section.radius) {
             return Err(CapFailure::Merged);
         }
         let low: Vec<Point3> = rim.iter().map(|&v| self.points[v as usize]).collect();
@@ -315,14 +315,19 @@ fn phase(section: &Section, low: &[Point3], corners: u32) -> f64 {
     (s.atan2(c) + std::f64::consts::PI) / m
 }
 
-/// The level set raised by what a polyhedron of this edge length lacks.
+/// The level set, raised by what a polyhedron of this edge length lacks; none beyond the plane, where the wall rises
+/// from the ring to another vessel.
 struct Raised<'a> {
     field: &'a mut Field,
     by: f64,
+    section: &'a Section,
 }
 
 impl Level for Raised<'_> {
     fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
+        if self.section.height(p) > 0.0 {
+            return (1.0, Vec3::zeros());
+        }
         let (value, gradient) = self.field.value_and_gradient(p);
         (value - self.by, gradient)
     }
@@ -339,22 +344,38 @@ fn relaxed(
     let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
     let mut on_disc = vec![false; mesh.points.len()];
     for (t, _) in mesh.triangles.iter().zip(cap).filter(|(_, c)| c.is_some()) {
-        for &v in t {
-            on_disc[v as usize] = true;
-        }
+        t.map(|v| on_disc[v as usize] = true);
+    }
+    let mut on_rim = vec![false; mesh.points.len()];
+    for t in mesh.triangles.iter().filter(|t| t.iter().any(|&v| on_disc[v as usize])) {
+        t.map(|v| on_rim[v as usize] = !on_disc[v as usize]);
     }
     for end in ends {
         let section = &end.section;
         let chord = MEAN_EDGE * edge / section.radius;
-        let mut level = Raised { field: &mut *field, by: chord * chord / 16.0 };
-        let near = |p: &Point3| {
+        let mut level = Raised { field: &mut *field, by: chord * chord / 16.0, section };
+        let before = |height: f64| height > -RELAXED * edge && height < 0.0;
+        let leaning = |height: f64| height >= 0.0 && height < LONGEST_TIP * section.radius;
+        on_disc.resize(surface.points.len(), false);
+        on_rim.resize(surface.points.len(), false);
+        let mut leaned_on = false;
+        let mut hold = Vec::with_capacity(surface.points.len());
+        for (v, p) in surface.points.iter().enumerate() {
             let height = section.height(p);
             let across = (p - section.origin - section.axis * height).norm();
-            height > -RELAXED * edge && height < 0.0 && across < 1.5 * section.radius + edge
-        };
-        on_disc.resize(surface.points.len(), false);
-        let locked = surface.points.iter().zip(&on_disc).map(|(p, &disc)| disc || !near(p)).collect();
-        Relaxation::new(&mut surface, &mut level, edge, locked).mend(4);
+            let near = across < 1.5 * section.radius + edge;
+            let leans = near && leaning(height) && on_rim[v];
+            leaned_on |= leans;
+            let free = leans || near && before(height);
+            hold.push(if on_disc[v] {
+                Hold::Disc
+            } else if free {
+                Hold::Free
+            } else {
+                Hold::Still
+            });
+        }
+        Relaxation::new(&mut surface, &mut level, edge, hold).mend(if leaned_on { 12 } else { 4 });
     }
     let faces = surface.live_triangles();
     let cap = faces.iter().map(|&f| cap.get(f as usize).copied().flatten()).collect();

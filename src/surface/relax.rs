@@ -8,7 +8,8 @@ use crate::geometry::{Point3, Vec3};
 
 /// Where a vertex may go.
 pub(crate) trait Level {
-    /// Value (the level is at 1) and gradient of a function that grows outwards.
+    /// Value (the level is at 1) and gradient of a function that grows outwards; no gradient where there is no level
+    /// to keep to.
     fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3);
 }
 
@@ -16,6 +17,17 @@ impl Level for Field {
     fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
         Field::value_and_gradient(self, p)
     }
+}
+
+/// Whether a vertex may move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Hold {
+    /// It may move and vanish.
+    Free,
+    /// It stays, and so do edges between two of its kind.
+    Still,
+    /// The same, for a second kind (a disc): an edge between the two kinds may be split and flipped.
+    Disc,
 }
 
 /// What is worked on, and where.
@@ -26,8 +38,8 @@ pub(crate) struct Relaxation<'a, L> {
     pub level: &'a mut L,
     /// The edge length to aim at.
     pub edge: f64,
-    /// Vertices that neither move nor vanish; an edge between two of them stays. Empty: all are free.
-    pub locked: Vec<bool>,
+    /// Which vertices may move; all, when empty.
+    pub hold: Vec<Hold>,
     /// Unit normal of the level set at every vertex.
     normals: Vec<Vec3>,
 }
@@ -39,9 +51,9 @@ const COLLAPSE_BELOW: f64 = 0.62;
 const MAX_STEP: f64 = 0.5;
 
 impl<'a, L: Level> Relaxation<'a, L> {
-    pub(crate) fn new(surface: &'a mut HalfEdges, level: &'a mut L, edge: f64, locked: Vec<bool>) -> Self {
+    pub(crate) fn new(surface: &'a mut HalfEdges, level: &'a mut L, edge: f64, hold: Vec<Hold>) -> Self {
         let normals = vec![Vec3::zeros(); surface.points.len()];
-        let mut this = Self { surface, level, edge, locked, normals };
+        let mut this = Self { surface, level, edge, hold, normals };
         this.project();
         this
     }
@@ -97,8 +109,13 @@ impl<'a, L: Level> Relaxation<'a, L> {
     }
 
     #[inline]
+    fn hold(&self, v: u32) -> Hold {
+        self.hold.get(v as usize).copied().unwrap_or(Hold::Free)
+    }
+
+    #[inline]
     fn is_locked(&self, v: u32) -> bool {
-        self.locked.get(v as usize).copied().unwrap_or(false)
+        self.hold(v) != Hold::Free
     }
 
     fn neighbour_mean(&self, v: u32) -> Point3 {
@@ -176,17 +193,21 @@ impl<'a, L: Level> Relaxation<'a, L> {
                 let middle = nalgebra::center(&self.surface.points[a as usize], &self.surface.points[b as usize]);
                 let m = self.surface.split(h, middle);
                 self.normals.push(self.normals[a as usize]);
-                if !self.locked.is_empty() {
-                    self.locked.push(false);
+                if !self.hold.is_empty() {
+                    self.hold.push(Hold::Free);
                 }
                 self.surface.points[m as usize] = self.projected(m, middle);
             }
         }
     }
 
-    /// An edge that is there and not held by two locked ends.
+    /// An edge that is there and not held by its two ends.
     fn is_editable(&self, h: u32) -> bool {
-        self.surface.is_live(h) && !(self.is_locked(self.surface.from(h)) && self.is_locked(self.surface.to(h)))
+        if !self.surface.is_live(h) {
+            return false;
+        }
+        let (a, b) = (self.hold(self.surface.from(h)), self.hold(self.surface.to(h)));
+        a == Hold::Free || b == Hold::Free || a != b
     }
 
     fn collapse_short(&mut self) {
