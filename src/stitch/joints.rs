@@ -28,15 +28,18 @@ pub struct JointOptions {
     pub rings: u8,
     /// Taubin's steps for the wall.
     pub taubin: Taubin,
-    /// Wall vertices are moved along the wall when a tetrahedron around them has a radius ratio below this.
+    /// Taubin's steps may lower the worst radius ratio around a vertex down to this (or to the joint's worst, if that is
+    /// higher): the inside is improved after them.
+    pub good: f64,
+    /// Wall vertices are moved along the wall when a tetrahedron around them still has a radius ratio below this.
     pub lift_below: f64,
-    /// Rounds of wall and inside.
+    /// Rounds of wall and inside: Taubin's steps in the first, lifting in the others.
     pub rounds: usize,
 }
 
 impl Default for JointOptions {
     fn default() -> Self {
-        Self { rings: 4, taubin: Taubin { iterations: 3, ..Taubin::default() }, lift_below: 0.4, rounds: 2 }
+        Self { rings: 4, taubin: Taubin { iterations: 6, ..Taubin::default() }, good: 0.3, lift_below: 0.2, rounds: 3 }
     }
 }
 
@@ -71,7 +74,7 @@ pub type Improve<'a> = dyn Fn(&mut TetMesh, usize) -> bool + Sync + 'a;
 /// keep their index; new ones are appended.
 ///
 /// No tetrahedron is inverted, by the exact predicate; a move of the wall is made only if the worst radius ratio around
-/// does not fall, or stays above both that of the whole joint and `options.lift_below`.
+/// does not fall, or stays above both that of the whole joint and `options.good`.
 pub fn smooth_joints(
     mesh: &mut TetMesh,
     tet_block: &mut Vec<i32>,
@@ -115,13 +118,14 @@ pub fn smooth_joints(
 fn smooth_region(region: &mut Region, options: &JointOptions, improve: &Improve) -> JointReport {
     let mut report =
         JointReport { tets: region.mesh.tets.len(), worst_before: region.worst(), ..JointReport::default() };
-    for round in 0..options.rounds {
+    for round in 0..options.rounds.max(1) {
         let mut walls = wall::Walls::new(region);
-        let mut moves = 0;
-        if round == 0 {
-            moves += walls.taubin(region, &options.taubin, options.lift_below);
-        }
-        moves += walls.lift(region, options.lift_below);
+        // The wall is bent for a bad tetrahedron only when the inside alone could not mend it.
+        let moves = if round == 0 {
+            walls.taubin(region, &options.taubin, options.good)
+        } else {
+            walls.lift(region, options.lift_below)
+        };
         report.wall_moves += moves;
         if round > 0 && moves == 0 {
             break;

@@ -188,7 +188,8 @@ impl Improver {
         if self.exchange(k) {
             return true;
         }
-        self.movable[vertex as usize] = false;
+        self.c.pop_point();
+        self.movable.pop();
         false
     }
 
