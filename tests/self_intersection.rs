@@ -1,0 +1,239 @@
+//! The exact self-intersection test against CGAL's, pair by pair.
+
+mod common;
+
+use anastomesh::geometry::{Improper, Point3, Vec3, self_contacts, self_intersections};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
+
+/// The oracle's program, built once; none, with a note, where CGAL or a compiler is missing, unless
+/// `ANASTOMESH_REQUIRE_ORACLES` is set.
+fn oracle() -> Option<&'static Path> {
+    static PROGRAM: OnceLock<Option<PathBuf>> = OnceLock::new();
+    PROGRAM.get_or_init(build_oracle).as_deref()
+}
+
+fn build_oracle() -> Option<PathBuf> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracles/self_intersections.cpp");
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("self_intersections");
+    let age = |path: &Path| path.metadata().and_then(|data| data.modified());
+    if age(&program).is_ok_and(|built| age(&source).is_ok_and(|written| built > written)) {
+        return Some(program);
+    }
+    let mut compile = Command::new("g++");
+    compile.args(["-std=c++17", "-O1", "-w", "-o"]).arg(&program).arg(&source).args(["-lgmp", "-lmpfr"]);
+    let done = compile.stderr(Stdio::null()).status().is_ok_and(|status| status.success());
+    if !done {
+        let required = std::env::var_os("ANASTOMESH_REQUIRE_ORACLES").is_some();
+        assert!(!required, "the oracle cannot be built: g++ and libcgal-dev are needed");
+        eprintln!("skipped: the oracle cannot be built (g++ and libcgal-dev are needed)");
+    }
+    done.then_some(program)
+}
+
+type Surface = (Vec<Point3>, Vec<[u32; 3]>);
+
+/// The pairs that CGAL finds.
+fn cgal(program: &Path, (points, triangles): &Surface) -> Vec<(u32, u32)> {
+    let mut input = format!("{} {}\n", points.len(), triangles.len());
+    for p in points {
+        // Rust writes the shortest digits that give the number back.
+        let _ = writeln!(input, "{} {} {}", p.x, p.y, p.z);
+    }
+    for [a, b, c] in triangles {
+        let _ = writeln!(input, "{a} {b} {c}");
+    }
+    let mut child =
+        Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the oracle runs");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    let feed = std::thread::spawn(move || stdin.write_all(input.as_bytes()));
+    let output = child.wait_with_output().expect("the oracle ends");
+    feed.join().expect("no panic").expect("the oracle reads its input");
+    assert!(output.status.success(), "the oracle refuses its input: {}", output.status);
+    let text = String::from_utf8(output.stdout).expect("digits");
+    let number = |word: Option<&str>| word.and_then(|w| w.parse().ok()).expect("a number");
+    let pair = |line: &str| {
+        let mut words = line.split(' ');
+        (number(words.next()), number(words.next()))
+    };
+    text.lines().map(pair).collect()
+}
+
+/// The generator `SplitMix64`.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// In [0, 1).
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Triangles without common ids, with corners drawn by `corner` round random places.
+fn soup(count: u32, random: &mut Random, corner: impl Fn(&mut Random) -> Point3) -> Surface {
+    let mut points = Vec::new();
+    while points.len() < 3 * count as usize {
+        let t = [corner(random), corner(random), corner(random)];
+        // CGAL does not define the intersection of triangles without area.
+        if (t[1] - t[0]).cross(&(t[2] - t[0])).norm() > 0.0 {
+            points.extend(t);
+        }
+    }
+    (points, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+}
+
+/// A tube bent round a circle: a torus of `n` × `m` quadrilaterals, two triangles each.
+fn torus(n: u32, m: u32, tube: f64) -> Surface {
+    let mut points = Vec::new();
+    for i in 0..n {
+        for j in 0..m {
+            let (u, v) = (f64::from(i) / f64::from(n), f64::from(j) / f64::from(m));
+            let ((su, cu), (sv, cv)) = ((std::f64::consts::TAU * u).sin_cos(), (std::f64::consts::TAU * v).sin_cos());
+            points.push(Point3::new((1.0 + tube * cv) * cu, (1.0 + tube * cv) * su, tube * sv));
+        }
+    }
+    let id = |i: u32, j: u32| (i % n) * m + j % m;
+    let quads = (0..n).flat_map(|i| (0..m).map(move |j| (i, j)));
+    let triangles = quads
+        .flat_map(|(i, j)| {
+            let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect();
+    (points, triangles)
+}
+
+fn joined(mut a: Surface, b: &Surface) -> Surface {
+    let first = a.0.len() as u32;
+    a.0.extend(&b.0);
+    a.1.extend(b.1.iter().map(|t| t.map(|v| v + first)));
+    a
+}
+
+fn moved(mut surface: Surface, by: Vec3) -> Surface {
+    surface.0.iter_mut().for_each(|p| *p += by);
+    surface
+}
+
+fn agree(surface: &Surface, program: &Path) -> usize {
+    let ours = self_intersections(&surface.0, &surface.1);
+    assert_eq!(ours, cgal(program, surface));
+    ours.len()
+}
+
+#[test]
+fn soups() {
+    let Some(program) = oracle() else { return };
+    let mut random = Random(1);
+    for size in [3.0, 5.0, 12.0] {
+        let grid = |r: &mut Random| Point3::new(0.0, 0.0, 0.0).map(|_: f64| (r.unit() * size).floor());
+        assert!(agree(&soup(300, &mut random, grid), program) > 10);
+    }
+    // Everything in one plane: touching and overlapping only.
+    let flat = |r: &mut Random| Point3::new((r.unit() * 30.0).floor(), (r.unit() * 30.0).floor(), 7.0);
+    assert!(agree(&soup(200, &mut random, flat), program) > 100);
+    let general = |r: &mut Random| Point3::new(r.unit(), r.unit(), r.unit());
+    assert!(agree(&soup(400, &mut random, general), program) > 1000);
+}
+
+#[test]
+fn surfaces_with_planted_intersections() {
+    let Some(program) = oracle() else { return };
+    assert_eq!(agree(&torus(60, 24, 0.3), program), 0);
+    // A tube wider than its circle passes through itself.
+    assert!(agree(&torus(40, 24, 1.2), program) > 100);
+    // Two linked rings, one shifted so that it cuts, touches in equal points, or lies in the other.
+    let ring = torus(48, 24, 0.3);
+    assert!(agree(&joined(ring.clone(), &moved(ring.clone(), Vec3::new(0.4, 0.0, 0.0))), program) > 100);
+    assert!(agree(&joined(ring.clone(), &moved(ring.clone(), Vec3::zeros())), program) > 1000);
+    assert_eq!(agree(&joined(ring.clone(), &torus(48, 24, 0.2)), program), 0);
+    // Vertices thrown about: neighbours that fold over and cut beyond what they share.
+    let mut random = Random(2);
+    for size in [0.05, 0.2, 0.5] {
+        let mut wild = ring.clone();
+        for p in &mut wild.0 {
+            *p += Vec3::new(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5) * size;
+        }
+        agree(&wild, program);
+    }
+    // On a coarse grid, as single triangles: coplanar ones, equal points and edges, triangles that touch everywhere.
+    let round = torus(30, 14, 0.4);
+    let corners = round.1.iter().map(|t| t.map(|v| round.0[v as usize].map(|x| (x * 6.0).round())));
+    let corners = corners.filter(|[a, b, c]| (b - a).cross(&(c - a)).norm() > 0.0);
+    let points: Vec<Point3> = corners.flatten().collect();
+    let snapped = (points.clone(), (0..points.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect());
+    assert!(agree(&snapped, program) > 100);
+}
+
+/// Every kind is found, by name, where it was planted in a ring.
+#[test]
+fn each_kind_is_found_in_a_surface() {
+    let ring = torus(48, 24, 0.3);
+    let kinds = |surface: &Surface| {
+        let mut kinds: Vec<Improper> = self_contacts(&surface.0, &surface.1).into_iter().map(|c| c.2).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds
+    };
+    assert_eq!(kinds(&ring), []);
+    // A separate triangle that touches the ring at one of its points.
+    let probe = |at: Point3, away: Vec3, across: Vec3| -> Surface {
+        joined(ring.clone(), &(vec![at, at + away + across, at + away - across], vec![[0, 1, 2]]))
+    };
+    let t = ring.1[0].map(|v| ring.0[v as usize]);
+    let normal = (t[1] - t[0]).cross(&(t[2] - t[0])).normalize();
+    let across = (t[1] - t[0]) * 0.3;
+    assert_eq!(kinds(&probe(t[0], normal * 0.5, across)), [Improper::CoincidentPoint]);
+    let pierced = probe(nalgebra::center(&t[0], &nalgebra::center(&t[1], &t[2])), normal * 0.5, across);
+    assert!(kinds(&moved_tip(pierced, -normal * 0.01)).contains(&Improper::Crossing));
+    let mut twice = ring.clone();
+    twice.1.push([ring.1[0][1], ring.1[0][0], ring.1[0][2]]);
+    assert!(kinds(&twice).contains(&Improper::SameVertices));
+}
+
+fn moved_tip(mut surface: Surface, by: Vec3) -> Surface {
+    let tip = surface.0.len() - 3;
+    surface.0[tip] += by;
+    surface
+}
+
+/// The sound surfaces of the shared data do not meet themselves, and roughened they meet themselves where CGAL says.
+#[test]
+fn surfaces_of_others() {
+    let (Some(program), Some(shared)) = (oracle(), common::shared()) else { return };
+    let mut random = Random(3);
+    for name in ["tube_tree_1k", "libigl_3holes", "cgal_pipe"] {
+        let path = shared.join("data/surfaces").join(format!("{name}.off"));
+        let mut surface = read_off(&std::fs::read_to_string(&path).expect("the surface is there"));
+        assert_eq!(agree(&surface, program), 0, "{name}");
+        let t = surface.1[0].map(|v| surface.0[v as usize]);
+        let size = (t[1] - t[0]).norm();
+        for p in &mut surface.0 {
+            *p += Vec3::new(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5) * size;
+        }
+        assert!(agree(&surface, program) > 0, "{name}");
+    }
+}
+
+fn read_off(text: &str) -> Surface {
+    let mut words = text.split_whitespace().skip(1);
+    let mut number = || words.next().and_then(|w| w.parse::<f64>().ok()).expect("a number");
+    let (points, triangles, _) = (number() as usize, number() as usize, number());
+    let points = (0..points).map(|_| Point3::new(number(), number(), number())).collect();
+    let corners = |number: &mut dyn FnMut() -> f64| {
+        assert!((number() - 3.0).abs() < 0.5, "triangles only");
+        [number() as u32, number() as u32, number() as u32]
+    };
+    (points, (0..triangles).map(|_| corners(&mut number)).collect())
+}
