@@ -162,10 +162,10 @@ fn half_across(p: &Triangle, q: &Triangle, p_sides: [i8; 3], mut hit: impl FnMut
             if let Some(feature) = feature_at(q, p.ids[i], p.corners[i]) {
                 hit(i, feature);
             }
-        } else if p_sides[next] == -p_sides[i] {
-            if let Some(feature) = pierced_feature(q, p.corners[i], p.corners[next]) {
-                hit(3 + i, feature);
-            }
+        } else if p_sides[next] == -p_sides[i]
+            && let Some(feature) = pierced_feature(q, p.corners[i], p.corners[next])
+        {
+            hit(3 + i, feature);
         }
     }
 }

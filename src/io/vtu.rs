@@ -219,7 +219,8 @@ fn cell_arrays(mesh: &VolumeMesh) -> [Array<'_>; 3] {
         }
     });
     let end_of = move |cell: usize| if cell < tet_count { 4 * (cell + 1) } else { tet_count + 3 * (cell + 1) };
-    let narrow = tets.len() + triangles.len() <= i32::MAX as usize && mesh.mesh.points.len() <= i32::MAX as usize;
+    let fits = |count: usize| i32::try_from(count).is_ok();
+    let narrow = fits(tets.len() + triangles.len()) && fits(mesh.mesh.points.len());
     let offsets: Fill = Box::new(move |range, out| {
         for cell in range {
             if narrow {

@@ -226,17 +226,17 @@ impl Fields {
     fn caps(&self) -> FxHashMap<i32, Cap> {
         let ints = |name| self.ints.get(name).map_or(&[][..], Vec::as_slice);
         let floats = |name| self.floats.get(name).map_or(&[][..], Vec::as_slice);
-        let (patches, nodes) = (ints(field::CAP_PATCH), ints(field::CAP_NODE));
-        let (centers, normals) =
-            (floats(field::CAP_CENTER).as_chunks::<3>().0, floats(field::CAP_NORMAL).as_chunks::<3>().0);
-        let rest = nodes.iter().zip(centers).zip(normals).zip(floats(field::CAP_RADIUS));
-        let cap = |(((&node, &center), &normal), &radius): (((&i64, &[f64; 3]), &[f64; 3]), &f64)| Cap {
-            node: u32::try_from(node).unwrap_or(u32::MAX),
-            center: Point3::from(center),
-            normal: Vec3::from(normal),
-            radius,
-        };
-        patches.iter().zip(rest).map(|(&id, rest)| (id as i32, cap(rest))).collect()
+        let (centers, _) = floats(field::CAP_CENTER).as_chunks::<3>();
+        let (normals, _) = floats(field::CAP_NORMAL).as_chunks::<3>();
+        let (nodes, radii) = (ints(field::CAP_NODE), floats(field::CAP_RADIUS));
+        let mut caps = FxHashMap::default();
+        for (i, &id) in ints(field::CAP_PATCH).iter().enumerate() {
+            let (Some(&node), Some(&center)) = (nodes.get(i), centers.get(i)) else { break };
+            let (Some(&normal), Some(&radius)) = (normals.get(i), radii.get(i)) else { break };
+            let node = u32::try_from(node).unwrap_or(u32::MAX);
+            caps.insert(id as i32, Cap { node, center: Point3::from(center), normal: Vec3::from(normal), radius });
+        }
+        caps
     }
 }
 

@@ -6,6 +6,8 @@ use crate::geometry::Vec3;
 use crate::mesh::quality::triangle_area_vector;
 use crate::mesh::{Cap, Patch, VolumeMesh, WALL};
 use rustc_hash::FxHashMap;
+use std::cmp::Ordering;
+use std::f64::consts::PI;
 
 /// How far, in radii, a cap's vertices may lie from its plane.
 const FLATNESS: f64 = 1e-9;
@@ -23,18 +25,22 @@ pub(super) fn labels_match(volume: &VolumeMesh, faces: &[[u32; 3]]) -> LineResul
     while i < real.len() || j < labelled.len() {
         let key = |list: &[([u32; 3], u32)], at: usize| list.get(at).map_or([u32::MAX; 3], |entry| entry.0);
         let (a, b) = (key(&real, i), key(&labelled, j));
-        if a == b {
-            let (face, label) = (faces[real[i].1 as usize], volume.boundary[labelled[j].1 as usize]);
-            if !same_turn(face, label) {
-                tally.add(|| face_offender(points, label));
+        match a.cmp(&b) {
+            Ordering::Equal => {
+                let (face, label) = (faces[real[i].1 as usize], volume.boundary[labelled[j].1 as usize]);
+                if !same_turn(face, label) {
+                    tally.add(|| face_offender(points, label));
+                }
+                (i, j) = (i + 1, j + 1);
             }
-            (i, j) = (i + 1, j + 1);
-        } else if a < b {
-            tally.add(|| face_offender(points, a));
-            i += 1;
-        } else {
-            tally.add(|| face_at(volume, b));
-            j += 1;
+            Ordering::Less => {
+                tally.add(|| face_offender(points, a));
+                i += 1;
+            }
+            Ordering::Greater => {
+                tally.add(|| face_at(volume, b));
+                j += 1;
+            }
         }
     }
     tally.done()
@@ -180,8 +186,6 @@ fn cap_shapes(volume: &VolumeMesh) -> Vec<LineResult> {
     tallies.map(Tally::done).into()
 }
 
-use std::f64::consts::PI;
-
 /// The triangles of each patch but the wall, in file order.
 fn triangles_by_patch(volume: &VolumeMesh) -> FxHashMap<i32, Vec<[u32; 3]>> {
     let mut triangles: FxHashMap<i32, Vec<[u32; 3]>> = FxHashMap::default();
@@ -221,7 +225,7 @@ impl CapShape {
             }
         }
         // A cap without triangles or area fails on every count.
-        Self { area, off_centre: (moment / area).norm(), off_plane: (high - low).abs() / 2.0, faces_outwards }
+        Self { area, off_centre: (moment / area).norm(), off_plane: 0.5 * (high - low).abs(), faces_outwards }
     }
 }
 
@@ -251,7 +255,7 @@ fn is_disc(triangles: &[[u32; 3]]) -> bool {
         }
     }
     let connected = (0..count).all(|t| sets.root(t) == 0);
-    let edges = (directed.len() + rim.len()) / 2;
+    let edges = usize::midpoint(directed.len(), rim.len());
     connected && vertices.len() + triangles.len() == edges + 1 && is_one_loop(&rim)
 }
 
