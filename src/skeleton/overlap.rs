@@ -246,7 +246,8 @@ fn t_range(polygon: &[[f64; 2]], s: f64) -> (f64, f64) {
     };
     for (i, p) in polygon.iter().enumerate() {
         let q = &polygon[(i + 1) % polygon.len()];
-        if p[0] == s {
+        // Exactly: a hair beside s, the edges of the polygon give the range.
+        if p[0].total_cmp(&s).is_eq() {
             include(p[1]);
         }
         if (p[0] < s) != (q[0] < s) {

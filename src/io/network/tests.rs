@@ -26,8 +26,10 @@ fn the_fixture_is_the_same_in_both_formats() {
     let (clean, report) = crate::skeleton::clean(&a).unwrap();
     assert_eq!(clean, a);
     assert!(report.is_empty());
-    // Murray's law at each junction.
+    // Vessels stay clear of each other, and Murray's law holds at each junction.
     let adjacency = a.adjacency();
+    let overlaps = a.overlaps(&adjacency);
+    assert!(overlaps.pairs.is_empty() && overlaps.unconnected.is_empty());
     for node in a.node_ids().filter(|&n| adjacency.valence(n) == 3) {
         let cubes: f64 = adjacency.edges(node)[1..].iter().map(|&e| a.edge(e).radii[1].powi(3)).sum();
         assert!((cubes - a.node(node).radius.powi(3)).abs() < 1e-6);
