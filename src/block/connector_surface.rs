@@ -148,7 +148,7 @@ fn build_wall(
         let strip = weave(&points, &pair[0].0, &pair[1].0, place.origin, place.axis);
         triangles.extend(strip.ok_or(ConnectorFault::Fold(k as u32))?.0);
     }
-    let mut wall = Wall { path, points, triangles, first_free, rings: vertices };
+    let mut wall = Wall::new(path, points, triangles, first_free, vertices);
     wall.improve();
     out.surface.points = wall.points;
     out.surface.triangles.extend(wall.triangles);

@@ -18,7 +18,7 @@ pub enum BlockDump {
     /// A cluster.
     Cluster(ClusterDump),
     /// A connector.
-    Connector(ConnectorDump),
+    Connector(Box<ConnectorDump>),
 }
 
 /// A cluster and its parameters.
@@ -118,7 +118,7 @@ pub fn dump_connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], params: &Bl
             rim: end.surface.rim.iter().map(|&v| local(v)).collect(),
         }
     };
-    BlockDump::Connector(ConnectorDump {
+    BlockDump::Connector(Box::new(ConnectorDump {
         cut: id.0,
         branch: cut.branch.0,
         clusters: cut.sides.map(|s| s.0.0),
@@ -126,7 +126,7 @@ pub fn dump_connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], params: &Bl
         params: *params,
         path: cut.path.iter().map(|&s| s.into()).collect(),
         surfaces: ends.map(surface),
-    })
+    }))
 }
 
 impl BlockDump {

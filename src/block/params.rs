@@ -59,7 +59,7 @@ impl BlockParams {
                 return Err(BlockError::Parameter { name, value });
             }
         }
-        match self.shift.iter().find(|x| !(x.abs() <= 1.0)) {
+        match self.shift.iter().find(|x| x.is_nan() || x.abs() > 1.0) {
             Some(&value) => Err(BlockError::Parameter { name: "shift", value }),
             None => Ok(()),
         }

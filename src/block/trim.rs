@@ -6,6 +6,7 @@ use super::flatten::{Attempt, Flat, flatten};
 use super::region::{Ground, Reach, Region, WALL};
 use super::relax::Relaxation;
 use super::shape::triangle_ratio;
+use crate::geometry::predicates::orient3d;
 use crate::geometry::{Point3, Section};
 use crate::mesh::TetMesh;
 use crate::partition::CutId;
@@ -173,11 +174,20 @@ fn relax(region: &Region, flat: &Flat, points: &mut [Point3], frozen: &[u32], en
     let is_frozen = |v: u32| frozen.binary_search(&region.vertices[v as usize]).is_ok();
     let relaxation = Relaxation { region, removed: &flat.removed, section: &end.section, frozen: &is_frozen };
     relaxation.run(points, &flat.triangles, &flat.rim);
-    if global_surface(region, flat, end, |v| v).check(points).is_err() {
+    if !all_positive(region, flat, points) || global_surface(region, flat, end, |v| v).check(points).is_err() {
         for (&v, p) in moved.iter().zip(before) {
             points[v as usize] = p;
         }
     }
+}
+
+/// Whether every tetrahedron that stays at the end surface is positive, by the exact predicate.
+fn all_positive(region: &Region, flat: &Flat, points: &[Point3]) -> bool {
+    let at = |v: u32| &points[region.vertices[v as usize] as usize];
+    flat.triangles.iter().flatten().flat_map(|&v| region.star(v)).filter(|&&t| !flat.removed[t as usize]).all(|&t| {
+        let [a, b, c, d] = region.corners[t as usize];
+        orient3d(at(a), at(b), at(c), at(d)) > 0.0
+    })
 }
 
 /// The end surface in global vertices, renumbered.

@@ -17,9 +17,24 @@ pub(super) struct Wall<'a> {
     pub triangles: Vec<[u32; 3]>,
     pub first_free: u32,
     pub rings: Vec<RingVertex>,
+    /// Direction from the axis to each vertex.
+    outward: Vec<Vec3>,
 }
 
-impl Wall<'_> {
+impl<'a> Wall<'a> {
+    /// A woven wall.
+    pub(super) fn new(
+        path: &'a AxisPath,
+        points: Vec<Point3>,
+        triangles: Vec<[u32; 3]>,
+        first_free: u32,
+        rings: Vec<RingVertex>,
+    ) -> Self {
+        let mut wall = Self { path, points, triangles, first_free, rings, outward: Vec::new() };
+        wall.outward = (0..wall.points.len() as u32).map(|v| wall.radial(v)).collect();
+        wall
+    }
+
     /// Improves the wall. The rims' edges and vertices stay.
     pub(super) fn improve(&mut self) {
         for _ in 0..ROUNDS {
@@ -39,7 +54,7 @@ impl Wall<'_> {
     fn shape(&self, t: [u32; 3]) -> f64 {
         let p = t.map(|v| self.at(v));
         let normal = (p[1] - p[0]).cross(&(p[2] - p[0]));
-        let radial: Vec3 = t.iter().map(|&v| self.radial(v)).sum();
+        let radial: Vec3 = t.iter().map(|&v| self.outward[v as usize]).sum();
         let cosine = normal.dot(&radial) / (normal.norm() * radial.norm()).max(f64::MIN_POSITIVE);
         triangle_ratio(&p) * (cosine / 0.7).min(1.0)
     }
@@ -122,7 +137,7 @@ impl Wall<'_> {
             return false;
         }
         let v = self.first_free + k as u32;
-        let (from, place) = (self.at(v), self.rings[k]);
+        let (from, place, outward) = (self.at(v), self.rings[k], self.outward[v as usize]);
         let mut mean = Vec3::zeros();
         for &t in star {
             for &w in self.triangles[t as usize].iter().filter(|&&w| w != v) {
@@ -132,21 +147,25 @@ impl Wall<'_> {
         mean /= 2.0 * star.len() as f64;
         let before = self.worst(star);
         let frame = self.path.at(place.s);
-        let (radial, sine) = (place.theta.cos(), place.theta.sin());
-        let tangent = frame.w * radial - frame.u * sine;
+        let (sine, cosine) = place.theta.sin_cos();
+        let tangent = frame.w * cosine - frame.u * sine;
         for share in [1.0, 0.5] {
             let next = RingVertex {
                 s: place.s + share * mean.dot(&frame.axis),
                 theta: place.theta + share * mean.dot(&tangent) / place.distance,
                 distance: place.distance,
             };
-            self.points[v as usize] = self.path.at(next.s).point(next.theta, next.distance);
+            let there = self.path.at(next.s);
+            let moved = there.point(next.theta, next.distance);
+            self.points[v as usize] = moved;
+            self.outward[v as usize] = (moved - there.origin) / next.distance;
             self.rings[k] = next;
             if self.worst(star) > before + 1e-3 {
                 return true;
             }
         }
         self.points[v as usize] = from;
+        self.outward[v as usize] = outward;
         self.rings[k] = place;
         false
     }

@@ -1,0 +1,42 @@
+//! One bifurcation cluster at three resolutions, end surfaces trimmed and closed by discs.
+
+use anastomesh::block::{BlockParams, EndStyle, mesh_cluster};
+use anastomesh::geometry::{Point3, Section, Tube, Vec3};
+use anastomesh::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use std::hint::black_box;
+
+/// Three vessels from one node, each cut at four units.
+fn bifurcation() -> Cluster {
+    let mut cluster = Cluster { nodes: Vec::new(), tubes: Vec::new(), ends: Vec::new() };
+    for (i, (x, z, radius)) in [(0.0, 1.0, 1.0), (0.8, -0.7, 0.8), (-0.8, -0.6, 0.7)].into_iter().enumerate() {
+        let axis = Vec3::new(x, 0.1, z).normalize();
+        let origin = Point3::origin() + axis * 4.0;
+        cluster.tubes.push(Tube { a: Point3::origin(), b: origin, ra: radius, rb: radius });
+        cluster.tubes.push(Tube { a: origin, b: origin + axis * (1.7 * radius), ra: radius, rb: radius });
+        let kind = EndKind::Cut { cut: CutId(i as u32), side: 0 };
+        let overrun = vec![cluster.tubes.len() as u32 - 1];
+        cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius }, kind, overrun });
+    }
+    cluster
+}
+
+fn bench(c: &mut Criterion) {
+    let cluster = bifurcation();
+    let mut group = c.benchmark_group("cluster");
+    group.sample_size(20);
+    for rho in [3.0, 4.0, 5.0] {
+        for ends in [EndStyle::Trimmed, EndStyle::Disc] {
+            let params = BlockParams { ends, ..BlockParams::with_rho(rho) };
+            let Ok(mesh) = mesh_cluster(ClusterId(0), &cluster, &params) else { continue };
+            group.throughput(Throughput::Elements(mesh.mesh.tets.len() as u64));
+            group.bench_with_input(BenchmarkId::new(format!("{ends:?}"), rho), &params, |b, params| {
+                b.iter(|| mesh_cluster(ClusterId(0), black_box(&cluster), params));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, bench);
+criterion_main!(benches);
