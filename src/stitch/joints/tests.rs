@@ -73,7 +73,7 @@ proptest! {
 
 #[test]
 fn a_shaken_wall_becomes_round_again() {
-    let mut tube = shaken(5, 0.06, 4);
+    let tube = shaken(5, 0.06, 4);
     assert!(all_positive(&tube.mesh));
     let on = vertices_of(&boundary_faces(&tube.mesh), tube.mesh.points.len());
     let roughness = |mesh: &TetMesh| {
