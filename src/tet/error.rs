@@ -3,6 +3,18 @@
 use super::complex::ComplexError;
 use crate::geometry::Point3;
 
+/// A part of the surface that another part meets; ids are those of the surface's points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Obstacle {
+    /// A triangle, met in its inside.
+    Triangle([u32; 3]),
+    /// An edge, met between its ends.
+    Edge([u32; 2]),
+    /// A point.
+    Point(u32),
+}
+
 /// Why there is no tetrahedral mesh. Ids are those of the input's points and triangles.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -97,6 +109,15 @@ pub enum TetError {
         index: u32,
         /// Where it is.
         position: Point3,
+    },
+    /// The surface meets itself: one of its edges runs through another part of it. Found by the way, exact where
+    /// reported; there may be more.
+    #[error("the surface meets itself: edge {edge:?} runs through {obstacle:?}")]
+    SelfIntersection {
+        /// Ends of the edge.
+        edge: [u32; 2],
+        /// What it meets.
+        obstacle: Obstacle,
     },
     /// Recovery ended before all of the surface was in the mesh: the surface meets itself, or is too hard for the
     /// tiers that exist.

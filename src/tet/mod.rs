@@ -17,7 +17,7 @@ mod recover;
 pub mod star;
 
 pub use complex::Complex;
-pub use error::TetError;
+pub use error::{Obstacle, TetError};
 pub use recover::RecoverySummary;
 
 use crate::geometry::Point3;
@@ -108,8 +108,7 @@ pub fn tetrahedralize_with_summary(surface: &TriMesh, options: &TetOptions) -> R
     points.extend(box_corners(&surface.points));
     let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
     drop(points);
-    let recovery = recover::recover(&mut complex, surface, &edges)
-        .map_err(|u| TetError::NotRecovered { edges: u.edges, triangles: u.triangles })?;
+    let recovery = recover::recover(&mut complex, surface, &edges)?;
     let mut carved = carve::carve(&complex, surface)?;
     drop(complex);
     if options.optimize {

@@ -187,7 +187,18 @@ fn wrong_surfaces_are_typed_errors() {
 fn surfaces_that_meet_themselves_end_in_an_error() {
     let s = sphere_surface(2);
     let crossing = joined(s.clone(), &s, 1.0, Vec3::new(0.9, 0.1, 0.05));
-    assert!(tetrahedralize(&crossing, &TetOptions::default()).is_err());
+    let error = tetrahedralize(&crossing, &TetOptions::default()).unwrap_err();
+    assert!(matches!(error, TetError::SelfIntersection { .. }), "{error:?}");
+    // Two boxes that share part of a plane, so that triangles overlap without piercing.
+    let beside = joined(cube(2), &cube(2), 0.9, Vec3::new(2.0, 0.07, 0.11));
+    let error = tetrahedralize(&beside, &TetOptions::default()).unwrap_err();
+    assert!(matches!(error, TetError::SelfIntersection { .. }), "{error:?}");
+    // A point of one ball in the inside of a triangle of the other.
+    let (a, b) = (sphere_surface(0), sphere_surface(1));
+    let corner = |i: u32| a.points[i as usize].coords;
+    let middle = a.triangles[0].map(corner).iter().sum::<Vec3>() / 3.0;
+    let touching = joined(a.clone(), &b, 0.25, middle - b.points[0].coords * 0.25);
+    assert!(tetrahedralize(&touching, &TetOptions::default()).is_err());
 }
 
 proptest! {
@@ -225,4 +236,68 @@ fn a_carved_complex_is_sane_with_its_ghosts() {
     let ghosts = |c: &Complex| (0..c.slots() as u32).filter(|&t| c.is_alive(t) && c.is_ghost(t)).count();
     assert_eq!(ghosts(&carved), s.triangles.len());
     assert_eq!(ghosts(&rebuilt), s.triangles.len());
+}
+
+#[test]
+fn lattice_points_keep_inside_and_off_the_wall() {
+    let s = sphere_surface(3);
+    let (cell, clearance) = (0.25, 0.1);
+    let points = lattice::lattice_points(&s, cell, clearance);
+    let volume = certify::enclosed_volume(&s).0;
+    let expected = 2.0 * volume * (1.0 - clearance).powi(3) / cell.powi(3);
+    assert!((points.len() as f64 / expected - 1.0).abs() < 0.1, "{} for {expected}", points.len());
+    for p in &points {
+        assert!(p.coords.norm() < 1.0 - clearance);
+        let corners = |t: &[u32; 3]| t.map(|v| s.points[v as usize]);
+        let near = s.triangles.iter().map(|t| crate::geometry::point_triangle(p, corners(t).each_ref()).1);
+        assert!(near.fold(f64::INFINITY, f64::min) >= clearance);
+    }
+    assert_eq!(points, lattice::lattice_points(&s, cell, clearance));
+    for cell in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-30] {
+        assert!(lattice::lattice_points(&s, cell, clearance).is_empty());
+    }
+}
+
+#[test]
+fn points_given_are_used_and_points_outside_are_dropped() {
+    let s = sphere_surface(2);
+    let given = vec![Point3::new(0.1, 0.0, 0.0), Point3::new(9.0, 0.0, 0.0), Point3::new(0.0, 0.3, 0.2)];
+    let options = TetOptions::default().interior(Interior::Points(given.clone())).optimize(false);
+    let mesh = tetrahedralize(&s, &options).unwrap();
+    assert_eq!(mesh.points[s.points.len()..], [given[0], given[2]]);
+    let twice = vec![given[0], given[2], given[0]];
+    let error = tetrahedralize(&s, &options.clone().interior(Interior::Points(twice))).unwrap_err();
+    assert!(matches!(error, TetError::BadInteriorPoint { index: 2, .. }), "{error:?}");
+    let nan = vec![given[0], Point3::new(0.0, f64::NAN, 0.0)];
+    let error = tetrahedralize(&s, &options.interior(Interior::Points(nan))).unwrap_err();
+    assert!(matches!(error, TetError::BadInteriorPoint { index: 1, .. }), "{error:?}");
+}
+
+#[test]
+fn the_certificate_finds_every_kind_of_fault() {
+    use certify::{CertifyError, certify};
+    let s = sphere_surface(1);
+    let mesh = tetrahedralize(&s, &TetOptions::default().optimize(false)).unwrap();
+    certify(&mesh, &s).unwrap();
+    let mut moved = mesh.clone();
+    moved.points[3].x = moved.points[3].x.next_up();
+    assert_eq!(certify(&moved, &s), Err(CertifyError::PointMoved { point: 3 }));
+    let mut inverted = mesh.clone();
+    inverted.tets[2].swap(0, 1);
+    assert!(matches!(certify(&inverted, &s), Err(CertifyError::NotPositive { tet: 2, .. })));
+    let mut lost = mesh.clone();
+    lost.tets.pop();
+    assert!(matches!(certify(&lost, &s), Err(CertifyError::ForeignFace { .. })));
+    let mut twice = mesh.clone();
+    twice.tets.push(mesh.tets[0]);
+    assert!(matches!(certify(&twice, &s), Err(CertifyError::NotConforming { .. })));
+    let two = joined(s.clone(), &s, 1.0, Vec3::new(5.0, 0.0, 0.0));
+    let mut half = mesh.clone();
+    half.points.splice(s.points.len().., two.points[s.points.len()..].iter().copied());
+    half.points.extend(mesh.points[s.points.len()..].iter().copied());
+    let shift = s.points.len() as u32;
+    for v in half.tets.iter_mut().flatten().filter(|v| **v >= shift) {
+        *v += shift;
+    }
+    assert_eq!(certify(&half, &two), Err(CertifyError::TriangleLost { triangle: s.triangles.len() as u32 }));
 }

@@ -2,7 +2,9 @@
 
 use super::{Recovery, blocked};
 use crate::geometry::predicates::orient3d;
-use crate::tet::flips::MAX_RING;
+use crate::tet::complex::Complex;
+use crate::tet::delaunay::hash;
+use crate::tet::flips::{MAX_RING, Refusal, valid};
 use crate::tet::star::EdgeRing;
 
 /// Largest ring that is worked on.
@@ -25,7 +27,8 @@ impl Recovery<'_> {
                     orient3d(p, q, r, s) <= 0.0
                 };
                 let sides: [bool; 3] = std::array::from_fn(reflex);
-                (0..3).any(|i| {
+                let turn = self.round as usize;
+                (turn..turn + 3).map(|i| i % 3).any(|i| {
                     sides[i]
                         && self
                             .star
@@ -44,7 +47,7 @@ impl Recovery<'_> {
             return false;
         }
         self.budget -= 1;
-        match self.flipper.remove_edge(self.c, t, p, q) {
+        match self.remove_edge(t, p, q) {
             Ok(()) => return true,
             Err(refusal) if !blocked(refusal) || depth == 0 => return false,
             Err(_) => {}
@@ -55,7 +58,7 @@ impl Recovery<'_> {
         while ring.collect(self.c, start, p, q, LARGE_RING) && self.reduce_ring(&ring, depth) {
             let Some(next) = self.star.find_edge(self.c, p, q) else { return true };
             start = next;
-            if self.flipper.remove_edge(self.c, start, p, q).is_ok() {
+            if self.remove_edge(start, p, q).is_ok() {
                 return true;
             }
             if self.budget == 0 {
@@ -63,6 +66,18 @@ impl Recovery<'_> {
             }
         }
         false
+    }
+
+    /// Removes an edge by some valid triangulation of its ring; another one in each round, so that what was stuck in
+    /// one may come loose in the next.
+    fn remove_edge(&mut self, t: u32, p: u32, q: u32) -> Result<(), Refusal> {
+        let round = u64::from(self.round);
+        let score = |c: &Complex, v: &[u32; 4]| {
+            let coin = v.iter().fold(round, |h, &x| hash(h ^ u64::from(x)));
+            valid(c, v).map(|s| if round == 0 { s } else { s + (coin >> 32) as f64 })
+        };
+        self.flipper.plan_edge(self.c, t, p, q, MAX_RING, score)?;
+        self.flipper.commit(self.c)
     }
 
     /// Takes one spoke out of a ring.

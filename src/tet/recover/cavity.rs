@@ -116,30 +116,52 @@ fn sees(c: &Complex, f: &[u32; 3], p: &Point3) -> bool {
 }
 
 impl Recovery<'_> {
-    /// Puts a point into a tetrahedron that blocks each of the lost edges, or else each of the lost triangles.
+    /// Puts a point near what blocks each of the lost edges, or else each of the lost triangles. Returns the number of
+    /// points.
     pub(super) fn add_steiner_points(&mut self, edges: &[[u32; 2]], triangles: &[u32], round: u32) -> usize {
         let mut added = 0;
         if edges.is_empty() {
             for &f in triangles {
                 let mut tri = self.surface.triangles[f as usize];
                 tri.rotate_left(round as usize % 3);
-                if let Some((t, _, _)) = piercing_edge(self.c, &mut self.star, &mut self.ring, tri) {
-                    added += usize::from(self.insert_in(t, round));
+                if let Some((t, p, q)) = piercing_edge(self.c, &mut self.star, &mut self.ring, tri) {
+                    added += usize::from(self.make_room(t, p, q, round));
                 }
             }
         }
         for &[a, b] in edges {
             let (a, b) = if round.is_multiple_of(2) { (a, b) } else { (b, a) };
-            match first_crossing(self.c, &mut self.star, a, b) {
-                Crossing::Face(half) => {
-                    let t = if round % 4 < 2 { self.c.mate(half) >> 2 } else { half >> 2 };
-                    added += usize::from(self.insert_in(t, round));
+            added += usize::from(match first_crossing(self.c, &mut self.star, a, b) {
+                Crossing::Face(half) if round % 3 == 2 => {
+                    let t = if round % 2 == 0 { self.c.mate(half) >> 2 } else { half >> 2 };
+                    self.insert_in(t, round)
                 }
-                Crossing::Edge(t, _, _) => added += usize::from(self.insert_in(t, round)),
-                _ => {}
-            }
+                Crossing::Face(half) => {
+                    let f = self.c.face(half);
+                    let k = round as usize % 3;
+                    self.make_room(half >> 2, f[k], f[(k + 1) % 3], round)
+                }
+                Crossing::Edge(t, p, q) => self.make_room(t, p, q, round),
+                Crossing::Vertex(_) | Crossing::Nothing | Crossing::Exists => false,
+            });
         }
         added
+    }
+
+    /// Inserts a point into a tetrahedron at edge `p, q` of `t`: the largest one, since those that block are often
+    /// slivers, in which a point gives no room; `t` itself every third round.
+    fn make_room(&mut self, t: u32, p: u32, q: u32, round: u32) -> bool {
+        let mut best = t;
+        if round % 3 != 2 && self.ring.collect(self.c, t, p, q, MAX_CAVITY) && !self.ring.touches_ghost() {
+            let mut most = 0.0;
+            for &x in &self.ring.tets {
+                let volume = self.c.orient(&self.c.verts(x));
+                if volume > most {
+                    (best, most) = (x, volume);
+                }
+            }
+        }
+        self.insert_in(best, round)
     }
 
     /// Inserts a point somewhere inside `t`, other places in other rounds.

@@ -9,6 +9,7 @@ mod cavity;
 mod march;
 
 use super::complex::Complex;
+use super::error::{Obstacle, TetError};
 use super::flips::{Flipper, Refusal};
 use super::input::SurfaceEdges;
 use super::star::{EdgeRing, Star};
@@ -23,7 +24,7 @@ const DEPTH: u32 = 3;
 const BUDGET: u32 = 400;
 
 /// Rounds of Steiner points.
-const ROUNDS: u32 = 12;
+const ROUNDS: u32 = 24;
 
 /// What recovery did.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,19 +37,14 @@ pub struct RecoverySummary {
     pub steiner_points: usize,
 }
 
-/// What recovery could not recover.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Unrecovered {
-    pub edges: Vec<[u32; 2]>,
-    pub triangles: Vec<u32>,
-}
+/// After so many rounds in a row that do not reduce what is lost, recovery ends, unless little is lost.
+const PATIENCE: u32 = 3;
+
+/// Lost edges and triangles for which all rounds are worth their time.
+const FEW: usize = 64;
 
 /// Recovers all of the surface in `c`, whose first vertices are the surface's points; freezes its faces.
-pub(super) fn recover(
-    c: &mut Complex,
-    surface: &TriMesh,
-    edges: &SurfaceEdges,
-) -> Result<RecoverySummary, Unrecovered> {
+pub(super) fn recover(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges) -> Result<RecoverySummary, TetError> {
     let mut r = Recovery {
         c,
         surface,
@@ -58,26 +54,39 @@ pub(super) fn recover(
         ring: EdgeRing::default(),
         cavity: Cavity::default(),
         budget: 0,
+        round: 0,
+        met: None,
     };
     let mut summary = RecoverySummary::default();
     let (mut lost_edges, mut lost_faces) = r.survey();
     summary.missing_edges = lost_edges.len();
     summary.missing_triangles = lost_faces.len();
+    let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
     for round in 0..=ROUNDS {
-        lost_edges.retain(|&e| !r.recover_edge(e));
+        r.round = round;
+        lost_edges.retain(|&e| r.met.is_some() || !r.recover_edge(e));
         if lost_edges.is_empty() {
-            lost_faces.retain(|&f| !r.recover_face(f));
+            lost_faces.retain(|&f| r.met.is_some() || !r.recover_face(f));
         } else {
             r.freeze_present(&mut lost_faces);
         }
-        if lost_edges.is_empty() && lost_faces.is_empty() {
+        if let Some(error) = r.met {
+            return Err(error);
+        }
+        let lost = lost_edges.len() + lost_faces.len();
+        if lost == 0 {
             return Ok(summary);
+        }
+        patience = if lost < fewest || lost <= FEW { PATIENCE } else { patience - 1 };
+        fewest = fewest.min(lost);
+        if patience == 0 {
+            break;
         }
         if round < ROUNDS {
             summary.steiner_points += r.add_steiner_points(&lost_edges, &lost_faces, round);
         }
     }
-    Err(Unrecovered { edges: lost_edges, triangles: lost_faces })
+    Err(TetError::NotRecovered { edges: lost_edges, triangles: lost_faces })
 }
 
 struct Recovery<'a> {
@@ -89,6 +98,9 @@ struct Recovery<'a> {
     ring: EdgeRing,
     cavity: Cavity,
     budget: u32,
+    round: u32,
+    /// Proof that the surface meets itself.
+    met: Option<TetError>,
 }
 
 impl Recovery<'_> {
@@ -165,7 +177,12 @@ impl Recovery<'_> {
         let mut stuck = 0;
         while self.budget > 0 && stuck < 2 {
             self.budget -= 1;
-            let progress = match first_crossing(self.c, &mut self.star, from, to) {
+            let crossing = first_crossing(self.c, &mut self.star, from, to);
+            if let Some(obstacle) = self.obstacle(crossing) {
+                self.met = Some(TetError::SelfIntersection { edge: [a, b], obstacle });
+                return false;
+            }
+            let progress = match crossing {
                 Crossing::Exists => return true,
                 Crossing::Face(half) => self.clear_face(half, DEPTH),
                 Crossing::Edge(t, p, q) => self.clear_edge(t, p, q, DEPTH),
@@ -179,6 +196,16 @@ impl Recovery<'_> {
             }
         }
         matches!(first_crossing(self.c, &mut self.star, a, b), Crossing::Exists)
+    }
+
+    /// The part of the surface that is crossed: then the surface meets itself, and no flip can help.
+    fn obstacle(&self, crossing: Crossing) -> Option<Obstacle> {
+        match crossing {
+            Crossing::Face(half) if self.c.is_frozen(half) => Some(Obstacle::Triangle(self.c.face(half))),
+            Crossing::Edge(_, p, q) if self.edges.contains(p, q) => Some(Obstacle::Edge([p, q])),
+            Crossing::Vertex(v) if (v as usize) < self.surface.points.len() => Some(Obstacle::Point(v)),
+            _ => None,
+        }
     }
 
     /// Removes the edges that pierce a triangle whose edges exist; freezes the triangle.
@@ -195,6 +222,12 @@ impl Recovery<'_> {
             }
             let side = [tri[k % 3], tri[(k + 1) % 3], tri[(k + 2) % 3]];
             let pierced = piercing_edge(self.c, &mut self.star, &mut self.ring, side);
+            if let Some((_, p, q)) = pierced
+                && self.edges.contains(p, q)
+            {
+                self.met = Some(TetError::SelfIntersection { edge: [p, q], obstacle: Obstacle::Triangle(tri) });
+                return false;
+            }
             if pierced.is_some_and(|(t, p, q)| self.clear_edge(t, p, q, DEPTH)) {
                 stuck = 0;
             } else {
