@@ -40,6 +40,10 @@ pub struct ClusterMesh {
     pub edge: f64,
     /// Triangles of the wall before trimming, caps included.
     pub surface_triangles: usize,
+    /// Genus of the wall.
+    pub handles: i64,
+    /// Independent loops of the cluster's skeleton; other than `handles` only if that was allowed.
+    pub loops: i64,
 }
 
 impl ClusterMesh {
@@ -61,7 +65,9 @@ pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> R
         tetrahedralize(&surface.mesh, &options).map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
     let caps = caps(cluster, &surface);
     let surface_triangles = surface.mesh.triangles.len();
-    let mut out = ClusterMesh { mesh: filled, caps, voxel, edge, surface_triangles, ends: Vec::new() };
+    let handles = 1 - euler_characteristic(&surface.mesh) / 2;
+    let loops = independent_loops(&cluster.tubes);
+    let mut out = ClusterMesh { mesh: filled, caps, voxel, edge, surface_triangles, handles, loops, ends: Vec::new() };
     match params.ends {
         EndStyle::Trimmed => trim_cluster(id, cluster, params, &mut out)?,
         EndStyle::Disc => out.ends = disc_ends(id, cluster, &surface, &out.mesh)?,
@@ -84,7 +90,7 @@ pub fn cluster_surface(
     let failed = |source| BlockError::Surface { cluster: id, source };
     let wall = vessel_surface(&cluster.tubes, &surface_params).map_err(failed)?;
     let (handles, loops) = (1 - euler_characteristic(&wall) / 2, independent_loops(&cluster.tubes));
-    if handles != loops {
+    if handles != loops && !params.allow_fused {
         return Err(BlockError::Genus { cluster: id, handles, loops });
     }
     let closed: Vec<ClusterEnd> = capped_ends(cluster, params.ends).map(|(_, e)| e.clone()).collect();

@@ -127,6 +127,10 @@ fn fused_neighbours_are_told_by_the_genus() {
     let result = mesh_cluster(ClusterId(4), &cluster, &BlockParams::default());
     let expected = BlockError::Genus { cluster: ClusterId(4), handles: 1, loops: 0 };
     assert_eq!(result.err(), Some(expected));
+    let params = BlockParams { allow_fused: true, ..BlockParams::default() };
+    let fused = mesh_cluster(ClusterId(4), &cluster, &params).expect("fused");
+    assert_eq!((fused.handles, fused.loops), (1, 0));
+    assert_mesh(&fused.mesh, 0);
 }
 
 #[test]

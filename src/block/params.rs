@@ -27,6 +27,9 @@ pub struct BlockParams {
     pub ends: EndStyle,
     /// Whether end surfaces are relaxed after flattening.
     pub relax_ends: bool,
+    /// Accept a wall with other handles than the skeleton has loops: vessels that overlap in the skeleton itself fuse at
+    /// every resolution. For a last try; [`super::ClusterMesh::handles`] tells.
+    pub allow_fused: bool,
     /// How deep below its plane an end surface may go, in radii of the cut.
     pub depth: f64,
 }
@@ -40,6 +43,7 @@ impl Default for BlockParams {
             kappa: 0.5,
             ends: EndStyle::Trimmed,
             relax_ends: true,
+            allow_fused: false,
             depth: 1.5,
         }
     }
