@@ -113,14 +113,11 @@ fn a_dumped_cluster_runs_again_to_the_same_bits() {
 
 #[test]
 fn fused_neighbours_are_told_by_the_genus() {
-    // Two arms of a fork that run close and parallel: the space between them closes at the far end, not at the fork.
+    // A branch that curls back and ends in its own flank.
     let center = Point3::origin();
-    let mut cluster = star(
-        center,
-        &[(Vec3::new(0.35, 0.0, 1.0).normalize(), 1.0, cut(0, 0)), (-Vec3::z(), 1.0, EndKind::Terminal(NodeId(1)))],
-    );
+    let mut cluster = star(center, &[(Vec3::z(), 1.0, cut(0, 0)), (-Vec3::z(), 1.0, EndKind::Terminal(NodeId(1)))]);
     let p = |x: f64, z: f64| Point3::new(x, 0.0, z);
-    let side = [p(0.0, 0.0), p(-4.5, 1.0), p(-4.5, 6.0), p(2.0, 6.5)];
+    let side = [p(0.0, 0.0), p(-8.0, 0.0), p(-8.0, -4.5), p(-4.5, -4.5), p(-4.5, -1.6)];
     for pair in side.windows(2) {
         cluster.tubes.push(Tube { a: pair[0], b: pair[1], ra: 1.0, rb: 1.0 });
     }
