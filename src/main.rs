@@ -1,5 +1,5 @@
 //! The command line: argv in, exit code out.
 
 fn main() -> std::process::ExitCode {
-    std::process::ExitCode::SUCCESS
+    anastomesh::cli::main()
 }

@@ -98,3 +98,13 @@ pub enum BlockError {
         attempts: Vec<ConnectorAttempt>,
     },
 }
+
+impl BlockError {
+    /// The cut at which it failed, if it was at one.
+    pub fn cut(&self) -> Option<CutId> {
+        match self {
+            Self::End { cut, .. } | Self::Connector { cut, .. } => Some(*cut),
+            _ => None,
+        }
+    }
+}

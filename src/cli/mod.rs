@@ -1,1 +1,82 @@
-//! Floor 6 (under construction)
+//! Floor 6: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
+
+mod check;
+mod exit;
+mod info;
+mod mesh;
+mod network;
+mod progress;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use exit::{Exit, Failure};
+
+/// From the skeleton of a vascular network to one valid tetrahedral volume mesh.
+#[derive(Debug, Parser)]
+#[command(name = "anastomesh", version, propagate_version = true, arg_required_else_help = true)]
+#[command(after_help = "Exit codes: 0 fine, 1 a gate is not met (the mesh is not valid), 2 usage, 3 bad input, \
+                        4 a stage failed, 70 a fault of the program.")]
+struct Args {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Mesh a network: skeleton in, labelled tetrahedral mesh out
+    Mesh(mesh::Args),
+    /// Verify a volume mesh line by line
+    Check(check::Args),
+    /// Print what a network holds
+    Info(info::Args),
+}
+
+/// Runs the program on the process's arguments.
+pub fn main() -> ExitCode {
+    install_panic_note();
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => {
+            // Help and version come this way too, and are no errors.
+            let exit = if error.use_stderr() { Exit::Usage } else { Exit::Fine };
+            return if error.print().is_ok() { exit.into() } else { Exit::BadInput.into() };
+        }
+    };
+    let result = std::panic::catch_unwind(|| match &args.verb {
+        Verb::Mesh(args) => mesh::run(args),
+        Verb::Check(args) => check::run(args),
+        Verb::Info(args) => info::run(args),
+    });
+    match result {
+        Ok(Ok(exit)) => exit.into(),
+        Ok(Err(Failure { exit, message })) => {
+            eprintln!("anastomesh: {message}");
+            exit.into()
+        }
+        Err(_) => Exit::Bug.into(),
+    }
+}
+
+/// A panic is always a fault of the program: say so beside the usual message.
+fn install_panic_note() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        usual(info);
+        eprintln!("anastomesh: this is a fault of the program; please report it with the input and the options");
+    }));
+}
+
+/// Prints a result for people or, with `--json`, for programs. A closed pipe is the reader's decision, not an error.
+fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
+    use std::io::Write;
+    let out = if json {
+        serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?
+    } else {
+        text()
+    };
+    match writeln!(std::io::stdout().lock(), "{}", out.trim_end()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::input(format!("standard output: {e}"))),
+        _ => Ok(()),
+    }
+}

@@ -83,8 +83,15 @@ pub struct RunReport {
     pub nodes_split: usize,
     /// Vessels that overlap.
     pub overlaps: Vec<Meeting>,
+    /// Pairs of edges that share no node and whose tubes meet, neighbours along a vessel included; each edge as a pair of
+    /// node indices in the file that was read.
+    pub unconnected: Vec<[[u32; 2]; 2]>,
     /// The blocks.
     pub blocks: BlockCounts,
+    /// The partition in figures.
+    pub partition: Option<crate::partition::PartitionSummary>,
+    /// The joints.
+    pub joints: Option<crate::stitch::joints::JointReport>,
     /// Blocks that needed another try.
     pub retries: Vec<Retry>,
     /// Blocks that are missing from the mesh.

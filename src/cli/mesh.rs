@@ -1,0 +1,130 @@
+//! `anastomesh mesh`: from a network to a volume mesh.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::exit::{Exit, Failure};
+use super::network::NetworkArgs;
+use super::progress::Bars;
+use crate::io::mesh_file::{MeshNotes, ensure_writable, write_mesh};
+use crate::mesh::check::CheckReport;
+use crate::pipeline::{self, Clock, MeshPlan, Observer, RunError, Stage};
+use crate::pipeline::RunReport;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    network: NetworkArgs,
+    /// Where the mesh goes: .vtu, or .msh (Gmsh 4.1)
+    #[arg(short, long, value_name = "MESH")]
+    output: PathBuf,
+    /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
+    #[arg(long, default_value_t = 3.0)]
+    rho: f64,
+    /// Node that is an inlet, counted from 0 in the file's order; may be given several times (default: in each component
+    /// the terminal of largest radius)
+    #[arg(long, value_name = "NODE")]
+    root: Vec<u32>,
+    /// Leave out blocks that fail, say so, and exit 4 all the same
+    #[arg(long)]
+    keep_going: bool,
+    /// Number of threads (default: all cores); the output does not depend on it
+    #[arg(short = 'j', long, value_name = "N")]
+    threads: Option<std::num::NonZeroUsize>,
+    /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
+    #[arg(long, value_name = "DIR")]
+    dump_dir: Option<PathBuf>,
+    /// Print the report as JSON on standard output
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Output<'a> {
+    program: &'static str,
+    plan: &'a MeshPlan,
+    run: &'a RunReport,
+    check: Option<&'a CheckReport>,
+}
+
+/// Meshes a network and writes the mesh.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let plan = args.plan();
+    plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
+    ensure_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    let network = args.network.read()?;
+    let bars = Bars::new(args.quiet);
+    for remark in network.remarks() {
+        bars.note(&remark);
+    }
+    let pool = thread_pool(args.threads)?;
+    let mut clock = Clock::default();
+    let mut result = match pool.install(|| pipeline::mesh_network(&network.skeleton, &plan, &bars, &mut clock)) {
+        Ok(result) => result,
+        Err(RunError::BlocksFailed(report)) => {
+            args.print(&plan, &report, None)?;
+            return Err(Failure::stage(format!(
+                "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
+                report.failed.len()
+            )));
+        }
+        Err(error @ RunError::Root(_)) => return Err(Failure::usage(error.to_string())),
+        Err(error) => return Err(Failure::stage(error.to_string())),
+    };
+    let notes = args.notes(&result);
+    let written = clock.time(&bars, Stage::Write, 0, || pool.install(|| write_mesh(&args.output, &result.mesh, &notes)));
+    written.map_err(|e| Failure::input(e.to_string()))?;
+    result.report.stages = clock.stages();
+    args.print(&plan, &result.report, Some(&result.check))?;
+    Ok(match () {
+        () if !result.report.failed.is_empty() => Exit::StageFailed,
+        () if !result.check.is_valid() => Exit::GateNotMet,
+        () => Exit::Fine,
+    })
+}
+
+fn thread_pool(threads: Option<std::num::NonZeroUsize>) -> Result<rayon::ThreadPool, Failure> {
+    // 0 lets rayon take as many as there are cores.
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, Into::into));
+    builder.build().map_err(|e| Failure::stage(format!("the threads cannot be started: {e}")))
+}
+
+impl Args {
+    fn plan(&self) -> MeshPlan {
+        let mut beside = self.output.clone().into_os_string();
+        beside.push(".failed");
+        MeshPlan {
+            rho: self.rho,
+            roots: self.root.clone(),
+            keep_going: self.keep_going,
+            dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
+        }
+    }
+
+    fn notes(&self, result: &pipeline::Meshed) -> MeshNotes {
+        MeshNotes {
+            expectation: Some(result.expectation.clone()),
+            generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
+            options: format!("mesh --rho {}", self.rho),
+        }
+    }
+
+    fn print(&self, plan: &MeshPlan, run: &RunReport, check: Option<&CheckReport>) -> Result<(), Failure> {
+        if self.json {
+            let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
+            return super::print(true, &Output { program, plan, run, check }, String::new);
+        }
+        if !self.quiet {
+            eprint!("{}", run.text());
+            if let Some(check) = check {
+                eprintln!("{:#?}", check.lines.iter().filter(|l| l.outcome != crate::mesh::check::Outcome::Pass).collect::<Vec<_>>()); eprintln!("{:?} {:?}", check.verdict, check.quality);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,58 @@
+//! A network from the command line: read, cleaned.
+
+use std::path::PathBuf;
+
+use super::exit::Failure;
+use crate::io::network::{NetworkNote, NetworkOptions, read_network};
+use crate::skeleton::{CleanReport, Skeleton, clean};
+
+/// Arguments of every verb that reads a network.
+#[derive(Debug, clap::Args)]
+pub struct NetworkArgs {
+    /// The network: SWC, or VTP with lines and a radius array
+    #[arg(value_name = "NETWORK")]
+    pub network: PathBuf,
+    /// Array that holds the radius, on points or lines (default: found by its name)
+    #[arg(long, value_name = "NAME")]
+    pub radius_array: Option<String>,
+}
+
+/// A network ready for use.
+#[derive(Debug)]
+pub struct Network {
+    /// The cleaned skeleton.
+    pub skeleton: Skeleton,
+    /// What the reader decided.
+    pub notes: Vec<NetworkNote>,
+    /// What cleaning did.
+    pub cleaned: CleanReport,
+}
+
+impl NetworkArgs {
+    /// Reads and cleans the network.
+    pub fn read(&self) -> Result<Network, Failure> {
+        let options = NetworkOptions { radius_array: self.radius_array.clone() };
+        let file = read_network(&self.network, &options).map_err(|e| Failure::input(e.to_string()))?;
+        let (skeleton, cleaned) =
+            clean(&file.skeleton).map_err(|e| Failure::input(format!("{}: {e}", self.network.display())))?;
+        Ok(Network { skeleton, notes: file.notes, cleaned })
+    }
+}
+
+impl Network {
+    /// Lines for people on what was read and cleaned.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
+        let c = &self.cleaned;
+        let counts = [
+            (c.coincident.len(), "nodes at the position of another one merged"),
+            (c.zero_length.len(), "edges without length dropped"),
+            (c.contracted.len(), "edges of negligible length contracted"),
+            (c.repeated.len(), "repeated edges dropped"),
+            (c.isolated.len(), "nodes without an edge dropped"),
+            (c.blended.len(), "jumps of the radius inside a vessel evened out"),
+        ];
+        lines.extend(counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")));
+        lines
+    }
+}

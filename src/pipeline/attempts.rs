@@ -1,0 +1,66 @@
+//! The parameters with which a block is tried, one after the other, before its cuts are touched.
+
+use std::sync::Arc;
+
+use super::plan::MeshPlan;
+use crate::block::{
+    BlockDump, BlockError, BlockParams, ClusterMesh, ConnectorEnd, ConnectorMesh, EndStyle, dump_cluster,
+    dump_connector, mesh_cluster, mesh_connector,
+};
+use crate::partition::{Cluster, ClusterId, Cut, CutId};
+
+/// Result of a block, and the failures before it.
+#[derive(Debug)]
+pub struct Tried<T> {
+    /// The mesh, or the failure of the last attempt.
+    pub result: Result<Arc<T>, BlockError>,
+    /// Failures of the attempts before.
+    pub failures: Vec<BlockError>,
+}
+
+/// What is changed from attempt to attempt; the first is the usual way.
+const CHANGES: [&str; 5] =
+    ["as usual", "grid shifted", "flat discs at the cuts", "finer voxel, grid shifted", "finer voxel, flat discs at the cuts"];
+
+/// What helped after so many failures.
+pub fn remedy(failures: usize) -> String {
+    CHANGES.get(failures).copied().unwrap_or("other division of the tube").to_owned()
+}
+
+fn variants(plan: &MeshPlan) -> [BlockParams; CHANGES.len()] {
+    let usual = BlockParams::with_rho(plan.rho);
+    let shifted = BlockParams { shift: [0.37, -0.23, 0.11], ..usual };
+    let discs = BlockParams { ends: EndStyle::Disc, ..usual };
+    let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
+    [usual, shifted, discs, finer(shifted), finer(discs)]
+}
+
+/// Meshes a cluster, with other parameters after each failure.
+pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> Tried<ClusterMesh> {
+    let mut failures = Vec::new();
+    let mut last = None;
+    for params in variants(plan) {
+        failures.extend(last.take());
+        match mesh_cluster(id, cluster, &params) {
+            Ok(mesh) => return Tried { result: Ok(Arc::new(mesh)), failures },
+            Err(error) => last = Some(error),
+        }
+    }
+    Tried { result: last.map_or_else(|| unreachable!("there are variants"), Err), failures }
+}
+
+/// Meshes a connector; it varies the division of its tube by itself.
+pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> Tried<ConnectorMesh> {
+    let result = mesh_connector(id, cut, ends, &BlockParams::with_rho(plan.rho)).map(Arc::new);
+    Tried { result, failures: Vec::new() }
+}
+
+/// The input of a cluster as it is first tried.
+pub fn cluster_input(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> BlockDump {
+    dump_cluster(id, cluster, &BlockParams::with_rho(plan.rho))
+}
+
+/// The input of a connector as it is first tried.
+pub fn connector_input(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> BlockDump {
+    dump_connector(id, cut, ends, &BlockParams::with_rho(plan.rho))
+}

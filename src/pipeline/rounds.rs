@@ -1,0 +1,287 @@
+//! All blocks of a network, with retries: a block that fails is tried with other parameters, then with its cuts moved,
+//! then joined to its neighbours.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::attempts::{self, Tried};
+use super::observer::{Observer, Stage};
+use super::plan::MeshPlan;
+use super::timing::Clock;
+use crate::block::{BlockError, ClusterMesh, ConnectorEnd, ConnectorMesh};
+use crate::partition::{self, Cluster, ClusterId, Cut, CutId, EndKind, Partition, PartitionError, PartitionParams};
+use super::report::Retry;
+use crate::skeleton::{BranchId, NodeId, Skeleton};
+
+/// How often the partition is changed because of blocks that fail.
+const ROUNDS: usize = 6;
+
+/// How many nodes of a block a report lists.
+const LISTED: usize = 20;
+
+/// The blocks of a network.
+#[derive(Debug)]
+pub struct Blocks {
+    /// The partition that they belong to.
+    pub partition: Partition,
+    /// By `ClusterId`; an error for a cluster that failed to the end.
+    pub clusters: Vec<Result<Arc<ClusterMesh>, BlockError>>,
+    /// By `CutId`; none beside a failed cluster.
+    pub connectors: Vec<Option<Result<Arc<ConnectorMesh>, BlockError>>>,
+    /// What was retried.
+    pub retries: Vec<Retry>,
+}
+
+/// How far the cure of a branch whose cut gave trouble has gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cure {
+    /// The plane at the branch's start is moved towards its end.
+    Forward,
+    /// The plane at its end is moved towards its start.
+    Backward,
+    /// It is not cut: its clusters are joined.
+    NotCut,
+}
+
+/// Share of the room by which a plane is moved.
+const SHIFT: f64 = 0.5;
+
+/// Meshes every block, changing the partition where blocks fail.
+///
+/// # Errors
+/// When the network cannot be partitioned.
+pub fn build(
+    skeleton: &Skeleton,
+    plan: &MeshPlan,
+    observer: &dyn Observer,
+    clock: &mut Clock,
+) -> Result<Blocks, PartitionError> {
+    let mut cures: BTreeMap<BranchId, Cure> = BTreeMap::new();
+    let mut retries = Vec::new();
+    let mut settled: Option<Blocks> = None;
+    let mut round = 0;
+    loop {
+        let partition = clock.time(observer, Stage::Partition, 0, || {
+            partition::partition(skeleton, &partition_params(plan, &cures))
+        })?;
+        let reuse = Reuse::new(settled.as_ref());
+        let clusters = clock.time(observer, Stage::Clusters, partition.clusters.len() as u64, || {
+            mesh_clusters(&partition, plan, &reuse, observer)
+        });
+        let clusters = note_clusters(skeleton, &partition, clusters, &mut retries);
+        let connectors = clock.time(observer, Stage::Connectors, partition.cuts.len() as u64, || {
+            mesh_connectors(&partition, plan, &clusters, observer)
+        });
+        let connectors = note_connectors(skeleton, &partition, connectors, &mut retries);
+        let blocks = Blocks { partition, clusters, connectors, retries: Vec::new() };
+        let found = if round < ROUNDS { cure(skeleton, &blocks, &mut cures) } else { Vec::new() };
+        if found.is_empty() {
+            return Ok(Blocks { retries, ..blocks });
+        }
+        retries.extend(found);
+        settled = Some(blocks);
+        round += 1;
+    }
+}
+
+fn partition_params(plan: &MeshPlan, cures: &BTreeMap<BranchId, Cure>) -> PartitionParams {
+    let mut params = PartitionParams { rho: plan.rho, ..PartitionParams::default() };
+    for (&branch, &cure) in cures {
+        match cure {
+            Cure::Forward => drop(params.shifted_cuts.insert(branch, SHIFT)),
+            Cure::Backward => drop(params.shifted_cuts.insert(branch, -SHIFT)),
+            Cure::NotCut => drop(params.forbidden_cuts.insert(branch)),
+        }
+    }
+    params
+}
+
+/// Blocks of the round before, to be taken over where nothing changed.
+struct Reuse<'a> {
+    before: Option<&'a Blocks>,
+    by_first_node: BTreeMap<NodeId, usize>,
+}
+
+impl<'a> Reuse<'a> {
+    fn new(before: Option<&'a Blocks>) -> Self {
+        let clusters = before.map_or(&[][..], |b| &b.partition.clusters);
+        let first = |(i, c): (usize, &Cluster)| c.nodes.first().map(|&n| (n, i));
+        Self { before, by_first_node: clusters.iter().enumerate().filter_map(first).collect() }
+    }
+
+    /// The mesh of a cluster that has not changed.
+    fn cluster(&self, cluster: &Cluster) -> Option<Arc<ClusterMesh>> {
+        let (before, &i) = (self.before?, self.by_first_node.get(cluster.nodes.first()?)?);
+        same_shape(&before.partition.clusters[i], cluster).then(|| before.clusters[i].as_ref().ok().cloned()).flatten()
+    }
+}
+
+/// Whether two clusters have the same geometry; the numbers of their cuts may differ.
+fn same_shape(a: &Cluster, b: &Cluster) -> bool {
+    a.tubes == b.tubes
+        && a.ends.len() == b.ends.len()
+        && a.ends.iter().zip(&b.ends).all(|(x, y)| x.section == y.section && x.overrun == y.overrun)
+}
+
+fn mesh_clusters(
+    partition: &Partition,
+    plan: &MeshPlan,
+    reuse: &Reuse,
+    observer: &dyn Observer,
+) -> Vec<Tried<ClusterMesh>> {
+    let mesh = |(i, cluster): (usize, &Cluster)| {
+        let id = ClusterId(i as u32);
+        let tried = match reuse.cluster(cluster) {
+            Some(mesh) => Tried { result: Ok(mesh), failures: Vec::new() },
+            None => attempts::cluster(id, cluster, plan),
+        };
+        observer.step();
+        tried
+    };
+    partition.clusters.par_iter().enumerate().with_max_len(1).map(mesh).collect()
+}
+
+fn mesh_connectors(
+    partition: &Partition,
+    plan: &MeshPlan,
+    clusters: &[Result<Arc<ClusterMesh>, BlockError>],
+    observer: &dyn Observer,
+) -> Vec<Option<Tried<ConnectorMesh>>> {
+    let mesh = |(i, cut): (usize, &Cut)| {
+        let id = CutId(i as u32);
+        let tried = connector_ends(id, cut, clusters).map(|ends| attempts::connector(id, cut, ends, plan));
+        observer.step();
+        tried
+    };
+    partition.cuts.par_iter().enumerate().with_max_len(1).map(mesh).collect()
+}
+
+/// The two end surfaces of a connector; none beside a failed cluster.
+pub fn connector_ends<'a>(
+    id: CutId,
+    cut: &Cut,
+    clusters: &'a [Result<Arc<ClusterMesh>, BlockError>],
+) -> Option<[ConnectorEnd<'a>; 2]> {
+    let end = |side: u8| {
+        let mesh = clusters[cut.sides[usize::from(side)].0.0 as usize].as_ref().ok()?;
+        Some(ConnectorEnd { surface: mesh.end(id, side)?, points: &mesh.mesh.points })
+    };
+    Some([end(0)?, end(1)?])
+}
+
+/// Names of the nodes at the ends of a block's branches, as in the file that was read.
+pub fn original_nodes(skeleton: &Skeleton, nodes: impl Iterator<Item = NodeId>) -> Vec<u32> {
+    let mut list: Vec<u32> = nodes.map(|n| skeleton.node(n).original).collect();
+    list.sort_unstable();
+    list.dedup();
+    list.truncate(LISTED);
+    list
+}
+
+/// Decides what to do about blocks that failed; says so. Nothing when all is well or nothing is left to try.
+fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<BranchId, Cure>) -> Vec<Retry> {
+    let mut found = Vec::new();
+    for (i, (cluster, mesh)) in blocks.partition.clusters.iter().zip(&blocks.clusters).enumerate() {
+        let Err(error) = mesh else { continue };
+        let mut remedies = Vec::new();
+        for branch in troubled_branches(blocks, cluster, error) {
+            remedies.extend(advance(cures, branch));
+        }
+        if !remedies.is_empty() {
+            found.push(Retry {
+                block: format!("cluster {i}"),
+                nodes: original_nodes(skeleton, cluster.nodes.iter().copied()),
+                reason: error.to_string(),
+                remedy: remedies.join(", "),
+            });
+        }
+    }
+    for (i, (cut, mesh)) in blocks.partition.cuts.iter().zip(&blocks.connectors).enumerate() {
+        let Some(Err(error)) = mesh else { continue };
+        if let Some(remedy) = advance(cures, cut.branch) {
+            found.push(Retry {
+                block: format!("connector {i}"),
+                nodes: cut_nodes(skeleton, &blocks.partition, cut),
+                reason: error.to_string(),
+                remedy,
+            });
+        }
+    }
+    found
+}
+
+/// The branches whose cuts may be the cause of a cluster's failure: the one that the error names, else all.
+fn troubled_branches(blocks: &Blocks, cluster: &Cluster, error: &BlockError) -> Vec<BranchId> {
+    let branch = |cut: CutId| blocks.partition.cuts[cut.0 as usize].branch;
+    if let Some(cut) = error.cut() {
+        return vec![branch(cut)];
+    }
+    let of_end = |kind: EndKind| match kind {
+        EndKind::Cut { cut, .. } => Some(branch(cut)),
+        EndKind::Terminal(_) => None,
+    };
+    cluster.ends.iter().filter_map(|end| of_end(end.kind)).collect()
+}
+
+/// The next cure of a branch, and what it is called; none when all have been tried.
+fn advance(cures: &mut BTreeMap<BranchId, Cure>, branch: BranchId) -> Option<String> {
+    let (next, words) = match cures.get(&branch) {
+        None => (Cure::Forward, "cut moved"),
+        Some(Cure::Forward) => (Cure::Backward, "cut moved the other way"),
+        Some(Cure::Backward) => (Cure::NotCut, "joined to its neighbour"),
+        Some(Cure::NotCut) => return None,
+    };
+    cures.insert(branch, next);
+    Some(format!("{words} (branch {})", branch.0))
+}
+
+/// The nodes of the two clusters that a cut separates.
+pub fn cut_nodes(skeleton: &Skeleton, partition: &Partition, cut: &Cut) -> Vec<u32> {
+    let nodes = cut.sides.iter().flat_map(|(cluster, _)| &partition.clusters[cluster.0 as usize].nodes);
+    original_nodes(skeleton, nodes.copied())
+}
+
+fn note_clusters(
+    skeleton: &Skeleton,
+    partition: &Partition,
+    tried: Vec<Tried<ClusterMesh>>,
+    retries: &mut Vec<Retry>,
+) -> Vec<Result<Arc<ClusterMesh>, BlockError>> {
+    let note = |(i, tried): (usize, Tried<ClusterMesh>)| {
+        if let (Ok(_), Some(first)) = (&tried.result, tried.failures.first()) {
+            retries.push(Retry {
+                block: format!("cluster {i}"),
+                nodes: original_nodes(skeleton, partition.clusters[i].nodes.iter().copied()),
+                reason: first.to_string(),
+                remedy: attempts::remedy(tried.failures.len()),
+            });
+        }
+        tried.result
+    };
+    tried.into_iter().enumerate().map(note).collect()
+}
+
+fn note_connectors(
+    skeleton: &Skeleton,
+    partition: &Partition,
+    tried: Vec<Option<Tried<ConnectorMesh>>>,
+    retries: &mut Vec<Retry>,
+) -> Vec<Option<Result<Arc<ConnectorMesh>, BlockError>>> {
+    let note = |(i, tried): (usize, Option<Tried<ConnectorMesh>>)| {
+        let tried = tried?;
+        if let Ok(mesh) = &tried.result
+            && let Some(first) = mesh.failed.first()
+        {
+            retries.push(Retry {
+                block: format!("connector {i}"),
+                nodes: cut_nodes(skeleton, partition, &partition.cuts[i]),
+                reason: first.failure.to_string(),
+                remedy: "other division of the tube".to_owned(),
+            });
+        }
+        Some(tried.result)
+    };
+    tried.into_iter().enumerate().map(note).collect()
+}
