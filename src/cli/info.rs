@@ -16,12 +16,8 @@ pub struct Args {
 /// Reads a network and prints what it holds.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let network = args.network.read()?;
-    if !args.json {
-        for remark in network.remarks() {
-            eprintln!("{remark}");
-        }
-    }
-    let info = NetworkInfo::of(&network.skeleton);
-    super::print(args.json, &info, || info.text())?;
+    let notes = network.notes.iter().map(ToString::to_string).collect();
+    let info = NetworkInfo::new(&network.skeleton, network.cleaned, notes);
+    super::print(args.json, &info, || info.to_string())?;
     Ok(Exit::Fine)
 }

@@ -122,7 +122,7 @@ impl Args {
         if !self.quiet {
             eprint!("{}", run.text());
             if let Some(check) = check {
-                eprintln!("{:#?}", check.lines.iter().filter(|l| l.outcome != crate::mesh::check::Outcome::Pass).collect::<Vec<_>>()); eprintln!("{:?} {:?}", check.verdict, check.quality);
+                eprint!("{}", crate::report::check::text(check));
             }
         }
         Ok(())

@@ -43,16 +43,7 @@ impl Network {
     /// Lines for people on what was read and cleaned.
     pub fn remarks(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
-        let c = &self.cleaned;
-        let counts = [
-            (c.coincident.len(), "nodes at the position of another one merged"),
-            (c.zero_length.len(), "edges without length dropped"),
-            (c.contracted.len(), "edges of negligible length contracted"),
-            (c.repeated.len(), "repeated edges dropped"),
-            (c.isolated.len(), "nodes without an edge dropped"),
-            (c.blended.len(), "jumps of the radius inside a vessel evened out"),
-        ];
-        lines.extend(counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")));
+        lines.extend(self.cleaned.counts().iter().map(|(count, what)| format!("{count} {what}")));
         lines
     }
 }

@@ -105,7 +105,7 @@ impl Assembly {
             frozen[v as usize] = true;
         }
         let improve = |mesh: &mut crate::mesh::TetMesh, fixed: usize| {
-            let options = OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::default() };
+            let options = OptimizeOptions { fixed_points: fixed, keep_points: true, ..OptimizeOptions::default() };
             optimize(mesh, &options).is_ok()
         };
         smooth_joints(mesh, tet_block, &self.joints, &frozen, &JointOptions::default(), &improve)

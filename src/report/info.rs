@@ -170,15 +170,7 @@ impl NetworkInfo {
     }
 
     fn write_cleaning(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let done = [
-            (self.cleaned.coincident.len(), "nodes at the place of another one merged"),
-            (self.cleaned.zero_length.len(), "edges without length dropped"),
-            (self.cleaned.contracted.len(), "edges shorter than a millionth of their radius contracted"),
-            (self.cleaned.repeated.len(), "repeated edges dropped"),
-            (self.cleaned.isolated.len(), "nodes without an edge dropped"),
-            (self.cleaned.blended.len(), "jumps of the radius inside a branch evened out"),
-        ];
-        for (count, what) in done.iter().filter(|(count, _)| *count > 0) {
+        for (count, what) in self.cleaned.counts() {
             writeln!(f, "cleaned: {count} {what}")?;
         }
         Ok(())

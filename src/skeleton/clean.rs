@@ -29,6 +29,19 @@ impl CleanReport {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+
+    /// What was done, as a count and words for people; what was not done is left out.
+    pub fn counts(&self) -> Vec<(usize, &'static str)> {
+        let done = [
+            (self.coincident.len(), "nodes at the place of another one merged"),
+            (self.zero_length.len(), "edges without length dropped"),
+            (self.contracted.len(), "edges shorter than a millionth of their radius contracted"),
+            (self.repeated.len(), "repeated edges dropped"),
+            (self.isolated.len(), "nodes without an edge dropped"),
+            (self.blended.len(), "jumps of the radius inside a branch evened out"),
+        ];
+        done.into_iter().filter(|(count, _)| *count > 0).collect()
+    }
 }
 
 /// Merges nodes at identical positions, drops edges without length, repeated edges and nodes without edges, and makes
