@@ -20,8 +20,11 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let file = read_mesh(&args.mesh).map_err(|e| Failure::input(e.to_string()))?;
     let expectation = file.notes.expectation.as_ref();
-    let report =
-        if file.labelled { check_volume(&file.volume, expectation) } else { check_tets(&file.volume.mesh, expectation) };
+    let report = if file.labelled {
+        check_volume(&file.volume, expectation)
+    } else {
+        check_tets(&file.volume.mesh, expectation)
+    };
     super::print(args.json, &report, || crate::report::check::text(&report))?;
     Ok(if report.verdict == Verdict::Invalid { Exit::GateNotMet } else { Exit::Fine })
 }

@@ -9,8 +9,8 @@ use super::network::NetworkArgs;
 use super::progress::Bars;
 use crate::io::mesh_file::{MeshNotes, ensure_writable, write_mesh};
 use crate::mesh::check::CheckReport;
-use crate::pipeline::{self, Clock, MeshPlan, Observer, RunError, Stage};
 use crate::pipeline::RunReport;
+use crate::pipeline::{self, Clock, MeshPlan, Observer, RunError, Stage};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -77,7 +77,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         Err(error) => return Err(Failure::stage(error.to_string())),
     };
     let notes = args.notes(&result);
-    let written = clock.time(&bars, Stage::Write, 0, || pool.install(|| write_mesh(&args.output, &result.mesh, &notes)));
+    let written =
+        clock.time(&bars, Stage::Write, 0, || pool.install(|| write_mesh(&args.output, &result.mesh, &notes)));
     written.map_err(|e| Failure::input(e.to_string()))?;
     result.report.stages = clock.stages();
     args.print(&plan, &result.report, Some(&result.check))?;

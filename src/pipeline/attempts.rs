@@ -19,8 +19,13 @@ pub struct Tried<T> {
 }
 
 /// What is changed from attempt to attempt; the first is the usual way.
-const CHANGES: [&str; 5] =
-    ["as usual", "grid shifted", "flat discs at the cuts", "finer voxel, grid shifted", "finer voxel, flat discs at the cuts"];
+const CHANGES: [&str; 5] = [
+    "as usual",
+    "grid shifted",
+    "flat discs at the cuts",
+    "finer voxel, grid shifted",
+    "finer voxel, flat discs at the cuts",
+];
 
 /// What helped after so many failures.
 pub fn remedy(failures: usize) -> String {

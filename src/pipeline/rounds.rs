@@ -9,10 +9,10 @@ use rayon::prelude::*;
 use super::attempts::{self, Tried};
 use super::observer::{Observer, Stage};
 use super::plan::MeshPlan;
+use super::report::Retry;
 use super::timing::Clock;
 use crate::block::{BlockError, ClusterMesh, ConnectorEnd, ConnectorMesh};
 use crate::partition::{self, Cluster, ClusterId, Cut, CutId, EndKind, Partition, PartitionError, PartitionParams};
-use super::report::Retry;
 use crate::skeleton::{BranchId, NodeId, Skeleton};
 
 /// How often the partition is changed because of blocks that fail.
@@ -63,9 +63,8 @@ pub fn build(
     let mut settled: Option<Blocks> = None;
     let mut round = 0;
     loop {
-        let partition = clock.time(observer, Stage::Partition, 0, || {
-            partition::partition(skeleton, &partition_params(plan, &cures))
-        })?;
+        let partition = clock
+            .time(observer, Stage::Partition, 0, || partition::partition(skeleton, &partition_params(plan, &cures)))?;
         let reuse = Reuse::new(settled.as_ref());
         let clusters = clock.time(observer, Stage::Clusters, partition.clusters.len() as u64, || {
             mesh_clusters(&partition, plan, &reuse, observer)

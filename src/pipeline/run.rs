@@ -4,6 +4,7 @@ use super::assemble::{self, AssembleError};
 use super::attempts;
 use super::observer::{Observer, Stage};
 use super::plan::{MeshPlan, PlanError};
+use super::report::{BlockCounts, FailedBlock, Meeting, MeshSize, RunReport};
 use super::rounds::{self, Blocks, connector_ends, original_nodes};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
@@ -12,7 +13,6 @@ use crate::mesh::check::{CheckReport, Expectation, check_volume};
 use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::{ClusterId, CutId, PartitionError};
 use crate::refine::split;
-use super::report::{BlockCounts, FailedBlock, Meeting, MeshSize, RunReport};
 use crate::skeleton::Overlap;
 use crate::skeleton::{NodeId, Skeleton};
 
@@ -142,14 +142,19 @@ fn describe_blocks(skeleton: &Skeleton, plan: &MeshPlan, blocks: &Blocks, report
                 block: format!("cluster {i}"),
                 nodes: original_nodes(skeleton, cluster.nodes.iter().copied()),
                 reason: error.to_string(),
-                dump: write_dump(plan, &format!("cluster_{i}"), &attempts::cluster_input(ClusterId(i as u32), cluster, plan)),
+                dump: write_dump(
+                    plan,
+                    &format!("cluster_{i}"),
+                    &attempts::cluster_input(ClusterId(i as u32), cluster, plan),
+                ),
             });
         }
     }
     for (i, (cut, mesh)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
         let Some(Err(error)) = mesh else { continue };
         let id = CutId(i as u32);
-        let input = connector_ends(id, cut, &blocks.clusters).map(|ends| attempts::connector_input(id, cut, ends, plan));
+        let input =
+            connector_ends(id, cut, &blocks.clusters).map(|ends| attempts::connector_input(id, cut, ends, plan));
         report.failed.push(FailedBlock {
             block: format!("connector {i}"),
             nodes: rounds::cut_nodes(skeleton, partition, cut),
