@@ -3,6 +3,8 @@
 //! wall near it is relaxed on the level set.
 
 mod disc;
+#[cfg(test)]
+mod tests;
 mod weave;
 
 use crate::geometry::{Point3, Section, Vec3};
@@ -344,11 +346,15 @@ fn relaxed(
     let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
     let mut on_disc = vec![false; mesh.points.len()];
     for (t, _) in mesh.triangles.iter().zip(cap).filter(|(_, c)| c.is_some()) {
-        t.map(|v| on_disc[v as usize] = true);
+        for &v in t {
+            on_disc[v as usize] = true;
+        }
     }
     let mut on_rim = vec![false; mesh.points.len()];
     for t in mesh.triangles.iter().filter(|t| t.iter().any(|&v| on_disc[v as usize])) {
-        t.map(|v| on_rim[v as usize] = !on_disc[v as usize]);
+        for &v in t {
+            on_rim[v as usize] = !on_disc[v as usize];
+        }
     }
     for end in ends {
         let section = &end.section;

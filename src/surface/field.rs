@@ -16,6 +16,12 @@ use crate::geometry::{Point3, Tube, Vec3};
 const NEGLIGIBLE: f64 = 3e-4;
 /// Up to so many tubes a search structure costs more than it saves.
 const FEW: usize = 6;
+/// A run of tubes is one taper when nothing in it is off by more than this many radii.
+const CHORD_ERROR: f64 = 0.01;
+/// Longest chord of a run, in radii.
+const LONGEST_CHORD: f64 = 2.0;
+/// Most tubes in a run, which bounds the work.
+const MOST_MERGED: usize = 64;
 /// Bits per coordinate of a search cell's key.
 const KEY_BITS: u32 = 21;
 
@@ -64,24 +70,14 @@ impl Field {
             return Err(SurfaceError::InvalidParameter { name: "kappa", value: kappa });
         }
         let cutoff2 = 1.0 - 2.0 * kappa * kappa * NEGLIGIBLE.ln();
-        let mut pieces = Vec::with_capacity(tubes.len());
         for (i, t) in tubes.iter().enumerate() {
             let finite = t.a.iter().chain(t.b.iter()).all(|x| x.is_finite()) && t.ra.is_finite() && t.rb.is_finite();
             if !finite || t.ra <= 0.0 || t.rb <= 0.0 {
                 return Err(SurfaceError::InvalidTube { tube: i as u32 });
             }
-            let length = t.length();
-            if length > 0.0 {
-                pieces.push(Piece {
-                    a: t.a,
-                    axis: (t.b - t.a) / length,
-                    length,
-                    ra: t.ra,
-                    slope: (t.rb - t.ra) / length,
-                    reach: t.max_radius() * cutoff2.sqrt(),
-                });
-            }
         }
+        let reach = cutoff2.sqrt();
+        let pieces: Vec<Piece> = merged(tubes).iter().filter_map(|t| Piece::new(t, reach)).collect();
         if pieces.is_empty() {
             return Err(SurfaceError::Empty);
         }
@@ -160,7 +156,59 @@ impl Field {
     }
 }
 
+/// The tubes, with runs of short ones along one polyline replaced by their chord where it stays close: the pieces of a
+/// finely sampled centreline would each be evaluated at every point near them.
+fn merged(tubes: &[Tube]) -> Vec<Tube> {
+    let mut out = Vec::with_capacity(tubes.len());
+    let mut first = 0;
+    while first < tubes.len() {
+        let mut last = first;
+        while last + 1 < tubes.len() && last + 1 - first < MOST_MERGED && is_chord(&tubes[first..=last + 1]) {
+            last += 1;
+        }
+        out.push(Tube { b: tubes[last].b, rb: tubes[last].rb, ..tubes[first] });
+        first = last + 1;
+    }
+    out
+}
+
+/// Whether consecutive tubes are one straight taper but for a hundredth of a radius.
+fn is_chord(run: &[Tube]) -> bool {
+    let (Some(first), Some(last)) = (run.first(), run.last()) else { return false };
+    let chord = last.b - first.a;
+    let length = chord.norm();
+    let slack = CHORD_ERROR * first.min_radius().min(last.min_radius());
+    if length <= 0.0 || length > LONGEST_CHORD * first.ra {
+        return false;
+    }
+    let axis = chord / length;
+    let mut before = 0.0;
+    run.windows(2).all(|pair| {
+        let w = pair[0].b - first.a;
+        let s = w.dot(&axis);
+        let r = first.ra + (last.rb - first.ra) * s / length;
+        let forward = s > before && s < length;
+        before = s;
+        let on_axis = (w - axis * s).norm() < slack;
+        let joined = pair[0].b == pair[1].a;
+        forward && joined && on_axis && (pair[0].rb - r).abs() < slack && (pair[1].ra - r).abs() < slack
+    })
+}
+
 impl Piece {
+    /// None for a tube without length; `reach` is the cutoff in radii.
+    fn new(t: &Tube, reach: f64) -> Option<Self> {
+        let length = t.length();
+        (length > 0.0).then(|| Self {
+            a: t.a,
+            axis: (t.b - t.a) / length,
+            length,
+            ra: t.ra,
+            slope: (t.rb - t.ra) / length,
+            reach: t.max_radius() * reach,
+        })
+    }
+
     /// Position along the axis, squared distance from it and radius; none out of reach.
     #[inline]
     fn locate(&self, p: &Point3, cutoff2: f64) -> Option<(Vec3, f64, f64, f64)> {

@@ -73,3 +73,172 @@ fn straight_tube() {
         assert!(volume(&mesh) > 0.0);
     }
 }
+
+/// Area of the section of a closed surface by a plane.
+fn section_area(mesh: &TriMesh, origin: &Point3, axis: &Vec3) -> f64 {
+    let mut area = 0.0;
+    for t in &mesh.triangles {
+        let p = t.map(|v| mesh.points[v as usize]);
+        let h = p.map(|p| (p - origin).dot(axis));
+        let (mut start, mut end) = (None, None);
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            if (h[i] < 0.0) != (h[j] < 0.0) {
+                let x = p[i] + (p[j] - p[i]) * (h[i] / (h[i] - h[j])) - origin;
+                if h[i] < 0.0 { start = Some(x) } else { end = Some(x) }
+            }
+        }
+        if let (Some(a), Some(b)) = (start, end) {
+            area += 0.5 * axis.dot(&a.cross(&b));
+        }
+    }
+    area.abs()
+}
+
+/// Mean over sections of the relative error of the radius of the circle of equal area.
+fn radius_error(mesh: &TriMesh, tube: &Tube, from: f64, to: f64) -> f64 {
+    let axis = (tube.b - tube.a).normalize();
+    let errors = (0..50).map(|i| {
+        let t = (from + (to - from) * f64::from(i) / 49.0) / tube.length();
+        (section_area(mesh, &tube.point(t), &axis) / std::f64::consts::PI).sqrt() / tube.radius(t) - 1.0
+    });
+    errors.sum::<f64>() / 50.0
+}
+
+fn smallest_angle(mesh: &TriMesh) -> f64 {
+    let cosine = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| mesh.points[v as usize]);
+        relax::largest_cosine(&a, &b, &c)
+    };
+    mesh.triangles.iter().map(cosine).fold(0.0, f64::max).acos().to_degrees()
+}
+
+fn check_wall(mesh: &TriMesh) {
+    assert!(HalfEdges::new(mesh).is_ok());
+    assert_eq!(euler_characteristic(mesh), 2);
+    assert!(volume(mesh) > 0.0);
+    assert_eq!(crate::geometry::self_intersections(&mesh.points, &mesh.triangles), []);
+    assert!(smallest_angle(mesh) > 20.0, "{}", smallest_angle(mesh));
+}
+
+#[test]
+fn straight_and_tapering_tubes_have_their_radius() {
+    for rho in [3.0, 4.0, 5.0] {
+        for (t, limit) in [
+            (tube([0.1, 0.2, 0.3], [9.0, 3.0, 2.0], 1.0, 1.0), 0.005),
+            (tube([0.1, 0.2, 0.3], [20.0, 3.0, 2.0], 1.0, 3.0), 0.005),
+        ] {
+            let mesh = vessel_surface(&[t], &SurfaceParams::with_voxel(2.0 / rho)).unwrap();
+            check_wall(&mesh);
+            let e = radius_error(&mesh, &t, 1.5 * t.ra, t.length() - 1.5 * t.rb);
+            assert!(e.abs() < limit, "rho {rho}: {e}");
+        }
+    }
+}
+
+#[test]
+fn vertices_lie_within_two_percent_of_the_radius() {
+    let t = tube([0.1, 0.2, 0.3], [9.0, 3.0, 2.0], 1.0, 1.0);
+    let mesh = vessel_surface(&[t], &SurfaceParams::with_voxel(0.5)).unwrap();
+    let axis = (t.b - t.a).normalize();
+    let (mut sum, mut count) = (0.0, 0.0);
+    for p in &mesh.points {
+        let w = p - t.a;
+        let s = w.dot(&axis);
+        if s > 1.5 && s < t.length() - 1.5 {
+            sum += (w - axis * s).norm();
+            count += 1.0;
+        }
+    }
+    assert!((sum / count - 1.0f64).abs() < 0.02);
+}
+
+#[test]
+fn short_pieces_add_up_to_the_tube_they_divide() {
+    let whole = tube([0.0; 3], [8.0, 1.0, 0.5], 1.0, 1.3);
+    let pieces: Vec<Tube> = (0..80)
+        .map(|i| {
+            let t = [f64::from(i) / 80.0, f64::from(i + 1) / 80.0];
+            Tube { a: whole.point(t[0]), b: whole.point(t[1]), ra: whole.radius(t[0]), rb: whole.radius(t[1]) }
+        })
+        .collect();
+    let (mut one, mut many) = (Field::new(&[whole], 0.4).unwrap(), Field::new(&pieces, 0.4).unwrap());
+    for i in 0..40 {
+        let t = 0.15 + 0.7 * f64::from(i) / 40.0;
+        let p = whole.point(t) + Vec3::new(-0.1, 0.8, 0.0) * whole.radius(t);
+        let (a, b) = (one.value(&p), many.value(&p));
+        assert!((a - b).abs() < 4e-3, "{a} {b}");
+    }
+}
+
+#[test]
+fn gradients_are_those_of_the_values() {
+    let tubes = [tube([0.0; 3], [8.0, 1.0, 0.5], 1.0, 1.6), tube([8.0, 1.0, 0.5], [12.0, 5.0, 0.0], 1.2, 0.9)];
+    let mut field = Field::new(&tubes, 0.4).unwrap();
+    for i in 0..60 {
+        let t = f64::from(i) / 59.0;
+        let p = tubes[0].point(1.2 * t - 0.05) + Vec3::new(0.1, 0.7 * (9.0 * t).sin(), 0.8 * (9.0 * t).cos());
+        let (value, gradient) = field.value_and_gradient(&p);
+        if value > 0.3 && value < 1.5 {
+            let h = 1e-4;
+            let numeric = Vec3::from_fn(|k, _| {
+                let mut e = Vec3::zeros();
+                e[k] = h;
+                (field.value(&(p + e)) - field.value(&(p - e))) / (2.0 * h)
+            });
+            assert!((numeric - gradient).norm() < 2e-3 * gradient.norm(), "{numeric} {gradient}");
+        }
+    }
+}
+
+#[test]
+fn scale_and_place_do_not_matter() {
+    let t = tube([0.1, 0.2, 0.3], [9.0, 3.0, 2.0], 1.0, 1.2);
+    let count = |scale: f64| {
+        let s = Tube { a: t.a * scale, b: t.b * scale, ra: t.ra * scale, rb: t.rb * scale };
+        vessel_surface(&[s], &SurfaceParams::with_voxel(0.5 * scale)).unwrap().triangles.len() as f64
+    };
+    assert!((count(1e-6) / count(1.0) - 1.0).abs() < 0.02);
+    assert!((count(1e6) / count(1.0) - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn what_cannot_be_made_is_refused() {
+    let t = tube([0.0; 3], [8.0, 0.0, 0.0], 1.0, 1.0);
+    let far = tube([0.0, 9.0, 0.0], [8.0, 9.0, 0.0], 1.0, 1.0);
+    let params = SurfaceParams::with_voxel(0.5);
+    assert_eq!(vessel_surface(&[], &params), Err(SurfaceError::Empty));
+    let apart = vessel_surface(&[t, far], &params);
+    assert_eq!(apart, Err(SurfaceError::Disconnected { components: 2, tubes: [0, 1] }));
+    let fine = vessel_surface(&[t], &SurfaceParams { voxel: 1e-5, ..params });
+    assert!(matches!(fine, Err(SurfaceError::TooLarge { .. })));
+    let bad = Tube { ra: f64::NAN, ..t };
+    assert_eq!(vessel_surface(&[t, bad], &params), Err(SurfaceError::InvalidTube { tube: 1 }));
+    let zero = vessel_surface(&[t], &SurfaceParams { voxel: 0.0, ..params });
+    assert!(matches!(zero, Err(SurfaceError::InvalidParameter { name: "voxel", .. })));
+}
+
+fn direction() -> impl Strategy<Value = Vec3> {
+    (-1.0..1.0f64, 0.0..std::f64::consts::TAU).prop_map(|(z, a)| {
+        let r = (1.0 - z * z).sqrt();
+        Vec3::new(r * a.cos(), r * a.sin(), z)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn bifurcations_have_sound_walls(
+        d in prop::array::uniform3(direction()),
+        r in prop::array::uniform3(0.6..1.0f64),
+        rho in 3.0..5.0f64,
+    ) {
+        let apart = |i: usize, j: usize| d[i].dot(&d[j]) < 0.85;
+        prop_assume!(apart(0, 1) && apart(1, 2) && apart(0, 2));
+        let tubes: Vec<Tube> = (0..3)
+            .map(|i| Tube { a: Point3::origin(), b: Point3::from(d[i] * 8.0), ra: r[i], rb: r[i] })
+            .collect();
+        let smallest = r[0].min(r[1]).min(r[2]);
+        check_wall(&vessel_surface(&tubes, &SurfaceParams::with_voxel(2.0 * smallest / rho)).unwrap());
+    }
+}
