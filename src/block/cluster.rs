@@ -34,6 +34,8 @@ pub struct ClusterMesh {
     pub ends: Vec<EndSurface>,
     /// One cap per terminal, in the order of `Cluster::ends`.
     pub caps: Vec<CapFaces>,
+    /// Terminals without a cap: their tips lie in another vessel (only with [`BlockParams::allow_fused`]).
+    pub uncapped: Vec<NodeId>,
     /// Cell edge of the contouring grid.
     pub voxel: f64,
     /// Mean edge length of the wall.
@@ -67,7 +69,9 @@ pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> R
     let surface_triangles = surface.mesh.triangles.len();
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
     let loops = independent_loops(&cluster.tubes);
-    let mut out = ClusterMesh { mesh: filled, caps, voxel, edge, surface_triangles, handles, loops, ends: Vec::new() };
+    let uncapped = uncapped(cluster, &caps);
+    let mut out =
+        ClusterMesh { mesh: filled, caps, uncapped, voxel, edge, surface_triangles, handles, loops, ends: Vec::new() };
     match params.ends {
         EndStyle::Trimmed => trim_cluster(id, cluster, params, &mut out)?,
         EndStyle::Disc => out.ends = disc_ends(id, cluster, &surface, &out.mesh)?,
@@ -93,14 +97,20 @@ pub fn cluster_surface(
     if handles != loops && !params.allow_fused {
         return Err(BlockError::Genus { cluster: id, handles, loops });
     }
-    let closed: Vec<ClusterEnd> = capped_ends(cluster, params.ends).map(|(_, e)| e.clone()).collect();
     let mut field = Field::new(&cluster.tubes, params.kappa).map_err(failed)?;
-    let mut capped = cap_terminals(&wall, &mut field, &closed, surface_params.edge * voxel)
-        .map_err(|source| BlockError::Cap { cluster: id, source: name_end(source, cluster, params.ends) })?;
+    let mut closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
+    let mut capped = loop {
+        let ends: Vec<ClusterEnd> = closed.iter().map(|(_, e)| (*e).clone()).collect();
+        match cap_terminals(&wall, &mut field, &ends, surface_params.edge * voxel) {
+            Ok(capped) => break capped,
+            // One end less each time, so this ends.
+            Err(CapError::End { end, node: Some(_), .. }) if params.allow_fused => drop(closed.remove(end as usize)),
+            Err(source) => return Err(BlockError::Cap { cluster: id, source: name_end(source, &closed) }),
+        }
+    };
     // Cap indices count the ends that were closed; from here on they count all ends.
-    let index: Vec<u32> = capped_ends(cluster, params.ends).map(|(i, _)| i).collect();
     for cap in capped.cap.iter_mut().flatten() {
-        *cap = index[*cap as usize];
+        *cap = closed[*cap as usize].0;
     }
     Ok((capped, voxel))
 }
@@ -111,11 +121,11 @@ fn capped_ends(cluster: &Cluster, style: EndStyle) -> impl Iterator<Item = (u32,
     (0..).zip(&cluster.ends).filter(move |(_, e)| closed(e))
 }
 
-fn name_end(error: CapError, cluster: &Cluster, style: EndStyle) -> CapError {
+/// Makes the index of the end in an error count all ends of the cluster.
+fn name_end(error: CapError, closed: &[(u32, &ClusterEnd)]) -> CapError {
     match error {
         CapError::End { end, node, origin, reason } => {
-            let end = capped_ends(cluster, style).nth(end as usize).map_or(end, |(i, _)| i);
-            CapError::End { end, node, origin, reason }
+            CapError::End { end: closed.get(end as usize).map_or(end, |(i, _)| *i), node, origin, reason }
         }
         other => other,
     }
@@ -174,7 +184,17 @@ fn caps(cluster: &Cluster, surface: &CappedSurface) -> Vec<CapFaces> {
             EndKind::Terminal(node) => Some(CapFaces { node, section: end.section, triangles: faces_of(surface, i) }),
             EndKind::Cut { .. } => None,
         })
+        .filter(|cap| !cap.triangles.is_empty())
         .collect()
+}
+
+/// The terminals that have no cap.
+fn uncapped(cluster: &Cluster, caps: &[CapFaces]) -> Vec<NodeId> {
+    let terminal = |end: &ClusterEnd| match end.kind {
+        EndKind::Terminal(node) => Some(node),
+        EndKind::Cut { .. } => None,
+    };
+    cluster.ends.iter().filter_map(terminal).filter(|node| !caps.iter().any(|cap| cap.node == *node)).collect()
 }
 
 /// The cut ends with their indices in `Cluster::ends`.

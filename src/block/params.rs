@@ -27,8 +27,9 @@ pub struct BlockParams {
     pub ends: EndStyle,
     /// Whether end surfaces are relaxed after flattening.
     pub relax_ends: bool,
-    /// Accept a wall with other handles than the skeleton has loops: vessels that overlap in the skeleton itself fuse at
-    /// every resolution. For a last try; [`super::ClusterMesh::handles`] tells.
+    /// Take what comes where the network's own vessels overlap: a wall with other handles than the skeleton has loops
+    /// ([`super::ClusterMesh::handles`] tells), and tips inside another vessel without a cap
+    /// ([`super::ClusterMesh::uncapped`]).
     pub allow_fused: bool,
     /// How deep below its plane an end surface may go, in radii of the cut.
     pub depth: f64,
@@ -40,7 +41,7 @@ impl Default for BlockParams {
             rho: 3.0,
             voxel_factor: 1.0,
             shift: [0.0; 3],
-            kappa: 0.5,
+            kappa: 0.4,
             ends: EndStyle::Trimmed,
             relax_ends: true,
             allow_fused: false,

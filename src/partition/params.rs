@@ -43,7 +43,7 @@ impl Default for PartitionParams {
     fn default() -> Self {
         Self {
             rho: 3.0,
-            kappa: 0.5,
+            kappa: 0.4,
             node_distance: 2.2,
             angle_margin: 1.25,
             room: 2.0,

@@ -19,12 +19,13 @@ pub struct Tried<T> {
 }
 
 /// What is changed from attempt to attempt; the first is the usual way.
-const CHANGES: [&str; 5] = [
+const CHANGES: [&str; 6] = [
     "as usual",
     "grid shifted",
+    "narrower kernel",
     "flat discs at the cuts",
     "finer voxel, grid shifted",
-    "finer voxel, flat discs at the cuts",
+    "finer voxel, narrower kernel",
 ];
 
 /// What helped after so many failures.
@@ -32,19 +33,22 @@ pub fn remedy(failures: usize) -> String {
     CHANGES.get(failures).copied().unwrap_or("other division of the tube").to_owned()
 }
 
-fn variants(plan: &MeshPlan) -> [BlockParams; CHANGES.len()] {
-    let usual = BlockParams::with_rho(plan.rho);
+/// `overlapping`: vessels of the network overlap in the block, so that no parameter keeps them apart.
+fn variants(plan: &MeshPlan, overlapping: bool) -> [BlockParams; CHANGES.len()] {
+    let usual = BlockParams { allow_fused: overlapping, ..plan.block_params() };
     let shifted = BlockParams { shift: [0.37, -0.23, 0.11], ..usual };
+    // Parallel vessels fuse when their axes are closer than √(1 + 2 κ² ln 2) times the sum of their radii.
+    let narrower = BlockParams { kappa: 0.3, ..usual };
     let discs = BlockParams { ends: EndStyle::Disc, ..usual };
     let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
-    [usual, shifted, discs, finer(shifted), finer(discs)]
+    [usual, shifted, narrower, discs, finer(shifted), finer(narrower)]
 }
 
 /// Meshes a cluster, with other parameters after each failure.
-pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> Tried<ClusterMesh> {
+pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan, overlapping: bool) -> Tried<ClusterMesh> {
     let mut failures = Vec::new();
     let mut last = None;
-    for params in variants(plan) {
+    for params in variants(plan, overlapping) {
         failures.extend(last.take());
         match mesh_cluster(id, cluster, &params) {
             Ok(mesh) => return Tried { result: Ok(Arc::new(mesh)), failures },
@@ -56,16 +60,16 @@ pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> Tried<Clust
 
 /// Meshes a connector; it varies the division of its tube by itself.
 pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> Tried<ConnectorMesh> {
-    let result = mesh_connector(id, cut, ends, &BlockParams::with_rho(plan.rho)).map(Arc::new);
+    let result = mesh_connector(id, cut, ends, &plan.block_params()).map(Arc::new);
     Tried { result, failures: Vec::new() }
 }
 
 /// The input of a cluster as it is first tried.
 pub fn cluster_input(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> BlockDump {
-    dump_cluster(id, cluster, &BlockParams::with_rho(plan.rho))
+    dump_cluster(id, cluster, &plan.block_params())
 }
 
 /// The input of a connector as it is first tried.
 pub fn connector_input(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> BlockDump {
-    dump_connector(id, cut, ends, &BlockParams::with_rho(plan.rho))
+    dump_connector(id, cut, ends, &plan.block_params())
 }

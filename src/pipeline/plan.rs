@@ -1,5 +1,7 @@
 //! What a run is asked to do.
 
+use crate::block::BlockParams;
+
 /// Parameters of a run of the mesher.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[non_exhaustive]
@@ -31,6 +33,11 @@ pub enum PlanError {
 }
 
 impl MeshPlan {
+    /// Parameters of a block as it is first tried. The partition has to know the kernel's width, too.
+    pub fn block_params(&self) -> BlockParams {
+        BlockParams::with_rho(self.rho)
+    }
+
     /// # Errors
     /// When a parameter is out of its range.
     pub fn validate(&self) -> Result<(), PlanError> {

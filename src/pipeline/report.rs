@@ -30,6 +30,21 @@ pub struct FailedBlock {
     pub dump: Option<String>,
 }
 
+/// A cluster in which vessels of the network overlap, and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FusedBlock {
+    /// `cluster 12`.
+    pub block: String,
+    /// Nodes of the block, as indices in the file that was read (the first 20).
+    pub nodes: Vec<u32>,
+    /// Handles of its wall.
+    pub handles: i64,
+    /// Loops of its skeleton: other than the handles where vessels fused.
+    pub loops: i64,
+    /// Terminals that have no cap because their tip lies in another vessel.
+    pub uncapped: Vec<u32>,
+}
+
 /// Counts of the blocks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BlockCounts {
@@ -94,6 +109,8 @@ pub struct RunReport {
     pub joints: Option<crate::stitch::joints::JointReport>,
     /// Blocks that needed another try.
     pub retries: Vec<Retry>,
+    /// Clusters in which overlapping vessels changed the topology.
+    pub fused: Vec<FusedBlock>,
     /// Blocks that are missing from the mesh.
     pub failed: Vec<FailedBlock>,
     /// Size of the mesh.
@@ -122,6 +139,13 @@ impl RunReport {
                 out,
                 "  retried {} (nodes {:?}): {}; {}",
                 retry.block, retry.nodes, retry.reason, retry.remedy
+            );
+        }
+        for f in &self.fused {
+            let _ = writeln!(
+                out,
+                "  overlapping vessels in {} (nodes {:?}): {} handles for {} loops, terminals without a cap {:?}",
+                f.block, f.nodes, f.handles, f.loops, f.uncapped
             );
         }
         for failed in &self.failed {

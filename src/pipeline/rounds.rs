@@ -1,7 +1,7 @@
 //! All blocks of a network, with retries: a block that fails is tried with other parameters, then with its cuts moved,
 //! then joined to its neighbours.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ use super::report::Retry;
 use super::timing::Clock;
 use crate::block::{BlockError, ClusterMesh, ConnectorEnd, ConnectorMesh};
 use crate::partition::{self, Cluster, ClusterId, Cut, CutId, EndKind, Partition, PartitionError, PartitionParams};
-use crate::skeleton::{BranchId, NodeId, Skeleton};
+use crate::skeleton::{BranchId, NodeId, Overlaps, Skeleton};
 
 /// How often the partition is changed because of blocks that fail.
 const ROUNDS: usize = 6;
@@ -54,6 +54,7 @@ const SHIFT: f64 = 0.5;
 /// When the network cannot be partitioned.
 pub fn build(
     skeleton: &Skeleton,
+    overlaps: &Overlaps,
     plan: &MeshPlan,
     observer: &dyn Observer,
     clock: &mut Clock,
@@ -66,8 +67,9 @@ pub fn build(
         let partition = clock
             .time(observer, Stage::Partition, 0, || partition::partition(skeleton, &partition_params(plan, &cures)))?;
         let reuse = Reuse::new(settled.as_ref());
+        let tangled = tangled_clusters(skeleton, &partition, overlaps);
         let clusters = clock.time(observer, Stage::Clusters, partition.clusters.len() as u64, || {
-            mesh_clusters(&partition, plan, &reuse, observer)
+            mesh_clusters(&partition, &tangled, plan, &reuse, observer)
         });
         let clusters = note_clusters(skeleton, &partition, clusters, &mut retries);
         let connectors = clock.time(observer, Stage::Connectors, partition.cuts.len() as u64, || {
@@ -86,7 +88,7 @@ pub fn build(
 }
 
 fn partition_params(plan: &MeshPlan, cures: &BTreeMap<BranchId, Cure>) -> PartitionParams {
-    let mut params = PartitionParams { rho: plan.rho, ..PartitionParams::default() };
+    let mut params = PartitionParams { rho: plan.rho, kappa: plan.block_params().kappa, ..PartitionParams::default() };
     for (&branch, &cure) in cures {
         match cure {
             Cure::Forward => drop(params.shifted_cuts.insert(branch, SHIFT)),
@@ -124,8 +126,26 @@ fn same_shape(a: &Cluster, b: &Cluster) -> bool {
         && a.ends.iter().zip(&b.ends).all(|(x, y)| x.section == y.section && x.overrun == y.overrun)
 }
 
+/// For each cluster, whether two vessels overlap that both run through it.
+fn tangled_clusters(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Vec<bool> {
+    let branches = skeleton.branches(&skeleton.adjacency());
+    let mut clusters_of: BTreeMap<BranchId, BTreeSet<ClusterId>> = BTreeMap::new();
+    for piece in &partition.pieces {
+        clusters_of.entry(piece.branch).or_default().insert(piece.cluster);
+    }
+    let mut tangled = vec![false; partition.clusters.len()];
+    for pair in overlaps.pairs.iter().map(|o| &o.edges).chain(&overlaps.unconnected) {
+        let [a, b] = pair.map(|e| clusters_of.get(&branches.of_edge[e.index()].0));
+        for cluster in a.into_iter().flatten().filter(|c| b.is_some_and(|b| b.contains(c))) {
+            tangled[cluster.0 as usize] = true;
+        }
+    }
+    tangled
+}
+
 fn mesh_clusters(
     partition: &Partition,
+    tangled: &[bool],
     plan: &MeshPlan,
     reuse: &Reuse,
     observer: &dyn Observer,
@@ -134,7 +154,7 @@ fn mesh_clusters(
         let id = ClusterId(i as u32);
         let tried = match reuse.cluster(cluster) {
             Some(mesh) => Tried { result: Ok(mesh), failures: Vec::new() },
-            None => attempts::cluster(id, cluster, plan),
+            None => attempts::cluster(id, cluster, plan, tangled[i]),
         };
         observer.step();
         tried

@@ -4,7 +4,7 @@ use super::assemble::{self, AssembleError};
 use super::attempts;
 use super::observer::{Observer, Stage};
 use super::plan::{MeshPlan, PlanError};
-use super::report::{BlockCounts, FailedBlock, Meeting, MeshSize, RunReport};
+use super::report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, RunReport};
 use super::rounds::{self, Blocks, connector_ends, original_nodes};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
@@ -13,8 +13,7 @@ use crate::mesh::check::{CheckReport, Expectation, check_volume};
 use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::{ClusterId, CutId, PartitionError};
 use crate::refine::split;
-use crate::skeleton::Overlap;
-use crate::skeleton::{NodeId, Skeleton};
+use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 
 /// A mesh, what it has to be, what was found, what was done.
 #[derive(Debug)]
@@ -63,10 +62,10 @@ pub fn mesh_network(
 ) -> Result<Meshed, RunError> {
     plan.validate()?;
     let mut report = RunReport::default();
-    let skeleton = clock.time(observer, Stage::Prepare, 0, || prepare(network, &mut report));
+    let (skeleton, overlaps) = clock.time(observer, Stage::Prepare, 0, || prepare(network, &mut report));
     let terminals = terminals::assign(&skeleton, &plan.roots)?;
     announce(&report, observer);
-    let blocks = rounds::build(&skeleton, plan, observer, clock)?;
+    let blocks = rounds::build(&skeleton, &overlaps, plan, observer, clock)?;
     describe_blocks(&skeleton, plan, &blocks, &mut report);
     if !report.failed.is_empty() && !plan.keep_going {
         report.stages = clock.stages();
@@ -83,7 +82,7 @@ pub fn mesh_network(
 }
 
 /// Splits nodes of high valence and looks for vessels that overlap.
-fn prepare(network: &Skeleton, report: &mut RunReport) -> Skeleton {
+fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
     let (skeleton, splits) = split(network);
     report.network = [skeleton.nodes.len(), skeleton.edges.len()];
     report.nodes_split = splits.nodes.len();
@@ -96,7 +95,7 @@ fn prepare(network: &Skeleton, report: &mut RunReport) -> Skeleton {
     let overlaps = skeleton.overlaps(&skeleton.adjacency());
     report.overlaps = overlaps.pairs.iter().map(meeting).collect();
     report.unconnected = overlaps.unconnected.iter().map(|e| e.map(|e| skeleton.edge(e).nodes.map(original))).collect();
-    skeleton
+    (skeleton, overlaps)
 }
 
 /// How many overlapping pairs are spelt out for people.
@@ -137,6 +136,18 @@ fn describe_blocks(skeleton: &Skeleton, plan: &MeshPlan, blocks: &Blocks, report
     report.partition = Some(partition.summary());
     report.retries.clone_from(&blocks.retries);
     for (i, (cluster, mesh)) in partition.clusters.iter().zip(&blocks.clusters).enumerate() {
+        let nodes = || original_nodes(skeleton, cluster.nodes.iter().copied());
+        if let Ok(mesh) = mesh
+            && (mesh.handles != mesh.loops || !mesh.uncapped.is_empty())
+        {
+            report.fused.push(FusedBlock {
+                block: format!("cluster {i}"),
+                nodes: nodes(),
+                handles: mesh.handles,
+                loops: mesh.loops,
+                uncapped: original_nodes(skeleton, mesh.uncapped.iter().copied()),
+            });
+        }
         if let Err(error) = mesh {
             report.failed.push(FailedBlock {
                 block: format!("cluster {i}"),
