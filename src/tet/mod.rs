@@ -29,6 +29,9 @@ const CELL: f64 = 1.5;
 /// Distance of the lattice from the wall in mean edge lengths of the surface.
 const CLEARANCE: f64 = 0.55;
 
+/// Times that recovery is tried.
+const ATTEMPTS: u32 = 8;
+
 /// Which points are put inside the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Interior {
@@ -102,13 +105,7 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
 /// As [`tetrahedralize`].
 pub fn tetrahedralize_with_summary(surface: &TriMesh, options: &TetOptions) -> Result<Tetrahedralization, TetError> {
     let edges = input::validate(surface)?;
-    let mut points = surface.points.clone();
-    points.extend(interior_points(surface, &options.interior)?);
-    let inner = points.len();
-    points.extend(box_corners(&surface.points));
-    let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
-    drop(points);
-    let recovery = recover::recover(&mut complex, surface, &edges)?;
+    let (complex, recovery) = conforming(surface, &edges, options)?;
     let mut carved = carve::carve(&complex, surface)?;
     drop(complex);
     if options.optimize {
@@ -118,6 +115,47 @@ pub fn tetrahedralize_with_summary(surface: &TriMesh, options: &TetOptions) -> R
     let mesh = carved.into_compact_mesh(surface.points.len());
     certify::certify(&mesh, surface)?;
     Ok(Tetrahedralization { mesh, recovery })
+}
+
+/// A complex that has all of the surface. Where recovery leaves a little over, it is tried again with other interior
+/// points: what blocks it is a matter of chance on smooth surfaces.
+fn conforming(
+    surface: &TriMesh,
+    edges: &input::SurfaceEdges,
+    options: &TetOptions,
+) -> Result<(Complex, RecoverySummary), TetError> {
+    let mut attempt = 0;
+    loop {
+        let mut points = surface.points.clone();
+        points.extend(interior_points(surface, &other_interior(surface, &options.interior, attempt))?);
+        let inner = points.len();
+        points.extend(box_corners(&surface.points));
+        let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
+        drop(points);
+        match recover::recover(&mut complex, surface, edges, attempt) {
+            Ok(summary) => return Ok((complex, summary)),
+            Err(TetError::NotRecovered { edges, triangles })
+                if attempt + 1 < ATTEMPTS && edges.len() + triangles.len() <= recover::FEW => {}
+            Err(error) => return Err(error),
+        }
+        attempt += 1;
+    }
+}
+
+/// The interior asked for, or for later attempts one like it.
+fn other_interior(surface: &TriMesh, interior: &Interior, attempt: u32) -> Interior {
+    let factor = [1.0, 1.07, 0.93, 1.15, 0.87, 1.23, 1.31, 0.8][attempt as usize % 8];
+    let h = lattice::mean_edge(surface);
+    match interior {
+        Interior::Lattice { cell, clearance } if attempt > 0 => Interior::Lattice {
+            cell: Some(cell.unwrap_or(CELL * h) * factor),
+            clearance: Some(clearance.unwrap_or(CLEARANCE * h) * factor.max(1.0)),
+        },
+        Interior::None if attempt > 0 => {
+            Interior::Lattice { cell: Some(4.0 * CELL * h * factor), clearance: Some(CELL * h) }
+        }
+        other => other.clone(),
+    }
 }
 
 fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>, TetError> {

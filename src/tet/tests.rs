@@ -227,7 +227,7 @@ fn a_carved_complex_is_sane_with_its_ghosts() {
     points.extend(box_corners(&s.points));
     let mut c = delaunay::delaunay(&points).unwrap();
     c.sanity_check().unwrap();
-    recover::recover(&mut c, &s, &edges).unwrap();
+    recover::recover(&mut c, &s, &edges, 0).unwrap();
     c.sanity_check().unwrap();
     let carved = carve::carve(&c, &s).unwrap();
     carved.sanity_check().unwrap();

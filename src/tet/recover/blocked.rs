@@ -71,9 +71,9 @@ impl Recovery<'_> {
     /// Removes an edge by some valid triangulation of its ring; another one in each round, so that what was stuck in
     /// one may come loose in the next.
     fn remove_edge(&mut self, t: u32, p: u32, q: u32) -> Result<(), Refusal> {
-        let round = u64::from(self.round);
+        let (round, salt) = (self.round, self.salt(self.round));
         let score = |c: &Complex, v: &[u32; 4]| {
-            let coin = v.iter().fold(round, |h, &x| hash(h ^ u64::from(x)));
+            let coin = v.iter().fold(salt, |h, &x| hash(h ^ u64::from(x)));
             valid(c, v).map(|s| if round == 0 { s } else { s + (coin >> 32) as f64 })
         };
         self.flipper.plan_edge(self.c, t, p, q, MAX_RING, score)?;

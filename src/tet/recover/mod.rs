@@ -41,10 +41,16 @@ pub struct RecoverySummary {
 const PATIENCE: u32 = 3;
 
 /// Lost edges and triangles for which all rounds are worth their time.
-const FEW: usize = 64;
+pub(super) const FEW: usize = 64;
 
-/// Recovers all of the surface in `c`, whose first vertices are the surface's points; freezes its faces.
-pub(super) fn recover(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges) -> Result<RecoverySummary, TetError> {
+/// Recovers all of the surface in `c`, whose first vertices are the surface's points; freezes its faces. Other attempts
+/// choose otherwise where there is a choice.
+pub(super) fn recover(
+    c: &mut Complex,
+    surface: &TriMesh,
+    edges: &SurfaceEdges,
+    attempt: u32,
+) -> Result<RecoverySummary, TetError> {
     let mut r = Recovery {
         c,
         surface,
@@ -55,6 +61,7 @@ pub(super) fn recover(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges) 
         cavity: Cavity::default(),
         budget: 0,
         round: 0,
+        attempt,
         met: None,
     };
     let mut summary = RecoverySummary::default();
@@ -65,11 +72,7 @@ pub(super) fn recover(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges) 
     for round in 0..=ROUNDS {
         r.round = round;
         lost_edges.retain(|&e| r.met.is_some() || !r.recover_edge(e));
-        if lost_edges.is_empty() {
-            lost_faces.retain(|&f| r.met.is_some() || !r.recover_face(f));
-        } else {
-            r.freeze_present(&mut lost_faces);
-        }
+        lost_faces.retain(|&f| r.met.is_some() || !r.recover_face(f));
         if let Some(error) = r.met {
             return Err(error);
         }
@@ -99,11 +102,17 @@ struct Recovery<'a> {
     cavity: Cavity,
     budget: u32,
     round: u32,
+    attempt: u32,
     /// Proof that the surface meets itself.
     met: Option<TetError>,
 }
 
 impl Recovery<'_> {
+    /// What makes the choices of this round and attempt.
+    fn salt(&self, round: u32) -> u64 {
+        (u64::from(self.attempt) << 16) + 4 * u64::from(round)
+    }
+
     /// Freezes the triangles that are faces; returns the edges and triangles that are missing.
     fn survey(&mut self) -> (Vec<[u32; 2]>, Vec<u32>) {
         let n = self.surface.points.len();
@@ -159,17 +168,6 @@ impl Recovery<'_> {
         (lost_edges, lost_faces)
     }
 
-    /// Freezes those of the lost triangles that have become faces meanwhile.
-    fn freeze_present(&mut self, lost: &mut Vec<u32>) {
-        lost.retain(|&f| match self.star.find_face(self.c, self.surface.triangles[f as usize]) {
-            Some(half) => {
-                self.c.freeze(half);
-                false
-            }
-            None => true,
-        });
-    }
-
     /// Flips away what crosses an edge, from either end.
     fn recover_edge(&mut self, [a, b]: [u32; 2]) -> bool {
         self.budget = BUDGET;
@@ -212,8 +210,11 @@ impl Recovery<'_> {
     fn recover_face(&mut self, triangle: u32) -> bool {
         let tri = self.surface.triangles[triangle as usize];
         self.budget = BUDGET;
-        let mut stuck = 0;
         let mut k = 0;
+        if (0..3).any(|i| self.star.find_edge(self.c, tri[i], tri[(i + 1) % 3]).is_none()) {
+            return false;
+        }
+        let mut stuck = 0;
         while self.budget > 0 && stuck < 3 {
             self.budget -= 1;
             if let Some(half) = self.star.find_face(self.c, tri) {
