@@ -237,3 +237,28 @@ fn read_off(text: &str) -> Surface {
     };
     (points, (0..triangles).map(|_| corners(&mut number)).collect())
 }
+
+/// The wall of a network whose vessels overlap: the real case that the check is for.
+#[test]
+fn the_wall_of_overlapping_vessels() {
+    let (Some(program), Some(shared)) = (oracle(), common::shared()) else { return };
+    let network = common::network(&shared.join("data/kidney/subtree_989.vtp"));
+    let meshed = common::mesh(&network, 3.0);
+    // The points inside are none of the wall's.
+    let mut number = vec![u32::MAX; meshed.mesh.mesh.points.len()];
+    let mut wall = Surface::default();
+    for face in &meshed.mesh.boundary {
+        wall.1.push(face.map(|v| {
+            let id = &mut number[v as usize];
+            if *id == u32::MAX {
+                *id = wall.0.len() as u32;
+                wall.0.push(meshed.mesh.mesh.points[v as usize]);
+            }
+            *id
+        }));
+    }
+    let pairs = agree(&wall, program);
+    println!("{} triangles, {pairs} pairs meet", wall.1.len());
+    assert!(pairs > 0);
+    assert_eq!(meshed.check.intersections.len(), pairs);
+}

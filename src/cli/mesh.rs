@@ -20,7 +20,7 @@ pub struct Args {
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
     /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
-    #[arg(long, default_value_t = 3.0)]
+    #[arg(long, default_value_t = 3.0, allow_negative_numbers = true)]
     rho: f64,
     /// Node that is an inlet, counted from 0 in the file's order; may be given several times (default: in each component
     /// the terminal of largest radius)

@@ -66,7 +66,7 @@ pub enum MeshFileError {
         path: PathBuf,
     },
     /// The operating system refused to read.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -74,12 +74,18 @@ pub enum MeshFileError {
         source: io::Error,
     },
     /// The operating system refused to write.
-    #[error("{}: cannot be written: {source}", path.display())]
+    #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]
     Write {
         /// The file.
         path: PathBuf,
         /// Its reason.
         source: io::Error,
+    },
+    /// There is nothing in it.
+    #[error("{}: the file is empty: write or copy it again", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
     },
     /// What is in the file is no mesh.
     #[error("{}: {fault}", path.display())]
@@ -122,7 +128,7 @@ pub enum ContentFault {
         cell: usize,
     },
     /// The file ends before it is complete.
-    #[error("the file ends too early: it was not written or copied completely")]
+    #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
     CutShort,
     /// Something else stands where a number or name has to be.
     #[error("no number or name of the format before byte {byte}")]
@@ -155,10 +161,17 @@ pub enum ContentFault {
 /// Reads a mesh from a file, in the format that its extension names.
 ///
 /// # Errors
-/// `UnknownFormat`, `Read` with the system's reason, or `Content` with what is wrong.
+/// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
+    let refused = |source| MeshFileError::Read { path: path.to_path_buf(), source };
+    if path.is_dir() {
+        return Err(refused(io::ErrorKind::IsADirectory.into()));
+    }
     let format = MeshFormat::of(path)?;
-    let bytes = std::fs::read(path).map_err(|source| MeshFileError::Read { path: path.to_path_buf(), source })?;
+    let bytes = std::fs::read(path).map_err(refused)?;
+    if bytes.trim_ascii().is_empty() {
+        return Err(MeshFileError::Empty { path: path.to_path_buf() });
+    }
     read_mesh_from(&bytes, format).map_err(|fault| MeshFileError::Content { path: path.to_path_buf(), fault })
 }
 

@@ -14,7 +14,9 @@ pub struct TerminalPatches {
 
 /// A root was asked for that is not a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("node {node} was given as root, but the network has no terminal of that number")]
+#[error(
+    "node {node} was given as root, but no terminal has that number; name a node with one edge, counted from 0 in the file's order"
+)]
 pub struct NotATerminal {
     /// The node as it was given.
     pub node: u32,

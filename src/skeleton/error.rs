@@ -8,7 +8,10 @@ use crate::geometry::Point3;
 #[non_exhaustive]
 pub enum SkeletonError {
     /// There is no edge, so there is no vessel.
-    #[error("the network has {nodes} node(s) and no edge of a length above zero: there is no vessel to mesh")]
+    #[error(
+        "the network has {nodes} node(s) and no edge of a length above zero: there is no vessel to mesh; \
+         it takes two nodes at different places and an edge between them"
+    )]
     NoVessel {
         /// Number of nodes.
         nodes: usize,

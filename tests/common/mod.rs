@@ -1,7 +1,10 @@
 //! What the integration tests share.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
-use std::path::PathBuf;
+use anastomesh::io::network::{NetworkOptions, read_network};
+use anastomesh::pipeline::{Clock, MeshPlan, Meshed, RunError, Silent, mesh_network};
+use anastomesh::skeleton::{Skeleton, clean};
+use std::path::{Path, PathBuf};
 
 /// The folder of real networks and surfaces beside the checkout, which a user's clone does not have.
 ///
@@ -21,4 +24,21 @@ pub fn shared() -> Option<PathBuf> {
 /// A file of the repository's fixtures.
 pub fn fixture(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
+}
+
+/// A network of a file, cleaned.
+pub fn network(path: &Path) -> Skeleton {
+    let file = read_network(path, &NetworkOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+    clean(&file.skeleton).unwrap_or_else(|e| panic!("{}: {e}", path.display())).0
+}
+
+/// The mesh of a network; a panic with the list of blocks when one of them fails.
+pub fn mesh(network: &Skeleton, rho: f64) -> Meshed {
+    let mut plan = MeshPlan::default();
+    plan.rho = rho;
+    match mesh_network(network, &plan, &Silent, &mut Clock::default()) {
+        Ok(meshed) => meshed,
+        Err(RunError::BlocksFailed(report)) => panic!("blocks failed\n{}", report.text()),
+        Err(error) => panic!("{error}"),
+    }
 }

@@ -126,7 +126,7 @@ pub enum NetworkFileError {
         path: PathBuf,
     },
     /// The operating system refused.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -134,7 +134,7 @@ pub enum NetworkFileError {
         source: std::io::Error,
     },
     /// There is nothing in it.
-    #[error("{}: the file is empty", path.display())]
+    #[error("{}: the file is empty: write or copy it again", path.display())]
     Empty {
         /// The file.
         path: PathBuf,

@@ -42,7 +42,8 @@ pub enum VtpError {
     },
     /// The offsets of the lines do not ascend, or go beyond the connectivity.
     #[error(
-        "line {line} (from 0) ends at offset {offset}, which is out of order or beyond the {length} indices there are"
+        "line {line} (from 0) ends at offset {offset}, which is out of order or beyond the {length} indices there are: \
+         correct the offsets"
     )]
     BadOffset {
         /// The line.
@@ -53,7 +54,9 @@ pub enum VtpError {
         length: usize,
     },
     /// A line names a point that does not exist.
-    #[error("line {line} (from 0) names point {point}, but there are only {points} points (from 0)")]
+    #[error(
+        "line {line} (from 0) names point {point}, but there are only {points} points (from 0): correct the connectivity"
+    )]
     UnknownPoint {
         /// The line.
         line: usize,

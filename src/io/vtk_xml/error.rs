@@ -5,16 +5,16 @@
 #[non_exhaustive]
 pub enum VtkError {
     /// There is no element in it.
-    #[error("there is no XML element in the file")]
+    #[error("there is no XML element in the file; is it a VTK file (.vtp, .vtu)?")]
     Empty,
     /// The part that should be XML is not UTF-8 text.
-    #[error("no XML: byte {byte} is not text")]
+    #[error("no XML: byte {byte} is not text; is it a VTK file (.vtp, .vtu)?")]
     NotText {
         /// Where.
         byte: usize,
     },
     /// The XML parser gave up.
-    #[error("no well-formed XML at byte {byte}: {source}")]
+    #[error("no well-formed XML at byte {byte}: {source}; correct the file, or copy it again if it was cut short")]
     Xml {
         /// Where.
         byte: u64,
@@ -31,7 +31,7 @@ pub enum VtkError {
     #[error("elements are nested deeper than any VTK file has them")]
     TooDeep,
     /// The file ends before it is complete.
-    #[error("the file ends too early: it was not written or copied completely")]
+    #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
     CutShort,
     /// It is XML, but not VTK's.
     #[error("the outermost XML element is <{root}>, not <VTKFile>")]
@@ -83,19 +83,19 @@ pub enum VtkError {
         format: String,
     },
     /// An array's offset is missing, no number, or beyond the end of the appended data.
-    #[error("the data of array '{array}' lies beyond the end of the file: it was not written or copied completely")]
+    #[error("the data of array '{array}' lies beyond the end of the file: write or copy it again")]
     BadOffset {
         /// Name of the array.
         array: String,
     },
     /// An array's bytes are cut short.
-    #[error("the data of array '{array}' is cut short")]
+    #[error("the data of array '{array}' is cut short: write or copy it again")]
     ArrayCutShort {
         /// Name of the array.
         array: String,
     },
     /// A value of an ascii array is no number of the array's type.
-    #[error("value {index} of array '{array}' is '{text}', not a number of its type")]
+    #[error("value {index} of array '{array}' is '{text}', not a number of its type: correct it")]
     BadNumber {
         /// Name of the array.
         array: String,

@@ -1,0 +1,36 @@
+//! A whole network, from skeleton to checked mesh: a subtree of a real kidney where the shared data is there, else the
+//! fixture. On as many threads as there are cores, or `RAYON_NUM_THREADS`.
+
+use anastomesh::io::network::{NetworkOptions, read_network};
+use anastomesh::pipeline::{Clock, MeshPlan, Silent, mesh_network};
+use anastomesh::skeleton::{Skeleton, clean};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+
+fn network() -> Option<(String, Skeleton)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let shared = std::env::var_os("ANASTOMESH_SHARED").map_or_else(|| root.join("../shared"), PathBuf::from);
+    let paths = [shared.join("data/kidney/subtree_59.vtp"), root.join("fixtures/tree_30.vtp")];
+    let path = paths.into_iter().find(|path| path.is_file())?;
+    let file = read_network(&path, &NetworkOptions::default()).ok()?;
+    Some((path.file_stem()?.to_string_lossy().into_owned(), clean(&file.skeleton).ok()?.0))
+}
+
+fn pipeline(c: &mut Criterion) {
+    let Some((name, network)) = network() else { return };
+    let mut group = c.benchmark_group("pipeline");
+    group.sample_size(10);
+    for rho in [3.0, 4.0, 5.0] {
+        let mut plan = MeshPlan::default();
+        plan.rho = rho;
+        let run = || mesh_network(black_box(&network), &plan, &Silent, &mut Clock::default());
+        let Ok(meshed) = run() else { continue };
+        group.throughput(Throughput::Elements(meshed.report.mesh.tets as u64));
+        group.bench_function(format!("{name}, rho {rho}"), |b| b.iter(run));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, pipeline);
+criterion_main!(benches);

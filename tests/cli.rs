@@ -1,0 +1,539 @@
+//! The program as it is run: verbs, exit codes, messages, files.
+
+mod common;
+
+use anastomesh::io::mesh_file::{read_mesh, write_mesh};
+use common::{fixture, shared};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+const FINE: i32 = 0;
+const GATE_NOT_MET: i32 = 1;
+const USAGE: i32 = 2;
+const BAD_INPUT: i32 = 3;
+const STAGE_FAILED: i32 = 4;
+
+fn run(verb: &str, paths: &[&Path], options: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_anastomesh"));
+    command.arg(verb).args(paths).args(options).output().expect("the program runs")
+}
+
+fn mesh(network: &Path, out: &Path, options: &[&str]) -> Output {
+    run("mesh", &[network, Path::new("--output"), out], options)
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("no signal")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("text")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("text")
+}
+
+#[track_caller]
+fn assert_code(output: &Output, expected: i32) {
+    assert_eq!(code(output), expected, "{}\n{}", stdout(output), stderr(output));
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", stdout(output)))
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// Names of what lies in a folder.
+fn entries(folder: &Path) -> Vec<String> {
+    let list = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        list.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort_unstable();
+    names
+}
+
+// ---- What works -----------------------------------------------------------------------------------------------------
+
+#[test]
+fn the_fixture_becomes_a_valid_mesh_in_both_formats() {
+    let folder = folder();
+    for name in ["tree.vtu", "tree.msh"] {
+        let out = folder.path().join(name);
+        let made = mesh(&fixture("tree_30.vtp"), &out, &[]);
+        assert_code(&made, FINE);
+        assert!(stderr(&made).contains("clusters") && made.stdout.is_empty());
+        let checked = run("check", &[&out], &[]);
+        assert_code(&checked, FINE);
+        assert!(stdout(&checked).ends_with("\nvalid\n"), "{}", stdout(&checked));
+        assert!(checked.stderr.is_empty());
+    }
+    assert_eq!(entries(folder.path()), ["tree.msh", "tree.vtu"]);
+    let [vtu, msh] = ["tree.vtu", "tree.msh"].map(|name| read_mesh(&folder.path().join(name)).expect("a mesh"));
+    assert_eq!(vtu.volume.mesh, msh.volume.mesh);
+    assert_eq!(vtu.volume.boundary_patch, msh.volume.boundary_patch);
+    let names = |file: &anastomesh::io::mesh_file::MeshFile| -> Vec<String> {
+        file.volume.patches.iter().map(|p| p.name.clone()).collect()
+    };
+    assert_eq!(names(&vtu), names(&msh));
+}
+
+#[test]
+fn both_fixtures_are_one_network() {
+    let infos = ["tree_30.vtp", "tree_30.swc"].map(|name| {
+        let output = run("info", &[&fixture(name)], &["--json"]);
+        assert_code(&output, FINE);
+        json(&output)
+    });
+    for key in ["nodes", "edges", "branches", "components", "loops", "terminals", "valences", "total_length"] {
+        assert!(!infos[0][key].is_null(), "no '{key}'");
+        assert_eq!(infos[0][key], infos[1][key], "{key}");
+    }
+    assert_eq!((&infos[0]["nodes"], &infos[0]["edges"]), (&30.into(), &29.into()));
+    let folder = folder();
+    let terminals = infos[0]["terminals"].as_u64().expect("a count");
+    for name in ["tree_30.vtp", "tree_30.swc"] {
+        let out = folder.path().join(name).with_extension("vtu");
+        assert_code(&mesh(&fixture(name), &out, &["-q"]), FINE);
+        let caps = read_mesh(&out).expect("a mesh").volume.patches.iter().filter(|p| p.cap.is_some()).count();
+        assert_eq!(caps as u64, terminals);
+    }
+    let text = run("info", &[&fixture("tree_30.vtp")], &[]);
+    assert_code(&text, FINE);
+    assert!(stdout(&text).contains("nodes: 30 ("), "{}", stdout(&text));
+}
+
+#[test]
+fn reports_are_json_on_request() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    let made = mesh(&fixture("tree_30.swc"), &out, &["--json", "--rho", "2.5", "-q"]);
+    assert_code(&made, FINE);
+    assert!(made.stderr.is_empty(), "{}", stderr(&made));
+    let made = json(&made);
+    assert_eq!(made["plan"]["rho"], 2.5);
+    assert_eq!(made["check"]["verdict"], "valid");
+    assert_eq!(made["run"]["network"], serde_json::json!([30, 29]));
+    let run_report = &made["run"];
+    for key in ["overlaps", "unconnected", "blocks", "retries", "failed", "mesh", "stages"] {
+        assert!(!run_report[key].is_null(), "no '{key}'");
+    }
+    let count = |value: &Value| value.as_u64().expect("a count");
+    assert!(count(&run_report["blocks"]["clusters"]) > 5);
+    assert!(count(&run_report["blocks"]["largest_cluster_nodes"]) > 0);
+    let checked = run("check", &[&out], &["--json"]);
+    assert_code(&checked, FINE);
+    let checked = json(&checked);
+    assert_eq!(checked["verdict"], "valid");
+    assert_eq!(checked["lines"].as_array().map(Vec::len), Some(anastomesh::mesh::check::Line::ALL.len()));
+    assert_eq!(checked["counts"]["tets"], run_report["mesh"]["tets"]);
+    assert_eq!(checked, made["check"], "what was checked in memory is what is in the file");
+}
+
+#[test]
+fn a_root_becomes_the_inlet() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    let last = 29;
+    assert_code(&mesh(&fixture("tree_30.swc"), &out, &["-q", "--root", "29"]), FINE);
+    let patches = read_mesh(&out).expect("a mesh").volume.patches;
+    let inlet = patches.iter().find(|p| p.name == "inlet").expect("an inlet");
+    assert_eq!((inlet.id, inlet.cap.map(|c| c.node)), (2, Some(last)));
+}
+
+/// Meshes a network with 1, 2 and 7 threads; what the last run said.
+fn assert_same_bytes(network: &Path, folder: &Path, expected: i32) -> String {
+    let runs = ["1", "2", "7"].map(|threads| {
+        let out = folder.join(format!("{threads}.vtu"));
+        let made = mesh(network, &out, &["-j", threads]);
+        assert_code(&made, expected);
+        (fs::read(out).expect("the mesh was written"), stderr(&made))
+    });
+    let [one, two, (bytes, said)] = runs;
+    assert!(one.0 == two.0 && one.0 == bytes, "{}: the bytes depend on -j", network.display());
+    said
+}
+
+#[test]
+fn bytes_do_not_depend_on_the_number_of_threads() {
+    let folder = folder();
+    assert_same_bytes(&fixture("tree_30.vtp"), folder.path(), FINE);
+    let Some(shared) = shared() else { return };
+    assert_same_bytes(&shared.join("data/kidney/subtree_59.vtp"), folder.path(), FINE);
+}
+
+/// Vessels overlap in it: the mesh is written all the same, and the program says where it is not valid.
+#[test]
+fn overlapping_vessels_are_meshed_and_named() {
+    let Some(shared) = shared() else { return };
+    let network = shared.join("data/kidney/subtree_989.vtp");
+    let folder = folder();
+    let said = assert_same_bytes(&network, folder.path(), GATE_NOT_MET);
+    assert!(said.contains("34 pairs of edges that share no node meet"), "{said}");
+    assert!(said.contains("FAIL the boundary does not meet itself") && said.contains("NOT valid"), "{said}");
+    let checked = run("check", &[&folder.path().join("7.vtu")], &[]);
+    assert_code(&checked, GATE_NOT_MET);
+    assert!(stdout(&checked).contains("  ok   every tetrahedron is positive\n"), "{}", stdout(&checked));
+}
+
+// ---- Bad input ------------------------------------------------------------------------------------------------------
+
+/// One message, that names the path and holds all of `needles`.
+#[track_caller]
+fn assert_message(output: &Output, path: &Path, needles: &[&str]) {
+    let said = stderr(output);
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(said.starts_with(&format!("anastomesh: {}: ", path.display())), "{said}");
+    for needle in needles {
+        assert!(said.contains(needle), "'{needle}' is not in: {said}");
+    }
+    assert!(output.stdout.is_empty(), "{}", stdout(output));
+}
+
+/// All verbs refuse the network, and what lies at the output path stays as it is.
+#[track_caller]
+fn assert_refused(network: &Path, needles: &[&str]) {
+    let folder = folder();
+    let out = folder.path().join("out.vtu");
+    let refused = mesh(network, &out, &["--json"]);
+    assert_code(&refused, BAD_INPUT);
+    assert_message(&refused, network, needles);
+    assert_eq!(entries(folder.path()), [""; 0]);
+    fs::write(&out, "precious").expect("a file");
+    assert_code(&mesh(network, &out, &[]), BAD_INPUT);
+    assert_eq!(fs::read(&out).expect("the file"), b"precious");
+    assert_eq!(entries(folder.path()), ["out.vtu"]);
+    let refused = run("info", &[network], &[]);
+    assert_code(&refused, BAD_INPUT);
+    assert_message(&refused, network, needles);
+}
+
+fn refuse(name: &str, content: impl AsRef<[u8]>, needles: &[&str]) {
+    let folder = folder();
+    let path = folder.path().join(name);
+    fs::write(&path, content).expect("a file");
+    assert_refused(&path, needles);
+}
+
+#[test]
+fn paths_that_are_no_files() {
+    let folder = folder();
+    assert_refused(&folder.path().join("missing.vtp"), &["No such file", "check the path"]);
+    assert_refused(&folder.path().join("missing.swc"), &["No such file", "check the path"]);
+    assert_refused(folder.path(), &["is a directory; name a network file"]);
+    let named_like_one = folder.path().join("folder.swc");
+    fs::create_dir(&named_like_one).expect("a folder");
+    assert_refused(&named_like_one, &["is a directory; name a network file"]);
+    refuse("network.txt", "1 1 0 0 0 1 -1\n", &["extension", ".swc, .vtp"]);
+    refuse("network", "1 1 0 0 0 1 -1\n", &["extension", ".swc, .vtp"]);
+}
+
+#[test]
+fn files_with_nothing_in_them() {
+    for name in ["empty.swc", "empty.vtp"] {
+        refuse(name, "", &["the file is empty", "copy it again"]);
+        refuse(name, " \n\n", &["the file is empty"]);
+    }
+    refuse("comments.swc", "# id type x y z radius parent\n", &["no row with a node", "SWC"]);
+}
+
+#[test]
+fn a_truncated_vtp_at_every_length() {
+    let whole = fs::read(fixture("tree_30.vtp")).expect("the fixture");
+    let end = whole.trim_ascii_end().len();
+    for share in [5, 20, 50, 60, 80, 90, 99] {
+        refuse("cut.vtp", &whole[..end * share / 100], &["again"]);
+    }
+    refuse("cut.vtp", &whole[..end - 1], &["again"]);
+}
+
+#[test]
+fn text_of_another_kind() {
+    refuse("prose.swc", "It was the best of times.\n", &["line 1", "columns"]);
+    refuse("prose.swc", "It was the best of times, it was the worst.\n", &["line 1", "'It'", "not a number"]);
+    refuse("table.swc", "# c\n1 1 0 0 0 1 -1\n2,1,0,0,0,1,1\n", &["line 3", "columns"]);
+    refuse("prose.vtp", "It was the best of times.\n", &["XML", ".vtp"]);
+    refuse("page.vtp", "<html><body>404</body></html>", &["<html>", "VTKFile"]);
+    refuse("noise.swc", [0xff, 0xfe, 0x00, 0x9c, b'\n', 0x80], &["line 1"]);
+    refuse("noise.vtp", [0xff, 0xfe, 0x00, 0x9c, b'\n', 0x80], &["XML", ".vtp"]);
+}
+
+#[test]
+fn numbers_that_cannot_be_used_in_swc() {
+    let with = |row: &str| format!("# c\n1 1 0 0 0 1 -1\n{row}\n3 1 0 0 20 1 2\n");
+    for bad in ["nan", "NaN", "inf", "-inf", "1e300"] {
+        refuse(
+            "bad.swc",
+            with(&format!("2 1 0 {bad} 10 1 1")),
+            &["line 3", "node 2", "the y ", "finite", "correct it"],
+        );
+        refuse("bad.swc", with(&format!("2 1 0 0 10 {bad} 1")), &["line 3", "node 2", "radius"]);
+    }
+    for bad in ["0", "0.0", "-0.0", "-1.5"] {
+        refuse("bad.swc", with(&format!("2 1 0 0 10 {bad} 1")), &["line 3", "node 2", "above zero", "give it"]);
+    }
+    refuse("bad.swc", with("2 1 0 0 ten 1 1"), &["line 3", "the z is 'ten'"]);
+    refuse("bad.swc", with("2 1 0 0 10 1 2"), &["line 3", "node 2 is its own parent", "-1"]);
+    refuse("bad.swc", with("2 1 0 0 10 1 77"), &["line 3", "node 2", "parent 77", "-1"]);
+    refuse("bad.swc", with("1 1 0 0 10 1 1"), &["line 3", "node 1", "line 2"]);
+}
+
+#[test]
+fn networks_without_a_vessel() {
+    refuse("one.swc", "1 1 0 0 0 1 -1\n", &["1 node(s)", "no vessel to mesh", "it takes two nodes"]);
+    refuse("apart.swc", "1 1 0 0 0 1 -1\n2 1 0 0 9 1 -1\n", &["2 node(s)", "no vessel to mesh"]);
+    refuse("point.swc", "1 1 0 0 0 1 -1\n2 1 0 0 0 1 1\n", &["no vessel to mesh"]);
+    refuse("one.vtp", vtp("0 0 0", "1", "", ""), &["no lines"]);
+}
+
+/// A VTP file of one piece; offsets and connectivity may be empty.
+fn vtp(points: &str, radii: &str, connectivity: &str, offsets: &str) -> String {
+    let count = |text: &str| text.split_whitespace().count();
+    format!(
+        r#"<?xml version="1.0"?>
+<VTKFile type="PolyData" version="0.1" byte_order="LittleEndian">
+<PolyData><Piece NumberOfPoints="{}" NumberOfLines="{}">
+<PointData><DataArray type="Float64" Name="Radius" format="ascii">{radii}</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">{points}</DataArray></Points>
+<Lines>
+<DataArray type="Int64" Name="connectivity" format="ascii">{connectivity}</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">{offsets}</DataArray>
+</Lines></Piece></PolyData></VTKFile>
+"#,
+        count(points) / 3,
+        count(offsets)
+    )
+}
+
+#[test]
+fn numbers_that_cannot_be_used_in_vtp() {
+    const POINTS: &str = "0 0 0  0 0 9  0 0 18";
+    let folder = folder();
+    let (path, out) = (folder.path().join("fine.vtp"), folder.path().join("fine.vtu"));
+    fs::write(&path, vtp(POINTS, "1 1 1", "0 1 2", "3")).expect("a file");
+    assert_code(&mesh(&path, &out, &["-q"]), FINE);
+    for bad in ["nan", "inf", "-inf", "1e300"] {
+        let points = POINTS.replace('9', bad);
+        refuse("bad.vtp", vtp(&points, "1 1 1", "0 1 2", "3"), &["node 1", "finite", "correct the file"]);
+    }
+    for bad in ["0", "-2", "nan", "inf"] {
+        let radii = format!("1 1 {bad}");
+        refuse("bad.vtp", vtp(POINTS, &radii, "0 1 2", "3"), &["node 2", "radius", "above zero", "correct the file"]);
+    }
+    refuse("bad.vtp", vtp(POINTS, "1 x 1", "0 1 2", "3"), &["value 1 of array 'Radius'", "'x'"]);
+    refuse("bad.vtp", vtp(POINTS, "1 1", "0 1 2", "3"), &["'Radius'", "2 values", "3"]);
+    for bad in ["3", "-1", "99999999999"] {
+        let connectivity = format!("0 1 1 {bad}");
+        refuse("bad.vtp", vtp(POINTS, "1 1 1", &connectivity, "2 4"), &["line 1", &format!("point {bad}"), "correct"]);
+    }
+    refuse("bad.vtp", vtp(POINTS, "1 1 1", "0 1 1 2", "2 7"), &["line 1", "offset 7", "correct"]);
+    let unnamed = vtp(POINTS, "1 1 1", "0 1 2", "3").replace("\"Radius\"", "\"Flow\"");
+    refuse("bad.vtp", unnamed, &["Flow", "--radius-array"]);
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_refused_first() {
+    let folder = folder();
+    let missing = folder.path().join("missing");
+    // The network does not exist either: the output is looked at before anything is read.
+    let network = folder.path().join("missing.vtp");
+    let out = missing.join("out.vtu");
+    let refused = mesh(&network, &out, &[]);
+    assert_code(&refused, BAD_INPUT);
+    assert_message(&refused, &out, &["cannot be written", "folder"]);
+    let directory = folder.path().join("directory.vtu");
+    fs::create_dir(&directory).expect("a folder");
+    let refused = mesh(&network, &directory, &[]);
+    assert_code(&refused, BAD_INPUT);
+    assert_message(&refused, &directory, &["cannot be written", "directory"]);
+    for name in ["out.stl", "out", ".vtu"] {
+        let out = folder.path().join(name);
+        let refused = mesh(&network, &out, &[]);
+        assert_code(&refused, BAD_INPUT);
+        assert_message(&refused, &out, &["extension", ".vtu, .msh"]);
+    }
+    let below_a_file = fixture("tree_30.vtp").join("out.vtu");
+    let refused = mesh(&network, &below_a_file, &[]);
+    assert_code(&refused, BAD_INPUT);
+    assert_message(&refused, &below_a_file, &["cannot be written"]);
+    assert_eq!(entries(folder.path()), ["directory.vtu"]);
+}
+
+// ---- Usage ----------------------------------------------------------------------------------------------------------
+
+#[test]
+fn options_that_make_no_sense() {
+    let folder = folder();
+    let out = folder.path().join("out.vtu");
+    for bad in ["0", "-1", "nan", "inf", "1000"] {
+        let refused = mesh(&fixture("tree_30.vtp"), &out, &["--rho", bad]);
+        assert_code(&refused, USAGE);
+        let said = stderr(&refused).to_lowercase();
+        assert!(said.contains(&format!("rho = {bad} ")) && said.contains("between"), "{said}");
+    }
+    for bad in [&["--rho", "fine"][..], &["--threads", "0"], &["--root", "first"], &["--finer"], &["--radius-array"]] {
+        let refused = mesh(&fixture("tree_30.vtp"), &out, bad);
+        assert_code(&refused, USAGE);
+        assert!(stderr(&refused).contains(bad[0]), "{}", stderr(&refused));
+    }
+    // Node 1 of the fixture is a junction; there is no node 4000.
+    for node in ["1", "4000"] {
+        let refused = mesh(&fixture("tree_30.vtp"), &out, &["--root", node]);
+        assert_code(&refused, USAGE);
+        let said = stderr(&refused);
+        assert!(said.contains(&format!("node {node} ")) && said.contains("terminal"), "{said}");
+    }
+    let refused = mesh(&fixture("tree_30.vtp"), &out, &["--radius-array", "Flow"]);
+    assert_code(&refused, BAD_INPUT);
+    assert_message(&refused, &fixture("tree_30.vtp"), &["'Flow'", "Radius"]);
+    assert_eq!(entries(folder.path()), [""; 0]);
+}
+
+#[test]
+fn verbs_help_and_version() {
+    for options in [&["--help"][..], &["--version"], &["help"], &["help", "mesh"]] {
+        let shown = run(options[0], &[], &options[1..]);
+        assert_code(&shown, FINE);
+        assert!(shown.stderr.is_empty() && stdout(&shown).contains("anastomesh"));
+    }
+    for verb in ["mesh", "check", "info"] {
+        let shown = run(verb, &[], &["--help"]);
+        assert_code(&shown, FINE);
+        assert!(stdout(&shown).contains("--json"));
+        assert_code(&run(verb, &[], &[]), USAGE);
+    }
+    let unknown = run("weave", &[], &[]);
+    assert_code(&unknown, USAGE);
+    assert!(stderr(&unknown).contains("weave"));
+    assert_code(&Command::new(env!("CARGO_BIN_EXE_anastomesh")).output().expect("the program runs"), USAGE);
+    assert_code(&run("mesh", &[&fixture("tree_30.vtp")], &[]), USAGE);
+}
+
+// ---- Meshes that are not sound --------------------------------------------------------------------------------------
+
+/// The fixture's mesh, made once per test.
+fn tree_mesh(folder: &TempDir, name: &str) -> PathBuf {
+    let out = folder.path().join(name);
+    assert_code(&mesh(&fixture("tree_30.vtp"), &out, &["-q", "--rho", "2"]), FINE);
+    out
+}
+
+#[test]
+fn check_refuses_what_is_no_mesh() {
+    let folder = folder();
+    let refused = |path: &Path, needles: &[&str]| {
+        let output = run("check", &[path], &["--json"]);
+        assert_code(&output, BAD_INPUT);
+        assert_message(&output, path, needles);
+    };
+    refused(&folder.path().join("missing.vtu"), &["No such file"]);
+    refused(folder.path(), &["directory"]);
+    for name in ["mesh.vtu", "mesh.msh"] {
+        let path = tree_mesh(&folder, name);
+        let whole = fs::read(&path).expect("the mesh");
+        let end = whole.trim_ascii_end().len();
+        for length in [1, end / 100, end / 10, end / 2, end * 9 / 10, end * 99 / 100] {
+            fs::write(&path, &whole[..length]).expect("a file");
+            refused(&path, &[]);
+        }
+        fs::write(&path, "").expect("a file");
+        refused(&path, &["empty"]);
+        fs::write(&path, "It was the best of times.\n").expect("a file");
+        refused(&path, &[]);
+        let noise: Vec<u8> = (0..4096_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        fs::write(&path, noise).expect("a file");
+        refused(&path, &[]);
+    }
+    let path = folder.path().join("mesh.stl");
+    fs::write(&path, "solid\n").expect("a file");
+    refused(&path, &["extension", ".vtu, .msh"]);
+    // A network is no mesh.
+    let network = folder.path().join("network.vtu");
+    fs::copy(fixture("tree_30.vtp"), &network).expect("a copy");
+    refused(&network, &["PolyData", "UnstructuredGrid"]);
+}
+
+#[test]
+fn check_finds_what_is_broken() {
+    let folder = folder();
+    let path = tree_mesh(&folder, "mesh.vtu");
+    let sound = read_mesh(&path).expect("a mesh");
+    let fails = |broken: &anastomesh::mesh::VolumeMesh, statement: &str| {
+        for name in ["broken.vtu", "broken.msh"] {
+            let path = folder.path().join(name);
+            write_mesh(&path, broken, &sound.notes).expect("a file");
+            let output = run("check", &[&path], &[]);
+            assert_code(&output, GATE_NOT_MET);
+            let said = stdout(&output);
+            assert!(said.contains(&format!("  FAIL {statement}: ")) && said.ends_with("NOT valid\n"), "{said}");
+            let verdict = &json(&run("check", &[&path], &["--json"]))["verdict"];
+            assert_eq!(verdict, "invalid");
+        }
+    };
+    let mut inverted = sound.volume.clone();
+    inverted.mesh.tets[100].swap(0, 1);
+    fails(&inverted, "every tetrahedron is positive");
+    let mut holed = sound.volume.clone();
+    holed.mesh.tets.remove(100);
+    holed.tet_block.remove(100);
+    fails(&holed, "the labelled triangles are the boundary");
+    let mut mislabelled = sound.volume.clone();
+    let cap = mislabelled.boundary_patch.iter().position(|&p| p == 2).expect("an inlet");
+    mislabelled.boundary_patch[cap] = 3;
+    fails(&mislabelled, "every cap is one disc");
+}
+
+// ---- Blocks that fail -----------------------------------------------------------------------------------------------
+
+/// A good vessel, and one that is so thin for its length that its wall cannot be stored.
+const HOPELESS: &str = "1 1 0 0 0 1 -1\n2 1 0 0 9 1 1\n3 1 50 0 0 1e-7 -1\n4 1 50 0 9 1 3\n";
+
+#[test]
+fn a_block_that_fails_ends_the_run_with_its_input_kept() {
+    let folder = folder();
+    let (network, out) = (folder.path().join("hopeless.swc"), folder.path().join("out.vtu"));
+    fs::write(&network, HOPELESS).expect("a file");
+    fs::write(&out, "precious").expect("a file");
+    let failed = mesh(&network, &out, &[]);
+    assert_code(&failed, STAGE_FAILED);
+    let said = stderr(&failed);
+    assert!(
+        said.contains("FAILED cluster ") && said.contains("(nodes [2, 3])") && said.contains("--keep-going"),
+        "{said}"
+    );
+    assert_eq!(fs::read(&out).expect("the file"), b"precious");
+    assert_eq!(entries(folder.path()), ["hopeless.swc", "out.vtu", "out.vtu.failed"]);
+    let dumps = entries(&folder.path().join("out.vtu.failed"));
+    assert!(!dumps.is_empty());
+    let dump = fs::read(folder.path().join("out.vtu.failed").join(&dumps[0])).expect("the dump");
+    assert!(serde_json::from_slice::<Value>(&dump).is_ok());
+    let report = json(&mesh(&network, &out, &["--json"]));
+    assert_eq!(report["run"]["failed"][0]["nodes"], serde_json::json!([2, 3]));
+    assert!(report["check"].is_null());
+}
+
+#[test]
+fn blocks_that_fail_are_left_out_on_request() {
+    let folder = folder();
+    let (network, out) = (folder.path().join("hopeless.swc"), folder.path().join("out.vtu"));
+    fs::write(&network, HOPELESS).expect("a file");
+    let dumps = folder.path().join("dumps");
+    let options = ["--keep-going", "--dump-dir", dumps.to_str().expect("text")];
+    let failed = mesh(&network, &out, &options);
+    assert_code(&failed, STAGE_FAILED);
+    assert!(stderr(&failed).contains("FAILED cluster "), "{}", stderr(&failed));
+    assert_eq!(entries(folder.path()), ["dumps", "hopeless.swc", "out.vtu"]);
+    let checked = run("check", &[&out], &[]);
+    assert_code(&checked, GATE_NOT_MET);
+    let said = stdout(&checked);
+    assert!(
+        said.contains("FAIL every terminal has its cap") && said.contains("ok   every tetrahedron is positive"),
+        "{said}"
+    );
+}

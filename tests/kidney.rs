@@ -1,0 +1,75 @@
+//! Subtrees of a real kidney, which are not in the repository: skipped where the shared data is absent.
+
+mod common;
+
+use anastomesh::mesh::check::{CheckReport, Line, Outcome};
+use anastomesh::pipeline::{Meshed, RunReport};
+use anastomesh::report::check::text;
+use common::{mesh, network, shared};
+
+/// Triangles of the wall of `subtree_289_clear` that another implementation of the method makes at ρ = 3.
+const WALL_OF_BASELINE: usize = 227_134;
+
+fn kidney(name: &str) -> Option<Meshed> {
+    let path = shared()?.join("data/kidney").join(name);
+    let meshed = mesh(&network(&path), 3.0);
+    print!("{name}\n{}{}", meshed.report.text(), text(&meshed.check));
+    Some(meshed)
+}
+
+fn assert_few_retries(report: &RunReport) {
+    let blocks = report.blocks.clusters + report.blocks.connectors;
+    assert!(report.retries.len() * 100 <= blocks, "{blocks} blocks\n{:#?}", report.retries);
+}
+
+fn assert_quality(check: &CheckReport) {
+    let quality = check.quality.as_ref().expect("a mesh whose arrays are sound");
+    assert!(quality.mean >= 0.80, "mean radius ratio {}", quality.mean);
+    assert!(quality.percentile_1 >= 0.20, "1st percentile {}", quality.percentile_1);
+    assert!(quality.dihedral_min >= 1.0, "smallest dihedral {}°", quality.dihedral_min);
+}
+
+#[test]
+fn subtree_59_is_valid() {
+    let Some(Meshed { report, check, .. }) = kidney("subtree_59.vtp") else { return };
+    assert!(check.is_valid(), "{}", text(&check));
+    assert_eq!(report.failed, []);
+    assert_few_retries(&report);
+    assert_quality(&check);
+}
+
+#[test]
+fn subtree_289_clear_is_valid() {
+    let Some(Meshed { report, check, .. }) = kidney("subtree_289_clear.vtp") else { return };
+    assert!(check.is_valid(), "{}", text(&check));
+    assert_eq!(report.failed, []);
+    assert_eq!(report.unconnected, [[[0; 2]; 2]; 0], "no vessels meet in this network");
+    assert_few_retries(&report);
+    assert_quality(&check);
+    assert!(report.blocks.clusters >= 120, "{} clusters", report.blocks.clusters);
+    assert!(report.mesh.wall_triangles * 10 >= WALL_OF_BASELINE * 8, "{} triangles", report.mesh.wall_triangles);
+}
+
+/// Vessels overlap in this one: the mesh cannot be valid, but nothing else may be wrong with it.
+#[test]
+fn subtree_989_is_sound_but_for_its_overlaps() {
+    const EXPLAINED: [Line; 7] = [
+        Line::NoSelfIntersection,
+        Line::Loops,
+        Line::CapDisc,
+        Line::CapFlat,
+        Line::CapCentred,
+        Line::CapArea,
+        Line::CapNormal,
+    ];
+    let Some(Meshed { report, check, .. }) = kidney("subtree_989.vtp") else { return };
+    assert_eq!(report.unconnected.len(), 34);
+    assert_eq!(report.failed, []);
+    assert!(report.blocks.clusters >= 380, "{} clusters", report.blocks.clusters);
+    assert!(!check.is_valid(), "vessels that pass through each other cannot have a sound wall");
+    for line in &check.lines {
+        assert!(line.outcome != Outcome::Fail || EXPLAINED.contains(&line.line), "{}", text(&check));
+    }
+    assert_few_retries(&report);
+    assert_quality(&check);
+}
