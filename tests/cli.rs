@@ -420,7 +420,7 @@ fn verbs_help_and_version() {
 /// The fixture's mesh, made once per test.
 fn tree_mesh(folder: &TempDir, name: &str) -> PathBuf {
     let out = folder.path().join(name);
-    assert_code(&mesh(&fixture("tree_30.vtp"), &out, &["-q", "--rho", "2"]), FINE);
+    assert_code(&mesh(&fixture("tree_30.vtp"), &out, &["-q", "--rho", "2.5"]), FINE);
     out
 }
 
@@ -500,7 +500,7 @@ fn a_block_that_fails_ends_the_run_with_its_input_kept() {
     let (network, out) = (folder.path().join("hopeless.swc"), folder.path().join("out.vtu"));
     fs::write(&network, HOPELESS).expect("a file");
     fs::write(&out, "precious").expect("a file");
-    let failed = mesh(&network, &out, &[]);
+    let failed = mesh(&network, &out, &["--quiet"]);
     assert_code(&failed, STAGE_FAILED);
     let said = stderr(&failed);
     assert!(

@@ -120,7 +120,8 @@ impl Args {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
             return super::print(true, &Output { program, plan, run, check }, String::new);
         }
-        if !self.quiet {
+        // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
+        if !self.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
             eprint!("{}", run.text());
             if let Some(check) = check {
                 eprint!("{}", crate::report::check::text(check));
