@@ -1,7 +1,6 @@
 //! The invariants of a partition.
 
 // Arc lengths of neighbouring pieces and connectors are copies of one number.
-#![allow(clippy::float_cmp)]
 
 use super::{ClusterEnd, ClusterId, CutId, EndKind, Partition, Piece};
 use crate::geometry::{Point3, Section, Tube};

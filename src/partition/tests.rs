@@ -1,7 +1,6 @@
 //! Partitions of hand-made and random skeletons.
 
 // Radii and arc lengths that are copied come out the same to the bit.
-#![allow(clippy::float_cmp)]
 
 use proptest::prelude::*;
 
