@@ -12,9 +12,9 @@ use crate::partition::{Cluster, ClusterId, Cut, CutId};
 /// Result of a block, and the failures before it.
 #[derive(Debug)]
 pub struct Tried<T> {
-    /// The mesh, or the failure of the last attempt.
+    /// The mesh, or the failure of the first attempt.
     pub result: Result<Arc<T>, BlockError>,
-    /// Failures of the attempts before.
+    /// Failures of the other attempts.
     pub failures: Vec<BlockError>,
 }
 
@@ -44,18 +44,17 @@ fn variants(plan: &MeshPlan, overlapping: bool) -> [BlockParams; CHANGES.len()] 
     [usual, shifted, narrower, discs, finer(shifted), finer(narrower)]
 }
 
-/// Meshes a cluster, with other parameters after each failure.
+/// Meshes a cluster, with other parameters after each failure. When none helps, the failure of the usual way counts: it
+/// is what the dump of the input reproduces.
 pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan, overlapping: bool) -> Tried<ClusterMesh> {
     let mut failures = Vec::new();
-    let mut last = None;
     for params in variants(plan, overlapping) {
-        failures.extend(last.take());
         match mesh_cluster(id, cluster, &params) {
             Ok(mesh) => return Tried { result: Ok(Arc::new(mesh)), failures },
-            Err(error) => last = Some(error),
+            Err(error) => failures.push(error),
         }
     }
-    Tried { result: last.map_or_else(|| unreachable!("there are variants"), Err), failures }
+    Tried { result: Err(failures.swap_remove(0)), failures }
 }
 
 /// Meshes a connector; it varies the division of its tube by itself.

@@ -8,6 +8,8 @@ mod report;
 mod rounds;
 mod run;
 mod terminals;
+#[cfg(test)]
+mod tests;
 mod timing;
 
 pub use assemble::AssembleError;

@@ -67,7 +67,8 @@ pub fn mesh_network(
     announce(&report, observer);
     let blocks = rounds::build(&skeleton, &overlaps, plan, observer, clock)?;
     describe_blocks(&skeleton, plan, &blocks, &mut report);
-    if !report.failed.is_empty() && !plan.keep_going {
+    let nothing_left = blocks.clusters.iter().all(Result::is_err);
+    if !report.failed.is_empty() && (nothing_left || !plan.keep_going) {
         report.stages = clock.stages();
         return Err(RunError::BlocksFailed(Box::new(report)));
     }

@@ -1,0 +1,111 @@
+//! The way through all stages, and what happens when a block fails.
+
+use super::*;
+use crate::geometry::Point3;
+use crate::mesh::WALL;
+use crate::skeleton::{Edge, Node, NodeId, Skeleton};
+
+/// A skeleton of nodes `[x, y, z, radius]` and edges between them.
+fn skeleton(nodes: &[[f64; 4]], edges: &[[u32; 2]]) -> Skeleton {
+    let node = |(i, n): (usize, &[f64; 4])| Node {
+        position: Point3::new(n[0], n[1], n[2]),
+        radius: n[3],
+        original: i as u32,
+    };
+    let edge = |e: &[u32; 2]| Edge { nodes: e.map(NodeId), radii: e.map(|n| nodes[n as usize][3]) };
+    Skeleton { nodes: nodes.iter().enumerate().map(node).collect(), edges: edges.iter().map(edge).collect() }
+}
+
+fn run(network: &Skeleton, plan: &MeshPlan) -> Result<Meshed, RunError> {
+    mesh_network(network, plan, &Silent, &mut Clock::default())
+}
+
+/// Two junctions with room for a cut between them.
+fn h(middle: f64) -> Skeleton {
+    let nodes = [
+        [0.0, 0.0, 0.0, 1.0],
+        [middle, 0.0, 0.0, 1.0],
+        [-5.0, 6.0, 0.0, 0.9],
+        [-5.0, -6.0, 0.0, 0.9],
+        [middle + 5.0, 0.0, 6.0, 0.9],
+        [middle + 5.0, 0.0, -6.0, 0.9],
+    ];
+    skeleton(&nodes, &[[0, 1], [0, 2], [0, 3], [1, 4], [1, 5]])
+}
+
+#[test]
+fn two_clusters_and_a_connector_make_one_valid_mesh() {
+    let meshed = run(&h(12.0), &MeshPlan::default()).expect("meshed");
+    assert_eq!((meshed.report.blocks.clusters, meshed.report.blocks.connectors), (2, 1));
+    assert!(meshed.check.is_valid(), "{:?}", meshed.check.failed().collect::<Vec<_>>());
+    assert!(meshed.report.retries.is_empty() && meshed.report.failed.is_empty());
+    let blocks: std::collections::BTreeSet<i32> = meshed.mesh.tet_block.iter().copied().collect();
+    assert_eq!(blocks.into_iter().collect::<Vec<_>>(), [0, 1, 2]);
+    let names: Vec<&str> = meshed.mesh.patches.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["wall", "inlet", "outlet_0", "outlet_1", "outlet_2"]);
+    assert!(meshed.mesh.boundary_patch.contains(&WALL));
+}
+
+#[test]
+fn the_threads_do_not_show_in_the_mesh() {
+    let mesh = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| run(&h(12.0), &MeshPlan::default())).expect("meshed").mesh
+    };
+    let one = mesh(1);
+    assert_eq!(one, mesh(2));
+    assert_eq!(one, mesh(7));
+}
+
+#[test]
+fn vessels_that_overlap_are_meshed_and_named() {
+    // The second terminal of the first junction lies inside the vessel between the junctions.
+    let mut network = h(12.0);
+    network.nodes[2].position = Point3::new(5.0, 0.8, 0.0);
+    let meshed = run(&network, &MeshPlan::default()).expect("meshed");
+    assert!(!meshed.report.overlaps.is_empty());
+    assert!(meshed.report.failed.is_empty());
+    assert!(!meshed.check.is_valid());
+    let positive = meshed.check.line(crate::mesh::check::Line::PositiveTets).expect("a line");
+    assert_eq!(positive.outcome, crate::mesh::check::Outcome::Pass);
+}
+
+/// A vessel so thin beside the other that its voxels would fill any memory.
+fn hair_on_a_trunk() -> Skeleton {
+    let nodes =
+        [[0.0, 0.0, 0.0, 1e3], [0.0, 0.0, 5e3, 1e3], [0.0, 3e3, 9e3, 8e2], [0.0, -1.2e3, 6e3, 0.1]];
+    skeleton(&nodes, &[[0, 1], [1, 2], [1, 3]])
+}
+
+#[test]
+fn a_block_that_fails_is_named_and_dumped() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let dumps = folder.path().join("failed");
+    for keep_going in [false, true] {
+        let plan = MeshPlan { keep_going, dump_dir: Some(dumps.clone()), ..MeshPlan::default() };
+        let Err(RunError::BlocksFailed(report)) = run(&hair_on_a_trunk(), &plan) else { panic!("must fail") };
+        let [failed] = &report.failed[..] else { panic!("one block") };
+        assert_eq!(failed.nodes, [0, 1, 2, 3]);
+        let dump = std::fs::read_to_string(failed.dump.as_ref().expect("a dump")).expect("readable");
+        let again = crate::block::BlockDump::from_json(&dump).expect("a dump").run();
+        assert_eq!(again.expect_err("fails again").to_string(), failed.reason);
+    }
+}
+
+#[test]
+fn what_can_be_meshed_is_kept_on_request() {
+    let mut network = hair_on_a_trunk();
+    let base = network.nodes.len() as u32;
+    let other = h(12.0);
+    network.nodes.extend(other.nodes.iter().map(|n| Node {
+        position: n.position + crate::geometry::Vec3::new(1e5, 0.0, 0.0),
+        original: n.original + base,
+        ..*n
+    }));
+    network.edges.extend(other.edges.iter().map(|e| Edge { nodes: e.nodes.map(|n| NodeId(n.0 + base)), ..*e }));
+    assert!(matches!(run(&network, &MeshPlan::default()), Err(RunError::BlocksFailed(_))));
+    let meshed = run(&network, &MeshPlan { keep_going: true, ..MeshPlan::default() }).expect("the rest");
+    assert_eq!(meshed.report.failed.len(), 1);
+    assert!(!meshed.check.is_valid(), "a component is missing");
+    assert!(meshed.mesh.tet_block.contains(&1) && !meshed.mesh.tet_block.contains(&0));
+}
