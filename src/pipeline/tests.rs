@@ -7,11 +7,8 @@ use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 
 /// A skeleton of nodes `[x, y, z, radius]` and edges between them.
 fn skeleton(nodes: &[[f64; 4]], edges: &[[u32; 2]]) -> Skeleton {
-    let node = |(i, n): (usize, &[f64; 4])| Node {
-        position: Point3::new(n[0], n[1], n[2]),
-        radius: n[3],
-        original: i as u32,
-    };
+    let node =
+        |(i, n): (usize, &[f64; 4])| Node { position: Point3::new(n[0], n[1], n[2]), radius: n[3], original: i as u32 };
     let edge = |e: &[u32; 2]| Edge { nodes: e.map(NodeId), radii: e.map(|n| nodes[n as usize][3]) };
     Skeleton { nodes: nodes.iter().enumerate().map(node).collect(), edges: edges.iter().map(edge).collect() }
 }
@@ -72,8 +69,7 @@ fn vessels_that_overlap_are_meshed_and_named() {
 
 /// A vessel so thin beside the other that its voxels would fill any memory.
 fn hair_on_a_trunk() -> Skeleton {
-    let nodes =
-        [[0.0, 0.0, 0.0, 1e3], [0.0, 0.0, 5e3, 1e3], [0.0, 3e3, 9e3, 8e2], [0.0, -1.2e3, 6e3, 0.1]];
+    let nodes = [[0.0, 0.0, 0.0, 1e3], [0.0, 0.0, 5e3, 1e3], [0.0, 3e3, 9e3, 8e2], [0.0, -1.2e3, 6e3, 0.1]];
     skeleton(&nodes, &[[0, 1], [1, 2], [1, 3]])
 }
 
