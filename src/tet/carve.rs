@@ -28,10 +28,10 @@ pub(super) fn carve(c: &Complex, surface: &TriMesh) -> Result<Complex, TetError>
         }
     }
     let mut points = surface.points.clone();
-    for v in n..c.points.len() {
-        if id[v] == 0 {
-            id[v] = points.len() as u32;
-            points.push(c.points[v]);
+    for (slot, p) in id.iter_mut().zip(&c.points).skip(n) {
+        if *slot == 0 {
+            *slot = points.len() as u32;
+            points.push(*p);
         }
     }
     Ok(c.part(points, &id, |t| side[t as usize] == 1))

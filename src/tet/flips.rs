@@ -59,7 +59,7 @@ impl Flipper {
     /// # Errors
     /// [`Refusal::Frozen`] on a frozen or boundary face, [`Refusal::NotValid`] where the two tetrahedra are not convex.
     pub fn flip_face(&mut self, c: &mut Complex, half: u32) -> Result<(), Refusal> {
-        self.plan_face(c, half, |c, v| valid(c, v))?;
+        self.plan_face(c, half, valid)?;
         self.commit(c)
     }
 
@@ -98,7 +98,7 @@ impl Flipper {
     /// # Errors
     /// See [`Refusal`].
     pub fn remove_edge(&mut self, c: &mut Complex, t: u32, a: u32, b: u32) -> Result<(), Refusal> {
-        self.plan_edge(c, t, a, b, MAX_RING, |c, v| valid(c, v))?;
+        self.plan_edge(c, t, a, b, MAX_RING, valid)?;
         self.commit(c)
     }
 

@@ -201,10 +201,10 @@ impl Inserter {
         if self.stamp.len() < self.c.slots() {
             self.stamp.resize(self.c.slots() * 2, 0);
         }
-        if !self.number_vertices() {
-            self.match_by_hash();
-        } else {
+        if self.number_vertices() {
             self.match_by_table();
+        } else {
+            self.match_by_hash();
         }
         self.hint = self.created.last().copied().unwrap_or(self.hint);
     }
