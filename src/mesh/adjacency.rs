@@ -93,8 +93,7 @@ pub fn tet_adjacency(tets: &[[u32; 4]], vertices: usize) -> TetAdjacency {
     match_sides(tets.len(), vertices, |handle| {
         let [i, j, k] = TET_FACES[(handle & 3) as usize];
         let t = &tets[(handle >> 2) as usize];
-        let [a, b, c] = sorted3([t[i], t[j], t[k]]);
-        (a, (u64::from(b) << 32) | u64::from(c))
+        sorted3([t[i], t[j], t[k]])
     })
 }
 
@@ -104,50 +103,93 @@ pub fn tri_adjacency(triangles: &[[u32; 3]], vertices: usize) -> TriAdjacency {
         let t = &triangles[handle as usize / 3];
         let i = handle as usize % 3;
         let (a, b) = (t[i], t[(i + 1) % 3]);
-        (a.min(b), u64::from(a.max(b)))
+        [a.min(b), a.max(b), 0]
     })
 }
 
-/// Matches sides by a key: the smallest vertex of the side and the rest of its vertices packed.
-fn match_sides<const SIDES: usize>(cells: usize, vertices: usize, key: impl Fn(u32) -> (u32, u64)) -> Matching<SIDES> {
+/// Matches sides by their vertices in ascending order (padded at the end).
+fn match_sides<const SIDES: usize>(cells: usize, vertices: usize, key: impl Fn(u32) -> [u32; 3]) -> Matching<SIDES> {
     let sides = (cells * SIDES) as u32;
     let mut offsets = vec![0_u32; vertices + 1];
     for handle in 0..sides {
-        offsets[key(handle).0 as usize + 1] += 1;
+        offsets[key(handle)[0] as usize + 1] += 1;
     }
     for i in 0..vertices {
         offsets[i + 1] += offsets[i];
     }
     let mut bucketed = vec![0_u32; sides as usize];
     for handle in 0..sides {
-        let slot = &mut offsets[key(handle).0 as usize];
+        let slot = &mut offsets[key(handle)[0] as usize];
         bucketed[*slot as usize] = handle;
         *slot += 1;
     }
     let mut matching = Matching { neighbors: vec![[NONE; SIDES]; cells], crowded: Vec::new() };
-    let mut bucket = Vec::new();
+    let mut bucket = Bucket { sides: Vec::new(), newest: vec![NONE; vertices] };
     let mut start = 0;
     for &end in &offsets[..vertices] {
+        for &handle in &bucketed[start as usize..end as usize] {
+            let [_, middle, last] = key(handle);
+            bucket.link(middle, last, handle, &mut matching);
+        }
         bucket.clear();
-        bucket.extend(bucketed[start as usize..end as usize].iter().map(|&handle| (key(handle).1, handle)));
-        bucket.sort_unstable();
-        link_equal_keys(&bucket, &mut matching);
         start = end;
     }
     matching.crowded.sort_unstable();
     matching
 }
 
-fn link_equal_keys<const SIDES: usize>(bucket: &[(u64, u32)], matching: &mut Matching<SIDES>) {
-    for run in bucket.chunk_by(|x, y| x.0 == y.0) {
-        match *run {
-            [(_, a), (_, b)] => {
-                matching.neighbors[a as usize / SIDES][a as usize % SIDES] = b;
-                matching.neighbors[b as usize / SIDES][b as usize % SIDES] = a;
+/// The sides met so far that have the same smallest vertex, chained by their middle vertex: few have that in common.
+struct Bucket {
+    sides: Vec<Side>,
+    /// For each vertex the newest side whose middle vertex it is.
+    newest: Vec<u32>,
+}
+
+struct Side {
+    middle: u32,
+    last: u32,
+    handle: u32,
+    /// The side before this one in its chain.
+    older: u32,
+}
+
+impl Bucket {
+    /// Adds a side and links it to the equal one met before, if there is one; lists what more than two cells have.
+    fn link<const SIDES: usize>(&mut self, middle: u32, last: u32, handle: u32, matching: &mut Matching<SIDES>) {
+        let older = self.newest[middle as usize];
+        let (mut equal, mut count) = ([NONE; 2], 0);
+        let mut at = older;
+        while let Some(side) = self.sides.get(at as usize) {
+            if side.last == last {
+                equal[count.min(1)] = side.handle;
+                count += 1;
             }
-            [_] => {}
-            _ => matching.crowded.extend(run.iter().map(|&(_, handle)| handle)),
+            at = side.older;
         }
+        let slot = |side: u32| (side as usize / SIDES, side as usize % SIDES);
+        let mut glue = |side: u32, other: u32| matching.neighbors[slot(side).0][slot(side).1] = other;
+        match count {
+            0 => {}
+            1 => {
+                glue(equal[0], handle);
+                glue(handle, equal[0]);
+            }
+            2 => {
+                glue(equal[0], NONE);
+                glue(equal[1], NONE);
+                matching.crowded.extend([equal[0], equal[1], handle]);
+            }
+            _ => matching.crowded.push(handle),
+        }
+        self.newest[middle as usize] = self.sides.len() as u32;
+        self.sides.push(Side { middle, last, handle, older });
+    }
+
+    fn clear(&mut self) {
+        for side in &self.sides {
+            self.newest[side.middle as usize] = NONE;
+        }
+        self.sides.clear();
     }
 }
 
