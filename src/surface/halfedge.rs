@@ -48,24 +48,25 @@ impl HalfEdges {
             start[i + 1] += start[i];
         }
         let mut fill = start.clone();
-        let mut starting = vec![0u32; from.len()];
+        // For each vertex the half-edges that start there, each with the vertex it leads to.
+        let mut starting = vec![(0u32, 0u32); from.len()];
         for (h, &v) in from.iter().enumerate() {
-            starting[fill[v as usize] as usize] = h as u32;
+            starting[fill[v as usize] as usize] = (from[next(h as u32) as usize], h as u32);
             fill[v as usize] += 1;
         }
-        let to = |h: u32| from[next(h) as usize];
         let at = |v: u32| &starting[start[v as usize] as usize..start[v as usize + 1] as usize];
         let mut twin = vec![NONE; from.len()];
-        for h in 0..from.len() as u32 {
-            let (a, b) = (from[h as usize], to(h));
-            let mut matching = at(b).iter().filter(|&&o| to(o) == a);
-            let same = at(a).iter().filter(|&&o| to(o) == b).count();
-            match (matching.next(), matching.next(), same) {
-                (Some(&o), None, 1) => twin[h as usize] = o,
-                _ => return Err([a, b]),
+        for a in 0..n as u32 {
+            for &(b, h) in at(a) {
+                // One half-edge back from b to a; seen from there, that this is the only one from a to b.
+                let mut back = at(b).iter().filter(|o| o.0 == a);
+                match (back.next(), back.next()) {
+                    (Some(&(_, o)), None) => twin[h as usize] = o,
+                    _ => return Err([a, b]),
+                }
             }
         }
-        let out: Vec<u32> = (0..n as u32).map(|v| at(v).first().copied().unwrap_or(NONE)).collect();
+        let out: Vec<u32> = (0..n as u32).map(|v| at(v).first().map_or(NONE, |x| x.1)).collect();
         let surface = Self { points: mesh.points.clone(), from, twin, out };
         for v in 0..n as u32 {
             if surface.fan(v).count() != at(v).len() {
