@@ -1,9 +1,11 @@
 //! A bounding volume hierarchy over axis-aligned boxes.
 //!
-//! Balanced by construction (split at the median), so its depth is the logarithm of the number of boxes whatever the
-//! boxes are, and all walks are iterative. The same boxes always give the same tree and the same order of answers.
+//! The boxes are laid along the Hilbert curve of their centres (Kamel, Faloutsos, 'Hilbert R-tree', 1994) and the line is
+//! halved again and again: one sort builds the tree, and its depth is the logarithm of the number of boxes whatever the
+//! boxes are. All walks are iterative. The same boxes always give the same tree and the same order of answers.
 
-use super::Aabb;
+use super::hilbert::hilbert_keys;
+use super::{Aabb, Point3};
 
 /// Boxes in a leaf at most.
 const LEAF: usize = 4;
@@ -31,7 +33,7 @@ pub struct Bvh {
 impl Bvh {
     /// Builds the tree. Boxes must not hold NaN; `Aabb::EMPTY` is legal and never found.
     pub fn new(boxes: &[Aabb]) -> Self {
-        let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
+        let items = along_hilbert_curve(boxes);
         let mut nodes = Vec::with_capacity(boxes.len() / 2 + 1);
         // Ranges still to be built, the left one on top so that a left child follows its parent; `parent` is set for
         // right children, which tell the parent where they are.
@@ -45,14 +47,14 @@ impl Bvh {
                 let node: &mut BvhNode = &mut nodes[parent];
                 node.first = index as u32;
             }
-            let range = &mut items[start..end];
+            let range = &items[start..end];
             let aabb = range.iter().fold(Aabb::EMPTY, |sum, &i| sum.union(&boxes[i as usize]));
             let leaf = range.len() <= LEAF;
             nodes.push(BvhNode { aabb, first: start as u32, count: if leaf { range.len() as u32 } else { 0 } });
             if !leaf {
-                let middle = split_at_median(boxes, range);
-                pending.push((start + middle, end, Some(index)));
-                pending.push((start, start + middle, None));
+                let middle = start.midpoint(end);
+                pending.push((middle, end, Some(index)));
+                pending.push((start, middle, None));
             }
         }
         let boxes = items.iter().map(|&i| boxes[i as usize]).collect();
@@ -171,23 +173,23 @@ impl BvhNode {
     }
 }
 
-/// Reorders `items` so that the first half lies below the second along the axis on which their centres spread most.
-fn split_at_median(boxes: &[Aabb], items: &mut [u32]) -> usize {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for &i in items.iter() {
-        let centre = boxes[i as usize].doubled_centre();
-        for k in 0..3 {
-            low[k] = low[k].min(centre[k]);
-            high[k] = high[k].max(centre[k]);
+/// The boxes' indices in the order of the Hilbert keys of their centres; empty boxes, which have no centre, first.
+fn along_hilbert_curve(boxes: &[Aabb]) -> Vec<u32> {
+    let is_empty = |b: &Aabb| b.min.x > b.max.x;
+    let mut order: Vec<(u64, u32)> = Vec::with_capacity(boxes.len());
+    let (mut full, mut centres) = (Vec::with_capacity(boxes.len()), Vec::with_capacity(boxes.len()));
+    for (i, b) in (0..).zip(boxes) {
+        if is_empty(b) {
+            order.push((0, i));
+        } else {
+            full.push(i);
+            centres.push(Point3::from(b.doubled_centre()));
         }
     }
-    let spread = |k: usize| high[k] - low[k];
-    let axis = (1..3).fold(0, |best, k| if spread(k) > spread(best) { k } else { best });
-    let key = |i: u32| boxes[i as usize].doubled_centre()[axis];
-    let middle = items.len() / 2;
-    // The index breaks ties, so the order of equal centres is the same on every run.
-    items.select_nth_unstable_by(middle, |&i, &j| key(i).total_cmp(&key(j)).then(i.cmp(&j)));
-    middle
+    order.extend(hilbert_keys(&centres).into_iter().zip(full));
+    // The index breaks ties.
+    order.sort_unstable();
+    order.into_iter().map(|(_, i)| i).collect()
 }
 
 #[cfg(test)]
