@@ -30,6 +30,11 @@ pub fn radius_ratio(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
 
 /// The six dihedral angles in radians, in the order of `TET_EDGES`; each in [0, π].
 pub fn dihedral_angles(corners: [&Point3; 4]) -> [f64; 6] {
+    dihedral_sides(corners).map(|[opposite, adjacent]| opposite.atan2(adjacent))
+}
+
+/// Opposite and adjacent side of right triangles that have the dihedral angles, in the order of `TET_EDGES`.
+fn dihedral_sides(corners: [&Point3; 4]) -> [[f64; 2]; 6] {
     let [a, b, c, d] = corners;
     let normals = TET_FACES.map(|f| {
         let [p, q, r] = f.map(|i| corners[i]);
@@ -40,7 +45,7 @@ pub fn dihedral_angles(corners: [&Point3; 4]) -> [f64; 6] {
         // The faces at an edge are those opposite the two other vertices; |n₁ × n₂| = |edge| · 6V exactly in reals,
         // and does not cancel when the angle is near 0 or π.
         let [k, l] = opposite_pair(i, j);
-        ((corners[j] - corners[i]).norm() * volume).atan2(-normals[k].dot(&normals[l]))
+        [(corners[j] - corners[i]).norm() * volume, -normals[k].dot(&normals[l])]
     })
 }
 
@@ -59,8 +64,38 @@ pub fn opposite_pair(i: usize, j: usize) -> [usize; 2] {
 
 /// Smallest and largest dihedral angle in radians.
 pub fn dihedral_range(corners: [&Point3; 4]) -> (f64, f64) {
-    let angles = dihedral_angles(corners);
-    angles.iter().fold((f64::INFINITY, 0.0), |(lo, hi), &x| (lo.min(x), hi.max(x)))
+    let mut cotangents = CotangentRange::default();
+    cotangents.include(corners);
+    cotangents.angles()
+}
+
+/// The range of the cotangents of dihedral angles: on [0, π] they fall from ∞ to −∞, so the extreme angles can be told
+/// without computing any other.
+#[derive(Clone, Copy, Debug)]
+struct CotangentRange {
+    low: f64,
+    high: f64,
+}
+
+impl Default for CotangentRange {
+    fn default() -> Self {
+        Self { low: f64::INFINITY, high: f64::NEG_INFINITY }
+    }
+}
+
+impl CotangentRange {
+    fn include(&mut self, corners: [&Point3; 4]) {
+        for [opposite, adjacent] in dihedral_sides(corners) {
+            // Not a number for an edge without length or two faces without area; `min` and `max` pass it over.
+            let cotangent = adjacent / opposite;
+            (self.low, self.high) = (self.low.min(cotangent), self.high.max(cotangent));
+        }
+    }
+
+    /// The smallest and the largest angle.
+    fn angles(self) -> (f64, f64) {
+        (1.0_f64.atan2(self.high), 1.0_f64.atan2(self.low))
+    }
 }
 
 /// Vector area of a triangle: along its normal, as long as its area.
@@ -111,18 +146,15 @@ impl TetQuality {
     pub fn of(mesh: &TetMesh) -> Self {
         let mut ratios = Vec::with_capacity(mesh.tets.len());
         let mut histogram = [0; HISTOGRAM_BINS];
-        let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
+        let mut dihedral = CotangentRange::default();
         for t in &mesh.tets {
             let p = t.map(|v| &mesh.points[v as usize]);
             let q = radius_ratio(p[0], p[1], p[2], p[3]);
             histogram[((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1)] += 1;
             ratios.push(q);
-            let (lo, hi) = dihedral_range(p);
-            (low, high) = (low.min(lo), high.max(hi));
+            dihedral.include(p);
         }
-        if ratios.is_empty() {
-            low = 0.0;
-        }
+        let (low, high) = if ratios.is_empty() { (0.0, 0.0) } else { dihedral.angles() };
         Self {
             tets: ratios.len(),
             mean: ratios.iter().sum::<f64>() / ratios.len().max(1) as f64,
