@@ -6,6 +6,9 @@ use super::shape::triangle_ratio;
 use crate::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 
+/// Triangles of this shape are left as they are.
+const GOOD: f64 = 0.9;
+
 /// Rounds of flips and slides.
 const ROUNDS: usize = 3;
 
@@ -96,7 +99,7 @@ impl<'a> Wall<'a> {
                 }
                 let (first, second) = ([a, d, c], [d, b, c]);
                 let before = self.shape(t).min(self.shape(u));
-                if self.shape(first).min(self.shape(second)) <= before + 1e-3 {
+                if before > GOOD || self.shape(first).min(self.shape(second)) <= before + 1e-3 {
                     continue;
                 }
                 owner.remove(&(a, b));
@@ -136,6 +139,10 @@ impl<'a> Wall<'a> {
         if star.is_empty() {
             return false;
         }
+        let before = self.worst(star);
+        if before > GOOD {
+            return false;
+        }
         let v = self.first_free + k as u32;
         let (from, place, outward) = (self.at(v), self.rings[k], self.outward[v as usize]);
         let mut mean = Vec3::zeros();
@@ -145,7 +152,6 @@ impl<'a> Wall<'a> {
             }
         }
         mean /= 2.0 * star.len() as f64;
-        let before = self.worst(star);
         let frame = self.path.at(place.s);
         let (sine, cosine) = place.theta.sin_cos();
         let tangent = frame.w * cosine - frame.u * sine;
