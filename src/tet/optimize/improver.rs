@@ -7,14 +7,19 @@ use crate::tet::complex::{Complex, NONE};
 use crate::tet::flips::Flipper;
 use crate::tet::star::Star;
 
+/// Stands for a radius ratio that is out of date.
+pub(super) const STALE: f64 = f64::NAN;
+
 /// A complex under improvement, with the radius ratio of each tetrahedron at hand.
 #[derive(Debug)]
 pub struct Improver {
     pub(super) c: Complex,
-    /// Radius ratio by slot; of no meaning for ghosts and dead slots.
+    /// Radius ratio by slot; of no meaning for ghosts and dead slots, and `STALE` where it is out of date.
     pub(super) quality: Vec<f64>,
     /// Whether a vertex may be moved or removed.
     pub(super) movable: Vec<bool>,
+    /// Whether something around a vertex has changed since it was smoothed last.
+    pub(super) stirred: Vec<bool>,
     pub(super) options: OptimizeOptions,
     pub(super) report: OptimizeReport,
     /// Attempts left.
@@ -31,6 +36,7 @@ impl Improver {
     pub fn new(c: Complex, options: &OptimizeOptions) -> Self {
         let mut improver = Self {
             movable: movable_vertices(&c, options.fixed_points),
+            stirred: vec![true; c.points.len()],
             quality: vec![0.0; c.slots()],
             options: *options,
             report: OptimizeReport::default(),
@@ -59,7 +65,8 @@ impl Improver {
         self.treat_stubborn();
         self.smooth_stars_below(self.options.smooth_below);
         self.lift_worst(self.options.flip_below);
-        self.report.worst_after = self.measure();
+        let worst = self.c.real_tets().map(|t| self.quality[t as usize]).fold(f64::INFINITY, f64::min);
+        self.report.worst_after = worst;
         self.report.budget_spent = self.budget == 0;
     }
 
@@ -76,8 +83,8 @@ impl Improver {
         left
     }
 
-    /// Computes the radius ratio of every tetrahedron anew; returns the smallest.
-    pub(super) fn measure(&mut self) -> f64 {
+    /// Computes the radius ratio of every tetrahedron; returns the smallest.
+    fn measure(&mut self) -> f64 {
         let mut worst = f64::INFINITY;
         self.quality.resize(self.c.slots(), 0.0);
         for t in 0..self.c.slots() as u32 {
@@ -96,11 +103,24 @@ impl Improver {
         radius_ratio(a, b, c, d)
     }
 
-    /// Computes the radius ratio of these tetrahedra anew.
+    /// Computes the radius ratio of these tetrahedra, which have changed, anew.
     pub(super) fn remeasure(&mut self, tets: &[u32]) {
         self.quality.resize(self.c.slots(), 0.0);
+        self.stirred.resize(self.c.points.len(), true);
         for &t in tets {
             self.quality[t as usize] = self.ratio(t);
+            for v in self.c.verts(t) {
+                self.stirred[v as usize] = true;
+            }
+        }
+    }
+
+    /// Computes the radius ratios that are out of date anew.
+    pub(super) fn refresh(&mut self) {
+        for t in 0..self.quality.len() as u32 {
+            if self.quality[t as usize].is_nan() {
+                self.quality[t as usize] = self.ratio(t);
+            }
         }
     }
 

@@ -2,11 +2,11 @@
 //! radius ratio.
 
 use super::Improver;
+use super::improver::STALE;
 use super::score;
 use crate::geometry::{Point3, Vec3, predicates::orient3d};
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::Complex;
-use nalgebra::Matrix3;
 
 /// Newton steps per vertex and visit.
 const NEWTON_STEPS: usize = 2;
@@ -14,6 +14,8 @@ const NEWTON_STEPS: usize = 2;
 const HALVINGS: usize = 4;
 /// Relative fall of the energy below which a vertex counts as settled.
 const SETTLED: f64 = 1e-3;
+/// Relative fall of the energy from which the neighbours of a vertex are worth another visit.
+const STIRRING: f64 = 1e-2;
 /// Rounds of the direct search; its step halves in a round that finds nothing.
 const SEARCH_ROUNDS: usize = 12;
 
@@ -90,26 +92,31 @@ impl StarEnergy {
         sum
     }
 
-    /// Newton's step at displacement `x`.
-    fn newton_step(&self, x: &Vec3) -> Option<Vec3> {
+    /// The energy at displacement `x`, and Newton's step from there.
+    fn newton_step(&self, x: &Vec3) -> (f64, Option<Vec3>) {
+        let mut energy = 0.0;
         let mut gradient = Vec3::zeros();
-        let mut hessian = Matrix3::zeros();
+        // The upper triangle of the Hessian: xx, xy, xz, yy, yz, zz.
+        let mut hessian = [0.0; 6];
         for cell in &self.cells {
             let v = cell.volume(x);
             let d = x - cell.center;
-            let q = 3.0 * d.norm_squared() + cell.rest;
-            let f = q * q * q / (432.0 * v * v);
-            let (dq, dv) = (d * (6.0 / q), cell.normal * (-1.0 / v));
+            let (per_q, per_v) = (1.0 / (3.0 * d.norm_squared() + cell.rest), 1.0 / v);
+            let f = per_v * per_v / (432.0 * per_q * per_q * per_q);
+            let (dq, dv) = (d * (6.0 * per_q), cell.normal * -per_v);
             let g = dq * 3.0 - dv * 2.0;
+            energy += f;
             gradient += g * f;
             // Without the term −3 dq dqᵀ the sum is positive definite; with it, steps are longer but may go uphill.
-            hessian += (g * g.transpose() + dv * dv.transpose() * 2.0) * f;
-            let diagonal = 18.0 / q * f;
-            for i in 0..3 {
-                hessian[(i, i)] += diagonal;
-            }
+            let (gf, dvf, diagonal) = (g * f, dv * (2.0 * f), 18.0 * per_q * f);
+            hessian[0] += gf.x * g.x + dvf.x * dv.x + diagonal;
+            hessian[1] += gf.x * g.y + dvf.x * dv.y;
+            hessian[2] += gf.x * g.z + dvf.x * dv.z;
+            hessian[3] += gf.y * g.y + dvf.y * dv.y + diagonal;
+            hessian[4] += gf.y * g.z + dvf.y * dv.z;
+            hessian[5] += gf.z * g.z + dvf.z * dv.z + diagonal;
         }
-        hessian.cholesky().map(|h| -h.solve(&gradient))
+        (energy, solve_symmetric(hessian, -gradient))
     }
 
     fn stays_positive(&self, p: &Point3) -> bool {
@@ -133,11 +140,12 @@ impl Improver {
     /// Smooths every movable vertex around which a tetrahedron has a radius ratio below `below`; returns the number
     /// of vertices moved. Vertices go in ascending order, each seeing where the ones before it have gone.
     pub(super) fn smooth_stars_below(&mut self, below: f64) -> usize {
+        self.stirred.resize(self.c.points.len(), true);
         let mut due = vec![false; self.c.points.len()];
         for t in self.c.real_tets() {
             if self.quality[t as usize] < below {
                 for v in self.c.verts(t) {
-                    due[v as usize] = self.movable[v as usize];
+                    due[v as usize] = self.movable[v as usize] && self.stirred[v as usize];
                 }
             }
         }
@@ -147,22 +155,26 @@ impl Improver {
                 moved += 1;
             }
         }
-        self.measure();
+        self.refresh();
         self.report.moved += moved;
         moved
     }
 
-    /// Lowers the energy of a movable vertex's star. Leaves the cached qualities alone.
+    /// Lowers the energy of a movable vertex's star; marks the qualities that are out of date then.
     fn smooth_vertex(&mut self, v: u32) -> bool {
+        self.stirred[v as usize] = false;
         let tets = self.star.around(&self.c, v);
         self.energy.gather(&self.c, v, tets);
         let star = &self.energy;
         let start = self.c.points[v as usize];
         let mut x = Vec3::zeros();
-        let before = star.energy(&x, f64::INFINITY);
-        let mut energy = before;
-        for _ in 0..NEWTON_STEPS {
-            let Some(mut step) = star.newton_step(&x) else { break };
+        let (mut before, mut energy) = (f64::INFINITY, f64::INFINITY);
+        for round in 0..NEWTON_STEPS {
+            let (here, step) = star.newton_step(&x);
+            if round == 0 {
+                (before, energy) = (here, here);
+            }
+            let Some(mut step) = step else { break };
             let mut lower = None;
             for _ in 0..HALVINGS {
                 let e = star.energy(&(x + step), energy);
@@ -183,6 +195,17 @@ impl Improver {
         let target = start + x;
         if energy < before * (1.0 - SETTLED) && star.stays_positive(&target) {
             self.c.points[v as usize] = target;
+            for &t in &star.tets {
+                self.quality[t as usize] = STALE;
+            }
+            if energy < before * (1.0 - STIRRING) {
+                for &t in &star.tets {
+                    for w in self.c.verts(t) {
+                        // What the vertex itself did not reach now it would not reach later.
+                        self.stirred[w as usize] |= w != v;
+                    }
+                }
+            }
             return true;
         }
         false
@@ -246,6 +269,16 @@ impl Improver {
     pub(super) fn score(&self, v: &[u32; 4]) -> Option<f64> {
         score(&self.c, v)
     }
+}
+
+/// Solves a system with a positive definite matrix, given by its upper triangle row by row, through its cofactors.
+fn solve_symmetric([xx, xy, xz, yy, yz, zz]: [f64; 6], b: Vec3) -> Option<Vec3> {
+    let first = Vec3::new(yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
+    let (cyy, cyz, czz) = (xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy);
+    let determinant = xx * first.x + xy * first.y + xz * first.z;
+    let x = Vec3::new(first.dot(&b), first.y * b.x + cyy * b.y + cyz * b.z, first.z * b.x + cyz * b.y + czz * b.z)
+        / determinant;
+    (determinant > 0.0 && x.iter().all(|c| c.is_finite())).then_some(x)
 }
 
 /// Searches for a place with a better worst radius ratio: along the axes and away from and towards the worst face,
