@@ -8,7 +8,7 @@ use super::trim::{CutEnd, TrimOptions, Trimmed, trim};
 use crate::geometry::{Point3, Section, Tube};
 use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::{TetMesh, TriMesh};
-use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::{Field, SurfaceParams, euler_characteristic, vessel_surface};
 use crate::tet::{TetOptions, tetrahedralize};
@@ -30,7 +30,7 @@ pub struct CapFaces {
 pub struct ClusterMesh {
     /// Points and tetrahedra.
     pub mesh: TetMesh,
-    /// One end surface per cut end, in the order of `Cluster::ends`.
+    /// One end surface per cut end, in the order of `Cluster::ends`, by which it is found: the cut may be renumbered.
     pub ends: Vec<EndSurface>,
     /// One cap per terminal, in the order of `Cluster::ends`.
     pub caps: Vec<CapFaces>,
@@ -46,13 +46,6 @@ pub struct ClusterMesh {
     pub handles: i64,
     /// Independent loops of the cluster's skeleton; other than `handles` only if that was allowed.
     pub loops: i64,
-}
-
-impl ClusterMesh {
-    /// The end surface at one side of a cut.
-    pub fn end(&self, cut: CutId, side: u8) -> Option<&EndSurface> {
-        self.ends.iter().find(|e| e.cut == cut && e.side == side)
-    }
 }
 
 /// Meshes one cluster.

@@ -170,7 +170,7 @@ fn mesh_connectors(
 ) -> Vec<Option<Tried<ConnectorMesh>>> {
     let mesh = |(i, cut): (usize, &Cut)| {
         let id = CutId(i as u32);
-        let tried = connector_ends(id, cut, clusters).map(|ends| attempts::connector(id, cut, ends, plan));
+        let tried = connector_ends(partition, cut, clusters).map(|ends| attempts::connector(id, cut, ends, plan));
         observer.step();
         tried
     };
@@ -178,14 +178,20 @@ fn mesh_connectors(
 }
 
 /// The two end surfaces of a connector; none beside a failed cluster.
+///
+/// They are found by their place among the cluster's ends: a mesh that was taken over from a round before may know its
+/// cuts by other numbers.
 pub fn connector_ends<'a>(
-    id: CutId,
+    partition: &Partition,
     cut: &Cut,
     clusters: &'a [Result<Arc<ClusterMesh>, BlockError>],
 ) -> Option<[ConnectorEnd<'a>; 2]> {
-    let end = |side: u8| {
-        let mesh = clusters[cut.sides[usize::from(side)].0.0 as usize].as_ref().ok()?;
-        Some(ConnectorEnd { surface: mesh.end(id, side)?, points: &mesh.mesh.points })
+    let end = |side: usize| {
+        let (cluster, end) = cut.sides[side];
+        let mesh = clusters[cluster.0 as usize].as_ref().ok()?;
+        let before = &partition.clusters[cluster.0 as usize].ends[..end as usize];
+        let place = before.iter().filter(|e| matches!(e.kind, EndKind::Cut { .. })).count();
+        Some(ConnectorEnd { surface: &mesh.ends[place], points: &mesh.mesh.points })
     };
     Some([end(0)?, end(1)?])
 }

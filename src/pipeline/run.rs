@@ -166,7 +166,7 @@ fn describe_blocks(skeleton: &Skeleton, plan: &MeshPlan, blocks: &Blocks, report
         let Some(Err(error)) = mesh else { continue };
         let id = CutId(i as u32);
         let input =
-            connector_ends(id, cut, &blocks.clusters).map(|ends| attempts::connector_input(id, cut, ends, plan));
+            connector_ends(partition, cut, &blocks.clusters).map(|ends| attempts::connector_input(id, cut, ends, plan));
         report.failed.push(FailedBlock {
             block: format!("connector {i}"),
             nodes: rounds::cut_nodes(skeleton, partition, cut),

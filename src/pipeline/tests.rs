@@ -3,6 +3,7 @@
 use super::*;
 use crate::geometry::Point3;
 use crate::mesh::WALL;
+use crate::partition::{Cluster, ClusterId, CutId, EndKind, PartitionParams, partition};
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 
 /// A skeleton of nodes `[x, y, z, radius]` and edges between them.
@@ -104,4 +105,27 @@ fn what_can_be_meshed_is_kept_on_request() {
     assert_eq!(meshed.report.failed.len(), 1);
     assert!(!meshed.check.is_valid(), "a component is missing");
     assert!(meshed.mesh.tet_block.contains(&1) && !meshed.mesh.tet_block.contains(&0));
+}
+
+#[test]
+fn end_surfaces_are_found_when_the_cuts_are_numbered_anew() {
+    let plan = MeshPlan::default();
+    let partition = partition(&h(12.0), &PartitionParams::default()).expect("partitioned");
+    let [cut] = &partition.cuts[..] else { panic!("one cut") };
+    let mesh = |(i, cluster): (usize, &Cluster)| {
+        let mut renumbered = cluster.clone();
+        for end in &mut renumbered.ends {
+            if let EndKind::Cut { cut, .. } = &mut end.kind {
+                cut.0 += 5;
+            }
+        }
+        attempts::cluster(ClusterId(i as u32), &renumbered, &plan, false).result
+    };
+    let clusters: Vec<_> = partition.clusters.iter().enumerate().map(mesh).collect();
+    let ends = rounds::connector_ends(&partition, cut, &clusters).expect("both clusters are there");
+    for (side, end) in ends.iter().enumerate() {
+        let (cluster, index) = cut.sides[side];
+        assert_eq!(end.surface.section, partition.clusters[cluster.0 as usize].ends[index as usize].section);
+    }
+    assert!(attempts::connector(CutId(0), cut, ends, &plan).result.is_ok());
 }
