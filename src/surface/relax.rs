@@ -47,6 +47,8 @@ pub(crate) struct Relaxation<'a, L> {
 /// Edges longer or shorter than these multiples of the aim are split or collapsed.
 const SPLIT_ABOVE: f64 = 1.45;
 const COLLAPSE_BELOW: f64 = 0.62;
+/// Triangles without an angle below 41° are not flipped for a better one.
+const GOOD_COSINE: f64 = 0.75;
 /// A vertex moves at most so far (of the edge length) in one projection.
 const MAX_STEP: f64 = 0.5;
 
@@ -275,6 +277,9 @@ impl<'a, L: Level> Relaxation<'a, L> {
         let o = s.twin(h);
         let [a, b, c, d] = [s.from(h), s.to(h), s.apex(h), s.apex(o)].map(|v| s.points[v as usize]);
         let before = largest_cosine(&a, &b, &c).max(largest_cosine(&b, &a, &d));
+        if before < GOOD_COSINE {
+            return false;
+        }
         let after = largest_cosine(&a, &d, &c).max(largest_cosine(&d, &b, &c));
         after < before - 1e-3
     }
