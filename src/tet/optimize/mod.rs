@@ -40,8 +40,8 @@ impl Default for OptimizeOptions {
     fn default() -> Self {
         Self {
             fixed_points: 0,
-            rounds: 3,
-            smooth_below: 0.75,
+            rounds: 2,
+            smooth_below: 0.7,
             flip_below: 0.5,
             stubborn_below: 0.3,
             keep_points: false,
