@@ -100,7 +100,7 @@ fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
 }
 
 /// How many overlapping pairs are spelt out for people.
-const LISTED: usize = 20;
+const LISTED: usize = 50;
 
 fn announce(report: &RunReport, observer: &dyn Observer) {
     let more = |n: usize| {

@@ -1,7 +1,7 @@
 //! What `info` says about a network.
 
 use crate::geometry::Aabb;
-use crate::skeleton::{CleanReport, Overlaps, Skeleton};
+use crate::skeleton::{CleanReport, CrowdedTerminals, Overlaps, Skeleton};
 use serde::Serialize;
 use std::fmt;
 
@@ -128,6 +128,8 @@ pub struct NetworkInfo {
     pub unit_guess: UnitGuess,
     /// Where vessels run into each other.
     pub overlaps: Overlaps,
+    /// Terminals too close to each other for two caps.
+    pub crowded_terminals: Vec<CrowdedTerminals>,
 }
 
 impl NetworkInfo {
@@ -166,6 +168,7 @@ impl NetworkInfo {
             bounding_box: [aabb.min.into(), aabb.max.into()],
             unit_guess: UnitGuess::of(radius.max, aabb.diagonal()),
             overlaps: skeleton.overlaps(&adjacency),
+            crowded_terminals: skeleton.crowded_terminals(&adjacency),
         }
     }
 
@@ -199,6 +202,18 @@ impl NetworkInfo {
         }
         Ok(())
     }
+
+    fn write_crowded(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let all = &self.crowded_terminals;
+        writeln!(f, "terminals closer than the sum of their radii: {} pairs", all.len())?;
+        for CrowdedTerminals { nodes: [a, b], distance, radii } in all.iter().take(LISTED) {
+            writeln!(f, "  {} and {}: {} apart, radii {}", a.0, b.0, digits(*distance), digits(*radii))?;
+        }
+        if all.len() > LISTED {
+            writeln!(f, "  and {} more", all.len() - LISTED)?;
+        }
+        Ok(())
+    }
 }
 
 impl fmt::Display for NetworkInfo {
@@ -226,7 +241,8 @@ impl fmt::Display for NetworkInfo {
         let [low, high] = self.bounding_box.map(|p| p.map(digits).join(" "));
         writeln!(f, "bounding box: {low} to {high}")?;
         writeln!(f, "unit: perhaps {} (a guess from the largest radius and the extent)", self.unit_guess)?;
-        self.write_overlaps(f)
+        self.write_overlaps(f)?;
+        self.write_crowded(f)
     }
 }
 

@@ -3,6 +3,7 @@
 mod branch;
 mod check;
 mod clean;
+mod crowding;
 mod error;
 mod graph;
 mod overlap;
@@ -12,6 +13,7 @@ mod walk;
 
 pub use branch::{Branch, Branches, Place};
 pub use clean::{CleanReport, clean};
+pub use crowding::CrowdedTerminals;
 pub use error::{LARGEST, SkeletonError};
 pub use graph::{Adjacency, Component, Components};
 pub use overlap::{Overlap, Overlaps};
