@@ -46,14 +46,14 @@ fn a_carotid_artery_of_short_edges() {
 
 /// 158 loops in one plane, in which vessels cross.
 #[test]
-#[ignore = "many blocks are tried over and over: minutes"]
+#[ignore = "21 million tetrahedra: two minutes"]
 fn a_mesentery_of_loops() {
     let Some(meshed) = skeleton("secomb_mesentery_546.vtp") else { return };
     assert_valid_or_explained(&meshed);
 }
 
 #[test]
-#[ignore = "many blocks are tried over and over: minutes"]
+#[ignore = "37 million tetrahedra, one cluster of 258 nodes: four minutes and 8 GB"]
 fn a_generated_tree() {
     let Some(meshed) = skeleton("opencco_tree3D_synth.vtp") else { return };
     assert_valid_or_explained(&meshed);

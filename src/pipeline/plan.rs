@@ -28,7 +28,7 @@ impl Default for MeshPlan {
 #[non_exhaustive]
 pub enum PlanError {
     /// ρ outside of what makes sense.
-    #[error("rho = {0} is not usable: it must lie between 1.5 and 64 (3 to 5 are usual; larger is finer)")]
+    #[error("rho = {0} is not usable: it must lie between 2.5 and 64 (3 to 5 are usual; larger is finer)")]
     Rho(f64),
 }
 
@@ -41,7 +41,7 @@ impl MeshPlan {
     /// # Errors
     /// When a parameter is out of its range.
     pub fn validate(&self) -> Result<(), PlanError> {
-        // Written so that NaN fails too.
-        if (1.5..=64.0).contains(&self.rho) { Ok(()) } else { Err(PlanError::Rho(self.rho)) }
+        // Below 2.5 voxels across, a vessel is no tube any more. Written so that NaN fails too.
+        if (2.5..=64.0).contains(&self.rho) { Ok(()) } else { Err(PlanError::Rho(self.rho)) }
     }
 }

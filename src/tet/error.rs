@@ -15,6 +15,16 @@ pub enum Obstacle {
     Point(u32),
 }
 
+impl std::fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Triangle([a, b, c]) => write!(f, "triangle {a} {b} {c}"),
+            Self::Edge([a, b]) => write!(f, "edge {a} {b}"),
+            Self::Point(p) => write!(f, "point {p}"),
+        }
+    }
+}
+
 /// Why there is no tetrahedral mesh. Ids are those of the input's points and triangles.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -112,7 +122,7 @@ pub enum TetError {
     },
     /// The surface meets itself: one of its edges runs through another part of it. Found by the way, exact where
     /// reported; there may be more.
-    #[error("the surface meets itself: edge {edge:?} runs through {obstacle:?}")]
+    #[error("the surface meets itself: edge {} {} runs through {obstacle}", edge[0], edge[1])]
     SelfIntersection {
         /// Ends of the edge.
         edge: [u32; 2],
