@@ -1,10 +1,20 @@
 //! Floor 3: readers and writers, one file per format.
 
 mod atomic;
+mod file_error;
+pub mod medit;
+#[cfg(test)]
+mod medit_tests;
 pub mod mesh_file;
 pub mod msh;
 mod msh_read;
 pub mod network;
+pub mod surface;
+pub mod tetgen;
+mod text;
 pub mod vtk_xml;
 pub mod vtu;
 mod vtu_read;
+
+pub use file_error::FileError;
+pub use text::TextFault;

@@ -1,0 +1,102 @@
+//! What can go wrong between a path and its bytes, whatever the format.
+
+use super::atomic::AtomicFile;
+use std::error::Error;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a file could not be read or written; `F` tells what can be wrong with the content of its format.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileError<F: Error + 'static> {
+    /// No format has this extension.
+    #[error("{}: the extension names no format that is known here (known: {known})", path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// The extensions that are known.
+        known: &'static str,
+    },
+    /// The operating system refused to read.
+    #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+    /// The operating system refused to write.
+    #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+    /// There is nothing in it.
+    #[error("{}: the file is empty: write or copy it again", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// What is in the file is not what its format asks for.
+    #[error("{}: {fault}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        #[source]
+        fault: F,
+    },
+    /// A mesh that was to be written is no mesh: a cell names a point that does not exist.
+    #[error("{}: not written: cell {cell} of the mesh names a point that does not exist", path.display())]
+    BadMesh {
+        /// The file.
+        path: PathBuf,
+        /// The first such cell.
+        cell: usize,
+    },
+}
+
+/// The bytes of a file that is not empty.
+pub(super) fn read_bytes<F: Error>(path: &Path) -> Result<Vec<u8>, FileError<F>> {
+    let refused = |source| FileError::Read { path: path.to_path_buf(), source };
+    if path.is_dir() {
+        return Err(refused(io::ErrorKind::IsADirectory.into()));
+    }
+    let bytes = std::fs::read(path).map_err(refused)?;
+    if bytes.trim_ascii().is_empty() {
+        return Err(FileError::Empty { path: path.to_path_buf() });
+    }
+    Ok(bytes)
+}
+
+/// Writes a file that appears whole or not at all.
+pub(super) fn write_whole<F: Error>(
+    path: &Path,
+    write: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
+) -> Result<(), FileError<F>> {
+    let all = || {
+        let mut file = AtomicFile::create(path)?;
+        write(&mut file)?;
+        file.commit()
+    };
+    all().map_err(|source| FileError::Write { path: path.to_path_buf(), source })
+}
+
+/// Makes sure that every cell names existing points.
+pub(super) fn ensure_sound<F: Error, const N: usize>(
+    path: &Path,
+    cells: &[[u32; N]],
+    points: usize,
+) -> Result<(), FileError<F>> {
+    match cells.iter().position(|cell| cell.iter().any(|&v| v as usize >= points)) {
+        Some(cell) => Err(FileError::BadMesh { path: path.to_path_buf(), cell }),
+        None => Ok(()),
+    }
+}
+
+/// The extension of a path in lower case.
+pub(super) fn extension(path: &Path) -> String {
+    path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
+}

@@ -1,0 +1,71 @@
+//! OFF: counts, then one point a line, then one face a line.
+
+use super::super::text::{Words, shown};
+use super::{Place, SurfaceFault, corners};
+use crate::mesh::TriMesh;
+use std::io::{self, Write};
+
+/// Parses a file. The position stands first in a line of whatever variant, so colours, normals and texture coordinates
+/// behind it are passed over.
+pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
+    let mut words = Words::new(bytes, true);
+    read_keyword(&mut words)?;
+    // "0 0 0\n"
+    let points = words.count("the count of points", 6)?;
+    let faces = words.count("the count of faces", 6)?;
+    // The count of edges, which nobody needs and some leave out.
+    words.skip_line();
+    let mut mesh = TriMesh { points: Vec::with_capacity(points), triangles: Vec::with_capacity(faces) };
+    for _ in 0..points {
+        mesh.points.push(words.point()?);
+        words.skip_line();
+    }
+    for face in 0..faces {
+        let count = words.integer("a face's count of corners")?;
+        let line = words.line();
+        let place = || Place::Line(line);
+        if count != 3 {
+            return Err(SurfaceFault::NotATriangle { face, corners: count, place: place() });
+        }
+        let mut named = [0; 3];
+        for corner in &mut named {
+            *corner = words.integer("a corner of a face")?;
+        }
+        mesh.triangles.push(corners(named, points, 0, face, place)?);
+        words.skip_line();
+    }
+    words.expect_end()?;
+    Ok(mesh)
+}
+
+/// Passes over the keyword, which may be missing.
+fn read_keyword(words: &mut Words) -> Result<(), SurfaceFault> {
+    let first = words.peek().unwrap_or_default();
+    if first.first().is_some_and(u8::is_ascii_digit) && !first.ends_with(b"OFF") {
+        return Ok(());
+    }
+    let keyword = words.need("the keyword OFF")?;
+    let place = Place::Line(words.line());
+    // Case counts in the prefix: `N` announces normals, `n` another dimension.
+    let kind = if keyword.eq_ignore_ascii_case(b"OFF") { Some(&b""[..]) } else { keyword.strip_suffix(b"OFF") };
+    let Some(kind) = kind else {
+        return Err(SurfaceFault::Unexpected { found: shown(keyword), expected: "the keyword OFF", place });
+    };
+    let binary = words.peek() == Some(b"BINARY");
+    if binary || !kind.iter().all(|b| b"STCN".contains(b)) {
+        let found = if binary { "OFF BINARY".into() } else { shown(keyword) };
+        return Err(SurfaceFault::Variant { found, place, instead: "plain text OFF with three coordinates a point" });
+    }
+    Ok(())
+}
+
+pub(super) fn write(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
+    writeln!(out, "OFF\n{} {} 0", mesh.points.len(), mesh.triangles.len())?;
+    for p in &mesh.points {
+        writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z)?;
+    }
+    for [a, b, c] in &mesh.triangles {
+        writeln!(out, "3 {a} {b} {c}")?;
+    }
+    Ok(())
+}
