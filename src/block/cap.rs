@@ -16,7 +16,7 @@ use crate::surface::halfedge::HalfEdges;
 use crate::surface::relax::{Hold, Level, Relaxation};
 use disc::{Disc, disc};
 use std::f64::consts::TAU;
-use weave::{Corner, weave};
+use weave::weave;
 
 /// A closed wall whose terminals are flat discs.
 #[derive(Clone, Debug, PartialEq)]
@@ -267,11 +267,8 @@ impl Cutter<'_> {
         self.points.extend(ring.points.iter().map(|&[x, y]| section.origin + u * x + w * y));
         let high = &self.points[first as usize..(first + corners) as usize];
         let strip = weave(low, high, &section.origin, &section.axis);
-        let vertex = |corner: Corner| match corner {
-            Corner::Low(i) => rim[i as usize],
-            Corner::High(j) => first + j,
-        };
-        self.added.extend(strip.into_iter().map(|t| t.map(vertex)));
+        let ids: Vec<u32> = (first..first + corners).collect();
+        self.added.extend(strip.iter().map(|step| step.triangle(rim, &ids)));
         self.cap.resize(self.added.len(), None);
         self.added.extend(ring.triangles.iter().map(|t| t.map(|v| first + v)));
         self.cap.resize(self.added.len(), Some(end));

@@ -18,6 +18,7 @@ mod region;
 mod relax;
 mod rings;
 mod shape;
+mod strip;
 mod trim;
 mod wall;
 mod weave;

@@ -1,9 +1,7 @@
-//! A strip of triangles between two loops of vertices (3.2.3, Fig. 6).
-//!
-//! Merging by angle is optimal for regular rings only; here dynamic programming over both loops finds the strip with
-//! the best shapes, which is never worse and does not fold where a strip without folds exists.
+//! The strips of a connector's wall: of all strips between two loops the one with the best shapes.
 
 use super::shape::triangle_ratio;
+use super::strip::{Step, cheapest};
 use crate::geometry::{Point3, Vec3};
 
 /// Cost of a strip: Σ (radius ratio)⁻³, dominated by its worst triangle.
@@ -28,26 +26,28 @@ pub fn weave(
     if lower.len() < 3 || upper.len() < 3 {
         return None;
     }
-    let mut strip = Strip { points, lower, upper: upper.to_vec(), center, axis };
-    let mut best: Option<(f64, Vec<[u32; 3]>)> = None;
+    let strip = Strip { points, lower, upper, center, axis };
+    let sizes = [lower.len(), upper.len()];
+    let band = 0.25 + 2.0 / lower.len().min(upper.len()) as f64;
+    let mut best: Option<(f64, Vec<Step>)> = None;
     for start in strip.starts() {
-        strip.upper = upper.to_vec();
-        strip.upper.rotate_left(start);
-        let (cost, triangles) = strip.solve();
-        if best.as_ref().is_none_or(|b| cost < b.0) {
-            best = Some((cost, triangles));
+        let Some(found) = cheapest(sizes, start, band, |step| strip.cost(step)) else { continue };
+        let good = found.0 < GOOD * (lower.len() + upper.len()) as f64;
+        if best.as_ref().is_none_or(|b| found.0 < b.0) {
+            best = Some(found);
         }
-        if cost < GOOD * (lower.len() + upper.len()) as f64 {
+        if good {
             break;
         }
     }
-    best.filter(|b| b.0 < FOLD).map(|(cost, triangles)| (triangles, cost))
+    let (cost, steps) = best.filter(|b| b.0 < FOLD)?;
+    Some((steps.iter().map(|step| step.triangle(lower, upper)).collect(), cost))
 }
 
 struct Strip<'a> {
     points: &'a [Point3],
     lower: &'a [u32],
-    upper: Vec<u32>,
+    upper: &'a [u32],
     center: Point3,
     axis: Vec3,
 }
@@ -67,68 +67,13 @@ impl Strip<'_> {
         order
     }
 
-    fn cost(&self, t: [u32; 3]) -> f64 {
-        let p = t.map(|v| self.points[v as usize]);
+    fn cost(&self, step: Step) -> f64 {
+        let p = step.triangle(self.lower, self.upper).map(|v| self.points[v as usize]);
         let normal = (p[1] - p[0]).cross(&(p[2] - p[0]));
         let c = Point3::from((p[0].coords + p[1].coords + p[2].coords) / 3.0) - self.center;
         let radial = c - self.axis * c.dot(&self.axis);
         let cosine = normal.dot(&radial) / (normal.norm() * radial.norm()).max(f64::MIN_POSITIVE);
         let q = triangle_ratio(&p) * (cosine / 0.7).min(1.0);
         if q > 1e-3 { 1.0 / (q * q * q) } else { FOLD }
-    }
-
-    /// The cheapest strip that joins the two first vertices: `value[i][j]` is the cost up to the edge from lower `i` to
-    /// upper `j`.
-    fn solve(&self) -> (f64, Vec<[u32; 3]>) {
-        let (n, m) = (self.lower.len(), self.upper.len());
-        let width = m + 1;
-        let mut value = vec![f64::INFINITY; (n + 1) * width];
-        let mut from_lower = vec![false; (n + 1) * width];
-        value[0] = 0.0;
-        let band = 0.25 + 2.0 / n.min(m) as f64;
-        for i in 0..=n {
-            for j in 0..=m {
-                if (i, j) == (0, 0) || (i as f64 / n as f64 - j as f64 / m as f64).abs() > band {
-                    continue;
-                }
-                let (below, left) = self.triangles(i, j);
-                let at = i * width + j;
-                if i > 0 && value[at - width].is_finite() {
-                    value[at] = value[at - width] + self.cost(below);
-                    from_lower[at] = true;
-                }
-                if j > 0 && value[at - 1].is_finite() {
-                    let other = value[at - 1] + self.cost(left);
-                    if other < value[at] {
-                        value[at] = other;
-                        from_lower[at] = false;
-                    }
-                }
-            }
-        }
-        let (mut i, mut j) = (n, m);
-        let mut triangles = Vec::with_capacity(n + m);
-        while (i, j) != (0, 0) {
-            let (below, left) = self.triangles(i, j);
-            if from_lower[i * width + j] && i > 0 {
-                triangles.push(below);
-                i -= 1;
-            } else if j > 0 {
-                triangles.push(left);
-                j -= 1;
-            } else {
-                return (f64::INFINITY, triangles);
-            }
-        }
-        triangles.reverse();
-        (value[n * width + m], triangles)
-    }
-
-    /// The triangles that arrive at state `(i, j)` by a step on the lower and on the upper loop.
-    fn triangles(&self, i: usize, j: usize) -> ([u32; 3], [u32; 3]) {
-        let (n, m) = (self.lower.len(), self.upper.len());
-        let (l, u) = (self.lower[i % n], self.upper[j % m]);
-        let (l0, u0) = (self.lower[(i + n - 1) % n], self.upper[(j + m - 1) % m]);
-        ([l0, l, u], [l, u, u0])
     }
 }
