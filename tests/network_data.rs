@@ -1,21 +1,12 @@
-//! Real networks made by others, which are not in the repository: skipped where the folder `../shared/data` (or
-//! `$ANASTOMESH_SHARED/data`) is absent.
+//! Real networks made by others, which are not in the repository: skipped where the shared data is absent.
+
+mod common;
 
 use anastomesh::io::network::{NetworkOptions, read_network};
 use anastomesh::report::info::NetworkInfo;
 use anastomesh::skeleton::{Skeleton, clean};
 use anastomesh::{refine, skeleton::CleanReport};
-use std::path::{Path, PathBuf};
-
-fn data() -> Option<PathBuf> {
-    let shared = std::env::var_os("ANASTOMESH_SHARED").map(PathBuf::from);
-    let data = shared.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared")).join("data");
-    if data.is_dir() {
-        return Some(data);
-    }
-    eprintln!("skipped: {} is absent", data.display());
-    None
-}
+use std::path::Path;
 
 fn read(path: &Path, radius_array: Option<&str>) -> (Skeleton, CleanReport) {
     let options = NetworkOptions { radius_array: radius_array.map(str::to_owned) };
@@ -25,7 +16,7 @@ fn read(path: &Path, radius_array: Option<&str>) -> (Skeleton, CleanReport) {
 
 #[test]
 fn every_network_is_read_cleaned_and_split() {
-    let Some(data) = data() else { return };
+    let Some(data) = common::shared().map(|shared| shared.join("data")) else { return };
     let mut count = 0;
     for folder in ["kidney", "skeletons"] {
         let entries = std::fs::read_dir(data.join(folder)).expect("a folder of networks");
@@ -50,7 +41,7 @@ fn every_network_is_read_cleaned_and_split() {
 /// take the taper into account and are equal or a little higher.
 #[test]
 fn overlaps_are_those_that_are_known() {
-    let Some(data) = data() else { return };
+    let Some(data) = common::shared().map(|shared| shared.join("data")) else { return };
     let info = |file: &str, radius: Option<&str>| {
         let (skeleton, cleaned) = read(&data.join(file), radius);
         NetworkInfo::new(&skeleton, cleaned, Vec::new())
