@@ -53,7 +53,7 @@ fn a_mesentery_of_loops() {
 }
 
 #[test]
-#[ignore = "37 million tetrahedra, one cluster of 258 nodes: four minutes and 8 GB"]
+#[ignore = "some 30 million tetrahedra, one cluster of 258 nodes: minutes and 2.6 GB"]
 fn a_generated_tree() {
     let Some(meshed) = skeleton("opencco_tree3D_synth.vtp") else { return };
     assert_valid_or_explained(&meshed);
