@@ -2,64 +2,100 @@
 
 use super::Point3;
 
-/// Bits per axis of a key.
+/// Bits per axis of the keys of [`hilbert_keys`].
 const BITS: u32 = 20;
 
-/// Position along the Hilbert curve of a cell of a 2^20 grid (Skilling, 'Programming the Hilbert curve', 2004).
-pub fn hilbert_key(cell: [u32; 3]) -> u64 {
-    let mut x = cell;
-    let top = 1u32 << (BITS - 1);
-    let mut q = top;
-    while q > 1 {
-        let p = q - 1;
-        for i in 0..3 {
-            if x[i] & q != 0 {
-                x[0] ^= p;
-            } else {
-                let t = (x[0] ^ x[i]) & p;
-                x[0] ^= t;
-                x[i] ^= t;
-            }
+/// `STEPS[3 · e + d][octant]`: place of the octant along the curve that enters its cube at corner `e` and leaves it along
+/// axis `d`, and above bit 3 the row of the curve within the octant (Hamilton, 'Compact Hilbert indices', 2006).
+const STEPS: [[u8; 8]; 24] = steps();
+
+const fn steps() -> [[u8; 8]; 24] {
+    let mut table = [[0u8; 8]; 24];
+    let mut row = 0;
+    while row < 24 {
+        let (e, d) = (row / 3, row % 3);
+        let mut octant = 0;
+        while octant < 8 {
+            let turned = rotate_right(octant ^ e, d + 1);
+            let place = turned ^ (turned >> 1) ^ (turned >> 2);
+            let next_e = e ^ rotate_right(entry(place), 2 - d);
+            let next_d = (d + direction(place) + 1) % 3;
+            table[row][octant] = (place | (3 * next_e + next_d) << 3) as u8;
+            octant += 1;
         }
-        q >>= 1;
+        row += 1;
     }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    let mut t = 0;
-    let mut q = top;
-    while q > 1 {
-        if x[2] & q != 0 {
-            t ^= q - 1;
-        }
-        q >>= 1;
-    }
-    let [a, b, c] = x.map(|v| spread(u64::from(v ^ t)));
-    (a << 2) | (b << 1) | c
+    table
 }
 
-/// Puts two zero bits between any two of the 20 bits of `v`.
-fn spread(v: u64) -> u64 {
-    let mut v = v & 0x1f_ffff;
-    v = (v | (v << 32)) & 0x001f_0000_0000_ffff;
-    v = (v | (v << 16)) & 0x001f_0000_ff00_00ff;
-    v = (v | (v << 8)) & 0x100f_00f0_0f00_f00f;
-    v = (v | (v << 4)) & 0x10c3_0c30_c30c_30c3;
-    (v | (v << 2)) & 0x1249_2492_4924_9249
+const fn rotate_right(bits: usize, by: usize) -> usize {
+    let by = by % 3;
+    ((bits >> by) | (bits << (3 - by))) & 7
+}
+
+/// Corner at which the curve enters the octant at this place.
+const fn entry(place: usize) -> usize {
+    if place == 0 { 0 } else { gray(2 * ((place - 1) / 2)) }
+}
+
+/// Axis along which the curve runs through the octant at this place.
+const fn direction(place: usize) -> usize {
+    let odd = if place == 0 { 0 } else if place % 2 == 0 { place - 1 } else { place };
+    (odd.trailing_ones() % 3) as usize
+}
+
+const fn gray(i: usize) -> usize {
+    i ^ (i >> 1)
+}
+
+/// Position along the Hilbert curve of a cell of a grid of 2^`bits` cells per axis; the key has `3 · bits` bits.
+#[inline]
+pub fn hilbert_key([x, y, z]: [u32; 3], bits: u32) -> u64 {
+    let mut row = 0;
+    let mut key = 0;
+    for level in (0..bits).rev() {
+        let octant = ((x >> level) & 1) | ((y >> level) & 1) << 1 | ((z >> level) & 1) << 2;
+        let step = STEPS[row][octant as usize];
+        key = (key << 3) | u64::from(step & 7);
+        row = (step >> 3) as usize;
+    }
+    key
+}
+
+/// A grid of cubes over the bounding box of points.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid {
+    low: Point3,
+    scale: f64,
+    last: f64,
+}
+
+impl Grid {
+    /// A grid of 2^`bits` cells along the longest side of the box.
+    pub fn new(points: &[Point3], bits: u32) -> Self {
+        let mut low = Point3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY);
+        let mut high = -low;
+        for p in points {
+            low = low.inf(p);
+            high = high.sup(p);
+        }
+        let size = (high - low).max();
+        let last = f64::from((1u32 << bits) - 1);
+        Self { low, scale: if size > 0.0 { last / size } else { 0.0 }, last }
+    }
+
+    /// The cell that holds the point, or the one nearest to it.
+    #[inline]
+    pub fn cell(&self, p: &Point3) -> [u32; 3] {
+        let cell = |v: f64| (v * self.scale).clamp(0.0, self.last) as u32;
+        [cell(p.x - self.low.x), cell(p.y - self.low.y), cell(p.z - self.low.z)]
+    }
 }
 
 /// The Hilbert keys of points, on a grid over their bounding box.
 pub fn hilbert_keys(points: &[Point3]) -> Vec<u64> {
-    let mut low = Point3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY);
-    let mut high = -low;
-    for p in points {
-        low = low.inf(p);
-        high = high.sup(p);
-    }
-    let size = (high - low).max();
-    let cells = f64::from((1u32 << BITS) - 1);
-    let scale = if size > 0.0 { cells / size } else { 0.0 };
-    let cell = |v: f64| (v * scale).clamp(0.0, cells) as u32;
-    points.iter().map(|p| hilbert_key([cell(p.x - low.x), cell(p.y - low.y), cell(p.z - low.z)])).collect()
+    let grid = Grid::new(points, BITS);
+    points.iter().map(|p| hilbert_key(grid.cell(p), BITS)).collect()
 }
 
 #[cfg(test)]
@@ -69,12 +105,11 @@ mod tests {
     #[test]
     fn consecutive_cells_are_neighbours() {
         let n = 8u32;
-        let shift = BITS - 3;
         let mut cells = Vec::new();
         for x in 0..n {
             for y in 0..n {
                 for z in 0..n {
-                    cells.push((hilbert_key([x << shift, y << shift, z << shift]), [x, y, z]));
+                    cells.push((hilbert_key([x, y, z], 3), [x, y, z]));
                 }
             }
         }

@@ -15,10 +15,10 @@ pub const MAX_MAGNITUDE: f64 = 1e58;
 
 /// Bound of the roundoff of the `orient3d` determinant, relative to the product of the largest differences: Shewchuk's
 /// (7 + 56ε)ε times the six products of the permanent, rounded up.
-const ORIENT3D_BOUND: f64 = 5e-15;
+pub(crate) const ORIENT3D_BOUND: f64 = 5e-15;
 
 /// The same for `insphere`: (16 + 224ε)ε times 24 products times the largest lift, rounded up.
-const INSPHERE_BOUND: f64 = 4.5e-14;
+pub(crate) const INSPHERE_BOUND: f64 = 4.5e-14;
 
 /// Whether the predicates are exact on points with this coordinate.
 pub fn in_exact_range(x: f64) -> bool {
@@ -75,6 +75,15 @@ pub fn insphere(a: &Point3, b: &Point3, c: &Point3, d: &Point3, e: &Point3) -> f
     let mz = az.abs().max(bz.abs()).max(cz.abs().max(dz.abs()));
     let ml = al.max(bl).max(cl.max(dl));
     if det.abs() > INSPHERE_BOUND * mx * my * mz * ml { det } else { insphere_exact(a, b, c, d, e) }
+}
+
+/// Bound of the roundoff of [`insphere`]'s determinant of these points, evaluated in floating point as there.
+#[inline]
+pub(crate) fn insphere_bound(p: [&Point3; 4], e: &Point3) -> f64 {
+    let [a, b, c, d] = p.map(|p| p - e);
+    let largest = |i: usize| a[i].abs().max(b[i].abs()).max(c[i].abs().max(d[i].abs()));
+    let lift = a.norm_squared().max(b.norm_squared()).max(c.norm_squared().max(d.norm_squared()));
+    INSPHERE_BOUND * largest(0) * largest(1) * largest(2) * lift
 }
 
 #[cold]

@@ -1,4 +1,4 @@
-//! The tetrahedral complex: structure of arrays, neighbours glued face to face.
+//! The tetrahedral complex: an array of tetrahedra, neighbours glued face to face.
 //!
 //! A *half-face* `4 * tet + face` is face `face` of tetrahedron `tet` (opposite its vertex `face`); gluing pairs
 //! half-faces. *Ghost* tetrahedra, whose last vertex is [`GHOST`], stand on the outer side of every boundary face, so
@@ -69,13 +69,21 @@ pub enum ComplexError {
     },
 }
 
+/// A tetrahedron: its vertices, and across each of them the half-face glued to the opposite face. One half of a cache
+/// line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Cell {
+    pub(super) verts: [u32; 4],
+    pub(super) mates: [u32; 4],
+}
+
 /// Tetrahedra and ghosts over a set of points. See the module's text for half-faces and ghosts.
 #[derive(Clone, Debug, Default)]
 pub struct Complex {
     /// Vertex positions.
     pub points: Vec<Point3>,
-    verts: Vec<[u32; 4]>,
-    mates: Vec<[u32; 4]>,
+    cells: Vec<Cell>,
     /// Bit `i`: face `i` may not be flipped away. Both half-faces of a frozen face carry it.
     frozen: Vec<u8>,
     free: Vec<u32>,
@@ -137,25 +145,19 @@ impl Complex {
 
     /// Makes room for `tets` tetrahedra.
     pub fn reserve(&mut self, tets: usize) {
-        self.verts.reserve(tets);
-        self.mates.reserve(tets);
+        self.cells.reserve(tets);
         self.frozen.reserve(tets);
     }
 
-    /// The same complex over other points: vertex `v` becomes `order[v]`, a permutation.
-    pub(super) fn renumbered(mut self, points: Vec<Point3>, order: &[u32]) -> Self {
-        for v in self.verts.iter_mut().flatten() {
-            if let Some(&new) = order.get(*v as usize) {
-                *v = new;
-            }
+    /// A complex of glued cells, with the ghost vertex last where there is one, as [`Complex::sanity_check`] wants it.
+    /// The slots `free` hold no tetrahedra.
+    pub(super) fn from_cells(points: Vec<Point3>, cells: Vec<Cell>, free: Vec<u32>, vertex_tet: Vec<u32>) -> Self {
+        let frozen = vec![0; cells.len()];
+        let mut c = Self { points, cells, frozen, vertex_tet, free, scratch: ReplaceScratch::default() };
+        for k in 0..c.free.len() {
+            c.cells[c.free[k] as usize].verts = [DEAD; 4];
         }
-        let mut vertex_tet = vec![NONE; points.len()];
-        for (&new, &t) in order.iter().zip(&self.vertex_tet) {
-            vertex_tet[new as usize] = t;
-        }
-        self.vertex_tet = vertex_tet;
-        self.points = points;
-        self
+        c
     }
 
     /// Glues tetrahedra and closes their boundary with ghosts. The boundary may be any shape, also one that touches
@@ -169,7 +171,7 @@ impl Complex {
             c.check_vertices(t as u32, v)?;
             c.alloc(*v);
         }
-        let open = c.glue_all()?;
+        let open = c.glue_all(tets)?;
         c.add_ghosts(&open);
         Ok(c)
     }
@@ -183,13 +185,13 @@ impl Complex {
     }
 
     /// Glues all faces that two tetrahedra share; returns the half-faces that are left over.
-    fn glue_all(&mut self) -> Result<Vec<u32>, ComplexError> {
-        let adjacency = tet_adjacency(&self.verts, self.points.len());
+    fn glue_all(&mut self, tets: &[[u32; 4]]) -> Result<Vec<u32>, ComplexError> {
+        let adjacency = tet_adjacency(tets, self.points.len());
         if let Some(&half) = adjacency.crowded.first() {
             return Err(ComplexError::FaceNotConforming { face: self.face(half) });
         }
         let mut open = Vec::new();
-        for half in 0..4 * self.verts.len() as u32 {
+        for half in 0..4 * tets.len() as u32 {
             let mate = adjacency.neighbors[(half >> 2) as usize][(half & 3) as usize];
             if mate == NONE {
                 open.push(half);
@@ -197,7 +199,9 @@ impl Complex {
                 return Err(ComplexError::FaceNotConforming { face: self.face(half) });
             }
         }
-        self.mates = adjacency.neighbors;
+        for (cell, mates) in self.cells.iter_mut().zip(adjacency.neighbors) {
+            cell.mates = mates;
+        }
         Ok(open)
     }
 
@@ -216,12 +220,12 @@ impl Complex {
         for (new, &t) in kept.iter().enumerate() {
             part.frozen[new] = self.frozen[t as usize];
             for i in 0..4 {
-                let mate = self.mates[t as usize][i];
+                let mate = self.cells[t as usize].mates[i];
                 let n = new_tet[(mate >> 2) as usize];
                 if n == NONE {
                     open.push(4 * new as u32 + i as u32);
                 } else {
-                    part.mates[new][i] = 4 * n + (mate & 3);
+                    part.cells[new].mates[i] = 4 * n + (mate & 3);
                 }
             }
         }
@@ -260,7 +264,7 @@ impl Complex {
             // The other face of the tetrahedron at the edge.
             let t = h / 4;
             let next = (0..4)
-                .find(|&j| j != h % 4 && !edge.contains(&self.verts[t as usize][j as usize]))
+                .find(|&j| j != h % 4 && !edge.contains(&self.cells[t as usize].verts[j as usize]))
                 .map_or(h, |j| 4 * t + j);
             let mate = self.mate(next);
             if !self.is_ghost(mate / 4) {
@@ -268,7 +272,7 @@ impl Complex {
                 continue;
             }
             let other = mate / 4;
-            let v = self.verts[other as usize];
+            let v = self.cells[other as usize].verts;
             if let Some(j) = (0..3).find(|&j| !edge.contains(&v[j as usize])) {
                 self.glue(4 * ghost + i, 4 * other + j);
             }
@@ -278,7 +282,7 @@ impl Complex {
 
     /// The real tetrahedra, in the order of their slots, and all points.
     pub fn into_mesh(self) -> TetMesh {
-        let tets = self.real_tets().map(|t| self.verts[t as usize]).collect();
+        let tets = self.real_tets().map(|t| self.cells[t as usize].verts).collect();
         TetMesh { points: self.points, tets }
     }
 
@@ -306,19 +310,19 @@ impl Complex {
 
     /// Number of slots; tetrahedra are numbered below it, deleted ones included.
     pub fn slots(&self) -> usize {
-        self.verts.len()
+        self.cells.len()
     }
 
     /// Whether slot `t` holds a tetrahedron, real or ghost.
     #[inline]
     pub fn is_alive(&self, t: u32) -> bool {
-        self.verts[t as usize][0] != DEAD
+        self.cells[t as usize].verts[0] != DEAD
     }
 
     /// Whether `t` stands outside the boundary.
     #[inline]
     pub fn is_ghost(&self, t: u32) -> bool {
-        self.verts[t as usize][3] == GHOST
+        self.cells[t as usize].verts[3] == GHOST
     }
 
     /// Whether `t` is alive and no ghost.
@@ -335,37 +339,37 @@ impl Complex {
     /// The four vertices of `t`.
     #[inline]
     pub fn verts(&self, t: u32) -> [u32; 4] {
-        self.verts[t as usize]
+        self.cells[t as usize].verts
     }
 
     /// The half-face glued to `half`.
     #[inline]
     pub fn mate(&self, half: u32) -> u32 {
-        self.mates[(half >> 2) as usize][(half & 3) as usize]
+        self.cells[(half >> 2) as usize].mates[(half & 3) as usize]
     }
 
     /// The tetrahedron across face `i` of `t`.
     #[inline]
     pub fn neighbor(&self, t: u32, i: usize) -> u32 {
-        self.mates[t as usize][i] >> 2
+        self.cells[t as usize].mates[i] >> 2
     }
 
     /// Vertices of a half-face, counter-clockwise seen from outside its tetrahedron.
     #[inline]
     pub fn face(&self, half: u32) -> [u32; 3] {
-        face_of(&self.verts[(half >> 2) as usize], (half & 3) as usize)
+        face_of(&self.cells[(half >> 2) as usize].verts, (half & 3) as usize)
     }
 
     /// The vertex of the half-face's tetrahedron opposite to it.
     #[inline]
     pub fn apex(&self, half: u32) -> u32 {
-        self.verts[(half >> 2) as usize][(half & 3) as usize]
+        self.cells[(half >> 2) as usize].verts[(half & 3) as usize]
     }
 
     /// Slot of vertex `v` in `t`.
     #[inline]
     pub fn slot_of(&self, t: u32, v: u32) -> Option<usize> {
-        self.verts[t as usize].iter().position(|&x| x == v)
+        self.cells[t as usize].verts.iter().position(|&x| x == v)
     }
 
     /// A tetrahedron (perhaps a ghost) at vertex `v`; [`NONE`] when no tetrahedron has it.
@@ -420,31 +424,21 @@ impl Complex {
     #[inline]
     pub fn alloc(&mut self, v: [u32; 4]) -> u32 {
         let t = if let Some(t) = self.free.pop() {
-            self.verts[t as usize] = v;
-            self.mates[t as usize] = [NONE; 4];
+            self.cells[t as usize] = Cell { verts: v, mates: [NONE; 4] };
             self.frozen[t as usize] = 0;
             t
         } else {
-            self.verts.push(v);
-            self.mates.push([NONE; 4]);
+            self.cells.push(Cell { verts: v, mates: [NONE; 4] });
             self.frozen.push(0);
-            self.verts.len() as u32 - 1
+            self.cells.len() as u32 - 1
         };
         self.set_vertex_tets(t);
         t
     }
 
-    /// Puts other vertices into slot `t`, unglued.
-    #[inline]
-    pub(super) fn reset(&mut self, t: u32, v: [u32; 4]) {
-        self.verts[t as usize] = v;
-        self.frozen[t as usize] = 0;
-        self.set_vertex_tets(t);
-    }
-
     #[inline]
     fn set_vertex_tets(&mut self, t: u32) {
-        for v in self.verts[t as usize] {
+        for v in self.cells[t as usize].verts {
             if v != GHOST {
                 self.vertex_tet[v as usize] = t;
             }
@@ -454,15 +448,15 @@ impl Complex {
     /// Deletes a tetrahedron. Its mates keep pointing at it until they are glued anew.
     #[inline]
     pub fn free(&mut self, t: u32) {
-        self.verts[t as usize] = [DEAD; 4];
+        self.cells[t as usize].verts = [DEAD; 4];
         self.free.push(t);
     }
 
     /// Glues two half-faces.
     #[inline]
     pub fn glue(&mut self, a: u32, b: u32) {
-        self.mates[(a >> 2) as usize][(a & 3) as usize] = b;
-        self.mates[(b >> 2) as usize][(b & 3) as usize] = a;
+        self.cells[(a >> 2) as usize].mates[(a & 3) as usize] = b;
+        self.cells[(b >> 2) as usize].mates[(b & 3) as usize] = a;
     }
 
     /// Exchanges the tetrahedra `old` for others that fill the same room: the faces of `new` must match each other and

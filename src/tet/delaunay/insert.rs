@@ -1,81 +1,103 @@
 //! One insertion: locate by walking, dig the cavity, fill it with the star of the new point.
 
-use super::perturb::in_sphere_perturbed;
+use super::conflict::{Bounds, Site, View, in_sphere};
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
-use crate::tet::complex::{Complex, GHOST, NONE, face_of, ghost_last};
+use crate::tet::complex::{Cell, Complex, GHOST, NONE, face_of};
 use rustc_hash::FxHashMap;
 
 /// Cavities with at most this many vertices match the new tetrahedra through a square table.
 const TABLE: usize = 64;
 
-/// A face of the cavity's boundary: the half-face outside, and its vertices counter-clockwise seen from outside the
-/// cavity.
+/// `BACK[i][k]`: which vertex of a tetrahedron stands at place `k` of its face `i` seen from inside.
+const BACK: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// What the cavity's search knows of a tetrahedron.
+const UNSEEN: u8 = 0;
+const OUTSIDE: u8 = 1;
+const INSIDE: u8 = 2;
+
+/// A face of the cavity's boundary: the half-face outside, and its vertices counter-clockwise seen from inside.
 #[derive(Clone, Copy, Debug)]
 struct Wall {
     outer: u32,
     face: [u32; 3],
 }
 
-/// The growing tetrahedralization and the buffers of its insertions.
+/// The growing tetrahedralization and the buffers of its insertions. The ghost vertex has the number behind the last
+/// point's here, and a site at that place.
 pub(super) struct Inserter {
-    c: Complex,
-    /// Per tetrahedron, `2 · insertion` when seen outside the cavity, `2 · insertion + 1` when in it.
-    stamp: Vec<u32>,
+    sites: Vec<Site>,
+    cells: Vec<Cell>,
+    free: Vec<u32>,
+    seen: Vec<u8>,
+    bounds: Bounds,
+    ghost: u32,
     now: u32,
     cavity: Vec<u32>,
     walls: Vec<Wall>,
     created: Vec<u32>,
-    /// Per vertex (the ghost last) the insertion that numbered it, and its number within the cavity.
-    local: Vec<(u32, u32)>,
-    table: Vec<u32>,
+    table: Box<[u32; TABLE * TABLE]>,
     pairs: FxHashMap<(u32, u32), u32>,
     hint: u32,
 }
 
 impl Inserter {
-    pub(super) fn new(points: Vec<Point3>) -> Self {
+    pub(super) fn new(points: &[Point3]) -> Self {
         let n = points.len();
-        let mut c = Complex::new(points);
-        c.reserve(7 * n + 64);
+        let site = |at: Point3| Site { at, stamp: 0, local: 0 };
+        let mut sites = Vec::with_capacity(n + 1);
+        sites.extend(points.iter().map(|&at| site(at)));
+        sites.push(site(Point3::origin()));
         Self {
-            c,
-            stamp: vec![0; 7 * n + 64],
+            sites,
+            cells: Vec::with_capacity(7 * n + 64),
+            free: Vec::new(),
+            seen: Vec::with_capacity(7 * n + 64),
+            bounds: Bounds::of(points),
+            ghost: n as u32,
             now: 0,
             cavity: Vec::new(),
             walls: Vec::new(),
             created: Vec::new(),
-            local: vec![(0, 0); n + 1],
-            table: vec![NONE; TABLE * TABLE],
+            table: Box::new([NONE; TABLE * TABLE]),
             pairs: FxHashMap::default(),
             hint: 0,
         }
     }
 
-    pub(super) fn points(&self) -> &[Point3] {
-        &self.c.points
+    #[inline(always)]
+    fn at(&self, v: u32) -> &Point3 {
+        &self.sites[v as usize].at
+    }
+
+    #[inline(always)]
+    fn corners(&self, v: &[u32; 4]) -> [&Point3; 4] {
+        v.map(|v| self.at(v))
+    }
+
+    #[inline(always)]
+    fn cell(&self, t: u32) -> &Cell {
+        &self.cells[t as usize]
     }
 
     /// Begins with one positive tetrahedron and its four ghosts.
     pub(super) fn start(&mut self, v: [u32; 4]) {
-        let t = self.c.alloc(v);
-        let ghosts: [u32; 4] = std::array::from_fn(|i| {
-            let [a, b, d] = face_of(&v, i);
-            self.c.alloc([a, b, d, GHOST])
-        });
-        for (i, &g) in ghosts.iter().enumerate() {
-            self.c.glue(4 * t + i as u32, 4 * g + 3);
+        self.cells.push(Cell { verts: v, mates: [7, 11, 15, 19] });
+        for i in 0..4 {
+            let [a, b, c] = face_of(&v, i);
+            self.cells.push(Cell { verts: [a, b, c, self.ghost], mates: [NONE, NONE, NONE, i as u32] });
+        }
+        // Across from vertex k of ghost i stands the ghost that lacks that vertex.
+        for i in 0..4 {
             for k in 0..3 {
-                // Across from vertex k of ghost i stands the ghost that lacks that vertex.
-                let lacks = self.c.verts(g)[k];
-                if let Some(j) = v.iter().position(|&x| x == lacks)
-                    && let Some(back) = self.c.slot_of(ghosts[j], v[i])
-                {
-                    self.c.glue(4 * g + k as u32, 4 * ghosts[j] + back as u32);
-                }
+                let lacks = self.cells[i + 1].verts[k];
+                let other = (0..4).find(|&j| v[j] == lacks).unwrap_or(0);
+                let back = (0..3).find(|&j| self.cells[other + 1].verts[j] == v[i]).unwrap_or(0);
+                self.cells[i + 1].mates[k] = 4 * (other as u32 + 1) + back as u32;
             }
         }
-        self.hint = t;
+        self.seen.resize(self.cells.len(), UNSEEN);
     }
 
     /// Inserts vertex `v`.
@@ -83,9 +105,10 @@ impl Inserter {
     /// # Errors
     /// The vertex that stands at the same place already; nothing is changed.
     pub(super) fn insert(&mut self, v: u32) -> Result<(), u32> {
-        let p = self.c.points[v as usize];
+        let p = *self.at(v);
         let first = self.locate(&p);
-        if let Some(&twin) = self.c.verts(first).iter().find(|&&w| w != GHOST && self.c.points[w as usize] == p) {
+        let twin = |&&w: &&u32| w != self.ghost && *self.at(w) == p;
+        if let Some(&twin) = self.cell(first).verts.iter().find(twin) {
             return Err(twin);
         }
         self.dig(first, &p);
@@ -93,197 +116,258 @@ impl Inserter {
         Ok(())
     }
 
-    /// A tetrahedron whose closure holds `p`, or a ghost whose face sees `p` from outside. Visibility walks in regular
+    /// A tetrahedron in conflict with `p`: one whose sphere it is in for sure, one whose closure holds it, or a ghost
+    /// whose face sees it from outside. Where `p` is a vertex, one that has it. Visibility walks in regular
     /// triangulations have no cycles (Edelsbrunner 1990), so exact tests suffice for an end.
     fn locate(&self, p: &Point3) -> u32 {
-        let c = &self.c;
         let mut t = self.hint;
-        let mut from = NONE;
-        if c.is_ghost(t) {
-            t = c.mate(4 * t + 3) >> 2;
+        let mut from = 4;
+        let first = self.cell(t);
+        if first.verts[3] == self.ghost {
+            t = first.mates[3] >> 2;
         }
         loop {
-            let v = c.verts(t);
-            let q = v.map(|i| &c.points[i as usize]);
-            let mut exit = NONE;
-            for i in 0..4u32 {
-                if i == from {
-                    continue;
-                }
-                let [a, b, d] = face_of(&[0, 1, 2, 3], i as usize).map(|k| q[k as usize]);
-                if orient3d(a, b, d, p) > 0.0 {
-                    exit = i;
-                    break;
-                }
-            }
-            if exit == NONE {
+            let cell = self.cell(t);
+            if cell.verts[3] == self.ghost {
                 return t;
             }
-            let mate = c.mate(4 * t + exit);
-            (t, from) = (mate >> 2, mate & 3);
-            if c.is_ghost(t) {
+            let view = View::new(self.corners(&cell.verts), p);
+            if view.sphere > self.bounds.sphere {
                 return t;
             }
+            let exit = self.exit(&cell.verts, &view, from, p);
+            let Some(&mate) = cell.mates.get(exit) else { return t };
+            (t, from) = (mate >> 2, (mate & 3) as usize);
         }
     }
 
-    /// Whether `p` destroys tetrahedron `t`.
-    #[inline]
-    fn in_conflict(&self, t: u32, p: &Point3) -> bool {
-        let c = &self.c;
-        let v = c.verts(t);
-        let at = |i: u32| &c.points[i as usize];
-        if v[3] != GHOST {
-            return in_sphere_perturbed([at(v[0]), at(v[1]), at(v[2]), at(v[3])], p);
+    /// A face of the tetrahedron that has `p` strictly behind it, the one with the largest volume between; 4 when there
+    /// is none.
+    #[inline(always)]
+    fn exit(&self, v: &[u32; 4], view: &View, from: usize, p: &Point3) -> usize {
+        let mut exit = 4;
+        let mut least = -self.bounds.orient;
+        for (i, &w) in view.weights.iter().enumerate() {
+            if w < least {
+                (exit, least) = (i, w);
+            }
         }
-        let side = orient3d(at(v[0]), at(v[1]), at(v[2]), p);
+        if exit == 4 { self.exit_close(v, view, from, p) } else { exit }
+    }
+
+    /// As [`Self::exit`], where no face is clearly between.
+    fn exit_close(&self, v: &[u32; 4], view: &View, from: usize, p: &Point3) -> usize {
+        let q = self.corners(v);
+        let behind = |&i: &usize| {
+            let [a, b, c] = face_of(&[0, 1, 2, 3], i).map(|k| q[k as usize]);
+            i != from && view.weights[i] <= self.bounds.orient && orient3d(a, b, c, p) > 0.0
+        };
+        (0..4).find(behind).unwrap_or(4)
+    }
+
+    /// Whether `p` destroys a tetrahedron.
+    #[inline(always)]
+    fn in_conflict(&self, cell: &Cell, p: &Point3) -> bool {
+        if cell.verts[3] == self.ghost {
+            return self.ghost_in_conflict(cell, p);
+        }
+        in_sphere(self.corners(&cell.verts), p, &self.bounds)
+    }
+
+    #[inline(never)]
+    fn ghost_in_conflict(&self, cell: &Cell, p: &Point3) -> bool {
+        let v = &cell.verts;
+        let side = orient3d(self.at(v[0]), self.at(v[1]), self.at(v[2]), p);
         if side != 0.0 {
             return side > 0.0;
         }
         // In the plane of a hull face the circle through it decides: the sphere of the tetrahedron behind it.
-        let w = c.verts(c.mate(4 * t + 3) >> 2);
-        in_sphere_perturbed([at(w[0]), at(w[1]), at(w[2]), at(w[3])], p)
+        let behind = self.cell(cell.mates[3] >> 2);
+        in_sphere(self.corners(&behind.verts), p, &self.bounds)
     }
 
     /// Collects the connected tetrahedra in conflict with `p`, and the walls around them.
     fn dig(&mut self, first: u32, p: &Point3) {
-        self.now += 1;
-        let inside = 2 * self.now + 1;
-        let outside = 2 * self.now;
         self.cavity.clear();
         self.walls.clear();
-        self.stamp[first as usize] = inside;
+        self.seen[first as usize] = INSIDE;
         self.cavity.push(first);
         let mut head = 0;
-        while head < self.cavity.len() {
-            let t = self.cavity[head];
+        while let Some(&t) = self.cavity.get(head) {
             head += 1;
+            let cell = *self.cell(t);
             for i in 0..4 {
-                let half = 4 * t + i;
-                let mate = self.c.mate(half);
-                let n = mate >> 2;
-                let seen = self.stamp[n as usize];
-                if seen == inside {
+                let outer = cell.mates[i];
+                let n = outer >> 2;
+                let seen = self.seen[n as usize];
+                if seen == INSIDE {
                     continue;
                 }
-                if seen != outside && self.in_conflict(n, p) {
-                    self.stamp[n as usize] = inside;
-                    self.cavity.push(n);
-                    continue;
+                if seen == UNSEEN {
+                    if self.in_conflict(self.cell(n), p) {
+                        self.seen[n as usize] = INSIDE;
+                        self.cavity.push(n);
+                        continue;
+                    }
+                    self.seen[n as usize] = OUTSIDE;
                 }
-                self.stamp[n as usize] = outside;
-                self.walls.push(Wall { outer: mate, face: self.c.face(half) });
+                self.walls.push(Wall { outer, face: BACK[i].map(|k| cell.verts[k]) });
             }
         }
     }
 
     /// Replaces the cavity by the tetrahedra between `v` and its walls.
     fn fill(&mut self, v: u32) {
-        self.created.clear();
-        let reused = self.cavity.len().min(self.walls.len());
-        for t in self.cavity.split_off(reused) {
-            self.c.free(t);
-        }
-        for k in 0..self.walls.len() {
-            let Wall { outer, face: [a, b, d] } = self.walls[k];
-            let new = ghost_last([a, d, b, v]);
-            let t = match self.cavity.get(k) {
-                Some(&t) => {
-                    self.c.reset(t, new);
-                    t
-                }
-                None => self.c.alloc(new),
-            };
-            self.created.push(t);
-            let apex = self.slot(t, v);
-            self.c.glue(4 * t + apex, outer);
-        }
-        if self.stamp.len() < self.c.slots() {
-            self.stamp.resize(self.c.slots() * 2, 0);
-        }
-        if self.number_vertices() {
-            self.match_by_table();
+        self.now += 1;
+        self.take_slots();
+        let vertices = self.number_vertices();
+        if vertices <= TABLE {
+            self.stand_by_table(v);
         } else {
-            self.match_by_hash();
+            self.stand_by_hash(v);
         }
         self.hint = self.created.last().copied().unwrap_or(self.hint);
     }
 
-    #[inline]
-    fn slot(&self, t: u32, v: u32) -> u32 {
-        let w = self.c.verts(t);
-        if w[3] == v {
-            3
-        } else if w[2] == v {
-            2
-        } else {
-            u32::from(w[1] == v)
+    /// Finds a slot for each wall, the cavity's first, and forgets what the search has seen.
+    fn take_slots(&mut self) {
+        for &t in &self.cavity {
+            self.seen[t as usize] = UNSEEN;
+        }
+        for w in &self.walls {
+            self.seen[(w.outer >> 2) as usize] = UNSEEN;
+        }
+        let needed = self.walls.len();
+        std::mem::swap(&mut self.cavity, &mut self.created);
+        while self.created.len() > needed {
+            self.free.extend(self.created.pop());
+        }
+        while self.created.len() < needed {
+            let slot = self.free.pop().unwrap_or_else(|| {
+                self.cells.push(Cell { verts: [NONE; 4], mates: [NONE; 4] });
+                self.seen.push(UNSEEN);
+                self.cells.len() as u32 - 1
+            });
+            self.created.push(slot);
         }
     }
 
-    /// Numbers the vertices of the walls from 0; false when there are too many for the table.
-    fn number_vertices(&mut self) -> bool {
-        let ghost = self.local.len() - 1;
+    /// Numbers the vertices of the walls from 0; returns how many there are.
+    fn number_vertices(&mut self) -> usize {
         let mut count = 0u32;
-        // A triangulated sphere with w faces has w / 2 + 2 vertices.
-        if self.walls.len() > 2 * (TABLE - 2) {
-            return false;
-        }
         for w in &self.walls {
             for x in w.face {
-                let entry = &mut self.local[(x as usize).min(ghost)];
-                if entry.0 != self.now {
-                    *entry = (self.now, count);
+                let site = &mut self.sites[x as usize];
+                if site.stamp != self.now {
+                    site.stamp = self.now;
+                    site.local = count;
                     count += 1;
                 }
             }
         }
-        count as usize <= TABLE
+        count as usize
     }
 
-    /// Glues the new tetrahedra to each other: each edge of the walls is run through once in each direction.
-    fn match_by_table(&mut self) {
-        let ghost = self.local.len() - 1;
-        for k in 0..self.walls.len() {
-            let f = self.walls[k].face;
-            let l = f.map(|x| self.local[(x as usize).min(ghost)].1 as usize);
-            let t = self.created[k];
+    /// Stands a tetrahedron on each wall and glues them to each other: each edge of the walls is run through once in
+    /// each direction.
+    fn stand_by_table(&mut self, v: u32) {
+        for (w, &t) in self.walls.iter().zip(&self.created) {
+            let l = w.face.map(|x| self.sites[x as usize].local as usize);
+            let turn = turn_of(&w.face, self.ghost);
             for i in 0..3 {
                 let (from, to) = (l[(i + 1) % 3], l[(i + 2) % 3]);
-                self.table[from * TABLE + to] = 4 * t + self.slot(t, f[i]);
+                self.table[(from * TABLE + to) % (TABLE * TABLE)] = 4 * t + turn[i];
             }
         }
-        for k in 0..self.walls.len() {
-            let l = self.walls[k].face.map(|x| self.local[(x as usize).min(ghost)].1 as usize);
-            for i in 0..3 {
+        for (w, &t) in self.walls.iter().zip(&self.created) {
+            let l = w.face.map(|x| self.sites[x as usize].local as usize);
+            let turn = turn_of(&w.face, self.ghost);
+            let mate = |i: usize| {
                 let (from, to) = (l[(i + 1) % 3], l[(i + 2) % 3]);
-                if from < to {
-                    self.c.glue(self.table[from * TABLE + to], self.table[to * TABLE + from]);
-                }
-            }
+                self.table[(to * TABLE + from) % (TABLE * TABLE)]
+            };
+            let cell = placed(w, v, [mate(0), mate(1), mate(2)], turn);
+            self.cells[t as usize] = cell;
+            self.cells[(w.outer >> 2) as usize].mates[(w.outer & 3) as usize] = 4 * t + turn[3];
         }
     }
 
-    fn match_by_hash(&mut self) {
-        self.pairs.clear();
-        for k in 0..self.walls.len() {
-            let f = self.walls[k].face;
-            let t = self.created[k];
+    /// As [`Self::stand_by_table`], for any number of vertices.
+    #[cold]
+    fn stand_by_hash(&mut self, v: u32) {
+        let mut pairs = std::mem::take(&mut self.pairs);
+        pairs.clear();
+        for (w, &t) in self.walls.iter().zip(&self.created) {
+            let turn = turn_of(&w.face, self.ghost);
             for i in 0..3 {
-                let (from, to) = (f[(i + 1) % 3], f[(i + 2) % 3]);
-                let half = 4 * t + self.slot(t, f[i]);
-                match self.pairs.get(&(to, from)) {
-                    Some(&other) => self.c.glue(half, other),
-                    None => {
-                        self.pairs.insert((from, to), half);
-                    }
-                }
+                pairs.insert((w.face[(i + 1) % 3], w.face[(i + 2) % 3]), 4 * t + turn[i]);
             }
         }
+        for (w, &t) in self.walls.iter().zip(&self.created) {
+            let turn = turn_of(&w.face, self.ghost);
+            let mates = [0, 1, 2].map(|i: usize| {
+                pairs.get(&(w.face[(i + 2) % 3], w.face[(i + 1) % 3])).copied().unwrap_or(NONE)
+            });
+            self.cells[t as usize] = placed(w, v, mates, turn);
+            self.cells[(w.outer >> 2) as usize].mates[(w.outer & 3) as usize] = 4 * t + turn[3];
+        }
+        self.pairs = pairs;
     }
 
     /// The complex over the points in their original order: vertex `v` becomes `order[v]`.
     pub(super) fn finish(self, points: Vec<Point3>, order: &[u32]) -> Complex {
-        self.c.renumbered(points, order)
+        let Self { sites, mut cells, free, seen, ghost, .. } = self;
+        drop((sites, seen));
+        // Slots that are free now hold tetrahedra of the past.
+        for &t in &free {
+            cells[t as usize].verts = [NONE; 4];
+        }
+        let mut own = vec![NONE; points.len()];
+        for (t, cell) in (0..).zip(&mut cells) {
+            for v in &mut cell.verts {
+                if *v == ghost {
+                    *v = GHOST;
+                } else if let Some(&new) = order.get(*v as usize) {
+                    own[*v as usize] = t;
+                    *v = new;
+                }
+            }
+        }
+        let mut vertex_tet = vec![NONE; points.len()];
+        for (&new, &t) in order.iter().zip(&own) {
+            vertex_tet[new as usize] = t;
+        }
+        Complex::from_cells(points, cells, free, vertex_tet)
     }
+}
+
+/// At which places of a new tetrahedron the vertices of its wall stand, and the new vertex: in their order, or with the
+/// ghost last.
+#[inline(always)]
+fn turn_of(face: &[u32; 3], ghost: u32) -> [u32; 4] {
+    if face[0] == ghost {
+        [3, 1, 0, 2]
+    } else if face[1] == ghost {
+        [0, 3, 1, 2]
+    } else if face[2] == ghost {
+        [1, 0, 3, 2]
+    } else {
+        [0, 1, 2, 3]
+    }
+}
+
+/// The tetrahedron on a wall.
+#[inline(always)]
+fn placed(w: &Wall, v: u32, mates: [u32; 3], turn: [u32; 4]) -> Cell {
+    let [a, b, c] = w.face;
+    let plain = Cell { verts: [a, b, c, v], mates: [mates[0], mates[1], mates[2], w.outer] };
+    if turn[3] == 3 {
+        return plain;
+    }
+    let mut cell = plain;
+    for i in 0..4 {
+        cell.verts[turn[i] as usize] = plain.verts[i];
+        cell.mates[turn[i] as usize] = plain.mates[i];
+    }
+    cell
 }

@@ -5,15 +5,18 @@
 //! Delaunay triangulations in 3D', 2003), which depends on coordinates alone: the answer is unique, whatever the order
 //! of the points, and has no flat tetrahedra.
 
+mod conflict;
 mod insert;
+mod order;
 mod perturb;
 
 use super::complex::Complex;
 use super::error::TetError;
 use crate::geometry::Point3;
-use crate::geometry::hilbert::hilbert_keys;
 use crate::geometry::predicates::{collinear, in_exact_range, orient3d};
 use insert::Inserter;
+use order::brio;
+pub(super) use order::hash;
 pub use perturb::in_sphere_perturbed;
 
 /// The Delaunay tetrahedralization of points, with ghosts around their convex hull. Vertices are numbered as the
@@ -25,8 +28,9 @@ pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
     validate(points)?;
     let order = brio(points);
     let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
-    let mut inserter = Inserter::new(sorted);
-    let seed = seed_tet(inserter.points()).ok_or(TetError::Flat)?;
+    let seed = seed_tet(&sorted).ok_or(TetError::Flat)?;
+    let mut inserter = Inserter::new(&sorted);
+    drop(sorted);
     inserter.start(seed);
     let mut duplicates: Vec<(u32, u32)> = Vec::new();
     for v in 0..order.len() as u32 {
@@ -57,28 +61,6 @@ fn validate(points: &[Point3]) -> Result<(), TetError> {
         Some(i) => Err(TetError::OutOfRange { point: i as u32, position: points[i] }),
         None => Ok(()),
     }
-}
-
-/// Order of insertion: rounds of doubling size, chosen by a hash of the index, each along the Hilbert curve.
-fn brio(points: &[Point3]) -> Vec<u32> {
-    let keys = hilbert_keys(points);
-    let rounds = points.len().max(2).ilog2().saturating_sub(6);
-    let mut order: Vec<(u32, u64, u32)> = (0..points.len() as u32)
-        .map(|i| {
-            let coins = hash(u64::from(i)).trailing_zeros().min(rounds);
-            (rounds - coins, keys[i as usize], i)
-        })
-        .collect();
-    order.sort_unstable();
-    order.into_iter().map(|(_, _, i)| i).collect()
-}
-
-/// A well-mixed function of an integer (splitmix64).
-pub(super) fn hash(x: u64) -> u64 {
-    let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 /// Four points that span a positive tetrahedron, the first such in order.
