@@ -12,10 +12,10 @@ const TABLE: usize = 64;
 /// `BACK[i][k]`: which vertex of a tetrahedron stands at place `k` of its face `i` seen from inside.
 const BACK: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
-/// What the cavity's search knows of a tetrahedron.
-const UNSEEN: u8 = 0;
-const OUTSIDE: u8 = 1;
-const INSIDE: u8 = 2;
+/// Marks of the cavity's search on a tetrahedron's first vertex: vertices have numbers far below.
+const INSIDE: u32 = 1 << 31;
+const OUTSIDE: u32 = 1 << 30;
+const MARKS: u32 = INSIDE | OUTSIDE;
 
 /// A face of the cavity's boundary: the half-face outside, and its vertices counter-clockwise seen from inside.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,6 @@ pub(super) struct Inserter {
     sites: Vec<Site>,
     cells: Vec<Cell>,
     free: Vec<u32>,
-    seen: Vec<u8>,
     bounds: Bounds,
     ghost: u32,
     now: u32,
@@ -53,7 +52,6 @@ impl Inserter {
             sites,
             cells: Vec::with_capacity(7 * n + 64),
             free: Vec::new(),
-            seen: Vec::with_capacity(7 * n + 64),
             bounds: Bounds::of(points),
             ghost: n as u32,
             now: 0,
@@ -97,7 +95,6 @@ impl Inserter {
                 self.cells[i + 1].mates[k] = 4 * (other as u32 + 1) + back as u32;
             }
         }
-        self.seen.resize(self.cells.len(), UNSEEN);
     }
 
     /// Inserts vertex `v`.
@@ -182,34 +179,37 @@ impl Inserter {
             return side > 0.0;
         }
         // In the plane of a hull face the circle through it decides: the sphere of the tetrahedron behind it.
-        let behind = self.cell(cell.mates[3] >> 2);
-        in_sphere(self.corners(&behind.verts), p, &self.bounds)
+        let mut behind = self.cell(cell.mates[3] >> 2).verts;
+        behind[0] &= !MARKS;
+        in_sphere(self.corners(&behind), p, &self.bounds)
     }
 
     /// Collects the connected tetrahedra in conflict with `p`, and the walls around them.
     fn dig(&mut self, first: u32, p: &Point3) {
         self.cavity.clear();
         self.walls.clear();
-        self.seen[first as usize] = INSIDE;
+        self.cells[first as usize].verts[0] |= INSIDE;
         self.cavity.push(first);
         let mut head = 0;
         while let Some(&t) = self.cavity.get(head) {
             head += 1;
-            let cell = *self.cell(t);
+            let mut cell = *self.cell(t);
+            cell.verts[0] &= !MARKS;
             for i in 0..4 {
                 let outer = cell.mates[i];
                 let n = outer >> 2;
-                let seen = self.seen[n as usize];
-                if seen == INSIDE {
+                let next = self.cell(n);
+                let marks = next.verts[0] & MARKS;
+                if marks == INSIDE {
                     continue;
                 }
-                if seen == UNSEEN {
-                    if self.in_conflict(self.cell(n), p) {
-                        self.seen[n as usize] = INSIDE;
+                if marks == 0 {
+                    let inside = self.in_conflict(next, p);
+                    self.cells[n as usize].verts[0] |= if inside { INSIDE } else { OUTSIDE };
+                    if inside {
                         self.cavity.push(n);
                         continue;
                     }
-                    self.seen[n as usize] = OUTSIDE;
                 }
                 self.walls.push(Wall { outer, face: BACK[i].map(|k| cell.verts[k]) });
             }
@@ -229,14 +229,8 @@ impl Inserter {
         self.hint = self.created.last().copied().unwrap_or(self.hint);
     }
 
-    /// Finds a slot for each wall, the cavity's first, and forgets what the search has seen.
+    /// Finds a slot for each wall, the cavity's first.
     fn take_slots(&mut self) {
-        for &t in &self.cavity {
-            self.seen[t as usize] = UNSEEN;
-        }
-        for w in &self.walls {
-            self.seen[(w.outer >> 2) as usize] = UNSEEN;
-        }
         let needed = self.walls.len();
         std::mem::swap(&mut self.cavity, &mut self.created);
         while self.created.len() > needed {
@@ -245,7 +239,6 @@ impl Inserter {
         while self.created.len() < needed {
             let slot = self.free.pop().unwrap_or_else(|| {
                 self.cells.push(Cell { verts: [NONE; 4], mates: [NONE; 4] });
-                self.seen.push(UNSEEN);
                 self.cells.len() as u32 - 1
             });
             self.created.push(slot);
@@ -288,7 +281,9 @@ impl Inserter {
             };
             let cell = placed(w, v, [mate(0), mate(1), mate(2)], turn);
             self.cells[t as usize] = cell;
-            self.cells[(w.outer >> 2) as usize].mates[(w.outer & 3) as usize] = 4 * t + turn[3];
+            let outer = &mut self.cells[(w.outer >> 2) as usize];
+            outer.mates[(w.outer & 3) as usize] = 4 * t + turn[3];
+            outer.verts[0] &= !MARKS;
         }
     }
 
@@ -309,15 +304,17 @@ impl Inserter {
                 pairs.get(&(w.face[(i + 2) % 3], w.face[(i + 1) % 3])).copied().unwrap_or(NONE)
             });
             self.cells[t as usize] = placed(w, v, mates, turn);
-            self.cells[(w.outer >> 2) as usize].mates[(w.outer & 3) as usize] = 4 * t + turn[3];
+            let outer = &mut self.cells[(w.outer >> 2) as usize];
+            outer.mates[(w.outer & 3) as usize] = 4 * t + turn[3];
+            outer.verts[0] &= !MARKS;
         }
         self.pairs = pairs;
     }
 
     /// The complex over the points in their original order: vertex `v` becomes `order[v]`.
     pub(super) fn finish(self, points: Vec<Point3>, order: &[u32]) -> Complex {
-        let Self { sites, mut cells, free, seen, ghost, .. } = self;
-        drop((sites, seen));
+        let Self { sites, mut cells, free, ghost, .. } = self;
+        drop(sites);
         // Slots that are free now hold tetrahedra of the past.
         for &t in &free {
             cells[t as usize].verts = [NONE; 4];
