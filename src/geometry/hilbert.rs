@@ -40,7 +40,13 @@ const fn entry(place: usize) -> usize {
 
 /// Axis along which the curve runs through the octant at this place.
 const fn direction(place: usize) -> usize {
-    let odd = if place == 0 { 0 } else if place % 2 == 0 { place - 1 } else { place };
+    let odd = if place == 0 {
+        0
+    } else if place % 2 == 0 {
+        place - 1
+    } else {
+        place
+    };
     (odd.trailing_ones() % 3) as usize
 }
 

@@ -300,9 +300,8 @@ impl Inserter {
         }
         for (w, &t) in self.walls.iter().zip(&self.created) {
             let turn = turn_of(&w.face, self.ghost);
-            let mates = [0, 1, 2].map(|i: usize| {
-                pairs.get(&(w.face[(i + 2) % 3], w.face[(i + 1) % 3])).copied().unwrap_or(NONE)
-            });
+            let mates = [0, 1, 2]
+                .map(|i: usize| pairs.get(&(w.face[(i + 2) % 3], w.face[(i + 1) % 3])).copied().unwrap_or(NONE));
             self.cells[t as usize] = placed(w, v, mates, turn);
             let outer = &mut self.cells[(w.outer >> 2) as usize];
             outer.mates[(w.outer & 3) as usize] = 4 * t + turn[3];

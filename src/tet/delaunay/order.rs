@@ -2,7 +2,7 @@
 //! BRIO', 2003).
 
 use crate::geometry::Point3;
-use crate::geometry::hilbert::{hilbert_key, Grid};
+use crate::geometry::hilbert::{Grid, hilbert_key};
 
 /// Logarithm of how many times as many points a round has as the one before.
 const GROWTH: u32 = 3;
