@@ -8,7 +8,7 @@ use crate::mesh::check::{Verdict, check_tets, check_volume};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The mesh: VTU or MSH 4.1
+    /// The mesh: VTU, MSH 4.1, Medit .mesh, or TetGen's .ele
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Print JSON

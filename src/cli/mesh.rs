@@ -16,7 +16,7 @@ use crate::pipeline::{self, Clock, MeshPlan, Observer, RunError, Stage};
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the mesh goes: .vtu, or .msh (Gmsh 4.1)
+    /// Where the mesh goes: .vtu, .msh (Gmsh 4.1), .mesh (Medit), or .ele (TetGen's family of files)
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
     /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
@@ -112,6 +112,7 @@ impl Args {
             expectation: Some(result.expectation.clone()),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
             options: format!("mesh --rho {}", self.rho),
+            regions: false,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::atomic::AtomicFile;
 use std::error::Error;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Why a file could not be read or written; `F` tells what can be wrong with the content of its format.
@@ -82,6 +82,25 @@ pub(super) fn write_whole<F: Error>(
         file.commit()
     };
     all().map_err(|source| FileError::Write { path: path.to_path_buf(), source })
+}
+
+/// Writes several files that belong together: each is complete before the first of them appears, in the order given.
+pub(super) fn write_all_whole<F: Error>(
+    files: &[(PathBuf, &dyn Fn(&mut dyn Write) -> io::Result<()>)],
+) -> Result<(), FileError<F>> {
+    let mut complete = Vec::with_capacity(files.len());
+    for (path, write) in files {
+        let make = || {
+            let mut file = AtomicFile::create(path)?;
+            write(&mut file)?;
+            Ok(file)
+        };
+        complete.push(make().map_err(|source| FileError::Write { path: path.clone(), source })?);
+    }
+    for (file, (path, _)) in complete.into_iter().zip(files) {
+        file.commit().map_err(|source| FileError::Write { path: path.clone(), source })?;
+    }
+    Ok(())
 }
 
 /// Makes sure that every cell names existing points.

@@ -1,6 +1,9 @@
 //! Meshes in files: which format, safe writing, and what goes into a file beside the mesh.
 
 use super::atomic::AtomicFile;
+use super::file_error::FileError;
+use super::medit::{self, MeditFault};
+use super::tetgen::{self, MeshFamily, TetgenFault};
 use super::vtk_xml::VtkError;
 use super::{msh, vtu};
 use crate::mesh::VolumeMesh;
@@ -16,6 +19,10 @@ pub enum MeshFormat {
     Vtu,
     /// Gmsh 4.1, `.msh`.
     Msh,
+    /// Medit's text format, `.mesh`.
+    Medit,
+    /// `TetGen`'s family of files, named by its `.ele` or `.node`.
+    Tetgen,
 }
 
 impl MeshFormat {
@@ -28,6 +35,8 @@ impl MeshFormat {
         match extension.to_ascii_lowercase().as_str() {
             "vtu" => Ok(Self::Vtu),
             "msh" => Ok(Self::Msh),
+            "mesh" => Ok(Self::Medit),
+            "ele" | "node" => Ok(Self::Tetgen),
             _ => Err(MeshFileError::UnknownFormat { path: path.to_path_buf() }),
         }
     }
@@ -42,6 +51,8 @@ pub struct MeshNotes {
     pub generator: String,
     /// The options it was made with.
     pub options: String,
+    /// Whether the blocks of the tetrahedra are regions, which a format that groups cells is to keep apart.
+    pub regions: bool,
 }
 
 /// A mesh as it was read from a file.
@@ -60,7 +71,7 @@ pub struct MeshFile {
 #[non_exhaustive]
 pub enum MeshFileError {
     /// No format has this extension.
-    #[error("{}: the extension names no known mesh format (known: .vtu, .msh)", path.display())]
+    #[error("{}: the extension names no known mesh format (known: .vtu, .msh, .mesh, .ele)", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -105,6 +116,15 @@ pub enum ContentFault {
     /// It is no sound VTK XML file.
     #[error(transparent)]
     Vtk(#[from] VtkError),
+    /// It is no mesh of Medit's.
+    #[error(transparent)]
+    Medit(#[from] MeditFault),
+    /// It is no mesh of `TetGen`'s.
+    #[error(transparent)]
+    Tetgen(#[from] TetgenFault),
+    /// The format spreads a mesh over several files.
+    #[error("a mesh of TetGen's is several files: name the path of its .ele file")]
+    SeveralFiles,
     /// Something that every such file has is not there.
     #[error("'{what}' is missing")]
     Missing {
@@ -158,6 +178,26 @@ pub enum ContentFault {
     },
 }
 
+impl<F> From<FileError<F>> for MeshFileError
+where
+    F: std::error::Error + 'static,
+    ContentFault: From<F>,
+{
+    fn from(error: FileError<F>) -> Self {
+        match error {
+            FileError::UnknownFormat { path, .. } => Self::UnknownFormat { path },
+            FileError::Read { path, source } => Self::Read { path, source },
+            FileError::Write { path, source } => Self::Write { path, source },
+            FileError::Empty { path } => Self::Empty { path },
+            FileError::Content { path, fault } => Self::Content { path, fault: fault.into() },
+            FileError::BadMesh { path, cell } => {
+                let source = io::Error::new(io::ErrorKind::InvalidInput, format!("cell {cell} names no point"));
+                Self::Write { path, source }
+            }
+        }
+    }
+}
+
 /// Reads a mesh from a file, in the format that its extension names.
 ///
 /// # Errors
@@ -168,6 +208,9 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
         return Err(refused(io::ErrorKind::IsADirectory.into()));
     }
     let format = MeshFormat::of(path)?;
+    if format == MeshFormat::Tetgen {
+        return Ok(unnoted(tetgen::read_mesh(path)?));
+    }
     let bytes = std::fs::read(path).map_err(refused)?;
     if bytes.trim_ascii().is_empty() {
         return Err(MeshFileError::Empty { path: path.to_path_buf() });
@@ -183,7 +226,15 @@ pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, Cont
     match format {
         MeshFormat::Vtu => vtu::read_vtu(bytes),
         MeshFormat::Msh => msh::read_msh(bytes),
+        MeshFormat::Medit => Ok(unnoted(medit::read_medit_from(bytes)?)),
+        MeshFormat::Tetgen => Err(ContentFault::SeveralFiles),
     }
+}
+
+/// A mesh from a format that has no place for notes.
+fn unnoted(volume: VolumeMesh) -> MeshFile {
+    let labelled = !volume.boundary.is_empty();
+    MeshFile { volume, labelled, notes: MeshNotes::default() }
 }
 
 /// Makes sure, before any work is done, that a mesh can be written to `path`: the format is known, and a file can be
@@ -202,6 +253,10 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn write_mesh(path: &Path, mesh: &VolumeMesh, notes: &MeshNotes) -> Result<(), MeshFileError> {
     let format = MeshFormat::of(path)?;
+    if format == MeshFormat::Tetgen {
+        MeshFamily::of_volume(mesh).write(path)?;
+        return Ok(());
+    }
     let write = || {
         let mut file = AtomicFile::create(path)?;
         write_format(&mut file, format, mesh, notes)?;
@@ -229,5 +284,7 @@ fn write_format(
     match format {
         MeshFormat::Vtu => vtu::write_vtu(out, mesh, notes),
         MeshFormat::Msh => msh::write_msh(out, mesh, notes),
+        MeshFormat::Medit => medit::write_medit_to(out, mesh),
+        MeshFormat::Tetgen => Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of TetGen's is several files")),
     }
 }

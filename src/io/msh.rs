@@ -63,7 +63,8 @@ impl Extra {
     pub(super) fn into_notes(self) -> (MeshNotes, Vec<ExtraCap>) {
         let terminals = self.terminals.unwrap_or_default();
         let expectation = self.loops.map(|loops| Expectation { loops, terminals });
-        (MeshNotes { expectation, generator: self.generator, options: self.options }, self.caps)
+        let notes = MeshNotes { expectation, generator: self.generator, options: self.options, regions: false };
+        (notes, self.caps)
     }
 }
 
@@ -77,22 +78,46 @@ struct Surface {
     bounds: [f64; 6],
 }
 
-/// Writes a mesh as MSH 4.1. The blocks of the cells are not written: the format has no place for them.
+/// Part of the tetrahedra: a volume.
+struct Volume {
+    /// The physical group, and the name of it; none for regions whose id can be no physical tag.
+    group: Option<(i32, String)>,
+    /// Its tetrahedra; none for all.
+    tets: Option<Vec<u32>>,
+}
+
+/// One volume for all, or one for each region.
+fn volumes_of(mesh: &VolumeMesh, notes: &MeshNotes) -> Vec<Volume> {
+    let mut of_region: Vec<(i32, u32)> = mesh.tet_block.iter().copied().zip(0..).collect();
+    of_region.sort_unstable();
+    if notes.regions && of_region.first().map(|r| r.0) != of_region.last().map(|r| r.0) {
+        let volume = |run: &[(i32, u32)]| Volume {
+            group: Some((run[0].0, format!("region_{}", run[0].0))).filter(|group| group.0 > 0),
+            tets: Some(run.iter().map(|&(_, tet)| tet).collect()),
+        };
+        return of_region.chunk_by(|a, b| a.0 == b.0).map(volume).collect();
+    }
+    let patches = mesh.boundary_patch.iter().chain(mesh.patches.iter().map(|p| &p.id));
+    let tag = patches.max().map_or(1, |&id| id.max(0).saturating_add(1));
+    vec![Volume { group: Some((tag, VOLUME_NAME.into())), tets: None }]
+}
+
+/// Writes a mesh as MSH 4.1. Blocks that are regions become volumes; other blocks are not written: the format has no
+/// place for them.
 ///
 /// # Errors
 /// What the writer `out` reports.
 pub fn write_msh(out: &mut impl Write, mesh: &VolumeMesh, notes: &MeshNotes) -> io::Result<()> {
     let mut owned = vec![false; mesh.mesh.points.len()];
     let surfaces = surfaces_of(mesh, &mut owned);
-    let volume_tag =
-        mesh.boundary_patch.iter().chain(mesh.patches.iter().map(|p| &p.id)).max().map_or(1, |m| m.max(&0) + 1);
+    let volumes = volumes_of(mesh, notes);
     out.write_all(b"$MeshFormat\n4.1 1 8\n")?;
     ints(out, &[1])?;
     out.write_all(b"\n$EndMeshFormat\n")?;
-    write_names(out, mesh, volume_tag)?;
-    write_entities(out, mesh, &surfaces, volume_tag)?;
+    write_names(out, mesh, &volumes)?;
+    write_entities(out, mesh, &surfaces, &volumes)?;
     write_nodes(out, mesh, &surfaces, &owned)?;
-    write_elements(out, mesh, &surfaces)?;
+    write_elements(out, mesh, &surfaces, &volumes)?;
     writeln!(out, "${SECTION}")?;
     serde_json::to_writer(&mut *out, &Extra::of(mesh, notes))?;
     write!(out, "\n$End{SECTION}\n")
@@ -128,18 +153,22 @@ fn bounds<'a>(points: impl Iterator<Item = &'a Point3>) -> [f64; 6] {
     [aabb.min.x, aabb.min.y, aabb.min.z, aabb.max.x, aabb.max.y, aabb.max.z]
 }
 
-fn write_names(out: &mut impl Write, mesh: &VolumeMesh, volume_tag: i32) -> io::Result<()> {
+fn write_names(out: &mut impl Write, mesh: &VolumeMesh, volumes: &[Volume]) -> io::Result<()> {
     let named = || mesh.patches.iter().filter(|p| p.id > 0);
-    writeln!(out, "$PhysicalNames\n{}", named().count() + 1)?;
+    let groups = || volumes.iter().filter_map(|volume| volume.group.as_ref());
+    writeln!(out, "$PhysicalNames\n{}", named().count() + groups().count())?;
     for patch in named() {
         writeln!(out, "2 {} \"{}\"", patch.id, patch.name.replace('"', "'"))?;
     }
-    writeln!(out, "3 {volume_tag} \"{VOLUME_NAME}\"\n$EndPhysicalNames")
+    for (tag, name) in groups() {
+        writeln!(out, "3 {tag} \"{name}\"")?;
+    }
+    writeln!(out, "$EndPhysicalNames")
 }
 
-fn write_entities(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface], volume_tag: i32) -> io::Result<()> {
+fn write_entities(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface], volumes: &[Volume]) -> io::Result<()> {
     out.write_all(b"$Entities\n")?;
-    sizes(out, &[0, 0, surfaces.len(), 1])?;
+    sizes(out, &[0, 0, surfaces.len(), volumes.len()])?;
     for (i, surface) in surfaces.iter().enumerate() {
         ints(out, &[i as i32 + 1])?;
         floats(out, &surface.bounds)?;
@@ -149,13 +178,18 @@ fn write_entities(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface],
         ints(out, groups)?;
         sizes(out, &[0])?;
     }
-    ints(out, &[1])?;
-    floats(out, &bounds(mesh.mesh.points.iter()))?;
-    sizes(out, &[1])?;
-    ints(out, &[volume_tag])?;
-    sizes(out, &[surfaces.len()])?;
-    for i in 0..surfaces.len() {
+    for (i, volume) in volumes.iter().enumerate() {
         ints(out, &[i as i32 + 1])?;
+        floats(out, &bounds(mesh.mesh.points.iter()))?;
+        let group = volume.group.as_ref().map(|group| group.0);
+        sizes(out, &[usize::from(group.is_some())])?;
+        ints(out, group.as_slice())?;
+        // Which surfaces bound which region is not known here.
+        let bounding = if volumes.len() == 1 { surfaces.len() } else { 0 };
+        sizes(out, &[bounding])?;
+        for i in 0..bounding {
+            ints(out, &[i as i32 + 1])?;
+        }
     }
     out.write_all(b"\n$EndEntities\n")
 }
@@ -183,11 +217,12 @@ fn write_nodes(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface], ow
     out.write_all(b"\n$EndNodes\n")
 }
 
-fn write_elements(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface]) -> io::Result<()> {
+fn write_elements(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface], volumes: &[Volume]) -> io::Result<()> {
     let (tets, faces) = (&mesh.mesh.tets, &mesh.boundary);
     let count = tets.len() + surfaces.iter().map(|surface| surface.faces.len()).sum::<usize>();
     out.write_all(b"$Elements\n")?;
-    sizes(out, &[surfaces.len() + usize::from(!tets.is_empty()), count, usize::from(count > 0), count])?;
+    let filled = if tets.is_empty() { 0 } else { volumes.len() };
+    sizes(out, &[surfaces.len() + filled, count, usize::from(count > 0), count])?;
     for (i, surface) in surfaces.iter().enumerate() {
         ints(out, &[2, i as i32 + 1, MSH_TRIANGLE])?;
         sizes(out, &[surface.faces.len()])?;
@@ -196,12 +231,16 @@ fn write_elements(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface])
             sizes(out, &[tets.len() + face as usize + 1, a, b, c])?;
         }
     }
-    if !tets.is_empty() {
-        ints(out, &[3, 1, MSH_TETRA])?;
-        sizes(out, &[tets.len()])?;
-        for (i, t) in tets.iter().enumerate() {
-            let [a, b, c, d] = t.map(|v| v as usize + 1);
-            sizes(out, &[i + 1, a, b, c, d])?;
+    for (i, volume) in volumes.iter().enumerate().take(filled) {
+        ints(out, &[3, i as i32 + 1, MSH_TETRA])?;
+        sizes(out, &[volume.tets.as_ref().map_or(tets.len(), Vec::len)])?;
+        let mut write = |tet: usize| {
+            let [a, b, c, d] = tets[tet].map(|v| v as usize + 1);
+            sizes(out, &[tet + 1, a, b, c, d])
+        };
+        match &volume.tets {
+            Some(list) => list.iter().try_for_each(|&tet| write(tet as usize))?,
+            None => (0..tets.len()).try_for_each(&mut write)?,
         }
     }
     out.write_all(b"\n$EndElements\n")

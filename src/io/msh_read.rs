@@ -153,8 +153,10 @@ struct Parts {
     names: Vec<(i32, String)>,
     /// First physical group of each surface.
     group_of_surface: FxHashMap<i32, i32>,
+    /// First physical group of each volume.
+    group_of_volume: FxHashMap<i32, i32>,
     nodes: Vec<(u64, Point3)>,
-    tets: Vec<(u64, [u64; 4])>,
+    tets: Vec<(u64, [u64; 4], i32)>,
     triangles: Vec<(u64, [u64; 3], i32)>,
     extra: Extra,
 }
@@ -186,8 +188,10 @@ impl Parts {
                 }
                 for i in 0..cursor.size()? {
                     let group = cursor.int()?;
-                    if i == 0 && dimension == 2 {
-                        self.group_of_surface.insert(tag, group);
+                    match dimension {
+                        2 if i == 0 => drop(self.group_of_surface.insert(tag, group)),
+                        3 if i == 0 => drop(self.group_of_volume.insert(tag, group)),
+                        _ => {}
                     }
                 }
                 if dimension > 0 {
@@ -223,7 +227,8 @@ impl Parts {
         let (blocks, ..) = (cursor.size()?, cursor.size()?, cursor.size()?, cursor.size()?);
         for _ in 0..blocks {
             let (_dimension, entity, kind) = (cursor.int()?, cursor.int()?, cursor.int()?);
-            let group = self.group_of_surface.get(&entity).copied().unwrap_or(0);
+            let groups = if kind == MSH_TETRA { &self.group_of_volume } else { &self.group_of_surface };
+            let group = groups.get(&entity).copied().unwrap_or(0);
             for _ in 0..cursor.size()? {
                 let tag = cursor.size()?;
                 match kind {
@@ -232,7 +237,7 @@ impl Parts {
                     }
                     MSH_TETRA => {
                         let nodes = [cursor.size()?, cursor.size()?, cursor.size()?, cursor.size()?];
-                        self.tets.push((tag, nodes));
+                        self.tets.push((tag, nodes, group));
                     }
                     // Lines and points bound no volume.
                     1 => drop((cursor.size()?, cursor.size()?)),
@@ -259,12 +264,14 @@ impl Parts {
         if let Some(pair) = self.nodes.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             return Err(ContentFault::RepeatedTag { tag: pair[0].0 });
         }
-        self.tets.sort_by_key(|&(tag, _)| tag);
+        self.tets.sort_by_key(|&(tag, ..)| tag);
         self.triangles.sort_by_key(|&(tag, ..)| tag);
         let volume = &mut file.volume;
         volume.mesh.points = self.nodes.iter().map(|&(_, p)| p).collect();
-        volume.mesh.tets = self.tets.iter().map(|(_, t)| t.map(|tag| self.index(tag))).collect();
-        volume.tet_block = vec![0; self.tets.len()];
+        volume.mesh.tets = self.tets.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
+        // One group is the name of the whole; several are regions.
+        let regions = self.tets.iter().any(|tet| Some(tet.2) != self.tets.first().map(|first| first.2));
+        volume.tet_block = self.tets.iter().map(|tet| if regions { tet.2 } else { 0 }).collect();
         let (notes, caps) = std::mem::take(&mut self.extra).into_notes();
         file.notes = notes;
         // Triangles without a group are no labelled boundary.

@@ -15,6 +15,22 @@ fn what_is_written_is_read_but_for_the_blocks() {
 }
 
 #[test]
+fn regions_become_volumes() {
+    let (mut volume, mut notes) = labelled_tube(5);
+    notes.regions = true;
+    for (tet, block) in volume.tet_block.iter_mut().enumerate() {
+        *block = [7, 2, 1_000_000][tet % 3];
+    }
+    let mut bytes = Vec::new();
+    write_mesh_to(&mut bytes, MeshFormat::Msh, &volume, &notes).unwrap();
+    volume.boundary_block.fill(0);
+    notes.regions = false;
+    assert_eq!(read_msh(&bytes).unwrap(), MeshFile { volume, labelled: true, notes });
+    let names = String::from_utf8_lossy(&bytes).into_owned();
+    assert!(names.contains("3 2 \"region_2\"\n3 7 \"region_7\"\n3 1000000 \"region_1000000\"\n"));
+}
+
+#[test]
 fn an_empty_mesh() {
     let mut bytes = Vec::new();
     write_mesh_to(&mut bytes, MeshFormat::Msh, &VolumeMesh::default(), &MeshNotes::default()).unwrap();

@@ -101,13 +101,19 @@ fn write_spaces(out: &mut impl Write, count: usize) -> io::Result<()> {
     Ok(())
 }
 
+/// Patches with larger ids have no name in the file: the list has a place for every number below.
+const LARGEST_NAMED: i32 = 1 << 16;
+
 /// Names by patch id: `lumen` stands for the inside (0), ids that no patch has stay empty.
 pub(super) fn patch_names(mesh: &VolumeMesh) -> Vec<String> {
-    let largest = mesh.patches.iter().map(|p| p.id).max().unwrap_or(0).max(0) as usize;
+    let largest =
+        mesh.patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
     let mut names = vec![String::new(); largest + 1];
     names[0] = "lumen".into();
     for patch in &mesh.patches {
-        if let Some(name) = names.get_mut(patch.id as usize) {
+        if patch.id > 0
+            && let Some(name) = names.get_mut(patch.id as usize)
+        {
             name.clone_from(&patch.name);
         }
     }

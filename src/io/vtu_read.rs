@@ -205,7 +205,12 @@ impl Fields {
         let expectation = self
             .counts(field::LOOPS)
             .map(|loops| Expectation { loops, terminals: self.counts(field::TERMINALS).unwrap_or_default() });
-        MeshNotes { expectation, generator: self.text(field::GENERATOR), options: self.text(field::OPTIONS) }
+        MeshNotes {
+            expectation,
+            generator: self.text(field::GENERATOR),
+            options: self.text(field::OPTIONS),
+            regions: false,
+        }
     }
 
     /// The patches: those with a name, or else those that occur, under their usual names.

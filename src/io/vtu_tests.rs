@@ -28,6 +28,7 @@ pub(in crate::io) fn labelled_tube(layers: u32) -> (VolumeMesh, MeshNotes) {
         expectation: Some(Expectation { loops: vec![0, 2], terminals: vec![7, 4_000_000_000] }),
         generator: "anastomesh 0.1.0".into(),
         options: "rho = 3 # größer".into(),
+        regions: false,
     };
     (volume, notes)
 }
@@ -130,5 +131,33 @@ fn files_appear_whole_and_paths_are_tried_first() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     for wrong in ["missing/tube.vtu", "tube.docx", "tube"] {
         assert!(ensure_writable(&folder.path().join(wrong)).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn every_format_reads_what_it_writes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (volume, notes) = labelled_tube(3);
+    for name in ["a.vtu", "a.msh", "a.mesh", "a.ele"] {
+        let path = folder.path().join(name);
+        ensure_writable(&path).unwrap();
+        write_mesh(&path, &volume, &notes).unwrap();
+        let back = read_mesh(&path).unwrap();
+        assert_eq!(back.volume.mesh, volume.mesh, "{name}");
+        assert_eq!(back.volume.boundary_patch, volume.boundary_patch, "{name}");
+        assert!(back.labelled, "{name}");
+    }
+    assert!(write_mesh_to(&mut Vec::new(), MeshFormat::Tetgen, &volume, &notes).is_err());
+}
+
+#[test]
+fn a_large_patch_id_makes_no_large_file() {
+    let (mut volume, notes) = labelled_tube(1);
+    for id in [i32::MAX, -5] {
+        volume.boundary_patch.fill(id);
+        volume.patches = vec![crate::mesh::Patch { id, name: "far".into(), cap: None }];
+        let bytes = bytes_of(&volume, &notes);
+        assert!(bytes.len() < 100_000);
+        assert_eq!(read_vtu(&bytes).unwrap().volume.boundary_patch, volume.boundary_patch);
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod adjacency;
 pub mod check;
+pub mod facets;
 pub mod quality;
 #[cfg(test)]
 pub(crate) mod shapes;

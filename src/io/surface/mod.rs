@@ -1,5 +1,6 @@
 //! Triangle surfaces in files: OFF, PLY, STL and OBJ.
 
+mod faces;
 mod obj;
 mod off;
 mod ply;
@@ -11,6 +12,7 @@ mod tests;
 use super::file_error::{FileError, ensure_sound, extension, read_bytes, write_whole};
 use super::text::TextFault;
 use crate::mesh::TriMesh;
+use crate::mesh::facets::FacetError;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
@@ -74,8 +76,8 @@ pub enum SurfaceFault {
     /// Its words are not those of the format.
     #[error(transparent)]
     Text(#[from] TextFault),
-    /// A face is no triangle.
-    #[error("{place}: face {face} has {corners} corners; only triangles are read: triangulate the surface first")]
+    /// A face has too few corners, or in a format that knows only triangles too many.
+    #[error("{place}: face {face} has {corners} corners, which make no triangle: correct or remove it")]
     NotATriangle {
         /// The first such face.
         face: usize,
@@ -83,6 +85,17 @@ pub enum SurfaceFault {
         corners: i64,
         /// Where it stands.
         place: Place,
+    },
+    /// A face with more than three corners has no triangulation.
+    #[error("{place}: face {face} cannot be cut into triangles: {fault}")]
+    Polygon {
+        /// The first such face.
+        face: usize,
+        /// Where it stands.
+        place: Place,
+        /// Why.
+        #[source]
+        fault: FacetError,
     },
     /// A face names a point that does not exist.
     #[error("{place}: face {face} names the point {index}, but there are {points} points, the first is {first}")]
@@ -152,7 +165,8 @@ pub enum SurfaceFault {
 }
 
 /// Reads a surface from a file, in the format that its extension names. Triangles and points keep their order; nothing
-/// is joined, dropped or turned over (only STL, which stores no common points, has its equal corners joined).
+/// is joined, dropped or turned over (only STL, which stores no common points, has its equal corners joined). A face with
+/// more than three corners becomes triangles in its place ([`crate::mesh::facets`]).
 ///
 /// # Errors
 /// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
@@ -198,22 +212,4 @@ fn write_format(out: &mut impl Write, format: SurfaceFormat, mesh: &TriMesh) -> 
         SurfaceFormat::Stl => stl::write(out, mesh),
         SurfaceFormat::Obj => obj::write(out, mesh),
     }
-}
-
-/// The corners of a face as indices of points, numbered from `first` in the file.
-fn corners(
-    named: [i64; 3],
-    points: usize,
-    first: u32,
-    face: usize,
-    place: impl Fn() -> Place,
-) -> Result<[u32; 3], SurfaceFault> {
-    let index = |named: i64| {
-        let from_zero = named.checked_sub(first.into()).and_then(|i| usize::try_from(i).ok());
-        match from_zero {
-            Some(i) if i < points => Ok(i as u32),
-            _ => Err(SurfaceFault::BadIndex { face, index: named, points, first, place: place() }),
-        }
-    };
-    Ok([index(named[0])?, index(named[1])?, index(named[2])?])
 }

@@ -1,24 +1,27 @@
 //! OBJ: lines `v x y z` and `f v/vt/vn …`; a negative index counts back from the last vertex so far.
 
 use super::super::text::{TextFault, Words};
+use super::faces::Faces;
 use super::{Place, SurfaceFault};
+use crate::geometry::Point3;
 use crate::mesh::TriMesh;
 use std::io::{self, Write};
 
 /// Parses a file.
 pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
     let mut words = Words::new(bytes, true);
-    let mut reader = Reader::default();
+    // Vertices may come after the faces that name them: corners are compared with their number in the end.
+    let mut reader = Reader { points: Vec::new(), faces: Faces::new(u32::MAX as usize - 1, 1, 0), ahead: None };
     while let Some(keyword) = words.word() {
         match keyword {
             b"v" => {
-                if reader.mesh.points.len() >= u32::MAX as usize - 1 {
-                    let value = reader.mesh.points.len() as i64;
+                if reader.points.len() >= u32::MAX as usize - 1 {
+                    let value = reader.points.len() as i64;
                     let line = words.line();
                     return Err(TextFault::OutOfRange { line, what: "the count of points", value }.into());
                 }
                 // A weight or a colour may follow.
-                reader.mesh.points.push(words.point_here()?);
+                reader.points.push(words.point_here()?);
             }
             b"f" => reader.read_face(&mut words)?,
             _ => {}
@@ -35,59 +38,49 @@ struct Ahead {
     line: usize,
 }
 
-#[derive(Default)]
 struct Reader {
-    mesh: TriMesh,
+    points: Vec<Point3>,
+    faces: Faces,
     /// The face that names the vertex furthest ahead.
     ahead: Option<Ahead>,
 }
 
 impl Reader {
     fn read_face(&mut self, words: &mut Words) -> Result<(), SurfaceFault> {
-        let face = self.mesh.triangles.len();
         let line = words.line();
-        let mut triangle = [0; 3];
-        let mut count = 0;
         while let Some(word) = words.word_here() {
             // A backslash continues the line.
             if word == b"\\" {
                 words.skip_line();
                 continue;
             }
-            if count < 3 {
-                let named = word.split(|&b| b == b'/').next().unwrap_or_default();
-                let named = words.as_integer(named, "a corner of a face")?;
-                triangle[count] = self.index(named, face, line)?;
-            }
-            count += 1;
+            let named = word.split(|&b| b == b'/').next().unwrap_or_default();
+            let named = words.as_integer(named, "a corner of a face")?;
+            self.corner(named, line)?;
         }
-        if count != 3 {
-            return Err(SurfaceFault::NotATriangle { face, corners: count as i64, place: Place::Line(line) });
-        }
-        self.mesh.triangles.push(triangle);
-        Ok(())
+        self.faces.end_face(Place::Line(line))
     }
 
-    fn index(&mut self, named: i64, face: usize, line: usize) -> Result<u32, SurfaceFault> {
-        let points = self.mesh.points.len() as i64;
-        let from_zero = if named < 0 { points.saturating_add(named) } else { named - 1 };
-        if from_zero < 0 || from_zero >= i64::from(u32::MAX) {
-            return Err(self.bad_index(&Ahead { index: named, face, line }));
+    fn corner(&mut self, named: i64, line: usize) -> Result<(), SurfaceFault> {
+        let points = self.points.len() as i64;
+        let index = if named < 0 { points.saturating_add(named).saturating_add(1) } else { named };
+        if index < 1 || index >= i64::from(u32::MAX) {
+            return Err(self.bad_index(&Ahead { index: named, face: self.faces.count(), line }));
         }
-        if from_zero >= points && self.ahead.as_ref().is_none_or(|ahead| ahead.index < named) {
-            self.ahead = Some(Ahead { index: named, face, line });
+        if index > points && self.ahead.as_ref().is_none_or(|ahead| ahead.index < named) {
+            self.ahead = Some(Ahead { index: named, face: self.faces.count(), line });
         }
-        Ok(from_zero as u32)
+        self.faces.corner(index, Place::Line(line))
     }
 
     fn bad_index(&self, &Ahead { index, face, line }: &Ahead) -> SurfaceFault {
-        SurfaceFault::BadIndex { face, index, points: self.mesh.points.len(), first: 1, place: Place::Line(line) }
+        SurfaceFault::BadIndex { face, index, points: self.points.len(), first: 1, place: Place::Line(line) }
     }
 
     fn finish(self) -> Result<TriMesh, SurfaceFault> {
         match &self.ahead {
-            Some(ahead) if ahead.index > self.mesh.points.len() as i64 => Err(self.bad_index(ahead)),
-            _ => Ok(self.mesh),
+            Some(ahead) if ahead.index > self.points.len() as i64 => Err(self.bad_index(ahead)),
+            _ => self.faces.into_surface(self.points),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! OFF: counts, then one point a line, then one face a line.
 
 use super::super::text::{Words, shown};
-use super::{Place, SurfaceFault, corners};
+use super::faces::Faces;
+use super::{Place, SurfaceFault};
 use crate::mesh::TriMesh;
 use std::io::{self, Write};
 
@@ -15,27 +16,24 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
     let faces = words.count("the count of faces", 6)?;
     // The count of edges, which nobody needs and some leave out.
     words.skip_line();
-    let mut mesh = TriMesh { points: Vec::with_capacity(points), triangles: Vec::with_capacity(faces) };
+    let mut positions = Vec::with_capacity(points);
     for _ in 0..points {
-        mesh.points.push(words.point()?);
+        positions.push(words.point()?);
         words.skip_line();
     }
-    for face in 0..faces {
-        let count = words.integer("a face's count of corners")?;
-        let line = words.line();
-        let place = || Place::Line(line);
-        if count != 3 {
-            return Err(SurfaceFault::NotATriangle { face, corners: count, place: place() });
+    let mut list = Faces::new(points, 0, faces);
+    for _ in 0..faces {
+        let count = words.count("a face's count of corners", 2)?;
+        let place = Place::Line(words.line());
+        for _ in 0..count {
+            let named = words.integer("a corner of a face")?;
+            list.corner(named, place)?;
         }
-        let mut named = [0; 3];
-        for corner in &mut named {
-            *corner = words.integer("a corner of a face")?;
-        }
-        mesh.triangles.push(corners(named, points, 0, face, place)?);
+        list.end_face(place)?;
         words.skip_line();
     }
     words.expect_end()?;
-    Ok(mesh)
+    list.into_surface(positions)
 }
 
 /// Passes over the keyword, which may be missing.

@@ -2,8 +2,9 @@
 //! all others passed over.
 
 use super::super::text::{TextFault, Words};
+use super::faces::Faces;
 use super::ply_head::{Element, Encoding, Head, Scalar, parse};
-use super::{Place, SurfaceFault, corners};
+use super::{Place, SurfaceFault};
 use crate::geometry::Point3;
 use crate::mesh::TriMesh;
 use std::io::{self, Write};
@@ -11,23 +12,21 @@ use std::io::{self, Write};
 /// Parses a file.
 pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
     let head = parse(bytes)?;
-    let mut mesh = TriMesh::default();
+    let mut positions = Vec::new();
+    let mut list = None;
     // Faces may stand before the vertices: their corners are compared with the number of points that is announced.
     let points = head.elements.iter().find(|e| e.name == b"vertex").map_or(0, |e| e.count);
     let points = usize::try_from(points).unwrap_or(usize::MAX).min(u32::MAX as usize - 1);
     let mut data = Data::new(bytes, &head);
-    let (mut vertices, mut faces) = (false, false);
+    let mut vertices = false;
     for element in &head.elements {
         data.ensure_room(element)?;
         match element.name.as_slice() {
             b"vertex" if !vertices => {
-                read_vertices(&mut data, element, &mut mesh)?;
+                read_vertices(&mut data, element, &mut positions)?;
                 vertices = true;
             }
-            b"face" if !faces => {
-                read_faces(&mut data, element, points, &mut mesh)?;
-                faces = true;
-            }
+            b"face" if list.is_none() => list = Some(read_faces(&mut data, element, points)?),
             _ => skip_items(&mut data, element)?,
         }
     }
@@ -35,7 +34,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
         return Err(SurfaceFault::Missing { what: "the element 'vertex'" });
     }
     data.expect_end()?;
-    Ok(mesh)
+    list.unwrap_or_else(|| Faces::new(points, 0, 0)).into_surface(positions)
 }
 
 /// The numbers behind the head.
@@ -203,13 +202,13 @@ fn skip_property(data: &mut Data, element: &Element, index: usize) -> Result<(),
     data.skip(property.value, count)
 }
 
-fn read_vertices(data: &mut Data, element: &Element, mesh: &mut TriMesh) -> Result<(), SurfaceFault> {
+fn read_vertices(data: &mut Data, element: &Element, points: &mut Vec<Point3>) -> Result<(), SurfaceFault> {
     let mut columns = [0; 3];
     for (column, name) in columns.iter_mut().zip([b"x", b"y", b"z"]) {
         let found = element.property(&[name]).filter(|&i| element.properties[i].count.is_none());
         *column = found.ok_or(SurfaceFault::Missing { what: "one of the properties x, y, z of the vertices" })?;
     }
-    mesh.points.reserve_exact(element.count as usize);
+    points.reserve_exact(element.count as usize);
     for point in 0..element.count as usize {
         let mut position = Point3::origin();
         for (index, property) in element.properties.iter().enumerate() {
@@ -218,17 +217,17 @@ fn read_vertices(data: &mut Data, element: &Element, mesh: &mut TriMesh) -> Resu
                 None => skip_property(data, element, index)?,
             }
         }
-        mesh.points.push(position);
+        points.push(position);
     }
     Ok(())
 }
 
-fn read_faces(data: &mut Data, element: &Element, points: usize, mesh: &mut TriMesh) -> Result<(), SurfaceFault> {
+fn read_faces(data: &mut Data, element: &Element, points: usize) -> Result<Faces, SurfaceFault> {
     const MISSING: SurfaceFault = SurfaceFault::Missing { what: "the list vertex_indices of the faces" };
     let list = element.property(&[b"vertex_indices", b"vertex_index"]).ok_or(MISSING)?;
     let counted = element.properties[list].count.ok_or(MISSING)?;
-    mesh.triangles.reserve_exact(element.count as usize);
-    for face in 0..element.count as usize {
+    let mut faces = Faces::new(points, 0, element.count as usize);
+    for _ in 0..element.count {
         for (index, property) in element.properties.iter().enumerate() {
             if index != list {
                 skip_property(data, element, index)?;
@@ -236,15 +235,14 @@ fn read_faces(data: &mut Data, element: &Element, points: usize, mesh: &mut TriM
             }
             let count = data.list_count(counted)?;
             let place = data.place();
-            if count != 3 {
-                return Err(SurfaceFault::NotATriangle { face, corners: count, place });
+            for _ in 0..count {
+                let named = data.integer(property.value)?;
+                faces.corner(named, place)?;
             }
-            let value = property.value;
-            let named = [data.integer(value)?, data.integer(value)?, data.integer(value)?];
-            mesh.triangles.push(corners(named, points, 0, face, || place)?);
+            faces.end_face(place)?;
         }
     }
-    Ok(())
+    Ok(faces)
 }
 
 /// Writes binary, little endian, with doubles.

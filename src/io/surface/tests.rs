@@ -93,7 +93,7 @@ fn off_with_faults() {
     let fault = |text: &str| read(text, SurfaceFormat::Off).unwrap_err();
     let points = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
     let place = Place::Line(6);
-    assert_eq!(fault(&format!("{points}4 0 1 2 0\n")), SurfaceFault::NotATriangle { face: 0, corners: 4, place });
+    assert_eq!(fault(&format!("{points}2 0 1\n")), SurfaceFault::NotATriangle { face: 0, corners: 2, place });
     for index in [3, -1] {
         let bad = SurfaceFault::BadIndex { face: 0, index, points: 3, first: 0, place };
         assert_eq!(fault(&format!("{points}3 0 1 {index}\n")), bad);
@@ -181,7 +181,7 @@ fn ply_with_faults() {
     assert!(matches!(fault("vertex 4", "vertex -4"), SurfaceFault::Text(TextFault::OutOfRange { line: 7, .. })));
     assert!(matches!(fault("ascii", "utf8"), SurfaceFault::Unexpected { place: Place::Line(2), .. }));
     assert!(matches!(fault("list ushort", "list float"), SurfaceFault::Unexpected { place: Place::Line(13), .. }));
-    assert!(matches!(fault("3 0 2 1", "4 0 2 1 3"), SurfaceFault::NotATriangle { face: 0, corners: 4, .. }));
+    assert!(matches!(fault("3 0 2 1", "2 0 2"), SurfaceFault::NotATriangle { face: 0, corners: 2, .. }));
     assert!(matches!(fault("3 1 2 3", "3 1 2 4"), SurfaceFault::BadIndex { face: 2, index: 4, points: 4, .. }));
     assert!(matches!(fault("double z", "double w"), SurfaceFault::Missing { .. }));
     assert!(matches!(fault("vertex_index", "vertices"), SurfaceFault::Missing { .. }));
@@ -189,9 +189,33 @@ fn ply_with_faults() {
     let mut bytes = ply("binary_little_endian");
     let end = bytes.len();
     // The last face's count: 1 byte of tag, 12 of indices and 2 of the count from the end.
-    bytes[end - 15] = 5;
+    bytes[end - 15] = 2;
     let fault = read_surface_from(&bytes, SurfaceFormat::Ply).unwrap_err();
-    assert!(matches!(fault, SurfaceFault::NotATriangle { face: 3, corners: 5, place: Place::Byte(_) }), "{fault}");
+    assert!(matches!(fault, SurfaceFault::NotATriangle { face: 3, corners: 2, place: Place::Byte(_) }), "{fault}");
+}
+
+#[test]
+fn polygons_become_triangles_in_their_place() {
+    let points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 0.25 1\n";
+    let off = format!("OFF\n5 5 0\n{points}3 0 1 4\n4 3 2 1 0 255 0 0\n3 1 2 4\n3 2 3 4\n3 3 0 4\n");
+    let from_off = read(&off, SurfaceFormat::Off).unwrap();
+    assert_eq!(from_off.triangles.len(), 6);
+    assert_eq!((from_off.triangles[0], from_off.triangles[3]), ([0, 1, 4], [1, 2, 4]));
+    // Turned as the polygon: downwards.
+    for t in &from_off.triangles[1..3] {
+        let [a, b, c] = t.map(|v| from_off.points[v as usize]);
+        assert!((b - a).cross(&(c - a)).z < 0.0);
+    }
+    let lines: String = points.lines().map(|line| format!("v {line}\n")).collect();
+    let obj = format!("f 1 2 5\nf 4 3 2 1\n{lines}f 2 3 5\nf 3 4 5\nf -2 1 -1\n");
+    assert_eq!(read(&obj, SurfaceFormat::Obj), Ok(from_off.clone()));
+    let head = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 5\nproperty list uchar int vertex_indices\nend_header\n";
+    let ply = format!("{head}{points}3 0 1 4\n4 3 2 1 0\n3 1 2 4\n3 2 3 4\n3 3 0 4\n");
+    assert_eq!(read(&ply, SurfaceFormat::Ply), Ok(from_off));
+    let crossed = read(&off.replace("4 3 2 1 0", "4 3 1 2 0"), SurfaceFormat::Off).unwrap_err();
+    let SurfaceFault::Polygon { face: 1, place: Place::Line(9), fault: found } = crossed else { panic!("{crossed}") };
+    assert!(matches!(found, FacetError::Crossing { .. }), "{found}");
 }
 
 const STL: &str = "solid a b c\n  facet normal nan nan nan\n outer loop\n VERTEX 0 0 0\n vertex 1 0 -0.0\n vertex 0 1 0\n\
@@ -222,7 +246,7 @@ fn obj_by_hand() {
     assert_eq!(fault("f 1 2 4", "f 1 2 5"), SurfaceFault::BadIndex { face: 1, index: 5, points: 4, first: 1, place });
     assert!(matches!(fault("f 1 2 4", "f 1 2 0"), SurfaceFault::BadIndex { face: 1, index: 0, .. }));
     assert!(matches!(fault("f 1 2 4", "f 1 2 -9"), SurfaceFault::BadIndex { face: 1, index: -9, .. }));
-    assert_eq!(fault("f 1 2 4", "f 1 2 4 3"), SurfaceFault::NotATriangle { face: 1, corners: 4, place });
+    assert_eq!(fault("f 1 2 4", "f 1 2"), SurfaceFault::NotATriangle { face: 1, corners: 2, place });
     assert!(matches!(fault("f 1 2 4", "f 1 a 4"), SurfaceFault::Text(TextFault::NotANumber { line: 10, .. })));
     assert!(matches!(fault("v 1 0 0 1.0", "v 1 0"), SurfaceFault::Text(TextFault::LineTooShort { line: 5, .. })));
     assert!(matches!(read("hello\n", SurfaceFormat::Obj), Err(SurfaceFault::NoFaces { points: 0 })));

@@ -4,12 +4,14 @@
 
 mod node;
 mod poly;
+mod read;
 #[cfg(test)]
 mod tests;
 mod write;
 
 pub use node::Nodes;
 pub use poly::{Facet, Plc, PlcFormat, Region};
+pub use read::read_mesh;
 pub use write::{Extent, MeshFamily};
 
 use super::file_error::{FileError, extension, read_bytes};
@@ -67,6 +69,30 @@ pub enum TetgenFault {
         line: usize,
         /// The facet.
         facet: usize,
+    },
+    /// A tetrahedron or face of a mesh names a point that does not exist.
+    #[error("line {line}: {kind} {cell} names the point {index}, but there are {points} points, the first is {first}")]
+    BadCell {
+        /// The line.
+        line: usize,
+        /// What names it.
+        kind: &'static str,
+        /// Its number, from 0.
+        cell: usize,
+        /// What it names.
+        index: i64,
+        /// How many points there are.
+        points: usize,
+        /// Number of the first point.
+        first: u32,
+    },
+    /// Tetrahedra have more points than their corners.
+    #[error("line {line}: tetrahedra have {corners} points; only those of 4 are read: write the mesh without -o2")]
+    Order {
+        /// The line.
+        line: usize,
+        /// How many points they have.
+        corners: i64,
     },
     /// There are no points, neither here nor in the file beside.
     #[error("there are no points in it")]

@@ -23,6 +23,10 @@ pub struct Plc {
     pub points: Vec<Point3>,
     /// Boundary marker of each point; empty when the file has none.
     pub point_markers: Vec<i32>,
+    /// Attributes of all points, those of one after those of another.
+    pub point_attributes: Vec<f64>,
+    /// How many attributes a point has.
+    pub attribute_count: usize,
     /// Flat pieces of the boundary, outer or inner.
     pub facets: Vec<Facet>,
     /// A point in each part of space that is not to be meshed.
@@ -73,8 +77,9 @@ pub(super) fn parse(words: &mut Words, nodes: Nodes, format: PlcFormat) -> Resul
     if nodes.points.is_empty() {
         return Err(TetgenFault::NoPoints);
     }
-    let Nodes { points, markers, first, .. } = nodes;
+    let Nodes { points, attributes, attribute_count, markers, first } = nodes;
     let mut plc = Plc { points, point_markers: markers, first, ..Plc::default() };
+    (plc.point_attributes, plc.attribute_count) = (attributes, attribute_count);
     // "1 0\n"
     let count = words.count("the count of facets", 4)?;
     let marked = match words.word_here() {

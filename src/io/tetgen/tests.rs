@@ -3,6 +3,7 @@
 use super::*;
 use crate::geometry::Point3;
 use crate::io::vtu::tests::labelled_tube;
+use crate::mesh::VolumeMesh;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::shapes::cube_lattice;
 use proptest::prelude::*;
@@ -161,6 +162,53 @@ fn all_faces_and_edges_of_a_lattice() {
     assert_eq!(points - edges.len() as i64 + faces.len() as i64 - mesh.tets.len() as i64, 1);
     let keys: BTreeSet<_> = edges.iter().map(|row| (row[1], row[2])).collect();
     assert_eq!(keys.len(), edges.len());
+}
+
+#[test]
+fn what_is_written_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let (volume, _) = labelled_tube(4);
+    for (first, faces) in [(0, Extent::Boundary), (1, Extent::All)] {
+        let base = folder.path().join("a.ele");
+        MeshFamily::of_volume(&volume).first_number(first).faces(faces).write(&base).unwrap();
+        let back = read_mesh(&base).unwrap();
+        assert_eq!((&back.mesh, &back.tet_block), (&volume.mesh, &volume.tet_block));
+        let rows = |volume: &VolumeMesh| -> BTreeSet<([u32; 3], i32)> {
+            volume.boundary.iter().copied().zip(volume.boundary_patch.iter().copied()).collect()
+        };
+        // Corners may run from another one on.
+        let turned = |rows: BTreeSet<([u32; 3], i32)>| -> BTreeSet<([u32; 3], i32)> {
+            let least = |[a, b, c]: [u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap();
+            rows.into_iter().map(|(face, patch)| (least(face), patch)).collect()
+        };
+        assert_eq!(turned(rows(&back)), turned(rows(&volume)));
+    }
+    std::fs::remove_file(folder.path().join("a.face")).unwrap();
+    assert!(read_mesh(&folder.path().join("a.node")).unwrap().boundary.is_empty());
+    let ele = folder.path().join("a.ele");
+    let text = std::fs::read_to_string(&ele).unwrap();
+    let fault = |from: &str, to: &str| {
+        std::fs::write(&ele, text.replacen(from, to, 1)).unwrap();
+        let Err(FileError::Content { fault, .. }) = read_mesh(&ele) else { panic!("{from} {to}") };
+        fault
+    };
+    assert_eq!(fault(" 4 1\n", " 10 1\n"), TetgenFault::Order { line: 1, corners: 10 });
+    let index = volume.mesh.points.len() as i64 + 1;
+    let row = text.lines().nth(1).unwrap();
+    let bad = row.rsplitn(3, ' ').last().unwrap().to_owned() + &format!(" {index} 0");
+    let fault = fault(row, &bad);
+    assert!(matches!(fault, TetgenFault::BadCell { line: 2, cell: 0, index: i, .. } if i == index), "{fault}");
+}
+
+#[test]
+fn point_attributes_come_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = cube_lattice(1);
+    let attributes = [0.5, 1.5, 2.5, 3.5];
+    let written = MeshFamily::new(&mesh).point_attributes(&attributes, 2).write(&folder.path().join("a")).unwrap();
+    let nodes = read_nodes(&written[0]).unwrap();
+    assert_eq!(nodes.attribute_count, 2);
+    assert_eq!((&nodes.attributes[..4], nodes.attributes[4..].iter().all(|&a| a == 0.0)), (&attributes[..], true));
 }
 
 #[test]

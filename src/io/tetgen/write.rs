@@ -1,6 +1,6 @@
 //! Writes a tetrahedral mesh as `TetGen` does: one file for points, tetrahedra, faces, edges and neighbours each.
 
-use super::super::file_error::{ensure_sound, extension, write_whole};
+use super::super::file_error::{ensure_sound, extension, write_all_whole};
 use super::TetgenFileError;
 use crate::mesh::adjacency::{Incidence, NONE, tet_adjacency};
 use crate::mesh::{TET_FACES, TetMesh, VolumeMesh};
@@ -41,6 +41,7 @@ pub struct MeshFamily<'a> {
     mesh: &'a TetMesh,
     boundary: Option<(&'a [[u32; 3]], &'a [i32])>,
     point_markers: Option<&'a [i32]>,
+    point_attributes: (&'a [f64], usize),
     regions: Option<&'a [i32]>,
     faces: Extent,
     edges: Extent,
@@ -49,12 +50,18 @@ pub struct MeshFamily<'a> {
 }
 
 impl<'a> MeshFamily<'a> {
+    /// The paths that the files of a mesh may have: all of which [`Self::write`] may replace.
+    pub fn paths(base: &Path) -> [PathBuf; 5] {
+        ["node", "face", "edge", "neigh", "ele"].map(|kind| member(base, kind))
+    }
+
     /// All five files of a mesh, numbered from 0. Its boundary is found, and has the marker 1.
     pub fn new(mesh: &'a TetMesh) -> Self {
         Self {
             mesh,
             boundary: None,
             point_markers: None,
+            point_attributes: (&[], 0),
             regions: None,
             faces: Extent::Boundary,
             edges: Extent::Boundary,
@@ -119,8 +126,15 @@ impl<'a> MeshFamily<'a> {
         self
     }
 
-    /// Writes the files `base.node` and so on; `base` may have the extension of any of them. Each appears whole or not
-    /// at all, and `.ele` last. Returns their paths in the order of writing.
+    /// The attributes of the points, so many of each point one after another; points without get 0.
+    #[must_use]
+    pub fn point_attributes(mut self, attributes: &'a [f64], each: usize) -> Self {
+        self.point_attributes = (attributes, each);
+        self
+    }
+
+    /// Writes the files `base.node` and so on; `base` may have the extension of any of them. They appear whole or not
+    /// at all, `.ele` last, when all of them are complete. Returns their paths in this order.
     ///
     /// # Errors
     /// `BadMesh` when a cell names a point that does not exist, or `Write` with the reason.
@@ -130,25 +144,24 @@ impl<'a> MeshFamily<'a> {
         ensure_sound(base, self.boundary.map_or(&[], |(faces, _)| faces), points)?;
         let (faces, markers) = self.listed();
         let boundary = Boundary { faces: &faces, markers: &markers };
-        let mut written = Vec::new();
-        let mut file = |kind: &str, write: &dyn Fn(&mut dyn Write) -> io::Result<()>| {
-            let path = member(base, kind);
-            write_whole(&path, |out| write(out))?;
-            written.push(path);
-            Ok(())
-        };
-        file("node", &|out| self.write_nodes(out, boundary))?;
+        let nodes = |out: &mut dyn Write| self.write_nodes(out, boundary);
+        let face_list = |out: &mut dyn Write| self.write_faces(out, boundary);
+        let edges = |out: &mut dyn Write| self.write_edges(out, boundary);
+        let neighbors = |out: &mut dyn Write| self.write_neighbors(out);
+        let tets = |out: &mut dyn Write| self.write_tets(out);
+        let mut files: Vec<(PathBuf, &dyn Fn(&mut dyn Write) -> io::Result<()>)> = vec![(member(base, "node"), &nodes)];
         if self.faces != Extent::Nothing {
-            file("face", &|out| self.write_faces(out, boundary))?;
+            files.push((member(base, "face"), &face_list));
         }
         if self.edges != Extent::Nothing {
-            file("edge", &|out| self.write_edges(out, boundary))?;
+            files.push((member(base, "edge"), &edges));
         }
         if self.neighbors {
-            file("neigh", &|out| self.write_neighbors(out))?;
+            files.push((member(base, "neigh"), &neighbors));
         }
-        file("ele", &|out| self.write_tets(out))?;
-        Ok(written)
+        files.push((member(base, "ele"), &tets));
+        write_all_whole(&files)?;
+        Ok(files.into_iter().map(|(path, _)| path).collect())
     }
 
     /// The boundary that was given, or the faces of one tetrahedron only, marked 1.
@@ -177,10 +190,15 @@ impl<'a> MeshFamily<'a> {
             Some(markers) => markers.into(),
             None => boundary.point_markers(points.len()).into(),
         };
-        writeln!(out, "{} 3 0 1", points.len())?;
+        let (attributes, each) = self.point_attributes;
+        writeln!(out, "{} 3 {each} 1", points.len())?;
         for (i, p) in points.iter().enumerate() {
             let marker = markers.get(i).unwrap_or(&0);
-            writeln!(out, "{} {:?} {:?} {:?} {marker}", self.number(i as u32), p.x, p.y, p.z)?;
+            write!(out, "{} {:?} {:?} {:?}", self.number(i as u32), p.x, p.y, p.z)?;
+            for k in 0..each {
+                write!(out, " {:?}", attributes.get(i * each + k).unwrap_or(&0.0))?;
+            }
+            writeln!(out, " {marker}")?;
         }
         Ok(())
     }
@@ -312,7 +330,7 @@ fn sorted(mut face: [u32; 3]) -> [u32; 3] {
 }
 
 /// The path of one file of the family.
-fn member(base: &Path, kind: &str) -> PathBuf {
+pub(super) fn member(base: &Path, kind: &str) -> PathBuf {
     if matches!(extension(base).as_str(), "node" | "ele" | "face" | "edge" | "neigh") {
         return base.with_extension(kind);
     }

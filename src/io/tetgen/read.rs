@@ -1,0 +1,152 @@
+//! Reads the tetrahedral mesh of a family of files: `.node`, `.ele` and, where it is there, `.face`.
+
+use super::super::file_error::{FileError, read_bytes};
+use super::super::text::{TextFault, Words};
+use super::super::vtu_read::usual_name;
+use super::write::member;
+use super::{Nodes, TetgenFault, TetgenFileError, read_nodes};
+use crate::mesh::adjacency::{NONE, face_vertices, tet_adjacency};
+use crate::mesh::{Patch, TetMesh, VolumeMesh};
+use rustc_hash::FxHashMap;
+use std::path::Path;
+
+/// Reads a mesh from the files `base.node`, `base.ele` and `base.face`; `base` may have the extension of any of them.
+///
+/// The first attribute of a tetrahedron becomes its block where it is an integer, else 0. Faces with a marker become the
+/// boundary, those with the marker 0 only where they are on it; each runs outwards (a face inside as it does in the
+/// file). Without a `.face` file the boundary is empty.
+///
+/// # Errors
+/// `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
+pub fn read_mesh(base: &Path) -> Result<VolumeMesh, TetgenFileError> {
+    let nodes = read_nodes(&member(base, "node"))?;
+    let path = member(base, "ele");
+    let bytes = read_bytes(&path)?;
+    let (tets, tet_block) = tets(&bytes, &nodes).map_err(|fault| FileError::Content { path, fault })?;
+    let faces = member(base, "face");
+    let listed = if faces.exists() {
+        let bytes = read_bytes(&faces)?;
+        face_list(&bytes, &nodes).map_err(|fault| FileError::Content { path: faces, fault })?
+    } else {
+        Vec::new()
+    };
+    let mut volume = VolumeMesh { mesh: TetMesh { points: nodes.points, tets }, tet_block, ..VolumeMesh::default() };
+    set_boundary(&mut volume, listed);
+    Ok(volume)
+}
+
+/// `<count> <points each> <attributes>`, then `<number> <points> <attributes>`.
+fn tets(bytes: &[u8], nodes: &Nodes) -> Result<(Vec<[u32; 4]>, Vec<i32>), TetgenFault> {
+    let mut words = Words::new(bytes, true);
+    // "0 0 0 0 0\n"
+    let count = words.count("the count of tetrahedra", 10)?;
+    let corners = match words.word_here() {
+        Some(word) => words.as_integer(word, "how many points a tetrahedron has")?,
+        None => 4,
+    };
+    if corners != 4 {
+        return Err(TetgenFault::Order { line: words.line(), corners });
+    }
+    let attributes = match words.word_here() {
+        Some(word) => words.as_count(word, "the count of attributes", 2)?,
+        None => 0,
+    };
+    words.skip_line();
+    let (mut tets, mut blocks) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for cell in 0..count {
+        tets.push(corners_of(&mut words, nodes, "tetrahedron", cell)?);
+        blocks.push(if attributes > 0 { block(&mut words)? } else { 0 });
+        words.skip_line();
+    }
+    words.expect_end()?;
+    Ok((tets, blocks))
+}
+
+fn block(words: &mut Words) -> Result<i32, TextFault> {
+    let word = words.need_here("an attribute")?;
+    let value = words.as_float(word, "an attribute")?;
+    let integral = value.fract() == 0.0 && value.abs() <= f64::from(i32::MAX);
+    Ok(if integral { value as i32 } else { 0 })
+}
+
+/// `<count> <markers 0 or 1>`, then `<number> <points> <marker>`.
+fn face_list(bytes: &[u8], nodes: &Nodes) -> Result<Vec<([u32; 3], i32)>, TetgenFault> {
+    let mut words = Words::new(bytes, true);
+    // "0 0 0 0\n"
+    let count = words.count("the count of faces", 8)?;
+    let marked = match words.word_here() {
+        Some(word) => words.as_integer(word, "the number of markers (0 or 1)")? != 0,
+        None => false,
+    };
+    words.skip_line();
+    let mut faces = Vec::with_capacity(count);
+    for cell in 0..count {
+        let corners = corners_of(&mut words, nodes, "face", cell)?;
+        let marker = if marked {
+            let word = words.need_here("a marker")?;
+            words.as_marker(word, "a marker")?
+        } else {
+            0
+        };
+        faces.push((corners, marker));
+        words.skip_line();
+    }
+    words.expect_end()?;
+    Ok(faces)
+}
+
+/// The number of a cell, which may be any, and its corners.
+fn corners_of<const N: usize>(
+    words: &mut Words,
+    nodes: &Nodes,
+    kind: &'static str,
+    cell: usize,
+) -> Result<[u32; N], TetgenFault> {
+    words.integer("the number of a cell")?;
+    let (points, first) = (nodes.points.len(), nodes.first);
+    let mut corners = [0; N];
+    for corner in &mut corners {
+        let word = words.need_here("a corner of a cell")?;
+        let index = words.as_integer(word, "a corner of a cell")?;
+        let from_zero = index.checked_sub(first.into()).and_then(|i| usize::try_from(i).ok());
+        match from_zero {
+            Some(i) if i < points => *corner = i as u32,
+            _ => return Err(TetgenFault::BadCell { line: words.line(), kind, cell, index, points, first }),
+        }
+    }
+    Ok(corners)
+}
+
+fn set_boundary(volume: &mut VolumeMesh, listed: Vec<([u32; 3], i32)>) {
+    if listed.is_empty() {
+        return;
+    }
+    let tets = &volume.mesh.tets;
+    let mut outer: FxHashMap<[u32; 3], u32> = FxHashMap::default();
+    let adjacency = tet_adjacency(tets, volume.mesh.points.len());
+    for (tet, sides) in adjacency.neighbors.iter().enumerate() {
+        for (side, _) in sides.iter().enumerate().filter(|(_, neighbor)| **neighbor == NONE) {
+            let handle = (4 * tet + side) as u32;
+            outer.insert(sorted(face_vertices(tets, handle)), handle);
+        }
+    }
+    for (face, marker) in listed {
+        let handle = outer.get(&sorted(face)).copied();
+        if handle.is_none() && marker == 0 {
+            continue;
+        }
+        volume.boundary.push(handle.map_or(face, |handle| face_vertices(tets, handle)));
+        volume.boundary_patch.push(marker);
+        let block = handle.and_then(|handle| volume.tet_block.get(handle as usize / 4));
+        volume.boundary_block.push(block.copied().unwrap_or(0));
+    }
+    let mut ids = volume.boundary_patch.clone();
+    ids.sort_unstable();
+    ids.dedup();
+    volume.patches = ids.into_iter().map(|id| Patch { id, name: usual_name(id), cap: None }).collect();
+}
+
+fn sorted(mut face: [u32; 3]) -> [u32; 3] {
+    face.sort_unstable();
+    face
+}
