@@ -1,5 +1,6 @@
 //! The certificate: what has to hold before a mesh may be called the tetrahedralization of a surface.
 
+use super::plc::InputKind;
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
 use crate::mesh::adjacency::{face_vertices, tet_adjacency};
@@ -45,6 +46,24 @@ pub enum CertifyError {
         /// The triangle.
         triangle: u32,
     },
+    /// A triangle of the complex that is no face of the mesh.
+    #[error("triangle {triangle} of the input is no face of the mesh")]
+    FacetLost {
+        /// The triangle.
+        triangle: u32,
+    },
+    /// A segment of the complex that is no edge of the mesh.
+    #[error("segment {segment} of the input is no edge of the mesh")]
+    SegmentLost {
+        /// The segment.
+        segment: u32,
+    },
+    /// Two regions that meet in a face which is no triangle of the complex.
+    #[error("face {face:?} lies between two regions and is no triangle of the input")]
+    RegionsMix {
+        /// Vertices of the face.
+        face: [u32; 3],
+    },
     /// The volumes of mesh and surface differ by more than rounding.
     #[error("the mesh has volume {mesh}, the surface encloses {surface}")]
     Volume {
@@ -62,10 +81,104 @@ pub enum CertifyError {
 /// # Errors
 /// The first of these that does not hold.
 pub fn certify(mesh: &TetMesh, surface: &TriMesh) -> Result<(), CertifyError> {
-    same_points(mesh, surface)?;
+    let places = certify_facets(mesh, surface, InputKind::Closed, &[])?;
+    match places.iter().position(|&p| p != Place::Boundary) {
+        Some(i) => Err(CertifyError::ForeignFace { face: swapped(surface.triangles[i]) }),
+        None => Ok(()),
+    }
+}
+
+/// Where a triangle of the input lies in the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// It is a boundary face, oriented outwards.
+    Boundary,
+    /// It is a boundary face, oriented inwards.
+    Reversed,
+    /// It is a face between two tetrahedra.
+    Inside,
+}
+
+/// Proves that `mesh` keeps the triangles of `facets`: its points begin with theirs, bit for bit; every tetrahedron is
+/// positive by the exact predicate; interior faces are shared by two tetrahedra on opposite sides; every boundary face
+/// is a triangle of `facets`, turned either way, and every triangle is a face, for [`InputKind::Closed`] on the
+/// boundary; faces between tetrahedra of different `regions` (one for each tetrahedron, or none) are triangles; the
+/// volumes of the mesh and of what its boundary encloses agree to rounding. Returns where the triangles are.
+///
+/// # Errors
+/// The first of these that does not hold.
+pub fn certify_facets(
+    mesh: &TetMesh,
+    facets: &TriMesh,
+    kind: InputKind,
+    regions: &[i32],
+) -> Result<Vec<Place>, CertifyError> {
+    same_points(mesh, facets)?;
     all_positive(mesh)?;
-    same_boundary(mesh, surface)?;
-    same_volume(mesh, surface)
+    let places = same_faces(mesh, facets, kind, regions)?;
+    same_volume(mesh, facets, &places)?;
+    Ok(places)
+}
+
+/// Proves that the segments are edges of the mesh.
+///
+/// # Errors
+/// The first that is not.
+pub fn certify_segments(mesh: &TetMesh, segments: &[[u32; 2]]) -> Result<(), CertifyError> {
+    if segments.is_empty() {
+        return Ok(());
+    }
+    let mut found: FxHashMap<[u32; 2], bool> = FxHashMap::default();
+    let key = |a: u32, b: u32| [a.min(b), a.max(b)];
+    for &[a, b] in segments {
+        found.insert(key(a, b), false);
+    }
+    for t in &mesh.tets {
+        for i in 0..4 {
+            for j in 0..i {
+                if let Some(f) = found.get_mut(&key(t[i], t[j])) {
+                    *f = true;
+                }
+            }
+        }
+    }
+    match segments.iter().position(|&[a, b]| found.get(&key(a, b)) != Some(&true)) {
+        Some(i) => Err(CertifyError::SegmentLost { segment: i as u32 }),
+        None => Ok(()),
+    }
+}
+
+/// Proves that a mesh is one of positive tetrahedra that meet face to face.
+///
+/// # Errors
+/// The first face or tetrahedron that is not so.
+pub fn certify_conforming(mesh: &TetMesh) -> Result<(), CertifyError> {
+    all_positive(mesh)?;
+    let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
+    if let Some(&half) = adjacency.crowded.first() {
+        return Err(CertifyError::NotConforming { face: face_vertices(&mesh.tets, half) });
+    }
+    for (half, &mate) in (0_u32..).zip(adjacency.neighbors.as_flattened()) {
+        if mate != u32::MAX && mate > half {
+            opposed(mesh, half, mate)?;
+        }
+    }
+    Ok(())
+}
+
+/// Checks that two half-faces run through their common vertices in opposite directions.
+fn opposed(mesh: &TetMesh, half: u32, mate: u32) -> Result<(), CertifyError> {
+    let face = face_vertices(&mesh.tets, half);
+    if rotated(swapped(face)) == rotated(face_vertices(&mesh.tets, mate)) {
+        Ok(())
+    } else {
+        Err(CertifyError::NotConforming { face })
+    }
+}
+
+/// The same face seen from the other side.
+fn swapped([a, b, c]: [u32; 3]) -> [u32; 3] {
+    [a, c, b]
 }
 
 fn same_points(mesh: &TetMesh, surface: &TriMesh) -> Result<(), CertifyError> {
@@ -103,46 +216,63 @@ fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-fn same_boundary(mesh: &TetMesh, surface: &TriMesh) -> Result<(), CertifyError> {
+fn same_faces(
+    mesh: &TetMesh,
+    facets: &TriMesh,
+    kind: InputKind,
+    regions: &[i32],
+) -> Result<Vec<Place>, CertifyError> {
     let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
     if let Some(&half) = adjacency.crowded.first() {
         return Err(CertifyError::NotConforming { face: face_vertices(&mesh.tets, half) });
     }
     let mut wanted: FxHashMap<[u32; 3], u32> = FxHashMap::default();
-    wanted.reserve(surface.triangles.len());
-    for (i, &t) in surface.triangles.iter().enumerate() {
+    wanted.reserve(facets.triangles.len());
+    for (i, &t) in facets.triangles.iter().enumerate() {
         wanted.insert(rotated(t), i as u32);
     }
-    let mut found = vec![false; surface.triangles.len()];
-    let slots = adjacency.neighbors.iter().flatten();
-    for (half, &mate) in slots.enumerate() {
-        let half = half as u32;
+    let find = |face: [u32; 3]| {
+        let same = wanted.get(&rotated(face)).map(|&i| (i, Place::Boundary));
+        same.or_else(|| wanted.get(&rotated(swapped(face))).map(|&i| (i, Place::Reversed)))
+    };
+    let region = |half: u32| regions.get((half >> 2) as usize);
+    let mut places = vec![None; facets.triangles.len()];
+    for (half, &mate) in (0_u32..).zip(adjacency.neighbors.as_flattened()) {
         let face = face_vertices(&mesh.tets, half);
-        if mate != u32::MAX {
-            let [a, b, c] = rotated(face);
-            if mate > half && [a, c, b] != rotated(face_vertices(&mesh.tets, mate)) {
-                return Err(CertifyError::NotConforming { face });
+        if mate == u32::MAX {
+            let Some((i, place)) = find(face) else { return Err(CertifyError::ForeignFace { face }) };
+            places[i as usize] = Some(place);
+        } else if mate > half {
+            opposed(mesh, half, mate)?;
+            if kind == InputKind::Plc {
+                match find(face) {
+                    Some((i, _)) => places[i as usize] = Some(Place::Inside),
+                    None if region(half) != region(mate) => return Err(CertifyError::RegionsMix { face }),
+                    None => {}
+                }
+            } else if region(half) != region(mate) {
+                return Err(CertifyError::RegionsMix { face });
             }
-            continue;
-        }
-        match wanted.get(&rotated(face)) {
-            Some(&i) => found[i as usize] = true,
-            None => return Err(CertifyError::ForeignFace { face }),
         }
     }
-    match found.iter().position(|&f| !f) {
-        Some(i) => Err(CertifyError::TriangleLost { triangle: i as u32 }),
-        None => Ok(()),
+    match places.iter().position(Option::is_none) {
+        Some(i) if kind == InputKind::Closed => Err(CertifyError::TriangleLost { triangle: i as u32 }),
+        Some(i) => Err(CertifyError::FacetLost { triangle: i as u32 }),
+        None => Ok(places.into_iter().flatten().collect()),
     }
 }
 
-fn same_volume(mesh: &TetMesh, surface: &TriMesh) -> Result<(), CertifyError> {
+fn same_volume(mesh: &TetMesh, facets: &TriMesh, places: &[Place]) -> Result<(), CertifyError> {
     let mut filled = 0.0;
     for v in &mesh.tets {
         let [a, b, c, d] = v.map(|i| mesh.points[i as usize]);
         filled += (b - a).cross(&(c - a)).dot(&(d - a)) / 6.0;
     }
-    let (enclosed, magnitude) = enclosed_volume(surface);
+    let (enclosed, magnitude) = signed_volume(facets, |i| match places.get(i) {
+        Some(Place::Boundary) => 1.0,
+        Some(Place::Reversed) => -1.0,
+        _ => 0.0,
+    });
     if (filled - enclosed).abs() <= VOLUME_TOLERANCE * magnitude {
         Ok(())
     } else {
@@ -152,12 +282,16 @@ fn same_volume(mesh: &TetMesh, surface: &TriMesh) -> Result<(), CertifyError> {
 
 /// The volume that a closed surface encloses, and the sum of the magnitudes of its terms.
 pub fn enclosed_volume(surface: &TriMesh) -> (f64, f64) {
+    signed_volume(surface, |_| 1.0)
+}
+
+fn signed_volume(surface: &TriMesh, sign: impl Fn(usize) -> f64) -> (f64, f64) {
     let Some(&origin) = surface.points.first() else { return (0.0, 0.0) };
     let mut volume = 0.0;
     let mut magnitude = 0.0;
-    for t in &surface.triangles {
+    for (i, t) in surface.triangles.iter().enumerate() {
         let [a, b, c] = t.map(|i| surface.points[i as usize] - origin);
-        let term = a.cross(&b).dot(&c) / 6.0;
+        let term = sign(i) * a.cross(&b).dot(&c) / 6.0;
         volume += term;
         magnitude += term.abs();
     }

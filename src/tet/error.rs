@@ -25,7 +25,18 @@ impl std::fmt::Display for Obstacle {
     }
 }
 
-/// Why there is no tetrahedral mesh. Ids are those of the input's points and triangles.
+/// Offenders that an error names; it counts all of them.
+pub(super) const NAMED: usize = 10;
+
+/// The ids of the first offenders, as a sentence has them.
+fn list<T: std::fmt::Debug>(ids: &[T], count: usize) -> String {
+    let named: Vec<String> = ids.iter().map(|id| format!("{id:?}")).collect();
+    let more = if count > ids.len() { format!(" and {} more", count - ids.len()) } else { String::new() };
+    named.join(", ") + &more
+}
+
+/// Why there is no tetrahedral mesh. Ids are those of the input's points and triangles, in ascending order; the first
+/// ten are named, `count` is that of all.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TetError {
@@ -43,94 +54,180 @@ pub enum TetError {
         /// Number of points.
         points: usize,
     },
-    /// A coordinate that is not finite, or too large or too close to zero for exact arithmetic.
-    #[error("point {point} at {position} is not finite or out of the range of exact arithmetic")]
+    /// Coordinates that are not finite, or too large or too close to zero for exact arithmetic.
+    #[error(
+        "{count} points have coordinates that are not finite or out of the range of exact arithmetic: {}; \
+         the first is at {position}", list(points, *count)
+    )]
     OutOfRange {
-        /// The point.
-        point: u32,
-        /// Where it is.
+        /// The points.
+        points: Vec<u32>,
+        /// Number of points.
+        count: usize,
+        /// Where the first is.
         position: Point3,
     },
     /// Points at the same place.
-    #[error("points {first} and {second} coincide at {position}, and {more} further pairs", more = count - 1)]
+    #[error("{count} points repeat an earlier one: {}; the first two are at {position}", list(pairs, *count))]
     DuplicatePoints {
-        /// A point.
-        first: u32,
-        /// Another point at the same place.
-        second: u32,
-        /// The place.
-        position: Point3,
+        /// A point, and one before it at the same place; the earlier first.
+        pairs: Vec<[u32; 2]>,
         /// Number of points that repeat an earlier one.
         count: usize,
+        /// Place of the first pair.
+        position: Point3,
     },
     /// All points lie in one plane.
     #[error("all points lie in one plane")]
     Flat,
-    /// A triangle with an index out of range or a repeated vertex.
-    #[error("triangle {triangle} has vertices {vertices:?}, which are out of range or not distinct")]
+    /// Triangles with an index out of range or a repeated vertex.
+    #[error(
+        "{count} triangles have vertices out of range or not distinct: {}; the first has {vertices:?}",
+        list(triangles, *count)
+    )]
     BadTriangle {
-        /// The triangle.
-        triangle: u32,
-        /// Its vertices.
+        /// The triangles.
+        triangles: Vec<u32>,
+        /// Number of triangles.
+        count: usize,
+        /// Vertices of the first.
         vertices: [u32; 3],
     },
-    /// A triangle whose vertices lie on one line.
-    #[error("triangle {triangle} has no area: its vertices {vertices:?} lie on one line")]
+    /// Segments with an index out of range or equal ends.
+    #[error("{count} segments have ends out of range or not distinct: {}", list(segments, *count))]
+    BadSegment {
+        /// The segments, as indices into [`super::Plc::edges`].
+        segments: Vec<u32>,
+        /// Number of segments.
+        count: usize,
+    },
+    /// Triangles whose vertices lie on one line.
+    #[error(
+        "{count} triangles have no area: {}; the first has the vertices {vertices:?}, which lie on one line",
+        list(triangles, *count)
+    )]
     FlatTriangle {
-        /// The triangle.
-        triangle: u32,
-        /// Its vertices.
+        /// The triangles.
+        triangles: Vec<u32>,
+        /// Number of triangles.
+        count: usize,
+        /// Vertices of the first.
         vertices: [u32; 3],
+    },
+    /// Triangles with the vertices of an earlier one.
+    #[error("{count} triangles have the vertices of an earlier one: {}", list(triangles, *count))]
+    DuplicateTriangles {
+        /// The triangles.
+        triangles: Vec<u32>,
+        /// Number of triangles.
+        count: usize,
+    },
+    /// An array that has to have a value for each of something else has not.
+    #[error("{found} {what} were given, {expected} are needed")]
+    WrongLength {
+        /// What the array holds.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it has to have.
+        expected: usize,
     },
     /// Edges that only one triangle has.
-    #[error("the surface is open: edge {edge:?} has one triangle only ({count} such edges)")]
+    #[error("the surface is open: {count} triangles have an edge of their own: {}; one is {edge:?}", list(triangles, *count))]
     Open {
+        /// Triangles with such an edge.
+        triangles: Vec<u32>,
+        /// Number of such triangles.
+        count: usize,
         /// Ends of one such edge.
         edge: [u32; 2],
         /// Number of such edges.
-        count: usize,
+        edges: usize,
     },
     /// Edges that more than two triangles share.
-    #[error("the surface is not manifold: more than two triangles share edge {edge:?} ({count} such edges)")]
+    #[error(
+        "the surface is not manifold: {count} triangles have an edge with two or more others: {}; one is {edge:?}",
+        list(triangles, *count)
+    )]
     NotManifold {
+        /// Triangles with such an edge.
+        triangles: Vec<u32>,
+        /// Number of such triangles.
+        count: usize,
         /// Ends of one such edge.
         edge: [u32; 2],
         /// Number of such edges.
-        count: usize,
+        edges: usize,
     },
     /// Two triangles run through an edge in the same direction.
-    #[error("the surface is not consistently oriented at edge {edge:?} ({count} such edges)")]
+    #[error(
+        "the surface is not consistently oriented: {count} triangles are turned otherwise than a neighbour: {}; \
+         one such edge is {edge:?}", list(triangles, *count)
+    )]
     NotOriented {
+        /// Triangles with such an edge.
+        triangles: Vec<u32>,
+        /// Number of such triangles.
+        count: usize,
         /// Ends of one such edge.
         edge: [u32; 2],
         /// Number of such edges.
-        count: usize,
+        edges: usize,
     },
-    /// The surface encloses a negative volume: its triangles face inwards.
+    /// The surface encloses a negative volume: its triangles face inwards. An error of the short form only.
     #[error("the surface is oriented inwards: it encloses the volume {volume}")]
     InsideOut {
         /// The volume enclosed, negative.
         volume: f64,
     },
     /// An interior point that lies on the surface or coincides with another point.
-    #[error("interior point {index} at {position} coincides with another point")]
+    #[error("interior point {index} at {position} coincides with another point, or is not finite")]
     BadInteriorPoint {
         /// Index among the interior points given.
         index: u32,
         /// Where it is.
         position: Point3,
     },
-    /// The surface meets itself: one of its edges runs through another part of it. Found by the way, exact where
-    /// reported; there may be more.
-    #[error("the surface meets itself: edge {} {} runs through {obstacle}", edge[0], edge[1])]
+    /// The seed of a hole or region that lies in no such part of space.
+    #[error("the seed {index} of the {what} at {position} lies in none")]
+    BadSeed {
+        /// `"holes"` or `"regions"`.
+        what: &'static str,
+        /// Index among them.
+        index: u32,
+        /// Where it is.
+        position: Point3,
+    },
+    /// An option with a value that makes no sense.
+    #[error("the option {option} has the value {value}, which makes no sense")]
+    BadOption {
+        /// Its name.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The surface meets itself: pairs of triangles have more in common than the vertices that they share.
+    #[error(
+        "the surface meets itself: {}{count} pairs of triangles intersect: {}",
+        if *complete { "" } else { "at least " }, list(pairs, *count)
+    )]
     SelfIntersection {
+        /// The triangles of each pair.
+        pairs: Vec<[u32; 2]>,
+        /// Number of pairs.
+        count: usize,
+        /// Whether all pairs were counted; where there are very many, counting ends.
+        complete: bool,
+    },
+    /// An edge runs through a triangle, another edge, or a point.
+    #[error("edge {} {} runs through {obstacle}", edge[0], edge[1])]
+    EdgeMeets {
         /// Ends of the edge.
         edge: [u32; 2],
         /// What it meets.
         obstacle: Obstacle,
     },
-    /// Recovery ended before all of the surface was in the mesh: the surface meets itself, or is too hard for the
-    /// tiers that exist.
+    /// Recovery ended before all of the surface was in the mesh, although the surface does not meet itself.
     #[error("{} edges and {} triangles of the surface could not be recovered", edges.len(), triangles.len())]
     NotRecovered {
         /// Edges that are not in the mesh.
@@ -138,12 +235,35 @@ pub enum TetError {
         /// Triangles that are not in the mesh.
         triangles: Vec<u32>,
     },
-    /// The orientation of the surface does not tell inside from outside: shells are nested the wrong way.
+    /// The orientation of the surface does not tell inside from outside: shells are nested the wrong way. An error of
+    /// the short form only.
     #[error("triangle {triangle} does not separate inside from outside")]
     NotSeparating {
         /// The triangle.
         triangle: u32,
     },
+    /// The facets enclose nothing: all of space is reached from infinity or from a hole without crossing one.
+    #[error("the facets enclose no volume")]
+    NothingEnclosed,
+    /// Facets or segments that are not part of the volume: both sides of the facet lie outside or in a hole.
+    #[error("{count} {what} lie outside of what is filled: {}", list(ids, *count))]
+    Outside {
+        /// `"triangles"` or `"segments"`.
+        what: &'static str,
+        /// Their ids.
+        ids: Vec<u32>,
+        /// Number of them.
+        count: usize,
+    },
+    /// An option, or a combination of options, that is not there.
+    #[error("not supported: {what}")]
+    Unsupported {
+        /// What was asked for.
+        what: &'static str,
+    },
+    /// The caller's callback said so.
+    #[error("cancelled")]
+    Cancelled,
     /// The finished mesh did not pass the certificate. A bug of this program, or a surface that meets itself.
     #[error("the mesh did not pass the certificate")]
     NotCertified(#[from] super::certify::CertifyError),

@@ -1,11 +1,17 @@
-//! What a surface must be before it is tetrahedralized: closed, manifold in its edges, oriented outwards, finite.
+//! What an input must be before it is tetrahedralized. All of it is decided exactly, in time and memory linear in the
+//! input but for sorting; what only shows in space (parts that meet) is the business of [`super::contacts`].
 
 use super::certify::enclosed_volume;
-use super::error::TetError;
-use crate::geometry::predicates::{collinear, in_exact_range};
+use super::error::{NAMED, TetError};
+use super::plc::{InputKind, Plc};
+use crate::geometry::Point3;
+use crate::geometry::predicates::{MAX_MAGNITUDE, collinear, in_exact_range};
 use crate::mesh::TriMesh;
 
-/// The edges of a closed surface.
+/// The box around the input reaches three times as far, and has to be in the range of the predicates.
+const LARGEST: f64 = MAX_MAGNITUDE / 4.0;
+
+/// The edges of a surface, and segments beside it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SurfaceEdges {
     /// Each edge once, smaller vertex first, in ascending order.
@@ -15,6 +21,18 @@ pub(super) struct SurfaceEdges {
 }
 
 impl SurfaceEdges {
+    /// From edges in ascending order, each once.
+    fn new(edges: Vec<[u32; 2]>, points: usize) -> Self {
+        let mut offset = vec![0u32; points + 1];
+        for e in &edges {
+            offset[e[0] as usize + 1] += 1;
+        }
+        for v in 0..points {
+            offset[v + 1] += offset[v];
+        }
+        Self { edges, offset }
+    }
+
     /// Where in `edges` those with the smaller vertex `v` are.
     pub fn range(&self, v: u32) -> Option<std::ops::Range<usize>> {
         let end = *self.offset.get((v as usize).saturating_add(1))?;
@@ -28,47 +46,143 @@ impl SurfaceEdges {
     }
 }
 
-/// Checks the surface and lists its edges.
-pub(super) fn validate(surface: &TriMesh) -> Result<SurfaceEdges, TetError> {
+/// The first few offenders and the number of all.
+#[derive(Debug, Default)]
+pub(super) struct Offenders<T = u32> {
+    pub named: Vec<T>,
+    pub count: usize,
+}
+
+impl<T> Offenders<T> {
+    pub fn add(&mut self, id: T) {
+        if self.named.len() < NAMED {
+            self.named.push(id);
+        }
+        self.count += 1;
+    }
+}
+
+impl<T> FromIterator<T> for Offenders<T> {
+    fn from_iter<I: IntoIterator<Item = T>>(ids: I) -> Self {
+        let mut all = Self { named: Vec::new(), count: 0 };
+        ids.into_iter().for_each(|id| all.add(id));
+        all
+    }
+}
+
+/// Checks the arrays of a surface and lists its edges, those of `segments` among them. Whether it meets itself is not
+/// looked at, nor whether points coincide.
+pub(super) fn validate(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<SurfaceEdges, TetError> {
+    check_arrays(surface)?;
+    check_segments(segments, surface.points.len())?;
+    match kind {
+        InputKind::Closed => list_closed_edges(surface, segments),
+        InputKind::Plc => Ok(list_edges(surface, segments)),
+    }
+}
+
+/// The short form takes surfaces that enclose a positive volume only.
+pub(super) fn outward(surface: &TriMesh) -> Result<(), TetError> {
+    let (volume, _) = enclosed_volume(surface);
+    if volume < 0.0 { Err(TetError::InsideOut { volume }) } else { Ok(()) }
+}
+
+/// Checks that arrays are as long as they have to be.
+pub(super) fn check_lengths(plc: &Plc) -> Result<(), TetError> {
+    let (found, expected) = (plc.markers.len(), plc.triangles.len());
+    if found != 0 && found != expected {
+        return Err(TetError::WrongLength { what: "markers of triangles", found, expected });
+    }
+    Ok(())
+}
+
+fn check_arrays(surface: &TriMesh) -> Result<(), TetError> {
     let (points, triangles) = (surface.points.len(), surface.triangles.len());
     if points == 0 || triangles == 0 {
         return Err(TetError::Empty { points, triangles });
     }
     if points.max(triangles) > (u32::MAX / 64) as usize {
-        return Err(TetError::TooLarge { points });
+        return Err(TetError::TooLarge { points: points.max(triangles) });
     }
-    if let Some(i) = surface.points.iter().position(|p| !p.iter().all(|&x| in_exact_range(x))) {
-        return Err(TetError::OutOfRange { point: i as u32, position: surface.points[i] });
-    }
-    for (i, &vertices) in surface.triangles.iter().enumerate() {
-        let [a, b, c] = vertices;
-        if a == b || b == c || c == a || vertices.iter().any(|&v| v as usize >= points) {
-            return Err(TetError::BadTriangle { triangle: i as u32, vertices });
+    check_coordinates(&surface.points)?;
+    check_indices(surface)?;
+    check_areas(surface)
+}
+
+fn check_coordinates(points: &[Point3]) -> Result<(), TetError> {
+    let wrong = |p: &Point3| !p.iter().all(|&x| in_exact_range(x) && x.abs() <= LARGEST);
+    let found: Offenders = points.iter().zip(0..).filter(|(p, _)| wrong(p)).map(|(_, i)| i).collect();
+    match found.named.first() {
+        Some(&first) => {
+            let position = points[first as usize];
+            Err(TetError::OutOfRange { points: found.named, count: found.count, position })
         }
-        let [p, q, r] = vertices.map(|v| &surface.points[v as usize]);
-        if collinear(p, q, r) {
-            return Err(TetError::FlatTriangle { triangle: i as u32, vertices });
+        None => Ok(()),
+    }
+}
+
+fn check_indices(surface: &TriMesh) -> Result<(), TetError> {
+    let points = surface.points.len();
+    let wrong = |t: &[u32; 3]| t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || t.iter().any(|&v| v as usize >= points);
+    let found: Offenders = surface.triangles.iter().zip(0..).filter(|(t, _)| wrong(t)).map(|(_, i)| i).collect();
+    match found.named.first() {
+        Some(&first) => {
+            let vertices = surface.triangles[first as usize];
+            Err(TetError::BadTriangle { triangles: found.named, count: found.count, vertices })
         }
+        None => Ok(()),
     }
-    let edges = list_edges(surface)?;
-    let (volume, _) = enclosed_volume(surface);
-    if volume < 0.0 {
-        return Err(TetError::InsideOut { volume });
+}
+
+fn check_areas(surface: &TriMesh) -> Result<(), TetError> {
+    let flat = |t: &[u32; 3]| {
+        let [p, q, r] = t.map(|v| &surface.points[v as usize]);
+        collinear(p, q, r)
+    };
+    let found: Offenders = surface.triangles.iter().zip(0..).filter(|(t, _)| flat(t)).map(|(_, i)| i).collect();
+    match found.named.first() {
+        Some(&first) => {
+            let vertices = surface.triangles[first as usize];
+            Err(TetError::FlatTriangle { triangles: found.named, count: found.count, vertices })
+        }
+        None => Ok(()),
     }
-    Ok(edges)
+}
+
+fn check_segments(segments: &[[u32; 2]], points: usize) -> Result<(), TetError> {
+    let wrong = |e: &[u32; 2]| e[0] == e[1] || e.iter().any(|&v| v as usize >= points);
+    let found: Offenders = segments.iter().zip(0..).filter(|(e, _)| wrong(e)).map(|(_, i)| i).collect();
+    if found.count == 0 { Ok(()) } else { Err(TetError::BadSegment { segments: found.named, count: found.count }) }
+}
+
+/// The edge from a vertex of a triangle to the next, smaller vertex first, and whether that is its direction.
+fn edge_of(t: &[u32; 3], i: usize) -> ([u32; 2], bool) {
+    let (a, b) = (t[i], t[(i + 1) % 3]);
+    ([a.min(b), a.max(b)], a < b)
+}
+
+fn sorted_sides(surface: &TriMesh) -> Vec<([u32; 2], bool)> {
+    let mut sides = Vec::with_capacity(3 * surface.triangles.len());
+    for t in &surface.triangles {
+        sides.extend((0..3).map(|i| edge_of(t, i)));
+    }
+    sides.sort_unstable();
+    sides
+}
+
+/// All edges and segments, each once.
+fn list_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> SurfaceEdges {
+    let mut edges: Vec<[u32; 2]> = segments.iter().map(|e| [e[0].min(e[1]), e[0].max(e[1])]).collect();
+    edges.extend(surface.triangles.iter().flat_map(|t| (0..3).map(|i| edge_of(t, i).0)));
+    edges.sort_unstable();
+    edges.dedup();
+    SurfaceEdges::new(edges, surface.points.len())
 }
 
 /// Pairs the edges; each must be run through once in each direction.
-fn list_edges(surface: &TriMesh) -> Result<SurfaceEdges, TetError> {
-    let mut sides: Vec<([u32; 2], bool)> = Vec::with_capacity(3 * surface.triangles.len());
-    for t in &surface.triangles {
-        for i in 0..3 {
-            let (a, b) = (t[i], t[(i + 1) % 3]);
-            sides.push(([a.min(b), a.max(b)], a < b));
-        }
-    }
-    sides.sort_unstable();
-    let mut edges = Vec::with_capacity(sides.len() / 2);
+fn list_closed_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> Result<SurfaceEdges, TetError> {
+    let sides = sorted_sides(surface);
+    let mut edges = Vec::with_capacity(sides.len() / 2 + segments.len());
     let (mut open, mut crowded, mut twisted) = (Vec::new(), Vec::new(), Vec::new());
     for run in sides.chunk_by(|x, y| x.0 == y.0) {
         match *run {
@@ -78,21 +192,57 @@ fn list_edges(surface: &TriMesh) -> Result<SurfaceEdges, TetError> {
             _ => crowded.push(run[0].0),
         }
     }
-    if let Some(&edge) = crowded.first() {
-        return Err(TetError::NotManifold { edge, count: crowded.len() });
+    drop(sides);
+    let named = |edges: &[[u32; 2]]| edges.first().map(|&e| (triangles_at(surface, edges), e, edges.len()));
+    if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&crowded) {
+        return Err(TetError::NotManifold { triangles, count, edge, edges });
     }
-    if let Some(&edge) = open.first() {
-        return Err(TetError::Open { edge, count: open.len() });
+    if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&open) {
+        return Err(TetError::Open { triangles, count, edge, edges });
     }
-    if let Some(&edge) = twisted.first() {
-        return Err(TetError::NotOriented { edge, count: twisted.len() });
+    if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&twisted) {
+        return Err(TetError::NotOriented { triangles, count, edge, edges });
     }
-    let mut offset = vec![0u32; surface.points.len() + 1];
-    for e in &edges {
-        offset[e[0] as usize + 1] += 1;
+    if !segments.is_empty() {
+        edges.extend(segments.iter().map(|e| [e[0].min(e[1]), e[0].max(e[1])]));
+        edges.sort_unstable();
+        edges.dedup();
     }
-    for v in 0..surface.points.len() {
-        offset[v + 1] += offset[v];
+    Ok(SurfaceEdges::new(edges, surface.points.len()))
+}
+
+/// The triangles that have one of some edges, which are in ascending order.
+fn triangles_at(surface: &TriMesh, edges: &[[u32; 2]]) -> Offenders {
+    let has = |t: &[u32; 3]| (0..3).any(|i| edges.binary_search(&edge_of(t, i).0).is_ok());
+    surface.triangles.iter().zip(0..).filter(|(t, _)| has(t)).map(|(_, i)| i).collect()
+}
+
+/// Checks that no point repeats another one, bit for bit but for the sign of zero.
+pub(super) fn no_duplicate_points(points: &[Point3]) -> Result<(), TetError> {
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    let key = |i: u32| points[i as usize].coords.map(|x| (x + 0.0).to_bits());
+    order.sort_unstable_by_key(|&i| (key(i).x, key(i).y, key(i).z, i));
+    let mut twins: Vec<[u32; 2]> = Vec::new();
+    for run in order.chunk_by(|&i, &j| points[i as usize] == points[j as usize]) {
+        twins.extend(run.iter().skip(1).map(|&i| [run[0], i]));
     }
-    Ok(SurfaceEdges { edges, offset })
+    twins.sort_unstable_by_key(|pair| pair[1]);
+    let Some(first) = twins.first() else { return Ok(()) };
+    let position = points[first[0] as usize];
+    let count = twins.len();
+    twins.truncate(NAMED);
+    Err(TetError::DuplicatePoints { pairs: twins, count, position })
+}
+
+/// Checks that no two triangles have the same three vertices.
+pub(super) fn no_duplicate_triangles(triangles: &[[u32; 3]]) -> Result<(), TetError> {
+    let mut order: Vec<([u32; 3], u32)> = triangles.iter().map(|&t| super::complex::face_key(t)).zip(0..).collect();
+    order.sort_unstable();
+    let mut again: Vec<u32> = order.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
+    again.sort_unstable();
+    if again.is_empty() {
+        return Ok(());
+    }
+    let found: Offenders = again.into_iter().collect();
+    Err(TetError::DuplicateTriangles { triangles: found.named, count: found.count })
 }

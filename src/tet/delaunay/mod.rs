@@ -11,7 +11,7 @@ mod order;
 mod perturb;
 
 use super::complex::Complex;
-use super::error::TetError;
+use super::error::{NAMED, TetError};
 use crate::geometry::Point3;
 use crate::geometry::predicates::{collinear, in_exact_range, orient3d};
 use insert::Inserter;
@@ -41,10 +41,11 @@ pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
             duplicates.push((a.min(b), a.max(b)));
         }
     }
-    duplicates.sort_unstable();
-    if let Some(&(first, second)) = duplicates.first() {
-        let position = points[first as usize];
-        return Err(TetError::DuplicatePoints { first, second, position, count: duplicates.len() });
+    duplicates.sort_unstable_by_key(|&(_, second)| second);
+    if let Some(&(first, _)) = duplicates.first() {
+        let (count, position) = (duplicates.len(), points[first as usize]);
+        let pairs = duplicates.iter().take(NAMED).map(|&(a, b)| [a, b]).collect();
+        return Err(TetError::DuplicatePoints { pairs, count, position });
     }
     Ok(inserter.finish(points.to_vec(), &order))
 }
@@ -58,7 +59,7 @@ fn validate(points: &[Point3]) -> Result<(), TetError> {
         return Err(TetError::TooLarge { points: points.len() });
     }
     match points.iter().position(|p| !p.iter().all(|&x| in_exact_range(x))) {
-        Some(i) => Err(TetError::OutOfRange { point: i as u32, position: points[i] }),
+        Some(i) => Err(TetError::OutOfRange { points: vec![i as u32], count: 1, position: points[i] }),
         None => Ok(()),
     }
 }

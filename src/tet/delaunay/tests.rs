@@ -83,9 +83,9 @@ fn degenerate_inputs_are_typed_errors() {
     assert_eq!(delaunay(&plane).unwrap_err(), TetError::Flat);
     assert_eq!(delaunay(&[p(1.0, 1.0, 1.0); 5]).unwrap_err(), TetError::Flat);
     let nan = [p(0., 0., 0.), p(1., 0., 0.), p(0., f64::NAN, 0.), p(0., 0., 1.)];
-    assert!(matches!(delaunay(&nan), Err(TetError::OutOfRange { point: 2, .. })));
+    assert!(matches!(delaunay(&nan), Err(TetError::OutOfRange { count: 1, .. })));
     let twice = [p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(0., 0., 1.), p(1., 0., 0.)];
-    assert!(matches!(delaunay(&twice), Err(TetError::DuplicatePoints { first: 1, second: 4, count: 1, .. })));
+    assert!(matches!(delaunay(&twice), Err(TetError::DuplicatePoints { pairs, count: 1, .. }) if pairs == [[1, 4]]));
 }
 
 #[test]

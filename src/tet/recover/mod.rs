@@ -12,6 +12,7 @@ use super::complex::Complex;
 use super::error::{Obstacle, TetError};
 use super::flips::{Flipper, Refusal};
 use super::input::SurfaceEdges;
+use super::progress::{Stage, Watch};
 use super::star::{EdgeRing, Star};
 use crate::mesh::TriMesh;
 use cavity::Cavity;
@@ -50,6 +51,7 @@ pub(super) fn recover(
     surface: &TriMesh,
     edges: &SurfaceEdges,
     attempt: u32,
+    watch: &Watch,
 ) -> Result<RecoverySummary, TetError> {
     let mut r = Recovery {
         c,
@@ -71,7 +73,10 @@ pub(super) fn recover(
     let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
     for round in 0..=ROUNDS {
         r.round = round;
+        let total = summary.missing_edges + summary.missing_triangles;
+        watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
         lost_edges.retain(|&e| r.met.is_some() || !r.recover_edge(e));
+        watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
         lost_faces.retain(|&f| r.met.is_some() || !r.recover_face(f));
         if let Some(error) = r.met {
             return Err(error);
@@ -177,7 +182,7 @@ impl Recovery<'_> {
             self.budget -= 1;
             let crossing = first_crossing(self.c, &mut self.star, from, to);
             if let Some(obstacle) = self.obstacle(crossing) {
-                self.met = Some(TetError::SelfIntersection { edge: [a, b], obstacle });
+                self.met = Some(TetError::EdgeMeets { edge: [a, b], obstacle });
                 return false;
             }
             let progress = match crossing {
@@ -226,7 +231,7 @@ impl Recovery<'_> {
             if let Some((_, p, q)) = pierced
                 && self.edges.contains(p, q)
             {
-                self.met = Some(TetError::SelfIntersection { edge: [p, q], obstacle: Obstacle::Triangle(tri) });
+                self.met = Some(TetError::EdgeMeets { edge: [p, q], obstacle: Obstacle::Triangle(tri) });
                 return false;
             }
             if pierced.is_some_and(|(t, p, q)| self.clear_edge(t, p, q, DEPTH)) {

@@ -1,0 +1,252 @@
+//! The library's front door.
+
+use super::certify::{Place, certify_conforming};
+use super::complex::Complex;
+use super::contacts;
+use super::error::TetError;
+use super::fill::{Request, fill};
+use super::optimize::OptimizeReport;
+use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
+use super::plc::{InputKind, Plc};
+use super::progress::{Cancel, OnProgress, Progress, Stage, Watch};
+use super::recover::RecoverySummary;
+use super::{delaunay, input};
+use crate::geometry::Point3;
+use crate::mesh::{TetMesh, TriMesh};
+use std::sync::Arc;
+
+/// Makes tetrahedral meshes of surfaces, of piecewise linear complexes and of points. See the module's text for an
+/// example.
+///
+/// It can be cloned, sent to other threads and used again; runs share nothing.
+#[derive(Clone)]
+pub struct Tetrahedralizer {
+    kind: InputKind,
+    interior: Interior,
+    refinement: Option<Refinement>,
+    sizing: Sizing,
+    boundary: Boundary,
+    optimize: bool,
+    on_progress: Option<Arc<OnProgress>>,
+    cancel: Option<Arc<Cancel>>,
+}
+
+/// A certified mesh, and what it took.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Tetrahedralization {
+    /// The mesh; its points begin with the input's, in their order and bit for bit.
+    pub mesh: TetMesh,
+    /// Region of each tetrahedron; empty when there is only one and no seed has given it an id.
+    pub regions: Vec<i32>,
+    /// The triangles of the input, in their order, or their pieces where they were split. Those on the boundary are
+    /// oriented outwards; those inside as they came.
+    pub faces: Vec<[u32; 3]>,
+    /// Marker of each of `faces`; empty when the input has none.
+    pub face_markers: Vec<i32>,
+    /// What it took.
+    pub summary: Summary,
+}
+
+/// What a mesh took.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Summary {
+    /// What recovery did.
+    pub recovery: RecoverySummary,
+    /// What improvement did, where it was asked for.
+    pub optimize: Option<OptimizeReport>,
+    /// Number of regions.
+    pub regions: usize,
+    /// Triangles of the boundary that came oriented inwards.
+    pub reversed: usize,
+    /// Triangles of the input between two tetrahedra.
+    pub interior_faces: usize,
+}
+
+impl Default for Tetrahedralizer {
+    fn default() -> Self {
+        let TetOptions { interior, optimize } = TetOptions::default();
+        Self {
+            kind: InputKind::default(),
+            interior,
+            refinement: None,
+            sizing: Sizing::default(),
+            boundary: Boundary::default(),
+            optimize,
+            on_progress: None,
+            cancel: None,
+        }
+    }
+}
+
+impl Tetrahedralizer {
+    /// For closed surfaces, kept as they are, with a lattice of points inside and the mesh improved.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What the input is.
+    #[must_use]
+    pub fn kind(mut self, kind: InputKind) -> Self {
+        self.kind = kind;
+        self
+    }
+
+    /// Which points are put inside before anything else.
+    #[must_use]
+    pub fn interior(mut self, interior: Interior) -> Self {
+        self.interior = interior;
+        self
+    }
+
+    /// Delaunay refinement: tetrahedra that are too large or badly shaped are split.
+    #[must_use]
+    pub fn refine(mut self, refinement: Option<Refinement>) -> Self {
+        self.refinement = refinement;
+        self
+    }
+
+    /// How long the edges of a refined mesh are to be.
+    #[must_use]
+    pub fn sizing(mut self, sizing: Sizing) -> Self {
+        self.sizing = sizing;
+        self
+    }
+
+    /// Whether the triangles of the input may be split.
+    #[must_use]
+    pub fn boundary(mut self, boundary: Boundary) -> Self {
+        self.boundary = boundary;
+        self
+    }
+
+    /// Whether the mesh is improved, with its boundary as it is.
+    #[must_use]
+    pub fn optimize(mut self, optimize: bool) -> Self {
+        self.optimize = optimize;
+        self
+    }
+
+    /// What is told about the progress, on the thread that does the work.
+    #[must_use]
+    pub fn on_progress(mut self, tell: impl Fn(Progress) + Send + Sync + 'static) -> Self {
+        self.on_progress = Some(Arc::new(tell));
+        self
+    }
+
+    /// What is asked, often, whether to stop; a run then ends with [`TetError::Cancelled`].
+    #[must_use]
+    pub fn cancel(mut self, stop: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        self.cancel = Some(Arc::new(stop));
+        self
+    }
+
+    fn watch(&self) -> Watch<'_> {
+        Watch::new(self.on_progress.as_deref(), self.cancel.as_deref())
+    }
+
+    /// Makes a mesh of a complex. Success means that it has passed the certificate
+    /// ([`super::certify::certify_facets`]): each triangle of the input is a face of it.
+    ///
+    /// # Errors
+    /// [`TetError`]: what is wrong with the input, or what could not be recovered.
+    pub fn run(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
+        let watch = self.watch();
+        watch.report(Stage::Validate, 0, 1)?;
+        input::check_lengths(plc)?;
+        let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
+        let edges = input::validate(&surface, &plc.edges, self.kind)?;
+        watch.report(Stage::Validate, 1, 1)?;
+        let filled = fill(&Request {
+            surface: &surface,
+            edges: &edges,
+            segments: &plc.edges,
+            kind: self.kind,
+            holes: if self.kind == InputKind::Plc { &plc.holes } else { &[] },
+            regions: &plc.regions,
+            interior: &self.interior,
+            refinement: self.refinement.as_ref(),
+            sizing: &self.sizing,
+            boundary: self.boundary,
+            optimize: self.optimize,
+            label: true,
+            watch: &watch,
+        })?;
+        let outward = |(t, place): (&[u32; 3], &Place)| match place {
+            Place::Reversed => [t[0], t[2], t[1]],
+            Place::Boundary | Place::Inside => *t,
+        };
+        let count = |wanted: Place| filled.places.iter().filter(|&&p| p == wanted).count();
+        Ok(Tetrahedralization {
+            faces: surface.triangles.iter().zip(&filled.places).map(outward).collect(),
+            face_markers: plc.markers.clone(),
+            summary: Summary {
+                recovery: filled.recovery,
+                optimize: filled.optimize,
+                regions: filled.region_count,
+                reversed: count(Place::Reversed),
+                interior_faces: count(Place::Inside),
+            },
+            mesh: filled.mesh,
+            regions: filled.regions,
+        })
+    }
+
+    /// Checks an input without meshing it: all that [`Tetrahedralizer::run`] checks, and that no points coincide, no
+    /// triangle is there twice, and no two triangles meet but in common vertices and edges. Segments are not tested
+    /// against triangles.
+    ///
+    /// # Errors
+    /// The first fault, with the ids of the offenders.
+    pub fn check(&self, plc: &Plc) -> Result<(), TetError> {
+        let watch = self.watch();
+        watch.report(Stage::Validate, 0, 1)?;
+        input::check_lengths(plc)?;
+        let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
+        input::validate(&surface, &plc.edges, self.kind)?;
+        input::no_duplicate_points(&surface.points)?;
+        input::no_duplicate_triangles(&surface.triangles)?;
+        contacts::no_contacts(&surface, &watch)?;
+        watch.report(Stage::Validate, 1, 1)
+    }
+
+    /// The Delaunay tetrahedralization of points. `faces` are those of the convex hull.
+    ///
+    /// # Errors
+    /// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`],
+    /// [`TetError::Cancelled`].
+    pub fn delaunay(&self, points: &[Point3]) -> Result<Tetrahedralization, TetError> {
+        let watch = self.watch();
+        watch.report(Stage::Delaunay, 0, 1)?;
+        let complex = delaunay::delaunay(points)?;
+        watch.report(Stage::Delaunay, 1, 1)?;
+        watch.report(Stage::Certify, 0, 1)?;
+        let faces = hull(&complex);
+        let mesh = complex.into_mesh();
+        certify_conforming(&mesh)?;
+        watch.report(Stage::Certify, 1, 1)?;
+        Ok(Tetrahedralization { mesh, faces, ..Tetrahedralization::default() })
+    }
+}
+
+/// The faces under the ghosts, oriented outwards.
+fn hull(c: &Complex) -> Vec<[u32; 3]> {
+    let halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
+    halves.filter(|&h| c.is_ghost(c.mate(h) >> 2)).map(|h| c.face(h)).collect()
+}
+
+impl std::fmt::Debug for Tetrahedralizer {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Tetrahedralizer")
+            .field("kind", &self.kind)
+            .field("interior", &self.interior)
+            .field("refinement", &self.refinement)
+            .field("sizing", &self.sizing)
+            .field("boundary", &self.boundary)
+            .field("optimize", &self.optimize)
+            .field("watch", &self.watch())
+            .finish()
+    }
+}

@@ -1,0 +1,199 @@
+//! From a checked input to a certified mesh: Delaunay, recovery, carving, improvement, certificate.
+
+use super::certify::{Place, certify_facets, certify_segments};
+use super::complex::Complex;
+use super::error::TetError;
+use super::input::SurfaceEdges;
+use super::optimize::{OptimizeOptions, OptimizeReport, optimize_complex};
+use super::options::{Boundary, Interior, Refinement, Sizing};
+use super::plc::{InputKind, Region};
+use super::progress::{Stage, Watch};
+use super::recover::{self, RecoverySummary};
+use super::regions::Regions;
+use super::{carve, contacts, delaunay, input, lattice};
+use crate::geometry::Point3;
+use crate::geometry::predicates::MIN_MAGNITUDE;
+use crate::mesh::{TetMesh, TriMesh};
+
+/// Side of the lattice's cubes in mean edge lengths of the surface.
+const CELL: f64 = 1.5;
+
+/// Distance of the lattice from the wall in mean edge lengths of the surface.
+const CLEARANCE: f64 = 0.55;
+
+/// Times that recovery is tried.
+const ATTEMPTS: u32 = 8;
+
+/// A checked input and what is wanted of it.
+pub(super) struct Request<'a> {
+    pub surface: &'a TriMesh,
+    pub edges: &'a SurfaceEdges,
+    pub segments: &'a [[u32; 2]],
+    pub kind: InputKind,
+    pub holes: &'a [Point3],
+    pub regions: &'a [Region],
+    pub interior: &'a Interior,
+    pub refinement: Option<&'a Refinement>,
+    pub sizing: &'a Sizing,
+    pub boundary: Boundary,
+    pub optimize: bool,
+    /// Whether tetrahedra are told apart by regions.
+    pub label: bool,
+    pub watch: &'a Watch<'a>,
+}
+
+/// A certified mesh.
+pub(super) struct Filled {
+    pub mesh: TetMesh,
+    /// Where each triangle of the input lies in it.
+    pub places: Vec<Place>,
+    /// Region of each tetrahedron, where there is something to say.
+    pub regions: Vec<i32>,
+    pub region_count: usize,
+    pub recovery: RecoverySummary,
+    pub optimize: Option<OptimizeReport>,
+}
+
+/// Fills what the request describes, and proves it.
+pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
+    supported(r)?;
+    let (complex, recovery) = conforming(r)?;
+    r.watch.report(Stage::Carve, 0, 1)?;
+    let carved = carve::carve(&complex, r.surface, r.kind, r.holes);
+    let mut carved = carved.map_err(|error| diagnosis(r, error))?;
+    drop(complex);
+    carve::check_segments(&carved, r.segments)?;
+    r.watch.report(Stage::Carve, 1, 1)?;
+    let optimize = if r.optimize { Some(improve(r, &mut carved)?) } else { None };
+    r.watch.report(Stage::Certify, 0, 1)?;
+    let (regions, region_count) = if r.label { labels(r, &carved)? } else { (Vec::new(), 0) };
+    let mesh = carved.into_compact_mesh(r.surface.points.len());
+    let places = certify_facets(&mesh, r.surface, r.kind, &regions)?;
+    certify_segments(&mesh, r.segments)?;
+    r.watch.report(Stage::Certify, 1, 1)?;
+    Ok(Filled { mesh, places, regions, region_count, recovery, optimize })
+}
+
+/// Region of each tetrahedron, where there is something to say, and the number of regions.
+fn labels(r: &Request, carved: &Complex) -> Result<(Vec<i32>, usize), TetError> {
+    let found = Regions::of(carved, r.regions)?;
+    Ok((if found.matter() { found.ids(carved) } else { Vec::new() }, found.len()))
+}
+
+/// What is not there yet is said before any work is done.
+fn supported(r: &Request) -> Result<(), TetError> {
+    if r.refinement.is_some() || !matches!(r.sizing, Sizing::Surface) {
+        return Err(TetError::Unsupported { what: "refinement" });
+    }
+    if r.boundary == Boundary::Split {
+        return Err(TetError::Unsupported { what: "splitting the boundary" });
+    }
+    Ok(())
+}
+
+/// Improves the mesh; triangles and segments stay.
+fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError> {
+    r.watch.report(Stage::Optimize, 0, 1)?;
+    let held = carve::hold_segments(carved, r.segments);
+    let options = OptimizeOptions { fixed_points: r.surface.points.len(), ..Default::default() };
+    let report = optimize_complex(carved, &options);
+    carve::release_segments(carved, &held);
+    r.watch.report(Stage::Optimize, 1, 1)?;
+    Ok(report)
+}
+
+/// A failure whose cause may be the surface: then that is named instead.
+fn diagnosis(r: &Request, error: TetError) -> TetError {
+    let checked = input::no_duplicate_points(&r.surface.points)
+        .and_then(|()| input::no_duplicate_triangles(&r.surface.triangles))
+        .and_then(|()| contacts::no_contacts(r.surface, r.watch));
+    checked.err().unwrap_or(error)
+}
+
+/// A complex that has all of the surface. Where recovery leaves a little over, it is tried again with other interior
+/// points: what blocks it is a matter of chance on smooth surfaces.
+fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
+    let surface = r.surface;
+    let mut attempt = 0;
+    loop {
+        r.watch.report(Stage::Delaunay, 0, 1)?;
+        let mut points = surface.points.clone();
+        points.extend(interior_points(surface, &other_interior(surface, r.interior, attempt))?);
+        let inner = points.len();
+        points.extend(box_corners(&surface.points));
+        let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
+        drop(points);
+        r.watch.report(Stage::Delaunay, 1, 1)?;
+        match recover::recover(&mut complex, surface, r.edges, attempt, r.watch) {
+            Ok(summary) => return Ok((complex, summary)),
+            Err(TetError::NotRecovered { edges, triangles })
+                if attempt + 1 < ATTEMPTS && edges.len() + triangles.len() <= recover::FEW => {}
+            Err(TetError::Cancelled) => return Err(TetError::Cancelled),
+            Err(error) => return Err(diagnosis(r, error)),
+        }
+        attempt += 1;
+    }
+}
+
+/// The interior asked for, or for later attempts one like it.
+fn other_interior(surface: &TriMesh, interior: &Interior, attempt: u32) -> Interior {
+    let factor = [1.0, 1.07, 0.93, 1.15, 0.87, 1.23, 1.31, 0.8][attempt as usize % 8];
+    let h = lattice::mean_edge(surface);
+    match interior {
+        Interior::Lattice { cell, clearance } if attempt > 0 => Interior::Lattice {
+            cell: Some(cell.unwrap_or(CELL * h) * factor),
+            clearance: Some(clearance.unwrap_or(CLEARANCE * h) * factor.max(1.0)),
+        },
+        Interior::None if attempt > 0 => {
+            Interior::Lattice { cell: Some(4.0 * CELL * h * factor), clearance: Some(CELL * h) }
+        }
+        other => other.clone(),
+    }
+}
+
+fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>, TetError> {
+    match interior {
+        Interior::None => Ok(Vec::new()),
+        Interior::Lattice { cell, clearance } => {
+            let h = lattice::mean_edge(surface);
+            let (cell, clearance) = (cell.unwrap_or(CELL * h), clearance.unwrap_or(CLEARANCE * h));
+            Ok(lattice::lattice_points(surface, cell, clearance))
+        }
+        Interior::Points(points) => {
+            let inside = points.iter().zip(0..).find(|(p, _)| !p.iter().all(|x| x.is_finite()));
+            match inside {
+                Some((&position, index)) => Err(TetError::BadInteriorPoint { index, position }),
+                None => Ok(points.clone()),
+            }
+        }
+    }
+}
+
+/// Eight points well outside, so that the hull of all points is no part of the surface and all of the surface can be
+/// flipped to.
+pub(super) fn box_corners(points: &[Point3]) -> Vec<Point3> {
+    let Some(first) = points.first() else { return Vec::new() };
+    let (mut low, mut high) = (*first, *first);
+    for p in points {
+        low = low.inf(p);
+        high = high.sup(p);
+    }
+    let margin = (high - low).max();
+    let safe = |x: f64| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x };
+    let ends = [low.map(|x| safe(x - margin)), high.map(|x| safe(x + margin))];
+    (0..8).map(|i: usize| Point3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[i >> 2].z)).collect()
+}
+
+/// A point given twice is a fault of the surface, or of the interior points.
+fn name_interior(error: TetError, surface: usize, inner: usize) -> TetError {
+    let given = |v: u32| (surface..inner).contains(&(v as usize));
+    match error {
+        TetError::DuplicatePoints { ref pairs, position, .. } => match pairs.first() {
+            Some(&[_, second]) if given(second) => {
+                TetError::BadInteriorPoint { index: second - surface as u32, position }
+            }
+            _ => error,
+        },
+        other => other,
+    }
+}

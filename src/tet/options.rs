@@ -1,0 +1,131 @@
+//! What can be asked for.
+
+use crate::geometry::Point3;
+use std::sync::Arc;
+
+/// Which points are put inside the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Interior {
+    /// None but those that recovery needs.
+    None,
+    /// A body-centred cubic lattice; lengths in the unit of the surface.
+    Lattice {
+        /// Side of the cubes; none: 1.5 mean edge lengths of the surface.
+        cell: Option<f64>,
+        /// Distance kept from the wall; none: 0.55 mean edge lengths of the surface.
+        clearance: Option<f64>,
+    },
+    /// These points; those outside the surface are dropped.
+    Points(Vec<Point3>),
+}
+
+/// How long edges are to be, in the unit of the surface.
+#[derive(Clone, Default)]
+pub enum Sizing {
+    /// As the surface has them nearby.
+    #[default]
+    Surface,
+    /// The same everywhere.
+    Constant(f64),
+    /// Given at each point of the input, interpolated between them.
+    PerVertex(Vec<f64>),
+    /// Given by a function of the place.
+    Function(Arc<dyn Fn(&Point3) -> f64 + Send + Sync>),
+}
+
+impl std::fmt::Debug for Sizing {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Surface => write!(f, "Surface"),
+            Self::Constant(size) => write!(f, "Constant({size})"),
+            Self::PerVertex(sizes) => write!(f, "PerVertex({} values)", sizes.len()),
+            Self::Function(_) => write!(f, "Function"),
+        }
+    }
+}
+
+/// When a tetrahedron is split. Each bound that is set holds for all tetrahedra, as far as the boundary allows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Refinement {
+    /// Bound on the circumradius over the shortest edge.
+    pub max_radius_edge: Option<f64>,
+    /// Bound on the smallest dihedral angle, in degrees.
+    pub min_dihedral: Option<f64>,
+    /// Bound on the volume.
+    pub max_volume: Option<f64>,
+    /// Most points that are added; none: as many as the tetrahedralizer can number.
+    pub max_points: Option<usize>,
+}
+
+impl Refinement {
+    /// With a bound on the circumradius over the shortest edge; 2 and above is sure to end, 1.2 to 2 mostly does.
+    #[must_use]
+    pub fn max_radius_edge(mut self, bound: f64) -> Self {
+        self.max_radius_edge = Some(bound);
+        self
+    }
+
+    /// With a bound on the smallest dihedral angle, in degrees.
+    #[must_use]
+    pub fn min_dihedral(mut self, degrees: f64) -> Self {
+        self.min_dihedral = Some(degrees);
+        self
+    }
+
+    /// With a bound on the volume.
+    #[must_use]
+    pub fn max_volume(mut self, bound: f64) -> Self {
+        self.max_volume = Some(bound);
+        self
+    }
+
+    /// With a bound on the number of points that are added.
+    #[must_use]
+    pub fn max_points(mut self, bound: usize) -> Self {
+        self.max_points = Some(bound);
+        self
+    }
+}
+
+/// What may happen to the triangles of the input.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Boundary {
+    /// Nothing: each is a face of the mesh.
+    #[default]
+    Keep,
+    /// They may be split: each is a union of faces of the mesh.
+    Split,
+}
+
+/// How a surface is tetrahedralized by the short form [`super::tetrahedralize`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TetOptions {
+    /// Points inside.
+    pub interior: Interior,
+    /// Whether the mesh is improved, with its boundary as it is.
+    pub optimize: bool,
+}
+
+impl Default for TetOptions {
+    fn default() -> Self {
+        Self { interior: Interior::Lattice { cell: None, clearance: None }, optimize: true }
+    }
+}
+
+impl TetOptions {
+    /// With other points inside.
+    #[must_use]
+    pub fn interior(mut self, interior: Interior) -> Self {
+        self.interior = interior;
+        self
+    }
+
+    /// With or without improvement.
+    #[must_use]
+    pub fn optimize(mut self, optimize: bool) -> Self {
+        self.optimize = optimize;
+        self
+    }
+}
