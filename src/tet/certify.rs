@@ -216,12 +216,7 @@ fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-fn same_faces(
-    mesh: &TetMesh,
-    facets: &TriMesh,
-    kind: InputKind,
-    regions: &[i32],
-) -> Result<Vec<Place>, CertifyError> {
+fn same_faces(mesh: &TetMesh, facets: &TriMesh, kind: InputKind, regions: &[i32]) -> Result<Vec<Place>, CertifyError> {
     let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
     if let Some(&half) = adjacency.crowded.first() {
         return Err(CertifyError::NotConforming { face: face_vertices(&mesh.tets, half) });
