@@ -4,6 +4,7 @@ mod aabb;
 mod bvh;
 mod distance;
 pub mod hilbert;
+mod integer;
 pub mod predicates;
 mod tri_tri;
 mod tube;

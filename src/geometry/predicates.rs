@@ -1,9 +1,9 @@
-//! Exact geometric predicates: an inline error filter first, Shewchuk's adaptive expansions (`robust`) when it is not
-//! sure. The only user of `robust`.
+//! Exact geometric predicates: an inline error filter first; when it is not sure, integers where the numbers fit, else
+//! Shewchuk's adaptive expansions (`robust`). The only user of `robust`.
 //!
 //! Signs are exact for coordinates that [`in_exact_range`] accepts: expansions must neither overflow nor underflow.
 
-use super::Point3;
+use super::{Point3, integer};
 use robust::{Coord, Coord3D};
 
 /// Smallest magnitude of a coordinate other than zero. The fifth powers of differences of such numbers, and their
@@ -48,7 +48,8 @@ pub fn orient3d(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
 #[cold]
 fn orient3d_exact(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     // `robust` is positive when d lies below abc: the opposite sign.
-    -robust::orient3d(coord3(a), coord3(b), coord3(c), coord3(d))
+    let expanded = || -robust::orient3d(coord3(a), coord3(b), coord3(c), coord3(d));
+    integer::orient3d([b, c, d], a).unwrap_or_else(expanded)
 }
 
 /// Positive when `e` lies inside the sphere through the positive tetrahedron `a, b, c, d`, negative outside, zero on
@@ -86,9 +87,11 @@ pub(crate) fn insphere_bound(p: [&Point3; 4], e: &Point3) -> f64 {
     INSPHERE_BOUND * largest(0) * largest(1) * largest(2) * lift
 }
 
+/// As [`insphere`], without the filter.
 #[cold]
-fn insphere_exact(a: &Point3, b: &Point3, c: &Point3, d: &Point3, e: &Point3) -> f64 {
-    -robust::insphere(coord3(a), coord3(b), coord3(c), coord3(d), coord3(e))
+pub(crate) fn insphere_exact(a: &Point3, b: &Point3, c: &Point3, d: &Point3, e: &Point3) -> f64 {
+    let expanded = || -robust::insphere(coord3(a), coord3(b), coord3(c), coord3(d), coord3(e));
+    integer::insphere([a, b, c, d], e).unwrap_or_else(expanded)
 }
 
 /// Positive when the points of the plane `a, b, c` run counter-clockwise, zero when they are collinear.

@@ -4,7 +4,7 @@
 //! coordinates, and their sum weighted with the vertices' squared distances is the in-sphere determinant. The roundoff
 //! of all is bounded once, for the whole box of points; only what this static bound leaves open is looked at again.
 
-use super::perturb::in_sphere_perturbed;
+use super::perturb;
 use crate::geometry::Point3;
 use crate::geometry::predicates::{INSPHERE_BOUND, ORIENT3D_BOUND, insphere_bound};
 
@@ -54,7 +54,7 @@ pub(super) struct View {
 
 impl View {
     /// The point `e` seen from the tetrahedron `a, b, c, d`.
-    #[inline(always)]
+    #[inline]
     pub(super) fn new([a, b, c, d]: [&Point3; 4], e: &Point3) -> Self {
         let (ax, ay, az) = (a.x - e.x, a.y - e.y, a.z - e.z);
         let (bx, by, bz) = (b.x - e.x, b.y - e.y, b.z - e.z);
@@ -75,7 +75,7 @@ impl View {
 }
 
 /// Whether `e` lies in the perturbed sphere of the positive tetrahedron `p`.
-#[inline(always)]
+#[inline]
 pub(super) fn in_sphere(p: [&Point3; 4], e: &Point3, bounds: &Bounds) -> bool {
     let det = View::new(p, e).sphere;
     if det.abs() > bounds.sphere { det > 0.0 } else { in_sphere_close(p, e, det) }
@@ -84,5 +84,5 @@ pub(super) fn in_sphere(p: [&Point3; 4], e: &Point3, bounds: &Bounds) -> bool {
 /// What the static bound leaves open: the bound of these very points, then exact arithmetic.
 #[inline(never)]
 fn in_sphere_close(p: [&Point3; 4], e: &Point3, det: f64) -> bool {
-    if det.abs() > insphere_bound(p, e) { det > 0.0 } else { in_sphere_perturbed(p, e) }
+    if det.abs() > insphere_bound(p, e) { det > 0.0 } else { perturb::in_sphere_close(p, e) }
 }

@@ -64,17 +64,17 @@ impl Inserter {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn at(&self, v: u32) -> &Point3 {
         &self.sites[v as usize].at
     }
 
-    #[inline(always)]
+    #[inline]
     fn corners(&self, v: &[u32; 4]) -> [&Point3; 4] {
         v.map(|v| self.at(v))
     }
 
-    #[inline(always)]
+    #[inline]
     fn cell(&self, t: u32) -> &Cell {
         &self.cells[t as usize]
     }
@@ -116,6 +116,7 @@ impl Inserter {
     /// A tetrahedron in conflict with `p`: one whose sphere it is in for sure, one whose closure holds it, or a ghost
     /// whose face sees it from outside. Where `p` is a vertex, one that has it. Visibility walks in regular
     /// triangulations have no cycles (Edelsbrunner 1990), so exact tests suffice for an end.
+    #[inline(never)]
     fn locate(&self, p: &Point3) -> u32 {
         let mut t = self.hint;
         let mut from = 4;
@@ -140,7 +141,7 @@ impl Inserter {
 
     /// A face of the tetrahedron that has `p` strictly behind it, the one with the largest volume between; 4 when there
     /// is none.
-    #[inline(always)]
+    #[inline]
     fn exit(&self, v: &[u32; 4], view: &View, from: usize, p: &Point3) -> usize {
         let mut exit = 4;
         let mut least = -self.bounds.orient;
@@ -163,7 +164,7 @@ impl Inserter {
     }
 
     /// Whether `p` destroys a tetrahedron.
-    #[inline(always)]
+    #[inline]
     fn in_conflict(&self, cell: &Cell, p: &Point3) -> bool {
         if cell.verts[3] == self.ghost {
             return self.ghost_in_conflict(cell, p);
@@ -185,6 +186,7 @@ impl Inserter {
     }
 
     /// Collects the connected tetrahedra in conflict with `p`, and the walls around them.
+    #[inline(never)]
     fn dig(&mut self, first: u32, p: &Point3) {
         self.cavity.clear();
         self.walls.clear();
@@ -217,6 +219,7 @@ impl Inserter {
     }
 
     /// Replaces the cavity by the tetrahedra between `v` and its walls.
+    #[inline(never)]
     fn fill(&mut self, v: u32) {
         self.now += 1;
         self.take_slots();
@@ -246,6 +249,7 @@ impl Inserter {
     }
 
     /// Numbers the vertices of the walls from 0; returns how many there are.
+    #[inline(never)]
     fn number_vertices(&mut self) -> usize {
         let mut count = 0u32;
         for w in &self.walls {
@@ -263,6 +267,7 @@ impl Inserter {
 
     /// Stands a tetrahedron on each wall and glues them to each other: each edge of the walls is run through once in
     /// each direction.
+    #[inline(never)]
     fn stand_by_table(&mut self, v: u32) {
         for (w, &t) in self.walls.iter().zip(&self.created) {
             let l = w.face.map(|x| self.sites[x as usize].local as usize);
@@ -311,6 +316,7 @@ impl Inserter {
     }
 
     /// The complex over the points in their original order: vertex `v` becomes `order[v]`.
+    #[inline(never)]
     pub(super) fn finish(self, points: Vec<Point3>, order: &[u32]) -> Complex {
         let Self { sites, mut cells, free, ghost, .. } = self;
         drop(sites);
@@ -339,7 +345,7 @@ impl Inserter {
 
 /// At which places of a new tetrahedron the vertices of its wall stand, and the new vertex: in their order, or with the
 /// ghost last.
-#[inline(always)]
+#[inline]
 fn turn_of(face: &[u32; 3], ghost: u32) -> [u32; 4] {
     if face[0] == ghost {
         [3, 1, 0, 2]
@@ -353,7 +359,7 @@ fn turn_of(face: &[u32; 3], ghost: u32) -> [u32; 4] {
 }
 
 /// The tetrahedron on a wall.
-#[inline(always)]
+#[inline]
 fn placed(w: &Wall, v: u32, mates: [u32; 3], turn: [u32; 4]) -> Cell {
     let [a, b, c] = w.face;
     let plain = Cell { verts: [a, b, c, v], mates: [mates[0], mates[1], mates[2], w.outer] };

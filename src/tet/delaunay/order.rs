@@ -8,6 +8,7 @@ use crate::geometry::hilbert::{Grid, hilbert_key};
 const GROWTH: u32 = 3;
 
 /// The points' ids, round by round, each round along the Hilbert curve. The first round has a few dozen points.
+#[inline(never)]
 pub(super) fn brio(points: &[Point3]) -> Vec<u32> {
     let n = points.len();
     let index_bits = usize::BITS - n.leading_zeros();

@@ -1,7 +1,7 @@
 //! The in-sphere test without ties.
 
 use crate::geometry::Point3;
-use crate::geometry::predicates::{insphere, orient3d};
+use crate::geometry::predicates::{insphere, insphere_exact, orient3d};
 use std::cmp::Ordering;
 
 /// Whether `e` lies inside the sphere through the positive tetrahedron `p`. When all five lie on one sphere, the lift
@@ -18,21 +18,29 @@ pub fn in_sphere_perturbed(p: [&Point3; 4], e: &Point3) -> bool {
 /// `p` is positive, so the search ends there at the latest.
 #[cold]
 fn tie(p: [&Point3; 4], e: &Point3) -> bool {
-    let mut all = [(p[0], 0), (p[1], 1), (p[2], 2), (p[3], 3), (e, 4)];
-    all.sort_unstable_by(|a, b| lexicographic(b.0, a.0));
-    for (_, i) in all {
-        if i == 4 {
+    let all = [p[0], p[1], p[2], p[3], e];
+    let mut left = [true; 5];
+    for _ in 0..5 {
+        let Some(last) = (0..5).filter(|&i| left[i]).max_by(|&i, &j| lexicographic(all[i], all[j])) else { break };
+        left[last] = false;
+        if last == 4 {
             // Raised above the others, e lies outside.
             return false;
         }
         let mut q = p;
-        q[i] = e;
+        q[last] = e;
         let o = orient3d(q[0], q[1], q[2], q[3]);
         if o != 0.0 {
             return o > 0.0;
         }
     }
     false
+}
+
+/// As [`in_sphere_perturbed`], for points whose determinant no filter tells from zero.
+pub(super) fn in_sphere_close(p: [&Point3; 4], e: &Point3) -> bool {
+    let s = insphere_exact(p[0], p[1], p[2], p[3], e);
+    if s == 0.0 { tie(p, e) } else { s > 0.0 }
 }
 
 fn lexicographic(a: &Point3, b: &Point3) -> Ordering {
