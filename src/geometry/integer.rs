@@ -121,7 +121,13 @@ pub(super) fn insphere(p: [&Point3; 4], e: &Point3) -> Option<f64> {
     }
     let negative = sum[4] >> 63 == 1;
     let zero = sum == [0; 5];
-    Some(if zero { 0.0 } else if negative { -1.0 } else { 1.0 })
+    Some(if zero {
+        0.0
+    } else if negative {
+        -1.0
+    } else {
+        1.0
+    })
 }
 
 /// Adds `± w · lift`, modulo 2³²⁰.
