@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     for remark in network.remarks() {
         bars.note(&remark);
     }
-    let pool = thread_pool(args.threads)?;
+    let pool = super::thread_pool(args.threads)?;
     let mut clock = Clock::default();
     let mut result = match pool.install(|| pipeline::mesh_network(&network.skeleton, &plan, &bars, &mut clock)) {
         Ok(result) => result,
@@ -87,12 +87,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         () if !result.check.is_valid() => Exit::GateNotMet,
         () => Exit::Fine,
     })
-}
-
-fn thread_pool(threads: Option<std::num::NonZeroUsize>) -> Result<rayon::ThreadPool, Failure> {
-    // 0 lets rayon take as many as there are cores.
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, Into::into));
-    builder.build().map_err(|e| Failure::stage(format!("the threads cannot be started: {e}")))
 }
 
 impl Args {

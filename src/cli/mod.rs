@@ -6,6 +6,7 @@ mod info;
 mod mesh;
 mod network;
 mod progress;
+mod tetrahedralize;
 
 use std::process::ExitCode;
 
@@ -26,6 +27,8 @@ struct Args {
 enum Verb {
     /// Mesh a network: skeleton in, labelled tetrahedral mesh out
     Mesh(mesh::Args),
+    /// Fill a surface, a complex of facets or points with tetrahedra
+    Tetrahedralize(tetrahedralize::Args),
     /// Verify a volume mesh line by line
     Check(check::Args),
     /// Print what a network holds
@@ -45,6 +48,7 @@ pub fn main() -> ExitCode {
     };
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
+        Verb::Tetrahedralize(args) => tetrahedralize::run(args),
         Verb::Check(args) => check::run(args),
         Verb::Info(args) => info::run(args),
     });
@@ -56,6 +60,13 @@ pub fn main() -> ExitCode {
         }
         Err(_) => Exit::Bug.into(),
     }
+}
+
+/// As many threads as were asked for, or as there are cores.
+fn thread_pool(threads: Option<std::num::NonZeroUsize>) -> Result<rayon::ThreadPool, Failure> {
+    // 0 lets rayon take as many as there are cores.
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, Into::into));
+    builder.build().map_err(|e| Failure::stage(format!("the threads cannot be started: {e}")))
 }
 
 /// A panic is always a fault of the program: say so beside the usual message.

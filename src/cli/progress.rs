@@ -7,6 +7,24 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::pipeline::{Observer, Stage};
 
+/// Whether bars are shown: on a terminal only.
+pub fn shows_bars(quiet: bool) -> bool {
+    !quiet && std::io::stderr().is_terminal()
+}
+
+/// The bar of a stage; 0 steps: their number is not known.
+pub fn stage_bar(stage: &'static str, steps: u64) -> ProgressBar {
+    let (length, template) = match steps {
+        0 => (None, "{prefix:>10} {spinner} {elapsed}"),
+        n => (Some(n), "{prefix:>10} {wide_bar} {pos}/{len} {per_sec} {eta}"),
+    };
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr_with_hz(10));
+    bar.set_style(style);
+    bar.set_prefix(stage);
+    bar
+}
+
 /// One bar per stage on standard error, and notes as lines; without a terminal only the notes.
 #[derive(Debug)]
 pub struct Bars {
@@ -18,7 +36,7 @@ pub struct Bars {
 impl Bars {
     /// `quiet` suppresses the notes as well.
     pub fn new(quiet: bool) -> Self {
-        Self { shown: !quiet && std::io::stderr().is_terminal(), quiet, current: Mutex::new(None) }
+        Self { shown: shows_bars(quiet), quiet, current: Mutex::new(None) }
     }
 
     fn current(&self) -> Option<ProgressBar> {
@@ -31,14 +49,7 @@ impl Observer for Bars {
         if !self.shown {
             return;
         }
-        let (length, template) = match steps {
-            0 => (None, "{prefix:>10} {spinner} {elapsed}"),
-            n => (Some(n), "{prefix:>10} {wide_bar} {pos}/{len} {per_sec} {eta}"),
-        };
-        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr_with_hz(10));
-        bar.set_style(style);
-        bar.set_prefix(stage.name());
+        let bar = stage_bar(stage.name(), steps);
         if let Ok(mut current) = self.current.lock() {
             *current = Some(bar);
         }

@@ -171,7 +171,14 @@ pub enum SurfaceFault {
 /// # Errors
 /// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
 pub fn read_surface(path: &Path) -> Result<TriMesh, SurfaceFileError> {
-    let format = SurfaceFormat::of(path)?;
+    read_surface_as(path, SurfaceFormat::of(path)?)
+}
+
+/// As [`read_surface`], in this format whatever the extension.
+///
+/// # Errors
+/// As [`read_surface`].
+pub fn read_surface_as(path: &Path, format: SurfaceFormat) -> Result<TriMesh, SurfaceFileError> {
     let bytes = read_bytes(path)?;
     read_surface_from(&bytes, format).map_err(|fault| FileError::Content { path: path.to_path_buf(), fault })
 }

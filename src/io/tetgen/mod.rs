@@ -107,6 +107,14 @@ pub fn read_nodes(path: &Path) -> Result<Nodes, TetgenFileError> {
     if extension(path) != "node" {
         return Err(FileError::UnknownFormat { path: path.to_path_buf(), known: ".node" });
     }
+    read_nodes_as(path)
+}
+
+/// As [`read_nodes`], whatever the extension.
+///
+/// # Errors
+/// As [`read_nodes`].
+pub fn read_nodes_as(path: &Path) -> Result<Nodes, TetgenFileError> {
     let bytes = read_bytes(path)?;
     Nodes::parse(&bytes).map_err(|fault| FileError::Content { path: path.to_path_buf(), fault })
 }
@@ -122,6 +130,14 @@ pub fn read_plc(path: &Path) -> Result<Plc, TetgenFileError> {
         "smesh" => PlcFormat::Smesh,
         _ => return Err(FileError::UnknownFormat { path: path.to_path_buf(), known: ".poly, .smesh" }),
     };
+    read_plc_as(path, format)
+}
+
+/// As [`read_plc`], in this format whatever the extension.
+///
+/// # Errors
+/// As [`read_nodes`].
+pub fn read_plc_as(path: &Path, format: PlcFormat) -> Result<Plc, TetgenFileError> {
     let content = |fault| FileError::Content { path: path.to_path_buf(), fault };
     let bytes = read_bytes(path)?;
     let mut words = Words::new(&bytes, true);

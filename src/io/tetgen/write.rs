@@ -42,6 +42,7 @@ pub struct MeshFamily<'a> {
     boundary: Option<(&'a [[u32; 3]], &'a [i32])>,
     point_markers: Option<&'a [i32]>,
     point_attributes: (&'a [f64], usize),
+    segments: &'a [[u32; 2]],
     regions: Option<&'a [i32]>,
     faces: Extent,
     edges: Extent,
@@ -62,6 +63,7 @@ impl<'a> MeshFamily<'a> {
             boundary: None,
             point_markers: None,
             point_attributes: (&[], 0),
+            segments: &[],
             regions: None,
             faces: Extent::Boundary,
             edges: Extent::Boundary,
@@ -88,6 +90,13 @@ impl<'a> MeshFamily<'a> {
     #[must_use]
     pub fn point_markers(mut self, markers: &'a [i32]) -> Self {
         self.point_markers = Some(markers);
+        self
+    }
+
+    /// Edges that are listed whether or not a face has them, with the marker −1, as `TetGen` gives to segments.
+    #[must_use]
+    pub fn segments(mut self, segments: &'a [[u32; 2]]) -> Self {
+        self.segments = segments;
         self
     }
 
@@ -142,6 +151,7 @@ impl<'a> MeshFamily<'a> {
         let points = self.mesh.points.len();
         ensure_sound(base, &self.mesh.tets, points)?;
         ensure_sound(base, self.boundary.map_or(&[], |(faces, _)| faces), points)?;
+        ensure_sound(base, self.segments, points)?;
         let (faces, markers) = self.listed();
         let boundary = Boundary { faces: &faces, markers: &markers };
         let nodes = |out: &mut dyn Write| self.write_nodes(out, boundary);
@@ -244,7 +254,7 @@ impl<'a> MeshFamily<'a> {
     }
 
     fn write_edges(&self, out: &mut dyn Write, boundary: Boundary) -> io::Result<()> {
-        let mut edges = boundary.edges();
+        let mut edges = boundary.edges(self.segments);
         if self.edges == Extent::All {
             edges = with_inner_edges(self.mesh, &edges);
         }
@@ -296,12 +306,13 @@ impl Boundary<'_> {
     }
 
     /// Edges `(a, b, marker)` with `a < b` in ascending order; the first face with an edge marks it.
-    fn edges(&self) -> Vec<(u32, u32, i32)> {
-        let mut edges: Vec<(u32, u32, i32)> = Vec::with_capacity(3 * self.faces.len());
+    fn edges(&self, segments: &[[u32; 2]]) -> Vec<(u32, u32, i32)> {
+        let mut edges: Vec<(u32, u32, i32)> = Vec::with_capacity(3 * self.faces.len() + segments.len());
         for (i, &[a, b, c]) in self.faces.iter().enumerate() {
             let marker = self.marker(i);
             edges.extend([(a, b), (b, c), (c, a)].map(|(a, b)| (a.min(b), a.max(b), marker)));
         }
+        edges.extend(segments.iter().map(|&[a, b]| (a.min(b), a.max(b), -1)));
         // Stable: the first face stays first.
         edges.sort_by_key(|&(a, b, _)| (a, b));
         edges.dedup_by_key(|&mut (a, b, _)| (a, b));

@@ -1,0 +1,164 @@
+//! The input: read, facets cut into triangles, repaired where asked for.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::format::{InputFormat, is_stream};
+use super::plan::TetPlan;
+use crate::cli::exit::Failure;
+use crate::geometry::Point3;
+use crate::io::surface::{read_surface_as, read_surface_from};
+use crate::io::tetgen::{self, Nodes};
+use crate::mesh::facets::{self, FacetTriangles};
+use crate::tet::{Plc, Region};
+use rustc_hash::FxHashMap;
+
+/// What was read.
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    /// Points, triangles and the like; points alone when there are neither triangles nor segments.
+    pub plc: Plc,
+    /// Whether the input is a list of points without facets.
+    pub only_points: bool,
+    /// Whether the file gives markers to facets.
+    pub marked: bool,
+    /// How many facets the file has; none where it has triangles.
+    pub facets: Option<usize>,
+    /// The facet that each triangle is part of, where the file has facets.
+    pub facet_of: Vec<u32>,
+    /// Number of the first item in the file.
+    pub first: u32,
+    /// Marker of each point; may be empty.
+    pub point_markers: Vec<i32>,
+    /// Attributes of all points.
+    pub point_attributes: Vec<f64>,
+    /// How many attributes a point has.
+    pub attribute_count: usize,
+}
+
+impl Input {
+    /// Reads a file or standard input.
+    pub fn read(path: &Path, format: InputFormat, plan: &TetPlan) -> Result<Self, Failure> {
+        let from = if is_stream(path) { "standard input".into() } else { path.display().to_string() };
+        let input = if is_stream(path) { Self::of_stream(format)? } else { Self::of_file(path, format)? };
+        match input {
+            Source::Surface(plc) => Ok(Self { plc, ..Self::default() }),
+            Source::Points(nodes) => Ok(Self::of_points(nodes)),
+            Source::Complex(plc) => Self::of_complex(plc, plan).map_err(|e| Failure::input(format!("{from}: {e}"))),
+        }
+    }
+
+    /// Orients the triangles and joins what is there twice; says what it did.
+    pub fn repair(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn of_file(path: &Path, format: InputFormat) -> Result<Source, Failure> {
+        let failed = |e: &dyn std::error::Error| Failure::input(e.to_string());
+        if let Some(surface) = format.surface() {
+            return Ok(Source::Surface(read_surface_as(path, surface).map_err(|e| failed(&e))?.into()));
+        }
+        match format.complex() {
+            Some(format) => Ok(Source::Complex(tetgen::read_plc_as(path, format).map_err(|e| failed(&e))?)),
+            None => Ok(Source::Points(tetgen::read_nodes_as(path).map_err(|e| failed(&e))?)),
+        }
+    }
+
+    fn of_stream(format: InputFormat) -> Result<Source, Failure> {
+        let mut bytes = Vec::new();
+        let failed = |e: &dyn std::fmt::Display| Failure::input(format!("standard input: {e}"));
+        std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| failed(&e))?;
+        if bytes.trim_ascii().is_empty() {
+            return Err(failed(&"there is nothing in it"));
+        }
+        if let Some(surface) = format.surface() {
+            return Ok(Source::Surface(read_surface_from(&bytes, surface).map_err(|e| failed(&e))?.into()));
+        }
+        match format.complex() {
+            Some(format) => Ok(Source::Complex(tetgen::Plc::parse(&bytes, format).map_err(|e| failed(&e))?)),
+            None => Ok(Source::Points(Nodes::parse(&bytes).map_err(|e| failed(&e))?)),
+        }
+    }
+
+    fn of_points(nodes: Nodes) -> Self {
+        Self {
+            plc: Plc { points: nodes.points, ..Plc::default() },
+            only_points: true,
+            first: nodes.first,
+            point_markers: nodes.markers,
+            point_attributes: nodes.attributes,
+            attribute_count: nodes.attribute_count,
+            ..Self::default()
+        }
+    }
+
+    fn of_complex(mut file: tetgen::Plc, plan: &TetPlan) -> Result<Self, ComplexError> {
+        if plan.repair {
+            name_first_of_duplicates(&mut file);
+        }
+        let mut input = Self {
+            marked: file.facets.iter().any(|facet| facet.marker != 0),
+            facets: Some(file.facets.len()),
+            first: file.first,
+            point_markers: file.point_markers,
+            point_attributes: file.point_attributes,
+            attribute_count: file.attribute_count,
+            ..Self::default()
+        };
+        for (facet, piece) in file.facets.iter().enumerate() {
+            let cut = facets::triangulate(&file.points, &piece.polygons, &piece.holes);
+            let FacetTriangles { triangles, segments } = cut.map_err(|fault| ComplexError::Facet { facet, fault })?;
+            input.facet_of.resize(input.facet_of.len() + triangles.len(), facet as u32);
+            input.plc.markers.resize(input.plc.markers.len() + triangles.len(), piece.marker);
+            input.plc.triangles.extend(triangles);
+            input.plc.edges.extend(segments);
+        }
+        input.plc.edges.sort_unstable();
+        input.plc.edges.dedup();
+        input.plc.regions = regions(&file.regions, plan)?;
+        input.plc.points = file.points;
+        input.plc.holes = file.holes;
+        input.only_points = input.plc.triangles.is_empty() && input.plc.edges.is_empty();
+        Ok(input)
+    }
+}
+
+/// What a file holds.
+enum Source {
+    Surface(Plc),
+    Points(Nodes),
+    Complex(tetgen::Plc),
+}
+
+/// Why a complex of facets cannot be used. Facets, regions and points are counted from 0.
+#[derive(Debug, thiserror::Error)]
+enum ComplexError {
+    #[error("facet {facet} (counted from 0, as are points here) cannot be cut into triangles: {fault}")]
+    Facet { facet: usize, fault: facets::FacetError },
+    #[error(
+        "region {region} (counted from 0) has the attribute {attribute}; regions are labelled by integers: change it"
+    )]
+    Attribute { region: usize, attribute: f64 },
+}
+
+fn regions(listed: &[tetgen::Region], plan: &TetPlan) -> Result<Vec<Region>, ComplexError> {
+    let mut regions = Vec::with_capacity(listed.len());
+    for (region, &tetgen::Region { point, attribute, max_volume }) in listed.iter().enumerate() {
+        if attribute.fract() != 0.0 || attribute.abs() > f64::from(i32::MAX) {
+            return Err(ComplexError::Attribute { region, attribute });
+        }
+        let max_volume = max_volume.filter(|_| plan.region_volumes);
+        regions.push(Region { seed: point, id: attribute as i32, max_volume });
+    }
+    Ok(regions)
+}
+
+/// Lets the polygons name the first of points at the same place.
+fn name_first_of_duplicates(file: &mut tetgen::Plc) {
+    let mut known = FxHashMap::default();
+    let bits = |p: &Point3| [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
+    let first: Vec<u32> = file.points.iter().zip(0..).map(|(p, i)| *known.entry(bits(p)).or_insert(i)).collect();
+    for corner in file.facets.iter_mut().flat_map(|facet| facet.polygons.iter_mut().flatten()) {
+        *corner = first[*corner as usize];
+    }
+}

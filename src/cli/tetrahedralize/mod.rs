@@ -1,0 +1,193 @@
+//! `anastomesh tetrahedralize`: from a surface, a complex of facets or points to a tetrahedral mesh.
+
+mod fault;
+mod format;
+mod input;
+mod output;
+mod plan;
+mod switches;
+mod watch;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::exit::{Exit, Failure};
+use crate::mesh::quality::TetQuality;
+use crate::report::tetrahedralize::{Bounds, InputSize, OutputSize, Recovery, TetReport, region_sizes, volume_of};
+use crate::tet::{TetError, Tetrahedralization};
+use format::{InputFormat, StreamFormat, Target, is_stream};
+use input::Input;
+use plan::TetPlan;
+use watch::{Watch, peak_memory};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A closed surface (.off, .ply, .stl, .obj), a complex of facets (TetGen's .poly, .smesh), or points (.node);
+    /// `-` for standard input
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// Where the mesh goes: .vtu, .msh (Gmsh 4.1), .mesh (Medit), .ele (TetGen's files .node .ele .face .edge .neigh);
+    /// `-` for standard output
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Format of the input, whatever its extension
+    #[arg(long, value_name = "FORMAT")]
+    from: Option<InputFormat>,
+    /// Format of standard output
+    #[arg(long, value_name = "FORMAT")]
+    to: Option<StreamFormat>,
+    /// Add no points but those that the surface needs, and leave the shape of tetrahedra as it is
+    #[arg(long, conflicts_with_all = ["max_radius_edge", "min_dihedral", "max_volume", "size", "tetgen"])]
+    no_refine: bool,
+    /// Bound on circumradius over shortest edge, as far as the boundary allows
+    #[arg(long, value_name = "RATIO", conflicts_with = "tetgen", allow_negative_numbers = true)]
+    max_radius_edge: Option<f64>,
+    /// Bound on the smallest dihedral angle in degrees, as far as the boundary allows
+    #[arg(long, value_name = "DEGREES", conflicts_with = "tetgen", allow_negative_numbers = true)]
+    min_dihedral: Option<f64>,
+    /// Bound on the volume of a tetrahedron; exit 1 when it is not met
+    #[arg(long, value_name = "VOLUME", conflicts_with = "tetgen", allow_negative_numbers = true)]
+    max_volume: Option<f64>,
+    /// Length of edges inside (default: as the surface has them nearby)
+    #[arg(long, value_name = "LENGTH", conflicts_with = "tetgen", allow_negative_numbers = true)]
+    size: Option<f64>,
+    /// The input is a complex: facets may lie inside, dangle, and meet by threes (always so for .poly and .smesh)
+    #[arg(long)]
+    plc: bool,
+    /// The triangles of the input may be split, as TetGen does without Y
+    #[arg(long, conflicts_with = "tetgen")]
+    split: bool,
+    /// First orient the triangles and join what is there twice, bit for bit
+    #[arg(long)]
+    repair: bool,
+    /// Check the input and stop
+    #[arg(long)]
+    check_only: bool,
+    /// TetGen's switches instead of these options, such as pYq1.4a0.1
+    #[arg(long, value_name = "SWITCHES", allow_hyphen_values = true)]
+    tetgen: Option<String>,
+    /// Number of threads (default: all cores); the output does not depend on it
+    #[arg(short = 'j', long, value_name = "N")]
+    threads: Option<std::num::NonZeroUsize>,
+    /// Print the report as JSON on standard output
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Output<'a> {
+    program: &'static str,
+    plan: &'a TetPlan,
+    report: &'a TetReport,
+}
+
+/// Makes a mesh and writes it.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let format = InputFormat::of(&args.input, args.from)?;
+    let (plan, notes) = TetPlan::resolve(args, format)?;
+    let target = match &args.output {
+        Some(path) if !plan.check_only => Some(Target::of(path, args.to, &args.input)?),
+        _ => None,
+    };
+    plan::ensure_fits(&plan, args, target.as_ref())?;
+    if !plan.quiet {
+        notes.iter().for_each(|note| eprintln!("{note}"));
+    }
+    let pool = super::thread_pool(args.threads)?;
+    let watch = Arc::new(Watch::new(plan.quiet));
+    let mut input = watch.time("read", || Input::read(&args.input, format, &plan))?;
+    let mut report = TetReport { input: size_of(&input), ..TetReport::default() };
+    if plan.repair {
+        report.repaired = watch.time("repair", || input.repair());
+    }
+    let made = pool.install(|| make(&plan, &input, &watch));
+    watch.leave();
+    let from = if is_stream(&args.input) { "standard input".into() } else { args.input.display().to_string() };
+    let made = made.map_err(|e| fault::failure(&e, &from, &input))?;
+    if let (Some(made), Some(target)) = (made, target) {
+        fill_report(&mut report, &made, &input, &plan);
+        let volume = output::volume(made, &input);
+        let written = watch.time("write", || pool.install(|| output::write(&target, &volume, &input, &plan)))?;
+        report.files = written.iter().map(|path| path.display().to_string()).collect();
+    }
+    report.stages = watch.stages();
+    report.peak_memory = peak_memory();
+    print(args, &plan, &report)?;
+    Ok(if report.bounds_met() { Exit::Fine } else { Exit::GateNotMet })
+}
+
+/// The mesh; none when the input is only checked.
+fn make(plan: &TetPlan, input: &Input, watch: &Arc<Watch>) -> Result<Option<Tetrahedralization>, TetError> {
+    let told = Arc::clone(watch);
+    let tetrahedralizer = plan.tetrahedralizer().on_progress(move |progress| told.progress(progress));
+    if plan.check_only && !input.only_points {
+        return tetrahedralizer.check(&input.plc).map(|()| None);
+    }
+    let mut made = if input.only_points {
+        tetrahedralizer.delaunay(&input.plc.points)?
+    } else {
+        tetrahedralizer.run(&input.plc)?
+    };
+    if !plan.regions {
+        made.regions.clear();
+    }
+    Ok(Some(made).filter(|_| !plan.check_only))
+}
+
+fn size_of(input: &Input) -> InputSize {
+    InputSize {
+        points: input.plc.points.len(),
+        facets: input.facets.filter(|&facets| facets != input.plc.triangles.len()),
+        triangles: input.plc.triangles.len(),
+        segments: input.plc.edges.len(),
+        holes: input.plc.holes.len(),
+    }
+}
+
+fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input, plan: &TetPlan) {
+    let mesh = &made.mesh;
+    report.mesh = OutputSize {
+        points: mesh.points.len(),
+        added_points: mesh.points.len().saturating_sub(input.plc.points.len()),
+        tets: mesh.tets.len(),
+        faces: made.faces.len(),
+        interior_faces: made.summary.interior_faces,
+        volume: mesh.tets.iter().map(|t| volume_of(mesh, t)).sum(),
+    };
+    report.quality = Some(TetQuality::of(mesh));
+    let bounds =
+        Bounds { max_radius_edge: plan.max_radius_edge, min_dihedral: plan.min_dihedral, max_volume: plan.max_volume };
+    report.bounds = if input.only_points { Vec::new() } else { bounds.results(mesh) };
+    report.regions = region_sizes(mesh, &made.regions);
+    let recovery = &made.summary.recovery;
+    report.recovery = Recovery {
+        missing_edges: recovery.missing_edges,
+        missing_triangles: recovery.missing_triangles,
+        steiner_points: recovery.steiner_points,
+    };
+}
+
+fn print(args: &Args, plan: &TetPlan, report: &TetReport) -> Result<(), Failure> {
+    if args.json {
+        let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
+        return super::print(true, &Output { program, plan, report }, String::new);
+    }
+    if plan.check_only {
+        if !plan.quiet {
+            let InputSize { points, triangles, segments, .. } = report.input;
+            eprintln!("no fault found: {points} points, {triangles} triangles, {segments} further segments");
+        }
+        return Ok(());
+    }
+    // A bound that is not met is an error, which --quiet does not silence.
+    if !plan.quiet || !report.bounds_met() {
+        eprint!("{}", report.text());
+    }
+    Ok(())
+}

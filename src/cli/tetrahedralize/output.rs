@@ -1,0 +1,112 @@
+//! The mesh on its way to its file.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::format::Target;
+use super::input::Input;
+use super::plan::{TetPlan, Wanted};
+use crate::cli::exit::Failure;
+use crate::io::mesh_file::{MeshNotes, write_mesh, write_mesh_to};
+use crate::io::tetgen::{Extent, MeshFamily};
+use crate::mesh::{Patch, TET_FACES, VolumeMesh};
+use crate::tet::Tetrahedralization;
+use rustc_hash::FxHashMap;
+
+/// The marker of all faces where the input has none.
+const UNMARKED: i32 = 1;
+
+/// The mesh as the writers take it: regions are blocks, markers are patches.
+pub fn volume(made: Tetrahedralization, input: &Input) -> VolumeMesh {
+    let boundary = made.faces;
+    let marked = input.marked && made.face_markers.len() == boundary.len();
+    let boundary_patch = if marked { made.face_markers } else { vec![UNMARKED; boundary.len()] };
+    let mut ids = boundary_patch.clone();
+    ids.sort_unstable();
+    ids.dedup();
+    let name = |id: i32| if marked { format!("marker_{id}") } else { "boundary".into() };
+    let mut volume = VolumeMesh {
+        tet_block: made.regions,
+        boundary_block: vec![0; boundary.len()],
+        patches: ids.into_iter().map(|id| Patch { id, name: name(id), cap: None }).collect(),
+        mesh: made.mesh,
+        boundary,
+        boundary_patch,
+    };
+    if volume.tet_block.is_empty() {
+        volume.tet_block = vec![0; volume.mesh.tets.len()];
+    } else {
+        set_boundary_blocks(&mut volume);
+    }
+    volume
+}
+
+/// The region under each face: that of the last tetrahedron with it.
+fn set_boundary_blocks(volume: &mut VolumeMesh) {
+    let sorted = |mut face: [u32; 3]| {
+        face.sort_unstable();
+        face
+    };
+    let listed: FxHashMap<[u32; 3], usize> =
+        volume.boundary.iter().enumerate().map(|(i, &face)| (sorted(face), i)).collect();
+    for (t, &region) in volume.mesh.tets.iter().zip(&volume.tet_block) {
+        for side in TET_FACES {
+            if let Some(&i) = listed.get(&sorted(side.map(|corner| t[corner]))) {
+                volume.boundary_block[i] = region;
+            }
+        }
+    }
+}
+
+/// Writes the mesh; returns the files.
+pub fn write(target: &Target, volume: &VolumeMesh, input: &Input, plan: &TetPlan) -> Result<Vec<PathBuf>, Failure> {
+    let regions = volume.tet_block.iter().any(|&region| region != 0);
+    let generator = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
+    // What the bytes depend on, and nothing else: neither threads nor paths.
+    let options = serde_json::to_string(plan).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
+    let notes = MeshNotes { expectation: None, generator, options: format!("tetrahedralize {options}"), regions };
+    match target {
+        Target::File(path) => {
+            write_mesh(path, volume, &notes).map_err(|e| Failure::input(e.to_string()))?;
+            Ok(vec![path.clone()])
+        }
+        Target::Family(base) => {
+            let family = family(volume, input, plan, regions);
+            family.write(base).map_err(|e| Failure::input(e.to_string()))
+        }
+        Target::Stream(format) => {
+            let mut out = std::io::stdout().lock();
+            let written = write_mesh_to(&mut out, *format, volume, &notes).and_then(|()| out.flush());
+            match written {
+                // The reader's decision, not an error.
+                Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+                    Err(Failure::input(format!("standard output: {e}")))
+                }
+                _ => Ok(Vec::new()),
+            }
+        }
+    }
+}
+
+fn family<'a>(volume: &'a VolumeMesh, input: &'a Input, plan: &TetPlan, regions: bool) -> MeshFamily<'a> {
+    let extent = |wanted: Wanted| match wanted {
+        Wanted::Nothing => Extent::Nothing,
+        Wanted::Boundary => Extent::Boundary,
+        Wanted::All => Extent::All,
+    };
+    let mut family = MeshFamily::new(&volume.mesh)
+        .boundary(&volume.boundary, &volume.boundary_patch)
+        .point_attributes(&input.point_attributes, input.attribute_count)
+        .segments(&input.plc.edges)
+        .faces(extent(plan.family.faces))
+        .edges(extent(plan.family.edges))
+        .neighbors(plan.family.neighbors)
+        .first_number(plan.family.first.unwrap_or(input.first));
+    if regions {
+        family = family.regions(&volume.tet_block);
+    }
+    if !input.point_markers.is_empty() {
+        family = family.point_markers(&input.point_markers);
+    }
+    family
+}

@@ -1,0 +1,192 @@
+//! What was typed, resolved: flags, or `TetGen`'s switches, become one plan.
+
+use super::Args;
+use super::format::{InputFormat, Target};
+use super::switches::{Quality, Switches};
+use crate::cli::exit::Failure;
+use crate::tet::{Boundary, InputKind, Interior, Refinement, Sizing, Tetrahedralizer};
+use serde::Serialize;
+
+/// Side of the lattice's cubes in edge lengths: what gives a body-centred lattice edges of about that length.
+const LATTICE_CELL: f64 = 1.5;
+
+/// What is to be done.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TetPlan {
+    /// Whether the input is a complex of facets; otherwise a surface that bounds a volume. Points have neither.
+    pub plc: bool,
+    /// Whether points are put inside to make tetrahedra of good shape.
+    pub refine: bool,
+    /// Bound on circumradius over shortest edge.
+    pub max_radius_edge: Option<f64>,
+    /// Bound on the smallest dihedral angle, degrees.
+    pub min_dihedral: Option<f64>,
+    /// Bound on the volume of a tetrahedron.
+    pub max_volume: Option<f64>,
+    /// Edge length wanted everywhere; none: as the surface has it nearby.
+    pub size: Option<f64>,
+    /// Whether the triangles of the input may be split.
+    pub split: bool,
+    /// Whether tetrahedra are improved.
+    pub optimize: bool,
+    /// Whether the orientation is mended and exact duplicates are joined first.
+    pub repair: bool,
+    /// Whether regions are told apart.
+    pub regions: bool,
+    /// Whether the bounds on volume that regions have are kept.
+    pub region_volumes: bool,
+    /// Whether the input is checked and nothing else done.
+    pub check_only: bool,
+    /// Which files of the family are written.
+    pub family: Family,
+    /// Whether nothing is printed but errors.
+    #[serde(skip)]
+    pub quiet: bool,
+}
+
+/// What of `TetGen`'s family of files is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Family {
+    /// Number of the first item; none: as in the input.
+    pub first: Option<u32>,
+    /// `.face`.
+    pub faces: Wanted,
+    /// `.edge`.
+    pub edges: Wanted,
+    /// Whether `.neigh` is written.
+    pub neighbors: bool,
+}
+
+/// Which faces or edges are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Wanted {
+    /// None.
+    Nothing,
+    /// Those of the input.
+    Boundary,
+    /// All.
+    All,
+}
+
+impl TetPlan {
+    /// Resolves the arguments; the notes are what a person should know about them.
+    pub fn resolve(args: &Args, format: InputFormat) -> Result<(Self, Vec<String>), Failure> {
+        let mut notes = Vec::new();
+        let mut plan = match &args.tetgen {
+            Some(text) => {
+                let switches = Switches::parse(text).map_err(|e| Failure::usage(e.to_string()))?;
+                notes.extend(switches.without_effect.iter().cloned());
+                Self::of_switches(&switches, format)
+            }
+            None => Self::of_flags(args, format),
+        };
+        plan.quiet |= args.quiet;
+        plan.check_only |= args.check_only;
+        plan.repair = args.repair;
+        plan.validate(args)?;
+        Ok((plan, notes))
+    }
+
+    fn of_flags(args: &Args, format: InputFormat) -> Self {
+        let refine = !args.no_refine;
+        Self {
+            plc: args.plc || format.is_complex(),
+            refine,
+            max_radius_edge: args.max_radius_edge,
+            min_dihedral: args.min_dihedral,
+            max_volume: args.max_volume,
+            size: args.size,
+            split: args.split,
+            optimize: refine,
+            repair: false,
+            regions: true,
+            region_volumes: refine,
+            check_only: false,
+            family: Family { first: None, faces: Wanted::Boundary, edges: Wanted::Boundary, neighbors: true },
+            quiet: false,
+        }
+    }
+
+    fn of_switches(s: &Switches, format: InputFormat) -> Self {
+        let refine = s.quality.is_some() || s.max_volume.is_some() || s.region_volumes;
+        let Quality { max_radius_edge, min_dihedral } =
+            s.quality.unwrap_or(Quality { max_radius_edge: f64::INFINITY, min_dihedral: None });
+        let all = |wanted: bool| if wanted { Wanted::All } else { Wanted::Boundary };
+        let (faces, edges) =
+            if s.no_faces { (Wanted::Nothing, Wanted::Nothing) } else { (all(s.all_faces), all(s.all_edges)) };
+        Self {
+            // TetGen takes every surface as a complex.
+            plc: s.plc || format.is_complex(),
+            refine,
+            max_radius_edge: Some(max_radius_edge).filter(|bound| bound.is_finite()),
+            min_dihedral,
+            max_volume: s.max_volume,
+            size: None,
+            split: !s.keep_boundary,
+            optimize: refine && !s.no_optimization,
+            repair: false,
+            regions: s.regions,
+            region_volumes: s.region_volumes,
+            check_only: s.check_only,
+            family: Family { first: s.from_zero.then_some(0), faces, edges, neighbors: s.neighbors },
+            quiet: s.quiet && s.verbose == 0,
+        }
+    }
+
+    fn validate(&self, args: &Args) -> Result<(), Failure> {
+        let positive = |name: &str, value: Option<f64>| match value {
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                Err(Failure::usage(format!("{name} is {value}; give a finite number above 0")))
+            }
+            _ => Ok(()),
+        };
+        positive("--max-radius-edge", args.max_radius_edge)?;
+        positive("--max-volume", args.max_volume)?;
+        positive("--size", args.size)?;
+        if let Some(angle) = args.min_dihedral
+            && !(0.0..70.5).contains(&angle)
+        {
+            return Err(Failure::usage(format!(
+                "--min-dihedral is {angle}; give degrees from 0 to below 70.5, the angle of the regular tetrahedron"
+            )));
+        }
+        Ok(())
+    }
+
+    /// The tetrahedralizer that does it.
+    pub fn tetrahedralizer(&self) -> Tetrahedralizer {
+        let mut bounds = Refinement::default();
+        if let Some(bound) = self.max_radius_edge {
+            bounds = bounds.max_radius_edge(bound);
+        }
+        if let Some(bound) = self.min_dihedral {
+            bounds = bounds.min_dihedral(bound);
+        }
+        if let Some(bound) = self.max_volume {
+            bounds = bounds.max_volume(bound);
+        }
+        let lattice = Interior::Lattice { cell: self.size.map(|size| LATTICE_CELL * size), clearance: None };
+        let bounded = bounds != Refinement::default();
+        Tetrahedralizer::new()
+            .kind(if self.plc { InputKind::Plc } else { InputKind::Closed })
+            .interior(if self.refine { lattice } else { Interior::None })
+            .refine(bounded.then_some(bounds))
+            .sizing(self.size.filter(|_| bounded).map_or(Sizing::Surface, Sizing::Constant))
+            .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
+            .optimize(self.optimize)
+    }
+}
+
+/// What belongs together between target and plan.
+pub fn ensure_fits(plan: &TetPlan, args: &Args, target: Option<&Target>) -> Result<(), Failure> {
+    match target {
+        None if !plan.check_only => Err(Failure::usage(
+            "there is no output: name one with -o MESH (.vtu, .msh, .mesh or .ele), or give --check-only",
+        )),
+        Some(Target::Stream(_)) if args.json && !plan.check_only => {
+            Err(Failure::usage("--json and -o - both write to standard output: name a file with -o"))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,369 @@
+//! `TetGen`'s switches, as its manual describes them (version 1.5, section 4): a string such as `pYq1.4a0.1`.
+
+/// What the switches ask for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Switches {
+    /// `p`: the input holds facets.
+    pub plc: bool,
+    /// `Y`: the input's triangles are kept as they are.
+    pub keep_boundary: bool,
+    /// `q`: bad tetrahedra are refined.
+    pub quality: Option<Quality>,
+    /// `a` with a number: no tetrahedron is larger.
+    pub max_volume: Option<f64>,
+    /// `a` without a number: no tetrahedron is larger than its region says.
+    pub region_volumes: bool,
+    /// `A`: each region has its own number.
+    pub regions: bool,
+    /// `d`: intersections are looked for, and nothing else is done.
+    pub check_only: bool,
+    /// `O0`: the mesh is not improved.
+    pub no_optimization: bool,
+    /// `z`: files count from 0.
+    pub from_zero: bool,
+    /// `n`: the neighbours are written.
+    pub neighbors: bool,
+    /// `f`: all faces are written.
+    pub all_faces: bool,
+    /// `e`: all edges are written.
+    pub all_edges: bool,
+    /// `F`: no faces and no edges are written.
+    pub no_faces: bool,
+    /// `V`, as often as it stands.
+    pub verbose: u8,
+    /// `Q`: nothing is printed but errors.
+    pub quiet: bool,
+    /// What is understood but does nothing here, with the reason.
+    pub without_effect: Vec<String>,
+}
+
+/// What `q` asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// Bound on the circumradius over the shortest edge.
+    pub max_radius_edge: f64,
+    /// Bound on the smallest dihedral angle in degrees; none where it is 0.
+    pub min_dihedral: Option<f64>,
+}
+
+/// The bound of `q` without a number.
+const USUAL_RATIO: f64 = 2.0;
+
+/// Why a string of switches is not followed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SwitchError {
+    /// There is nothing of the kind here.
+    #[error("switch {switch} of --tetgen: {what} is not supported; {instead}")]
+    Unsupported {
+        /// The switch, in quotes.
+        switch: String,
+        /// What it asks for.
+        what: &'static str,
+        /// What to do.
+        instead: &'static str,
+    },
+    /// Neither `TetGen` nor this program knows it.
+    #[error(
+        "switch '{switch}' of --tetgen is unknown; known are p Y q a A d O z n f e F V Q, as in --tetgen pYq1.4a0.1"
+    )]
+    Unknown {
+        /// The letter.
+        switch: char,
+    },
+    /// Its number is none, or makes no sense.
+    #[error("switch '{switch}' of --tetgen has the number '{number}'; {expected}")]
+    BadNumber {
+        /// The letter.
+        switch: char,
+        /// What follows it.
+        number: String,
+        /// What has to follow it.
+        expected: &'static str,
+    },
+}
+
+/// What is not followed, why, and what to do.
+const UNSUPPORTED: [(char, &str, &str); 15] = [
+    ('r', "refining a mesh that exists", "give the surface of the mesh as input"),
+    ('R', "coarsening", "give a coarser surface as input"),
+    ('m', "a sizing function from a .mtr or background mesh", "use --size, or the library with Sizing::Function"),
+    ('i', "inserting a list of points", "put the points into the .node file, or use the library with Interior::Points"),
+    ('w', "a weighted Delaunay tetrahedralization", "leave the weights out"),
+    ('c', "keeping the convex hull", "give a .node file alone, which is filled up to its hull"),
+    ('v', "the Voronoi diagram", "leave the switch out"),
+    ('S', "a bound on the number of Steiner points", "use a bound on the volume instead"),
+    ('T', "a tolerance for coplanar points", "leave it out: all decisions are exact"),
+    ('X', "turning exact arithmetic off", "leave it out: all decisions are exact"),
+    ('N', "leaving the .node file out", "leave the switch out: .node and .ele are always written"),
+    ('E', "leaving the .ele file out", "leave the switch out: .node and .ele are always written"),
+    ('k', "a .vtk file beside the others", "use -o MESH.vtu"),
+    ('g', "a .mesh file beside the others", "use -o MESH.mesh"),
+    ('h', "help", "use anastomesh tetrahedralize --help"),
+];
+
+/// What is understood but changes nothing.
+const WITHOUT_EFFECT: [(char, &str); 10] = [
+    ('C', "every mesh is proved to be consistent"),
+    ('I', "files are named as -o says, without a number"),
+    ('J', "all points of the input are kept"),
+    ('M', "facets are never merged"),
+    ('B', "boundary markers are always written"),
+    ('D', "the mesh is as Delaunay as its boundary lets it be"),
+    ('l', "the order of insertion is fixed"),
+    ('L', "the order of insertion is fixed"),
+    ('s', "the order of insertion is fixed"),
+    ('P', "points are numbered as in the input"),
+];
+
+impl Switches {
+    /// Parses a string of switches; a dash before it and blanks between groups are passed over.
+    pub fn parse(text: &str) -> Result<Self, SwitchError> {
+        let mut switches = Self::default();
+        for group in text.split_whitespace() {
+            let mut cursor = Cursor { rest: group.strip_prefix('-').unwrap_or(group) };
+            while let Some(letter) = cursor.letter() {
+                switches.take(letter, &mut cursor)?;
+            }
+        }
+        Ok(switches)
+    }
+
+    fn take(&mut self, letter: char, cursor: &mut Cursor) -> Result<(), SwitchError> {
+        match letter {
+            'p' => {
+                self.plc = true;
+                self.ignore_number(cursor, "'p/…'", "facets are taken as they are, coplanar or not");
+            }
+            'Y' => {
+                self.keep_boundary = true;
+                self.ignore_number(cursor, "'Y/…'", "all of the boundary is kept");
+            }
+            'q' => self.quality = Some(quality(cursor)?),
+            'a' => match cursor.number() {
+                "" => self.region_volumes = true,
+                number => self.max_volume = Some(positive('a', number, "a volume above 0 has to follow, as in a0.1")?),
+            },
+            'A' => self.regions = true,
+            'd' => self.check_only = true,
+            'O' => self.no_optimization = optimization(cursor),
+            'o' => self.take_o(cursor)?,
+            'z' => self.from_zero = true,
+            'n' => {
+                self.neighbors = true;
+                // `nn` asks for more than fits into the file.
+                if cursor.rest.starts_with('n') {
+                    return Err(unsupported('n', "nn: neighbours of faces", "use n alone"));
+                }
+            }
+            'f' => self.all_faces = true,
+            'e' => {
+                self.all_edges = true;
+                if cursor.rest.starts_with('e') {
+                    return Err(unsupported('e', "ee: tetrahedra of edges", "use e alone"));
+                }
+            }
+            'F' => self.no_faces = true,
+            'V' => self.verbose = self.verbose.saturating_add(1),
+            'Q' => self.quiet = true,
+            _ => return self.take_other(letter, cursor),
+        }
+        Ok(())
+    }
+
+    fn take_o(&mut self, cursor: &mut Cursor) -> Result<(), SwitchError> {
+        if cursor.rest.starts_with('2') {
+            return Err(unsupported('o', "o2: tetrahedra with ten points", "raise the order in the solver"));
+        }
+        self.ignore_number(cursor, "'o/…'", "improvement begins with the worst tetrahedra and has no target angle");
+        Ok(())
+    }
+
+    fn take_other(&mut self, letter: char, cursor: &mut Cursor) -> Result<(), SwitchError> {
+        if let Some(&(_, what, instead)) = UNSUPPORTED.iter().find(|row| row.0 == letter) {
+            return Err(unsupported(letter, what, instead));
+        }
+        let Some(&(_, why)) = WITHOUT_EFFECT.iter().find(|row| row.0 == letter) else {
+            return Err(SwitchError::Unknown { switch: letter });
+        };
+        cursor.numbers();
+        self.without_effect.push(format!("switch '{letter}' of --tetgen does nothing here: {why}"));
+        Ok(())
+    }
+
+    /// Passes over numbers behind a switch that has none here, and says so.
+    fn ignore_number(&mut self, cursor: &mut Cursor, shown: &str, why: &str) {
+        if cursor.numbers() {
+            self.without_effect.push(format!("the number of {shown} of --tetgen does nothing here: {why}"));
+        }
+    }
+}
+
+fn unsupported(letter: char, what: &'static str, instead: &'static str) -> SwitchError {
+    SwitchError::Unsupported { switch: format!("'{letter}'"), what, instead }
+}
+
+/// `q[ratio][/mindihedral]`.
+fn quality(cursor: &mut Cursor) -> Result<Quality, SwitchError> {
+    const RATIO: &str =
+        "a bound on circumradius over shortest edge has to follow, above 0.612 (1.4 to 2 are usual), as in q1.4";
+    const ANGLE: &str = "an angle in degrees, from 0 to below 70.5, has to follow the slash, as in q1.4/10";
+    let max_radius_edge = match cursor.number() {
+        "" => USUAL_RATIO,
+        number => {
+            let ratio = positive('q', number, RATIO)?;
+            // The regular tetrahedron has √6/4.
+            if ratio <= 0.612_372_435_695_794_5 {
+                return Err(SwitchError::BadNumber { switch: 'q', number: number.into(), expected: RATIO });
+            }
+            ratio
+        }
+    };
+    let mut min_dihedral = None;
+    if cursor.skip('/') {
+        let number = cursor.number();
+        let angle = number.parse::<f64>().ok().filter(|angle| (0.0..70.5).contains(angle));
+        let bad = || SwitchError::BadNumber { switch: 'q', number: format!("/{number}"), expected: ANGLE };
+        min_dihedral = Some(angle.ok_or_else(bad)?).filter(|&angle| angle > 0.0);
+    }
+    Ok(Quality { max_radius_edge, min_dihedral })
+}
+
+/// `O[level][/operations]`: whether it turns improvement off.
+fn optimization(cursor: &mut Cursor) -> bool {
+    let level = cursor.number();
+    let none = level == "0";
+    if cursor.skip('/') {
+        cursor.number();
+    }
+    none
+}
+
+fn positive(switch: char, number: &str, expected: &'static str) -> Result<f64, SwitchError> {
+    let value = number.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
+    value.ok_or_else(|| SwitchError::BadNumber { switch, number: number.into(), expected })
+}
+
+/// The switches that are left.
+struct Cursor<'a> {
+    rest: &'a str,
+}
+
+impl<'a> Cursor<'a> {
+    fn letter(&mut self) -> Option<char> {
+        let letter = self.rest.chars().next()?;
+        self.rest = &self.rest[letter.len_utf8()..];
+        Some(letter)
+    }
+
+    fn skip(&mut self, mark: char) -> bool {
+        let rest = self.rest.strip_prefix(mark);
+        self.rest = rest.unwrap_or(self.rest);
+        rest.is_some()
+    }
+
+    /// The digits, points and exponent that come next; empty when there are none. An `e` without digits behind it is
+    /// the next switch.
+    fn number(&mut self) -> &'a str {
+        let bytes = self.rest.as_bytes();
+        let digits = |from: usize| bytes.iter().skip(from).take_while(|b| b.is_ascii_digit()).count();
+        let mut end = bytes.iter().take_while(|b| b.is_ascii_digit() || **b == b'.').count();
+        if end > 0 && matches!(bytes.get(end), Some(b'e' | b'E')) {
+            let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+            let exponent = digits(end + 1 + sign);
+            if exponent > 0 {
+                end += 1 + sign + exponent;
+            }
+        }
+        let (number, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        number
+    }
+
+    /// Passes over numbers with slashes between them; whether there were any.
+    fn numbers(&mut self) -> bool {
+        let before = self.rest.len();
+        loop {
+            self.number();
+            if !self.skip('/') {
+                return self.rest.len() < before;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Switches {
+        Switches::parse(text).unwrap_or_else(|e| panic!("{text}: {e}"))
+    }
+
+    fn fault(text: &str) -> String {
+        Switches::parse(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_people_write() {
+        let all = parse("pYq1.4a0.1");
+        let quality = Some(Quality { max_radius_edge: 1.4, min_dihedral: None });
+        let expected =
+            Switches { plc: true, keep_boundary: true, quality, max_volume: Some(0.1), ..Default::default() };
+        assert_eq!(all, expected);
+        for same in ["-pYq1.4a0.1", " -p -Y -q1.4 -a0.1", "a.1q1.4Yp", "pYq1.4a1e-1", "pYq1.40a1.0E-1"] {
+            assert_eq!(parse(same), expected, "{same}");
+        }
+        assert_eq!(parse(""), Switches::default());
+        assert_eq!(parse("-"), Switches::default());
+    }
+
+    #[test]
+    fn quality_has_a_ratio_and_an_angle() {
+        let quality = |text| parse(text).quality.unwrap();
+        assert_eq!(quality("q"), Quality { max_radius_edge: 2.0, min_dihedral: None });
+        assert_eq!(quality("q/18"), Quality { max_radius_edge: 2.0, min_dihedral: Some(18.0) });
+        assert_eq!(quality("q1.1/20.5p"), Quality { max_radius_edge: 1.1, min_dihedral: Some(20.5) });
+        assert_eq!(quality("q1.2/0"), Quality { max_radius_edge: 1.2, min_dihedral: None });
+        for bad in ["q0", "q0.5", "q1.2.3", "q1.4/80", "q1.4/", "q."] {
+            assert!(fault(bad).starts_with("switch 'q' of --tetgen has the number '"), "{}", fault(bad));
+        }
+        assert!(fault("a0").contains("'a'") && fault("a.").contains("above 0"));
+    }
+
+    #[test]
+    fn output_switches() {
+        let some = parse("pzfenVVAaQ");
+        assert!(some.from_zero && some.all_faces && some.all_edges && some.neighbors && some.regions && some.quiet);
+        assert!(some.region_volumes && some.max_volume.is_none() && some.verbose == 2);
+        let both = parse("pa0.5aAF");
+        assert!(both.region_volumes && both.max_volume == Some(0.5) && both.no_faces);
+        // The `e` is a switch, not the beginning of an exponent.
+        let volume = parse("a0.1e");
+        assert!(volume.all_edges && volume.max_volume == Some(0.1));
+        assert!(parse("O0").no_optimization && !parse("O2/7").no_optimization && parse("d").check_only);
+    }
+
+    #[test]
+    fn what_has_no_effect_is_said() {
+        for (text, part) in [("C", "'C'"), ("o/150", "'o/…'"), ("Y/1", "'Y/…'"), ("p/0.1", "'p/…'"), ("s4/3", "'s'")]
+        {
+            let notes = parse(text).without_effect;
+            assert!(notes.len() == 1 && notes[0].contains(part), "{text}: {notes:?}");
+        }
+        assert!(parse("pYq1.4").without_effect.is_empty());
+    }
+
+    #[test]
+    fn what_is_not_followed_is_named_with_a_remedy() {
+        assert_eq!(
+            fault("rq"),
+            "switch 'r' of --tetgen: refining a mesh that exists is not supported; give the surface of the mesh as input"
+        );
+        for (text, part) in
+            [("pw", "'w'"), ("o2", "o2"), ("pnn", "nn"), ("ee", "ee"), ("T1e-8", "'T'"), ("S100", "'S'")]
+        {
+            assert!(fault(text).contains(part), "{}", fault(text));
+        }
+        assert!(fault("pY?").starts_with("switch '?' of --tetgen is unknown") && fault("pä").contains("'ä'"));
+    }
+}

@@ -1,0 +1,112 @@
+//! Progress and time per stage.
+
+use std::sync::Mutex;
+use std::time::Instant;
+
+use indicatif::ProgressBar;
+
+use crate::cli::progress::{shows_bars, stage_bar};
+use crate::report::tetrahedralize::StageSeconds;
+use crate::tet::{Progress, Stage};
+
+/// Listens to a run: a bar per stage on a terminal, and the time that each takes.
+#[derive(Debug)]
+pub struct Watch {
+    shown: bool,
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    spent: Vec<StageSeconds>,
+    current: Option<(&'static str, Instant)>,
+    bar: Option<ProgressBar>,
+}
+
+impl Watch {
+    /// No bars when `quiet`, nor without a terminal.
+    pub fn new(quiet: bool) -> Self {
+        Self { shown: shows_bars(quiet), state: Mutex::default() }
+    }
+
+    /// Takes a step of the tetrahedralizer.
+    pub fn progress(&self, progress: Progress) {
+        self.enter(stage_name(progress.stage), progress.total);
+        if let Ok(state) = self.state.lock()
+            && let Some(bar) = &state.bar
+        {
+            bar.set_position(progress.done);
+        }
+    }
+
+    /// Runs a stage of the program's own.
+    pub fn time<T>(&self, stage: &'static str, run: impl FnOnce() -> T) -> T {
+        self.enter(stage, 0);
+        let result = run();
+        self.leave();
+        result
+    }
+
+    /// A stage begins, where it is not the current one; the one before it ends.
+    fn enter(&self, stage: &'static str, total: u64) {
+        let Ok(mut state) = self.state.lock() else { return };
+        if state.current.is_some_and(|(name, _)| name == stage) {
+            if let Some(bar) = state.bar.as_ref().filter(|_| total > 1) {
+                bar.set_length(total);
+            }
+            return;
+        }
+        state.close();
+        state.current = Some((stage, Instant::now()));
+        if self.shown {
+            // What is done in one step has nothing to show but that it goes on.
+            state.bar = Some(stage_bar(stage, if total > 1 { total } else { 0 }));
+        }
+    }
+
+    /// The current stage ends.
+    pub fn leave(&self) {
+        if let Ok(mut state) = self.state.lock() {
+            state.close();
+        }
+    }
+
+    /// The stages in the order in which they began.
+    pub fn stages(&self) -> Vec<StageSeconds> {
+        self.state.lock().map(|state| state.spent.clone()).unwrap_or_default()
+    }
+}
+
+impl State {
+    fn close(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+        let Some((stage, start)) = self.current.take() else { return };
+        let seconds = start.elapsed().as_secs_f64();
+        match self.spent.iter_mut().find(|entry| entry.stage == stage) {
+            Some(entry) => entry.seconds += seconds,
+            None => self.spent.push(StageSeconds { stage, seconds }),
+        }
+    }
+}
+
+fn stage_name(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Validate => "validate",
+        Stage::Delaunay => "delaunay",
+        Stage::Recover => "recover",
+        Stage::Carve => "carve",
+        Stage::Refine => "refine",
+        Stage::Optimize => "optimize",
+        Stage::Certify => "certify",
+    }
+}
+
+/// Most memory that the process has had in use, in bytes; none where the system does not tell.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(1024 * kilobytes)
+}

@@ -1,0 +1,268 @@
+//! What a tetrahedralization has to say, for people and as JSON.
+
+use crate::mesh::TetMesh;
+use crate::mesh::quality::{TetQuality, dihedral_range, volume6};
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// Size of the input.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct InputSize {
+    /// Number of points.
+    pub points: usize,
+    /// Number of facets, where the file has any that are not triangles.
+    pub facets: Option<usize>,
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Number of segments that are edges of no triangle.
+    pub segments: usize,
+    /// Number of holes.
+    pub holes: usize,
+}
+
+/// Size of the mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct OutputSize {
+    /// Number of points.
+    pub points: usize,
+    /// Points that the input does not have.
+    pub added_points: usize,
+    /// Number of tetrahedra.
+    pub tets: usize,
+    /// Faces that are triangles of the input, or parts of them.
+    pub faces: usize,
+    /// Those of them between two tetrahedra.
+    pub interior_faces: usize,
+    /// Volume of all tetrahedra.
+    pub volume: f64,
+}
+
+/// A region of the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RegionSize {
+    /// Its id.
+    pub id: i32,
+    /// Number of tetrahedra.
+    pub tets: usize,
+    /// Their volume.
+    pub volume: f64,
+}
+
+/// What recovery did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Recovery {
+    /// Edges that the Delaunay tetrahedralization lacked.
+    pub missing_edges: usize,
+    /// Triangles that it lacked.
+    pub missing_triangles: usize,
+    /// Points added to get them.
+    pub steiner_points: usize,
+}
+
+/// A bound that was asked for, and how many tetrahedra are beyond it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BoundResult {
+    /// What is bounded.
+    pub bound: &'static str,
+    /// The bound.
+    pub value: f64,
+    /// Tetrahedra beyond it.
+    pub beyond: usize,
+}
+
+/// Seconds of wall time of a stage.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StageSeconds {
+    /// Name of the stage.
+    pub stage: &'static str,
+    /// Wall time.
+    pub seconds: f64,
+}
+
+/// Everything that a tetrahedralization has to say.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TetReport {
+    /// Size of the input.
+    pub input: InputSize,
+    /// What was mended in it, as a list of sentences.
+    pub repaired: Vec<String>,
+    /// Size of the mesh.
+    pub mesh: OutputSize,
+    /// Shape of the tetrahedra.
+    pub quality: Option<TetQuality>,
+    /// The bounds asked for.
+    pub bounds: Vec<BoundResult>,
+    /// The regions, ascending; empty when the mesh is one.
+    pub regions: Vec<RegionSize>,
+    /// What recovery did.
+    pub recovery: Recovery,
+    /// Wall time per stage.
+    pub stages: Vec<StageSeconds>,
+    /// Most memory that was in use, in bytes, where the system tells it.
+    pub peak_memory: Option<u64>,
+    /// The files that were written.
+    pub files: Vec<String>,
+}
+
+/// The bounds that can be asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// Circumradius over shortest edge.
+    pub max_radius_edge: Option<f64>,
+    /// Smallest dihedral angle, degrees.
+    pub min_dihedral: Option<f64>,
+    /// Volume of a tetrahedron.
+    pub max_volume: Option<f64>,
+}
+
+impl Bounds {
+    /// How many tetrahedra are beyond each bound that is set.
+    pub fn results(&self, mesh: &TetMesh) -> Vec<BoundResult> {
+        // What was made to lie on the bound may be beyond it by rounding.
+        const ROUNDING: f64 = 1e-9;
+        let corners = |t: &[u32; 4]| t.map(|v| &mesh.points[v as usize]);
+        let count = |beyond: &dyn Fn([&crate::geometry::Point3; 4]) -> bool| {
+            mesh.tets.iter().filter(|t| beyond(corners(t))).count()
+        };
+        let mut results = Vec::new();
+        if let Some(value) = self.max_radius_edge {
+            let beyond = count(&|t| radius_edge(t) > value * (1.0 + ROUNDING));
+            results.push(BoundResult { bound: "circumradius over shortest edge at most", value, beyond });
+        }
+        if let Some(value) = self.min_dihedral {
+            let beyond = count(&|t| dihedral_range(t).0.to_degrees() < value * (1.0 - ROUNDING));
+            results.push(BoundResult { bound: "dihedral angles at least", value, beyond });
+        }
+        if let Some(value) = self.max_volume {
+            let beyond = count(&|[a, b, c, d]| volume6(a, b, c, d) / 6.0 > value * (1.0 + ROUNDING));
+            results.push(BoundResult { bound: Self::VOLUME, value, beyond });
+        }
+        results
+    }
+
+    /// What the bound on volume is called in [`BoundResult`].
+    pub const VOLUME: &'static str = "volume at most";
+}
+
+/// Circumradius over shortest edge; infinite for a flat tetrahedron.
+fn radius_edge([a, b, c, d]: [&crate::geometry::Point3; 4]) -> f64 {
+    let (u, v, w) = (b - a, c - a, d - a);
+    let center = v.cross(&w) * u.norm_squared() + w.cross(&u) * v.norm_squared() + u.cross(&v) * w.norm_squared();
+    let radius = center.norm() / (2.0 * volume6(a, b, c, d).abs());
+    let squares = [u, v, w, c - b, d - b, d - c].map(|e| e.norm_squared());
+    let ratio = radius / squares.into_iter().fold(f64::INFINITY, f64::min).sqrt();
+    if ratio.is_nan() { f64::INFINITY } else { ratio }
+}
+
+/// The regions of a mesh, ascending; `regions` has the id of each tetrahedron.
+pub fn region_sizes(mesh: &TetMesh, regions: &[i32]) -> Vec<RegionSize> {
+    let mut sizes: std::collections::BTreeMap<i32, RegionSize> = std::collections::BTreeMap::new();
+    for (t, &id) in mesh.tets.iter().zip(regions) {
+        let size = sizes.entry(id).or_insert(RegionSize { id, tets: 0, volume: 0.0 });
+        size.tets += 1;
+        size.volume += volume_of(mesh, t);
+    }
+    sizes.into_values().collect()
+}
+
+/// Volume of a tetrahedron of a mesh.
+pub fn volume_of(mesh: &TetMesh, t: &[u32; 4]) -> f64 {
+    let [a, b, c, d] = t.map(|v| &mesh.points[v as usize]);
+    volume6(a, b, c, d) / 6.0
+}
+
+impl TetReport {
+    /// Whether every bound that can always be met is.
+    pub fn bounds_met(&self) -> bool {
+        self.bounds.iter().all(|result| result.bound != Bounds::VOLUME || result.beyond == 0)
+    }
+
+    /// The report as lines for people.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        // Writing to a string cannot fail.
+        let (i, m, r) = (&self.input, &self.mesh, &self.recovery);
+        let facets = i.facets.map_or_else(String::new, |n| format!(" of {n} facets"));
+        let _ = write!(out, "input: {} points, {} triangles{facets}", i.points, i.triangles);
+        let _ = writeln!(out, "{}{}", counted(i.segments, "segments"), counted(i.holes, "holes"));
+        for line in &self.repaired {
+            let _ = writeln!(out, "  repaired: {line}");
+        }
+        let _ = writeln!(
+            out,
+            "mesh: {} tetrahedra, {} points ({} added), volume {:.9e}",
+            m.tets, m.points, m.added_points, m.volume
+        );
+        if i.triangles > 0 {
+            let _ = writeln!(
+                out,
+                "boundary: {} faces{}; {} edges and {} triangles recovered with {} points",
+                m.faces,
+                counted(m.interior_faces, "of them inside"),
+                r.missing_edges,
+                r.missing_triangles,
+                r.steiner_points
+            );
+        }
+        for region in &self.regions {
+            let _ = writeln!(out, "  region {}: {} tetrahedra, volume {:.9e}", region.id, region.tets, region.volume);
+        }
+        if let Some(q) = &self.quality {
+            let _ = writeln!(
+                out,
+                "radius ratio: mean {:.4}, 1st percentile {:.4}, min {:.4}; dihedral angles {:.2}° to {:.2}°",
+                q.mean, q.percentile_1, q.min, q.dihedral_min, q.dihedral_max
+            );
+        }
+        for b in &self.bounds {
+            let _ = match b.beyond {
+                0 => writeln!(out, "  {} {}: met", b.bound, b.value),
+                n => writeln!(out, "  {} {}: not met by {n} tetrahedra", b.bound, b.value),
+            };
+        }
+        let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
+        let peak = self.peak_memory.map_or_else(String::new, |b| format!("; peak memory {:.0} MB", b as f64 / 1e6));
+        let _ = writeln!(out, "{}{peak}", times.join(", "));
+        out
+    }
+}
+
+/// `, 3 holes`, or nothing when there are none.
+fn counted(count: usize, what: &str) -> String {
+    if count == 0 { String::new() } else { format!(", {count} {what}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+    use crate::mesh::shapes::cube_lattice;
+
+    #[test]
+    fn bounds_are_counted() {
+        let h = 0.75_f64.sqrt();
+        let points = vec![
+            Point3::origin(),
+            Point3::new(1.0, 0.0, 0.0),
+            Point3::new(0.5, h, 0.0),
+            Point3::new(0.5, h / 3.0, (2.0_f64 / 3.0).sqrt()),
+            Point3::new(0.5, h / 3.0, -0.01),
+        ];
+        let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3], [0, 2, 1, 4]] };
+        let bounds = Bounds { max_radius_edge: Some(0.613), min_dihedral: Some(70.5), max_volume: Some(0.1) };
+        let beyond: Vec<usize> = bounds.results(&mesh).iter().map(|r| r.beyond).collect();
+        assert_eq!(beyond, [1, 1, 1]);
+        let report = TetReport { bounds: bounds.results(&mesh), ..TetReport::default() };
+        assert!(!report.bounds_met());
+        assert!(report.text().contains("volume at most 0.1: not met by 1 tetrahedra"));
+    }
+
+    #[test]
+    fn regions_are_summed() {
+        let mesh = cube_lattice(2);
+        let regions: Vec<i32> = (0..mesh.tets.len() as i32).map(|i| if i < 12 { 9 } else { -1 }).collect();
+        let sizes = region_sizes(&mesh, &regions);
+        assert_eq!(sizes.iter().map(|r| (r.id, r.tets)).collect::<Vec<_>>(), [(-1, 36), (9, 12)]);
+        assert!((sizes.iter().map(|r| r.volume).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+}
