@@ -96,6 +96,7 @@ pub fn cap_terminals(
     let halves = HalfEdges::new(surface).map_err(|edge| CapError::NotManifold { edge })?;
     let mut cutter = Cutter {
         surface: &halves,
+        longest: longest_edge(surface),
         removed: vec![false; surface.triangles.len()],
         points: surface.points.clone(),
         added: Vec::new(),
@@ -116,6 +117,8 @@ pub fn cap_terminals(
 /// The surface while tips are taken off and discs put on.
 struct Cutter<'a> {
     surface: &'a HalfEdges,
+    /// Length of the longest edge.
+    longest: f64,
     removed: Vec<bool>,
     points: Vec<Point3>,
     added: Vec<[u32; 3]>,
@@ -147,7 +150,12 @@ impl Cutter<'_> {
         let (u, w) = section.frame();
         let reach = LONGEST_TIP * section.radius;
         let mut best = (reach, None);
+        let far = (reach + self.longest).powi(2);
         for face in 0..self.removed.len() as u32 {
+            let corner = self.points[self.surface.from(3 * face) as usize];
+            if (corner - section.origin).norm_squared() > far {
+                continue;
+            }
             let local = self.triangle(face).map(|p| {
                 let d = p - section.origin;
                 Vec3::new(d.dot(&u), d.dot(&w), d.dot(&section.axis))
@@ -299,6 +307,13 @@ impl Cutter<'_> {
     }
 }
 
+fn longest_edge(surface: &TriMesh) -> f64 {
+    let length = |t: &[u32; 3], i: usize| {
+        (surface.points[t[(i + 1) % 3] as usize] - surface.points[t[i] as usize]).norm_squared()
+    };
+    surface.triangles.iter().flat_map(|t| (0..3).map(|i| length(t, i))).fold(0.0, f64::max).sqrt()
+}
+
 /// The angle of the first ring point at which a regular ring fits the loop's points best.
 fn phase(section: &Section, low: &[Point3], corners: u32) -> f64 {
     let (u, w) = section.frame();
@@ -362,21 +377,20 @@ fn relaxed(
         on_disc.resize(surface.points.len(), false);
         on_rim.resize(surface.points.len(), false);
         let mut leaned_on = false;
-        let mut hold = Vec::with_capacity(surface.points.len());
+        let mut hold: Vec<Hold> = on_disc.iter().map(|&d| if d { Hold::Disc } else { Hold::Still }).collect();
+        let ball = (1.5 * section.radius + edge + (RELAXED * edge).max(LONGEST_TIP * section.radius)).powi(2);
         for (v, p) in surface.points.iter().enumerate() {
+            if on_disc[v] || (p - section.origin).norm_squared() > ball {
+                continue;
+            }
             let height = section.height(p);
             let across = (p - section.origin - section.axis * height).norm();
             let near = across < 1.5 * section.radius + edge;
             let leans = near && leaning(height) && on_rim[v];
             leaned_on |= leans;
-            let free = leans || near && before(height);
-            hold.push(if on_disc[v] {
-                Hold::Disc
-            } else if free {
-                Hold::Free
-            } else {
-                Hold::Still
-            });
+            if leans || near && before(height) {
+                hold[v] = Hold::Free;
+            }
         }
         Relaxation::new(&mut surface, &mut level, edge, hold).mend(if leaned_on { 12 } else { 4 });
     }

@@ -5,11 +5,12 @@ use super::error::BlockError;
 /// How a cluster ends at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum EndStyle {
-    /// Tetrahedra beyond the plane are taken off and what that exposes is made flat (3.2.2).
+    /// The wall is closed by a flat disc on the plane, as at a terminal: the tip is taken off the surface before it is
+    /// filled, and nothing that is meshed is thrown away.
     #[default]
-    Trimmed,
-    /// The wall is closed by a flat disc on the plane, as at a terminal. Nothing to trim, so nothing can go wrong there.
     Disc,
+    /// Tetrahedra beyond the plane are taken off and what that exposes is made flat (3.2.2).
+    Trimmed,
 }
 
 /// Parameters of a block.
@@ -42,7 +43,7 @@ impl Default for BlockParams {
             voxel_factor: 1.0,
             shift: [0.0; 3],
             kappa: 0.4,
-            ends: EndStyle::Trimmed,
+            ends: EndStyle::Disc,
             relax_ends: true,
             allow_fused: false,
             depth: 1.5,

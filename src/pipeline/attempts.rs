@@ -23,7 +23,7 @@ const CHANGES: [&str; 6] = [
     "as usual",
     "grid shifted",
     "narrower kernel",
-    "flat discs at the cuts",
+    "trimmed at the cuts",
     "finer voxel, grid shifted",
     "finer voxel, narrower kernel",
 ];
@@ -39,9 +39,9 @@ fn variants(plan: &MeshPlan, overlapping: bool) -> [BlockParams; CHANGES.len()] 
     let shifted = BlockParams { shift: [0.37, -0.23, 0.11], ..usual };
     // Parallel vessels fuse when their axes are closer than √(1 + 2 κ² ln 2) times the sum of their radii.
     let narrower = BlockParams { kappa: 0.3, ..usual };
-    let discs = BlockParams { ends: EndStyle::Disc, ..usual };
+    let trimmed = BlockParams { ends: EndStyle::Trimmed, ..usual };
     let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
-    [usual, shifted, narrower, discs, finer(shifted), finer(narrower)]
+    [usual, shifted, narrower, trimmed, finer(shifted), finer(narrower)]
 }
 
 /// Meshes a cluster, with other parameters after each failure. When none helps, the failure of the usual way counts: it

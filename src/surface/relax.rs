@@ -42,6 +42,18 @@ pub(crate) struct Relaxation<'a, L> {
     pub hold: Vec<Hold>,
     /// Unit normal of the level set at every vertex.
     normals: Vec<Vec3>,
+    /// Where to work; everywhere, when none.
+    patch: Option<Patch>,
+}
+
+/// The part of a surface in which vertices are free.
+#[derive(Debug, Default)]
+struct Patch {
+    /// The free vertices, and those that splits have added.
+    vertices: Vec<u32>,
+    /// The triangles that have one of them, and those that splits have added. Every operation replaces triangles of the
+    /// patch by triangles of the patch.
+    faces: Vec<u32>,
 }
 
 /// Edges longer or shorter than these multiples of the aim are split or collapsed.
@@ -55,9 +67,32 @@ const MAX_STEP: f64 = 0.5;
 impl<'a, L: Level> Relaxation<'a, L> {
     pub(crate) fn new(surface: &'a mut HalfEdges, level: &'a mut L, edge: f64, hold: Vec<Hold>) -> Self {
         let normals = vec![Vec3::zeros(); surface.points.len()];
-        let mut this = Self { surface, level, edge, hold, normals };
+        let patch = (!hold.is_empty()).then(|| Patch::of(surface, &hold));
+        let mut this = Self { surface, level, edge, hold, normals, patch };
         this.project();
         this
+    }
+
+    /// Number of half-edges to go through, removed ones included.
+    fn half_count(&self) -> u32 {
+        self.patch.as_ref().map_or(self.surface.len(), |p| 3 * p.faces.len() as u32)
+    }
+
+    /// The half-edges to go through.
+    #[inline]
+    fn half(&self, i: u32) -> u32 {
+        self.patch.as_ref().map_or(i, |p| 3 * p.faces[i as usize / 3] + i % 3)
+    }
+
+    /// Number of vertices to go through, removed ones included.
+    fn vertex_count(&self) -> usize {
+        self.patch.as_ref().map_or(self.surface.points.len(), |p| p.vertices.len())
+    }
+
+    /// The vertices to go through.
+    #[inline]
+    fn vertex(&self, i: usize) -> u32 {
+        self.patch.as_ref().map_or(i as u32, |p| p.vertices[i])
     }
 
     /// The rounds for a surface that is good but for a seam within it: flips go by angle only.
@@ -131,7 +166,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
 
     /// One Newton step of every free vertex onto the level; keeps the normals.
     fn project(&mut self) {
-        for v in 0..self.surface.points.len() as u32 {
+        for i in 0..self.vertex_count() {
+            let v = self.vertex(i);
             if self.is_free(v) {
                 let p = self.surface.points[v as usize];
                 self.surface.points[v as usize] = self.projected(v, p);
@@ -155,10 +191,11 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// Moves every free vertex, within the tangent plane, towards the area-weighted centre of its triangles, then
     /// projects it.
     fn smooth(&mut self) {
-        let targets: Vec<Point3> = (0..self.surface.points.len() as u32).map(|v| self.smoothed(v)).collect();
-        for (v, target) in targets.into_iter().enumerate() {
-            if self.is_free(v as u32) {
-                self.surface.points[v] = self.projected(v as u32, target);
+        let targets: Vec<Point3> = (0..self.vertex_count()).map(|i| self.smoothed(self.vertex(i))).collect();
+        for (i, target) in targets.into_iter().enumerate() {
+            let v = self.vertex(i);
+            if self.is_free(v) {
+                self.surface.points[v as usize] = self.projected(v, target);
             }
         }
     }
@@ -186,7 +223,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
 
     fn split_long(&mut self) {
         let limit = SPLIT_ABOVE * self.edge;
-        for h in 0..self.surface.len() {
+        for i in 0..self.half_count() {
+            let h = self.half(i);
             if !self.is_editable(h) {
                 continue;
             }
@@ -195,8 +233,11 @@ impl<'a, L: Level> Relaxation<'a, L> {
                 let middle = nalgebra::center(&self.surface.points[a as usize], &self.surface.points[b as usize]);
                 let m = self.surface.split(h, middle);
                 self.normals.push(self.normals[a as usize]);
-                if !self.hold.is_empty() {
+                if let Some(patch) = &mut self.patch {
                     self.hold.push(Hold::Free);
+                    patch.vertices.push(m);
+                    let faces = self.surface.len() / 3;
+                    patch.faces.extend([faces - 2, faces - 1]);
                 }
                 self.surface.points[m as usize] = self.projected(m, middle);
             }
@@ -214,7 +255,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
 
     fn collapse_short(&mut self) {
         let limit = COLLAPSE_BELOW * self.edge;
-        for h in 0..self.surface.len() {
+        for i in 0..self.half_count() {
+            let h = self.half(i);
             if !self.surface.is_live(h) || self.surface.length(h) > limit || self.is_locked(self.surface.from(h)) {
                 continue;
             }
@@ -254,7 +296,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
     fn flip(&mut self, criterion: Criterion) {
         let by_valence = matches!(criterion, Criterion::Valence);
         let mut valence = if by_valence { self.surface.valences() } else { Vec::new() };
-        for h in 0..self.surface.len() {
+        for i in 0..self.half_count() {
+            let h = self.half(i);
             if self.is_editable(h) && h < self.surface.twin(h) {
                 let s = &*self.surface;
                 let quad = [s.from(h), s.to(h), s.apex(h), s.apex(s.twin(h))].map(|v| v as usize);
@@ -293,6 +336,17 @@ impl<'a, L: Level> Relaxation<'a, L> {
         let (n1, n2) = ((d - a).cross(&(c - a)), (b - d).cross(&(c - d)));
         let (l1, l2) = (n1.norm(), n2.norm());
         n1.dot(&old) > 0.7 * l1 && n2.dot(&old) > 0.7 * l2 && n1.dot(&n2) > 0.5 * l1 * l2
+    }
+}
+
+impl Patch {
+    fn of(surface: &HalfEdges, hold: &[Hold]) -> Self {
+        let free = |v: &u32| hold[*v as usize] == Hold::Free && surface.has_vertex(*v);
+        let vertices: Vec<u32> = (0..hold.len() as u32).filter(free).collect();
+        let mut faces: Vec<u32> = vertices.iter().flat_map(|&v| surface.fan(v)).map(|h| h / 3).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        Self { vertices, faces }
     }
 }
 

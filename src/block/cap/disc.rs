@@ -2,6 +2,7 @@
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
 
 /// A triangulated disc in its plane; the first points are the ring, counter-clockwise from angle `phase`.
 #[derive(Clone, Debug)]
@@ -18,17 +19,39 @@ pub(crate) fn ring_radius(radius: f64, corners: u32) -> f64 {
     radius * (t / t.sin()).sqrt()
 }
 
+/// Rings with fewer corners share their triangulation.
+const KEPT: usize = 128;
+
 /// The disc of `radius` whose ring has `corners` points, filled at the ring's spacing; none if the triangulation does
 /// not keep the ring.
 pub(crate) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
-    let ring = ring_radius(radius, corners);
+    static DISCS: [OnceLock<Option<Disc>>; KEPT] = [const { OnceLock::new() }; KEPT];
+    match DISCS.get(corners as usize) {
+        Some(slot) => slot.get_or_init(|| unit_disc(corners)).as_ref().map(|d| d.placed(radius, phase)),
+        None => unit_disc(corners).map(|d| d.placed(radius, phase)),
+    }
+}
+
+impl Disc {
+    /// Scaled and turned.
+    fn placed(&self, radius: f64, phase: f64) -> Self {
+        let (s, c) = phase.sin_cos();
+        let (s, c) = (s * radius, c * radius);
+        let points = self.points.iter().map(|&[x, y]| [c * x - s * y, s * x + c * y]).collect();
+        Self { points, triangles: self.triangles.clone() }
+    }
+}
+
+/// The disc of radius 1 whose first corner is at angle 0.
+fn unit_disc(corners: u32) -> Option<Disc> {
+    let ring = ring_radius(1.0, corners);
     let spacing = 2.0 * ring * (PI / f64::from(corners)).sin();
     let layers = (ring / (0.87 * spacing)).round().max(1.0) as u32;
-    let mut points = circle(ring, corners, phase);
+    let mut points = circle(ring, corners, 0.0);
     for layer in (1..layers).rev() {
         let r = ring * f64::from(layer) / f64::from(layers);
         let count = ((TAU * r / spacing).round() as u32).max(5);
-        points.extend(circle(r, count, phase + 0.5 * TAU / f64::from(count) * f64::from((layers - layer) % 2)));
+        points.extend(circle(r, count, 0.5 * TAU / f64::from(count) * f64::from((layers - layer) % 2)));
     }
     points.push([0.0, 0.0]);
     let mut triangles = triangulate(&points, corners)?;
