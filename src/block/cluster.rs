@@ -3,15 +3,15 @@
 use super::cap::{CapError, CappedSurface, cap_terminals};
 use super::end_surface::{EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
-use super::params::{BlockParams, EndStyle};
+use super::params::{BlockParams, EndStyle, filling, mean_edge};
 use super::trim::{CutEnd, TrimOptions, Trimmed, trim};
 use crate::geometry::{Point3, Section, Tube};
+use crate::mesh::TetMesh;
 use crate::mesh::adjacency::tet_adjacency;
-use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::{Field, SurfaceParams, euler_characteristic, vessel_surface};
-use crate::tet::{TetOptions, tetrahedralize};
+use crate::tet::tetrahedralize;
 use rustc_hash::FxHashMap;
 
 /// The flat disc that closes a terminal.
@@ -55,9 +55,8 @@ pub struct ClusterMesh {
 pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
     let (surface, voxel) = cluster_surface(id, cluster, params)?;
     let edge = mean_edge(&surface.mesh);
-    let options = TetOptions::default();
-    let filled =
-        tetrahedralize(&surface.mesh, &options).map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
+    let filled = tetrahedralize(&surface.mesh, &filling(&surface.mesh))
+        .map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
     let caps = caps(cluster, &surface);
     let surface_triangles = surface.mesh.triangles.len();
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
@@ -157,13 +156,6 @@ fn independent_loops(tubes: &[Tube]) -> i64 {
         }
     }
     loops
-}
-
-fn mean_edge(surface: &TriMesh) -> f64 {
-    let p = |v: u32| surface.points[v as usize];
-    let sum: f64 =
-        surface.triangles.iter().map(|t| (0..3).map(|k| (p(t[k]) - p(t[(k + 1) % 3])).norm()).sum::<f64>()).sum();
-    sum / (3 * surface.triangles.len().max(1)) as f64
 }
 
 fn faces_of(surface: &CappedSurface, end: u32) -> Vec<[u32; 3]> {

@@ -4,10 +4,10 @@ use super::connector_surface::{
     ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface,
 };
 use super::error::BlockError;
-use super::params::BlockParams;
+use super::params::{BlockParams, filling};
 use crate::mesh::TetMesh;
 use crate::partition::{Cut, CutId};
-use crate::tet::{TetError, TetOptions, tetrahedralize};
+use crate::tet::{TetError, tetrahedralize};
 
 /// A meshed connector.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +66,7 @@ pub fn mesh_connector(
             Ok(surface) if tried.contains(&surface.rings) => continue,
             Ok(surface) => {
                 tried.push(surface.rings);
-                match tetrahedralize(&surface.surface, &TetOptions::default()) {
+                match tetrahedralize(&surface.surface, &filling(&surface.surface)) {
                     Ok(mesh) => return Ok(filled(surface, mesh, failed)),
                     Err(e) => ConnectorFailure::Tetrahedra(e),
                 }

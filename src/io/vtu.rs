@@ -59,6 +59,8 @@ struct Array<'a> {
     components: usize,
     values: usize,
     fill: Fill<'a>,
+    /// Whether compression saves enough for the time it takes: coordinates and vertex numbers shrink little.
+    shrinks: bool,
 }
 
 /// Writes a mesh as VTU. The bytes depend on the mesh and the notes alone, not on the number of threads.
@@ -170,6 +172,7 @@ fn strings<'a>(name: &'static str, texts: &[String]) -> Array<'a> {
         components: tuples,
         values: bytes.len(),
         fill: Box::new(move |range, out| out.extend_from_slice(&bytes[range])),
+        shrinks: true,
     }
 }
 
@@ -182,6 +185,7 @@ fn ints<'a>(name: &'static str, values: Vec<i64>) -> Array<'a> {
         components: 1,
         values: values.len(),
         fill: Box::new(move |range, out| out.extend(values[range].iter().flat_map(|v| v.to_le_bytes()))),
+        shrinks: true,
     }
 }
 
@@ -194,6 +198,7 @@ fn floats<'a>(name: &'static str, components: usize, values: Vec<f64>) -> Array<
         components,
         values: values.len(),
         fill: Box::new(move |range, out| out.extend(values[range].iter().flat_map(|v| v.to_le_bytes()))),
+        shrinks: true,
     }
 }
 
@@ -213,6 +218,7 @@ fn points_array(mesh: &VolumeMesh) -> Array<'_> {
                 }
             }
         }),
+        shrinks: false,
     }
 }
 
@@ -250,10 +256,19 @@ fn cell_arrays(mesh: &VolumeMesh) -> [Array<'_>; 3] {
             }
         })
     };
-    let array =
-        |name, kind, width, values, fill| Array { place: Place::Cells, name, kind, width, components: 1, values, fill };
+    let array = |name, kind, width, values, fill| Array {
+        place: Place::Cells,
+        name,
+        kind,
+        width,
+        components: 1,
+        values,
+        fill,
+        shrinks: true,
+    };
+    let corners = array("connectivity", kind, width, tets.len() + triangles.len(), connectivity);
     [
-        array("connectivity", kind, width, tets.len() + triangles.len(), connectivity),
+        Array { shrinks: false, ..corners },
         array("offsets", kind, width, cells, offsets),
         array("types", "UInt8", 1, cells, types),
     ]
@@ -286,6 +301,7 @@ fn cell_data<'a>(
         components: 1,
         values: tets + mesh.boundary.len(),
         fill: Box::new(move |range, out| out.extend(range.flat_map(|cell| value(cell).to_le_bytes()))),
+        shrinks: true,
     }
 }
 
@@ -363,7 +379,9 @@ fn write_array(out: &mut (impl Write + Seek), array: &Array) -> io::Result<()> {
 fn compress(array: &Array, range: Range<usize>) -> io::Result<Vec<u8>> {
     let mut raw = Vec::with_capacity(range.len() * array.width);
     (array.fill)(range, &mut raw);
-    let mut encoder = ZlibEncoder::new(Vec::with_capacity(raw.len() / 2), Compression::fast());
+    let level = if array.shrinks { Compression::fast() } else { Compression::none() };
+    let mut encoder =
+        ZlibEncoder::new(Vec::with_capacity(if array.shrinks { raw.len() / 2 } else { raw.len() + 64 }), level);
     encoder.write_all(&raw)?;
     encoder.finish()
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::rounds::Blocks;
 use super::terminals::TerminalPatches;
 use crate::block::{CapFaces, ClusterMesh, ConnectorMesh};
+use crate::mesh::adjacency::TetAdjacency;
 use crate::mesh::{Cap, Patch, VolumeMesh};
 use crate::partition::Cut;
 use crate::skeleton::Skeleton;
@@ -111,11 +112,11 @@ impl Assembly {
         smooth_joints(mesh, tet_block, &self.joints, &frozen, &JointOptions::default(), &improve)
     }
 
-    /// Labels the boundary.
+    /// Labels the boundary; with the mesh come its face neighbours.
     ///
     /// # Errors
     /// When a cap is not on the boundary.
-    pub fn label(self) -> Result<VolumeMesh, AssembleError> {
+    pub fn label(self) -> Result<(VolumeMesh, TetAdjacency), AssembleError> {
         Ok(label(self.merged.mesh, self.merged.tet_block, self.patches)?)
     }
 }

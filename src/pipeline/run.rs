@@ -9,7 +9,7 @@ use super::rounds::{self, Blocks, connector_ends, original_nodes};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
 use crate::block::BlockDump;
-use crate::mesh::check::{CheckReport, Expectation, check_volume};
+use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::{ClusterId, CutId, PartitionError};
 use crate::refine::split;
@@ -74,9 +74,9 @@ pub fn mesh_network(
     }
     let mut assembly = clock.time(observer, Stage::Merge, 0, || assemble::join(&skeleton, blocks, &terminals))?;
     report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
-    let mesh = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
+    let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
     let expectation = expectation(&skeleton);
-    let check = clock.time(observer, Stage::Check, 0, || check_volume(&mesh, Some(&expectation)));
+    let check = clock.time(observer, Stage::Check, 0, || check_volume_with(&mesh, neighbors, Some(&expectation)));
     report.mesh = size(&mesh);
     report.stages = clock.stages();
     Ok(Meshed { mesh, expectation, check, report })

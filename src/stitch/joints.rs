@@ -39,7 +39,7 @@ pub struct JointOptions {
 
 impl Default for JointOptions {
     fn default() -> Self {
-        Self { rings: 4, taubin: Taubin { iterations: 6, ..Taubin::default() }, good: 0.3, lift_below: 0.2, rounds: 3 }
+        Self { rings: 2, taubin: Taubin { iterations: 6, ..Taubin::default() }, good: 0.3, lift_below: 0.2, rounds: 3 }
     }
 }
 
@@ -119,6 +119,9 @@ fn smooth_region(region: &mut Region, options: &JointOptions, improve: &Improve)
     let mut report =
         JointReport { tets: region.mesh.tets.len(), worst_before: region.worst(), ..JointReport::default() };
     for round in 0..options.rounds.max(1) {
+        if round > 0 && region.worst() >= options.lift_below {
+            break;
+        }
         let mut walls = wall::Walls::new(region);
         // The wall is bent for a bad tetrahedron only when the inside alone could not mend it.
         let moves = if round == 0 {

@@ -2,7 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL, adjacency};
+use crate::mesh::adjacency::{self, TetAdjacency};
+use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL};
 
 /// The faces of one patch other than the wall.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,11 +38,16 @@ pub enum LabelError {
     },
 }
 
-/// Gives every boundary face of `mesh` its patch: the one that lists it, else the wall.
+/// Gives every boundary face of `mesh` its patch: the one that lists it, else the wall. With the labelled mesh come the
+/// face neighbours, which had to be found for it.
 ///
 /// # Errors
 /// When a listed face is not on the boundary or is listed twice.
-pub fn label(mesh: TetMesh, tet_block: Vec<i32>, patches: Vec<PatchFaces>) -> Result<VolumeMesh, LabelError> {
+pub fn label(
+    mesh: TetMesh,
+    tet_block: Vec<i32>,
+    patches: Vec<PatchFaces>,
+) -> Result<(VolumeMesh, TetAdjacency), LabelError> {
     let mut listed: FxHashMap<[u32; 3], i32> = FxHashMap::default();
     for PatchFaces { patch, faces } in &patches {
         for &face in faces {
@@ -51,7 +57,8 @@ pub fn label(mesh: TetMesh, tet_block: Vec<i32>, patches: Vec<PatchFaces>) -> Re
         }
     }
     let mut out = VolumeMesh::default();
-    for handle in adjacency::tet_adjacency(&mesh.tets, mesh.points.len()).boundary() {
+    let neighbors = adjacency::tet_adjacency(&mesh.tets, mesh.points.len());
+    for handle in neighbors.boundary() {
         let face = adjacency::face_vertices(&mesh.tets, handle);
         out.boundary.push(face);
         out.boundary_block.push(tet_block[handle as usize / 4]);
@@ -66,7 +73,7 @@ pub fn label(mesh: TetMesh, tet_block: Vec<i32>, patches: Vec<PatchFaces>) -> Re
     out.patches.push(Patch { id: WALL, name: "wall".into(), cap: None });
     out.patches.extend(patches.into_iter().map(|p| p.patch));
     out.patches.sort_by_key(|p| p.id);
-    Ok(out)
+    Ok((out, neighbors))
 }
 
 fn sorted(mut face: [u32; 3]) -> [u32; 3] {
@@ -90,7 +97,7 @@ mod tests {
 
     #[test]
     fn faces_that_no_patch_lists_are_wall() {
-        let labelled = label(mesh(), vec![7], vec![patch(3, vec![[2, 1, 0]])]).expect("on the boundary");
+        let (labelled, _) = label(mesh(), vec![7], vec![patch(3, vec![[2, 1, 0]])]).expect("on the boundary");
         assert_eq!(labelled.boundary.len(), 4);
         assert_eq!(labelled.boundary_patch.iter().filter(|&&p| p == WALL).count(), 3);
         let capped = labelled.boundary_patch.iter().position(|&p| p == 3).expect("labelled");

@@ -66,7 +66,7 @@ pub struct Summary {
 
 impl Default for Tetrahedralizer {
     fn default() -> Self {
-        let TetOptions { interior, optimize } = TetOptions::default();
+        let TetOptions { interior, optimize, .. } = TetOptions::default();
         Self {
             kind: InputKind::default(),
             interior,
@@ -171,6 +171,7 @@ impl Tetrahedralizer {
             sizing: &self.sizing,
             boundary: self.boundary,
             optimize: self.optimize,
+            certify: true,
             label: true,
             watch: &watch,
         })?;

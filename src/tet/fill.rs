@@ -37,6 +37,8 @@ pub(super) struct Request<'a> {
     pub sizing: &'a Sizing,
     pub boundary: Boundary,
     pub optimize: bool,
+    /// Whether the mesh is proved to fill the surface.
+    pub certify: bool,
     /// Whether tetrahedra are told apart by regions.
     pub label: bool,
     pub watch: &'a Watch<'a>,
@@ -45,7 +47,7 @@ pub(super) struct Request<'a> {
 /// A certified mesh.
 pub(super) struct Filled {
     pub mesh: TetMesh,
-    /// Where each triangle of the input lies in it.
+    /// Where each triangle of the input lies in it; empty without the certificate.
     pub places: Vec<Place>,
     /// Region of each tetrahedron, where there is something to say.
     pub regions: Vec<i32>,
@@ -68,8 +70,11 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     r.watch.report(Stage::Certify, 0, 1)?;
     let (regions, region_count) = if r.label { labels(r, &carved)? } else { (Vec::new(), 0) };
     let mesh = carved.into_compact_mesh(r.surface.points.len());
-    let places = certify_facets(&mesh, r.surface, r.kind, &regions)?;
-    certify_segments(&mesh, r.segments)?;
+    let mut places = Vec::new();
+    if r.certify {
+        places = certify_facets(&mesh, r.surface, r.kind, &regions)?;
+        certify_segments(&mesh, r.segments)?;
+    }
     r.watch.report(Stage::Certify, 1, 1)?;
     Ok(Filled { mesh, places, regions, region_count, recovery, optimize })
 }

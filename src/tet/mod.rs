@@ -72,7 +72,8 @@ use certify::Place;
 
 /// Fills a closed surface, oriented outwards, with tetrahedra. The points of the mesh begin with the surface's, in
 /// their order and bit for bit; interior points follow. Every triangle of the surface is a boundary face with the same
-/// orientation, and there are no others: the result is certified ([`certify::certify`]) or an error.
+/// orientation, and there are no others: the result is certified ([`certify::certify`], unless the options say otherwise)
+/// or an error.
 ///
 /// # Errors
 /// [`TetError`]: what is wrong with the surface, or what could not be recovered.
@@ -91,6 +92,7 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
         sizing: &Sizing::Surface,
         boundary: Boundary::Keep,
         optimize: options.optimize,
+        certify: options.certify,
         label: false,
         watch: &Watch::NOBODY,
     })?;

@@ -106,11 +106,13 @@ pub struct TetOptions {
     pub interior: Interior,
     /// Whether the mesh is improved, with its boundary as it is.
     pub optimize: bool,
+    /// Whether the mesh is proved to fill the surface. Only for callers who check what they make of it.
+    pub certify: bool,
 }
 
 impl Default for TetOptions {
     fn default() -> Self {
-        Self { interior: Interior::Lattice { cell: None, clearance: None }, optimize: true }
+        Self { interior: Interior::Lattice { cell: None, clearance: None }, optimize: true, certify: true }
     }
 }
 
@@ -126,6 +128,13 @@ impl TetOptions {
     #[must_use]
     pub fn optimize(mut self, optimize: bool) -> Self {
         self.optimize = optimize;
+        self
+    }
+
+    /// With or without the certificate.
+    #[must_use]
+    pub fn certify(mut self, certify: bool) -> Self {
+        self.certify = certify;
         self
     }
 }

@@ -26,12 +26,21 @@ use surface::Boundary;
 
 /// Checks a labelled mesh.
 pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> CheckReport {
-    Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run()
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(None)
+}
+
+/// As [`check_volume`], for callers who have just called [`tet_adjacency`] on this mesh.
+pub fn check_volume_with(
+    volume: &VolumeMesh,
+    adjacency: TetAdjacency,
+    expectation: Option<&Expectation>,
+) -> CheckReport {
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(Some(adjacency))
 }
 
 /// Checks a mesh without labels; the lines about labels are not checked.
 pub fn check_tets(mesh: &TetMesh, expectation: Option<&Expectation>) -> CheckReport {
-    Check { mesh, volume: None, expectation }.run()
+    Check { mesh, volume: None, expectation }.run(None)
 }
 
 const LABEL_LINES: [Line; 9] = [
@@ -53,7 +62,7 @@ struct Check<'a> {
 }
 
 impl Check<'_> {
-    fn run(&self) -> CheckReport {
+    fn run(&self, adjacency: Option<TetAdjacency>) -> CheckReport {
         let mesh = self.mesh;
         let counts = Counts { points: mesh.points.len(), tets: mesh.tets.len(), ..Counts::default() };
         let mut lines = vec![cells::not_empty(mesh), cells::finite_points(mesh), cells::indices_in_range(mesh)];
@@ -64,12 +73,17 @@ impl Check<'_> {
             lines.extend(rest);
             return CheckReport::new(counts, lines, None, Vec::new());
         }
-        self.run_on_sound_arrays(counts, lines)
+        let adjacency = adjacency.unwrap_or_else(|| tet_adjacency(&mesh.tets, mesh.points.len()));
+        self.run_on_sound_arrays(counts, lines, adjacency)
     }
 
-    fn run_on_sound_arrays(&self, mut counts: Counts, mut lines: Vec<LineResult>) -> CheckReport {
+    fn run_on_sound_arrays(
+        &self,
+        mut counts: Counts,
+        mut lines: Vec<LineResult>,
+        adjacency: TetAdjacency,
+    ) -> CheckReport {
         let mesh = self.mesh;
-        let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
         lines.push(cells::no_repeated_vertex(mesh));
         lines.push(cells::no_duplicate_tets(mesh, &adjacency));
         lines.push(cells::positive_tets(mesh));
