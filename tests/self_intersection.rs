@@ -3,35 +3,12 @@
 mod common;
 
 use anastomesh::geometry::{Improper, Point3, Vec3, self_contacts, self_intersections};
+use common::oracle::{self, Random};
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::sync::OnceLock;
 
-/// The oracle's program, built once; none, with a note, where CGAL or a compiler is missing, unless
-/// `ANASTOMESH_REQUIRE_ORACLES` is set.
-fn oracle() -> Option<&'static Path> {
-    static PROGRAM: OnceLock<Option<PathBuf>> = OnceLock::new();
-    PROGRAM.get_or_init(build_oracle).as_deref()
-}
-
-fn build_oracle() -> Option<PathBuf> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracles/self_intersections.cpp");
-    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("self_intersections");
-    let age = |path: &Path| path.metadata().and_then(|data| data.modified());
-    if age(&program).is_ok_and(|built| age(&source).is_ok_and(|written| built > written)) {
-        return Some(program);
-    }
-    let mut compile = Command::new("g++");
-    compile.args(["-std=c++17", "-O1", "-w", "-o"]).arg(&program).arg(&source).args(["-lgmp", "-lmpfr"]);
-    let done = compile.stderr(Stdio::null()).status().is_ok_and(|status| status.success());
-    if !done {
-        let required = std::env::var_os("ANASTOMESH_REQUIRE_ORACLES").is_some();
-        assert!(!required, "the oracle cannot be built: g++ and libcgal-dev are needed");
-        eprintln!("skipped: the oracle cannot be built (g++ and libcgal-dev are needed)");
-    }
-    done.then_some(program)
+fn oracle() -> Option<PathBuf> {
+    oracle::cgal("self_intersections")
 }
 
 type Surface = (Vec<Point3>, Vec<[u32; 3]>);
@@ -46,38 +23,13 @@ fn cgal(program: &Path, (points, triangles): &Surface) -> Vec<(u32, u32)> {
     for [a, b, c] in triangles {
         let _ = writeln!(input, "{a} {b} {c}");
     }
-    let mut child =
-        Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the oracle runs");
-    let mut stdin = child.stdin.take().expect("a pipe");
-    let feed = std::thread::spawn(move || stdin.write_all(input.as_bytes()));
-    let output = child.wait_with_output().expect("the oracle ends");
-    feed.join().expect("no panic").expect("the oracle reads its input");
-    assert!(output.status.success(), "the oracle refuses its input: {}", output.status);
-    let text = String::from_utf8(output.stdout).expect("digits");
+    let text = oracle::answer(program, input);
     let number = |word: Option<&str>| word.and_then(|w| w.parse().ok()).expect("a number");
     let pair = |line: &str| {
         let mut words = line.split(' ');
         (number(words.next()), number(words.next()))
     };
     text.lines().map(pair).collect()
-}
-
-/// The generator `SplitMix64`.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// In [0, 1).
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }
 
 /// Triangles without common ids, with corners drawn by `corner` round random places.
@@ -134,7 +86,7 @@ fn agree(surface: &Surface, program: &Path) -> usize {
 
 #[test]
 fn soups() {
-    let Some(program) = oracle() else { return };
+    let Some(program) = &oracle() else { return };
     let mut random = Random(1);
     for size in [3.0, 5.0, 12.0] {
         let grid = |r: &mut Random| Point3::new(0.0, 0.0, 0.0).map(|_: f64| (r.unit() * size).floor());
@@ -149,7 +101,7 @@ fn soups() {
 
 #[test]
 fn surfaces_with_planted_intersections() {
-    let Some(program) = oracle() else { return };
+    let Some(program) = &oracle() else { return };
     assert_eq!(agree(&torus(60, 24, 0.3), program), 0);
     // A tube wider than its circle passes through itself.
     assert!(agree(&torus(40, 24, 1.2), program) > 100);
@@ -211,7 +163,7 @@ fn moved_tip(mut surface: Surface, by: Vec3) -> Surface {
 /// The sound surfaces of the shared data do not meet themselves, and roughened they meet themselves where CGAL says.
 #[test]
 fn surfaces_of_others() {
-    let (Some(program), Some(shared)) = (oracle(), common::shared()) else { return };
+    let (Some(program), Some(shared)) = (&oracle(), common::shared()) else { return };
     let mut random = Random(3);
     for name in ["tube_tree_1k", "libigl_3holes", "cgal_pipe"] {
         let path = shared.join("data/surfaces").join(format!("{name}.off"));
@@ -241,7 +193,7 @@ fn read_off(text: &str) -> Surface {
 /// The wall of a network whose vessels overlap: the real case that the check is for.
 #[test]
 fn the_wall_of_overlapping_vessels() {
-    let (Some(program), Some(shared)) = (oracle(), common::shared()) else { return };
+    let (Some(program), Some(shared)) = (&oracle(), common::shared()) else { return };
     let network = common::network(&shared.join("data/kidney/subtree_989.vtp"));
     let meshed = common::mesh(&network, 3.0);
     // The points inside are none of the wall's.

@@ -1,6 +1,8 @@
 //! What the integration tests share.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+pub mod oracle;
+
 use anastomesh::io::network::{NetworkOptions, read_network};
 use anastomesh::pipeline::{Clock, MeshPlan, Meshed, RunError, Silent, mesh_network};
 use anastomesh::skeleton::{Skeleton, clean};

@@ -1,0 +1,71 @@
+//! Programs of others that tests compare with, and random numbers for their inputs.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+
+/// The program of `tests/oracles/NAME.cpp`, built when it is not yet; none, with a note, where CGAL or a compiler is
+/// missing, unless `ANASTOMESH_REQUIRE_ORACLES` is set.
+pub fn cgal(name: &str) -> Option<PathBuf> {
+    static BUILDING: Mutex<()> = Mutex::new(());
+    let _building = BUILDING.lock();
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/oracles/{name}.cpp"));
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let age = |path: &Path| path.metadata().and_then(|data| data.modified());
+    if age(&program).is_ok_and(|built| age(&source).is_ok_and(|written| built > written)) {
+        return Some(program);
+    }
+    let mut compile = Command::new("g++");
+    compile.args(["-std=c++17", "-O1", "-w", "-o"]).arg(&program).arg(&source).args(["-lgmp", "-lmpfr"]);
+    let done = compile.stderr(Stdio::null()).status().is_ok_and(|status| status.success());
+    if !done {
+        missing("the oracle cannot be built (g++ and libcgal-dev are needed)");
+    }
+    done.then_some(program)
+}
+
+/// The program `tetgen`; none, with a note, where it is missing, unless `ANASTOMESH_REQUIRE_ORACLES` is set.
+pub fn tetgen() -> Option<PathBuf> {
+    let there = Command::new("tetgen").arg("-h").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
+    if !there {
+        missing("tetgen is not there");
+    }
+    there.then(|| PathBuf::from("tetgen"))
+}
+
+fn missing(what: &str) {
+    assert!(std::env::var_os("ANASTOMESH_REQUIRE_ORACLES").is_none(), "{what}");
+    eprintln!("skipped: {what}");
+}
+
+/// What a program prints when it is given this on its standard input.
+pub fn answer(program: &Path, input: String) -> String {
+    let mut child =
+        Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the oracle runs");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    let feed = std::thread::spawn(move || stdin.write_all(input.as_bytes()));
+    let output = child.wait_with_output().expect("the oracle ends");
+    feed.join().expect("no panic").expect("the oracle reads its input");
+    assert!(output.status.success(), "the oracle refuses its input: {}", output.status);
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The generator `SplitMix64`.
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next 64 bits.
+    pub fn word(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// In [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        (self.word() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

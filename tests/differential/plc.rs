@@ -1,0 +1,165 @@
+//! Piecewise linear complexes: volume, faces and regions are TetGen's, which with -Y keeps the facets as they are.
+
+use super::{oracle, recorded};
+use anastomesh::geometry::{Point3, Vec3};
+use anastomesh::tet::{InputKind, Interior, Plc, Tetrahedralizer};
+use std::fmt::Write as _;
+use std::process::{Command, Stdio};
+
+const FILE: &str = "plc.txt";
+
+/// What is compared. Tetrahedra are not: there are many ways to fill a complex.
+#[derive(Debug)]
+struct Filled {
+    /// Faces that lie in a facet.
+    faces: usize,
+    regions: usize,
+    volume: f64,
+}
+
+fn volume<'a>(points: &[Point3], tets: impl Iterator<Item = &'a [u32; 4]>) -> f64 {
+    let corners = |t: &[u32; 4]| t.map(|v| points[v as usize]);
+    // TetGen's tetrahedra are turned the other way.
+    tets.map(|t| {
+        let [a, b, c, d] = corners(t);
+        ((b - a).cross(&(c - a)).dot(&(d - a)) / 6.0).abs()
+    })
+    .sum()
+}
+
+fn ours(plc: &Plc) -> Filled {
+    let run = Tetrahedralizer::new().kind(InputKind::Plc).interior(Interior::None).optimize(false).run(plc);
+    let out = run.unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(out.mesh.points[..plc.points.len()], plc.points);
+    Filled {
+        faces: out.faces.len(),
+        regions: out.summary.regions,
+        volume: volume(&out.mesh.points, out.mesh.tets.iter()),
+    }
+}
+
+fn tetgen(plc: &Plc) -> Option<Filled> {
+    let program = oracle::tetgen()?;
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut poly = format!("{} 3 0 0\n", plc.points.len());
+    for (i, p) in plc.points.iter().enumerate() {
+        let _ = writeln!(poly, "{i} {} {} {}", p.x, p.y, p.z);
+    }
+    let _ = writeln!(poly, "{} 0", plc.triangles.len());
+    for [a, b, c] in &plc.triangles {
+        let _ = writeln!(poly, "1\n3 {a} {b} {c}");
+    }
+    let _ = writeln!(poly, "{}", plc.holes.len());
+    for (i, p) in plc.holes.iter().enumerate() {
+        let _ = writeln!(poly, "{i} {} {} {}", p.x, p.y, p.z);
+    }
+    poly.push_str("0\n");
+    std::fs::write(folder.path().join("in.poly"), poly).expect("a file");
+    let mut command = Command::new(program);
+    let status = command.args(["-pYQA", "in.poly"]).current_dir(folder.path()).stdout(Stdio::null()).status();
+    assert!(status.is_ok_and(|s| s.success()), "tetgen fails");
+    let rows = |kind: &str| -> Vec<Vec<f64>> {
+        let text = std::fs::read_to_string(folder.path().join(format!("in.1.{kind}"))).expect("TetGen's file");
+        let lines = text.lines().filter(|l| !l.trim_start().starts_with('#')).skip(1);
+        lines.map(|l| l.split_whitespace().map(|w| w.parse().expect("a number")).collect()).collect()
+    };
+    let points: Vec<Point3> = rows("node").iter().map(|r| Point3::new(r[1], r[2], r[3])).collect();
+    let elements = rows("ele");
+    let tets: Vec<[u32; 4]> = elements.iter().map(|r| [1, 2, 3, 4].map(|k| r[k] as u32)).collect();
+    let mut regions: Vec<i64> = elements.iter().map(|r| r[5] as i64).collect();
+    regions.sort_unstable();
+    regions.dedup();
+    Some(Filled { faces: rows("face").len(), regions: regions.len(), volume: volume(&points, tets.iter()) })
+}
+
+fn compare(case: &str, plc: &Plc) {
+    let ours = ours(plc);
+    let agree = |theirs: &Filled| {
+        let same = (ours.faces, ours.regions) == (theirs.faces, theirs.regions);
+        assert!(same && (ours.volume - theirs.volume).abs() < 1e-9 * theirs.volume, "{case}: {ours:?} {theirs:?}");
+    };
+    if let Some(theirs) = tetgen(plc) {
+        if recorded::recording() {
+            recorded::record(FILE, case, &format!("{} {} {}", theirs.faces, theirs.regions, theirs.volume));
+        }
+        agree(&theirs);
+    }
+    let line = recorded::line(FILE, case);
+    let mut words = line.split(' ');
+    let mut number = || words.next().and_then(|w| w.parse::<f64>().ok()).expect("a number");
+    agree(&Filled { faces: number() as usize, regions: number() as usize, volume: number() });
+}
+
+fn add(plc: &mut Plc, points: &[Point3], triangles: &[[u32; 3]]) {
+    let first = plc.points.len() as u32;
+    plc.points.extend(points);
+    plc.triangles.extend(triangles.iter().map(|t| t.map(|v| v + first)));
+}
+
+/// A box, twelve triangles.
+fn add_box(plc: &mut Plc, low: Point3, size: Vec3) {
+    let corner =
+        |i: u32| low + Vec3::new(size.x * f64::from(i & 1), size.y * f64::from(i >> 1 & 1), size.z * f64::from(i >> 2));
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let halves: Vec<[u32; 3]> = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    add(plc, &(0..8).map(corner).collect::<Vec<_>>(), &halves);
+}
+
+/// A torus of `n` × `m` quadrilaterals round an axis, its tube along a unit circle.
+fn add_torus(plc: &mut Plc, [n, m]: [u32; 2], tube: f64, place: impl Fn(Point3) -> Point3) {
+    let turn = |i: u32, n: u32| (f64::from(i) / f64::from(n) * std::f64::consts::TAU).sin_cos();
+    let at = |k: u32| {
+        let ((su, cu), (sv, cv)) = (turn(k / m, n), turn(k % m, m));
+        place(Point3::new((1.0 + tube * cv) * cu, (1.0 + tube * cv) * su, tube * sv))
+    };
+    let id = |i: u32, j: u32| (i % n) * m + j % m;
+    let quads = (0..n).flat_map(|i| (0..m).map(move |j| [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]));
+    let triangles: Vec<[u32; 3]> = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    add(plc, &(0..n * m).map(at).collect::<Vec<_>>(), &triangles);
+}
+
+/// Boxes in a row that share the walls between them.
+fn partitioned(cells: u32) -> Plc {
+    let mut plc = Plc::default();
+    for i in 0..=cells {
+        let x = f64::from(i) * 1.3;
+        plc.points.extend([(0.0, 0.0), (1.0, 0.0), (1.0, 1.1), (0.0, 1.1)].map(|(y, z)| Point3::new(x, y, z)));
+        let f = 4 * i;
+        plc.triangles.extend([[f, f + 1, f + 2], [f, f + 2, f + 3]]);
+        for (j, k) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
+            if i < cells {
+                plc.triangles.extend([[f + j, f + k, f + k + 4], [f + j, f + k + 4, f + j + 4]]);
+            }
+        }
+    }
+    plc
+}
+
+#[test]
+fn boxes() {
+    let mut nested = Plc::default();
+    add_box(&mut nested, Point3::origin(), Vec3::new(3.0, 3.0, 3.0));
+    add_box(&mut nested, Point3::new(0.9, 1.1, 0.8), Vec3::new(1.0, 1.2, 0.7));
+    compare("box-in-box", &nested);
+    nested.holes.push(Point3::new(1.3, 1.5, 1.2));
+    compare("box-in-box-hollow", &nested);
+    compare("box-in-three", &partitioned(3));
+    let mut dangling = Plc::default();
+    add_box(&mut dangling, Point3::origin(), Vec3::new(2.0, 2.0, 2.0));
+    let flap = [Point3::new(0.5, 0.5, 0.4), Point3::new(1.5, 0.6, 0.9), Point3::new(0.7, 1.4, 1.5)];
+    add(&mut dangling, &flap, &[[0, 1, 2]]);
+    compare("box-with-flap", &dangling);
+}
+
+#[test]
+fn tori() {
+    let mut single = Plc::default();
+    add_torus(&mut single, [24, 12], 0.4, |p| p);
+    compare("torus", &single);
+    add_torus(&mut single, [30, 10], 0.2, |p| p);
+    compare("torus-in-torus", &single);
+    let mut linked = Plc::default();
+    add_torus(&mut linked, [24, 10], 0.3, |p| p);
+    add_torus(&mut linked, [22, 10], 0.28, |p| Point3::new(p.x + 1.0, p.z, p.y));
+    compare("linked-tori", &linked);
+}
