@@ -80,8 +80,22 @@ impl Triple {
         Self { high: self.high + other.high + i128::from(carry), low }
     }
 
+    /// The magnitude in limbs, least significant first, and whether the number is negative.
+    #[inline]
+    fn magnitude(self) -> ([u64; 3], bool) {
+        let (mut low, mut high) = (self.low, self.high.cast_unsigned());
+        if self.high < 0 {
+            low = low.wrapping_neg();
+            high = (!high).wrapping_add(u128::from(low == 0));
+        }
+        ([low, high as u64, (high >> 64) as u64], self.high < 0)
+    }
+
+    /// Rounded, limb by limb of the magnitude, so that the sign is exact.
     fn to_f64(self) -> f64 {
-        self.high as f64 * 18_446_744_073_709_551_616.0 + self.low as f64
+        let (limbs, negative) = self.magnitude();
+        let value = limbs.iter().rev().fold(0.0, |sum, &limb| sum * 18_446_744_073_709_551_616.0 + limb as f64);
+        if negative { -value } else { value }
     }
 }
 
@@ -133,14 +147,8 @@ pub(super) fn insphere(p: [&Point3; 4], e: &Point3) -> Option<f64> {
 /// Adds `± w · lift`, modulo 2³²⁰.
 #[inline]
 fn accumulate(sum: &mut [u64; 5], w: Triple, lift: i128, negate: bool) {
-    let negative = (w.high < 0) != negate;
-    // The magnitude, in limbs.
-    let (mut low, mut high) = (w.low, w.high.cast_unsigned());
-    if w.high < 0 {
-        low = low.wrapping_neg();
-        high = (!high).wrapping_add(u128::from(low == 0));
-    }
-    let limbs = [low, high as u64, (high >> 64) as u64];
+    let (limbs, negative) = w.magnitude();
+    let negative = negative != negate;
     let lift = [lift as u64, (lift >> 64) as u64];
     let mut product = [0u64; 5];
     for (i, &x) in lift.iter().enumerate() {
@@ -182,6 +190,16 @@ mod tests {
             let near = Point3::new(e.x, e.y, e.z.next_down());
             assert_eq!(insphere([&a, &b, &c, &d], &near), Some(1.0), "{o} {h}");
         }
+    }
+
+    #[test]
+    fn a_small_negative_number_keeps_its_sign() {
+        let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+        let h = f64::EPSILON;
+        let (a, b) = (p(1.0, 1.0, 1.0), p(1.0 - h, 1.0, 1.0));
+        let (c, d) = (p(-2.0, 1.0 + h, -2.0), p(-2.0, 1.0, 1.0 + 2.0 * h));
+        assert_eq!(orient3d([&b, &c, &d], &a), Some(-2.0 * h * h * h));
+        assert_eq!(orient3d([&c, &b, &d], &a), Some(2.0 * h * h * h));
     }
 
     #[test]
