@@ -57,6 +57,7 @@ mod plc;
 mod progress;
 mod recover;
 mod regions;
+pub mod refine;
 pub mod star;
 
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};

@@ -66,7 +66,7 @@ impl Improver {
         false
     }
 
-    fn lift_corners(&mut self, t: u32) -> bool {
+    pub(super) fn lift_corners(&mut self, t: u32) -> bool {
         let before = self.quality[t as usize];
         let mut any = false;
         for v in self.c.verts(t) {
@@ -79,7 +79,7 @@ impl Improver {
     }
 
     /// Contracts a movable vertex of `t` onto one of its neighbours.
-    fn contract_corner(&mut self, t: u32) -> bool {
+    pub(super) fn contract_corner(&mut self, t: u32) -> bool {
         for v in self.c.verts(t) {
             if self.movable[v as usize] && self.contract(v) {
                 return true;
@@ -137,7 +137,7 @@ impl Improver {
     }
 
     /// Tries a new vertex in the middle of `t` and of each of its inner edges.
-    fn insert_near(&mut self, t: u32) -> bool {
+    pub(super) fn insert_near(&mut self, t: u32) -> bool {
         let mut k = std::mem::take(&mut self.cavity);
         let v = self.c.verts(t);
         let mut done = false;

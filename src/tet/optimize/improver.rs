@@ -1,7 +1,7 @@
 //! The state of an improvement and its plan: which passes, in which order.
 
 use super::smoothing::StarEnergy;
-use super::{OptimizeOptions, OptimizeReport};
+use super::{Effort, OptimizeOptions, OptimizeReport};
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::{Complex, NONE};
 use crate::tet::flips::Flipper;
@@ -28,6 +28,13 @@ pub struct Improver {
     pub(super) star: Star,
     pub(super) energy: StarEnergy,
     pub(super) cavity: super::cavity::Cavity,
+    pub(super) reconnection: super::reconnect::Reconnection,
+    /// Counts attempts made in vain.
+    pub(super) epoch: u32,
+    /// The epoch in which something around a vertex changed last.
+    pub(super) changed: Vec<u32>,
+    /// The epoch after which a slot was tried in vain; 0: never.
+    pub(super) tried: Vec<u32>,
     worst_first: Vec<(f64, u32)>,
 }
 
@@ -45,6 +52,10 @@ impl Improver {
             star: Star::default(),
             energy: StarEnergy::default(),
             cavity: super::cavity::Cavity::default(),
+            reconnection: super::reconnect::Reconnection::default(),
+            epoch: 0,
+            changed: Vec::new(),
+            tried: Vec::new(),
             worst_first: Vec::new(),
             c,
         };
@@ -62,7 +73,10 @@ impl Improver {
                 break;
             }
         }
-        self.treat_stubborn();
+        match self.options.effort {
+            Effort::Fast => self.treat_stubborn(),
+            Effort::Full => self.treat_thoroughly(),
+        }
         self.smooth_stars_below(self.options.smooth_below);
         self.lift_worst(self.options.flip_below);
         let worst = self.c.real_tets().map(|t| self.quality[t as usize]).fold(f64::INFINITY, f64::min);
@@ -112,6 +126,17 @@ impl Improver {
             for v in self.c.verts(t) {
                 self.stirred[v as usize] = true;
             }
+            self.note_change(t);
+        }
+    }
+
+    /// Dates the last change around the vertices of a tetrahedron, once that matters.
+    fn note_change(&mut self, t: u32) {
+        if self.options.effort == Effort::Full {
+            self.changed.resize(self.c.points.len(), 0);
+            for v in self.c.verts(t) {
+                self.changed[v as usize] = self.epoch;
+            }
         }
     }
 
@@ -120,6 +145,7 @@ impl Improver {
         for t in 0..self.quality.len() as u32 {
             if self.quality[t as usize].is_nan() {
                 self.quality[t as usize] = self.ratio(t);
+                self.note_change(t);
             }
         }
     }

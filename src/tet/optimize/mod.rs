@@ -8,13 +8,25 @@
 mod cavity;
 mod flipping;
 mod improver;
+mod reconnect;
 mod smoothing;
+mod thorough;
 
 pub use improver::Improver;
 
 use super::complex::{Complex, ComplexError};
 use crate::mesh::TetMesh;
 use crate::mesh::quality::radius_ratio;
+
+/// How hard an improvement tries.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// Smoothing and flips; insertion and contraction where a tetrahedron is very bad.
+    #[default]
+    Fast,
+    /// Then everything there is, small-polyhedron reconnection included, on each tetrahedron that is still bad.
+    Full,
+}
 
 /// What to improve and how much work to spend.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +46,8 @@ pub struct OptimizeOptions {
     pub keep_points: bool,
     /// Upper limit of attempted changes, per tetrahedron of the mesh that comes in.
     pub attempts_per_tet: usize,
+    /// How hard to try below `stubborn_below`.
+    pub effort: Effort,
 }
 
 impl Default for OptimizeOptions {
@@ -46,7 +60,15 @@ impl Default for OptimizeOptions {
             stubborn_below: 0.3,
             keep_points: false,
             attempts_per_tet: 20,
+            effort: Effort::Fast,
         }
+    }
+}
+
+impl OptimizeOptions {
+    /// For a mesh that is to be as good as its surface allows.
+    pub fn full() -> Self {
+        Self { smooth_below: 0.9, stubborn_below: 0.45, effort: Effort::Full, ..Self::default() }
     }
 }
 

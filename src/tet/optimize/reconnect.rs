@@ -1,0 +1,347 @@
+//! Small-polyhedron reconnection: the tetrahedra of a small cavity are exchanged for the best others with the same
+//! vertices and the same boundary, found by branch and bound. (Marot, Remacle, 'Quality tetrahedral mesh generation
+//! with HXT', 2020; Liu, Chen, Zheng, 'Small polyhedron reconnection for mesh improvement', 2006.) It contains edge
+//! removal, multi-face removal and all their compositions within the cavity.
+//!
+//! Positive tetrahedra whose faces match each other and the cavity's boundary cover the cavity once, so the search need
+//! not test for intersections; volume and enclosed vertices merely prune it.
+
+use super::Improver;
+use crate::geometry::predicates::orient3d;
+use crate::mesh::quality::radius_ratio;
+use crate::tet::complex::Complex;
+
+/// Vertices of a cavity.
+const MAX_VERTICES: usize = 14;
+/// Faces on the front of the search.
+const MAX_FRONT: usize = 64;
+/// Slots of the table of tetrahedra: as many as four of the vertices can be chosen.
+const TABLE: usize = choose(MAX_VERTICES, 4);
+/// What the exchange must gain in the worst radius ratio, relative to the old one.
+const GAIN: f64 = 1.05;
+/// The search ends when the worst radius ratio has come this far.
+const GOOD: f64 = 0.5;
+
+const fn choose(n: usize, k: usize) -> usize {
+    match k {
+        1 => n,
+        2 => n * n.saturating_sub(1) / 2,
+        3 => n * n.saturating_sub(1) * n.saturating_sub(2) / 6,
+        _ => n * n.saturating_sub(1) * n.saturating_sub(2) * n.saturating_sub(3) / 24,
+    }
+}
+
+/// A tetrahedron of four local vertices in ascending order.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    /// Radius ratio with the sign of the exact orientation; not a number where not yet known.
+    ratio: f64,
+    /// Volume with sign, as far as rounding goes.
+    volume: f64,
+}
+
+/// A face of the front, turned inwards: (v, f₀, f₁, f₂) is positive for v inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct FrontFace {
+    v: [u8; 3],
+    /// Vertices with which it makes a tetrahedron above the floor, as far as known when the face was made.
+    mates: u16,
+}
+
+/// The search; keeps its buffers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Reconnection {
+    tets: Vec<u32>,
+    halves: Vec<u32>,
+    vertices: Vec<u32>,
+    table: Vec<Entry>,
+    front: Vec<FrontFace>,
+    stack: Vec<[u8; 4]>,
+    best: Vec<[u8; 4]>,
+    new: Vec<[u32; 4]>,
+    created: Vec<u32>,
+    floor: f64,
+    nodes: usize,
+    /// Volume below which a difference is rounding.
+    slack: f64,
+    volume: f64,
+    /// Vertices that no face of the cavity's boundary has.
+    loose: u16,
+}
+
+impl Improver {
+    /// Reconnects a cavity of up to `size` tetrahedra around `t`; false when nothing better was found within `nodes`
+    /// steps of the search.
+    pub(super) fn reconnect(&mut self, t: u32, size: usize, nodes: usize) -> bool {
+        let mut r = std::mem::take(&mut self.reconnection);
+        let done = self.reconnect_with(&mut r, t, size, nodes);
+        self.reconnection = r;
+        done
+    }
+
+    fn reconnect_with(&mut self, r: &mut Reconnection, t: u32, size: usize, nodes: usize) -> bool {
+        r.choose_cavity(&self.c, t, size);
+        if r.tets.len() < 3 || !r.outline(&self.c) {
+            return false;
+        }
+        let floor = self.worst_of(&r.tets) * GAIN;
+        r.floor = floor;
+        r.nodes = nodes;
+        r.search(&self.c);
+        if r.best.is_empty() {
+            return false;
+        }
+        r.new.clear();
+        let vertices = &r.vertices;
+        r.new.extend(r.best.iter().map(|t| t.map(|v| vertices[v as usize])));
+        let fixed = |v: &u32| self.options.keep_points || !self.movable[*v as usize];
+        let all = r.vertices.iter().filter(|v| fixed(v)).all(|v| r.new.iter().any(|t| t.contains(v)));
+        if !all || r.new.iter().any(|v| self.score(v).is_none()) || !self.c.replace(&r.tets, &r.new, &mut r.created) {
+            return false;
+        }
+        self.remeasure(&r.created);
+        true
+    }
+}
+
+impl Reconnection {
+    /// Grows a cavity around `t`, always by the tetrahedron that shares most vertices with it, so that few vertices
+    /// have many tetrahedra. Frozen faces are not crossed.
+    fn choose_cavity(&mut self, c: &Complex, t: u32, size: usize) {
+        self.tets.clear();
+        self.vertices.clear();
+        self.tets.push(t);
+        self.vertices.extend(c.verts(t));
+        while self.tets.len() < size {
+            let mut best: Option<(usize, u32)> = None;
+            for (order, &x) in self.tets.iter().enumerate() {
+                for half in 4 * x..4 * x + 4 {
+                    let mate = c.mate(half);
+                    let n = mate >> 2;
+                    if c.is_frozen(half) || c.is_ghost(n) || self.tets.contains(&n) {
+                        continue;
+                    }
+                    // A known apex first; then faces that the cavity has more of; then those near the start.
+                    let known = usize::from(self.vertices.contains(&c.apex(mate)));
+                    let shared = (4 * n..4 * n + 4).filter(|&h| self.tets.contains(&(c.mate(h) >> 2))).count();
+                    let rank = (known * 8 + shared) * 64 + (63 - order.min(63));
+                    if best.is_none_or(|b| rank > b.0) {
+                        best = Some((rank, n));
+                    }
+                }
+            }
+            let Some((_, n)) = best else { return };
+            let fresh = c.verts(n).into_iter().filter(|v| !self.vertices.contains(v)).count();
+            if self.vertices.len() + fresh > MAX_VERTICES {
+                return;
+            }
+            for v in c.verts(n) {
+                if !self.vertices.contains(&v) {
+                    self.vertices.push(v);
+                }
+            }
+            self.tets.push(n);
+        }
+    }
+
+    /// Makes the cavity's boundary the front; false when a frozen face lies inside.
+    fn outline(&mut self, c: &Complex) -> bool {
+        self.halves.clear();
+        for &t in &self.tets {
+            for half in 4 * t..4 * t + 4 {
+                if !self.tets.contains(&(c.mate(half) >> 2)) {
+                    self.halves.push(half);
+                } else if c.is_frozen(half) {
+                    return false;
+                }
+            }
+        }
+        self.halves.len() <= MAX_FRONT
+    }
+
+    fn local(&self, v: u32) -> u8 {
+        self.vertices.iter().position(|&x| x == v).unwrap_or(0) as u8
+    }
+
+    /// The tetrahedron of four local vertices: radius ratio and volume, both negative when it is inverted.
+    fn tet(&mut self, c: &Complex, v: [u8; 4]) -> (f64, f64) {
+        let (sorted, odd) = sort4(v);
+        let [i, j, k, l] = sorted.map(usize::from);
+        if i == j || j == k || k == l {
+            return (f64::NEG_INFINITY, 0.0);
+        }
+        let at = choose(l, 4) + choose(k, 3) + choose(j, 2) + i;
+        let mut entry = self.table[at];
+        if entry.ratio.is_nan() {
+            let [p, q, r, s] = sorted.map(|x| &c.points[self.vertices[x as usize] as usize]);
+            let exact = orient3d(p, q, r, s);
+            let ratio = radius_ratio(p, q, r, s).abs();
+            let ratio = if exact > 0.0 { ratio } else { -ratio };
+            entry = Entry { ratio: if exact == 0.0 || ratio.is_nan() { 0.0 } else { ratio }, volume: exact };
+            self.table[at] = entry;
+        }
+        if odd { (-entry.ratio, -entry.volume) } else { (entry.ratio, entry.volume) }
+    }
+
+    fn search(&mut self, c: &Complex) {
+        self.table.clear();
+        self.table.resize(TABLE, Entry { ratio: f64::NAN, volume: 0.0 });
+        self.best.clear();
+        self.stack.clear();
+        self.front.clear();
+        self.volume = self.tets.iter().map(|&t| c.orient(&c.verts(t))).sum();
+        self.slack = 1e-9 * self.volume;
+        self.loose = self.loose_vertices(c);
+        for k in 0..self.halves.len() {
+            let [a, b, d] = c.face(self.halves[k]).map(|v| self.local(v));
+            let v = [a, b, d];
+            let mates = self.mates_of(c, v);
+            self.front.push(FrontFace { v, mates });
+        }
+        let worst = f64::INFINITY;
+        self.branch(c, worst, self.volume);
+    }
+
+    /// The vertices with which a face makes a tetrahedron above the floor.
+    fn mates_of(&mut self, c: &Complex, f: [u8; 3]) -> u16 {
+        let mut mates = 0;
+        for v in 0..self.vertices.len() as u8 {
+            if !f.contains(&v) && self.tet(c, [v, f[0], f[1], f[2]]).0 > self.floor {
+                mates |= 1 << v;
+            }
+        }
+        mates
+    }
+
+    /// Vertices that are on the front; others are buried.
+    fn live(&self) -> u16 {
+        self.front.iter().flat_map(|f| f.v).fold(0, |m, v| m | 1 << v)
+    }
+
+    /// Vertices that no face of the cavity's boundary has: they may be used from anywhere, or left out.
+    fn loose_vertices(&self, c: &Complex) -> u16 {
+        let on = |v: u32| self.halves.iter().any(|&h| c.face(h).contains(&v));
+        self.vertices.iter().enumerate().filter(|x| !on(*x.1)).fold(0, |m, x| m | 1 << x.0)
+    }
+
+    /// Closes the front with tetrahedra above the floor; depth is bounded by the volume and by the number of steps.
+    fn branch(&mut self, c: &Complex, worst: f64, volume: f64) {
+        if self.front.is_empty() {
+            if worst > self.floor && volume.abs() <= self.slack * 1e3 {
+                self.floor = worst * 1.001;
+                self.best.clear();
+                self.best.extend_from_slice(&self.stack);
+            }
+            return;
+        }
+        if self.nodes == 0 || self.stack.len() > 3 * MAX_VERTICES || (self.floor >= GOOD && !self.best.is_empty()) {
+            return;
+        }
+        self.nodes -= 1;
+        let usable = self.live() | self.loose;
+        let Some(at) = (0..self.front.len()).min_by_key(|&i| (self.front[i].mates & usable).count_ones()) else {
+            return;
+        };
+        let face = self.front[at];
+        let mut choices = [(0.0, 0u8); MAX_VERTICES];
+        let mut count = 0;
+        for v in 0..self.vertices.len() as u8 {
+            if face.mates & usable & (1 << v) != 0 {
+                let (ratio, size) = self.tet(c, [v, face.v[0], face.v[1], face.v[2]]);
+                if ratio > self.floor && size <= volume + self.slack {
+                    choices[count] = (ratio, v);
+                    count += 1;
+                }
+            }
+        }
+        choices[..count].sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        for &(ratio, v) in &choices[..count] {
+            if ratio <= self.floor {
+                break;
+            }
+            self.take(c, at, v, worst.min(ratio), volume);
+            if self.nodes == 0 {
+                return;
+            }
+        }
+    }
+
+    /// Puts tetrahedron (v, face `at`) into the room, goes on, and takes it out again.
+    fn take(&mut self, c: &Complex, at: usize, v: u8, worst: f64, volume: f64) {
+        let [a, b, d] = self.front[at].v;
+        if self.encloses(c, [v, a, b, d]) {
+            return;
+        }
+        let size = self.tet(c, [v, a, b, d]).1;
+        // Where faces were taken out of the front, newest last, and how many were put in after them.
+        let mut removed: [(usize, FrontFace); 4] = [(0, self.front[at]); 4];
+        let mut order = [false; 4];
+        let (mut steps, mut outs) = (1, 1);
+        removed[0] = (at, self.front.swap_remove(at));
+        // The other faces of the tetrahedron, turned inwards to what remains.
+        let mut fits = true;
+        for f in [[v, a, b], [v, b, d], [v, d, a]] {
+            if let Some(i) = self.front.iter().position(|g| same(g.v, [f[0], f[2], f[1]])) {
+                removed[outs] = (i, self.front.swap_remove(i));
+                (outs, steps) = (outs + 1, steps + 1);
+            } else if self.front.len() >= MAX_FRONT || self.front.iter().any(|g| same(g.v, f)) {
+                fits = false;
+                break;
+            } else {
+                let mates = self.mates_of(c, f);
+                if mates == 0 {
+                    fits = false;
+                    break;
+                }
+                self.front.push(FrontFace { v: f, mates });
+                order[steps] = true;
+                steps += 1;
+            }
+        }
+        if fits {
+            self.stack.push([v, a, b, d]);
+            self.branch(c, worst, volume - size);
+            self.stack.pop();
+        }
+        for step in (0..steps).rev() {
+            if order[step] {
+                self.front.pop();
+            } else {
+                outs -= 1;
+                let (i, face) = removed[outs];
+                self.front.push(face);
+                let last = self.front.len() - 1;
+                self.front.swap(i, last);
+            }
+        }
+    }
+
+    /// Whether another vertex of the front lies strictly inside.
+    fn encloses(&mut self, c: &Complex, [v, a, b, d]: [u8; 4]) -> bool {
+        let live = self.live();
+        (0..self.vertices.len() as u8).any(|x| {
+            live & (1 << x) != 0
+                && ![v, a, b, d].contains(&x)
+                && self.tet(c, [x, a, b, d]).0 > 0.0
+                && self.tet(c, [v, x, b, d]).0 > 0.0
+                && self.tet(c, [v, a, x, d]).0 > 0.0
+                && self.tet(c, [v, a, b, x]).0 > 0.0
+        })
+    }
+}
+
+fn same(f: [u8; 3], g: [u8; 3]) -> bool {
+    f == g || f == [g[1], g[2], g[0]] || f == [g[2], g[0], g[1]]
+}
+
+/// Sorts four; says whether the permutation is odd.
+fn sort4(mut v: [u8; 4]) -> ([u8; 4], bool) {
+    let mut odd = false;
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        if v[i] > v[j] {
+            v.swap(i, j);
+            odd = !odd;
+        }
+    }
+    (v, odd)
+}

@@ -1,0 +1,70 @@
+//! The thorough improvement: after the quick passes, every tetrahedron that is still bad is treated with all there is,
+//! the worst first, until nothing improves or what is left does not change any more.
+
+use super::Improver;
+
+/// Rounds over the tetrahedra that are still bad.
+const ROUNDS: usize = 8;
+/// Sizes of the cavities that are reconnected, and steps of the search in each.
+const CAVITIES: [(usize, usize); 3] = [(6, 100), (12, 300), (20, 600)];
+/// A round that mends fewer than one in so many is the last.
+const WORTHWHILE: usize = 100;
+
+impl Improver {
+    /// Treats all tetrahedra below the stubborn limit, the worst first.
+    pub(super) fn treat_thoroughly(&mut self) {
+        for _ in 0..ROUNDS {
+            let list = self.worst_first(self.options.stubborn_below);
+            let (mut tried, mut changes) = (0, 0);
+            for &entry in &list {
+                if !self.is_current(entry) || !self.has_news(entry.1) {
+                    continue;
+                }
+                if !self.spend() {
+                    break;
+                }
+                tried += 1;
+                if self.treat_with_all(entry.1) {
+                    changes += 1;
+                } else {
+                    self.note_tried(entry.1);
+                }
+            }
+            self.keep_list(list);
+            self.smooth_stars_below(self.options.smooth_below);
+            if changes * WORTHWHILE <= tried {
+                break;
+            }
+        }
+    }
+
+    /// Whether something around a tetrahedron has changed since it was tried in vain.
+    fn has_news(&self, t: u32) -> bool {
+        let tried = self.tried.get(t as usize).copied().unwrap_or(0);
+        tried == 0 || self.c.verts(t).iter().any(|&v| self.changed.get(v as usize).copied().unwrap_or(0) >= tried)
+    }
+
+    fn note_tried(&mut self, t: u32) {
+        self.epoch += 1;
+        self.tried.resize(self.c.slots(), 0);
+        self.tried[t as usize] = self.epoch;
+    }
+
+    fn treat_with_all(&mut self, t: u32) -> bool {
+        let mended = if self.flip_tet(t) || CAVITIES.iter().any(|&(size, nodes)| self.reconnect(t, size, nodes)) {
+            self.report.flips += 1;
+            true
+        } else if self.lift_corners(t) {
+            true
+        } else if !self.options.keep_points && self.contract_corner(t) {
+            self.report.contracted += 1;
+            true
+        } else if self.insert_near(t) {
+            self.report.inserted += 1;
+            true
+        } else {
+            false
+        };
+        mended
+    }
+}

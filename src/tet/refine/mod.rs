@@ -1,0 +1,13 @@
+//! How fine the mesh is to be, where, and points that make it so: a size field over an octree, interior points on a
+//! graded body-centred lattice, and Delaunay refinement inside a frozen boundary.
+
+mod points;
+mod sizes;
+mod tree;
+
+pub use points::graded_points;
+pub use sizes::{SizeLimit, vertex_sizes};
+pub use tree::{SizeTree, TreeOptions};
+
+#[cfg(test)]
+mod tests;
