@@ -250,7 +250,7 @@ impl Improver {
 
     /// Exchanges `k.tets` for `k.new`.
     fn exchange(&mut self, k: &mut Cavity) -> bool {
-        let done = self.c.replace(&k.tets, &k.new, &mut k.created);
+        let done = self.eases(&k.tets, &k.new) && self.c.replace(&k.tets, &k.new, &mut k.created);
         if done {
             self.remeasure(&k.created);
         }

@@ -56,7 +56,9 @@ impl Improver {
         }
         let Some(candidate) = best.1 else { return false };
         // The plan made last may have been another: make it anew.
-        self.plan(t, candidate, floor).is_some() && self.commit_flip()
+        self.plan(t, candidate, floor).is_some()
+            && self.eases(self.flipper.doomed(), self.flipper.planned())
+            && self.commit_flip()
     }
 
     /// Plans a removal; returns the worst new radius ratio if it is above `floor`.

@@ -1,7 +1,7 @@
 //! The state of an improvement and its plan: which passes, in which order.
 
 use super::smoothing::StarEnergy;
-use super::{Effort, OptimizeOptions, OptimizeReport};
+use super::{Effort, OptimizeOptions, OptimizeReport, strain};
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::{Complex, NONE};
 use crate::tet::flips::Flipper;
@@ -9,6 +9,9 @@ use crate::tet::star::Star;
 
 /// Stands for a radius ratio that is out of date.
 pub(super) const STALE: f64 = f64::NAN;
+
+/// Fall of the strain from which a change is worth making.
+const EASED: f64 = 0.02;
 
 /// A complex under improvement, with the radius ratio of each tetrahedron at hand.
 #[derive(Debug)]
@@ -169,6 +172,21 @@ impl Improver {
     #[inline]
     pub(super) fn is_current(&self, (q, t): (f64, u32)) -> bool {
         self.c.is_real(t) && self.quality[t as usize].to_bits() == q.to_bits()
+    }
+
+    /// Sum of the strain of tetrahedra.
+    pub(super) fn strain_of(&self, tets: &[u32]) -> f64 {
+        tets.iter().map(|&t| strain(self.quality[t as usize])).sum()
+    }
+
+    /// Whether exchanging `old` for `new` eases the mesh: the quick passes do not ask.
+    pub(super) fn eases(&self, old: &[u32], new: &[[u32; 4]]) -> bool {
+        let ratio = |v: &[u32; 4]| {
+            let [a, b, c, d] = v.map(|i| &self.c.points[i as usize]);
+            radius_ratio(a, b, c, d)
+        };
+        self.options.effort == Effort::Fast
+            || new.iter().map(|v| strain(ratio(v))).sum::<f64>() < self.strain_of(old) - EASED
     }
 
     /// Smallest radius ratio among tetrahedra.

@@ -18,6 +18,9 @@ use super::complex::{Complex, ComplexError};
 use crate::mesh::TetMesh;
 use crate::mesh::quality::radius_ratio;
 
+/// Radius ratio below which a tetrahedron strains its surroundings.
+const STRAINED: f64 = 0.5;
+
 /// How hard an improvement tries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
@@ -120,6 +123,14 @@ pub fn optimize_complex(complex: &mut Complex, options: &OptimizeOptions) -> Opt
 pub(super) fn score(c: &Complex, v: &[u32; 4]) -> Option<f64> {
     let [p, q, r, s] = v.map(|i| &c.points[i as usize]);
     (c.orient(v) > 0.0).then(|| radius_ratio(p, q, r, s))
+}
+
+/// How much a tetrahedron of this radius ratio asks to be mended: its logarithm below one half, and very little above,
+/// so that nothing is mended at the cost of more that is as bad.
+#[inline]
+pub(super) fn strain(q: f64) -> f64 {
+    let bad = if q < STRAINED { (STRAINED / q.max(1e-12)).ln() } else { 0.0 };
+    bad + 0.1 * (1.0 - q)
 }
 
 /// Drops the points from `fixed` on that no tetrahedron has, keeping the order of the others.

@@ -96,7 +96,8 @@ impl Improver {
         r.new.extend(r.best.iter().map(|t| t.map(|v| vertices[v as usize])));
         let fixed = |v: &u32| self.options.keep_points || !self.movable[*v as usize];
         let all = r.vertices.iter().filter(|v| fixed(v)).all(|v| r.new.iter().any(|t| t.contains(v)));
-        if !all || r.new.iter().any(|v| self.score(v).is_none()) || !self.c.replace(&r.tets, &r.new, &mut r.created) {
+        let positive = r.new.iter().all(|v| self.score(v).is_some());
+        if !all || !positive || !self.eases(&r.tets, &r.new) || !self.c.replace(&r.tets, &r.new, &mut r.created) {
             return false;
         }
         self.remeasure(&r.created);

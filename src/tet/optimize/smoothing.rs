@@ -3,7 +3,7 @@
 
 use super::Improver;
 use super::improver::STALE;
-use super::score;
+use super::{Effort, score, strain};
 use crate::geometry::{Point3, Vec3, predicates::orient3d};
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::Complex;
@@ -16,6 +16,8 @@ const HALVINGS: usize = 4;
 const SETTLED: f64 = 1e-3;
 /// Relative fall of the energy from which the neighbours of a vertex are worth another visit.
 const STIRRING: f64 = 1e-2;
+/// Radius ratio of a tetrahedron below which the thorough improvement leaves its vertices to the direct search.
+const HOPELESS: f64 = 0.15;
 /// Rounds of the direct search; its step halves in a round that finds nothing.
 const SEARCH_ROUNDS: usize = 12;
 
@@ -28,6 +30,18 @@ pub struct StarEnergy {
     /// The faces opposite the vertex, seen from it in such order that (vertex, f₀, f₁, f₂) is positive.
     faces: Vec<[Point3; 3]>,
     tets: Vec<u32>,
+    /// What the direct search looks for.
+    aim: Aim,
+}
+
+/// What a direct search makes as large as it can.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Aim {
+    /// The worst radius ratio of the star.
+    #[default]
+    Worst,
+    /// Less the strain of the star (see [`super::strain`]), with no radius ratio below this.
+    Ease(f64),
 }
 
 /// V(x) = height − normal·x, Q(x) = 3 |x − center|² + rest.
@@ -72,6 +86,7 @@ impl StarEnergy {
         self.cells.clear();
         self.faces.clear();
         self.tets.clear();
+        self.aim = Aim::Worst;
         for &t in tets {
             let Some(i) = c.slot_of(t, v) else { continue };
             let face = c.face(4 * t + i as u32).map(|w| c.points[w as usize]);
@@ -123,7 +138,14 @@ impl StarEnergy {
         self.faces.iter().all(|[a, b, c]| orient3d(p, a, b, c) > 0.0)
     }
 
-    /// Smallest radius ratio of the star with its vertex at `p`, or anything below `floor` if it is not above.
+    /// What is sought, with the star's vertex at `p`; anything up to `floor` if it is not above.
+    fn value(&self, p: &Point3, floor: f64) -> f64 {
+        match self.aim {
+            Aim::Worst => self.worst(p, floor),
+            Aim::Ease(least) => self.ease(p, least, floor),
+        }
+    }
+
     fn worst(&self, p: &Point3, floor: f64) -> f64 {
         let mut worst = f64::INFINITY;
         for [a, b, c] in &self.faces {
@@ -134,6 +156,21 @@ impl StarEnergy {
         }
         worst
     }
+
+    fn ease(&self, p: &Point3, least: f64, floor: f64) -> f64 {
+        let mut ease = 0.0;
+        for [a, b, c] in &self.faces {
+            let q = radius_ratio(p, a, b, c);
+            if q < least {
+                return f64::NEG_INFINITY;
+            }
+            ease -= strain(q);
+            if ease <= floor {
+                break;
+            }
+        }
+        ease
+    }
 }
 
 impl Improver {
@@ -142,18 +179,27 @@ impl Improver {
     pub(super) fn smooth_stars_below(&mut self, below: f64) -> usize {
         self.stirred.resize(self.c.points.len(), true);
         let mut due = vec![false; self.c.points.len()];
+        let mut strained = vec![false; if self.options.effort == Effort::Full { due.len() } else { 0 }];
         for t in self.c.real_tets() {
             if self.quality[t as usize] < below {
                 for v in self.c.verts(t) {
                     due[v as usize] = self.movable[v as usize] && self.stirred[v as usize];
                 }
+                if self.quality[t as usize] < HOPELESS && !strained.is_empty() {
+                    for v in self.c.verts(t) {
+                        strained[v as usize] = true;
+                    }
+                }
             }
         }
         let mut moved = 0;
         for v in 0..due.len() as u32 {
-            if due[v as usize] && self.spend() && self.smooth_vertex(v) {
-                moved += 1;
+            if !due[v as usize] || !self.spend() {
+                continue;
             }
+            // The energy of a tetrahedron that is past help would drown that of the others.
+            let past_help = strained.get(v as usize).is_some_and(|&s| s);
+            moved += usize::from(if past_help { self.ease_once(v) } else { self.smooth_vertex(v) });
         }
         self.refresh();
         self.report.moved += moved;
@@ -220,7 +266,8 @@ impl Improver {
                 continue;
             }
             for v in self.c.verts(t) {
-                if self.movable[v as usize] && self.spend() && self.lift_vertex(v) {
+                let ease = self.options.effort == Effort::Full;
+                if self.movable[v as usize] && self.spend() && self.seek(v, ease) {
                     lifted += 1;
                 }
             }
@@ -232,12 +279,31 @@ impl Improver {
 
     /// Lifts the worst radius ratio of a movable vertex's star by a direct search; keeps the cached qualities right.
     pub(super) fn lift_vertex(&mut self, v: u32) -> bool {
+        self.seek(v, false)
+    }
+
+    /// Moves a vertex so that the strain of its star falls, and its worst radius ratio does not.
+    pub(super) fn ease_vertex(&mut self, v: u32) -> bool {
+        self.seek(v, true)
+    }
+
+    fn ease_once(&mut self, v: u32) -> bool {
+        let moved = self.ease_vertex(v);
+        self.stirred[v as usize] = false;
+        moved
+    }
+
+    fn seek(&mut self, v: u32, ease: bool) -> bool {
         let tets = self.star.around(&self.c, v);
         self.energy.gather(&self.c, v, tets);
         let start = self.c.points[v as usize];
-        let before = self.energy.worst(&start, f64::NEG_INFINITY);
-        let (best, worst) = search(&self.energy, start, before);
-        if worst > before && self.energy.stays_positive(&best) {
+        let mut before = self.energy.worst(&start, f64::NEG_INFINITY);
+        if ease {
+            self.energy.aim = Aim::Ease(before);
+            before = self.energy.value(&start, f64::NEG_INFINITY);
+        }
+        let (best, value) = search(&self.energy, start, before);
+        if value > before && self.energy.stays_positive(&best) {
             self.c.points[v as usize] = best;
             let tets = std::mem::take(&mut self.energy.tets);
             self.remeasure(&tets);
@@ -251,6 +317,7 @@ impl Improver {
     /// radius ratio there.
     pub(super) fn best_in_room(&mut self, p: Point3, faces: &[[u32; 3]]) -> (Point3, f64) {
         self.energy.faces.clear();
+        self.energy.aim = Aim::Worst;
         self.energy.faces.extend(faces.iter().map(|f| f.map(|w| self.c.points[w as usize])));
         let before = self.energy.worst(&p, f64::NEG_INFINITY);
         search(&self.energy, p, before)
@@ -281,11 +348,11 @@ fn solve_symmetric([xx, xy, xz, yy, yz, zz]: [f64; 6], b: Vec3) -> Option<Vec3> 
     (determinant > 0.0 && x.iter().all(|c| c.is_finite())).then_some(x)
 }
 
-/// Searches for a place with a better worst radius ratio: along the axes and away from and towards the worst face,
+/// Searches for a better place: along the axes and away from and towards the worst face,
 /// with a step that halves when nothing is found.
 fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
     let reach = star.faces.iter().map(|f| (f[0] - start).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
-    let (mut best, mut worst) = (start, before);
+    let (mut best, mut value) = (start, before);
     let mut step = 0.25 * reach;
     let mut last = None;
     for _ in 0..SEARCH_ROUNDS {
@@ -296,9 +363,9 @@ fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
         last = None;
         for d in tries {
             let p = from + d;
-            let w = star.worst(&p, worst);
-            if w > worst {
-                (best, worst, last) = (p, w, Some(d));
+            let w = star.value(&p, value);
+            if w > value {
+                (best, value, last) = (p, w, Some(d));
                 break;
             }
         }
@@ -306,7 +373,7 @@ fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
             step *= 0.5;
         }
     }
-    (best, worst)
+    (best, value)
 }
 
 /// Unit direction in which the worst tetrahedron of the star grows its height: away from its face.

@@ -7,6 +7,8 @@ use super::Improver;
 const ROUNDS: usize = 8;
 /// Sizes of the cavities that are reconnected, and steps of the search in each.
 const CAVITIES: [(usize, usize); 3] = [(6, 100), (12, 300), (20, 600)];
+/// What moving must gain to count.
+const GAIN: f64 = 1.1;
 /// A round that mends fewer than one in so many is the last.
 const WORTHWHILE: usize = 100;
 
@@ -54,7 +56,7 @@ impl Improver {
         let mended = if self.flip_tet(t) || CAVITIES.iter().any(|&(size, nodes)| self.reconnect(t, size, nodes)) {
             self.report.flips += 1;
             true
-        } else if self.lift_corners(t) {
+        } else if self.ease_corners(t) {
             true
         } else if !self.options.keep_points && self.contract_corner(t) {
             self.report.contracted += 1;
@@ -66,5 +68,16 @@ impl Improver {
             false
         };
         mended
+    }
+
+    /// Moves the vertices of `t`.
+    fn ease_corners(&mut self, t: u32) -> bool {
+        let before = self.quality[t as usize];
+        for v in self.c.verts(t) {
+            if self.movable[v as usize] && self.ease_vertex(v) {
+                self.report.moved += 1;
+            }
+        }
+        self.quality[t as usize] > before * GAIN
     }
 }
