@@ -71,7 +71,7 @@ impl Default for OptimizeOptions {
 impl OptimizeOptions {
     /// For a mesh that is to be as good as its surface allows.
     pub fn full() -> Self {
-        Self { smooth_below: 0.9, stubborn_below: 0.45, effort: Effort::Full, ..Self::default() }
+        Self { smooth_below: 0.9, stubborn_below: 0.35, effort: Effort::Full, ..Self::default() }
     }
 }
 

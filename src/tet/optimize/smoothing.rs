@@ -134,6 +134,15 @@ impl StarEnergy {
         (energy, solve_symmetric(hessian, -gradient))
     }
 
+    /// Whether no radius ratio is below `least` at displacement `x`, where the vertex is at `p`. The energy e of a
+    /// tetrahedron bounds its radius ratio from below by 1 / e (Liu, Joe, 'Relationship between tetrahedron shape
+    /// measures', 1994), so most need no second look.
+    fn keeps_above(&self, x: &Vec3, p: &Point3, least: f64) -> bool {
+        self.cells.iter().zip(&self.faces).all(|(cell, [a, b, c])| {
+            cell.energy(x) * least <= 1.0 || radius_ratio(p, a, b, c) >= least
+        })
+    }
+
     fn stays_positive(&self, p: &Point3) -> bool {
         self.faces.iter().all(|[a, b, c]| orient3d(p, a, b, c) > 0.0)
     }
@@ -239,7 +248,8 @@ impl Improver {
             }
         }
         let target = start + x;
-        if energy < before * (1.0 - SETTLED) && star.stays_positive(&target) {
+        let lower = energy < before * (1.0 - SETTLED);
+        if lower && star.keeps_above(&x, &target, self.report.worst_before) && star.stays_positive(&target) {
             self.c.points[v as usize] = target;
             for &t in &star.tets {
                 self.quality[t as usize] = STALE;
@@ -388,4 +398,22 @@ fn steepest(star: &StarEnergy, p: &Point3) -> Option<Vec3> {
     let [a, b, c] = star.faces.get(worst.1)?;
     // (p, a, b, c) positive: p lies on the side to which the normal of a, c, b points.
     (c - a).cross(&(b - a)).try_normalize(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_energy_bounds_the_radius_ratio(x in prop::array::uniform12(-1.0..1.0_f64)) {
+            let p: [Point3; 4] = std::array::from_fn(|i| Point3::new(x[3 * i], x[3 * i + 1], x[3 * i + 2]));
+            let ratio = radius_ratio(&p[0], &p[1], &p[2], &p[3]);
+            prop_assume!(ratio.abs() > 1e-9);
+            let face = if ratio > 0.0 { [p[1], p[2], p[3]] } else { [p[1], p[3], p[2]] };
+            let energy = Cell::new(&p[0], &face).energy(&Vec3::zeros());
+            prop_assert!(ratio.abs() * energy >= 1.0 - 1e-9, "{ratio} {energy}");
+        }
+    }
 }
