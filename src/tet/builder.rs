@@ -5,7 +5,7 @@ use super::complex::Complex;
 use super::contacts;
 use super::error::TetError;
 use super::fill::{Request, fill};
-use super::optimize::OptimizeReport;
+use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
 use super::plc::{InputKind, Plc};
 use super::progress::{Cancel, OnProgress, Progress, Stage, Watch};
@@ -27,6 +27,7 @@ pub struct Tetrahedralizer {
     sizing: Sizing,
     boundary: Boundary,
     optimize: bool,
+    effort: Effort,
     on_progress: Option<Arc<OnProgress>>,
     cancel: Option<Arc<Cancel>>,
 }
@@ -74,6 +75,7 @@ impl Default for Tetrahedralizer {
             sizing: Sizing::default(),
             boundary: Boundary::default(),
             optimize,
+            effort: Effort::Full,
             on_progress: None,
             cancel: None,
         }
@@ -129,6 +131,13 @@ impl Tetrahedralizer {
         self
     }
 
+    /// How hard the improvement tries; all it can unless told otherwise.
+    #[must_use]
+    pub fn effort(mut self, effort: Effort) -> Self {
+        self.effort = effort;
+        self
+    }
+
     /// What is told about the progress, on the thread that does the work.
     #[must_use]
     pub fn on_progress(mut self, tell: impl Fn(Progress) + Send + Sync + 'static) -> Self {
@@ -172,6 +181,7 @@ impl Tetrahedralizer {
             boundary: self.boundary,
             optimize: self.optimize,
             certify: true,
+            effort: self.effort,
             label: true,
             watch: &watch,
         })?;
@@ -247,6 +257,7 @@ impl std::fmt::Debug for Tetrahedralizer {
             .field("sizing", &self.sizing)
             .field("boundary", &self.boundary)
             .field("optimize", &self.optimize)
+            .field("effort", &self.effort)
             .field("watch", &self.watch())
             .finish()
     }

@@ -4,7 +4,7 @@ use super::certify::{Place, certify_facets, certify_segments};
 use super::complex::Complex;
 use super::error::TetError;
 use super::input::SurfaceEdges;
-use super::optimize::{OptimizeOptions, OptimizeReport, optimize_complex};
+use super::optimize::{Effort, OptimizeOptions, OptimizeReport, optimize_complex};
 use super::options::{Boundary, Interior, Refinement, Sizing};
 use super::plc::{InputKind, Region};
 use super::progress::{Stage, Watch};
@@ -39,6 +39,7 @@ pub(super) struct Request<'a> {
     pub optimize: bool,
     /// Whether the mesh is proved to fill the surface.
     pub certify: bool,
+    pub effort: Effort,
     /// Whether tetrahedra are told apart by regions.
     pub label: bool,
     pub watch: &'a Watch<'a>,
@@ -100,7 +101,7 @@ fn supported(r: &Request) -> Result<(), TetError> {
 fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError> {
     r.watch.report(Stage::Optimize, 0, 1)?;
     let held = carve::hold_segments(carved, r.segments);
-    let options = OptimizeOptions { fixed_points: r.surface.points.len(), ..Default::default() };
+    let options = OptimizeOptions { fixed_points: r.surface.points.len(), ..OptimizeOptions::of(r.effort) };
     let report = optimize_complex(carved, &options);
     carve::release_segments(carved, &held);
     r.watch.report(Stage::Optimize, 1, 1)?;

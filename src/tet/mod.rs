@@ -94,6 +94,7 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
         boundary: Boundary::Keep,
         optimize: options.optimize,
         certify: options.certify,
+        effort: options.effort,
         label: false,
         watch: &Watch::NOBODY,
     })?;

@@ -1,5 +1,6 @@
 //! What can be asked for.
 
+use super::optimize::Effort;
 use crate::geometry::Point3;
 use std::sync::Arc;
 
@@ -108,11 +109,18 @@ pub struct TetOptions {
     pub optimize: bool,
     /// Whether the mesh is proved to fill the surface. Only for callers who check what they make of it.
     pub certify: bool,
+    /// How hard the improvement tries.
+    pub effort: Effort,
 }
 
 impl Default for TetOptions {
     fn default() -> Self {
-        Self { interior: Interior::Lattice { cell: None, clearance: None }, optimize: true, certify: true }
+        Self {
+            interior: Interior::Lattice { cell: None, clearance: None },
+            optimize: true,
+            certify: true,
+            effort: Effort::Fast,
+        }
     }
 }
 
@@ -121,6 +129,13 @@ impl TetOptions {
     #[must_use]
     pub fn interior(mut self, interior: Interior) -> Self {
         self.interior = interior;
+        self
+    }
+
+    /// With another effort of improvement.
+    #[must_use]
+    pub fn effort(mut self, effort: Effort) -> Self {
+        self.effort = effort;
         self
     }
 

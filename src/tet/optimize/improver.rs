@@ -81,7 +81,7 @@ impl Improver {
             Effort::Full => self.treat_thoroughly(),
         }
         self.smooth_stars_below(self.options.smooth_below);
-        self.lift_worst(self.options.flip_below);
+        self.ease_worst(self.options.flip_below);
         let worst = self.c.real_tets().map(|t| self.quality[t as usize]).fold(f64::INFINITY, f64::min);
         self.report.worst_after = worst;
         self.report.budget_spent = self.budget == 0;

@@ -69,6 +69,14 @@ impl Default for OptimizeOptions {
 }
 
 impl OptimizeOptions {
+    /// What an effort comes to.
+    pub fn of(effort: Effort) -> Self {
+        match effort {
+            Effort::Fast => Self::default(),
+            Effort::Full => Self::full(),
+        }
+    }
+
     /// For a mesh that is to be as good as its surface allows.
     pub fn full() -> Self {
         Self { smooth_below: 0.9, stubborn_below: 0.35, effort: Effort::Full, ..Self::default() }

@@ -267,8 +267,8 @@ impl Improver {
         false
     }
 
-    /// For tetrahedra below a radius ratio, the worst first: moves their vertices to lift the worst of the star.
-    pub(super) fn lift_worst(&mut self, below: f64) -> usize {
+    /// For tetrahedra below a radius ratio, the worst first: moves their vertices to ease the star.
+    pub(super) fn ease_worst(&mut self, below: f64) -> usize {
         let list = self.worst_first(below);
         let mut lifted = 0;
         for &(q, t) in &list {
@@ -276,8 +276,7 @@ impl Improver {
                 continue;
             }
             for v in self.c.verts(t) {
-                let ease = self.options.effort == Effort::Full;
-                if self.movable[v as usize] && self.spend() && self.seek(v, ease) {
+                if self.movable[v as usize] && self.spend() && self.ease_vertex(v) {
                     lifted += 1;
                 }
             }

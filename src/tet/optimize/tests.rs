@@ -50,8 +50,12 @@ fn sorted_boundary(mesh: &TetMesh) -> Vec<[u32; 3]> {
 }
 
 fn improve_and_check(mesh: &TetMesh, fixed: usize) -> (TetMesh, OptimizeReport) {
+    improve_with(mesh, fixed, Effort::Fast)
+}
+
+fn improve_with(mesh: &TetMesh, fixed: usize, effort: Effort) -> (TetMesh, OptimizeReport) {
     let mut improved = mesh.clone();
-    let options = OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::default() };
+    let options = OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::of(effort) };
     let report = optimize(&mut improved, &options).unwrap();
     // Positive, conforming: or else it is not a complex.
     Complex::from_mesh(improved.points.clone(), &improved.tets).unwrap().sanity_check().unwrap();
@@ -69,7 +73,8 @@ proptest! {
     fn the_surface_stays_nothing_inverts_the_worst_rises(size in 0.0..0.3_f64, seed in any::<u64>(), tube in any::<bool>()) {
         let mesh = if tube { tube_lattice(3, 6, 0.3) } else { cube_lattice(4) };
         let (mesh, fixed) = shaken(mesh, size, seed);
-        improve_and_check(&mesh, fixed);
+        improve_with(&mesh, fixed, Effort::Fast);
+        improve_with(&mesh, fixed, Effort::Full);
     }
 }
 
@@ -84,9 +89,48 @@ fn a_shaken_tube_becomes_good() {
 }
 
 #[test]
+fn full_effort_does_better() {
+    let (mesh, fixed) = shaken(tube_lattice(4, 10, 0.25), 0.25, 7);
+    let [fast, full] = [Effort::Fast, Effort::Full].map(|e| TetQuality::of(&improve_with(&mesh, fixed, e).0));
+    assert!(full.mean > fast.mean && full.percentile_1 > fast.percentile_1, "{fast:?} {full:?}");
+    assert!(full.mean > 0.77 && full.min > 0.3, "{full:?}");
+}
+
+#[test]
+fn a_cavity_is_reconnected() {
+    // Six tetrahedra around an edge that is far too short for its ring, and two of them cut by a face flip: neither
+    // edge removal nor a face flip alone undoes that.
+    let mut points = vec![[0.0, 0.0, -0.1], [0.0, 0.0, 0.1], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
+    for i in 0..4 {
+        let (sin, cos) = (std::f64::consts::FRAC_PI_2 * f64::from(i)).sin_cos();
+        points.push([cos, sin, 0.0]);
+    }
+    let mut tets = Vec::new();
+    for i in 0..4 {
+        let (p, q) = (4 + i, 4 + (i + 1) % 4);
+        tets.extend([[0, 1, p, q], [2, 0, p, q], [1, 3, p, q]]);
+    }
+    let points: Vec<_> = points.into_iter().map(crate::geometry::Point3::from).collect();
+    let c = Complex::from_mesh(points, &tets).unwrap();
+    let mut improver = Improver::new(c, &OptimizeOptions { fixed_points: 8, ..OptimizeOptions::full() });
+    assert!(!improver.movable.iter().any(|&m| m));
+    // The inner vertices may be left out.
+    improver.movable[0] = true;
+    improver.movable[1] = true;
+    let before = improver.report.worst_before;
+    assert!(improver.reconnect(0, 12, 1000));
+    let (c, _) = improver.finish();
+    c.sanity_check().unwrap();
+    let after = TetQuality::of(&c.into_mesh());
+    assert!(after.min > 2.0 * before, "{before} {after:?}");
+}
+
+#[test]
 fn the_same_mesh_gives_the_same_mesh() {
     let (mesh, fixed) = shaken(cube_lattice(4), 0.2, 11);
     assert_eq!(improve_and_check(&mesh, fixed).0, improve_and_check(&mesh, fixed).0);
+    let full = || improve_with(&mesh, fixed, Effort::Full).0;
+    assert_eq!(full(), full());
 }
 
 #[test]
