@@ -56,8 +56,8 @@ mod options;
 mod plc;
 mod progress;
 mod recover;
-mod regions;
 pub mod refine;
+mod regions;
 pub mod star;
 
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};

@@ -138,9 +138,10 @@ impl StarEnergy {
     /// tetrahedron bounds its radius ratio from below by 1 / e (Liu, Joe, 'Relationship between tetrahedron shape
     /// measures', 1994), so most need no second look.
     fn keeps_above(&self, x: &Vec3, p: &Point3, least: f64) -> bool {
-        self.cells.iter().zip(&self.faces).all(|(cell, [a, b, c])| {
-            cell.energy(x) * least <= 1.0 || radius_ratio(p, a, b, c) >= least
-        })
+        self.cells
+            .iter()
+            .zip(&self.faces)
+            .all(|(cell, [a, b, c])| cell.energy(x) * least <= 1.0 || radius_ratio(p, a, b, c) >= least)
     }
 
     fn stays_positive(&self, p: &Point3) -> bool {

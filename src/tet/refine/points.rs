@@ -51,7 +51,9 @@ fn place(tree: &SizeTree, key: u64, side: f64) -> Point3 {
     let part = |shift: u32| ((key >> shift) & 0x1f_ffff) as f64;
     let h = hash(key);
     let coin = |shift: u32| ((h >> shift) & 0x1f_ffff) as f64 / f64::from(0x10_0000) - 1.0;
-    tree.origin + Vec3::new(part(0), part(21), part(42)) * half + Vec3::new(coin(0), coin(21), coin(42)) * (JITTER * side)
+    tree.origin
+        + Vec3::new(part(0), part(21), part(42)) * half
+        + Vec3::new(coin(0), coin(21), coin(42)) * (JITTER * side)
 }
 
 /// The corners and centres of all leaves in or near the surface, sorted, several times where several leaves meet.
