@@ -21,8 +21,11 @@ const CELL: f64 = 1.5;
 /// Distance of the lattice from the wall in mean edge lengths of the surface.
 const CLEARANCE: f64 = 0.55;
 
-/// Times that recovery is tried.
-const ATTEMPTS: u32 = 8;
+/// Times that recovery is tried before the last tier.
+const ATTEMPTS: u32 = 2;
+
+/// Another lattice is worth a try where so few edges and triangles are lost.
+const FEW: usize = 64;
 
 /// A checked input and what is wanted of it.
 pub(super) struct Request<'a> {
@@ -133,7 +136,7 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
         match recover::recover(&mut complex, surface, r.edges, attempt, r.watch) {
             Ok(summary) => return Ok((complex, summary)),
             Err(TetError::NotRecovered { edges, triangles })
-                if attempt + 1 < ATTEMPTS && edges.len() + triangles.len() <= recover::FEW => {}
+                if attempt + 1 < ATTEMPTS && edges.len() + triangles.len() <= FEW => {}
             Err(TetError::Cancelled) => return Err(TetError::Cancelled),
             Err(error) => return Err(diagnosis(r, error)),
         }

@@ -16,7 +16,7 @@ use super::progress::{Stage, Watch};
 use super::star::{EdgeRing, Star};
 use crate::mesh::TriMesh;
 use cavity::Cavity;
-use march::{Crossing, first_crossing, piercing_edge};
+use march::{Crossing, crossings, first_crossing, piercing_edge, piercing_edges};
 
 /// Depth to which a flip that is blocked may clear its way by others.
 const DEPTH: u32 = 3;
@@ -24,8 +24,14 @@ const DEPTH: u32 = 3;
 /// Flips tried for one edge or triangle before it is given up for the round.
 const BUDGET: u32 = 400;
 
-/// Rounds of Steiner points.
-const ROUNDS: u32 = 24;
+/// Rounds of Steiner points at most.
+const ROUNDS: u32 = 8;
+
+/// A round that leaves more than this part of what was lost before it is the last one: the next tier does it better.
+const WORTHWHILE: f64 = 0.75;
+
+/// So few lost edges and triangles are worth another round or two.
+const FEW: usize = 8;
 
 /// What recovery did.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,12 +43,6 @@ pub struct RecoverySummary {
     /// Steiner points added, on either side of the surface.
     pub steiner_points: usize,
 }
-
-/// After so many rounds in a row that do not reduce what is lost, recovery ends, unless little is lost.
-const PATIENCE: u32 = 3;
-
-/// Lost edges and triangles for which all rounds are worth their time.
-pub(super) const FEW: usize = 64;
 
 /// Recovers all of the surface in `c`, whose first vertices are the surface's points; freezes its faces. Other attempts
 /// choose otherwise where there is a choice.
@@ -61,6 +61,8 @@ pub(super) fn recover(
         flipper: Flipper::default(),
         ring: EdgeRing::default(),
         cavity: Cavity::default(),
+        way: Vec::new(),
+        piercers: Vec::new(),
         budget: 0,
         round: 0,
         attempt,
@@ -70,7 +72,7 @@ pub(super) fn recover(
     let (mut lost_edges, mut lost_faces) = r.survey();
     summary.missing_edges = lost_edges.len();
     summary.missing_triangles = lost_faces.len();
-    let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
+    let mut before = usize::MAX;
     for round in 0..=ROUNDS {
         r.round = round;
         let total = summary.missing_edges + summary.missing_triangles;
@@ -85,9 +87,9 @@ pub(super) fn recover(
         if lost == 0 {
             return Ok(summary);
         }
-        patience = if lost < fewest || lost <= FEW { PATIENCE } else { patience - 1 };
-        fewest = fewest.min(lost);
-        if patience == 0 {
+        let worthwhile = (lost as f64) < WORTHWHILE * before as f64 || (lost <= FEW && round < ROUNDS / 2);
+        before = lost;
+        if !worthwhile {
             break;
         }
         if round < ROUNDS {
@@ -105,6 +107,8 @@ struct Recovery<'a> {
     flipper: Flipper,
     ring: EdgeRing,
     cavity: Cavity,
+    way: Vec<Crossing>,
+    piercers: Vec<(u32, u32, u32)>,
     budget: u32,
     round: u32,
     attempt: u32,
@@ -173,32 +177,44 @@ impl Recovery<'_> {
         (lost_edges, lost_faces)
     }
 
-    /// Flips away what crosses an edge, from either end.
+    /// Flips away what crosses an edge: the first crossing that gives way, from one end and then from the other.
     fn recover_edge(&mut self, [a, b]: [u32; 2]) -> bool {
         self.budget = BUDGET;
+        let mut way = std::mem::take(&mut self.way);
         let (mut from, mut to) = (a, b);
-        let mut stuck = 0;
-        while self.budget > 0 && stuck < 2 {
-            self.budget -= 1;
-            let crossing = first_crossing(self.c, &mut self.star, from, to);
-            if let Some(obstacle) = self.obstacle(crossing) {
+        let mut tried = 0;
+        let done = loop {
+            crossings(self.c, &mut self.star, &mut self.ring, from, to, &mut way);
+            if way.first() == Some(&Crossing::Exists) {
+                break true;
+            }
+            if let Some(obstacle) = way.iter().find_map(|&x| self.obstacle(x)) {
                 self.met = Some(TetError::EdgeMeets { edge: [a, b], obstacle });
-                return false;
+                break false;
             }
-            let progress = match crossing {
-                Crossing::Exists => return true,
-                Crossing::Face(half) => self.clear_face(half, DEPTH),
-                Crossing::Edge(t, p, q) => self.clear_edge(t, p, q, DEPTH),
-                Crossing::Vertex(_) | Crossing::Nothing => false,
-            };
-            if progress {
-                stuck = 0;
-            } else {
-                stuck += 1;
+            if self.budget == 0 || tried >= way.len() {
+                break false;
+            }
+            self.budget -= 1;
+            // What fails may have flipped something on its way: the crossings are listed anew in any case.
+            if self.clear(way[tried]) {
+                tried = 0;
                 std::mem::swap(&mut from, &mut to);
+            } else {
+                tried += 1;
             }
+        };
+        self.way = way;
+        done
+    }
+
+    /// Flips a crossing away; false when it is stuck.
+    fn clear(&mut self, crossing: Crossing) -> bool {
+        match crossing {
+            Crossing::Face(half) => self.clear_face(half, DEPTH),
+            Crossing::Edge(t, p, q) => self.clear_edge(t, p, q, DEPTH),
+            Crossing::Exists | Crossing::Vertex(_) | Crossing::Nothing => false,
         }
-        matches!(first_crossing(self.c, &mut self.star, a, b), Crossing::Exists)
     }
 
     /// The part of the surface that is crossed: then the surface meets itself, and no flip can help.
@@ -215,39 +231,30 @@ impl Recovery<'_> {
     fn recover_face(&mut self, triangle: u32) -> bool {
         let tri = self.surface.triangles[triangle as usize];
         self.budget = BUDGET;
-        let mut k = 0;
         if (0..3).any(|i| self.star.find_edge(self.c, tri[i], tri[(i + 1) % 3]).is_none()) {
             return false;
         }
-        let mut stuck = 0;
-        while self.budget > 0 && stuck < 3 {
-            self.budget -= 1;
+        let mut piercers = std::mem::take(&mut self.piercers);
+        let mut tried = 0;
+        let done = loop {
             if let Some(half) = self.star.find_face(self.c, tri) {
                 self.c.freeze(half);
-                return true;
+                break true;
             }
-            let side = [tri[k % 3], tri[(k + 1) % 3], tri[(k + 2) % 3]];
-            let pierced = piercing_edge(self.c, &mut self.star, &mut self.ring, side);
-            if let Some((_, p, q)) = pierced
-                && self.edges.contains(p, q)
-            {
+            piercing_edges(self.c, &mut self.star, &mut self.ring, tri, &mut piercers);
+            if let Some(&(_, p, q)) = piercers.iter().find(|&&(_, p, q)| self.edges.contains(p, q)) {
                 self.met = Some(TetError::EdgeMeets { edge: [p, q], obstacle: Obstacle::Triangle(tri) });
-                return false;
+                break false;
             }
-            if pierced.is_some_and(|(t, p, q)| self.clear_edge(t, p, q, DEPTH)) {
-                stuck = 0;
-            } else {
-                stuck += 1;
-                k += 1;
+            let Some(&(t, p, q)) = piercers.get(tried) else { break false };
+            if self.budget == 0 {
+                break false;
             }
-        }
-        match self.star.find_face(self.c, tri) {
-            Some(half) => {
-                self.c.freeze(half);
-                true
-            }
-            None => false,
-        }
+            self.budget -= 1;
+            tried = if self.clear_edge(t, p, q, DEPTH) { 0 } else { tried + 1 };
+        };
+        self.piercers = piercers;
+        done
     }
 }
 
