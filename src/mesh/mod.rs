@@ -4,6 +4,7 @@ pub mod adjacency;
 pub mod check;
 pub mod facets;
 pub mod quality;
+pub mod repair;
 #[cfg(test)]
 pub(crate) mod shapes;
 pub mod smooth;

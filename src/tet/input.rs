@@ -42,7 +42,7 @@ impl SurfaceEdges {
     /// Whether the surface has edge `a, b`.
     pub fn contains(&self, a: u32, b: u32) -> bool {
         let (a, b) = (a.min(b), a.max(b));
-        self.range(a).is_some_and(|r| self.edges[r].iter().any(|e| e[1] == b))
+        self.range(a).is_some_and(|r| self.edges[r].binary_search_by_key(&b, |e| e[1]).is_ok())
     }
 }
 

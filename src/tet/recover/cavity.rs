@@ -9,7 +9,7 @@ use crate::tet::delaunay::hash;
 use crate::tet::input::SurfaceEdges;
 
 /// Largest cavity.
-const MAX_CAVITY: usize = 256;
+const MAX_CAVITY: usize = 64;
 
 /// Digs cavities for single points; keeps its buffers.
 #[derive(Clone, Debug, Default)]

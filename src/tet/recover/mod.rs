@@ -16,7 +16,7 @@ use super::progress::{Stage, Watch};
 use super::star::{EdgeRing, Star};
 use crate::mesh::TriMesh;
 use cavity::Cavity;
-use march::{Crossing, crossings, first_crossing, piercing_edge, piercing_edges};
+use march::{Crossing, crossings, piercing_edges};
 
 /// Depth to which a flip that is blocked may clear its way by others.
 const DEPTH: u32 = 3;
@@ -29,6 +29,12 @@ const ROUNDS: u32 = 8;
 
 /// A round that leaves more than this part of what was lost before it is the last one: the next tier does it better.
 const WORTHWHILE: f64 = 0.75;
+
+/// Where flips alone leave more than this part of what is missing, and more than [`MANY`], Steiner points do not help.
+const HOPELESS: f64 = 0.2;
+
+/// See [`HOPELESS`].
+const MANY: usize = 100;
 
 /// So few lost edges and triangles are worth another round or two.
 const FEW: usize = 8;
@@ -89,7 +95,8 @@ pub(super) fn recover(
         }
         let worthwhile = (lost as f64) < WORTHWHILE * before as f64 || (lost <= FEW && round < ROUNDS / 2);
         before = lost;
-        if !worthwhile {
+        let hopeless = round == 0 && lost > MANY && lost as f64 > HOPELESS * total as f64;
+        if hopeless || !worthwhile {
             break;
         }
         if round < ROUNDS {
