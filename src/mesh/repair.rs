@@ -395,7 +395,13 @@ mod tests {
         let triangles = vec![[0, 2, 1], [1, 2, 3], [0, 3, 2], [0, 4, 3], [4, 1, 3], [0, 1, 4]];
         let r = repair(&TriMesh { points, triangles });
         assert_eq!((r.report.flat_triangles, r.surface.triangles.len()), (1, 6));
-        let none = |t: &[u32; 3]| !collinear(&r.surface.points[t[0] as usize], &r.surface.points[t[1] as usize], &r.surface.points[t[2] as usize]);
+        let none = |t: &[u32; 3]| {
+            !collinear(
+                &r.surface.points[t[0] as usize],
+                &r.surface.points[t[1] as usize],
+                &r.surface.points[t[2] as usize],
+            )
+        };
         assert!(r.surface.triangles.iter().all(none));
         let edges = tri_adjacency(&r.surface.triangles, r.surface.points.len());
         assert!(edges.neighbors.iter().flatten().all(|&n| n != NONE));
