@@ -18,3 +18,8 @@ pub mod skeleton;
 pub mod stitch;
 pub mod surface;
 pub mod tet;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -402,7 +402,7 @@ fn verbs_help_and_version() {
         assert_code(&shown, FINE);
         assert!(shown.stderr.is_empty() && stdout(&shown).contains("anastomesh"));
     }
-    for verb in ["mesh", "check", "info"] {
+    for verb in ["mesh", "tetrahedralize", "check", "info"] {
         let shown = run(verb, &[], &["--help"]);
         assert_code(&shown, FINE);
         assert!(stdout(&shown).contains("--json"));

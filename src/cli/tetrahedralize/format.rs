@@ -101,7 +101,7 @@ pub enum Target {
 
 impl Target {
     /// The target that was typed, where something can be written.
-    pub fn of(path: &Path, named: Option<StreamFormat>, input: &Path) -> Result<Self, Failure> {
+    pub fn of(path: &Path, named: Option<StreamFormat>) -> Result<Self, Failure> {
         if is_stream(path) {
             return match named {
                 Some(StreamFormat::Vtu) => Ok(Self::Stream(MeshFormat::Vtu)),
@@ -115,16 +115,20 @@ impl Target {
             ensure_writable(path).map_err(failed)?;
             return Ok(Self::File(path.to_path_buf()));
         }
-        for written in MeshFamily::paths(path) {
-            if [input.to_path_buf(), input.with_extension("node")].contains(&written) && written.exists() {
-                return Err(Failure::usage(format!(
-                    "{} belongs to the input and would be replaced: name another output, such as {}",
-                    written.display(),
-                    path.with_extension("1.ele").display()
-                )));
-            }
-            ensure_writable(&path.with_extension("ele")).map_err(failed)?;
-        }
+        ensure_writable(&path.with_extension("ele")).map_err(failed)?;
         Ok(Self::Family(path.to_path_buf()))
+    }
+
+    /// Makes sure that none of the files of the input is replaced.
+    pub fn ensure_apart(&self, input: &[PathBuf]) -> Result<(), Failure> {
+        let Self::Family(base) = self else { return Ok(()) };
+        match MeshFamily::paths(base).iter().find(|written| input.contains(written)) {
+            Some(written) => Err(Failure::usage(format!(
+                "{} belongs to the input and would be replaced: name another output, such as {}",
+                written.display(),
+                base.with_extension("1.ele").display()
+            ))),
+            None => Ok(()),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The input: read, facets cut into triangles, repaired where asked for.
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::format::{InputFormat, is_stream};
 use super::plan::TetPlan;
@@ -16,6 +16,8 @@ use rustc_hash::FxHashMap;
 /// What was read.
 #[derive(Clone, Debug, Default)]
 pub struct Input {
+    /// The files that were read.
+    pub files: Vec<PathBuf>,
     /// Points, triangles and the like; points alone when there are neither triangles nor segments.
     pub plc: Plc,
     /// Whether the input is a list of points without facets.
@@ -40,12 +42,19 @@ impl Input {
     /// Reads a file or standard input.
     pub fn read(path: &Path, format: InputFormat, plan: &TetPlan) -> Result<Self, Failure> {
         let from = if is_stream(path) { "standard input".into() } else { path.display().to_string() };
-        let input = if is_stream(path) { Self::of_stream(format)? } else { Self::of_file(path, format)? };
-        match input {
-            Source::Surface(plc) => Ok(Self { plc, ..Self::default() }),
-            Source::Points(nodes) => Ok(Self::of_points(nodes)),
-            Source::Complex(plc) => Self::of_complex(plc, plan).map_err(|e| Failure::input(format!("{from}: {e}"))),
-        }
+        let source = if is_stream(path) { Self::of_stream(format)? } else { Self::of_file(path, format)? };
+        let mut files = vec![path.to_path_buf()];
+        let input = match source {
+            Source::Surface(plc) => Self { plc, ..Self::default() },
+            Source::Points(nodes) => Self::of_points(nodes),
+            Source::Complex(plc) => {
+                if plc.points_beside {
+                    files.push(path.with_extension("node"));
+                }
+                Self::of_complex(plc, plan).map_err(|e| Failure::input(format!("{from}: {e}")))?
+            }
+        };
+        Ok(Self { files, ..input })
     }
 
     /// Orients the triangles and joins what is there twice; says what it did.

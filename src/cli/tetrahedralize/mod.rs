@@ -92,7 +92,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let format = InputFormat::of(&args.input, args.from)?;
     let (plan, notes) = TetPlan::resolve(args, format)?;
     let target = match &args.output {
-        Some(path) if !plan.check_only => Some(Target::of(path, args.to, &args.input)?),
+        Some(path) if !plan.check_only => Some(Target::of(path, args.to)?),
         _ => None,
     };
     plan::ensure_fits(&plan, args, target.as_ref())?;
@@ -102,6 +102,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = super::thread_pool(args.threads)?;
     let watch = Arc::new(Watch::new(plan.quiet));
     let mut input = watch.time("read", || Input::read(&args.input, format, &plan))?;
+    target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
     let mut report = TetReport { input: size_of(&input), ..TetReport::default() };
     if plan.repair {
         report.repaired = watch.time("repair", || input.repair());

@@ -11,7 +11,7 @@ mod write;
 
 pub use node::Nodes;
 pub use poly::{Facet, Plc, PlcFormat, Region};
-pub use read::read_mesh;
+pub use read::{read_mesh, read_mesh_from};
 pub use write::{Extent, MeshFamily};
 
 use super::file_error::{FileError, extension, read_bytes};
@@ -142,8 +142,10 @@ pub fn read_plc_as(path: &Path, format: PlcFormat) -> Result<Plc, TetgenFileErro
     let bytes = read_bytes(path)?;
     let mut words = Words::new(&bytes, true);
     let mut nodes = node::parse(&mut words).map_err(content)?;
-    if nodes.points.is_empty() {
+    let points_beside = nodes.points.is_empty();
+    if points_beside {
         nodes = read_nodes(&path.with_extension("node"))?;
     }
-    poly::parse(&mut words, nodes, format).map_err(content)
+    let plc = poly::parse(&mut words, nodes, format).map_err(content)?;
+    Ok(Plc { points_beside, ..plc })
 }

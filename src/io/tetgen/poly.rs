@@ -33,6 +33,8 @@ pub struct Plc {
     pub holes: Vec<Point3>,
     /// Parts of the volume with an attribute of their own.
     pub regions: Vec<Region>,
+    /// Whether the points stand in the `.node` file beside it.
+    pub points_beside: bool,
     /// Number of the first point in the file, 0 or 1. Indices here run from 0 in any case.
     pub first: u32,
 }

@@ -22,7 +22,7 @@ pub fn read_mesh(base: &Path) -> Result<VolumeMesh, TetgenFileError> {
     let nodes = read_nodes(&member(base, "node"))?;
     let path = member(base, "ele");
     let bytes = read_bytes(&path)?;
-    let (tets, tet_block) = tets(&bytes, &nodes).map_err(|fault| FileError::Content { path, fault })?;
+    let cells = tets(&bytes, &nodes).map_err(|fault| FileError::Content { path, fault })?;
     let faces = member(base, "face");
     let listed = if faces.exists() {
         let bytes = read_bytes(&faces)?;
@@ -30,13 +30,31 @@ pub fn read_mesh(base: &Path) -> Result<VolumeMesh, TetgenFileError> {
     } else {
         Vec::new()
     };
-    let mut volume = VolumeMesh { mesh: TetMesh { points: nodes.points, tets }, tet_block, ..VolumeMesh::default() };
-    set_boundary(&mut volume, listed);
-    Ok(volume)
+    Ok(assemble(nodes, cells, listed))
 }
 
+/// As [`read_mesh`], from the bytes of the files; no bytes stand for a `.face` file that is not there.
+///
+/// # Errors
+/// What is wrong with one of them.
+pub fn read_mesh_from(node: &[u8], ele: &[u8], face: &[u8]) -> Result<VolumeMesh, TetgenFault> {
+    let nodes = Nodes::parse(node)?;
+    let cells = tets(ele, &nodes)?;
+    let listed = if face.is_empty() { Vec::new() } else { face_list(face, &nodes)? };
+    Ok(assemble(nodes, cells, listed))
+}
+
+fn assemble(nodes: Nodes, (tets, tet_block): Cells, listed: Vec<([u32; 3], i32)>) -> VolumeMesh {
+    let mut volume = VolumeMesh { mesh: TetMesh { points: nodes.points, tets }, tet_block, ..VolumeMesh::default() };
+    set_boundary(&mut volume, listed);
+    volume
+}
+
+/// Tetrahedra and the block of each.
+type Cells = (Vec<[u32; 4]>, Vec<i32>);
+
 /// `<count> <points each> <attributes>`, then `<number> <points> <attributes>`.
-fn tets(bytes: &[u8], nodes: &Nodes) -> Result<(Vec<[u32; 4]>, Vec<i32>), TetgenFault> {
+fn tets(bytes: &[u8], nodes: &Nodes) -> Result<Cells, TetgenFault> {
     let mut words = Words::new(bytes, true);
     // "0 0 0 0 0\n"
     let count = words.count("the count of tetrahedra", 10)?;

@@ -1,0 +1,79 @@
+//! A sphere whose points are moved along their rays and whose edges are flipped, as the bytes say, so that it stays a
+//! valid surface, seen whole from the origin. It is filled, and the mesh has the certificate.
+#![no_main]
+
+use anastomesh::geometry::{Point3, predicates::orient3d};
+use anastomesh::mesh::TriMesh;
+use anastomesh::tet::{Interior, Plc, Tetrahedralizer};
+use libfuzzer_sys::fuzz_target;
+use std::collections::BTreeMap;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Some((&mode, rest)) = bytes.split_first() else { return };
+    let mut surface = sphere(2 + u32::from(mode & 3));
+    let (radii, flips) = rest.split_at(rest.len().min(surface.points.len()));
+    for (p, &b) in surface.points.iter_mut().zip(radii) {
+        // Eighths from 1/8 to 32: rounded coordinates, thin spikes, and many points in common planes.
+        let scale = f64::from(b % 16 + 1) / if b & 128 == 0 { 8.0 } else { 1.0 };
+        *p = Point3::from(p.coords.map(|x| if mode & 16 == 0 { x * scale } else { (x * scale * 8.0).round() / 8.0 }));
+    }
+    if !seen_from_origin(&surface.points, &surface.triangles) {
+        return;
+    }
+    for &flip in flips.iter().take(300) {
+        flip_edge(&mut surface, usize::from(flip));
+    }
+    let interior = if mode & 32 == 0 { Interior::None } else { Interior::Lattice { cell: None, clearance: None } };
+    let made = Tetrahedralizer::new().interior(interior).optimize(mode & 64 != 0).run(&Plc::from(&surface));
+    let made = made.unwrap_or_else(|e| panic!("{e}\n{surface:?}"));
+    assert_eq!(made.faces.len(), surface.triangles.len());
+});
+
+/// Whether each triangle is turned away from the origin: then no two of them overlap but in what they share.
+fn seen_from_origin(points: &[Point3], triangles: &[[u32; 3]]) -> bool {
+    triangles.iter().all(|t| {
+        let [a, b, c] = t.map(|v| &points[v as usize]);
+        orient3d(&Point3::origin(), a, b, c) > 0.0
+    })
+}
+
+/// Replaces two triangles by those over the other diagonal, where that is seen from the origin as well.
+fn flip_edge(surface: &mut TriMesh, choice: usize) {
+    let mut sides: BTreeMap<[u32; 2], (usize, u32)> = BTreeMap::new();
+    for (i, &[a, b, c]) in surface.triangles.iter().enumerate() {
+        sides.extend([([a, b], (i, c)), ([b, c], (i, a)), ([c, a], (i, b))]);
+    }
+    let Some((&[a, b], &(first, c))) = sides.iter().nth(choice % sides.len()) else { return };
+    let Some(&(second, d)) = sides.get(&[b, a]) else { return };
+    let exists = sides.contains_key(&[c, d]) || sides.contains_key(&[d, c]);
+    let new = [[a, d, c], [d, b, c]];
+    if !exists && c != d && seen_from_origin(&surface.points, &new) {
+        (surface.triangles[first], surface.triangles[second]) = (new[0], new[1]);
+    }
+}
+
+/// A sphere of so many rings with twice as many points each.
+fn sphere(rings: u32) -> TriMesh {
+    let around = 2 * rings;
+    let mut mesh = TriMesh::default();
+    let angle = |part: u32, of: u32| std::f64::consts::PI * f64::from(part) / f64::from(of);
+    for ring in 1..rings {
+        let (sin, cos) = angle(ring, rings).sin_cos();
+        for i in 0..around {
+            let (y, x) = angle(2 * i, around).sin_cos();
+            mesh.points.push(Point3::new(sin * x, sin * y, cos));
+        }
+    }
+    let (north, south) = (mesh.points.len() as u32, mesh.points.len() as u32 + 1);
+    mesh.points.extend([Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, -1.0)]);
+    let at = |ring: u32, i: u32| (ring - 1) * around + i % around;
+    for i in 0..around {
+        mesh.triangles.push([north, at(1, i), at(1, i + 1)]);
+        mesh.triangles.push([south, at(rings - 1, i + 1), at(rings - 1, i)]);
+        for ring in 1..rings - 1 {
+            let [a, b, c, d] = [at(ring, i), at(ring + 1, i), at(ring + 1, i + 1), at(ring, i + 1)];
+            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    mesh
+}

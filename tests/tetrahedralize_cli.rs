@@ -1,0 +1,572 @@
+//! `anastomesh tetrahedralize` as it is run: formats, switches, exit codes, messages, files.
+
+use anastomesh::geometry::Point3;
+use anastomesh::io::mesh_file::{MeshFormat, read_mesh, read_mesh_from};
+use anastomesh::io::surface::write_surface;
+use anastomesh::mesh::TriMesh;
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+const FINE: i32 = 0;
+const USAGE: i32 = 2;
+const BAD_INPUT: i32 = 3;
+
+fn command(input: &Path, out: Option<&Path>, options: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_anastomesh"));
+    command.arg("tetrahedralize").arg(input);
+    if let Some(out) = out {
+        command.arg("--output").arg(out);
+    }
+    command.args(options);
+    command
+}
+
+fn fill(input: &Path, out: &Path, options: &[&str]) -> Output {
+    command(input, Some(out), options).output().expect("the program runs")
+}
+
+fn check(mesh: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_anastomesh")).arg("check").arg(mesh).output().expect("the program runs")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("text")
+}
+
+#[track_caller]
+fn assert_code(output: &Output, expected: i32) {
+    let out = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(expected), "{out}\n{}", stderr(output));
+}
+
+/// The report of a run that ends well.
+#[track_caller]
+fn report(input: &Path, out: &Path, options: &[&str]) -> Value {
+    let mut all = vec!["--json"];
+    all.extend(options);
+    let output = fill(input, out, &all);
+    assert_code(&output, FINE);
+    assert!(output.stderr.is_empty(), "{}", stderr(&output));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn entries(folder: &Path) -> Vec<String> {
+    let list = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        list.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort_unstable();
+    names
+}
+
+// ---- Inputs ---------------------------------------------------------------------------------------------------------
+
+/// The quadrilaterals of a box whose corner `i` has x, y, z from the bits of `i`, outwards.
+const SIDES: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+
+fn corners(low: f64, high: f64) -> Vec<Point3> {
+    let end = |bit: usize| if bit == 0 { low } else { high };
+    (0..8).map(|i: usize| Point3::new(end(i & 1), end((i >> 1) & 1), end(i >> 2))).collect()
+}
+
+/// The unit cube.
+fn cube() -> TriMesh {
+    let triangles = SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriMesh { points: corners(0.0, 1.0), triangles }
+}
+
+/// A sphere of so many rings, as a surface with some more triangles.
+fn sphere(rings: u32) -> TriMesh {
+    let around = 2 * rings;
+    let mut mesh = TriMesh::default();
+    let angle = |part: u32, of: u32| std::f64::consts::PI * f64::from(part) / f64::from(of);
+    for ring in 1..rings {
+        let (sin, cos) = angle(ring, rings).sin_cos();
+        for i in 0..around {
+            let (y, x) = angle(2 * i, around).sin_cos();
+            mesh.points.push(Point3::new(sin * x, sin * y, cos));
+        }
+    }
+    let (north, south) = (mesh.points.len() as u32, mesh.points.len() as u32 + 1);
+    mesh.points.extend([Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, -1.0)]);
+    let at = |ring: u32, i: u32| (ring - 1) * around + i % around;
+    for i in 0..around {
+        mesh.triangles.push([north, at(1, i), at(1, i + 1)]);
+        mesh.triangles.push([south, at(rings - 1, i + 1), at(rings - 1, i)]);
+        for ring in 1..rings - 1 {
+            let [a, b, c, d] = [at(ring, i), at(ring + 1, i), at(ring + 1, i + 1), at(ring, i + 1)];
+            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    mesh
+}
+
+fn save(folder: &TempDir, name: &str, mesh: &TriMesh) -> PathBuf {
+    let path = folder.path().join(name);
+    write_surface(&path, mesh).expect("a file");
+    path
+}
+
+fn text(folder: &TempDir, name: &str, content: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, content).expect("a file");
+    path
+}
+
+/// Points as a section of TetGen's files, counted from `first`.
+fn node_list(points: &[Point3], first: usize) -> String {
+    let mut out = format!("{} 3 0 0\n", points.len());
+    for (i, p) in points.iter().enumerate() {
+        let _ = writeln!(out, "{} {} {} {}", i + first, p.x, p.y, p.z);
+    }
+    out
+}
+
+/// The cube with six square facets, as a `.smesh` counted from 1; facet `i` has the marker 10 + i.
+fn cube_smesh() -> String {
+    let mut out = node_list(&cube().points, 1) + "6 1\n";
+    for (i, side) in SIDES.iter().enumerate() {
+        let [a, b, c, d] = side.map(|v| v + 1);
+        let _ = writeln!(out, "4 {a} {b} {c} {d} {}", 10 + i);
+    }
+    out + "0\n0\n"
+}
+
+/// A box of 2 × 1 × 1 with a wall across it, in which there is a window with a mullion; regions on both sides, which the
+/// window joins when it is open.
+fn rooms(window_is_open: bool) -> String {
+    let mut points = Vec::new();
+    for x in [0.0, 1.0, 2.0] {
+        points.extend([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(y, z)| Point3::new(x, y, z)));
+    }
+    points.extend([(0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75)].map(|(y, z)| Point3::new(1.0, y, z)));
+    let mut out = node_list(&points, 0) + "11 1\n";
+    let _ = writeln!(out, "1 0 1\n4 0 3 2 1\n1 0 1\n4 8 9 10 11");
+    for (i, j) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
+        for base in [0, 4] {
+            let _ = writeln!(out, "1 0 2\n4 {} {} {} {}", base + i, base + j, base + j + 4, base + i + 4);
+        }
+    }
+    let hole = if window_is_open { "1 1 0.5 0.4\n" } else { "" };
+    let _ = writeln!(out, "2 {} 3\n4 4 5 6 7\n4 12 13 14 15\n{hole}0", u32::from(window_is_open));
+    out + "2\n0 0.5 0.5 0.5 7 0.01\n1 1.5 0.5 0.5 -9 0.05\n"
+}
+
+// ---- What works -----------------------------------------------------------------------------------------------------
+
+#[test]
+fn every_format_of_surfaces_is_read() {
+    let folder = folder();
+    let mut inputs: Vec<PathBuf> =
+        ["c.off", "c.ply", "c.stl", "c.obj"].iter().map(|name| save(&folder, name, &cube())).collect();
+    inputs.push(text(&folder, "c.smesh", &cube_smesh()));
+    inputs.push(text(
+        &folder,
+        "d.poly",
+        &(node_list(&cube().points, 0)
+            + "6 0\n"
+            + &SIDES.map(|[a, b, c, d]| format!("1\n4 {a} {b} {c} {d}\n")).concat()
+            + "0\n0\n"),
+    ));
+    let third = cube().points.iter().map(|p| p.map(|x| x / 3.0)).collect();
+    inputs.push(save(&folder, "text.stl", &TriMesh { points: third, ..cube() }));
+    for input in &inputs {
+        let out = folder.path().join("out.vtu");
+        for options in [&["--no-refine"][..], &[]] {
+            let report = &report(input, &out, options)["report"];
+            assert_eq!(report["input"]["triangles"], 12, "{}", input.display());
+            let side = if input.ends_with("text.stl") { 1.0 / 3.0_f64 } else { 1.0 };
+            let volume = report["mesh"]["volume"].as_f64().expect("a volume");
+            assert!((volume - side.powi(3)).abs() < 1e-12);
+            assert_eq!(report["mesh"]["faces"], 12);
+            assert_code(&check(&out), FINE);
+        }
+    }
+}
+
+#[test]
+fn every_format_of_meshes_is_written_whole() {
+    let folder = folder();
+    let input = save(&folder, "s.ply", &sphere(6));
+    let mut meshes = Vec::new();
+    for name in ["a.vtu", "a.msh", "a.mesh", "a.1.ele"] {
+        let out = folder.path().join(name);
+        let made = fill(&input, &out, &[]);
+        assert_code(&made, FINE);
+        assert!(made.stdout.is_empty() && stderr(&made).contains("tetrahedra"), "{}", stderr(&made));
+        assert_code(&check(&out), FINE);
+        meshes.push(read_mesh(&out).expect("a mesh").volume);
+    }
+    for mesh in &meshes {
+        assert_eq!(mesh.mesh, meshes[0].mesh);
+        assert_eq!(mesh.boundary.len(), sphere(6).triangles.len());
+        assert!(mesh.boundary_patch.iter().all(|&patch| patch == 1));
+    }
+    let family = ["a.1.edge", "a.1.ele", "a.1.face", "a.1.neigh", "a.1.node"];
+    let mut expected: Vec<&str> = family.into_iter().chain(["a.mesh", "a.msh", "a.vtu", "s.ply"]).collect();
+    expected.sort_unstable();
+    assert_eq!(entries(folder.path()), expected);
+}
+
+#[test]
+fn points_alone_are_filled_up_to_their_hull() {
+    let folder = folder();
+    let mut points = corners(0.0, 1.0);
+    points.extend(corners(0.3, 0.6));
+    let input = text(&folder, "a.node", &node_list(&points, 1));
+    let out = folder.path().join("a.1.ele");
+    let report = &report(&input, &out, &[])["report"];
+    assert!((report["mesh"]["volume"].as_f64().expect("a volume") - 1.0).abs() < 1e-12);
+    assert_eq!((&report["mesh"]["points"], &report["mesh"]["added_points"]), (&16.into(), &0.into()));
+    assert_code(&check(&out), FINE);
+    // Counted as the input, or from 0 on demand.
+    let first_number = || fs::read_to_string(&out).expect("text").lines().nth(1).expect("a row")[..2].to_owned();
+    assert_eq!(first_number(), "1 ");
+    assert_code(&fill(&input, &out, &["--tetgen", "z"]), FINE);
+    assert_eq!(first_number(), "0 ");
+}
+
+#[test]
+fn standard_streams() {
+    let folder = folder();
+    let input = fs::read(save(&folder, "c.off", &cube())).expect("a file");
+    let mut child = command(Path::new("-"), Some(Path::new("-")), &["--from", "off", "--to", "msh", "-q"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    child.stdin.take().expect("a pipe").write_all(&input).expect("written");
+    let output = child.wait_with_output().expect("an end");
+    assert_code(&output, FINE);
+    assert!(output.stderr.is_empty());
+    let mesh = read_mesh_from(&output.stdout, MeshFormat::Msh).expect("a mesh");
+    assert_eq!(mesh.volume.boundary.len(), 12);
+    for options in [&["--to", "msh"][..], &["--from", "off"], &["--from", "off", "--to", "vtu", "--json"]] {
+        assert_code(&fill(Path::new("-"), Path::new("-"), options), USAGE);
+    }
+}
+
+#[test]
+fn facets_regions_and_markers() {
+    let folder = folder();
+    let closed = text(&folder, "closed.poly", &rooms(false));
+    let open = text(&folder, "open.poly", &rooms(true));
+    for name in ["out.msh", "out.ele"] {
+        let out = folder.path().join(name);
+        let made = &report(&closed, &out, &["--no-refine"])["report"];
+        assert_eq!(made["input"]["facets"], 11);
+        let regions = made["regions"].as_array().expect("a list");
+        assert_eq!(regions.iter().map(|r| r["id"].as_i64()).collect::<Vec<_>>(), [Some(-9), Some(7)]);
+        assert!(regions.iter().all(|r| (r["volume"].as_f64().expect("a number") - 1.0).abs() < 1e-12));
+        let mesh = read_mesh(&out).expect("a mesh").volume;
+        let with = |marker: i32| mesh.boundary_patch.iter().filter(|&&patch| patch == marker).count();
+        assert_eq!((with(1), with(2)), (4, 16));
+        // The wall: 8 points in the plane, the window filled.
+        assert_eq!(with(3), 10);
+        if name == "out.ele" {
+            let mut blocks = mesh.tet_block.clone();
+            blocks.sort_unstable();
+            blocks.dedup();
+            assert_eq!(blocks, [-9, 7]);
+        }
+        assert_code(&check(&out), FINE);
+    }
+    let made = fill(&open, &folder.path().join("open.ele"), &["--no-refine"]);
+    // Both seeds are in one region: one id for it cannot be told.
+    assert!(made.status.code() != Some(70), "{}", stderr(&made));
+    let unlabelled = rooms(true).replace("2\n0 0.5 0.5 0.5 7 0.01\n1 1.5 0.5 0.5 -9 0.05\n", "0\n");
+    let open = text(&folder, "open.poly", &unlabelled);
+    let out = folder.path().join("open.ele");
+    let made = &report(&open, &out, &["--no-refine"])["report"];
+    assert!((made["mesh"]["volume"].as_f64().expect("a number") - 2.0).abs() < 1e-12);
+    assert_eq!(made["mesh"]["interior_faces"], 8);
+    assert_code(&check(&out), FINE);
+}
+
+#[test]
+fn a_dangling_segment_and_point_attributes_are_kept() {
+    let folder = folder();
+    let mut points = cube().points;
+    points.extend([Point3::new(0.4, 0.4, 0.3), Point3::new(0.6, 0.7, 0.6)]);
+    let mut poly = format!("{} 3 1 1\n", points.len());
+    for (i, p) in points.iter().enumerate() {
+        let _ = writeln!(poly, "{i} {} {} {} {}.5 {}", p.x, p.y, p.z, i, 100 + i);
+    }
+    poly += "7 1\n1 0 5\n2 8 9\n";
+    for [a, b, c, d] in SIDES {
+        let _ = writeln!(poly, "1 0 6\n4 {a} {b} {c} {d}");
+    }
+    let input = text(&folder, "a.poly", &(poly + "0\n0\n"));
+    let out = folder.path().join("b.ele");
+    let report = report(&input, &out, &[]);
+    assert_eq!(report["report"]["input"]["segments"], 1);
+    let nodes = fs::read_to_string(out.with_extension("node")).expect("text");
+    let row: Vec<&str> = nodes.lines().nth(4).expect("a row").split(' ').collect();
+    assert_eq!((row[4], row[5]), ("3.5", "103"));
+    let edges = fs::read_to_string(out.with_extension("edge")).expect("text");
+    assert!(edges.lines().any(|line| line.ends_with(" 8 9 -1")), "{edges}");
+    let mesh = read_mesh(&out).expect("a mesh").volume.mesh;
+    assert!(mesh.tets.iter().any(|t| t.contains(&8) && t.contains(&9)));
+}
+
+#[test]
+fn the_bytes_depend_on_the_input_alone() {
+    let folder = folder();
+    let input = save(&folder, "s.off", &sphere(9));
+    let made: Vec<Vec<Vec<u8>>> = ["1", "2", "7"]
+        .iter()
+        .map(|threads| {
+            let outs = ["s.vtu", "s.msh", "s.mesh", "s.1.ele"].map(|name| folder.path().join(name));
+            for out in &outs {
+                assert_code(&fill(&input, out, &["-j", threads, "-q"]), FINE);
+            }
+            outs.iter().map(|out| fs::read(out).expect("a file")).collect()
+        })
+        .collect();
+    assert!(made[0] == made[1] && made[0] == made[2]);
+}
+
+#[test]
+fn tetgen_reads_what_we_write() {
+    let version = Command::new("tetgen").arg("-h").output();
+    if !version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("TetGen")) {
+        eprintln!("skipped: no tetgen");
+        return;
+    }
+    let folder = folder();
+    for (input, options) in
+        [(save(&folder, "s.off", &sphere(7)), "--tetgen=pY"), (text(&folder, "r.poly", &rooms(false)), "--no-refine")]
+    {
+        let out = folder.path().join("mesh.ele");
+        assert_code(&fill(&input, &out, &[options, "-q"]), FINE);
+        let read = Command::new("tetgen").args(["-rQ", "mesh"]).current_dir(&folder).output().expect("tetgen runs");
+        assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stdout));
+        let count = |name: &str| {
+            let text = fs::read_to_string(folder.path().join(name)).expect("a file");
+            text.split_whitespace().next().expect("a count").parse::<usize>().expect("a number")
+        };
+        assert_eq!(count("mesh.1.ele"), count("mesh.ele"));
+        assert_eq!(count("mesh.1.node"), count("mesh.node"));
+    }
+}
+
+// ---- Switches -------------------------------------------------------------------------------------------------------
+
+#[test]
+fn switches_choose_the_files() {
+    let folder = folder();
+    let input = save(&folder, "s.off", &sphere(5));
+    let out = folder.path().join("m.ele");
+    let made = |switches: &str| {
+        for name in entries(folder.path()).iter().filter(|name| name.starts_with("m.")) {
+            fs::remove_file(folder.path().join(name)).expect("removed");
+        }
+        assert_code(&fill(&input, &out, &["--tetgen", switches]), FINE);
+        entries(folder.path()).into_iter().filter(|name| name.starts_with("m.")).collect::<Vec<_>>()
+    };
+    assert_eq!(made("-pYQ"), ["m.edge", "m.ele", "m.face", "m.node"]);
+    let rows = |name: &str| fs::read_to_string(folder.path().join(name)).expect("text").lines().count();
+    let (faces, edges) = (rows("m.face"), rows("m.edge"));
+    assert_eq!(made("pYnfe"), ["m.edge", "m.ele", "m.face", "m.neigh", "m.node"]);
+    assert!(rows("m.face") > faces && rows("m.edge") > edges);
+    assert_eq!(made("pYF"), ["m.ele", "m.node"]);
+    let said = stderr(&fill(&input, &out, &["--tetgen", "pYC"]));
+    assert!(said.contains("'C'"), "{said}");
+}
+
+#[test]
+fn switches_and_options_that_make_no_sense() {
+    let folder = folder();
+    let input = save(&folder, "s.off", &cube());
+    let out = folder.path().join("m.vtu");
+    let refused = |options: &[&str], parts: &[&str]| {
+        let output = fill(&input, &out, options);
+        assert_code(&output, USAGE);
+        let said = stderr(&output);
+        assert!(parts.iter().all(|part| said.contains(part)), "{options:?}: {said}");
+    };
+    refused(&["--tetgen", "pr"], &["'r'", "surface of the mesh"]);
+    refused(&["--tetgen", "pYq0.3"], &["'q'", "0.3"]);
+    refused(&["--tetgen", "p%"], &["'%'", "pYq1.4a0.1"]);
+    refused(&["--tetgen", "pw"], &["'w'", "weight"]);
+    refused(&["--tetgen", "p", "--max-volume", "1"], &["--tetgen", "--max-volume"]);
+    refused(&["--no-refine", "--min-dihedral", "5"], &["--no-refine"]);
+    refused(&["--max-volume", "-1"], &["--max-volume", "above 0"]);
+    refused(&["--size", "nan"], &["--size", "finite"]);
+    refused(&["--min-dihedral", "80"], &["--min-dihedral", "70.5"]);
+    let nowhere = command(&input, None, &[]).output().expect("the program runs");
+    assert_code(&nowhere, USAGE);
+    assert!(stderr(&nowhere).contains("-o MESH"));
+    assert_eq!(entries(folder.path()), ["s.off"]);
+}
+
+#[test]
+fn an_input_is_not_overwritten() {
+    let folder = folder();
+    let input = text(&folder, "a.node", &node_list(&corners(0.0, 1.0), 0));
+    let before = fs::read(&input).expect("a file");
+    let refused = fill(&input, &folder.path().join("a.ele"), &[]);
+    assert_code(&refused, USAGE);
+    assert!(stderr(&refused).contains("a.1.ele"), "{}", stderr(&refused));
+    assert_eq!(fs::read(&input).expect("a file"), before);
+    assert_eq!(entries(folder.path()), ["a.node"]);
+}
+
+// ---- Input that cannot be used ---------------------------------------------------------------------------------------
+
+/// Exit 3, one message that names the file and has all parts, and nothing left behind.
+#[track_caller]
+fn refuse(name: &str, content: impl AsRef<[u8]>, options: &[&str], parts: &[&str]) {
+    let folder = folder();
+    let input = folder.path().join(name);
+    fs::write(&input, content).expect("a file");
+    for out in ["out.vtu", "out.ele"] {
+        let output = fill(&input, &folder.path().join(out), options);
+        assert_code(&output, BAD_INPUT);
+        assert!(output.stdout.is_empty());
+        let said = stderr(&output);
+        assert_eq!(said.trim_end().lines().count(), 1, "{said}");
+        assert!(said.starts_with(&format!("anastomesh: {}", input.display())), "{said}");
+        for part in parts {
+            assert!(said.to_lowercase().contains(&part.to_lowercase()), "no '{part}' in: {said}");
+        }
+        assert_eq!(entries(folder.path()), [name]);
+    }
+}
+
+fn off(mesh: &TriMesh) -> String {
+    let mut out = format!("OFF\n{} {} 0\n", mesh.points.len(), mesh.triangles.len());
+    for p in &mesh.points {
+        let _ = writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z);
+    }
+    for [a, b, c] in &mesh.triangles {
+        let _ = writeln!(out, "3 {a} {b} {c}");
+    }
+    out
+}
+
+#[test]
+fn surfaces_that_bound_no_volume() {
+    let mut open = cube();
+    open.triangles.truncate(10);
+    refuse("a.off", off(&open), &[], &["open", "triangles", "--plc"]);
+    let mut fin = cube();
+    fin.points.push(Point3::new(2.0, 2.0, 2.0));
+    fin.triangles.extend([[0, 1, 8], [0, 8, 1]]);
+    refuse("a.off", off(&fin), &[], &["--plc"]);
+    let mut turned = cube();
+    turned.triangles[3].swap(0, 1);
+    refuse("a.off", off(&turned), &[], &["orient", "--repair", "3"]);
+    let mut through = cube();
+    let second = corners(0.5, 1.5);
+    through.points.extend(&second);
+    through.triangles.extend(cube().triangles.iter().map(|t| t.map(|v| v + 8)));
+    refuse("a.off", off(&through), &[], &["meets itself", "pairs", "separate or unite"]);
+}
+
+#[test]
+fn triangles_and_points_that_make_no_sense() {
+    let mut flat = cube();
+    flat.points.push(Point3::new(0.5, 0.0, 0.0));
+    // The edge 0 1 is split on one side only in name: a triangle without area fills the gap.
+    flat.triangles.push([0, 8, 1]);
+    flat.triangles.push([0, 1, 8]);
+    refuse("a.off", off(&flat), &["--plc"], &["no area", "12"]);
+    let mut twice = cube();
+    twice.points.extend(corners(0.0, 1.0));
+    let n = twice.triangles.len();
+    for t in &mut twice.triangles[n / 2..] {
+        *t = t.map(|v| v + 8);
+    }
+    refuse("a.off", off(&twice), &[], &["triangles"]);
+    let mut coincident = cube();
+    coincident.points.push(Point3::origin());
+    refuse("a.off", off(&coincident), &[], &["repeat", "--repair"]);
+    for bad in ["nan", "inf", "-Infinity"] {
+        refuse("a.off", off(&cube()).replacen("1.0", bad, 1), &[], &["finite", "line"]);
+    }
+    for bad in ["1e300", "1e-300"] {
+        refuse("a.off", off(&cube()).replacen("1.0", bad, 1), &[], &["range", "scale"]);
+    }
+    refuse("a.off", off(&cube()).replacen("3 0 2 3", "3 0 2 0", 1), &[], &["not distinct", "0"]);
+    refuse("a.off", off(&cube()).replacen("3 0 2 3", "3 0 2 8", 1), &[], &["face 0", "8"]);
+    let plane: Vec<Point3> = (0..9).map(|i| Point3::new(f64::from(i % 3), f64::from(i / 3), 0.0)).collect();
+    refuse("a.node", node_list(&plane, 0), &[], &["one plane"]);
+    refuse("a.node", node_list(&plane[..2], 0), &[], &["four points"]);
+    refuse("a.node", node_list(&[corners(0.0, 1.0), corners(0.0, 1.0)].concat(), 0), &[], &["repeat", "8"]);
+}
+
+#[test]
+fn facets_that_make_no_sense() {
+    let crossing = cube_smesh().replace("4 1 3 4 2 10", "4 1 4 3 2 10");
+    assert_ne!(crossing, cube_smesh());
+    refuse("a.smesh", crossing, &[], &["facet 0", "cross"]);
+    refuse("a.smesh", cube_smesh().replace("4 1 3 4 2 10", "4 1 3 1 3 10"), &[], &["facet 0", "no area"]);
+    refuse("a.smesh", cube_smesh().replace("4 1 3 4 2 10", "4 1 3 4 9 10"), &[], &["facet 0", "9"]);
+    let half = rooms(false).replace(" 7 0.01", " 7.5 0.01");
+    refuse("a.poly", half, &[], &["region 0", "7.5", "integers"]);
+    // Without its lid the box holds nothing.
+    refuse("a.smesh", cube_smesh().replace("6 1\n4 1 3 4 2 10\n", "5 1\n"), &[], &["enclose"]);
+}
+
+#[test]
+fn files_that_hold_nothing() {
+    for name in ["a.off", "a.ply", "a.stl", "a.obj", "a.node", "a.poly", "a.smesh"] {
+        refuse(name, "", &[], &["empty"]);
+        refuse(name, " \n\n", &[], &["empty"]);
+        refuse(name, "\u{1}\u{2} garbage\n of any kind 17\n", &[], &[]);
+        let noise: Vec<u8> = (0..5000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        refuse(name, noise, &[], &[]);
+    }
+    let mut cut = off(&cube());
+    cut.truncate(cut.len() / 2);
+    refuse("a.off", cut, &[], &["line"]);
+    refuse("a.xyz", off(&cube()), &[], &["extension", ".off", "--from"]);
+}
+
+#[test]
+fn paths_that_cannot_be_used() {
+    let folder = folder();
+    let out = folder.path().join("out.vtu");
+    let refused = |input: &Path, out: &Path, part: &str| {
+        let output = fill(input, out, &[]);
+        assert_code(&output, BAD_INPUT);
+        assert!(stderr(&output).contains(part), "{}", stderr(&output));
+    };
+    refused(&folder.path().join("missing.off"), &out, "cannot be read");
+    let directory = folder.path().join("d.off");
+    fs::create_dir(&directory).expect("a folder");
+    refused(&directory, &out, "directory");
+    let input = save(&folder, "c.off", &cube());
+    refused(&input, &folder.path().join("missing/out.ele"), "cannot be written");
+    refused(&input, &folder.path().join("out.stl"), ".mesh, .ele");
+    assert_eq!(entries(folder.path()), ["c.off", "d.off"]);
+}
+
+// ---- Checking and repairing ------------------------------------------------------------------------------------------
+
+#[test]
+fn inputs_are_checked_without_meshing() {
+    let folder = folder();
+    let input = save(&folder, "s.off", &sphere(6));
+    let fine = command(&input, None, &["--check-only"]).output().expect("the program runs");
+    assert_code(&fine, FINE);
+    assert!(stderr(&fine).contains("no fault found"));
+    let mut open = sphere(6);
+    open.triangles.pop();
+    let input = save(&folder, "o.off", &open);
+    for options in [&["--check-only"][..], &["--tetgen", "d"]] {
+        let found = command(&input, None, options).output().expect("the program runs");
+        assert!(found.status.code() == Some(BAD_INPUT) || options[0] == "--tetgen", "{}", stderr(&found));
+    }
+    assert_eq!(entries(folder.path()), ["o.off", "s.off"]);
+}
