@@ -570,3 +570,42 @@ fn inputs_are_checked_without_meshing() {
     }
     assert_eq!(entries(folder.path()), ["o.off", "s.off"]);
 }
+
+#[test]
+fn what_needs_no_choice_is_repaired() {
+    let folder = folder();
+    // Some triangles turned over, some there twice, and each with points of its own.
+    let whole = sphere(5);
+    let mut broken = TriMesh::default();
+    for (i, t) in whole.triangles.iter().enumerate() {
+        let at = broken.points.len() as u32;
+        broken.points.extend(t.map(|v| whole.points[v as usize]));
+        broken.triangles.push(if i % 3 == 0 { [at, at + 2, at + 1] } else { [at, at + 1, at + 2] });
+        if i % 7 == 0 {
+            broken.triangles.push([at, at + 1, at + 2]);
+        }
+    }
+    let input = save(&folder, "b.off", &broken);
+    let out = folder.path().join("b.vtu");
+    assert_code(&fill(&input, &out, &[]), BAD_INPUT);
+    let mended = report(&input, &out, &["--repair"]);
+    let said = mended["report"]["repaired"].as_array().expect("a list");
+    assert_eq!(said.len(), 3, "{said:?}");
+    let plain = report(&save(&folder, "w.off", &whole), &folder.path().join("w.vtu"), &[]);
+    let volume = |report: &Value| report["report"]["mesh"]["volume"].as_f64().expect("a volume");
+    assert!((volume(&mended) - volume(&plain)).abs() < 1e-12);
+    assert_code(&check(&out), FINE);
+    // Facets keep their markers, points what belongs to them.
+    let doubled = cube_smesh()
+        .replace("8 3 0 0", "9 3 0 0")
+        .replace("6 1\n", "9 1 1 1\n6 1\n")
+        .replace("4 1 3 4 2 10", "4 9 2 4 3 10");
+    let input = text(&folder, "d.smesh", &doubled);
+    assert_code(&fill(&input, &out, &[]), BAD_INPUT);
+    let out = folder.path().join("d.ele");
+    assert_eq!(report(&input, &out, &["--repair"])["report"]["mesh"]["faces"], 12);
+    let mut markers = read_mesh(&out).expect("a mesh").volume.boundary_patch;
+    markers.sort_unstable();
+    markers.dedup();
+    assert_eq!(markers, [10, 11, 12, 13, 14, 15]);
+}

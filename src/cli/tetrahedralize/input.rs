@@ -9,7 +9,9 @@ use crate::cli::exit::Failure;
 use crate::geometry::Point3;
 use crate::io::surface::{read_surface_as, read_surface_from};
 use crate::io::tetgen::{self, Nodes};
+use crate::mesh::TriMesh;
 use crate::mesh::facets::{self, FacetTriangles};
+use crate::mesh::repair::{RepairReport, Repaired, repair};
 use crate::tet::{Plc, Region};
 use rustc_hash::FxHashMap;
 
@@ -59,7 +61,32 @@ impl Input {
 
     /// Orients the triangles and joins what is there twice; says what it did.
     pub fn repair(&mut self) -> Vec<String> {
-        Vec::new()
+        let plc = &mut self.plc;
+        let surface =
+            TriMesh { points: std::mem::take(&mut plc.points), triangles: std::mem::take(&mut plc.triangles) };
+        let Repaired { surface, source, point, report, .. } = repair(&surface);
+        let of_triangles = |list: &[i32]| source.iter().filter_map(|&i| list.get(i as usize).copied()).collect();
+        plc.markers = of_triangles(&plc.markers);
+        self.facet_of = source.iter().filter_map(|&i| self.facet_of.get(i as usize).copied()).collect();
+        let named = |v: u32| point.get(v as usize).copied().unwrap_or(u32::MAX);
+        plc.edges = plc.edges.iter().map(|edge| edge.map(named)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        plc.edges.retain(|[a, b]| a != b);
+        plc.edges.sort_unstable();
+        plc.edges.dedup();
+        // The first of equal points speaks for all of them.
+        let mut kept = vec![u32::MAX; surface.points.len()];
+        for (old, &new) in point.iter().enumerate().rev() {
+            if let Some(slot) = kept.get_mut(new as usize) {
+                *slot = old as u32;
+            }
+        }
+        let each = self.attribute_count;
+        self.point_markers = kept.iter().filter_map(|&i| self.point_markers.get(i as usize).copied()).collect();
+        let attributes =
+            kept.iter().filter_map(|&i| self.point_attributes.get(i as usize * each..(i as usize + 1) * each));
+        self.point_attributes = attributes.flatten().copied().collect();
+        (plc.points, plc.triangles) = (surface.points, surface.triangles);
+        said(&report)
     }
 
     fn of_file(path: &Path, format: InputFormat) -> Result<Source, Failure> {
@@ -170,4 +197,17 @@ fn name_first_of_duplicates(file: &mut tetgen::Plc) {
     for corner in file.facets.iter_mut().flat_map(|facet| facet.polygons.iter_mut().flatten()) {
         *corner = first[*corner as usize];
     }
+}
+
+/// What a repair did, a sentence for each kind of change.
+fn said(report: &RepairReport) -> Vec<String> {
+    let counts = [
+        (report.merged_points, "points joined with an earlier one at the same place"),
+        (report.collapsed_triangles, "triangles removed that had a corner twice"),
+        (report.duplicate_triangles, "triangles removed that were there before"),
+        (report.flat_triangles, "triangles without area merged into a neighbour"),
+        (report.turned_triangles, "triangles turned over"),
+        (report.not_orientable, "parts cannot be oriented"),
+    ];
+    counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
 }
