@@ -22,6 +22,8 @@ pub(super) struct Wall<'a> {
     pub rings: Vec<RingVertex>,
     /// Direction from the axis to each vertex.
     outward: Vec<Vec3>,
+    /// Shape of each triangle.
+    shapes: Vec<f64>,
 }
 
 impl<'a> Wall<'a> {
@@ -33,8 +35,9 @@ impl<'a> Wall<'a> {
         first_free: u32,
         rings: Vec<RingVertex>,
     ) -> Self {
-        let mut wall = Self { path, points, triangles, first_free, rings, outward: Vec::new() };
+        let mut wall = Self { path, points, triangles, first_free, rings, outward: Vec::new(), shapes: Vec::new() };
         wall.outward = (0..wall.points.len() as u32).map(|v| wall.radial(v)).collect();
+        wall.shapes = wall.triangles.iter().map(|&t| wall.shape(t)).collect();
         wall
     }
 
@@ -78,9 +81,13 @@ impl<'a> Wall<'a> {
         (self.at(v) - self.path.at(s).origin).normalize()
     }
 
-    /// Flips edges where that makes the worse of the two triangles better.
+    /// Flips edges of triangles that are not good where that makes the worse of the two triangles better.
     fn flip(&mut self) -> usize {
+        if self.shapes.iter().all(|&s| s > GOOD) {
+            return 0;
+        }
         let mut owner: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+        owner.reserve(3 * self.triangles.len());
         for (i, t) in self.triangles.iter().enumerate() {
             for k in 0..3 {
                 owner.insert((t[k], t[(k + 1) % 3]), i as u32);
@@ -89,6 +96,9 @@ impl<'a> Wall<'a> {
         let mut flips = 0;
         for i in 0..self.triangles.len() {
             for k in 0..3 {
+                if self.shapes[i] > GOOD {
+                    break;
+                }
                 let t = self.triangles[i];
                 let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
                 let Some(&j) = owner.get(&(b, a)) else { continue };
@@ -97,17 +107,18 @@ impl<'a> Wall<'a> {
                 if c == d || owner.contains_key(&(c, d)) || owner.contains_key(&(d, c)) {
                     continue;
                 }
-                let (first, second) = ([a, d, c], [d, b, c]);
-                let before = self.shape(t).min(self.shape(u));
-                if before > GOOD || self.shape(first).min(self.shape(second)) <= before + 1e-3 {
+                let new = [[a, d, c], [d, b, c]];
+                let before = self.shapes[i].min(self.shapes[j as usize]);
+                let shapes = new.map(|t| self.shape(t));
+                if shapes[0].min(shapes[1]) <= before + 1e-3 {
                     continue;
                 }
                 owner.remove(&(a, b));
                 owner.remove(&(b, a));
-                for (at, t) in [(i as u32, first), (j, second)] {
-                    self.triangles[at as usize] = t;
+                for (n, at) in [i as u32, j].into_iter().enumerate() {
+                    (self.triangles[at as usize], self.shapes[at as usize]) = (new[n], shapes[n]);
                     for k in 0..3 {
-                        owner.insert((t[k], t[(k + 1) % 3]), at);
+                        owner.insert((new[n][k], new[n][(k + 1) % 3]), at);
                     }
                 }
                 flips += 1;
@@ -119,6 +130,9 @@ impl<'a> Wall<'a> {
     /// Slides ring vertices along the tube towards their neighbours' mean where that makes the worst triangle at the
     /// vertex better.
     fn slide(&mut self) -> usize {
+        if self.shapes.iter().all(|&s| s > GOOD) {
+            return 0;
+        }
         let n = self.rings.len();
         let mut stars: Vec<Vec<u32>> = vec![Vec::new(); n];
         for (i, t) in self.triangles.iter().enumerate() {
@@ -139,7 +153,7 @@ impl<'a> Wall<'a> {
         if star.is_empty() {
             return false;
         }
-        let before = self.worst(star);
+        let before = star.iter().map(|&t| self.shapes[t as usize]).fold(1.0, f64::min);
         if before > GOOD {
             return false;
         }
@@ -167,6 +181,9 @@ impl<'a> Wall<'a> {
             self.outward[v as usize] = (moved - there.origin) / next.distance;
             self.rings[k] = next;
             if self.worst(star) > before + 1e-3 {
+                for &t in star {
+                    self.shapes[t as usize] = self.shape(self.triangles[t as usize]);
+                }
                 return true;
             }
         }

@@ -48,13 +48,20 @@ impl Bvh {
                 node.first = index as u32;
             }
             let range = &items[start..end];
-            let aabb = range.iter().fold(Aabb::EMPTY, |sum, &i| sum.union(&boxes[i as usize]));
             let leaf = range.len() <= LEAF;
-            nodes.push(BvhNode { aabb, first: start as u32, count: if leaf { range.len() as u32 } else { 0 } });
+            let of = if leaf { range } else { &[] };
+            let aabb = of.iter().fold(Aabb::EMPTY, |sum, &i| sum.union(&boxes[i as usize]));
+            nodes.push(BvhNode { aabb, first: start as u32, count: of.len() as u32 });
             if !leaf {
                 let middle = start.midpoint(end);
                 pending.push((middle, end, Some(index)));
                 pending.push((start, middle, None));
+            }
+        }
+        // Children come after their parent.
+        for i in (0..nodes.len()).rev() {
+            if nodes[i].count == 0 && i + 1 < nodes.len() {
+                nodes[i].aabb = nodes[i + 1].aabb.union(&nodes[nodes[i].first as usize].aabb);
             }
         }
         let boxes = items.iter().map(|&i| boxes[i as usize]).collect();
@@ -106,7 +113,7 @@ impl Bvh {
             let (a, b) = (&self.nodes[i as usize], &self.nodes[j as usize]);
             if i != j {
                 if a.aabb.overlaps(&b.aabb) && !self.descend(i, a, j, b, &mut pending) {
-                    for m in a.range() {
+                    for m in a.range().filter(|&m| self.boxes[m].overlaps(&b.aabb)) {
                         for n in b.range() {
                             self.pair(m, n, &mut found);
                         }

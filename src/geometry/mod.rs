@@ -3,6 +3,7 @@
 mod aabb;
 mod bvh;
 mod distance;
+mod fans;
 pub mod hilbert;
 mod integer;
 pub mod predicates;

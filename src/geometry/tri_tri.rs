@@ -5,6 +5,7 @@
 //! such a pair of features is a *hit*. The hits are found with exact predicates alone, and their number tells the rest:
 //! none, a point, a segment, or an area.
 
+use super::fans::proved_fans;
 use super::predicates::{collinear, orient2d, orient3d};
 use super::{Aabb, Bvh, Point3};
 use rayon::prelude::*;
@@ -271,9 +272,12 @@ pub fn self_intersections(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32
 pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32, Improper)> {
     let mut found: Vec<(u32, u32, Improper)> = Vec::new();
     let mut boxes = Vec::with_capacity(triangles.len());
+    // On a smooth surface nearly all vertices: then neighbours there need no look.
+    let proved = proved_fans(points, triangles);
+    let is_proved = |v: u32| proved[v as usize];
     for (i, t) in triangles.iter().enumerate() {
         let [a, b, c] = t.map(|v| &points[v as usize]);
-        if collinear(a, b, c) {
+        if !t.iter().any(|&v| is_proved(v)) && collinear(a, b, c) {
             found.push((i as u32, i as u32, Improper::Degenerate));
             boxes.push(Aabb::EMPTY);
         } else {
@@ -282,6 +286,10 @@ pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32
     }
     let mut batch: Vec<(u32, u32)> = Vec::with_capacity(BATCH);
     Bvh::new(&boxes).self_pairs(|i, j| {
+        let other = triangles[j as usize];
+        if triangles[i as usize].iter().any(|&v| other.contains(&v) && is_proved(v)) {
+            return;
+        }
         batch.push((i, j));
         if batch.len() == BATCH {
             test_pairs(points, triangles, &batch, &mut found);

@@ -33,13 +33,22 @@ pub struct JointOptions {
     pub good: f64,
     /// Wall vertices are moved along the wall when a tetrahedron around them still has a radius ratio below this.
     pub lift_below: f64,
+    /// The inside is improved where a tetrahedron has a radius ratio below this.
+    pub improve_below: f64,
     /// Rounds of wall and inside: Taubin's steps in the first, lifting in the others.
     pub rounds: usize,
 }
 
 impl Default for JointOptions {
     fn default() -> Self {
-        Self { rings: 2, taubin: Taubin { iterations: 6, ..Taubin::default() }, good: 0.3, lift_below: 0.2, rounds: 3 }
+        Self {
+            rings: 2,
+            taubin: Taubin { iterations: 6, ..Taubin::default() },
+            good: 0.3,
+            lift_below: 0.2,
+            improve_below: 0.45,
+            rounds: 3,
+        }
     }
 }
 
@@ -133,7 +142,7 @@ fn smooth_region(region: &mut Region, options: &JointOptions, improve: &Improve)
         if round > 0 && moves == 0 {
             break;
         }
-        if !region.improve(improve) {
+        if region.worst() < options.improve_below && !region.improve(improve) {
             report.refused = 1;
             break;
         }

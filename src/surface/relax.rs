@@ -115,10 +115,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
             self.flip(Criterion::Valence);
             self.smooth();
         }
-        for _ in 0..2 {
-            self.flip(Criterion::Angle);
-            self.smooth();
-        }
+        self.flip(Criterion::Angle);
+        self.smooth();
         self.flip(Criterion::Angle);
         self.project();
     }
@@ -366,6 +364,13 @@ enum Criterion {
 /// The cosine of a triangle's smallest angle.
 pub(crate) fn largest_cosine(a: &Point3, b: &Point3, c: &Point3) -> f64 {
     let (x, y, z) = ((c - b).norm_squared(), (a - c).norm_squared(), (b - a).norm_squared());
-    let at = |o: f64, p: f64, q: f64| (p + q - o) / (2.0 * (p * q).sqrt()).max(f64::MIN_POSITIVE);
-    at(x, y, z).max(at(y, z, x)).max(at(z, x, y))
+    // The smallest angle lies opposite the shortest side.
+    let (o, p, q) = if x <= y && x <= z {
+        (x, y, z)
+    } else if y <= z {
+        (y, z, x)
+    } else {
+        (z, x, y)
+    };
+    (p + q - o) / (2.0 * (p * q).sqrt()).max(f64::MIN_POSITIVE)
 }
