@@ -1,10 +1,14 @@
 //! How fine the mesh is to be, where, and points that make it so: a size field over an octree, interior points on a
 //! graded body-centred lattice, and Delaunay refinement inside a frozen boundary.
 
+mod goals;
+mod insert;
 mod points;
 mod sizes;
 mod tree;
 
+pub use goals::Goals;
+pub use insert::{RefineReport, refine_complex};
 pub use points::graded_points;
 pub use sizes::{SizeLimit, vertex_sizes};
 pub use tree::{SizeTree, TreeOptions};

@@ -73,3 +73,85 @@ fn the_same_surface_gives_the_same_points() {
     assert!(points.len() > 100);
     assert_eq!(points, run());
 }
+
+mod insertion {
+    use super::*;
+    use crate::mesh::quality::TetQuality;
+    use crate::mesh::shapes::cube_lattice;
+    use crate::tet::complex::Complex;
+
+    fn cube() -> Complex {
+        let mesh = cube_lattice(2);
+        Complex::from_mesh(mesh.points, &mesh.tets).unwrap()
+    }
+
+    fn boundary(c: &Complex) -> Vec<[u32; 3]> {
+        let halves = c.real_tets().flat_map(|t| 4 * t..4 * t + 4).filter(|&h| c.is_ghost(c.mate(h) >> 2));
+        let mut faces: Vec<[u32; 3]> = halves.map(|h| crate::tet::complex::face_key(c.face(h))).collect();
+        faces.sort_unstable();
+        faces
+    }
+
+    #[test]
+    fn volumes_are_bounded_inside_and_the_boundary_stays() {
+        let mut c = cube();
+        let before = boundary(&c);
+        let report = refine_complex(&mut c, &Goals { max_volume: Some(0.01), ..Goals::default() }, Vec::new(), |_| true);
+        c.sanity_check().unwrap();
+        assert!(report.points > 10, "{report:?}");
+        assert_eq!(before, boundary(&c));
+        let volume: f64 = c.real_tets().map(|t| c.orient(&c.verts(t))).sum();
+        assert!((volume - 6.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn sizes_are_followed_and_the_limit_of_points_holds() {
+        let size = |p: &Point3| if p.x < 0.5 { 0.1 } else { 0.5 };
+        let goals = Goals { size: Some(&size), ..Goals::default() };
+        let mut c = cube();
+        let report = refine_complex(&mut c, &goals, Vec::new(), |_| true);
+        c.sanity_check().unwrap();
+        let inner = |left: bool| c.points[27..].iter().filter(|p| (p.x < 0.5) == left).count();
+        assert!(inner(true) > 3 * inner(false), "{report:?} {} {}", inner(true), inner(false));
+        let mut c = cube();
+        let goals = Goals { max_points: Some(7), ..goals };
+        let report = refine_complex(&mut c, &goals, Vec::new(), |_| true);
+        assert!(report.limit_reached && report.points == 7 && c.points.len() == 34);
+        c.sanity_check().unwrap();
+    }
+
+    #[test]
+    fn shape_is_bounded_where_the_boundary_allows_and_frozen_faces_stay() {
+        let s = sphere_surface(3);
+        let options = crate::tet::TetOptions::default().interior(crate::tet::Interior::None).optimize(false);
+        let mesh = crate::tet::tetrahedralize(&s, &options).unwrap();
+        let mut c = Complex::from_mesh(mesh.points, &mesh.tets).unwrap();
+        let before = TetQuality::of(&c.clone().into_mesh());
+        let inner = c.real_tets().flat_map(|t| 4 * t..4 * t + 4).find(|&h| !c.is_ghost(c.mate(h) >> 2)).unwrap();
+        let face = c.face(inner);
+        c.freeze(inner);
+        let report =
+            refine_complex(&mut c, &Goals { max_radius_edge: Some(1.4), ..Goals::default() }, Vec::new(), |_| true);
+        c.sanity_check().unwrap();
+        assert!(crate::tet::star::Star::default().find_face(&c, face).is_some_and(|h| c.is_frozen(h)));
+        let after = TetQuality::of(&c.into_mesh());
+        assert!(after.mean > before.mean + 0.2 && report.left * 20 < after.tets, "{before:?} {after:?} {report:?}");
+    }
+
+    #[test]
+    fn bounds_of_regions_are_handed_on() {
+        let mut c = cube();
+        let bounds: Vec<f64> = (0..c.slots() as u32)
+            .map(|t| if c.is_real(t) && c.verts(t).iter().all(|&v| c.points[v as usize].x <= 0.5) { 0.002 } else { f64::INFINITY })
+            .collect();
+        // The wall between the halves is frozen, as that between regions is.
+        let wall: Vec<u32> = c.real_tets().flat_map(|t| 4 * t..4 * t + 4)
+            .filter(|&h| c.face(h).iter().all(|&v| c.points[v as usize].x == 0.5)).collect();
+        for h in wall {
+            c.freeze(h);
+        }
+        let report = refine_complex(&mut c, &Goals::default(), bounds, |_| true);
+        assert!(report.points > 0 && c.points[27..].iter().all(|p| p.x < 0.5));
+        c.sanity_check().unwrap();
+    }
+}
