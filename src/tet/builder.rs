@@ -10,7 +10,8 @@ use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
 use super::plc::{InputKind, Plc};
 use super::progress::{Cancel, OnProgress, Progress, Stage, Watch};
 use super::recover::RecoverySummary;
-use super::{delaunay, input};
+use super::refine::RefineReport;
+use super::{delaunay, input, sized};
 use crate::geometry::Point3;
 use crate::mesh::{TetMesh, TriMesh};
 use std::sync::Arc;
@@ -45,6 +46,8 @@ pub struct Tetrahedralization {
     pub faces: Vec<[u32; 3]>,
     /// Marker of each of `faces`; empty when the input has none.
     pub face_markers: Vec<i32>,
+    /// The triangle of the input that each of `faces` is a piece of; empty when none may be split.
+    pub origins: Vec<u32>,
     /// What it took.
     pub summary: Summary,
 }
@@ -57,6 +60,8 @@ pub struct Summary {
     pub recovery: RecoverySummary,
     /// What improvement did, where it was asked for.
     pub optimize: Option<OptimizeReport>,
+    /// What refinement did, where it was asked for.
+    pub refine: Option<RefineReport>,
     /// Number of regions.
     pub regions: usize,
     /// Triangles of the boundary that came oriented inwards.
@@ -152,6 +157,11 @@ impl Tetrahedralizer {
         self
     }
 
+    /// The refinement and the sizing asked for.
+    pub(super) fn wishes(&self) -> (Option<&Refinement>, &Sizing) {
+        (self.refinement.as_ref(), &self.sizing)
+    }
+
     fn watch(&self) -> Watch<'_> {
         Watch::new(self.on_progress.as_deref(), self.cancel.as_deref())
     }
@@ -168,6 +178,10 @@ impl Tetrahedralizer {
         let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
         let edges = input::validate(&surface, &plc.edges, self.kind)?;
         watch.report(Stage::Validate, 1, 1)?;
+        if self.boundary == Boundary::Split {
+            sized::check(self.refinement.as_ref(), &self.sizing, plc.points.len())?;
+            return self.run_split(plc);
+        }
         let filled = fill(&Request {
             surface: &surface,
             edges: &edges,
@@ -178,7 +192,6 @@ impl Tetrahedralizer {
             interior: &self.interior,
             refinement: self.refinement.as_ref(),
             sizing: &self.sizing,
-            boundary: self.boundary,
             optimize: self.optimize,
             certify: true,
             effort: self.effort,
@@ -193,9 +206,11 @@ impl Tetrahedralizer {
         Ok(Tetrahedralization {
             faces: surface.triangles.iter().zip(&filled.places).map(outward).collect(),
             face_markers: plc.markers.clone(),
+            origins: Vec::new(),
             summary: Summary {
                 recovery: filled.recovery,
                 optimize: filled.optimize,
+                refine: filled.refine,
                 regions: filled.region_count,
                 reversed: count(Place::Reversed),
                 interior_faces: count(Place::Inside),

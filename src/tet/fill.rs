@@ -5,12 +5,13 @@ use super::complex::Complex;
 use super::error::TetError;
 use super::input::SurfaceEdges;
 use super::optimize::{Effort, OptimizeOptions, OptimizeReport, optimize_complex};
-use super::options::{Boundary, Interior, Refinement, Sizing};
+use super::options::{Interior, Refinement, Sizing};
 use super::plc::{InputKind, Region};
 use super::progress::{Stage, Watch};
 use super::recover::{self, RecoverySummary};
+use super::refine::RefineReport;
 use super::regions::Regions;
-use super::{carve, contacts, delaunay, input, lattice};
+use super::{carve, contacts, delaunay, input, lattice, sized};
 use crate::geometry::Point3;
 use crate::geometry::predicates::MIN_MAGNITUDE;
 use crate::mesh::{TetMesh, TriMesh};
@@ -27,6 +28,9 @@ const ATTEMPTS: u32 = 2;
 /// Another lattice is worth a try where so few edges and triangles are lost.
 const FEW: usize = 64;
 
+/// How much coarser the interior is in each attempt.
+const FACTORS: [f64; 8] = [1.0, 1.07, 0.93, 1.15, 0.87, 1.23, 1.31, 0.8];
+
 /// A checked input and what is wanted of it.
 pub(super) struct Request<'a> {
     pub surface: &'a TriMesh,
@@ -38,7 +42,6 @@ pub(super) struct Request<'a> {
     pub interior: &'a Interior,
     pub refinement: Option<&'a Refinement>,
     pub sizing: &'a Sizing,
-    pub boundary: Boundary,
     pub optimize: bool,
     /// Whether the mesh is proved to fill the surface.
     pub certify: bool,
@@ -58,11 +61,12 @@ pub(super) struct Filled {
     pub region_count: usize,
     pub recovery: RecoverySummary,
     pub optimize: Option<OptimizeReport>,
+    pub refine: Option<RefineReport>,
 }
 
 /// Fills what the request describes, and proves it.
 pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
-    supported(r)?;
+    sized::check(r.refinement, r.sizing, r.surface.points.len())?;
     let (complex, recovery) = conforming(r)?;
     r.watch.report(Stage::Carve, 0, 1)?;
     let carved = carve::carve(&complex, r.surface, r.kind, r.holes);
@@ -70,7 +74,10 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     drop(complex);
     carve::check_segments(&carved, r.segments)?;
     r.watch.report(Stage::Carve, 1, 1)?;
+    let held = carve::hold_segments(&mut carved, r.segments);
+    let refine = sized::refine(r, &mut carved)?;
     let optimize = if r.optimize { Some(improve(r, &mut carved)?) } else { None };
+    carve::release_segments(&mut carved, &held);
     r.watch.report(Stage::Certify, 0, 1)?;
     let (regions, region_count) = if r.label { labels(r, &carved)? } else { (Vec::new(), 0) };
     let mesh = carved.into_compact_mesh(r.surface.points.len());
@@ -80,7 +87,7 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
         certify_segments(&mesh, r.segments)?;
     }
     r.watch.report(Stage::Certify, 1, 1)?;
-    Ok(Filled { mesh, places, regions, region_count, recovery, optimize })
+    Ok(Filled { mesh, places, regions, region_count, recovery, optimize, refine })
 }
 
 /// Region of each tetrahedron, where there is something to say, and the number of regions.
@@ -89,24 +96,11 @@ fn labels(r: &Request, carved: &Complex) -> Result<(Vec<i32>, usize), TetError> 
     Ok((if found.matter() { found.ids(carved) } else { Vec::new() }, found.len()))
 }
 
-/// What is not there yet is said before any work is done.
-fn supported(r: &Request) -> Result<(), TetError> {
-    if r.refinement.is_some() || !matches!(r.sizing, Sizing::Surface) {
-        return Err(TetError::Unsupported { what: "refinement" });
-    }
-    if r.boundary == Boundary::Split {
-        return Err(TetError::Unsupported { what: "splitting the boundary" });
-    }
-    Ok(())
-}
-
-/// Improves the mesh; triangles and segments stay.
+/// Improves the mesh; triangles stay, and segments that are held.
 fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError> {
     r.watch.report(Stage::Optimize, 0, 1)?;
-    let held = carve::hold_segments(carved, r.segments);
     let options = OptimizeOptions { fixed_points: r.surface.points.len(), ..OptimizeOptions::of(r.effort) };
     let report = optimize_complex(carved, &options);
-    carve::release_segments(carved, &held);
     r.watch.report(Stage::Optimize, 1, 1)?;
     Ok(report)
 }
@@ -127,7 +121,10 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
     loop {
         r.watch.report(Stage::Delaunay, 0, 1)?;
         let mut points = surface.points.clone();
-        points.extend(interior_points(surface, &other_interior(surface, r.interior, attempt))?);
+        match sized::sized_points(r, FACTORS[attempt as usize % 8]) {
+            Some(inside) => points.extend(inside),
+            None => points.extend(interior_points(surface, &other_interior(surface, r.interior, attempt))?),
+        }
         let inner = points.len();
         points.extend(box_corners(&surface.points));
         let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
@@ -146,7 +143,7 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
 
 /// The interior asked for, or for later attempts one like it.
 fn other_interior(surface: &TriMesh, interior: &Interior, attempt: u32) -> Interior {
-    let factor = [1.0, 1.07, 0.93, 1.15, 0.87, 1.23, 1.31, 0.8][attempt as usize % 8];
+    let factor = FACTORS[attempt as usize % 8];
     let h = lattice::mean_edge(surface);
     match interior {
         Interior::Lattice { cell, clearance } if attempt > 0 => Interior::Lattice {

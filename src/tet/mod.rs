@@ -58,6 +58,8 @@ mod progress;
 mod recover;
 pub mod refine;
 mod regions;
+mod sized;
+mod split;
 pub mod star;
 
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
@@ -91,7 +93,6 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
         interior: &options.interior,
         refinement: None,
         sizing: &Sizing::Surface,
-        boundary: Boundary::Keep,
         optimize: options.optimize,
         certify: options.certify,
         effort: options.effort,
@@ -104,5 +105,7 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
     }
 }
 
+#[cfg(test)]
+mod refined_tests;
 #[cfg(test)]
 mod tests;

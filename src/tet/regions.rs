@@ -76,6 +76,15 @@ impl Regions {
         Ok(Self { of, ids, seeds: seed_of })
     }
 
+    /// Bound on the volume of each slot's tetrahedron, as the seeds of the regions have it.
+    pub(super) fn volume_bounds(&self, seeds: &[Region]) -> Vec<f64> {
+        let bound = |region: u32| {
+            let seed = self.seeds.get(region as usize).copied().flatten();
+            seed.and_then(|s| seeds[s as usize].max_volume).filter(|&b| b > 0.0).unwrap_or(f64::INFINITY)
+        };
+        self.of.iter().map(|&region| bound(region)).collect()
+    }
+
     /// Number of regions.
     pub(super) fn len(&self) -> usize {
         self.ids.len()

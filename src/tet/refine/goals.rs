@@ -38,7 +38,7 @@ impl std::fmt::Debug for Goals<'_> {
 
 /// A tetrahedron that does not fulfil the goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fault {
+pub struct Fault {
     /// By how much: above 1, the larger the worse.
     pub excess: f64,
     /// Edges that a new point may make have at least this length.
@@ -47,7 +47,7 @@ pub(super) struct Fault {
 
 impl Goals<'_> {
     /// What is wrong with a tetrahedron, if anything; `bound` is that on its volume from its region.
-    pub(super) fn fault(&self, p: [&Point3; 4], bound: f64) -> Option<Fault> {
+    pub fn fault(&self, p: [&Point3; 4], bound: f64) -> Option<Fault> {
         let edges = [p[1] - p[0], p[2] - p[0], p[3] - p[0], p[2] - p[1], p[3] - p[1], p[3] - p[2]].map(|e| e.norm());
         let longest = edges.iter().copied().fold(0.0, f64::max);
         let shortest = edges.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,0 +1,83 @@
+//! Tests of sizes, refinement and split surfaces, through the front door.
+
+use super::tests::tube;
+use super::*;
+use crate::geometry::{Point3, Vec3};
+use crate::mesh::quality::TetQuality;
+use crate::mesh::shapes::sphere_surface;
+use std::sync::Arc;
+
+fn longest_near(mesh: &TetMesh, here: impl Fn(&Point3) -> bool) -> f64 {
+    let mut longest = 0.0_f64;
+    for v in &mesh.tets {
+        let p = v.map(|x| mesh.points[x as usize]);
+        if p.iter().all(&here) {
+            longest = (0..4).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| (p[i] - p[j]).norm()).fold(longest, f64::max);
+        }
+    }
+    longest
+}
+
+#[test]
+fn a_function_of_the_place_sizes_the_inside() {
+    let s = sphere_surface(3);
+    let size = |p: &Point3| if p.coords.norm() < 0.4 { 0.05 } else { 1.0 };
+    let t = Tetrahedralizer::new().sizing(Sizing::Function(Arc::new(size))).run(&Plc::from(&s)).unwrap();
+    assert!(longest_near(&t.mesh, |p| p.coords.norm() < 0.35) < 0.12);
+    let even = Tetrahedralizer::new().run(&Plc::from(&s)).unwrap();
+    assert!(t.mesh.tets.len() > 2 * even.mesh.tets.len());
+    assert_eq!(t.faces, s.triangles);
+    let q = TetQuality::of(&t.mesh);
+    assert!(q.mean > 0.8 && q.min > 0.1, "{q:?}");
+}
+
+#[test]
+fn volumes_are_bounded_and_what_is_not_a_number_is_refused() {
+    let s = sphere_surface(2);
+    let bounds = Refinement::default().max_volume(2e-3);
+    let t = Tetrahedralizer::new().refine(Some(bounds)).interior(Interior::None).run(&Plc::from(&s)).unwrap();
+    assert!(t.summary.refine.is_some_and(|r| r.points > 0));
+    assert_eq!(t.faces, s.triangles);
+    for bad in [Refinement::default().max_volume(-1.0), Refinement::default().max_radius_edge(f64::NAN)] {
+        let error = Tetrahedralizer::new().refine(Some(bad)).run(&Plc::from(&s)).unwrap_err();
+        assert!(matches!(error, TetError::BadOption { .. }), "{error}");
+    }
+    let few = Tetrahedralizer::new().sizing(Sizing::PerVertex(vec![0.1])).run(&Plc::from(&s));
+    assert!(matches!(few, Err(TetError::BadOption { .. })));
+}
+
+#[test]
+fn a_surface_that_may_be_split_is_split_to_size_with_a_map_of_its_pieces() {
+    let s = sphere_surface(1);
+    let mut plc = Plc::from(&s);
+    plc.markers = (0..s.triangles.len() as i32).collect();
+    let t = Tetrahedralizer::new().boundary(Boundary::Split).sizing(Sizing::Constant(0.15)).run(&plc).unwrap();
+    assert!(t.faces.len() > 5 * s.triangles.len());
+    assert_eq!((t.origins.len(), t.face_markers.len()), (t.faces.len(), t.faces.len()));
+    assert!(t.origins.iter().zip(&t.face_markers).all(|(&o, &m)| o as i32 == m));
+    assert_eq!(t.mesh.points[..s.points.len()], s.points);
+    // The pieces of a triangle have its area together.
+    let area = |points: &[Point3], t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| points[v as usize]);
+        (b - a).cross(&(c - a)).norm()
+    };
+    let mut sums = vec![0.0; s.triangles.len()];
+    for (f, &o) in t.faces.iter().zip(&t.origins) {
+        sums[o as usize] += area(&t.mesh.points, f);
+    }
+    for (sum, tri) in sums.iter().zip(&s.triangles) {
+        assert!((sum - area(&s.points, tri)).abs() < 1e-12);
+    }
+    assert!(longest_near(&t.mesh, |_| true) < 0.4);
+    let again = Tetrahedralizer::new().boundary(Boundary::Split).sizing(Sizing::Constant(0.15)).run(&plc).unwrap();
+    assert_eq!(t, again);
+}
+
+#[test]
+fn the_pieces_of_a_long_tube_are_better_than_the_tube() {
+    let s = tube(6, 3, 8.0, true, Vec3::z());
+    let goals = Refinement::default().min_dihedral(25.0);
+    let run = |b| Tetrahedralizer::new().refine(Some(goals)).boundary(b).run(&Plc::from(&s)).unwrap();
+    let (kept, split) = (TetQuality::of(&run(Boundary::Keep).mesh), TetQuality::of(&run(Boundary::Split).mesh));
+    assert!(split.dihedral_min > kept.dihedral_min && split.mean > kept.mean, "{kept:?} {split:?}");
+}
