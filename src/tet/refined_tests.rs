@@ -12,7 +12,10 @@ fn longest_near(mesh: &TetMesh, here: impl Fn(&Point3) -> bool) -> f64 {
     for v in &mesh.tets {
         let p = v.map(|x| mesh.points[x as usize]);
         if p.iter().all(&here) {
-            longest = (0..4).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| (p[i] - p[j]).norm()).fold(longest, f64::max);
+            longest = (0..4)
+                .flat_map(|i| (0..i).map(move |j| (i, j)))
+                .map(|(i, j)| (p[i] - p[j]).norm())
+                .fold(longest, f64::max);
         }
     }
     longest

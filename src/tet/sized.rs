@@ -64,8 +64,8 @@ pub(super) fn size_tree(surface: &TriMesh, sizing: &Sizing, factor: f64) -> Opti
 
 /// The interior points of a run whose sizes are asked for; none where the interior or the sizes say otherwise.
 pub(super) fn sized_points(r: &Request, factor: f64) -> Option<Vec<Point3>> {
-    let asked = !matches!(r.sizing, Sizing::Surface)
-        && matches!(r.interior, Interior::Lattice { cell: None, clearance: None });
+    let asked =
+        !matches!(r.sizing, Sizing::Surface) && matches!(r.interior, Interior::Lattice { cell: None, clearance: None });
     if !asked {
         return None;
     }
@@ -112,7 +112,11 @@ pub(super) fn edge_of_volume(volume: f64) -> f64 {
 }
 
 /// The edge length wanted at a place: that of the field, or everywhere the surface's mean where there is none.
-pub(super) fn size_function(surface: &TriMesh, sizing: &Sizing, volume: Option<f64>) -> impl Fn(&Point3) -> f64 + use<> {
+pub(super) fn size_function(
+    surface: &TriMesh,
+    sizing: &Sizing,
+    volume: Option<f64>,
+) -> impl Fn(&Point3) -> f64 + use<> {
     let tree = size_tree(surface, sizing, 1.0);
     let mean = mean_edge(surface);
     let limit = volume.map_or(f64::INFINITY, edge_of_volume);

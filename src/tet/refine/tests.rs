@@ -96,7 +96,8 @@ mod insertion {
     fn volumes_are_bounded_inside_and_the_boundary_stays() {
         let mut c = cube();
         let before = boundary(&c);
-        let report = refine_complex(&mut c, &Goals { max_volume: Some(0.01), ..Goals::default() }, Vec::new(), |_| true);
+        let report =
+            refine_complex(&mut c, &Goals { max_volume: Some(0.01), ..Goals::default() }, Vec::new(), |_| true);
         c.sanity_check().unwrap();
         assert!(report.points > 10, "{report:?}");
         assert_eq!(before, boundary(&c));
@@ -142,11 +143,20 @@ mod insertion {
     fn bounds_of_regions_are_handed_on() {
         let mut c = cube();
         let bounds: Vec<f64> = (0..c.slots() as u32)
-            .map(|t| if c.is_real(t) && c.verts(t).iter().all(|&v| c.points[v as usize].x <= 0.5) { 0.002 } else { f64::INFINITY })
+            .map(|t| {
+                if c.is_real(t) && c.verts(t).iter().all(|&v| c.points[v as usize].x <= 0.5) {
+                    0.002
+                } else {
+                    f64::INFINITY
+                }
+            })
             .collect();
         // The wall between the halves is frozen, as that between regions is.
-        let wall: Vec<u32> = c.real_tets().flat_map(|t| 4 * t..4 * t + 4)
-            .filter(|&h| c.face(h).iter().all(|&v| c.points[v as usize].x == 0.5)).collect();
+        let wall: Vec<u32> = c
+            .real_tets()
+            .flat_map(|t| 4 * t..4 * t + 4)
+            .filter(|&h| c.face(h).iter().all(|&v| c.points[v as usize].x == 0.5))
+            .collect();
         for h in wall {
             c.freeze(h);
         }
