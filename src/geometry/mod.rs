@@ -3,8 +3,10 @@
 mod aabb;
 mod bvh;
 mod distance;
+mod dyadic;
 mod fans;
 pub mod hilbert;
+pub mod implicit;
 mod integer;
 pub mod predicates;
 mod tri_tri;

@@ -35,6 +35,31 @@ fn list<T: std::fmt::Debug>(ids: &[T], count: usize) -> String {
     named.join(", ") + &more
 }
 
+/// Why the exact tier of recovery has to leave a part of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stuck {
+    /// The surface meets itself there.
+    Intersection,
+    /// No floating-point number leaves room between the parts of the surface that meet there.
+    Precision,
+    /// The edge has fewer than two triangles, and no room was found beside it.
+    Dangling,
+    /// The budget of work was used up.
+    Budget,
+}
+
+impl std::fmt::Display for Stuck {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Intersection => "the surface meets itself there",
+            Self::Precision => "floating-point numbers leave no room between the parts that meet there",
+            Self::Dangling => "it has fewer than two triangles and no room was found beside it",
+            Self::Budget => "the budget of work was used up",
+        })
+    }
+}
+
 /// Why there is no tetrahedral mesh. Ids are those of the input's points and triangles, in ascending order; the first
 /// ten are named, `count` is that of all.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -234,6 +259,14 @@ pub enum TetError {
         edges: Vec<[u32; 2]>,
         /// Triangles that are not in the mesh.
         triangles: Vec<u32>,
+    },
+    /// The exact tier of recovery could not keep a part of the surface.
+    #[error("{part} of the surface could not be recovered: {reason}")]
+    Stuck {
+        /// The part.
+        part: Obstacle,
+        /// Why.
+        reason: Stuck,
     },
     /// The orientation of the surface does not tell inside from outside: shells are nested the wrong way. An error of
     /// the short form only.

@@ -64,7 +64,7 @@ pub mod star;
 
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use complex::Complex;
-pub use error::{Obstacle, TetError};
+pub use error::{Obstacle, Stuck, TetError};
 pub use options::{Boundary, Interior, Refinement, Sizing, TetOptions};
 pub use plc::{InputKind, Plc, Region};
 pub use progress::{Progress, Stage, Watch};

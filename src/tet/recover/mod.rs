@@ -6,6 +6,7 @@
 
 mod blocked;
 mod cavity;
+pub(super) mod exact;
 mod march;
 
 use super::complex::Complex;

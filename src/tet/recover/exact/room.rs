@@ -1,0 +1,120 @@
+//! The deepest point of a convex room: a linear program in four variables (Seidel, 'Small-dimensional linear programming
+//! and convex hulls made easy', 1991). Floating point; what comes out is a proposal.
+
+use crate::geometry::Vec3;
+use crate::tet::delaunay::hash;
+
+/// `a · x ≤ b`.
+type Constraint = ([f64; 4], f64);
+
+/// The point `x` that is furthest from the planes `normal · x + height = 0` among those on their positive sides, and
+/// its distance; normals have length 1. `size` bounds the coordinates.
+pub(super) fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
+    let mut constraints: Vec<Constraint> =
+        planes.iter().map(|(n, h)| ([-n.x, -n.y, -n.z, 1.0], *h / size)).collect();
+    // A fixed shuffle: the expected time is linear.
+    for i in (1..constraints.len()).rev() {
+        constraints.swap(i, hash(i as u64) as usize % (i + 1));
+    }
+    let x = maximize(&constraints, [0.0, 0.0, 0.0, 1.0], 4)?;
+    Some((Vec3::new(x[0], x[1], x[2]) * size, x[3] * size))
+}
+
+/// Maximizes `c · x` over the first `d` coordinates, each between −1 and 1.
+fn maximize(constraints: &[Constraint], c: [f64; 4], d: usize) -> Option<[f64; 4]> {
+    if d == 1 {
+        return interval(constraints, c[0]);
+    }
+    let mut x = c.map(|c| if c > 0.0 { 1.0 } else { -1.0 });
+    for (i, (a, b)) in constraints.iter().enumerate() {
+        let value: f64 = (0..d).map(|k| a[k] * x[k]).sum();
+        if value <= b + 1e-13 {
+            continue;
+        }
+        // The optimum lies on this plane: solve for the coordinate with the largest coefficient, and put it last.
+        let pivot = (0..d).max_by(|&j, &k| a[j].abs().total_cmp(&a[k].abs()))?;
+        if a[pivot].abs() < 1e-13 {
+            return None;
+        }
+        let eliminate = |(e, f): &Constraint| -> Constraint {
+            let factor = e[pivot] / a[pivot];
+            let mut reduced: [f64; 4] = std::array::from_fn(|k| e[k] - factor * a[k]);
+            reduced[pivot] = reduced[d - 1];
+            (reduced, f - factor * b)
+        };
+        let mut below: Vec<Constraint> = constraints[..i].iter().map(eliminate).collect();
+        for bound in [1.0, -1.0] {
+            let mut e = [0.0; 4];
+            e[pivot] = bound;
+            below.push(eliminate(&(e, 1.0)));
+        }
+        let objective = eliminate(&(c, 0.0)).0;
+        let mut y = maximize(&below, objective, d - 1)?;
+        y[d - 1] = y[pivot];
+        let rest: f64 = (0..d).filter(|&k| k != pivot).map(|k| a[k] * y[k]).sum();
+        y[pivot] = (b - rest) / a[pivot];
+        x = y;
+    }
+    Some(x)
+}
+
+fn interval(constraints: &[Constraint], c: f64) -> Option<[f64; 4]> {
+    let (mut low, mut high) = (-1.0_f64, 1.0_f64);
+    for (a, b) in constraints {
+        if a[0] > 1e-15 {
+            high = high.min(b / a[0]);
+        } else if a[0] < -1e-15 {
+            low = low.max(b / a[0]);
+        } else if *b < -1e-12 {
+            return None;
+        }
+    }
+    if low > high + 1e-12 {
+        return None;
+    }
+    Some([if c > 0.0 { high } else { low }, 0.0, 0.0, 0.0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_deepest_point_of_a_box_is_its_middle() {
+        let mut planes = Vec::new();
+        for axis in [Vec3::x(), Vec3::y(), Vec3::z()] {
+            planes.push((axis, 0.0));
+            planes.push((-axis, 3.0));
+        }
+        planes.push((Vec3::new(1.0, 1.0, 1.0).normalize(), 0.0));
+        let (x, depth) = deepest(&planes, 10.0).unwrap();
+        assert!((depth - 1.5).abs() < 1e-9 && (x - Vec3::repeat(1.5)).norm() < 1e-9, "{x} {depth}");
+    }
+
+    #[test]
+    fn a_thin_wedge_has_a_deepest_point() {
+        let angle = 1e-7_f64;
+        let planes = [
+            (Vec3::y(), 0.0),
+            (Vec3::new(angle.sin(), -angle.cos(), 0.0), 0.0),
+            (-Vec3::x(), 1.0),
+            (Vec3::z(), 0.5),
+            (-Vec3::z(), 0.5),
+        ];
+        let (x, depth) = deepest(&planes, 2.0).unwrap();
+        assert!((depth - angle / 2.0).abs() < 1e-9 && x.x > 0.9, "{x} {depth}");
+    }
+
+    #[test]
+    fn random_rooms_hold_their_deepest_point() {
+        for seed in 0..200 {
+            let coin = |k: u64| (hash(seed * 1000 + k) >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+            let planes: Vec<(Vec3, f64)> = (0..60)
+                .map(|k| (Vec3::new(coin(4 * k), coin(4 * k + 1), coin(4 * k + 2)).normalize(), coin(4 * k + 3).abs()))
+                .collect();
+            let (x, depth) = deepest(&planes, 4.0).unwrap();
+            let worst = planes.iter().map(|(n, h)| n.dot(&x) + h).fold(f64::INFINITY, f64::min);
+            assert!((worst - depth).abs() < 1e-9 && depth > 0.0, "{worst} {depth}");
+        }
+    }
+}
