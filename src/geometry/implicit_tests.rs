@@ -21,9 +21,7 @@ impl Sample {
     fn exact(&self) -> Vec<BigRational> {
         match &self.on {
             None => self.at.iter().map(|&x| exact(x)).collect(),
-            Some(on) => {
-                (0..3).map(|k| exact(on.a[k]) + exact(on.t) * (exact(on.b[k]) - exact(on.a[k]))).collect()
-            }
+            Some(on) => (0..3).map(|k| exact(on.a[k]) + exact(on.t) * (exact(on.b[k]) - exact(on.a[k]))).collect(),
         }
     }
 }

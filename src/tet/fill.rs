@@ -8,6 +8,7 @@ use super::optimize::{Effort, OptimizeOptions, OptimizeReport, optimize_complex}
 use super::options::{Interior, Refinement, Sizing};
 use super::plc::{InputKind, Region};
 use super::progress::{Stage, Watch};
+use super::recover::exact::recover_exact;
 use super::recover::{self, RecoverySummary};
 use super::refine::RefineReport;
 use super::regions::Regions;
@@ -128,12 +129,22 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
         let inner = points.len();
         points.extend(box_corners(&surface.points));
         let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
-        drop(points);
         r.watch.report(Stage::Delaunay, 1, 1)?;
         match recover::recover(&mut complex, surface, r.edges, attempt, r.watch) {
             Ok(summary) => return Ok((complex, summary)),
             Err(TetError::NotRecovered { edges, triangles })
                 if attempt + 1 < ATTEMPTS && edges.len() + triangles.len() <= FEW => {}
+            Err(TetError::NotRecovered { edges, triangles }) => {
+                drop(complex);
+                let (complex, exact) =
+                    recover_exact(&points, &surface.triangles, r.segments).map_err(|error| diagnosis(r, error))?;
+                let summary = RecoverySummary {
+                    missing_edges: edges.len(),
+                    missing_triangles: triangles.len(),
+                    steiner_points: exact.steiner_points,
+                };
+                return Ok((complex, summary));
+            }
             Err(TetError::Cancelled) => return Err(TetError::Cancelled),
             Err(error) => return Err(diagnosis(r, error)),
         }

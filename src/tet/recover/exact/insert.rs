@@ -87,7 +87,13 @@ impl Digger {
             for i in 0..3 {
                 let [p, q, r] = face_of(&[a, d, b, v], i);
                 // The edge of the wall is what the face has beside `v`.
-                let (from, to) = if p == v { (q, r) } else if q == v { (r, p) } else { (p, q) };
+                let (from, to) = if p == v {
+                    (q, r)
+                } else if q == v {
+                    (r, p)
+                } else {
+                    (p, q)
+                };
                 let half = 4 * t + i as u32;
                 match self.pairs.remove(&(to, from)) {
                     Some(other) => s.c.glue(half, other),

@@ -51,7 +51,11 @@ pub(in crate::tet) fn recover_exact(
     let mut s = Space::new(delaunay(&positive_zeros)?);
     let mut segments = Segments::new(&positive_zeros, triangles, edges);
     let on_segments = segments.recover(&mut s)?;
+    #[cfg(test)]
+    s.check();
     let mut facets = facets::recover(&mut s, &segments, triangles)?;
+    #[cfg(test)]
+    s.check();
     let summary = ExactSummary { on_segments, facets: facets.missing, steiner_points: 0 };
     let mut push = Push::new(&mut s, &mut segments, &mut facets, triangles);
     push.all()?;

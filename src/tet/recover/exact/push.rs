@@ -119,7 +119,16 @@ impl<'a> Push<'a> {
                 }
             }
         }
-        Self { s, segments, facets, triangles, around, star: Star::default(), free: Vec::new(), changes: Changes::default() }
+        Self {
+            s,
+            segments,
+            facets,
+            triangles,
+            around,
+            star: Star::default(),
+            free: Vec::new(),
+            changes: Changes::default(),
+        }
     }
 
     /// Pushes all vertices off their segments. Those that have no room are tried again when others have gone; little

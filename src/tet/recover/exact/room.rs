@@ -10,8 +10,7 @@ type Constraint = ([f64; 4], f64);
 /// The point `x` that is furthest from the planes `normal · x + height = 0` among those on their positive sides, and
 /// its distance; normals have length 1. `size` bounds the coordinates.
 pub(super) fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
-    let mut constraints: Vec<Constraint> =
-        planes.iter().map(|(n, h)| ([-n.x, -n.y, -n.z, 1.0], *h / size)).collect();
+    let mut constraints: Vec<Constraint> = planes.iter().map(|(n, h)| ([-n.x, -n.y, -n.z, 1.0], *h / size)).collect();
     // A fixed shuffle: the expected time is linear.
     for i in (1..constraints.len()).rev() {
         constraints.swap(i, hash(i as u64) as usize % (i + 1));

@@ -92,9 +92,10 @@ impl Wrapper {
     /// Whether a wall cuts through a tetrahedron.
     fn crossed(&self, s: &Space, tet: [u32; 4], walls: &[[u32; 3]]) -> bool {
         let (low, high) = bounds(s, &tet);
-        self.boxes.iter().zip(walls).any(|((l, h), wall)| {
-            (0..3).all(|k| l[k] <= high[k] && low[k] <= h[k]) && !separated(s, &tet, wall)
-        })
+        self.boxes
+            .iter()
+            .zip(walls)
+            .any(|((l, h), wall)| (0..3).all(|k| l[k] <= high[k] && low[k] <= h[k]) && !separated(s, &tet, wall))
     }
 }
 
