@@ -598,8 +598,8 @@ fn what_needs_no_choice_is_repaired() {
     // Facets keep their markers, points what belongs to them.
     let doubled = cube_smesh()
         .replace("8 3 0 0", "9 3 0 0")
-        .replace("6 1\n", "9 1 1 1\n6 1\n")
-        .replace("4 1 3 4 2 10", "4 9 2 4 3 10");
+        .replace("6 1\n", "9 1 1 0\n6 1\n")
+        .replace("4 1 3 4 2 10", "4 1 3 9 2 10");
     let input = text(&folder, "d.smesh", &doubled);
     assert_code(&fill(&input, &out, &[]), BAD_INPUT);
     let out = folder.path().join("d.ele");
