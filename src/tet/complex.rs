@@ -78,6 +78,11 @@ pub(super) struct Cell {
     pub(super) mates: [u32; 4],
 }
 
+impl Cell {
+    /// No tetrahedron.
+    pub(super) const EMPTY: Self = Self { verts: [NONE; 4], mates: [NONE; 4] };
+}
+
 /// Tetrahedra and ghosts over a set of points. See the module's text for half-faces and ghosts.
 #[derive(Clone, Debug, Default)]
 pub struct Complex {

@@ -3,7 +3,7 @@
 use super::conflict::{Bounds, Site, View, in_sphere};
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
-use crate::tet::complex::{Cell, Complex, GHOST, NONE, face_of};
+use crate::tet::complex::{Cell, GHOST, NONE, face_of};
 use rustc_hash::FxHashMap;
 
 /// Cavities with at most this many vertices match the new tetrahedra through a square table.
@@ -241,7 +241,7 @@ impl Inserter {
         }
         while self.created.len() < needed {
             let slot = self.free.pop().unwrap_or_else(|| {
-                self.cells.push(Cell { verts: [NONE; 4], mates: [NONE; 4] });
+                self.cells.push(Cell::EMPTY);
                 self.cells.len() as u32 - 1
             });
             self.created.push(slot);
@@ -315,16 +315,29 @@ impl Inserter {
         self.pairs = pairs;
     }
 
-    /// The complex over the points in their original order: vertex `v` becomes `order[v]`.
-    #[inline(never)]
-    pub(super) fn finish(self, points: Vec<Point3>, order: &[u32]) -> Complex {
-        let Self { sites, mut cells, free, ghost, .. } = self;
-        drop(sites);
-        // Slots that are free now hold tetrahedra of the past.
-        for &t in &free {
-            cells[t as usize].verts = [NONE; 4];
+    /// Empties the slots that are free now and hold tetrahedra of the past, and lets go of what only insertion needs.
+    fn without_past(mut self) -> Self {
+        self.sites = Vec::new();
+        for &t in &self.free {
+            self.cells[t as usize].verts = [NONE; 4];
         }
-        let mut own = vec![NONE; points.len()];
+        self
+    }
+
+    /// The tetrahedra, vertex `v` having become `order[v]`, and the slots without one.
+    pub(super) fn into_cells(self, order: &[u32]) -> (Vec<Cell>, Vec<u32>) {
+        let Self { mut cells, free, .. } = self.without_past();
+        for v in cells.iter_mut().flat_map(|cell| &mut cell.verts) {
+            *v = order.get(*v as usize).copied().unwrap_or(GHOST);
+        }
+        (cells, free)
+    }
+
+    /// The tetrahedra over the points in their original order, vertex `v` having become `order[v]`; the slots without
+    /// one; for each point a tetrahedron that has it.
+    pub(super) fn finish(self, order: &[u32]) -> (Vec<Cell>, Vec<u32>, Vec<u32>) {
+        let Self { mut cells, free, ghost, .. } = self.without_past();
+        let mut own = vec![NONE; order.len()];
         for (t, cell) in (0..).zip(&mut cells) {
             for v in &mut cell.verts {
                 if *v == ghost {
@@ -335,11 +348,11 @@ impl Inserter {
                 }
             }
         }
-        let mut vertex_tet = vec![NONE; points.len()];
+        let mut vertex_tet = vec![NONE; order.len()];
         for (&new, &t) in order.iter().zip(&own) {
             vertex_tet[new as usize] = t;
         }
-        Complex::from_cells(points, cells, free, vertex_tet)
+        (cells, free, vertex_tet)
     }
 }
 

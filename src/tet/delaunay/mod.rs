@@ -3,11 +3,14 @@
 //!
 //! Cospherical points are decided by a symbolic perturbation of their lifts (Devillers, Teillaud, 'Perturbations and
 //! Delaunay triangulations in 3D', 2003), which depends on coordinates alone: the answer is unique, whatever the order
-//! of the points, and has no flat tetrahedra.
+//! of the points, and has no flat tetrahedra. Large sets are therefore cut in two, which are tetrahedralized in parallel
+//! and merged.
 
 mod conflict;
 mod insert;
+mod merge;
 mod order;
+mod parallel;
 mod perturb;
 
 use super::complex::Complex;
@@ -26,7 +29,19 @@ pub use perturb::in_sphere_perturbed;
 /// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`].
 pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
     validate(points)?;
+    if points.len() >= parallel::SPLIT_FROM
+        && let Some((cells, vertex_tet)) = parallel::tetrahedralize(points)
+    {
+        return Ok(Complex::from_cells(points.to_vec(), cells, Vec::new(), vertex_tet));
+    }
     let order = brio(points);
+    let inserter = insert_all(points, &order)?;
+    let (cells, free, vertex_tet) = inserter.finish(&order);
+    Ok(Complex::from_cells(points.to_vec(), cells, free, vertex_tet))
+}
+
+/// All points inserted in this order: vertex `v` of the inserter is the point `order[v]`.
+fn insert_all(points: &[Point3], order: &[u32]) -> Result<Inserter, TetError> {
     let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
     let seed = seed_tet(&sorted).ok_or(TetError::Flat)?;
     let mut inserter = Inserter::new(&sorted);
@@ -47,7 +62,7 @@ pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
         let pairs = duplicates.iter().take(NAMED).map(|&(a, b)| [a, b]).collect();
         return Err(TetError::DuplicatePoints { pairs, count, position });
     }
-    Ok(inserter.finish(points.to_vec(), &order))
+    Ok(inserter)
 }
 
 fn validate(points: &[Point3]) -> Result<(), TetError> {

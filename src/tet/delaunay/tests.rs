@@ -141,3 +141,43 @@ proptest! {
         }
     }
 }
+
+fn random_points(count: usize) -> Vec<Point3> {
+    let unit = |i: u64| (hash(i) >> 11) as f64 / (1u64 << 53) as f64;
+    (0..count as u64).map(|i| Point3::new(unit(3 * i), unit(3 * i + 1), unit(3 * i + 2))).collect()
+}
+
+/// In parts and merged, what comes out is the tetrahedralization in one piece, from any number of threads in the same
+/// order.
+#[test]
+fn parts_merge_to_the_whole() {
+    let grid =
+        (0..8000).map(|i| Point3::new(f64::from(i % 20) * 0.1, f64::from(i / 20 % 20) * 0.1, f64::from(i / 400)));
+    let shell = random_points(30_000).into_iter().map(|p| p * 2.0 - nalgebra::Vector3::repeat(1.0));
+    let ball: Vec<Point3> = shell.filter(|p| p.coords.norm() < 1.0).collect();
+    for (points, parts) in [(random_points(20_000), 4), (grid.collect(), 2), (ball, 3)] {
+        let whole = delaunay(&points).unwrap();
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let (cells, vertex_tet) =
+                pool.install(|| parallel::in_parts(&points, points.len() / parts)).expect("worth while");
+            Complex::from_cells(points.clone(), cells, Vec::new(), vertex_tet)
+        };
+        let merged = run(1);
+        merged.sanity_check().unwrap();
+        assert_eq!(canonical(&whole), canonical(&merged));
+        let tets = |c: &Complex| c.real_tets().map(|t| c.verts(t)).collect::<Vec<_>>();
+        let first = tets(&merged);
+        for threads in [2, 7] {
+            assert_eq!(first, tets(&run(threads)));
+        }
+    }
+}
+
+/// Where nearly all tetrahedra cross the cut, nothing is cut.
+#[test]
+fn points_on_a_sphere_stay_in_one_piece() {
+    let points: Vec<Point3> = random_points(3000).iter().map(|p| p * 2.0 - nalgebra::Vector3::repeat(1.0)).collect();
+    let on_sphere: Vec<Point3> = points.iter().map(|p| Point3::from(p.coords.normalize())).collect();
+    assert!(parallel::in_parts(&on_sphere, 1000).is_none());
+}
