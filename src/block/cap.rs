@@ -392,7 +392,7 @@ fn relaxed(
                 hold[v] = Hold::Free;
             }
         }
-        Relaxation::new(&mut surface, &mut level, edge, hold).mend(if leaned_on { 12 } else { 4 });
+        Relaxation::new(&mut surface, &mut level, edge, hold).mend(if leaned_on { 12 } else { 3 });
     }
     let faces = surface.live_triangles();
     let cap = faces.iter().map(|&f| cap.get(f as usize).copied().flatten()).collect();

@@ -69,7 +69,12 @@ impl<'a, L: Level> Relaxation<'a, L> {
         let normals = vec![Vec3::zeros(); surface.points.len()];
         let patch = (!hold.is_empty()).then(|| Patch::of(surface, &hold));
         let mut this = Self { surface, level, edge, hold, normals, patch };
-        this.project();
+        // Contours and relaxed walls lie near the level: the normals of the surface will do until the first projection.
+        for i in 0..this.vertex_count() {
+            let v = this.vertex(i);
+            let sum: Vec3 = this.surface.fan(v).map(|h| this.surface.area_vector(h)).sum();
+            this.normals[v as usize] = sum.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
+        }
         this
     }
 

@@ -19,7 +19,16 @@ pub(crate) fn weave(low: &[Point3], high: &[Point3], center: &Point3, axis: &Vec
     let distance = |j: usize| (high[j] - low[0]).norm_squared();
     let nearest = (0..m).min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
     let spread = SPREAD.min((m - 1) / 2);
-    let cost = |step: Step| badness(step, low, high, center, axis);
+    // Every triangle is wanted once for each first rung.
+    let of = |step: Step| badness(step, low, high, center, axis);
+    let along_low: Vec<f64> =
+        (0..n * m).map(|k| of(Step::Low { from: k / m, to: (k / m + 1) % n, apex: k % m })).collect();
+    let along_high: Vec<f64> =
+        (0..n * m).map(|k| of(Step::High { from: k % m, to: (k % m + 1) % m, apex: k / m })).collect();
+    let cost = |step: Step| match step {
+        Step::Low { from, apex, .. } => along_low[from * m + apex],
+        Step::High { from, apex, .. } => along_high[apex * m + from],
+    };
     let mut best: Option<(f64, Vec<Step>)> = None;
     for k in 0..=2 * spread {
         let first = (nearest + m + k - spread) % m;

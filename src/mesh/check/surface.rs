@@ -11,6 +11,7 @@ pub(super) struct Boundary<'a> {
     points: &'a [Point3],
     faces: &'a [[u32; 3]],
     edges: TriAdjacency,
+    parts: Vec<Part>,
 }
 
 /// A boundary surface: faces joined by vertices.
@@ -22,7 +23,7 @@ struct Part {
 
 impl<'a> Boundary<'a> {
     pub(super) fn new(points: &'a [Point3], faces: &'a [[u32; 3]]) -> Self {
-        Self { points, faces, edges: tri_adjacency(faces, points.len()) }
+        Self { points, faces, edges: tri_adjacency(faces, points.len()), parts: parts(points.len(), faces) }
     }
 
     /// Start and end of an edge (`3 · face + i`).
@@ -99,35 +100,8 @@ impl<'a> Boundary<'a> {
         Some(3 * face + i as u32)
     }
 
-    /// The boundary surfaces, by their smallest vertex.
-    fn parts(&self) -> Vec<Part> {
-        let mut sets = DisjointSets::new(self.points.len());
-        let mut on = vec![false; self.points.len()];
-        for &[a, b, c] in self.faces {
-            sets.join(a, b);
-            sets.join(b, c);
-            for v in [a, b, c] {
-                on[v as usize] = true;
-            }
-        }
-        let mut slot = vec![NONE; self.points.len()];
-        let mut parts: Vec<Part> = Vec::new();
-        for v in (0..self.points.len() as u32).filter(|&v| on[v as usize]) {
-            let root = sets.root(v) as usize;
-            if slot[root] == NONE {
-                slot[root] = parts.len() as u32;
-                parts.push(Part { vertex: v, vertices: 0, faces: 0 });
-            }
-            parts[slot[root] as usize].vertices += 1;
-        }
-        for face in self.faces {
-            parts[slot[sets.root(face[0]) as usize] as usize].faces += 1;
-        }
-        parts
-    }
-
     pub(super) fn part_count(&self) -> usize {
-        self.parts().len()
+        self.parts.len()
     }
 
     /// Compares the genera of the boundary surfaces, which must be closed manifolds, with the expected loops.
@@ -136,7 +110,7 @@ impl<'a> Boundary<'a> {
         let mut expected = expected.to_vec();
         expected.sort_unstable();
         let mut found = Vec::new();
-        for part in self.parts() {
+        for part in &self.parts {
             // In a closed triangle surface 2 E = 3 F, so χ = V − F / 2 = 2 − 2 genus.
             let genus = 1 - (2 * part.vertices - part.faces) / 4;
             found.push((genus.max(0) as u32, part.vertex));
@@ -175,4 +149,31 @@ impl<'a> Boundary<'a> {
         }
         (tally.done(), intersections)
     }
+}
+
+/// The boundary surfaces, by their smallest vertex.
+fn parts(points: usize, faces: &[[u32; 3]]) -> Vec<Part> {
+    let mut sets = DisjointSets::new(points);
+    let mut on = vec![false; points];
+    for &[a, b, c] in faces {
+        sets.join(a, b);
+        sets.join(b, c);
+        for v in [a, b, c] {
+            on[v as usize] = true;
+        }
+    }
+    let mut slot = vec![NONE; points];
+    let mut parts: Vec<Part> = Vec::new();
+    for v in (0..points as u32).filter(|&v| on[v as usize]) {
+        let root = sets.root(v) as usize;
+        if slot[root] == NONE {
+            slot[root] = parts.len() as u32;
+            parts.push(Part { vertex: v, vertices: 0, faces: 0 });
+        }
+        parts[slot[root] as usize].vertices += 1;
+    }
+    for face in faces {
+        parts[slot[sets.root(face[0]) as usize] as usize].faces += 1;
+    }
+    parts
 }

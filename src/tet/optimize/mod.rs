@@ -72,7 +72,8 @@ impl OptimizeOptions {
     /// What an effort comes to.
     pub fn of(effort: Effort) -> Self {
         match effort {
-            Effort::Fast => Self::default(),
+            // A second round adds 0.002 to the mean radius ratio for a third of the time.
+            Effort::Fast => Self { rounds: 1, ..Self::default() },
             Effort::Full => Self::full(),
         }
     }
