@@ -76,8 +76,8 @@ impl BlockParams {
 
 /// Side of the lattice's cubes inside a block and its distance from the wall, in mean edge lengths of the wall: dense and
 /// close enough for a mean radius ratio of 0.84 in vessels of three voxels across.
-const CELL: f64 = 1.42;
-const CLEARANCE: f64 = 0.36;
+const CELL: f64 = 1.44;
+const CLEARANCE: f64 = 0.37;
 
 /// How a block is filled. There is no certificate: the whole mesh is checked in the end.
 pub(super) fn filling(surface: &TriMesh) -> TetOptions {

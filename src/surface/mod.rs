@@ -37,7 +37,7 @@ pub struct SurfaceParams {
 impl SurfaceParams {
     /// Usual parameters for a cell edge.
     pub fn with_voxel(voxel: f64) -> Self {
-        Self { voxel, kappa: 0.4, shift: [0.0; 3], edge: 1.008, rounds: 2, max_cells: 20_000_000 }
+        Self { voxel, kappa: 0.4, shift: [0.0; 3], edge: 0.998, rounds: 2, max_cells: 20_000_000 }
     }
 }
 
