@@ -145,7 +145,7 @@ fn new_tetrahedra_take_the_block_of_their_surroundings() {
         &mut tube.blocks,
         &tube.joints,
         &tube.caps,
-        &JointOptions { rounds: 1, ..JointOptions::default() },
+        &JointOptions { rounds: 1, improve_below: f64::INFINITY, ..JointOptions::default() },
         &split,
     );
     assert_eq!(tube.mesh.tets.len(), tets + 3 * report.tets);
