@@ -1,7 +1,7 @@
 //! For tetrahedra that neither moves nor flips can mend: a new vertex in a cavity around them, or the contraction of
 //! an edge that takes an inner vertex away.
 
-use super::Improver;
+use super::{Effort, Improver};
 use crate::geometry::Point3;
 use crate::mesh::quality::{TET_EDGES, radius_ratio};
 use crate::tet::star::EdgeRing;
@@ -93,7 +93,11 @@ impl Improver {
         let mut k = std::mem::take(&mut self.cavity);
         k.tets.clear();
         k.tets.extend_from_slice(self.star.around(&self.c, v));
-        let floor = self.worst_of(&k.tets) * GAIN;
+        // Full effort asks for less strain instead of a better worst, which may be past help.
+        let floor = match self.options.effort {
+            Effort::Fast => self.worst_of(&k.tets) * GAIN,
+            Effort::Full => self.report.worst_before,
+        };
         k.neighbors.clear();
         k.neighbors.extend(k.tets.iter().flat_map(|&t| self.c.verts(t)).filter(|&w| w != v));
         k.neighbors.sort_unstable();

@@ -11,7 +11,7 @@ use crate::tet::star::Star;
 pub(super) const STALE: f64 = f64::NAN;
 
 /// Fall of the strain from which a change is worth making.
-const EASED: f64 = 0.02;
+pub(super) const EASED: f64 = 0.02;
 
 /// A complex under improvement, with the radius ratio of each tetrahedron at hand.
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! Small-polyhedron reconnection: the tetrahedra of a small cavity are exchanged for the best others with the same
+//! Small-polyhedron reconnection: the tetrahedra of a small cavity are exchanged for those with the least strain on the same
 //! vertices and the same boundary, found by branch and bound. (Marot, Remacle, 'Quality tetrahedral mesh generation
 //! with HXT', 2020; Liu, Chen, Zheng, 'Small polyhedron reconnection for mesh improvement', 2006.) It contains edge
 //! removal, multi-face removal and all their compositions within the cavity.
@@ -6,7 +6,8 @@
 //! Positive tetrahedra whose faces match each other and the cavity's boundary cover the cavity once, so the search need
 //! not test for intersections; volume and enclosed vertices merely prune it.
 
-use super::Improver;
+use super::improver::EASED;
+use super::{Improver, STRAINED, strain};
 use crate::geometry::predicates::orient3d;
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::Complex;
@@ -17,10 +18,8 @@ const MAX_VERTICES: usize = 14;
 const MAX_FRONT: usize = 64;
 /// Slots of the table of tetrahedra: as many as four of the vertices can be chosen.
 const TABLE: usize = choose(MAX_VERTICES, 4);
-/// What the exchange must gain in the worst radius ratio, relative to the old one.
-const GAIN: f64 = 1.05;
-/// The search ends when the worst radius ratio has come this far.
-const GOOD: f64 = 0.5;
+/// The search ends when the strain has fallen to this part of what it was.
+const GOOD: f64 = 0.3;
 
 const fn choose(n: usize, k: usize) -> usize {
     match k {
@@ -60,7 +59,12 @@ pub(super) struct Reconnection {
     best: Vec<[u8; 4]>,
     new: Vec<[u32; 4]>,
     created: Vec<u32>,
+    /// Radius ratio that each new tetrahedron must exceed.
     floor: f64,
+    /// Strain that the new tetrahedra must stay below together.
+    limit: f64,
+    /// Strain at which the search may end.
+    enough: f64,
     nodes: usize,
     /// Volume below which a difference is rounding.
     slack: f64,
@@ -84,8 +88,10 @@ impl Improver {
         if r.tets.len() < 3 || !r.outline(&self.c) {
             return false;
         }
-        let floor = self.worst_of(&r.tets) * GAIN;
-        r.floor = floor;
+        r.limit = self.strain_of(&r.tets) - EASED;
+        r.enough = r.limit * GOOD;
+        // A tetrahedron with more strain than all of the old ones is of no use.
+        r.floor = self.report.worst_before.max(STRAINED * (-r.limit).exp() * 0.99);
         r.nodes = nodes;
         r.search(&self.c);
         if r.best.is_empty() {
@@ -199,8 +205,7 @@ impl Reconnection {
             let mates = self.mates_of(c, v);
             self.front.push(FrontFace { v, mates });
         }
-        let worst = f64::INFINITY;
-        self.branch(c, worst, self.volume);
+        self.branch(c, 0.0, self.volume);
     }
 
     /// The vertices with which a face makes a tetrahedron above the floor.
@@ -226,16 +231,16 @@ impl Reconnection {
     }
 
     /// Closes the front with tetrahedra above the floor; depth is bounded by the volume and by the number of steps.
-    fn branch(&mut self, c: &Complex, worst: f64, volume: f64) {
+    fn branch(&mut self, c: &Complex, sum: f64, volume: f64) {
         if self.front.is_empty() {
-            if worst > self.floor && volume.abs() <= self.slack * 1e3 {
-                self.floor = worst * 1.001;
+            if sum < self.limit && volume.abs() <= self.slack * 1e3 {
+                self.limit = sum;
                 self.best.clear();
                 self.best.extend_from_slice(&self.stack);
             }
             return;
         }
-        if self.nodes == 0 || self.stack.len() > 3 * MAX_VERTICES || (self.floor >= GOOD && !self.best.is_empty()) {
+        if self.nodes == 0 || self.stack.len() > 3 * MAX_VERTICES || (self.limit <= self.enough && !self.best.is_empty()) {
             return;
         }
         self.nodes -= 1;
@@ -249,7 +254,7 @@ impl Reconnection {
         for v in 0..self.vertices.len() as u8 {
             if face.mates & usable & (1 << v) != 0 {
                 let (ratio, size) = self.tet(c, [v, face.v[0], face.v[1], face.v[2]]);
-                if ratio > self.floor && size <= volume + self.slack {
+                if ratio > self.floor && sum + strain(ratio) < self.limit && size <= volume + self.slack {
                     choices[count] = (ratio, v);
                     count += 1;
                 }
@@ -257,10 +262,12 @@ impl Reconnection {
         }
         choices[..count].sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         for &(ratio, v) in &choices[..count] {
-            if ratio <= self.floor {
+            // The limit may have fallen since.
+            let sum = sum + strain(ratio);
+            if sum >= self.limit {
                 break;
             }
-            self.take(c, at, v, worst.min(ratio), volume);
+            self.take(c, at, v, sum, volume);
             if self.nodes == 0 {
                 return;
             }
@@ -268,7 +275,7 @@ impl Reconnection {
     }
 
     /// Puts tetrahedron (v, face `at`) into the room, goes on, and takes it out again.
-    fn take(&mut self, c: &Complex, at: usize, v: u8, worst: f64, volume: f64) {
+    fn take(&mut self, c: &Complex, at: usize, v: u8, sum: f64, volume: f64) {
         let [a, b, d] = self.front[at].v;
         if self.encloses(c, [v, a, b, d]) {
             return;
@@ -301,7 +308,7 @@ impl Reconnection {
         }
         if fits {
             self.stack.push([v, a, b, d]);
-            self.branch(c, worst, volume - size);
+            self.branch(c, sum, volume - size);
             self.stack.pop();
         }
         for step in (0..steps).rev() {

@@ -12,7 +12,9 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Largest cavity.
-const MAX_CAVITY: usize = 512;
+const MAX_CAVITY: usize = 256;
+/// Times that a cavity is trimmed before its point is given up.
+const MAX_TRIMS: usize = 24;
 /// Steps of a walk to a point.
 const MAX_STEPS: usize = 200;
 /// Radius ratio that a new tetrahedron on the boundary has to have, or else no less than the worst it replaces.
@@ -77,6 +79,8 @@ pub fn refine_complex(
         cavity: Vec::new(),
         new: Vec::new(),
         created: Vec::new(),
+        flawed: Vec::new(),
+        outline: Vec::new(),
     };
     for t in 0..r.c.slots() as u32 {
         if r.c.is_real(t) {
@@ -114,6 +118,10 @@ struct Refiner<'a, 'g> {
     cavity: Vec<u32>,
     new: Vec<[u32; 4]>,
     created: Vec<u32>,
+    /// What has to leave the cavity.
+    flawed: Vec<u32>,
+    /// Vertices of the cavity's faces.
+    outline: Vec<u32>,
 }
 
 impl Refiner<'_, '_> {
@@ -244,17 +252,23 @@ impl Refiner<'_, '_> {
         }
     }
 
-    /// Takes out of the cavity what hides a face, a vertex or a frozen face from `p`; false when nothing is left.
+    /// Takes out of the cavity what hides a face, a vertex or a frozen face from `p`; false when `start` itself does.
     fn trim(&mut self, start: u32, p: &Point3) -> bool {
-        loop {
-            let Some(bad) = self.flaw(start, p) else { return true };
-            if bad == start {
+        for _ in 0..MAX_TRIMS {
+            self.flawed.clear();
+            self.find_flaws(start, p);
+            if self.flawed.is_empty() {
+                return true;
+            }
+            if self.flawed.contains(&start) {
                 return false;
             }
-            self.stamp[bad as usize] = 0;
-            self.cavity.retain(|&t| t != bad);
+            for k in 0..self.flawed.len() {
+                self.stamp[self.flawed[k] as usize] = 0;
+            }
             self.keep_connected(start);
         }
+        false
     }
 
     /// Drops what is not connected to `start` within the cavity.
@@ -275,28 +289,36 @@ impl Refiner<'_, '_> {
         }
     }
 
-    fn flaw(&self, start: u32, p: &Point3) -> Option<u32> {
-        let mut outline: Vec<u32> = Vec::with_capacity(4 * self.cavity.len());
-        for &t in &self.cavity {
+    fn find_flaws(&mut self, start: u32, p: &Point3) {
+        let mut outline = std::mem::take(&mut self.outline);
+        outline.clear();
+        for k in 0..self.cavity.len() {
+            let t = self.cavity[k];
             for half in 4 * t..4 * t + 4 {
                 let mate = self.c.mate(half);
                 if self.is_in(mate >> 2) {
                     if self.c.is_frozen(half) {
-                        return Some(if t == start { mate >> 2 } else { t });
+                        self.flawed.push(if t == start { mate >> 2 } else { t });
                     }
                     continue;
                 }
                 let f = self.c.face(half);
                 let [a, b, d] = f.map(|v| &self.c.points[v as usize]);
                 if orient3d(p, a, b, d) <= 0.0 {
-                    return Some(t);
+                    self.flawed.push(t);
                 }
                 outline.extend(f);
             }
         }
-        outline.sort_unstable();
-        let hidden = |t: u32| self.c.verts(t).iter().any(|v| outline.binary_search(v).is_err());
-        self.cavity.iter().rev().copied().find(|&t| hidden(t))
+        if self.flawed.is_empty() {
+            outline.sort_unstable();
+            outline.dedup();
+            let hidden = |t: u32| self.c.verts(t).iter().any(|v| outline.binary_search(v).is_err());
+            // One of the tetrahedra around a hidden vertex has to go, not `start` if possible.
+            let bad = self.cavity.iter().rev().copied().find(|&t| hidden(t));
+            self.flawed.extend(bad);
+        }
+        self.outline = outline;
     }
 
     /// Whether a point in the cavity makes neither short edges nor bad tetrahedra.
