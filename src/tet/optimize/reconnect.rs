@@ -1,5 +1,5 @@
-//! Small-polyhedron reconnection: the tetrahedra of a small cavity are exchanged for those with the least strain on the same
-//! vertices and the same boundary, found by branch and bound. (Marot, Remacle, 'Quality tetrahedral mesh generation
+//! Small-polyhedron reconnection: the tetrahedra of a small cavity are exchanged for those with the least strain on the
+//! same vertices and the same boundary, found by branch and bound. (Marot, Remacle, 'Quality tetrahedral mesh generation
 //! with HXT', 2020; Liu, Chen, Zheng, 'Small polyhedron reconnection for mesh improvement', 2006.) It contains edge
 //! removal, multi-face removal and all their compositions within the cavity.
 //!
@@ -240,7 +240,10 @@ impl Reconnection {
             }
             return;
         }
-        if self.nodes == 0 || self.stack.len() > 3 * MAX_VERTICES || (self.limit <= self.enough && !self.best.is_empty()) {
+        if self.nodes == 0
+            || self.stack.len() > 3 * MAX_VERTICES
+            || (self.limit <= self.enough && !self.best.is_empty())
+        {
             return;
         }
         self.nodes -= 1;
