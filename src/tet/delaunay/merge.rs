@@ -15,33 +15,44 @@ use rustc_hash::FxHashMap;
 /// The tetrahedra of one side of a cut.
 pub(super) struct Half {
     cells: Vec<Cell>,
-    /// Per tetrahedron whether it is not final.
+    /// Those that are not final, in ascending order.
+    open: Vec<u32>,
+    /// Per tetrahedron whether it is one of them.
     is_open: Vec<bool>,
 }
 
 impl Half {
-    /// Finds the final ones of the tetrahedra on the lower or the upper side of a cut.
+    /// Finds the tetrahedra on the lower or the upper side of a cut that are not final: from the ghosts inward, as
+    /// balls that reach a point of the plane are those of a tetrahedron and of all that one meets on the way from there
+    /// to the point.
     pub(super) fn new(points: &[Point3], cells: Vec<Cell>, cut: Cut, lower: bool) -> Self {
         let is_final = |cell: &Cell| {
             let corners = cell.verts.map(|v| points.get(v as usize));
             let [Some(a), Some(b), Some(c), Some(d)] = corners else { return false };
             clear_of(cut, lower, [a, b, c, d])
         };
-        let is_open = cells.par_iter().map(|cell| !is_final(cell)).collect();
-        Self { cells, is_open }
+        let mut is_open: Vec<bool> = cells.iter().map(|cell| cell.verts[3] == GHOST).collect();
+        let mut open: Vec<u32> = (0..).zip(&is_open).filter(|(_, open)| **open).map(|(t, _)| t).collect();
+        let mut head = 0;
+        while let Some(&t) = open.get(head) {
+            head += 1;
+            for n in cells[t as usize].mates.map(|mate| mate >> 2) {
+                if !is_open[n as usize] && !is_final(&cells[n as usize]) {
+                    is_open[n as usize] = true;
+                    open.push(n);
+                }
+            }
+        }
+        open.sort_unstable();
+        Self { cells, open, is_open }
     }
 
     pub(super) fn final_count(&self) -> usize {
-        self.is_open.iter().filter(|open| !**open).count()
+        self.cells.len() - self.open.len()
     }
 
     pub(super) fn into_cells(self) -> Vec<Cell> {
         self.cells
-    }
-
-    /// The tetrahedra that are not final.
-    fn open(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..).zip(&self.is_open).filter(|(_, open)| **open).map(|(t, _)| t)
     }
 }
 
@@ -88,7 +99,7 @@ pub(super) fn merge(
     let mut seam = Seam::default();
     add_seam(&mut seam, &low, 0);
     add_seam(&mut seam, &high, shift);
-    let mut slots: Vec<u32> = low.open().chain(high.open().map(|t| t + shift)).collect();
+    let mut slots: Vec<u32> = low.open.iter().copied().chain(high.open.iter().map(|t| t + shift)).collect();
     let mut cells = low.cells;
     // What becomes of a pointer at a slot that is not final, the seam says.
     let shifted = |cell: &Cell| Cell { verts: cell.verts, mates: cell.mates.map(|mate| mate.wrapping_add(4 * shift)) };
@@ -125,7 +136,7 @@ pub(super) fn compact(mut cells: Vec<Cell>, mut free: Vec<u32>) -> Vec<Cell> {
 fn open_vertices(points: usize, halves: [&Half; 2]) -> Vec<u32> {
     let mut open = vec![false; points];
     for half in halves {
-        for v in half.open().flat_map(|t| half.cells[t as usize].verts) {
+        for v in half.open.iter().flat_map(|&t| half.cells[t as usize].verts) {
             if let Some(slot) = open.get_mut(v as usize) {
                 *slot = true;
             }
@@ -140,7 +151,7 @@ type Seam = FxHashMap<[u32; 3], (u32, [u32; 3])>;
 
 /// Adds the seam of one side, whose tetrahedra are numbered from `shift` on.
 fn add_seam(seam: &mut Seam, half: &Half, shift: u32) {
-    for mate in half.open().flat_map(|t| half.cells[t as usize].mates) {
+    for mate in half.open.iter().flat_map(|&t| half.cells[t as usize].mates) {
         let t = (mate >> 2) as usize;
         if !half.is_open[t] {
             let face = face_of(&half.cells[t].verts, (mate & 3) as usize);

@@ -10,7 +10,7 @@ use crate::geometry::Point3;
 use crate::tet::complex::{Cell, GHOST, NONE};
 use rayon::prelude::*;
 
-/// Sets of as many points are cut in two. Merging adds a quarter to the work, whether or not there are threads that
+/// Sets of as many points are cut in two. Merging adds a seventh to the work, whether or not there are threads that
 /// share it; less than this takes two or three seconds in one piece.
 pub(super) const SPLIT_FROM: usize = 1_200_000;
 
