@@ -10,3 +10,5 @@ mod oracle;
 mod plc;
 #[path = "differential/recorded.rs"]
 mod recorded;
+#[path = "differential/tetgen.rs"]
+mod tetgen;

@@ -1,13 +1,15 @@
 //! Delaunay tetrahedralizations: the set of tetrahedra is CGAL's, also where points are cospherical, for CGAL perturbs
-//! them in the same way; and the volume of the convex hull.
+//! them in the same way. The convex hull has CGAL's and TetGen's volume, and as many faces as TetGen's.
 
 use super::oracle::{self, Random};
-use super::recorded;
+use super::{recorded, tetgen};
 use anastomesh::geometry::Point3;
+use anastomesh::mesh::adjacency::boundary_faces;
 use anastomesh::tet::delaunay::delaunay;
 use std::fmt::Write as _;
 
 const FILE: &str = "delaunay.txt";
+const HULLS: &str = "hull.txt";
 
 /// Tetrahedra with ascending vertices, in ascending order, and the volume of all.
 #[derive(Debug, PartialEq)]
@@ -68,6 +70,36 @@ fn compare(case: &str, points: &[Point3]) {
     assert!((ours.volume - volume).abs() <= 1e-12 * volume, "{case}: {} {volume}", ours.volume);
 }
 
+/// Number of triangles and volume of the convex hull, from the tetrahedra in it.
+type Hull = (usize, f64);
+
+fn our_hull(points: &[Point3]) -> Hull {
+    let mesh = delaunay(points).expect("points in general position").into_mesh();
+    (boundary_faces(&mesh).len(), tetgen::volume(&mesh))
+}
+
+fn their_hull(points: &[Point3]) -> Option<Hull> {
+    let theirs = tetgen::run("-Q", "node", tetgen::points_section(points))?;
+    Some((boundary_faces(&theirs.mesh).len(), tetgen::volume(&theirs.mesh)))
+}
+
+fn compare_hulls(case: &str, points: &[Point3]) {
+    let ours = our_hull(points);
+    let agree = |(faces, volume): Hull| {
+        let near = (ours.1 - volume).abs() <= 1e-9 * volume;
+        assert!(ours.0 == faces && near, "{case}: {ours:?}, TetGen: {faces} {volume}");
+    };
+    if let Some(theirs) = their_hull(points) {
+        if recorded::recording() {
+            recorded::record(HULLS, case, &format!("{} {}", theirs.0, theirs.1));
+        }
+        agree(theirs);
+    }
+    let line = recorded::line(HULLS, case);
+    let (faces, volume) = line.split_once(' ').expect("two numbers");
+    agree((faces.parse().expect("a number"), volume.parse().expect("a number")));
+}
+
 fn random(count: usize, seed: u64, place: impl Fn(&mut Random) -> Point3) -> Vec<Point3> {
     let mut random = Random(seed);
     (0..count).map(|_| place(&mut random)).collect()
@@ -114,6 +146,14 @@ fn cospherical_points() {
     let cylinder =
         (0..40).flat_map(|z| (0..24).map(move |a| (f64::from(a) / 24.0 * std::f64::consts::TAU, f64::from(z))));
     compare("cylinder-960", &cylinder.map(|(a, z)| Point3::new(a.cos(), a.sin(), 0.26 * z)).collect::<Vec<_>>());
+}
+
+#[test]
+fn convex_hulls() {
+    compare_hulls("cube-3000", &random(3000, 2, in_cube));
+    compare_hulls("slab-1000", &random(1000, 3, |r| Point3::new(r.unit(), r.unit(), 1e-4 * r.unit())));
+    compare_hulls("sphere-1000", &random(1000, 6, on_sphere));
+    compare_hulls("grid-8", &grid(8, 1.0));
 }
 
 /// A whole set as it was recorded, of the smallest case.

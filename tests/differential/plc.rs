@@ -1,10 +1,10 @@
 //! Piecewise linear complexes: volume, faces and regions are TetGen's, which with -Y keeps the facets as they are.
 
-use super::{oracle, recorded};
+use super::tetgen::{points_section, volume};
+use super::{recorded, tetgen};
 use anastomesh::geometry::{Point3, Vec3};
 use anastomesh::tet::{InputKind, Interior, Plc, Tetrahedralizer};
 use std::fmt::Write as _;
-use std::process::{Command, Stdio};
 
 const FILE: &str = "plc.txt";
 
@@ -17,34 +17,15 @@ struct Filled {
     volume: f64,
 }
 
-fn volume<'a>(points: &[Point3], tets: impl Iterator<Item = &'a [u32; 4]>) -> f64 {
-    let corners = |t: &[u32; 4]| t.map(|v| points[v as usize]);
-    // TetGen's tetrahedra are turned the other way.
-    tets.map(|t| {
-        let [a, b, c, d] = corners(t);
-        ((b - a).cross(&(c - a)).dot(&(d - a)) / 6.0).abs()
-    })
-    .sum()
-}
-
 fn ours(plc: &Plc) -> Filled {
     let run = Tetrahedralizer::new().kind(InputKind::Plc).interior(Interior::None).optimize(false).run(plc);
     let out = run.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(out.mesh.points[..plc.points.len()], plc.points);
-    Filled {
-        faces: out.faces.len(),
-        regions: out.summary.regions,
-        volume: volume(&out.mesh.points, out.mesh.tets.iter()),
-    }
+    Filled { faces: out.faces.len(), regions: out.summary.regions, volume: volume(&out.mesh) }
 }
 
-fn tetgen(plc: &Plc) -> Option<Filled> {
-    let program = oracle::tetgen()?;
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut poly = format!("{} 3 0 0\n", plc.points.len());
-    for (i, p) in plc.points.iter().enumerate() {
-        let _ = writeln!(poly, "{i} {} {} {}", p.x, p.y, p.z);
-    }
+fn theirs(plc: &Plc) -> Option<Filled> {
+    let mut poly = points_section(&plc.points);
     let _ = writeln!(poly, "{} 0", plc.triangles.len());
     for [a, b, c] in &plc.triangles {
         let _ = writeln!(poly, "1\n3 {a} {b} {c}");
@@ -54,22 +35,8 @@ fn tetgen(plc: &Plc) -> Option<Filled> {
         let _ = writeln!(poly, "{i} {} {} {}", p.x, p.y, p.z);
     }
     poly.push_str("0\n");
-    std::fs::write(folder.path().join("in.poly"), poly).expect("a file");
-    let mut command = Command::new(program);
-    let status = command.args(["-pYQA", "in.poly"]).current_dir(folder.path()).stdout(Stdio::null()).status();
-    assert!(status.is_ok_and(|s| s.success()), "tetgen fails");
-    let rows = |kind: &str| -> Vec<Vec<f64>> {
-        let text = std::fs::read_to_string(folder.path().join(format!("in.1.{kind}"))).expect("TetGen's file");
-        let lines = text.lines().filter(|l| !l.trim_start().starts_with('#')).skip(1);
-        lines.map(|l| l.split_whitespace().map(|w| w.parse().expect("a number")).collect()).collect()
-    };
-    let points: Vec<Point3> = rows("node").iter().map(|r| Point3::new(r[1], r[2], r[3])).collect();
-    let elements = rows("ele");
-    let tets: Vec<[u32; 4]> = elements.iter().map(|r| [1, 2, 3, 4].map(|k| r[k] as u32)).collect();
-    let mut regions: Vec<i64> = elements.iter().map(|r| r[5] as i64).collect();
-    regions.sort_unstable();
-    regions.dedup();
-    Some(Filled { faces: rows("face").len(), regions: regions.len(), volume: volume(&points, tets.iter()) })
+    let theirs = tetgen::run("-pYQA", "poly", poly)?;
+    Some(Filled { faces: theirs.faces, regions: theirs.regions, volume: volume(&theirs.mesh) })
 }
 
 fn compare(case: &str, plc: &Plc) {
@@ -78,7 +45,7 @@ fn compare(case: &str, plc: &Plc) {
         let same = (ours.faces, ours.regions) == (theirs.faces, theirs.regions);
         assert!(same && (ours.volume - theirs.volume).abs() < 1e-9 * theirs.volume, "{case}: {ours:?} {theirs:?}");
     };
-    if let Some(theirs) = tetgen(plc) {
+    if let Some(theirs) = theirs(plc) {
         if recorded::recording() {
             recorded::record(FILE, case, &format!("{} {} {}", theirs.faces, theirs.regions, theirs.volume));
         }
