@@ -24,26 +24,21 @@ pub(super) fn labels_match(volume: &VolumeMesh, faces: &[[u32; 3]]) -> LineResul
     }
     let points = &volume.mesh.points;
     let (real, labelled) = (by_vertices(faces), by_vertices(&volume.boundary));
-    let (mut i, mut j) = (0, 0);
-    while i < real.len() || j < labelled.len() {
-        let key = |list: &[([u32; 3], u32)], at: usize| list.get(at).map_or([u32::MAX; 3], |entry| entry.0);
-        let (a, b) = (key(&real, i), key(&labelled, j));
-        match a.cmp(&b) {
-            Ordering::Equal => {
-                let (face, label) = (faces[real[i].1 as usize], volume.boundary[labelled[j].1 as usize]);
-                if !same_turn(face, label) {
-                    tally.add(|| face_offender(points, label));
-                }
-                (i, j) = (i + 1, j + 1);
-            }
-            Ordering::Less => {
-                tally.add(|| face_offender(points, a));
-                i += 1;
-            }
-            Ordering::Greater => {
-                tally.add(|| face_at(volume, b));
-                j += 1;
-            }
+    let (mut real, mut labelled) = (real.into_iter().peekable(), labelled.into_iter().peekable());
+    loop {
+        let first = match (real.peek(), labelled.peek()) {
+            (None, None) => break,
+            (Some(_), None) => Ordering::Less,
+            (None, Some(_)) => Ordering::Greater,
+            (Some(a), Some(b)) => a.0.cmp(&b.0),
+        };
+        let face = real.next_if(|_| first.is_le()).map(|(_, i)| faces[i as usize]);
+        let label = labelled.next_if(|_| first.is_ge()).map(|(_, j)| volume.boundary[j as usize]);
+        match (face, label) {
+            (Some(face), Some(label)) if same_turn(face, label) => {}
+            (_, Some(label)) => tally.add(|| face_at(volume, label)),
+            (Some(face), None) => tally.add(|| face_offender(points, face)),
+            (None, None) => {}
         }
     }
     tally.done()

@@ -232,6 +232,7 @@ fn faults_of_labels() {
     });
     assert_eq!(lines, [Line::LabelsMatchBoundary]);
     assert_eq!(planted(|v, _| v.boundary[0][0] = 1_000_000), [Line::LabelsMatchBoundary]);
+    assert_eq!(planted(|v, _| v.boundary.push([u32::MAX; 3])), [Line::LabelsMatchBoundary]);
     let lines = planted(|v, _| {
         v.boundary.push(v.boundary[wall(v)]);
         v.boundary_patch.push(WALL);
