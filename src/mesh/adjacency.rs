@@ -88,13 +88,30 @@ pub type TetAdjacency = Matching<4>;
 /// Edge neighbours of triangles; edge `i` runs from vertex `i` to vertex `i + 1`.
 pub type TriAdjacency = Matching<3>;
 
-/// Matches the faces of tetrahedra over `vertices` vertices. Linear time, 20 bytes per face at the peak.
+/// Matches the faces of tetrahedra over `vertices` vertices. Linear time, 24 bytes per face at the peak.
 pub fn tet_adjacency(tets: &[[u32; 4]], vertices: usize) -> TetAdjacency {
+    let tets = numbered_as_met(tets, vertices);
     match_sides(tets.len(), vertices, |handle| {
         let [i, j, k] = TET_FACES[(handle & 3) as usize];
         let t = &tets[(handle >> 2) as usize];
         sorted3([t[i], t[j], t[k]])
     })
+}
+
+/// The same cells, their vertices numbered in the order in which they come. Where numbers had nothing to do with place,
+/// all that looks up what belongs to a vertex is several times faster then.
+fn numbered_as_met(cells: &[[u32; 4]], vertices: usize) -> Vec<[u32; 4]> {
+    let mut number = vec![NONE; vertices];
+    let mut met = 0;
+    let mut number_of = |v: u32| {
+        let number = &mut number[v as usize];
+        if *number == NONE {
+            *number = met;
+            met += 1;
+        }
+        *number
+    };
+    cells.iter().map(|cell| cell.map(&mut number_of)).collect()
 }
 
 /// Matches the edges of triangles over `vertices` vertices.
