@@ -23,8 +23,12 @@ pub struct Improver {
     pub(super) movable: Vec<bool>,
     /// Whether something around a vertex has changed since it was smoothed last.
     pub(super) stirred: Vec<bool>,
+    /// Whether a vertex was eased in vain, and nothing around it has changed since.
+    pub(super) eased: Vec<bool>,
     pub(super) options: OptimizeOptions,
     pub(super) report: OptimizeReport,
+    /// Smoothing may not take the worst of a star below what it is or this, whichever is less.
+    pub(super) guard: f64,
     /// Attempts left.
     pub(super) budget: usize,
     pub(super) flipper: Flipper,
@@ -47,9 +51,11 @@ impl Improver {
         let mut improver = Self {
             movable: movable_vertices(&c, options.fixed_points),
             stirred: vec![true; c.points.len()],
+            eased: vec![false; c.points.len()],
             quality: vec![0.0; c.slots()],
             options: *options,
             report: OptimizeReport::default(),
+            guard: 0.0,
             budget: 0,
             flipper: Flipper::default(),
             star: Star::default(),
@@ -78,7 +84,10 @@ impl Improver {
         }
         match self.options.effort {
             Effort::Fast => self.treat_stubborn(),
-            Effort::Full => self.treat_thoroughly(),
+            Effort::Full => {
+                self.guard = self.options.stubborn_below;
+                self.treat_thoroughly();
+            }
         }
         self.smooth_stars_below(self.options.smooth_below);
         self.ease_worst(self.options.flip_below);
@@ -120,16 +129,25 @@ impl Improver {
         radius_ratio(a, b, c, d)
     }
 
-    /// Computes the radius ratio of these tetrahedra, which have changed, anew.
+    /// Computes the radius ratio of these tetrahedra, which are new or changed very much, anew.
     pub(super) fn remeasure(&mut self, tets: &[u32]) {
+        self.remeasure_moved(tets);
+        for &t in tets {
+            self.note_change(t);
+        }
+    }
+
+    /// The same where a vertex has moved so little that what was tried around it in vain still is.
+    pub(super) fn remeasure_moved(&mut self, tets: &[u32]) {
         self.quality.resize(self.c.slots(), 0.0);
         self.stirred.resize(self.c.points.len(), true);
+        self.eased.resize(self.c.points.len(), false);
         for &t in tets {
             self.quality[t as usize] = self.ratio(t);
             for v in self.c.verts(t) {
                 self.stirred[v as usize] = true;
+                self.eased[v as usize] = false;
             }
-            self.note_change(t);
         }
     }
 
@@ -148,7 +166,6 @@ impl Improver {
         for t in 0..self.quality.len() as u32 {
             if self.quality[t as usize].is_nan() {
                 self.quality[t as usize] = self.ratio(t);
-                self.note_change(t);
             }
         }
     }

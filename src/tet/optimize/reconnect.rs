@@ -16,10 +16,11 @@ use crate::tet::complex::Complex;
 const MAX_VERTICES: usize = 14;
 /// Faces on the front of the search.
 const MAX_FRONT: usize = 64;
-/// Slots of the table of tetrahedra: as many as four of the vertices can be chosen.
-const TABLE: usize = choose(MAX_VERTICES, 4);
 /// The search ends when the strain has fallen to this part of what it was.
 const GOOD: f64 = 0.3;
+/// The part of the least strains of the front's faces that its tetrahedra will have, as a guess: most close two faces or
+/// fewer.
+const SHARE: f64 = 0.4;
 
 const fn choose(n: usize, k: usize) -> usize {
     match k {
@@ -37,14 +38,25 @@ struct Entry {
     ratio: f64,
     /// Volume with sign, as far as rounding goes.
     volume: f64,
+    /// Strain, if it is positive.
+    strain: f64,
+    /// Vertices strictly inside; `UNKNOWN` until asked for.
+    enclosed: u16,
 }
 
+/// Stands for a set of vertices that has not been found yet: no tetrahedron and no face goes with all vertices.
+const UNKNOWN: u16 = u16::MAX;
+
+const NO_ENTRY: Entry = Entry { ratio: f64::NAN, volume: 0.0, strain: 0.0, enclosed: UNKNOWN };
+
 /// A face of the front, turned inwards: (v, f₀, f₁, f₂) is positive for v inside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct FrontFace {
     v: [u8; 3],
-    /// Vertices with which it makes a tetrahedron above the floor, as far as known when the face was made.
+    /// Vertices with which it makes a tetrahedron above the floor.
     mates: u16,
+    /// The strain of the best of these tetrahedra.
+    least: f64,
 }
 
 /// The search; keeps its buffers.
@@ -54,6 +66,8 @@ pub(super) struct Reconnection {
     halves: Vec<u32>,
     vertices: Vec<u32>,
     table: Vec<Entry>,
+    /// Faces of three local vertices, of either orientation.
+    faces: Vec<FrontFace>,
     front: Vec<FrontFace>,
     stack: Vec<[u8; 4]>,
     best: Vec<[u8; 4]>,
@@ -170,29 +184,43 @@ impl Reconnection {
         self.vertices.iter().position(|&x| x == v).unwrap_or(0) as u8
     }
 
-    /// The tetrahedron of four local vertices: radius ratio and volume, both negative when it is inverted.
-    fn tet(&mut self, c: &Complex, v: [u8; 4]) -> (f64, f64) {
+    /// Where the tetrahedron of four local vertices is in the table, and whether it is turned over there; none when a
+    /// vertex is there twice.
+    fn entry(&mut self, c: &Complex, v: [u8; 4]) -> Option<(usize, bool)> {
         let (sorted, odd) = sort4(v);
         let [i, j, k, l] = sorted.map(usize::from);
         if i == j || j == k || k == l {
-            return (f64::NEG_INFINITY, 0.0);
+            return None;
         }
         let at = choose(l, 4) + choose(k, 3) + choose(j, 2) + i;
-        let mut entry = self.table[at];
-        if entry.ratio.is_nan() {
+        if self.table[at].ratio.is_nan() {
             let [p, q, r, s] = sorted.map(|x| &c.points[self.vertices[x as usize] as usize]);
             let exact = orient3d(p, q, r, s);
             let ratio = radius_ratio(p, q, r, s).abs();
-            let ratio = if exact > 0.0 { ratio } else { -ratio };
-            entry = Entry { ratio: if exact == 0.0 || ratio.is_nan() { 0.0 } else { ratio }, volume: exact };
-            self.table[at] = entry;
+            let ratio = if exact == 0.0 || ratio.is_nan() { 0.0 } else { ratio };
+            let signed = if exact > 0.0 { ratio } else { -ratio };
+            self.table[at] = Entry { ratio: signed, volume: exact, strain: strain(ratio), ..NO_ENTRY };
         }
-        if odd { (-entry.ratio, -entry.volume) } else { (entry.ratio, entry.volume) }
+        Some((at, odd))
+    }
+
+    /// The tetrahedron of four local vertices: radius ratio and volume, both negative when it is inverted, and its
+    /// strain if it is not.
+    fn tet(&mut self, c: &Complex, v: [u8; 4]) -> (f64, f64, f64) {
+        match self.entry(c, v) {
+            Some((at, odd)) => {
+                let Entry { ratio, volume, strain, .. } = self.table[at];
+                if odd { (-ratio, -volume, strain) } else { (ratio, volume, strain) }
+            }
+            None => (f64::NEG_INFINITY, 0.0, 0.0),
+        }
     }
 
     fn search(&mut self, c: &Complex) {
         self.table.clear();
-        self.table.resize(TABLE, Entry { ratio: f64::NAN, volume: 0.0 });
+        self.table.resize(choose(self.vertices.len(), 4), NO_ENTRY);
+        self.faces.clear();
+        self.faces.resize(2 * choose(self.vertices.len(), 3), FrontFace { v: [0; 3], mates: UNKNOWN, least: 0.0 });
         self.best.clear();
         self.stack.clear();
         self.front.clear();
@@ -201,22 +229,30 @@ impl Reconnection {
         self.loose = self.loose_vertices(c);
         for k in 0..self.halves.len() {
             let [a, b, d] = c.face(self.halves[k]).map(|v| self.local(v));
-            let v = [a, b, d];
-            let mates = self.mates_of(c, v);
-            self.front.push(FrontFace { v, mates });
+            let face = self.front_face(c, [a, b, d]);
+            self.front.push(face);
         }
         self.branch(c, 0.0, self.volume);
     }
 
-    /// The vertices with which a face makes a tetrahedron above the floor.
-    fn mates_of(&mut self, c: &Complex, f: [u8; 3]) -> u16 {
-        let mut mates = 0;
-        for v in 0..self.vertices.len() as u8 {
-            if !f.contains(&v) && self.tet(c, [v, f[0], f[1], f[2]]).0 > self.floor {
-                mates |= 1 << v;
+    /// A face to be closed.
+    fn front_face(&mut self, c: &Complex, f: [u8; 3]) -> FrontFace {
+        let ([i, j, k], odd) = sort3(f);
+        let at = 2 * (choose(k as usize, 3) + choose(j as usize, 2) + i as usize) + usize::from(odd);
+        if self.faces[at].mates == UNKNOWN {
+            let (mut mates, mut least) = (0, f64::INFINITY);
+            for v in 0..self.vertices.len() as u8 {
+                if !f.contains(&v) {
+                    let (ratio, _, strain) = self.tet(c, [v, f[0], f[1], f[2]]);
+                    if ratio > self.floor {
+                        mates |= 1 << v;
+                        least = least.min(strain);
+                    }
+                }
             }
+            self.faces[at] = FrontFace { v: f, mates, least };
         }
-        mates
+        self.faces[at]
     }
 
     /// Vertices that are on the front; others are buried.
@@ -247,6 +283,9 @@ impl Reconnection {
             return;
         }
         self.nodes -= 1;
+        if sum + SHARE * self.front.iter().map(|f| f.least).sum::<f64>() >= self.limit {
+            return;
+        }
         let usable = self.live() | self.loose;
         let Some(at) = (0..self.front.len()).min_by_key(|&i| (self.front[i].mates & usable).count_ones()) else {
             return;
@@ -256,17 +295,17 @@ impl Reconnection {
         let mut count = 0;
         for v in 0..self.vertices.len() as u8 {
             if face.mates & usable & (1 << v) != 0 {
-                let (ratio, size) = self.tet(c, [v, face.v[0], face.v[1], face.v[2]]);
-                if ratio > self.floor && sum + strain(ratio) < self.limit && size <= volume + self.slack {
-                    choices[count] = (ratio, v);
+                let (_, size, strain) = self.tet(c, [v, face.v[0], face.v[1], face.v[2]]);
+                if sum + strain < self.limit && size <= volume + self.slack {
+                    choices[count] = (strain, v);
                     count += 1;
                 }
             }
         }
-        choices[..count].sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-        for &(ratio, v) in &choices[..count] {
+        choices[..count].sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        for &(strain, v) in &choices[..count] {
             // The limit may have fallen since.
-            let sum = sum + strain(ratio);
+            let sum = sum + strain;
             if sum >= self.limit {
                 break;
             }
@@ -299,12 +338,12 @@ impl Reconnection {
                 fits = false;
                 break;
             } else {
-                let mates = self.mates_of(c, f);
-                if mates == 0 {
+                let face = self.front_face(c, f);
+                if face.mates == 0 {
                     fits = false;
                     break;
                 }
-                self.front.push(FrontFace { v: f, mates });
+                self.front.push(face);
                 order[steps] = true;
                 steps += 1;
             }
@@ -328,21 +367,36 @@ impl Reconnection {
     }
 
     /// Whether another vertex of the front lies strictly inside.
-    fn encloses(&mut self, c: &Complex, [v, a, b, d]: [u8; 4]) -> bool {
-        let live = self.live();
-        (0..self.vertices.len() as u8).any(|x| {
-            live & (1 << x) != 0
-                && ![v, a, b, d].contains(&x)
-                && self.tet(c, [x, a, b, d]).0 > 0.0
-                && self.tet(c, [v, x, b, d]).0 > 0.0
-                && self.tet(c, [v, a, x, d]).0 > 0.0
-                && self.tet(c, [v, a, b, x]).0 > 0.0
-        })
+    fn encloses(&mut self, c: &Complex, v: [u8; 4]) -> bool {
+        let Some((at, _)) = self.entry(c, v) else { return true };
+        if self.table[at].enclosed == UNKNOWN {
+            let [v, a, b, d] = v;
+            let mut enclosed = 0;
+            for x in 0..self.vertices.len() as u8 {
+                let inside = ![v, a, b, d].contains(&x)
+                    && [[x, a, b, d], [v, x, b, d], [v, a, x, d], [v, a, b, x]].iter().all(|&y| self.tet(c, y).0 > 0.0);
+                enclosed |= u16::from(inside) << x;
+            }
+            self.table[at].enclosed = enclosed;
+        }
+        self.table[at].enclosed & self.live() != 0
     }
 }
 
 fn same(f: [u8; 3], g: [u8; 3]) -> bool {
     f == g || f == [g[1], g[2], g[0]] || f == [g[2], g[0], g[1]]
+}
+
+/// Sorts three; says whether the permutation is odd.
+fn sort3(mut v: [u8; 3]) -> ([u8; 3], bool) {
+    let mut odd = false;
+    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+        if v[i] > v[j] {
+            v.swap(i, j);
+            odd = !odd;
+        }
+    }
+    (v, odd)
 }
 
 /// Sorts four; says whether the permutation is odd.

@@ -21,6 +21,11 @@ const HOPELESS: f64 = 0.15;
 /// Rounds of the direct search; its step halves in a round that finds nothing.
 const SEARCH_ROUNDS: usize = 12;
 
+/// Fall of the strain below which a move is not worth making.
+const LEAST_EASE: f64 = 0.002;
+/// Fall of the strain by a move from which it is worth trying again what was tried in vain around it.
+const NEWS: f64 = 0.1;
+
 /// The star of an inner vertex as a function of the vertex's displacement x: with Q the sum of squared edge lengths
 /// and V six times the volume, the energy is the sum of Q³ / (432 V²), that is 1 / (mean ratio)³, at least 1 each.
 /// Both Q and V are cheap polynomials in x.
@@ -188,6 +193,7 @@ impl Improver {
     /// of vertices moved. Vertices go in ascending order, each seeing where the ones before it have gone.
     pub(super) fn smooth_stars_below(&mut self, below: f64) -> usize {
         self.stirred.resize(self.c.points.len(), true);
+        self.eased.resize(self.c.points.len(), false);
         let mut due = vec![false; self.c.points.len()];
         let mut strained = vec![false; if self.options.effort == Effort::Full { due.len() } else { 0 }];
         for t in self.c.real_tets() {
@@ -250,7 +256,9 @@ impl Improver {
         }
         let target = start + x;
         let lower = energy < before * (1.0 - SETTLED);
-        if lower && star.keeps_above(&x, &target, self.report.worst_before) && star.stays_positive(&target) {
+        // Out of date is not a number, which `min` passes over.
+        let worst = star.tets.iter().map(|&t| self.quality[t as usize]).fold(self.guard, f64::min);
+        if lower && star.keeps_above(&x, &target, worst.max(self.report.worst_before)) && star.stays_positive(&target) {
             self.c.points[v as usize] = target;
             for &t in &star.tets {
                 self.quality[t as usize] = STALE;
@@ -260,6 +268,7 @@ impl Improver {
                     for w in self.c.verts(t) {
                         // What the vertex itself did not reach now it would not reach later.
                         self.stirred[w as usize] |= w != v;
+                        self.eased[w as usize] = false;
                     }
                 }
             }
@@ -294,7 +303,12 @@ impl Improver {
 
     /// Moves a vertex so that the strain of its star falls, and its worst radius ratio does not.
     pub(super) fn ease_vertex(&mut self, v: u32) -> bool {
-        self.seek(v, true)
+        if self.eased[v as usize] {
+            return false;
+        }
+        let moved = self.seek(v, true);
+        self.eased[v as usize] = !moved;
+        moved
     }
 
     fn ease_once(&mut self, v: u32) -> bool {
@@ -313,10 +327,15 @@ impl Improver {
             before = self.energy.value(&start, f64::NEG_INFINITY);
         }
         let (best, value) = search(&self.energy, start, before);
-        if value > before && self.energy.stays_positive(&best) {
+        let least = if ease { before + LEAST_EASE } else { before };
+        if value > least && self.energy.stays_positive(&best) {
             self.c.points[v as usize] = best;
             let tets = std::mem::take(&mut self.energy.tets);
-            self.remeasure(&tets);
+            if value > before + NEWS {
+                self.remeasure(&tets);
+            } else {
+                self.remeasure_moved(&tets);
+            }
             self.energy.tets = tets;
             return true;
         }

@@ -6,7 +6,7 @@ use super::Improver;
 /// Rounds over the tetrahedra that are still bad.
 const ROUNDS: usize = 8;
 /// Sizes of the cavities that are reconnected, and steps of the search in each.
-const CAVITIES: [(usize, usize); 3] = [(6, 100), (12, 300), (20, 600)];
+const CAVITIES: [(usize, usize); 2] = [(8, 150), (20, 400)];
 /// What moving must gain to count.
 const GAIN: f64 = 1.1;
 /// A round that mends fewer than one in so many is the last.
