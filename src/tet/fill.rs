@@ -18,10 +18,10 @@ use crate::geometry::predicates::MIN_MAGNITUDE;
 use crate::mesh::{TetMesh, TriMesh};
 
 /// Side of the lattice's cubes in mean edge lengths of the surface.
-const CELL: f64 = 1.5;
+const CELL: f64 = 1.4;
 
 /// Distance of the lattice from the wall in mean edge lengths of the surface.
-const CLEARANCE: f64 = 0.55;
+const CLEARANCE: f64 = 0.45;
 
 /// Times that recovery is tried before the last tier.
 const ATTEMPTS: u32 = 2;

@@ -11,9 +11,9 @@ pub enum Interior {
     None,
     /// A body-centred cubic lattice; lengths in the unit of the surface.
     Lattice {
-        /// Side of the cubes; none: 1.5 mean edge lengths of the surface.
+        /// Side of the cubes; none: 1.4 mean edge lengths of the surface.
         cell: Option<f64>,
-        /// Distance kept from the wall; none: 0.55 mean edge lengths of the surface.
+        /// Distance kept from the wall; none: 0.45 mean edge lengths of the surface.
         clearance: Option<f64>,
     },
     /// These points; those outside the surface are dropped.

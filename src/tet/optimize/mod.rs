@@ -20,6 +20,8 @@ use crate::mesh::quality::radius_ratio;
 
 /// Radius ratio below which a tetrahedron strains its surroundings.
 const STRAINED: f64 = 0.5;
+/// How much the worst weigh more than their number.
+const STEEPER: f64 = 0.5;
 
 /// How hard an improvement tries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -139,7 +141,13 @@ pub(super) fn score(c: &Complex, v: &[u32; 4]) -> Option<f64> {
 #[inline]
 pub(super) fn strain(q: f64) -> f64 {
     let bad = if q < STRAINED { (STRAINED / q.max(1e-12)).ln() } else { 0.0 };
-    bad + 0.1 * (1.0 - q)
+    bad * (1.0 + STEEPER * bad) + 0.1 * (1.0 - q)
+}
+
+/// The radius ratio below which a tetrahedron has more strain than this, if that is below one half.
+fn ratio_of_strain(strain: f64) -> f64 {
+    let bad = ((1.0 + 4.0 * STEEPER * strain.max(0.0)).sqrt() - 1.0) / (2.0 * STEEPER);
+    STRAINED * (-bad).exp()
 }
 
 /// Drops the points from `fixed` on that no tetrahedron has, keeping the order of the others.

@@ -7,7 +7,7 @@
 //! not test for intersections; volume and enclosed vertices merely prune it.
 
 use super::improver::EASED;
-use super::{Improver, STRAINED, strain};
+use super::{Improver, ratio_of_strain, strain};
 use crate::geometry::predicates::orient3d;
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::Complex;
@@ -105,7 +105,7 @@ impl Improver {
         r.limit = self.strain_of(&r.tets) - EASED;
         r.enough = r.limit * GOOD;
         // A tetrahedron with more strain than all of the old ones is of no use.
-        r.floor = self.report.worst_before.max(STRAINED * (-r.limit).exp() * 0.99);
+        r.floor = self.report.worst_before.max(ratio_of_strain(r.limit) * 0.99);
         r.nodes = nodes;
         r.search(&self.c);
         if r.best.is_empty() {

@@ -200,3 +200,17 @@ fn what_is_not_a_mesh_is_refused_and_left_alone() {
     assert!(optimize(&mut mesh, &OptimizeOptions::default()).is_err());
     assert_eq!(mesh, same);
 }
+
+#[test]
+fn strain_falls_as_shape_improves_and_can_be_turned_back() {
+    let mut last = f64::INFINITY;
+    for q in [1e-6, 1e-3, 0.01, 0.1, 0.3, 0.49, 0.6, 1.0] {
+        let s = strain(q);
+        assert!(s < last && s >= 0.0);
+        // What has more strain than this is worse.
+        assert!(ratio_of_strain(s) <= q + 1e-12, "{q}");
+        last = s;
+    }
+    // One that is very bad weighs more than several that are mediocre.
+    assert!(strain(0.013) > 4.0 * strain(0.08) - strain(0.5) && strain(0.01) > 6.0 * strain(0.2));
+}
