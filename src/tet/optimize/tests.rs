@@ -212,5 +212,5 @@ fn strain_falls_as_shape_improves_and_can_be_turned_back() {
         last = s;
     }
     // One that is very bad weighs more than several that are mediocre.
-    assert!(strain(0.013) > 4.0 * strain(0.08) - strain(0.5) && strain(0.01) > 6.0 * strain(0.2));
+    assert!(strain(0.013) > 2.0 * strain(0.08) + 2.0 * strain(0.2) && strain(0.01) > 6.0 * strain(0.2));
 }
