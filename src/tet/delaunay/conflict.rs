@@ -7,6 +7,7 @@
 use super::perturb;
 use crate::geometry::Point3;
 use crate::geometry::predicates::{INSPHERE_BOUND, ORIENT3D_BOUND, insphere_bound};
+use std::ops::{Add, Mul, Sub};
 
 /// A point, and its number in the cavity being dug. One half of a cache line.
 #[derive(Clone, Copy, Debug)]
@@ -56,21 +57,58 @@ impl View {
     /// The point `e` seen from the tetrahedron `a, b, c, d`.
     #[inline]
     pub(super) fn new([a, b, c, d]: [&Point3; 4], e: &Point3) -> Self {
-        let (ax, ay, az) = (a.x - e.x, a.y - e.y, a.z - e.z);
-        let (bx, by, bz) = (b.x - e.x, b.y - e.y, b.z - e.z);
-        let (cx, cy, cz) = (c.x - e.x, c.y - e.y, c.z - e.z);
-        let (dx, dy, dz) = (d.x - e.x, d.y - e.y, d.z - e.z);
-        let (ab, bc, cd) = (ax * by - bx * ay, bx * cy - cx * by, cx * dy - dx * cy);
-        let (da, ac, bd) = (dx * ay - ax * dy, ax * cy - cx * ay, bx * dy - dx * by);
-        let abc = az * bc - bz * ac + cz * ab;
-        let bcd = bz * cd - cz * bd + dz * bc;
-        let cda = cz * da + dz * ac + az * cd;
-        let dab = dz * ab + az * bd + bz * da;
-        let al = ax * ax + ay * ay + az * az;
-        let bl = bx * bx + by * by + bz * bz;
-        let cl = cx * cx + cy * cy + cz * cz;
-        let dl = dx * dx + dy * dy + dz * dz;
-        Self { weights: [bcd, -cda, dab, -abc], sphere: (cl * dab - dl * abc) + (al * bcd - bl * cda) }
+        // The vertices by twos, so that all is done by twos: a with c, b with d.
+        let [[px, py, pz], [qx, qy, qz]] = [[a, c], [b, d]]
+            .map(|[p, q]| [Two(p.x - e.x, q.x - e.x), Two(p.y - e.y, q.y - e.y), Two(p.z - e.z, q.z - e.z)]);
+        let (rx, ry, rz) = (px.swap(), py.swap(), pz.swap());
+        let ab_cd = px * qy - qx * py;
+        let bc_da = qx * ry - rx * qy;
+        let (ac, bd) = (px.0 * py.1 - px.1 * py.0, qx.0 * qy.1 - qx.1 * qy.0);
+        let abc_cda = pz * bc_da + rz * ab_cd + Two(-qz.0, qz.1) * Two(ac, ac);
+        let bcd_dab = qz * ab_cd.swap() + qz.swap() * bc_da + Two(-rz.0, rz.1) * Two(bd, bd);
+        let p_lift = px * px + py * py + pz * pz;
+        let q_lift = qx * qx + qy * qy + qz * qz;
+        let Two(first, second) = p_lift * bcd_dab - q_lift * abc_cda.swap();
+        let ([abc, cda], [bcd, dab]) = ([abc_cda.0, abc_cda.1], [bcd_dab.0, bcd_dab.1]);
+        Self { weights: [bcd, -cda, dab, -abc], sphere: first + second }
+    }
+}
+
+/// Two numbers that the same is done with: one register.
+#[derive(Clone, Copy)]
+struct Two(f64, f64);
+
+impl Two {
+    #[inline]
+    fn swap(self) -> Self {
+        Self(self.1, self.0)
+    }
+}
+
+impl Add for Two {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1)
+    }
+}
+
+impl Sub for Two {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0, self.1 - other.1)
+    }
+}
+
+impl Mul for Two {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0, self.1 * other.1)
     }
 }
 
