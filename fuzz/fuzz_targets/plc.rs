@@ -1,0 +1,85 @@
+//! Triangles between points of a coarse grid, in a box or not, as the bytes say; those that cut others are left out. What
+//! is left is a valid complex: it is filled, its triangles kept or split, and the mesh has the certificate.
+#![no_main]
+
+use anastomesh::geometry::Point3;
+use anastomesh::tet::{Boundary, InputKind, Interior, Plc, Refinement, Stuck, TetError, Tetrahedralizer};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Some((&mode, rest)) = bytes.split_first() else { return };
+    let (places, facets) = rest.split_at(rest.len().min(3 * (4 + usize::from(mode & 15))));
+    let mut plc = Plc { points: points(places, mode & 16 != 0), ..Plc::default() };
+    let inner = plc.points.len() as u8;
+    if inner == 0 {
+        return;
+    }
+    if mode & 32 != 0 {
+        add_box(&mut plc);
+    }
+    for corners in facets.chunks_exact(3).take(40) {
+        let [a, b, c] = [0, 1, 2].map(|k| u32::from(corners[k] % inner));
+        add(&mut plc, [a, b, c]);
+    }
+    drop_unused(&mut plc);
+    let splits = mode & 64 != 0;
+    let refinement = Refinement::default().max_radius_edge(2.0).max_points(200);
+    let made = Tetrahedralizer::new()
+        .kind(InputKind::Plc)
+        .interior(Interior::None)
+        .boundary(if splits { Boundary::Split } else { Boundary::Keep })
+        .refine((mode & 128 != 0).then_some(refinement))
+        .optimize(mode & 128 != 0)
+        .run(&plc);
+    match made {
+        Ok(made) if splits => assert!(made.faces.len() >= plc.triangles.len()),
+        Ok(made) => assert_eq!(made.faces.len(), plc.triangles.len()),
+        Err(TetError::Flat | TetError::Empty { .. } | TetError::NothingEnclosed | TetError::Outside { .. }) => {
+            assert!(mode & 32 == 0);
+        }
+        Err(TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling, .. }) => {}
+        Err(error) => panic!("{error}\n{plc:?}"),
+    }
+});
+
+/// The distinct points of a grid of 4³ or, moved a little, of 8³.
+fn points(bytes: &[u8], fine: bool) -> Vec<Point3> {
+    let mut points: Vec<Point3> = Vec::new();
+    for b in bytes.chunks_exact(3) {
+        let axis = |b: u8| if fine { f64::from(b & 7) + f64::from(b >> 3) * 1e-3 } else { f64::from(b & 3) };
+        let p = Point3::new(axis(b[0]), axis(b[1]), axis(b[2]));
+        if !points.contains(&p) {
+            points.push(p);
+        }
+    }
+    points
+}
+
+/// A box around all.
+fn add_box(plc: &mut Plc) {
+    let first = plc.points.len() as u32;
+    let side = |high: bool| if high { 9.0 } else { -1.0 };
+    plc.points.extend((0..8).map(|i| Point3::new(side(i & 1 != 0), side(i & 2 != 0), side(i & 4 != 0))));
+    for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+        plc.triangles.extend([[a, b, c], [a, c, d]].map(|t| t.map(|v| v + first)));
+    }
+}
+
+/// Adds a triangle unless it makes the complex invalid.
+fn add(plc: &mut Plc, triangle: [u32; 3]) {
+    plc.triangles.push(triangle);
+    if Tetrahedralizer::new().kind(InputKind::Plc).check(plc).is_err() {
+        plc.triangles.pop();
+    }
+}
+
+/// Leaves out the points that no triangle has: they may lie in others.
+fn drop_unused(plc: &mut Plc) {
+    let mut used = vec![false; plc.points.len()];
+    plc.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let number: Vec<u32> =
+        used.iter().scan(0, |next, &u| Some(std::mem::replace(next, *next + u32::from(u)))).collect();
+    let mut kept = used.iter();
+    plc.points.retain(|_| kept.next() == Some(&true));
+    plc.triangles.iter_mut().flatten().for_each(|v| *v = number[*v as usize]);
+}
