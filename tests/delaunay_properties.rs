@@ -98,7 +98,9 @@ fn check(points: &[Point3], c: &Complex) {
             }
             continue;
         }
-        v.iter().for_each(|&x| used[x as usize] = true);
+        for x in v {
+            used[x as usize] = true;
+        }
         assert_eq!(exact.orient(v), Ordering::Greater, "{v:?}");
         for i in 0..4 {
             let mate = c.mate(4 * t + i);
@@ -112,7 +114,9 @@ fn check(points: &[Point3], c: &Complex) {
 
 fn sorted_tets(c: &Complex, name: impl Fn(u32) -> u32) -> Vec<[u32; 4]> {
     let mut tets: Vec<[u32; 4]> = c.real_tets().map(|t| c.verts(t).map(&name)).collect();
-    tets.iter_mut().for_each(|t| t.sort_unstable());
+    for t in &mut tets {
+        t.sort_unstable();
+    }
     tets.sort_unstable();
     tets
 }
@@ -168,11 +172,11 @@ fn sphere_points() -> Vec<Point3> {
 
 fn without_repetition(points: Vec<Point3>) -> Vec<Point3> {
     let mut distinct: Vec<Point3> = Vec::new();
-    points.into_iter().for_each(|p| {
+    for p in points {
         if !distinct.contains(&p) {
-            distinct.push(p)
+            distinct.push(p);
         }
-    });
+    }
     distinct
 }
 

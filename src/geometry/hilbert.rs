@@ -42,7 +42,7 @@ const fn entry(place: usize) -> usize {
 const fn direction(place: usize) -> usize {
     let odd = if place == 0 {
         0
-    } else if place % 2 == 0 {
+    } else if place.is_multiple_of(2) {
         place - 1
     } else {
         place

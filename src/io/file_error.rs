@@ -84,10 +84,11 @@ pub(super) fn write_whole<F: Error>(
     all().map_err(|source| FileError::Write { path: path.to_path_buf(), source })
 }
 
+/// A file's path, and what writes what it holds.
+pub(super) type Writing<'a> = (PathBuf, &'a dyn Fn(&mut dyn Write) -> io::Result<()>);
+
 /// Writes several files that belong together: each is complete before the first of them appears, in the order given.
-pub(super) fn write_all_whole<F: Error>(
-    files: &[(PathBuf, &dyn Fn(&mut dyn Write) -> io::Result<()>)],
-) -> Result<(), FileError<F>> {
+pub(super) fn write_all_whole<F: Error>(files: &[Writing]) -> Result<(), FileError<F>> {
     let mut complete = Vec::with_capacity(files.len());
     for (path, write) in files {
         let make = || {

@@ -224,7 +224,9 @@ fn outside(cdt: &Cdt, holes: &[Point2<f64>]) -> Vec<bool> {
             PositionInTriangulation::OnEdge(edge) => {
                 let edge = cdt.directed_edge(edge);
                 if !edge.is_constraint_edge() {
-                    front.extend([edge.face(), edge.rev().face()].iter().filter_map(|f| f.as_inner()).map(|f| f.fix()));
+                    for face in [edge.face(), edge.rev().face()] {
+                        front.extend(face.as_inner().map(|face| face.fix()));
+                    }
                 }
             }
             _ => {}

@@ -274,6 +274,6 @@ impl std::fmt::Debug for Tetrahedralizer {
             .field("optimize", &self.optimize)
             .field("effort", &self.effort)
             .field("watch", &self.watch())
-            .finish()
+            .finish_non_exhaustive()
     }
 }

@@ -24,7 +24,9 @@ impl Answer {
         complex.sanity_check().expect("a sound complex");
         let volume = complex.real_tets().map(|t| complex.orient(&complex.verts(t)) / 6.0).sum();
         let mut tets: Vec<[u32; 4]> = complex.real_tets().map(|t| complex.verts(t)).collect();
-        tets.iter_mut().for_each(|t| t.sort_unstable());
+        for t in &mut tets {
+            t.sort_unstable();
+        }
         tets.sort_unstable();
         Self { volume, tets }
     }
@@ -137,11 +139,11 @@ fn cospherical_points() {
     compare("sphere-1000", &random(1000, 6, on_sphere));
     let lattice = random(400, 7, |r| in_cube(r).map(|x| (x * 30.0).floor()));
     let mut distinct: Vec<Point3> = Vec::new();
-    lattice.into_iter().for_each(|p| {
+    for p in lattice {
         if !distinct.contains(&p) {
-            distinct.push(p)
+            distinct.push(p);
         }
-    });
+    }
     compare("lattice-400", &distinct);
     let cylinder =
         (0..40).flat_map(|z| (0..24).map(move |a| (f64::from(a) / 24.0 * std::f64::consts::TAU, f64::from(z))));

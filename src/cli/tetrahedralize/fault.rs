@@ -75,8 +75,9 @@ fn remedy(error: &TetError) -> Option<&'static str> {
         }
         TetError::Open { .. } => "close the holes there, or give --plc if the facets are only to be kept",
         TetError::NotManifold { .. } => "separate the sheets there, or give --plc if facets may lie inside",
-        TetError::NotOriented { .. } => "turn the triangles over, or give --repair, which does",
-        TetError::InsideOut { .. } => "turn the triangles over, or give --repair, which does",
+        TetError::NotOriented { .. } | TetError::InsideOut { .. } => {
+            "turn the triangles over, or give --repair, which does"
+        }
         TetError::SelfIntersection { .. } | TetError::EdgeMeets { .. } => {
             "separate or unite the parts that meet in the program that made the surface"
         }

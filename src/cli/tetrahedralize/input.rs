@@ -65,8 +65,7 @@ impl Input {
         let surface =
             TriMesh { points: std::mem::take(&mut plc.points), triangles: std::mem::take(&mut plc.triangles) };
         let Repaired { surface, source, point, report, .. } = repair(&surface);
-        let of_triangles = |list: &[i32]| source.iter().filter_map(|&i| list.get(i as usize).copied()).collect();
-        plc.markers = of_triangles(&plc.markers);
+        plc.markers = source.iter().filter_map(|&i| plc.markers.get(i as usize).copied()).collect();
         self.facet_of = source.iter().filter_map(|&i| self.facet_of.get(i as usize).copied()).collect();
         let named = |v: u32| point.get(v as usize).copied().unwrap_or(u32::MAX);
         plc.edges = plc.edges.iter().map(|edge| edge.map(named)).map(|[a, b]| [a.min(b), a.max(b)]).collect();

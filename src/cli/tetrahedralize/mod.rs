@@ -97,7 +97,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     };
     plan::ensure_fits(&plan, args, target.as_ref())?;
     if !plan.quiet {
-        notes.iter().for_each(|note| eprintln!("{note}"));
+        for note in &notes {
+            eprintln!("{note}");
+        }
     }
     let pool = super::thread_pool(args.threads)?;
     let watch = Arc::new(Watch::new(plan.quiet));

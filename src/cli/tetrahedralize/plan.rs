@@ -84,7 +84,7 @@ impl TetPlan {
         plan.quiet |= args.quiet;
         plan.check_only |= args.check_only;
         plan.repair = args.repair;
-        plan.validate(args)?;
+        Self::validate(args)?;
         Ok((plan, notes))
     }
 
@@ -134,7 +134,7 @@ impl TetPlan {
         }
     }
 
-    fn validate(&self, args: &Args) -> Result<(), Failure> {
+    fn validate(args: &Args) -> Result<(), Failure> {
         let positive = |name: &str, value: Option<f64>| match value {
             Some(value) if !(value > 0.0 && value.is_finite()) => {
                 Err(Failure::usage(format!("{name} is {value}; give a finite number above 0")))

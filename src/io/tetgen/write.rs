@@ -1,6 +1,6 @@
 //! Writes a tetrahedral mesh as `TetGen` does: one file for points, tetrahedra, faces, edges and neighbours each.
 
-use super::super::file_error::{ensure_sound, extension, write_all_whole};
+use super::super::file_error::{Writing, ensure_sound, extension, write_all_whole};
 use super::TetgenFileError;
 use crate::mesh::adjacency::{Incidence, NONE, tet_adjacency};
 use crate::mesh::{TET_FACES, TetMesh, VolumeMesh};
@@ -159,7 +159,7 @@ impl<'a> MeshFamily<'a> {
         let edges = |out: &mut dyn Write| self.write_edges(out, boundary);
         let neighbors = |out: &mut dyn Write| self.write_neighbors(out);
         let tets = |out: &mut dyn Write| self.write_tets(out);
-        let mut files: Vec<(PathBuf, &dyn Fn(&mut dyn Write) -> io::Result<()>)> = vec![(member(base, "node"), &nodes)];
+        let mut files: Vec<Writing> = vec![(member(base, "node"), &nodes)];
         if self.faces != Extent::Nothing {
             files.push((member(base, "face"), &face_list));
         }

@@ -105,7 +105,7 @@ pub(super) fn merge(
     let shifted = |cell: &Cell| Cell { verts: cell.verts, mates: cell.mates.map(|mate| mate.wrapping_add(4 * shift)) };
     cells.par_extend(high.cells.par_iter().map(shifted));
     drop(high.cells);
-    let gap = Gap::new(&between, seam, points.len())?;
+    let gap = Gap::new(&between, &seam, points.len())?;
     let unused = gap.fill(&between, &mut cells, &mut slots);
     Some(compact(cells, unused))
 }
@@ -170,7 +170,7 @@ struct Gap {
 
 impl Gap {
     /// None when a face of the seam is missing, which cannot be.
-    fn new(cells: &[Cell], seam: Seam, points: usize) -> Option<Self> {
+    fn new(cells: &[Cell], seam: &Seam, points: usize) -> Option<Self> {
         let mut on_seam = vec![false; points];
         for &v in seam.keys().flatten() {
             on_seam[v as usize] = true;

@@ -102,7 +102,8 @@ fn middle(points: &[Point3]) -> Option<Cut> {
 /// Whether most of the tetrahedra of a sample keep to one side of the cut.
 fn worth_while(points: &[Point3], cut: Cut) -> bool {
     let every = (points.len() / SAMPLE).max(1) as u64;
-    let sample: Vec<Point3> = (0..).zip(points).filter(|&(i, _)| hash(i) % every == 0).map(|(_, &p)| p).collect();
+    let sample: Vec<Point3> =
+        (0..).zip(points).filter(|&(i, _)| hash(i).is_multiple_of(every)).map(|(_, &p)| p).collect();
     let order = brio_of_sorted(sample.len());
     let Ok(inserter) = insert_all(&sample, &order) else { return false };
     let (cells, _) = inserter.into_cells(&order);
