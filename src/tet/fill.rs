@@ -110,7 +110,8 @@ fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError
 fn diagnosis(r: &Request, error: TetError) -> TetError {
     let checked = input::no_duplicate_points(&r.surface.points)
         .and_then(|()| input::no_duplicate_triangles(&r.surface.triangles))
-        .and_then(|()| contacts::no_contacts(r.surface, r.watch));
+        .and_then(|()| contacts::no_contacts(r.surface, r.watch))
+        .and_then(|()| contacts::no_points_in_triangles(r.surface));
     checked.err().unwrap_or(error)
 }
 
