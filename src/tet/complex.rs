@@ -347,6 +347,12 @@ impl Complex {
         self.cells[t as usize].verts
     }
 
+    /// What a slot holds.
+    #[inline]
+    pub(super) fn cell(&self, t: u32) -> &Cell {
+        &self.cells[t as usize]
+    }
+
     /// The half-face glued to `half`.
     #[inline]
     pub fn mate(&self, half: u32) -> u32 {

@@ -41,8 +41,15 @@ impl SurfaceEdges {
 
     /// Whether the surface has edge `a, b`.
     pub fn contains(&self, a: u32, b: u32) -> bool {
+        self.position(a, b).is_some()
+    }
+
+    /// Where in `edges` edge `a, b` is.
+    pub fn position(&self, a: u32, b: u32) -> Option<usize> {
         let (a, b) = (a.min(b), a.max(b));
-        self.range(a).is_some_and(|r| self.edges[r].binary_search_by_key(&b, |e| e[1]).is_ok())
+        let range = self.range(a)?;
+        let start = range.start;
+        self.edges[range].binary_search_by_key(&b, |e| e[1]).ok().map(|i| start + i)
     }
 }
 
@@ -161,13 +168,29 @@ fn edge_of(t: &[u32; 3], i: usize) -> ([u32; 2], bool) {
     ([a.min(b), a.max(b)], a < b)
 }
 
+/// The sides of all triangles in ascending order: counted by their smaller vertex, of which few have the same.
 fn sorted_sides(surface: &TriMesh) -> Vec<([u32; 2], bool)> {
-    let mut sides = Vec::with_capacity(3 * surface.triangles.len());
-    for t in &surface.triangles {
-        sides.extend((0..3).map(|i| edge_of(t, i)));
+    let sides = || surface.triangles.iter().flat_map(|t| (0..3).map(|i| edge_of(t, i)));
+    let mut end = vec![0u32; surface.points.len() + 1];
+    for (e, _) in sides() {
+        end[e[0] as usize + 1] += 1;
     }
-    sides.sort_unstable();
-    sides
+    for v in 0..surface.points.len() {
+        end[v + 1] += end[v];
+    }
+    let mut sorted = vec![([0; 2], false); 3 * surface.triangles.len()];
+    for side in sides() {
+        let slot = &mut end[side.0[0] as usize];
+        sorted[*slot as usize] = side;
+        *slot += 1;
+    }
+    // Filling moved each start to its end.
+    let mut start = 0;
+    for &end in &end[..surface.points.len()] {
+        sorted[start..end as usize].sort_unstable();
+        start = end as usize;
+    }
+    sorted
 }
 
 /// All edges and segments, each once.

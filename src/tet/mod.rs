@@ -61,6 +61,7 @@ mod regions;
 mod sized;
 mod split;
 pub mod star;
+mod survey;
 
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use complex::Complex;

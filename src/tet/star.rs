@@ -85,10 +85,12 @@ impl Star {
         let mut head = 0;
         while let Some(&t) = self.tets.get(head) {
             head += 1;
-            for i in 0..4 {
-                let n = c.neighbor(t, i);
-                if c.verts(t)[i] != v && self.stamp[n as usize] != self.now {
-                    self.stamp[n as usize] = self.now;
+            let cell = c.cell(t);
+            for (&w, &mate) in cell.verts.iter().zip(&cell.mates) {
+                let n = mate >> 2;
+                let stamp = &mut self.stamp[n as usize];
+                if w != v && *stamp != self.now {
+                    *stamp = self.now;
                     self.tets.push(n);
                 }
             }

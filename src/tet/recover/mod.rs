@@ -15,6 +15,7 @@ use super::flips::{Flipper, Refusal};
 use super::input::SurfaceEdges;
 use super::progress::{Stage, Watch};
 use super::star::{EdgeRing, Star};
+use super::survey::survey;
 use crate::mesh::TriMesh;
 use cavity::Cavity;
 use march::{Crossing, crossings, piercing_edges};
@@ -60,6 +61,7 @@ pub(super) fn recover(
     attempt: u32,
     watch: &Watch,
 ) -> Result<RecoverySummary, TetError> {
+    let (mut lost_edges, mut lost_faces) = survey(c, surface, edges);
     let mut r = Recovery {
         c,
         surface,
@@ -76,7 +78,6 @@ pub(super) fn recover(
         met: None,
     };
     let mut summary = RecoverySummary::default();
-    let (mut lost_edges, mut lost_faces) = r.survey();
     summary.missing_edges = lost_edges.len();
     summary.missing_triangles = lost_faces.len();
     let mut before = usize::MAX;
@@ -128,61 +129,6 @@ impl Recovery<'_> {
     /// What makes the choices of this round and attempt.
     fn salt(&self, round: u32) -> u64 {
         (u64::from(self.attempt) << 16) + 4 * u64::from(round)
-    }
-
-    /// Freezes the triangles that are faces; returns the edges and triangles that are missing.
-    fn survey(&mut self) -> (Vec<[u32; 2]>, Vec<u32>) {
-        let n = self.surface.points.len();
-        let mut first = vec![0u32; n + 1];
-        let lowest = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]) as usize;
-        for t in &self.surface.triangles {
-            first[lowest(t) + 1] += 1;
-        }
-        for v in 0..n {
-            first[v + 1] += first[v];
-        }
-        let mut at = first.clone();
-        let mut by_lowest = vec![0u32; self.surface.triangles.len()];
-        for (i, t) in self.surface.triangles.iter().enumerate() {
-            let slot = &mut at[lowest(t)];
-            by_lowest[*slot as usize] = i as u32;
-            *slot += 1;
-        }
-        let mut seen = vec![u32::MAX; self.c.points.len()];
-        let (mut lost_edges, mut lost_faces, mut found) = (Vec::new(), Vec::new(), Vec::new());
-        for v in 0..n as u32 {
-            let triangles = &by_lowest[first[v as usize] as usize..first[v as usize + 1] as usize];
-            let edges = self.edges.from(v);
-            if triangles.is_empty() && edges.is_empty() {
-                continue;
-            }
-            found.clear();
-            for &t in self.star.around(self.c, v) {
-                let w = self.c.verts(t);
-                for x in w {
-                    if let Some(s) = seen.get_mut(x as usize) {
-                        *s = v;
-                    }
-                }
-                for &i in triangles {
-                    let tri = self.surface.triangles[i as usize];
-                    if tri.iter().all(|x| w.contains(x))
-                        && let Some(k) = (0..4).find(|&k| !tri.contains(&w[k]))
-                    {
-                        found.push((i, 4 * t + k as u32));
-                    }
-                }
-            }
-            lost_edges.extend(edges.iter().filter(|e| seen[e[1] as usize] != v));
-            for &i in triangles {
-                match found.iter().find(|f| f.0 == i) {
-                    Some(&(_, half)) => self.c.freeze(half),
-                    None => lost_faces.push(i),
-                }
-            }
-        }
-        lost_faces.sort_unstable();
-        (lost_edges, lost_faces)
     }
 
     /// Flips away what crosses an edge: the first crossing that gives way, from one end and then from the other.
@@ -263,13 +209,6 @@ impl Recovery<'_> {
         };
         self.piercers = piercers;
         done
-    }
-}
-
-impl SurfaceEdges {
-    /// The edges whose smaller vertex is `v`.
-    pub(super) fn from(&self, v: u32) -> &[[u32; 2]] {
-        self.range(v).map_or(&[], |r| &self.edges[r])
     }
 }
 
