@@ -12,7 +12,7 @@ use crate::skeleton::Skeleton;
 use crate::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
 use crate::stitch::label::{LabelError, PatchFaces, label};
 use crate::stitch::merge::{MergeError, Merged, Part, SharedVertex, merge};
-use crate::tet::optimize::{OptimizeOptions, optimize};
+use crate::tet::optimize::{Effort, OptimizeOptions, optimize};
 
 /// Why blocks could not be put together. Any of these is a fault of the program.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -106,7 +106,12 @@ impl Assembly {
             frozen[v as usize] = true;
         }
         let improve = |mesh: &mut crate::mesh::TetMesh, fixed: usize| {
-            let options = OptimizeOptions { fixed_points: fixed, keep_points: true, ..OptimizeOptions::default() };
+            let options = OptimizeOptions {
+                fixed_points: fixed,
+                keep_points: true,
+                rounds: 2,
+                ..OptimizeOptions::of(Effort::Quick)
+            };
             optimize(mesh, &options).is_ok()
         };
         smooth_joints(mesh, tet_block, &self.joints, &frozen, &JointOptions::default(), &improve)

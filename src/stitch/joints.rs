@@ -42,7 +42,7 @@ pub struct JointOptions {
 impl Default for JointOptions {
     fn default() -> Self {
         Self {
-            rings: 2,
+            rings: 1,
             taubin: Taubin { iterations: 6, ..Taubin::default() },
             good: 0.3,
             lift_below: 0.2,

@@ -95,7 +95,7 @@ impl Improver {
         k.tets.extend_from_slice(self.star.around(&self.c, v));
         // Full effort asks for less strain instead of a better worst, which may be past help.
         let floor = match self.options.effort {
-            Effort::Fast => self.worst_of(&k.tets) * GAIN,
+            Effort::Quick | Effort::Fast => self.worst_of(&k.tets) * GAIN,
             Effort::Full => self.report.worst_before,
         };
         k.neighbors.clear();
