@@ -110,8 +110,7 @@ fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError
 fn diagnosis(r: &Request, error: TetError) -> TetError {
     let checked = input::no_duplicate_points(&r.surface.points)
         .and_then(|()| input::no_duplicate_triangles(&r.surface.triangles))
-        .and_then(|()| contacts::no_contacts(r.surface, r.watch))
-        .and_then(|()| contacts::no_points_in_triangles(r.surface));
+        .and_then(|()| contacts::no_contacts(r.surface, r.watch));
     checked.err().unwrap_or(error)
 }
 
@@ -128,7 +127,9 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
             None => points.extend(interior_points(surface, &other_interior(surface, r.interior, attempt))?),
         }
         let inner = points.len();
-        points.extend(box_corners(&surface.points));
+        // The smaller the box, the smaller the bound on the roundoff in it; there is room to flip in for smooth walls.
+        let tight = matches!(r.interior, Interior::Graded { .. });
+        points.extend(if tight { box_around(&surface.points, 0.2) } else { box_corners(&surface.points) });
         let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
         r.watch.report(Stage::Delaunay, 1, 1)?;
         match recover::recover(&mut complex, surface, r.edges, attempt, r.watch) {
@@ -158,10 +159,12 @@ fn other_interior(surface: &TriMesh, interior: &Interior, attempt: u32) -> Inter
     let factor = FACTORS[attempt as usize % 8];
     let h = lattice::mean_edge(surface);
     match interior {
-        Interior::Lattice { cell, clearance } if attempt > 0 => Interior::Lattice {
-            cell: Some(cell.unwrap_or(CELL * h) * factor),
-            clearance: Some(clearance.unwrap_or(CLEARANCE * h) * factor.max(1.0)),
-        },
+        Interior::Lattice { cell, clearance } | Interior::Graded { cell, clearance } if attempt > 0 => {
+            Interior::Lattice {
+                cell: Some(cell.unwrap_or(CELL * h) * factor),
+                clearance: Some(clearance.unwrap_or(CLEARANCE * h) * factor.max(1.0)),
+            }
+        }
         Interior::None if attempt > 0 => {
             Interior::Lattice { cell: Some(4.0 * CELL * h * factor), clearance: Some(CELL * h) }
         }
@@ -172,10 +175,12 @@ fn other_interior(surface: &TriMesh, interior: &Interior, attempt: u32) -> Inter
 fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>, TetError> {
     match interior {
         Interior::None => Ok(Vec::new()),
-        Interior::Lattice { cell, clearance } => {
+        Interior::Lattice { cell, clearance } | Interior::Graded { cell, clearance } => {
             let h = lattice::mean_edge(surface);
             let (cell, clearance) = (cell.unwrap_or(CELL * h), clearance.unwrap_or(CLEARANCE * h));
-            Ok(lattice::lattice_points(surface, cell, clearance))
+            let graded = matches!(interior, Interior::Graded { .. });
+            let points = if graded { lattice::graded_lattice_points } else { lattice::lattice_points };
+            Ok(points(surface, cell, clearance))
         }
         Interior::Points(points) => {
             let inside = points.iter().zip(0..).find(|(p, _)| !p.iter().all(|x| x.is_finite()));
@@ -190,13 +195,18 @@ fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>
 /// Eight points well outside, so that the hull of all points is no part of the surface and all of the surface can be
 /// flipped to.
 pub(super) fn box_corners(points: &[Point3]) -> Vec<Point3> {
+    box_around(points, 1.0)
+}
+
+/// The corners of a box that stands off by so many sizes of the points' own.
+fn box_around(points: &[Point3], share: f64) -> Vec<Point3> {
     let Some(first) = points.first() else { return Vec::new() };
     let (mut low, mut high) = (*first, *first);
     for p in points {
         low = low.inf(p);
         high = high.sup(p);
     }
-    let margin = (high - low).max();
+    let margin = share * (high - low).max();
     let safe = |x: f64| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x };
     let ends = [low.map(|x| safe(x - margin)), high.map(|x| safe(x + margin))];
     (0..8).map(|i: usize| Point3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[i >> 2].z)).collect()

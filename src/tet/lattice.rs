@@ -1,10 +1,10 @@
 //! Interior points: a body-centred cubic lattice, off the wall and jittered, so that one Delaunay run over surface and
-//! lattice leaves only the layer at the wall to improve.
+//! lattice leaves only the layer at the wall to improve. Away from the wall its cubes may grow.
 
 use super::delaunay::hash;
 use crate::geometry::{Point3, Vec3, point_triangle};
 use crate::mesh::TriMesh;
-use rustc_hash::FxHashSet;
+use rustc_hash::FxHashMap;
 
 /// Jitter of a lattice point, as a part of the cell.
 const JITTER: f64 = 0.02;
@@ -12,8 +12,12 @@ const JITTER: f64 = 0.02;
 /// Lattice indices stay below this magnitude, so that three of them pack into 63 bits.
 const MAX_INDEX: f64 = 1_000_000.0;
 
-/// Most lattice points tested near the wall and most points made: a cell far too small for its surface gives fewer.
+/// Most points made: a cell far too small for its surface gives fewer.
 const MAX_POINTS: usize = 50_000_000;
+
+/// Steps along the diagonals of the cubes from the outermost points of a lattice from which on its cubes are twice, four
+/// times and eight times as large.
+const COARSER_AT: [u32; 3] = [3, 8, 16];
 
 /// Mean edge length of a surface.
 pub fn mean_edge(surface: &TriMesh) -> f64 {
@@ -39,11 +43,6 @@ impl Lattice {
         let coin = |shift: u32| ((h >> shift) & 0x1f_ffff) as f64 / f64::from(0x10_0000) - 1.0;
         base + Vec3::new(coin(0), coin(21), coin(42)) * (2.0 * JITTER * self.half)
     }
-
-    /// Whether the three indices are all even or all odd.
-    fn is_site(i: i64, j: i64, k: i64) -> bool {
-        (i & 1) == (j & 1) && (j & 1) == (k & 1)
-    }
 }
 
 fn pack([i, j, k]: [i64; 3]) -> u64 {
@@ -55,7 +54,20 @@ fn pack([i, j, k]: [i64; 3]) -> u64 {
 /// `clearance` from it. The same surface gives the same points. Inside is decided along one scan line per column; a
 /// line that grazes an edge may leave points out or take in points outside, which carving drops.
 pub fn lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
-    let Some(first) = surface.points.first() else { return Vec::new() };
+    sites(surface, cell, clearance).map_or_else(Vec::new, |(lattice, columns)| columns.places(&lattice))
+}
+
+/// As [`lattice_points`], and away from the surface the lattice's cubes are twice, four times, .. as large.
+pub fn graded_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
+    sites(surface, cell, clearance).map_or_else(Vec::new, |(lattice, mut columns)| {
+        columns.thin();
+        columns.places(&lattice)
+    })
+}
+
+/// The lattice, and which of its points are inside and off the wall; none when the cell makes no sense.
+fn sites(surface: &TriMesh, cell: f64, clearance: f64) -> Option<(Lattice, Columns)> {
+    let first = surface.points.first()?;
     let (mut low, mut high) = (*first, *first);
     for p in &surface.points {
         low = low.inf(p);
@@ -64,12 +76,12 @@ pub fn lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point
     let half = cell / 2.0;
     let usable = cell > 0.0 && half.is_finite() && (high - low).max() / half < MAX_INDEX;
     if !usable {
-        return Vec::new();
+        return None;
     }
     let lattice = Lattice { origin: low, half };
-    let crossings = column_crossings(surface, &lattice);
-    let near = near_wall(surface, &lattice, clearance);
-    fill_columns(&lattice, &crossings, &near)
+    let mut columns = Columns::between(&column_crossings(surface, &lattice));
+    clear_wall(surface, &lattice, clearance, &mut columns);
+    Some((lattice, columns))
 }
 
 /// Where the columns of lattice points (along z) pass through the surface: packed column and height, sorted.
@@ -105,9 +117,8 @@ fn column_crossings(surface: &TriMesh, lattice: &Lattice) -> Vec<(u64, f64)> {
     crossings
 }
 
-/// The lattice points closer than `clearance` to the surface, packed.
-fn near_wall(surface: &TriMesh, lattice: &Lattice, clearance: f64) -> FxHashSet<u64> {
-    let mut near = FxHashSet::default();
+/// Takes out the points closer than `clearance` to the surface.
+fn clear_wall(surface: &TriMesh, lattice: &Lattice, clearance: f64, columns: &mut Columns) {
     let reach = clearance / lattice.half + 2.0 * JITTER * 2.0;
     for t in &surface.triangles {
         let corners = t.map(|v| surface.points[v as usize]);
@@ -118,38 +129,154 @@ fn near_wall(surface: &TriMesh, lattice: &Lattice, clearance: f64) -> FxHashSet<
         };
         for i in range(0) {
             for j in range(1).filter(|j| (i & 1) == (j & 1)) {
-                for k in range(2).filter(|&k| Lattice::is_site(i, j, k)) {
-                    let key = pack([i, j, k]);
-                    if !near.contains(&key) && distance(&lattice.place([i, j, k]), &corners) < clearance {
-                        near.insert(key);
+                let Some(column) = columns.at(i, j) else { continue };
+                let parity = i & 1;
+                for k in range(2).filter(|k| (k & 1) == parity) {
+                    if let Some((word, bit)) = column.bit(k >> 1)
+                        && columns.bits[word] & bit != 0
+                        && point_triangle(&lattice.place([i, j, k]), corners.each_ref()).1 < clearance
+                    {
+                        columns.bits[word] &= !bit;
                     }
                 }
             }
         }
-        if near.len() > MAX_POINTS {
-            break;
-        }
     }
-    near
 }
 
-fn fill_columns(lattice: &Lattice, crossings: &[(u64, f64)], near: &FxHashSet<u64>) -> Vec<Point3> {
-    let mut points = Vec::new();
-    for column in crossings.chunk_by(|p, q| p.0 == q.0) {
-        let unpack = |shift: u32| ((column[0].0 >> shift) & 0x1f_ffff) as i64 - (1 << 20);
-        let (i, j) = (unpack(0), unpack(21));
-        for pair in column.chunks_exact(2) {
-            let (from, to) = (pair[0].1.ceil() as i64, pair[1].1.floor() as i64);
-            for k in (from..=to).filter(|&k| Lattice::is_site(i, j, k)) {
-                if !near.contains(&pack([i, j, k])) && points.len() < MAX_POINTS {
-                    points.push(lattice.place([i, j, k]));
+/// Lattice points by columns along z, one bit each: point (i, j, k) is bit `k >> 1` of column (i, j), whose indices k
+/// are all even or all odd as its i and j are.
+struct Columns {
+    list: Vec<Column>,
+    index: FxHashMap<u64, u32>,
+    bits: Vec<u64>,
+}
+
+/// Words of 64 points each.
+#[derive(Clone, Copy)]
+struct Column {
+    i: i64,
+    j: i64,
+    /// Number of its first word along z.
+    first: i64,
+    /// Where its words are, and how many.
+    start: usize,
+    words: usize,
+}
+
+impl Column {
+    /// Word and bit of a point.
+    fn bit(&self, n: i64) -> Option<(usize, u64)> {
+        let word = (n >> 6) - self.first;
+        (0..self.words as i64).contains(&word).then(|| (self.start + word as usize, 1 << (n & 63)))
+    }
+}
+
+impl Columns {
+    /// The points between the first and the second, the third and the fourth, .. crossing of each column.
+    fn between(crossings: &[(u64, f64)]) -> Self {
+        let mut this = Self { list: Vec::new(), index: FxHashMap::default(), bits: Vec::new() };
+        let mut count = 0;
+        for crossed in crossings.chunk_by(|p, q| p.0 == q.0) {
+            let unpack = |shift: u32| ((crossed[0].0 >> shift) & 0x1f_ffff) as i64 - (1 << 20);
+            let (i, j) = (unpack(0), unpack(21));
+            let parity = i & 1;
+            // The points from one height to another, as bits: k = 2 n + parity.
+            let run = |pair: &[(u64, f64)]| {
+                let [from, to] = [pair[0].1.ceil() as i64, pair[1].1.floor() as i64];
+                ((from - parity + 1) >> 1, (to - parity) >> 1)
+            };
+            let runs = || crossed.chunks_exact(2).map(run).filter(|(from, to)| from <= to);
+            let (Some(from), Some(to)) = (runs().map(|r| r.0).min(), runs().map(|r| r.1).max()) else { continue };
+            count += runs().map(|(from, to)| (to - from + 1) as usize).sum::<usize>();
+            if count > MAX_POINTS || this.bits.len() > MAX_POINTS / 4 {
+                break;
+            }
+            let (first, start) = (from >> 6, this.bits.len());
+            let column = Column { i, j, first, start, words: ((to >> 6) - first + 1) as usize };
+            this.bits.resize(start + column.words, 0);
+            for (word, bit) in runs().flat_map(|(from, to)| from..=to).filter_map(|n| column.bit(n)) {
+                this.bits[word] |= bit;
+            }
+            this.index.insert(pack([i, j, 0]), this.list.len() as u32);
+            this.list.push(column);
+        }
+        this
+    }
+
+    fn at(&self, i: i64, j: i64) -> Option<Column> {
+        self.index.get(&pack([i, j, 0])).map(|&c| self.list[c as usize])
+    }
+
+    /// The points whose eight neighbours are all in `bits`.
+    fn eroded(&self, bits: &[u64]) -> Vec<u64> {
+        let mut out = bits.to_vec();
+        for column in &self.list {
+            for (di, dj) in [(-1, -1), (-1, 1), (1, -1), (1, 1)] {
+                let near = self.at(column.i + di, column.j + dj);
+                let word = |w: i64| match near {
+                    Some(c) if (0..c.words as i64).contains(&(w - c.first)) => bits[c.start + (w - c.first) as usize],
+                    _ => 0,
+                };
+                for (w, slot) in (column.first..).zip(&mut out[column.start..column.start + column.words]) {
+                    let here = word(w);
+                    // Above and below (k ± 1) are bits n and n − 1 of a neighbour, or n and n + 1.
+                    let other =
+                        if column.i & 1 == 0 { here << 1 | word(w - 1) >> 63 } else { here >> 1 | word(w + 1) << 63 };
+                    *slot &= here & other;
+                }
+            }
+        }
+        out
+    }
+
+    /// Keeps of what is so many steps off the rim only the points of lattices with larger cubes.
+    fn thin(&mut self) {
+        let (mut deep, mut depth) = (self.bits.clone(), 0);
+        for (level, at) in (1..).zip(COARSER_AT) {
+            while depth < at {
+                deep = self.eroded(&deep);
+                depth += 1;
+            }
+            if deep.iter().all(|&word| word == 0) {
+                return;
+            }
+            for column in &self.list {
+                let coarse = column.points_of_level(level);
+                for word in column.start..column.start + column.words {
+                    self.bits[word] &= coarse | !deep[word];
                 }
             }
         }
     }
-    points
+
+    fn places(&self, lattice: &Lattice) -> Vec<Point3> {
+        let mut points = Vec::with_capacity(self.bits.iter().map(|word| word.count_ones() as usize).sum());
+        for column in &self.list {
+            let words = &self.bits[column.start..column.start + column.words];
+            for (w, &word) in (column.first..).zip(words) {
+                let mut left = word;
+                while left != 0 {
+                    let n = 64 * w + i64::from(left.trailing_zeros());
+                    points.push(lattice.place([column.i, column.j, 2 * n + (column.i & 1)]));
+                    left &= left - 1;
+                }
+            }
+        }
+        points
+    }
 }
 
-fn distance(p: &Point3, t: &[Point3; 3]) -> f64 {
-    point_triangle(p, t.each_ref()).1
+impl Column {
+    /// The points, as bits of each word, that belong to the lattice whose cubes are `2^level` times as large: those
+    /// whose indices are multiples of that, all three even ones or all three odd ones.
+    fn points_of_level(&self, level: u32) -> u64 {
+        let step = 1 << level;
+        if self.i % step != 0 || self.j % step != 0 || (self.i ^ self.j) & step != 0 {
+            return 0;
+        }
+        // k = 2 n is a multiple of the step, an even one or an odd one.
+        let odd = u64::from(self.i & step != 0);
+        (0..64).filter(|n| n % step as u64 == odd * (step as u64 / 2)).fold(0, |mask, n| mask | 1 << n)
+    }
 }

@@ -16,6 +16,13 @@ pub enum Interior {
         /// Distance kept from the wall; none: 0.45 mean edge lengths of the surface.
         clearance: Option<f64>,
     },
+    /// A lattice whose cubes grow away from the wall; lengths as for `Lattice`, the side is that of the smallest cubes.
+    Graded {
+        /// Side of the cubes next to the wall.
+        cell: Option<f64>,
+        /// Distance kept from the wall.
+        clearance: Option<f64>,
+    },
     /// These points; those outside the surface are dropped.
     Points(Vec<Point3>),
 }

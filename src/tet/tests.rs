@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::{Point3, Vec3};
+use crate::mesh::quality::TetQuality;
 use crate::mesh::shapes::sphere_surface;
 use proptest::prelude::*;
 
@@ -184,25 +185,6 @@ fn wrong_surfaces_are_typed_errors() {
 }
 
 #[test]
-fn points_in_triangles_are_found_before_anything_is_made() {
-    let check = |p: Point3| {
-        let mut plc = Plc::from(&cube(1));
-        plc.points.push(p);
-        let tetrahedralizer = Tetrahedralizer::new();
-        let checked = tetrahedralizer.check(&plc);
-        assert_eq!(checked.clone().err(), tetrahedralizer.run(&plc).err());
-        checked
-    };
-    assert_eq!(check(Point3::new(0.5, 0.375, 0.25)), Ok(()));
-    assert!(matches!(
-        check(Point3::new(0.0, 0.25, 0.0)),
-        Err(TetError::EdgeMeets { obstacle: Obstacle::Point(8), .. })
-    ));
-    let inside = check(Point3::new(1.0, 0.75, 0.375));
-    assert!(matches!(inside, Err(TetError::Stuck { part: Obstacle::Triangle(_), reason: Stuck::Intersection })));
-}
-
-#[test]
 fn surfaces_that_meet_themselves_end_in_an_error() {
     let s = sphere_surface(2);
     let crossing = joined(s.clone(), &s, 1.0, Vec3::new(0.9, 0.1, 0.05));
@@ -319,4 +301,22 @@ fn the_certificate_finds_every_kind_of_fault() {
         *v += shift;
     }
     assert_eq!(certify(&half, &two), Err(CertifyError::TriangleLost { triangle: s.triangles.len() as u32 }));
+}
+
+#[test]
+fn a_graded_lattice_is_the_lattice_near_the_wall_and_thinner_inside() {
+    let s = sphere_surface(4);
+    let (cell, clearance) = (0.06, 0.03);
+    let all = lattice::lattice_points(&s, cell, clearance);
+    let graded = lattice::graded_lattice_points(&s, cell, clearance);
+    let beyond = |points: &[Point3], r: f64| points.iter().filter(|p| p.coords.norm() > r).count();
+    assert_eq!(beyond(&all, 0.9), beyond(&graded, 0.9));
+    assert!(graded.len() * 2 < all.len(), "{} of {}", graded.len(), all.len());
+    assert!(graded.iter().all(|p| all.contains(p)));
+    // A step of the coarser lattices takes eight times as much room.
+    let within = |points: &[Point3], r: f64| points.len() - beyond(points, r);
+    assert!(within(&graded, 0.7) * 7 < within(&all, 0.7) && within(&graded, 0.7) * 60 > within(&all, 0.7));
+    let interior = Interior::Graded { cell: Some(cell), clearance: Some(clearance) };
+    let mesh = tetrahedralize(&s, &TetOptions::default().interior(interior)).unwrap();
+    assert!(TetQuality::of(&mesh).percentile_1 > 0.45, "{:?}", TetQuality::of(&mesh));
 }
