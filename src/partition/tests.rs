@@ -67,10 +67,10 @@ fn a_y_is_one_cluster_with_three_caps() {
     let p = default_cut(&s);
     assert_eq!((p.clusters.len(), p.cuts.len(), p.clusters[0].ends.len()), (1, 0, 3));
     assert!(p.uncut.iter().all(|(_, r)| *r == UncutReason::Terminal));
-    // Overrun: 1.25 r, or 2.5 voxels of 2 · 0.8 / 3.
+    // Overrun: one radius, or 1.6 voxels of 2 · 0.8 / 3.
     for end in &p.clusters[0].ends {
         let t = p.clusters[0].tubes[end.overrun[0] as usize];
-        let expected = (1.25 * end.section.radius).max(2.5 * 2.0 * 0.8 / 3.0);
+        let expected = end.section.radius.max(1.6 * 2.0 * 0.8 / 3.0);
         assert!((t.length() - expected).abs() < 1e-12);
     }
     assert!(p.warnings.is_empty());
@@ -151,22 +151,22 @@ fn least_clearance(p: &Partition) -> f64 {
 
 #[test]
 fn a_cut_moves_out_of_the_way_of_another_vessel() {
-    // An arm of the junction comes back and passes the bridge of the H at x = 4, 2.2 from its axis.
+    // An arm of the junction comes back and passes the bridge of the H at x = 3, 2.2 from its axis.
     let mut points: Vec<_> =
         h_shape(16.0).nodes.iter().map(|n| (n.position.into(), 1.0)).collect::<Vec<([f64; 3], f64)>>();
     points[2].0 = [0.0, 9.0, 0.0];
-    points.push(([4.0, 9.0, 0.0], 1.0));
-    points.push(([4.0, 2.2, 0.0], 1.0));
-    points.push(([4.0, 2.2, 9.0], 1.0));
+    points.push(([3.0, 9.0, 0.0], 1.0));
+    points.push(([3.0, 2.2, 0.0], 1.0));
+    points.push(([3.0, 2.2, 9.0], 1.0));
     let edges = [[0, 1], [0, 2], [0, 3], [1, 4], [1, 5], [2, 6], [6, 7], [7, 8]];
     let p = default_cut(&skeleton(&points, &edges));
     assert_eq!(p.cuts.len(), 1);
-    assert!(p.cut_arcs[0][0] > 5.0, "{:?}", p.cut_arcs);
+    assert!(p.cut_arcs[0][0] > 4.0, "{:?}", p.cut_arcs);
     assert!(least_clearance(&p) > 1.0);
     // With less room behind it, the cut is given up, and the reason names the branch.
     for point in &mut points[..] {
         if point.0[0] > 15.0 {
-            point.0[0] -= 7.5;
+            point.0[0] -= 9.0;
         }
     }
     let p = default_cut(&skeleton(&points, &edges));
