@@ -6,7 +6,7 @@
 //! none, a point, a segment, or an area.
 
 use super::fans::proved_fans;
-use super::predicates::{collinear, orient2d, orient3d};
+use super::predicates::{ORIENT3D_BOUND, collinear, orient2d, orient3d};
 use super::{Aabb, Bvh, Point3};
 use rayon::prelude::*;
 
@@ -100,6 +100,23 @@ impl<'a> Triangle<'a> {
         std::array::from_fn(|i| if self.ids.contains(&other.ids[i]) { 0 } else { self.side(other.corners[i]) })
     }
 
+    /// Whether another triangle lies strictly on one side of the plane of this one, as far as rounding lets be seen:
+    /// three times `orient3d` and its filter, with one normal.
+    fn clearly_beside(&self, other: &Self) -> bool {
+        let [a, b, c] = self.corners;
+        let (b, c) = (b - a, c - a);
+        let normal = b.cross(&c);
+        let across = b.abs().sup(&c.abs());
+        let side = |p: &Point3| {
+            let d = p - a;
+            let bound = across.sup(&d.abs());
+            let det = normal.dot(&d);
+            if det.abs() > ORIENT3D_BOUND * bound.x * bound.y * bound.z { det } else { 0.0 }
+        };
+        let [p, q, r] = other.corners.map(side);
+        (p > 0.0 && q > 0.0 && r > 0.0) || (p < 0.0 && q < 0.0 && r < 0.0)
+    }
+
     /// Index of the corner with this id.
     fn index_of(&self, id: u32) -> Option<usize> {
         self.ids.iter().position(|&v| v == id)
@@ -115,6 +132,9 @@ pub fn classify(points: &[Point3], a: [u32; 3], b: [u32; 3]) -> Contact {
         return Contact::Improper(Improper::SameVertices);
     }
     let apart = if shared == 0 { Contact::Apart } else { Contact::Neighbours };
+    if shared == 0 && (p.clearly_beside(&q) || q.clearly_beside(&p)) {
+        return apart;
+    }
     let q_sides = p.sides(&q);
     if separated(q_sides, shared) {
         return apart;

@@ -90,12 +90,21 @@ pub type TriAdjacency = Matching<3>;
 
 /// Matches the faces of tetrahedra over `vertices` vertices. Linear time, 24 bytes per face at the peak.
 pub fn tet_adjacency(tets: &[[u32; 4]], vertices: usize) -> TetAdjacency {
-    let tets = numbered_as_met(tets, vertices);
+    let numbered = is_scattered(tets, vertices).then(|| numbered_as_met(tets, vertices));
+    let tets = numbered.as_deref().unwrap_or(tets);
     match_sides(tets.len(), vertices, |handle| {
         let [i, j, k] = TET_FACES[(handle & 3) as usize];
         let t = &tets[(handle >> 2) as usize];
         sorted3([t[i], t[j], t[k]])
     })
+}
+
+/// Whether cells that follow each other have vertices with numbers far apart, going by a thousand of them.
+fn is_scattered(cells: &[[u32; 4]], vertices: usize) -> bool {
+    const SAMPLE: usize = 1024;
+    let pairs = || cells.windows(2).step_by((cells.len() / SAMPLE).max(1));
+    let apart: usize = pairs().map(|pair| pair[0][0].abs_diff(pair[1][0]) as usize).sum();
+    apart / pairs().count().max(1) > (vertices / 32).max(SAMPLE)
 }
 
 /// The same cells, their vertices numbered in the order in which they come. Where numbers had nothing to do with place,

@@ -9,6 +9,9 @@ pub const HISTOGRAM_BINS: usize = 20;
 /// The six edges of a tetrahedron, as pairs of its vertices.
 pub const TET_EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
+/// Relative roundoff of squared cotangents of tetrahedra that are not all but flat, with a wide margin.
+const ROUNDOFF: f64 = 1e-9;
+
 /// Six times the signed volume, `det(b − a, c − a, d − a)` in floating point: its sign is a hint, not a proof.
 #[inline]
 pub fn volume6(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
@@ -92,6 +95,31 @@ impl CotangentRange {
         }
     }
 
+    /// As [`Self::include`], for many tetrahedra few of which widen the range: squares without roots tell that most do
+    /// not.
+    fn include_if_wider(&mut self, corners: [&Point3; 4]) {
+        let [a, b, c, d] = corners;
+        let (u, v, w) = (b - a, c - a, d - a);
+        let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
+        let away = -(vw + wu + uv);
+        let volume = uv.dot(&w);
+        // Faces at the edges of `u`, `v`, `w` and of the three others.
+        let adjacent = [wu.dot(&uv), vw.dot(&uv), vw.dot(&wu), uv.dot(&away), wu.dot(&away), vw.dot(&away)].map(|x| -x);
+        let squares = [u, v, w, c - b, d - b, d - c].map(|e| e.norm_squared() * (volume * volume));
+        let square = |x: f64| x * x.abs();
+        let (low, high) = (
+            square(self.low) * (1.0 + ROUNDOFF * self.low.signum()),
+            square(self.high) * (1.0 - ROUNDOFF * self.high.signum()),
+        );
+        let within = |(&adjacent, &opposite): (&f64, &f64)| {
+            let x = square(adjacent);
+            x > low * opposite && x < high * opposite
+        };
+        if !adjacent.iter().zip(&squares).all(within) {
+            self.include(corners);
+        }
+    }
+
     /// The smallest and the largest angle.
     fn angles(self) -> (f64, f64) {
         (1.0_f64.atan2(self.high), 1.0_f64.atan2(self.low))
@@ -152,7 +180,7 @@ impl TetQuality {
             let q = radius_ratio(p[0], p[1], p[2], p[3]);
             histogram[((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1)] += 1;
             ratios.push(q);
-            dihedral.include(p);
+            dihedral.include_if_wider(p);
         }
         let (low, high) = if ratios.is_empty() { (0.0, 0.0) } else { dihedral.angles() };
         Self {

@@ -57,14 +57,19 @@ impl HalfEdges {
         let at = |v: u32| &starting[start[v as usize] as usize..start[v as usize + 1] as usize];
         let mut twin = vec![NONE; from.len()];
         for a in 0..n as u32 {
-            for &(b, h) in at(a) {
-                // One half-edge back from b to a; seen from there, that this is the only one from a to b.
+            for &(b, h) in at(a).iter().filter(|x| x.0 > a) {
+                // One half-edge back from b to a, and this is the only one from a to b.
                 let mut back = at(b).iter().filter(|o| o.0 == a);
-                match (back.next(), back.next()) {
-                    (Some(&(_, o)), None) => twin[h as usize] = o,
+                let again = at(a).iter().filter(|o| o.0 == b).nth(1);
+                match (back.next(), back.next(), again) {
+                    (Some(&(_, o)), None, None) => (twin[h as usize], twin[o as usize]) = (o, h),
                     _ => return Err([a, b]),
                 }
             }
+        }
+        // Half-edges to a smaller vertex without one back, and loops, have found no twin.
+        if let Some(h) = twin.iter().position(|&o| o == NONE) {
+            return Err([from[h], from[next(h as u32) as usize]]);
         }
         let out: Vec<u32> = (0..n as u32).map(|v| at(v).first().map_or(NONE, |x| x.1)).collect();
         let surface = Self { points: mesh.points.clone(), from, twin, out };
