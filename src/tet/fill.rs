@@ -23,6 +23,9 @@ const CELL: f64 = 1.4;
 /// Distance of the lattice from the wall in mean edge lengths of the surface.
 const CLEARANCE: f64 = 0.45;
 
+/// Volume of the lattice's tetrahedra over the bound on volumes.
+const VOLUME_SHARE: f64 = 0.6;
+
 /// Times that recovery is tried before the last tier.
 const ATTEMPTS: u32 = 2;
 
@@ -124,7 +127,10 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
         let mut points = surface.points.clone();
         match sized::sized_points(r, FACTORS[attempt as usize % 8]) {
             Some(inside) => points.extend(inside),
-            None => points.extend(interior_points(surface, &other_interior(surface, r.interior, attempt))?),
+            None => {
+                let interior = for_volume(surface, r.interior, r.refinement);
+                points.extend(interior_points(surface, &other_interior(surface, &interior, attempt))?);
+            }
         }
         let inner = points.len();
         // The smaller the box, the smaller the bound on the roundoff in it; there is room to flip in for smooth walls.
@@ -151,6 +157,20 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
             Err(error) => return Err(diagnosis(r, error)),
         }
         attempt += 1;
+    }
+}
+
+/// The interior asked for; a lattice whose size is left open gets tetrahedra within the bound on volumes.
+fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refinement>) -> Interior {
+    let usual = CELL * lattice::mean_edge(surface);
+    match (interior, refinement.and_then(|r| r.max_volume)) {
+        (Interior::Lattice { cell: None, clearance }, Some(bound)) => {
+            // A cube holds twelve tetrahedra.
+            let cell = (12.0 * VOLUME_SHARE * bound).cbrt().min(usual);
+            let near = CLEARANCE / CELL * cell.max(0.5 * usual);
+            Interior::Lattice { cell: Some(cell), clearance: Some(clearance.unwrap_or(near)) }
+        }
+        _ => interior.clone(),
     }
 }
 

@@ -84,3 +84,47 @@ fn the_pieces_of_a_long_tube_are_better_than_the_tube() {
     let (kept, split) = (TetQuality::of(&run(Boundary::Keep).mesh), TetQuality::of(&run(Boundary::Split).mesh));
     assert!(split.dihedral_min > kept.dihedral_min && split.mean > kept.mean, "{kept:?} {split:?}");
 }
+
+#[test]
+fn a_bound_on_volume_makes_the_lattice_fit_and_leaves_few_beyond() {
+    let s = sphere_surface(3);
+    let bound = 5e-4;
+    let plain = Tetrahedralizer::new().run(&Plc::from(&s)).unwrap();
+    let t = Tetrahedralizer::new().refine(Some(Refinement::default().max_volume(bound))).run(&Plc::from(&s)).unwrap();
+    let volume = |v: &[u32; 4]| {
+        let [a, b, c, d] = v.map(|x| t.mesh.points[x as usize]);
+        (b - a).cross(&(c - a)).dot(&(d - a)) / 6.0
+    };
+    let beyond = t.mesh.tets.iter().filter(|v| volume(v) > bound).count();
+    assert!(t.mesh.tets.len() > plain.mesh.tets.len() && beyond * 100 <= t.mesh.tets.len(), "{beyond}");
+    let q = TetQuality::of(&t.mesh);
+    assert!(q.mean > 0.8 && q.dihedral_min > 10.0, "{q:?}");
+    assert_eq!(t.faces, s.triangles);
+}
+
+#[test]
+fn bounds_on_shape_leave_fewer_beyond_them() {
+    let s = sphere_surface(3);
+    let ratio = |mesh: &TetMesh, v: &[u32; 4]| {
+        let [a, b, c, d] = v.map(|x| mesh.points[x as usize]);
+        let (u, v, w) = (b - a, c - a, d - a);
+        let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
+        let center = (vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared()) / (2.0 * uv.dot(&w));
+        let edges = [u, v, w, v - u, w - u, w - v].map(|e| e.norm());
+        center.norm() / edges.into_iter().fold(f64::INFINITY, f64::min)
+    };
+    let beyond = |mesh: &TetMesh| mesh.tets.iter().filter(|v| ratio(mesh, v) > 1.2).count();
+    let run = |r| Tetrahedralizer::new().interior(Interior::None).refine(r).run(&Plc::from(&s)).unwrap().mesh;
+    let (plain, bounded) = (run(None), run(Some(Refinement::default().max_radius_edge(1.2))));
+    let (before, after) = (beyond(&plain) * bounded.tets.len(), beyond(&bounded) * plain.tets.len());
+    assert!(
+        10 * after < before,
+        "{} of {}, {} of {}",
+        beyond(&plain),
+        plain.tets.len(),
+        beyond(&bounded),
+        bounded.tets.len()
+    );
+    let angled = run(Some(Refinement::default().min_dihedral(15.0)));
+    assert!(TetQuality::of(&angled).dihedral_min > 15.0 && TetQuality::of(&plain).dihedral_min < 15.0);
+}

@@ -16,6 +16,9 @@ use crate::mesh::TriMesh;
 /// Clearance of interior points from the wall over the edge length wanted there.
 const CLEARANCE: f64 = 0.45;
 
+/// Part of a bound on volumes that refinement aims at when vertices are moved afterwards.
+const MARGIN: f64 = 0.7;
+
 /// Checks the numbers of a refinement and a sizing for a surface of so many points.
 ///
 /// # Errors
@@ -89,6 +92,10 @@ pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineR
     goals.size = size.as_ref().map(|f| f as &dyn Fn(&Point3) -> f64);
     let bounded = r.regions.iter().any(|region| region.max_volume.is_some());
     let bounds = if bounded { Regions::of(carved, r.regions)?.volume_bounds(r.regions) } else { Vec::new() };
+    if r.optimize {
+        // Moves make some larger again.
+        goals.max_volume = goals.max_volume.map(|bound| MARGIN * bound);
+    }
     let report = refine_complex(carved, &goals, bounds, |points| r.watch.report(Stage::Refine, points, 0).is_ok());
     r.watch.report(Stage::Refine, report.points, report.points)?;
     Ok(Some(report))

@@ -8,7 +8,7 @@ use crate::tet::{Boundary, InputKind, Interior, Refinement, Sizing, Tetrahedrali
 use serde::Serialize;
 
 /// Side of the lattice's cubes in edge lengths: what gives a body-centred lattice edges of about that length.
-const LATTICE_CELL: f64 = 1.5;
+const LATTICE_CELL: f64 = 1.08;
 
 /// What is to be done.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -172,7 +172,7 @@ impl TetPlan {
             .kind(if self.plc { InputKind::Plc } else { InputKind::Closed })
             .interior(if self.refine { lattice } else { Interior::None })
             .refine(bounded.then_some(bounds))
-            .sizing(self.size.filter(|_| bounded).map_or(Sizing::Surface, Sizing::Constant))
+            .sizing(self.size.filter(|_| bounded || self.split).map_or(Sizing::Surface, Sizing::Constant))
             .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
             .optimize(self.optimize)
     }

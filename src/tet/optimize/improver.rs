@@ -1,5 +1,6 @@
 //! The state of an improvement and its plan: which passes, in which order.
 
+use super::allowance::Allowance;
 use super::smoothing::StarEnergy;
 use super::{Effort, OptimizeOptions, OptimizeReport, strain};
 use crate::mesh::quality::radius_ratio;
@@ -29,6 +30,8 @@ pub struct Improver {
     pub(super) report: OptimizeReport,
     /// Smoothing may not take the worst of a star below what it is or this, whichever is less.
     pub(super) guard: f64,
+    /// What triangles that stay allow; empty while that is not asked for.
+    pub(super) allowance: Allowance,
     /// Attempts left.
     pub(super) budget: usize,
     pub(super) flipper: Flipper,
@@ -56,6 +59,7 @@ impl Improver {
             options: *options,
             report: OptimizeReport::default(),
             guard: 0.0,
+            allowance: Allowance::default(),
             budget: 0,
             flipper: Flipper::default(),
             star: Star::default(),
@@ -88,6 +92,7 @@ impl Improver {
                 if self.options.effort == Effort::Full {
                     self.guard = self.options.stubborn_below;
                     self.treat_thoroughly();
+                    self.spare_others();
                 } else {
                     self.treat_stubborn();
                 }
@@ -205,9 +210,14 @@ impl Improver {
         self.c.is_real(t) && self.quality[t as usize].to_bits() == q.to_bits()
     }
 
+    /// Strain of a tetrahedron of this radius ratio, beside what its triangles allow.
+    fn strain(&self, v: &[u32; 4], ratio: f64) -> f64 {
+        strain((ratio / self.allowance.of_tet(v)).min(1.0))
+    }
+
     /// Sum of the strain of tetrahedra.
     pub(super) fn strain_of(&self, tets: &[u32]) -> f64 {
-        tets.iter().map(|&t| strain(self.quality[t as usize])).sum()
+        tets.iter().map(|&t| self.strain(&self.c.verts(t), self.quality[t as usize])).sum()
     }
 
     /// Whether exchanging `old` for `new` eases the mesh: the quick passes do not ask.
@@ -217,7 +227,7 @@ impl Improver {
             radius_ratio(a, b, c, d)
         };
         self.options.effort != Effort::Full
-            || new.iter().map(|v| strain(ratio(v))).sum::<f64>() < self.strain_of(old) - EASED
+            || new.iter().map(|v| self.strain(v, ratio(v))).sum::<f64>() < self.strain_of(old) - EASED
     }
 
     /// Smallest radius ratio among tetrahedra.

@@ -5,6 +5,7 @@
 //! Every change keeps all tetrahedra positive by the exact predicate, and every change of the connection raises the
 //! worst radius ratio of the tetrahedra that it touches.
 
+mod allowance;
 mod cavity;
 mod flipping;
 mod improver;

@@ -6,6 +6,7 @@
 //! Positive tetrahedra whose faces match each other and the cavity's boundary cover the cavity once, so the search need
 //! not test for intersections; volume and enclosed vertices merely prune it.
 
+use super::allowance::Allowance;
 use super::improver::EASED;
 use super::{Improver, ratio_of_strain, strain};
 use crate::geometry::predicates::orient3d;
@@ -34,7 +35,8 @@ const fn choose(n: usize, k: usize) -> usize {
 /// A tetrahedron of four local vertices in ascending order.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// Radius ratio with the sign of the exact orientation; not a number where not yet known.
+    /// Radius ratio, as a part of what is allowed, with the sign of the exact orientation; not a number where not yet
+    /// known.
     ratio: f64,
     /// Volume with sign, as far as rounding goes.
     volume: f64,
@@ -59,6 +61,13 @@ struct FrontFace {
     least: f64,
 }
 
+/// Where the search takes place.
+#[derive(Clone, Copy)]
+struct Room<'a> {
+    c: &'a Complex,
+    allowance: &'a Allowance,
+}
+
 /// The search; keeps its buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Reconnection {
@@ -73,8 +82,10 @@ pub(super) struct Reconnection {
     best: Vec<[u8; 4]>,
     new: Vec<[u32; 4]>,
     created: Vec<u32>,
-    /// Radius ratio that each new tetrahedron must exceed.
+    /// Radius ratio, as a part of what is allowed, that each new tetrahedron must exceed.
     floor: f64,
+    /// Radius ratio that each new tetrahedron must have.
+    least: f64,
     /// Strain that the new tetrahedra must stay below together.
     limit: f64,
     /// Strain at which the search may end.
@@ -105,9 +116,10 @@ impl Improver {
         r.limit = self.strain_of(&r.tets) - EASED;
         r.enough = r.limit * GOOD;
         // A tetrahedron with more strain than all of the old ones is of no use.
-        r.floor = self.report.worst_before.max(ratio_of_strain(r.limit) * 0.99);
+        r.floor = ratio_of_strain(r.limit) * 0.99;
         r.nodes = nodes;
-        r.search(&self.c);
+        r.least = self.report.worst_before;
+        r.search(Room { c: &self.c, allowance: &self.allowance });
         if r.best.is_empty() {
             return false;
         }
@@ -186,7 +198,7 @@ impl Reconnection {
 
     /// Where the tetrahedron of four local vertices is in the table, and whether it is turned over there; none when a
     /// vertex is there twice.
-    fn entry(&mut self, c: &Complex, v: [u8; 4]) -> Option<(usize, bool)> {
+    fn entry(&mut self, room: Room, v: [u8; 4]) -> Option<(usize, bool)> {
         let (sorted, odd) = sort4(v);
         let [i, j, k, l] = sorted.map(usize::from);
         if i == j || j == k || k == l {
@@ -194,10 +206,15 @@ impl Reconnection {
         }
         let at = choose(l, 4) + choose(k, 3) + choose(j, 2) + i;
         if self.table[at].ratio.is_nan() {
-            let [p, q, r, s] = sorted.map(|x| &c.points[self.vertices[x as usize] as usize]);
+            let v = sorted.map(|x| self.vertices[x as usize]);
+            let [p, q, r, s] = v.map(|x| &room.c.points[x as usize]);
             let exact = orient3d(p, q, r, s);
-            let ratio = radius_ratio(p, q, r, s).abs();
-            let ratio = if exact == 0.0 || ratio.is_nan() { 0.0 } else { ratio };
+            let ratio = match radius_ratio(p, q, r, s).abs() {
+                ratio if exact == 0.0 || ratio.is_nan() => 0.0,
+                // Only the sign counts where it is of no use.
+                ratio if ratio < self.least => f64::MIN_POSITIVE,
+                ratio => (ratio / room.allowance.of_tet(&v)).min(1.0),
+            };
             let signed = if exact > 0.0 { ratio } else { -ratio };
             self.table[at] = Entry { ratio: signed, volume: exact, strain: strain(ratio), ..NO_ENTRY };
         }
@@ -206,8 +223,8 @@ impl Reconnection {
 
     /// The tetrahedron of four local vertices: radius ratio and volume, both negative when it is inverted, and its
     /// strain if it is not.
-    fn tet(&mut self, c: &Complex, v: [u8; 4]) -> (f64, f64, f64) {
-        match self.entry(c, v) {
+    fn tet(&mut self, room: Room, v: [u8; 4]) -> (f64, f64, f64) {
+        match self.entry(room, v) {
             Some((at, odd)) => {
                 let Entry { ratio, volume, strain, .. } = self.table[at];
                 if odd { (-ratio, -volume, strain) } else { (ratio, volume, strain) }
@@ -216,7 +233,7 @@ impl Reconnection {
         }
     }
 
-    fn search(&mut self, c: &Complex) {
+    fn search(&mut self, room: Room) {
         self.table.clear();
         self.table.resize(choose(self.vertices.len(), 4), NO_ENTRY);
         self.faces.clear();
@@ -224,26 +241,26 @@ impl Reconnection {
         self.best.clear();
         self.stack.clear();
         self.front.clear();
-        self.volume = self.tets.iter().map(|&t| c.orient(&c.verts(t))).sum();
+        self.volume = self.tets.iter().map(|&t| room.c.orient(&room.c.verts(t))).sum();
         self.slack = 1e-9 * self.volume;
-        self.loose = self.loose_vertices(c);
+        self.loose = self.loose_vertices(room.c);
         for k in 0..self.halves.len() {
-            let [a, b, d] = c.face(self.halves[k]).map(|v| self.local(v));
-            let face = self.front_face(c, [a, b, d]);
+            let [a, b, d] = room.c.face(self.halves[k]).map(|v| self.local(v));
+            let face = self.front_face(room, [a, b, d]);
             self.front.push(face);
         }
-        self.branch(c, 0.0, self.volume);
+        self.branch(room, 0.0, self.volume);
     }
 
     /// A face to be closed.
-    fn front_face(&mut self, c: &Complex, f: [u8; 3]) -> FrontFace {
+    fn front_face(&mut self, room: Room, f: [u8; 3]) -> FrontFace {
         let ([i, j, k], odd) = sort3(f);
         let at = 2 * (choose(k as usize, 3) + choose(j as usize, 2) + i as usize) + usize::from(odd);
         if self.faces[at].mates == UNKNOWN {
             let (mut mates, mut least) = (0, f64::INFINITY);
             for v in 0..self.vertices.len() as u8 {
                 if !f.contains(&v) {
-                    let (ratio, _, strain) = self.tet(c, [v, f[0], f[1], f[2]]);
+                    let (ratio, _, strain) = self.tet(room, [v, f[0], f[1], f[2]]);
                     if ratio > self.floor {
                         mates |= 1 << v;
                         least = least.min(strain);
@@ -267,7 +284,7 @@ impl Reconnection {
     }
 
     /// Closes the front with tetrahedra above the floor; depth is bounded by the volume and by the number of steps.
-    fn branch(&mut self, c: &Complex, sum: f64, volume: f64) {
+    fn branch(&mut self, room: Room, sum: f64, volume: f64) {
         if self.front.is_empty() {
             if sum < self.limit && volume.abs() <= self.slack * 1e3 {
                 self.limit = sum;
@@ -295,7 +312,7 @@ impl Reconnection {
         let mut count = 0;
         for v in 0..self.vertices.len() as u8 {
             if face.mates & usable & (1 << v) != 0 {
-                let (_, size, strain) = self.tet(c, [v, face.v[0], face.v[1], face.v[2]]);
+                let (_, size, strain) = self.tet(room, [v, face.v[0], face.v[1], face.v[2]]);
                 if sum + strain < self.limit && size <= volume + self.slack {
                     choices[count] = (strain, v);
                     count += 1;
@@ -309,7 +326,7 @@ impl Reconnection {
             if sum >= self.limit {
                 break;
             }
-            self.take(c, at, v, sum, volume);
+            self.take(room, at, v, sum, volume);
             if self.nodes == 0 {
                 return;
             }
@@ -317,12 +334,12 @@ impl Reconnection {
     }
 
     /// Puts tetrahedron (v, face `at`) into the room, goes on, and takes it out again.
-    fn take(&mut self, c: &Complex, at: usize, v: u8, sum: f64, volume: f64) {
+    fn take(&mut self, room: Room, at: usize, v: u8, sum: f64, volume: f64) {
         let [a, b, d] = self.front[at].v;
-        if self.encloses(c, [v, a, b, d]) {
+        if self.encloses(room, [v, a, b, d]) {
             return;
         }
-        let size = self.tet(c, [v, a, b, d]).1;
+        let size = self.tet(room, [v, a, b, d]).1;
         // Where faces were taken out of the front, newest last, and how many were put in after them.
         let mut removed: [(usize, FrontFace); 4] = [(0, self.front[at]); 4];
         let mut order = [false; 4];
@@ -338,7 +355,7 @@ impl Reconnection {
                 fits = false;
                 break;
             } else {
-                let face = self.front_face(c, f);
+                let face = self.front_face(room, f);
                 if face.mates == 0 {
                     fits = false;
                     break;
@@ -350,7 +367,7 @@ impl Reconnection {
         }
         if fits {
             self.stack.push([v, a, b, d]);
-            self.branch(c, sum, volume - size);
+            self.branch(room, sum, volume - size);
             self.stack.pop();
         }
         for step in (0..steps).rev() {
@@ -367,14 +384,16 @@ impl Reconnection {
     }
 
     /// Whether another vertex of the front lies strictly inside.
-    fn encloses(&mut self, c: &Complex, v: [u8; 4]) -> bool {
-        let Some((at, _)) = self.entry(c, v) else { return true };
+    fn encloses(&mut self, room: Room, v: [u8; 4]) -> bool {
+        let Some((at, _)) = self.entry(room, v) else { return true };
         if self.table[at].enclosed == UNKNOWN {
             let [v, a, b, d] = v;
             let mut enclosed = 0;
             for x in 0..self.vertices.len() as u8 {
                 let inside = ![v, a, b, d].contains(&x)
-                    && [[x, a, b, d], [v, x, b, d], [v, a, x, d], [v, a, b, x]].iter().all(|&y| self.tet(c, y).0 > 0.0);
+                    && [[x, a, b, d], [v, x, b, d], [v, a, x, d], [v, a, b, x]]
+                        .iter()
+                        .all(|&y| self.tet(room, y).0 > 0.0);
                 enclosed |= u16::from(inside) << x;
             }
             self.table[at].enclosed = enclosed;

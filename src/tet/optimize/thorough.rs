@@ -2,11 +2,16 @@
 //! the worst first, until nothing improves or what is left does not change any more.
 
 use super::Improver;
+use super::allowance::Allowance;
 
 /// Rounds over the tetrahedra that are still bad.
 const ROUNDS: usize = 8;
 /// Sizes of the cavities that are reconnected, and steps of the search in each.
 const CAVITIES: [(usize, usize); 2] = [(8, 150), (20, 400)];
+/// Radius ratio below which a tetrahedron is spared by making those on needles worse.
+const VERY_BAD: f64 = 0.2;
+/// Rounds of that.
+const LAST_ROUNDS: usize = 3;
 /// What moving must gain to count.
 const GAIN: f64 = 1.1;
 /// A round that mends fewer than one in so many is the last.
@@ -38,6 +43,28 @@ impl Improver {
                 break;
             }
         }
+    }
+
+    /// Treats what is still very bad but does not stand on a needle, even if those that do become worse.
+    pub(super) fn spare_others(&mut self) {
+        let allowance = Allowance::of(&self.c);
+        if allowance.is_empty() {
+            return;
+        }
+        self.allowance = allowance;
+        for _ in 0..LAST_ROUNDS {
+            let mut changes = 0;
+            let list = self.worst_first(VERY_BAD);
+            for &(q, t) in &list {
+                let apart = self.is_current((q, t)) && self.allowance.of_tet(&self.c.verts(t)) >= 1.0;
+                changes += usize::from(apart && self.spend() && self.treat_with_all(t));
+            }
+            self.keep_list(list);
+            if changes == 0 {
+                break;
+            }
+        }
+        self.allowance = Allowance::default();
     }
 
     /// Whether something around a tetrahedron has changed since it was tried in vain.
