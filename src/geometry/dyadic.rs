@@ -14,6 +14,13 @@ impl<const N: usize> Int<N> {
         Self(limbs)
     }
 
+    pub(super) fn unsigned(x: u128) -> Self {
+        let mut limbs = [0; N];
+        limbs[0] = x as u64;
+        limbs[1] = (x >> 64) as u64;
+        Self(limbs)
+    }
+
     #[inline]
     pub(super) fn add(&self, other: &Self) -> Self {
         let mut out = [0; N];
@@ -81,6 +88,29 @@ impl<const N: usize> Int<N> {
         let fill = if self.sign() < 0 { u64::MAX } else { 0 };
         let top = (0..N).rev().find(|&i| self.0[i] != fill);
         top.map_or(0, |i| 64 * i as u32 + 64 - (self.0[i] ^ fill).leading_zeros())
+    }
+
+    /// The magnitude.
+    pub(super) fn abs(&self) -> Self {
+        if self.sign() < 0 { Self::ZERO.sub(self) } else { *self }
+    }
+
+    /// The number divided by a larger or equal one, both not negative, as a fraction of that many bits, rounded down.
+    pub(super) fn fraction(&self, divisor: &Self, bits: u32) -> u128 {
+        let mut rest = *self;
+        let mut quotient = 0;
+        for bit in 0..=bits {
+            let less = rest.sub(divisor);
+            quotient <<= 1;
+            if less.sign() >= 0 {
+                rest = less;
+                quotient |= 1;
+            }
+            if bit < bits {
+                rest = rest.shl(1);
+            }
+        }
+        quotient
     }
 
     /// The same number in another width.

@@ -1,40 +1,48 @@
-//! Points on segments that need not be representable, and exact predicates on them.
+//! Points on segments and triangles that need not be representable, and exact predicates on them.
 //!
-//! The point `a + t · (b − a)` with floating-point `a`, `b` and `t` is a dyadic number in each coordinate: no division
-//! is needed (of the implicit points of Attene, 'Indirect predicates for geometric constructions', 2020, this is the
-//! kind without a denominator). Predicates try the rounded points first, with a bound of the error that counts the
-//! rounding, and evaluate integers otherwise.
+//! The point `a + s · (b − a) + t · (c − a)` with floating-point `a`, `b`, `c` and dyadic `s`, `t` is a dyadic number in
+//! each coordinate: no division is needed (of the implicit points of Attene, 'Indirect predicates for geometric
+//! constructions', 2020, this is the kind without a denominator). Predicates try the rounded points first, with a bound
+//! of the error that counts the rounding, and evaluate integers otherwise.
 
 use super::Point3;
 use super::dyadic::{Int, decompose};
 use super::predicates;
 use std::cmp::Ordering;
 
-/// The point `a + t · (b − a)`, exactly.
+/// The point `a + s · (b − a) + t · (c − a)`, exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OnSegment {
-    /// Where `t` is zero.
-    pub a: Point3,
-    /// Where `t` is one.
-    pub b: Point3,
-    /// Between zero and one, a multiple of [`OnSegment::UNIT`].
-    pub t: f64,
+pub struct OnTriangle {
+    /// The corners `a, b, c`.
+    pub corners: [Point3; 3],
+    /// `s` and `t`: together at most one, in units of 2⁻¹²⁰.
+    pub weights: [u128; 2],
 }
 
-impl OnSegment {
-    /// Parameters are multiples of 2⁻⁶².
-    pub const UNIT: f64 = 1.0 / (1u64 << 62) as f64;
+impl OnTriangle {
+    /// Bits of a weight behind the point.
+    const BITS: u32 = 120;
 
-    /// The point rounded, each coordinate to within `4 ε` times the larger of those of the ends.
+    /// The weight one.
+    pub const ONE: u128 = 1 << Self::BITS;
+
+    /// The point `a + t · (b − a)`.
+    pub fn on_segment([a, b]: [Point3; 2], t: u128) -> Self {
+        Self { corners: [a, b, a], weights: [t, 0] }
+    }
+
+    /// The point rounded, each coordinate to within `10 ε` times the largest of those of the corners.
     pub fn rounded(&self) -> Point3 {
-        let at = |i: usize| self.a[i] + self.t * (self.b[i] - self.a[i]);
+        let ([a, b, c], [s, t]) = (&self.corners, self.weights.map(|w| w as f64 / Self::ONE as f64));
+        let at = |i: usize| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]);
         Point3::new(at(0), at(1), at(2))
     }
 
-    /// Bound of the error of [`OnSegment::rounded`] along one axis.
+    /// Bound of the error of [`OnTriangle::rounded`] along one axis.
     #[inline]
     fn slack(&self, axis: usize) -> f64 {
-        4.0 * f64::EPSILON * self.a[axis].abs().max(self.b[axis].abs())
+        let [a, b, c] = &self.corners;
+        10.0 * f64::EPSILON * a[axis].abs().max(b[axis].abs()).max(c[axis].abs())
     }
 }
 
@@ -44,7 +52,7 @@ pub struct Site<'a> {
     /// The point, rounded if it is implicit.
     pub at: &'a Point3,
     /// What an implicit point is.
-    pub on: Option<&'a OnSegment>,
+    pub on: Option<&'a OnTriangle>,
 }
 
 /// The widest of the errors along each axis.
@@ -80,33 +88,6 @@ pub fn orient3d(p: [Site; 4]) -> i32 {
     if det.abs() > bound { sign(det) } else { orient3d_exact(&p) }
 }
 
-/// Positive when `p4` lies inside the sphere through the positive tetrahedron of the others, as
-/// [`predicates::insphere`]. Exact.
-#[inline]
-pub fn insphere(p: [Site; 5]) -> i32 {
-    if p.iter().all(|s| s.on.is_none()) {
-        return sign(predicates::insphere(p[0].at, p[1].at, p[2].at, p[3].at, p[4].at));
-    }
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| p[i].at - p[4].at);
-    let (ab, bc, cd) = (a.x * b.y - b.x * a.y, b.x * c.y - c.x * b.y, c.x * d.y - d.x * c.y);
-    let (da, ac, bd) = (d.x * a.y - a.x * d.y, a.x * c.y - c.x * a.y, b.x * d.y - d.x * b.y);
-    let abc = a.z * bc - b.z * ac + c.z * ab;
-    let bcd = b.z * cd - c.z * bd + d.z * bc;
-    let cda = c.z * da + d.z * ac + a.z * cd;
-    let dab = d.z * ab + a.z * bd + b.z * da;
-    let [al, bl, cl, dl] = [a, b, c, d].map(|v| v.norm_squared());
-    let det = (cl * dab - dl * abc) + (al * bcd - bl * cda);
-    let m = a.abs().sup(&b.abs()).sup(&c.abs().sup(&d.abs()));
-    let ml = al.max(bl).max(cl.max(dl));
-    let e = slack(&p);
-    // Of the lift, and of the product of three differences, to first order; the factors leave room for the rest.
-    let el = 2.5 * (m.x * e[0] + m.y * e[1] + m.z * e[2]);
-    let em = e[0] * m.y * m.z + m.x * e[1] * m.z + m.x * m.y * e[2];
-    let first_order = e[0] <= 1e-3 * m.x && e[1] <= 1e-3 * m.y && e[2] <= 1e-3 * m.z;
-    let bound = 6e-14 * m.x * m.y * m.z * ml + 28.0 * (em * ml + m.x * m.y * m.z * el);
-    if first_order && det.abs() > bound { sign(det) } else { insphere_exact(&p) }
-}
-
 /// Lexicographic order of the coordinates. Exact.
 pub fn compare(p: Site, q: Site) -> Ordering {
     for axis in 0..3 {
@@ -124,40 +105,13 @@ pub fn compare(p: Site, q: Site) -> Ordering {
     Ordering::Equal
 }
 
-/// Whether `e` lies inside the sphere of the positive tetrahedron `p`, with the ties of cospherical points broken as
-/// in the Delaunay kernel: the lift of each point is raised by an infinitesimal, larger by orders of magnitude the
-/// later it comes in lexicographic order.
-#[inline]
-pub fn in_sphere_perturbed(p: [Site; 4], e: Site) -> bool {
-    let s = insphere([p[0], p[1], p[2], p[3], e]);
-    if s == 0 { tie(p, e) } else { s > 0 }
-}
-
-#[cold]
-fn tie(p: [Site; 4], e: Site) -> bool {
-    let mut all = [(p[0], 0), (p[1], 1), (p[2], 2), (p[3], 3), (e, 4)];
-    all.sort_by(|a, b| compare(b.0, a.0));
-    for (_, i) in all {
-        if i == 4 {
-            return false;
-        }
-        let mut q = p;
-        q[i] = e;
-        let o = orient3d(q);
-        if o != 0 {
-            return o > 0;
-        }
-    }
-    false
-}
-
-/// Coordinates fit in this many limbs: `predicates::in_exact_range` allows 386 bits, a parameter adds 62.
+/// Coordinates fit in this many limbs: `predicates::in_exact_range` allows 386 bits, weights add 122.
 const WIDE: usize = 8;
 
-/// Scale of a set of points: `2^exponent` divides their ends' coordinates, `2^-fraction` their parameters.
+/// Scale of a set of points: `2^exponent` divides their ends' coordinates, `2^-fraction` their weights.
 struct Scale {
     exponent: i32,
-    fraction: i32,
+    fraction: u32,
 }
 
 impl Scale {
@@ -171,16 +125,12 @@ impl Scale {
         for site in sites {
             match site.on {
                 None => lower(site.at),
-                Some(on) => {
-                    lower(&on.a);
-                    lower(&on.b);
-                }
+                Some(on) => on.corners.iter().for_each(&mut lower),
             }
         }
-        for on in sites.iter().filter_map(|p| p.on) {
-            let (m, e) = decompose(on.t);
-            if m != 0 {
-                s.fraction = s.fraction.max(-e);
+        for weight in sites.iter().filter_map(|p| p.on).flat_map(|on| on.weights) {
+            if weight != 0 {
+                s.fraction = s.fraction.max(OnTriangle::BITS - weight.trailing_zeros());
             }
         }
         s
@@ -192,14 +142,18 @@ impl Scale {
     }
 
     fn coordinate(&self, site: &Site, axis: usize) -> Int<WIDE> {
-        let up = self.fraction.unsigned_abs();
+        let up = self.fraction;
         let Some(on) = site.on else { return self.integer(site.at[axis]).shl(up) };
-        let (a, b) = (self.integer(on.a[axis]), self.integer(on.b[axis]));
-        let (m, e) = decompose(on.t);
-        if m == 0 {
-            return a.shl(up);
+        let [a, b, c] = on.corners.map(|p| self.integer(p[axis]));
+        let mut x = a.shl(up);
+        for (end, weight) in [b, c].iter().zip(on.weights) {
+            // As a multiple of the largest unit that all weights have.
+            let multiple = weight >> (OnTriangle::BITS - up);
+            if multiple != 0 {
+                x = x.add(&end.sub(&a).mul(&Int::unsigned(multiple)));
+            }
         }
-        a.shl(up).add(&b.sub(&a).mul(&Int::new(m)).shl((self.fraction + e).unsigned_abs()))
+        x
     }
 }
 
@@ -232,23 +186,10 @@ fn orient3d_exact(p: &[Site; 4]) -> i32 {
     let (rows, bits) = differences::<3>(p, 0);
     // Six products of three.
     match 3 * bits + 4 {
-        0..256 => det3::<4>(&rows),
-        256..384 => det3::<6>(&rows),
-        384..640 => det3::<10>(&rows),
-        _ => det3::<28>(&rows),
-    }
-}
-
-#[cold]
-fn insphere_exact(p: &[Site; 5]) -> i32 {
-    let (rows, bits) = differences::<4>(p, 4);
-    // 24 products of three, times a sum of three squares.
-    match 5 * bits + 8 {
-        0..384 => lifted::<6>(&rows),
-        384..576 => lifted::<9>(&rows),
-        576..832 => lifted::<13>(&rows),
-        832..1280 => lifted::<20>(&rows),
-        _ => lifted::<42>(&rows),
+        0..256 => det3::<4>(&rows).sign(),
+        256..384 => det3::<6>(&rows).sign(),
+        384..640 => det3::<10>(&rows).sign(),
+        _ => det3::<28>(&rows).sign(),
     }
 }
 
@@ -256,24 +197,60 @@ fn minor<const N: usize>(p: &[Int<N>; 3], q: &[Int<N>; 3]) -> Int<N> {
     p[0].mul(&q[1]).sub(&q[0].mul(&p[1]))
 }
 
-fn det3<const N: usize>(rows: &[Row; 3]) -> i32 {
+fn det3<const N: usize>(rows: &[Row; 3]) -> Int<N> {
     let [b, c, d] = rows.map(|r| r.map(|x| x.resize::<N>()));
-    let sum = b[2].mul(&minor(&c, &d)).sub(&c[2].mul(&minor(&b, &d))).add(&d[2].mul(&minor(&b, &c)));
-    sum.sign()
+    b[2].mul(&minor(&c, &d)).sub(&c[2].mul(&minor(&b, &d))).add(&d[2].mul(&minor(&b, &c)))
 }
 
-fn lifted<const N: usize>(rows: &[Row; 4]) -> i32 {
-    let [a, b, c, d] = rows.map(|r| r.map(|x| x.resize::<N>()));
-    let (ab, bc, cd) = (minor(&a, &b), minor(&b, &c), minor(&c, &d));
-    let (da, ac, bd) = (minor(&d, &a), minor(&a, &c), minor(&b, &d));
-    let lift = |v: &[Int<N>; 3]| v[0].mul(&v[0]).add(&v[1].mul(&v[1])).add(&v[2].mul(&v[2]));
-    let abc = a[2].mul(&bc).sub(&b[2].mul(&ac)).add(&c[2].mul(&ab));
-    let bcd = b[2].mul(&cd).sub(&c[2].mul(&bd)).add(&d[2].mul(&bc));
-    let cda = c[2].mul(&da).add(&d[2].mul(&ac)).add(&a[2].mul(&cd));
-    let dab = d[2].mul(&ab).add(&a[2].mul(&bd)).add(&b[2].mul(&da));
-    let upper = lift(&c).mul(&dab).sub(&lift(&d).mul(&abc));
-    let lower = lift(&a).mul(&bcd).sub(&lift(&b).mul(&cda));
-    upper.add(&lower).sign()
+/// The rows of all sites from the first one, and the bits of the largest.
+fn rows<const K: usize>(sites: &[Site; K]) -> ([Row; K], u32) {
+    let scale = Scale::of(sites);
+    let at = sites.map(|s| -> Row { std::array::from_fn(|k| scale.coordinate(&s, k)) });
+    let rows = at.map(|p| -> Row { std::array::from_fn(|k| p[k].sub(&at[0][k])) });
+    let bits = rows.iter().flatten().map(Int::bits).max().unwrap_or(0);
+    (rows, bits)
+}
+
+/// The determinant of [`orient3d`] of four rows.
+fn volume<const N: usize>(rows: &[Row], [a, b, c, d]: [usize; 4]) -> Int<N> {
+    let from = |i: usize| -> Row { std::array::from_fn(|k| rows[i][k].sub(&rows[a][k])) };
+    det3(&[from(b), from(c), from(d)])
+}
+
+/// The weights of the point in which the line through `p` and `q` crosses the plane of a triangle, if it does so inside
+/// the triangle; rounded down.
+pub fn crossing([a, b, c]: [Site; 3], [p, q]: [Site; 2]) -> Option<[u128; 2]> {
+    let (rows, bits) = rows(&[a, b, c, p, q]);
+    // Three sums of six products of three differences.
+    match 3 * bits + 9 {
+        0..384 => weights::<6>(&rows),
+        384..640 => weights::<10>(&rows),
+        _ => weights::<28>(&rows),
+    }
+}
+
+fn weights<const N: usize>(rows: &[Row; 5]) -> Option<[u128; 2]> {
+    let [x, y, z] = [[3, 4, 1, 2], [3, 4, 2, 0], [3, 4, 0, 1]].map(|v| volume::<N>(rows, v));
+    let sum = x.add(&y).add(&z);
+    let inside = sum.sign() != 0 && [x, y, z].iter().all(|w| w.sign() == sum.sign());
+    inside.then(|| [y, z].map(|w| w.abs().fraction(&sum.abs(), OnTriangle::BITS)))
+}
+
+/// The `t` for which `p + t · (q − p)` lies in the plane of a triangle, which has `p` on one side and `q` on the other, or
+/// one of them in it; as a weight, rounded down.
+pub fn parameter([a, b, c]: [Site; 3], [p, q]: [Site; 2]) -> Option<u128> {
+    let (rows, bits) = rows(&[a, b, c, p, q]);
+    match 3 * bits + 9 {
+        0..384 => part::<6>(&rows),
+        384..640 => part::<10>(&rows),
+        _ => part::<28>(&rows),
+    }
+}
+
+fn part<const N: usize>(rows: &[Row; 5]) -> Option<u128> {
+    let [x, y] = [[0, 1, 2, 3], [0, 1, 2, 4]].map(|v| volume::<N>(rows, v));
+    let across = x.sign() * y.sign() <= 0 && x != y;
+    across.then(|| x.abs().fraction(&x.sub(&y).abs(), OnTriangle::BITS))
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ fn exact(x: f64) -> BigRational {
 #[derive(Clone, Debug)]
 struct Sample {
     at: Point3,
-    on: Option<OnSegment>,
+    on: Option<OnTriangle>,
 }
 
 impl Sample {
@@ -21,7 +21,13 @@ impl Sample {
     fn exact(&self) -> Vec<BigRational> {
         match &self.on {
             None => self.at.iter().map(|&x| exact(x)).collect(),
-            Some(on) => (0..3).map(|k| exact(on.a[k]) + exact(on.t) * (exact(on.b[k]) - exact(on.a[k]))).collect(),
+            Some(on) => {
+                let ([a, b, c], [s, t]) = (&on.corners, on.weights.map(fraction));
+                let at = |k: usize| {
+                    exact(a[k]) + &s * (exact(b[k]) - exact(a[k])) + &t * (exact(c[k]) - exact(a[k]))
+                };
+                (0..3).map(at).collect()
+            }
         }
     }
 }
@@ -65,16 +71,35 @@ fn point(scale: f64) -> impl Strategy<Value = Point3> {
     (coordinate(), coordinate(), coordinate()).prop_map(move |(x, y, z)| Point3::new(x * scale, y * scale, z * scale))
 }
 
-fn parameter() -> impl Strategy<Value = f64> {
-    prop_oneof![Just(0.5), Just(0.25), (1u32..1000).prop_map(|k| f64::from(k) / 1024.0), 0.0..1.0f64, Just(1e-3)]
+fn weight() -> impl Strategy<Value = u128> {
+    let any = prop_oneof![Just(0.5), Just(0.25), (1u32..1000).prop_map(|k| f64::from(k) / 1024.0), 0.0..1.0f64, Just(1e-3)];
+    let coarse = any.prop_map(|t: f64| (t * (1u64 << 62) as f64) as u128 * (OnTriangle::ONE >> 62));
+    prop_oneof![coarse, 0..=OnTriangle::ONE]
 }
 
 fn sample(scale: f64) -> impl Strategy<Value = Sample> {
-    (point(scale), point(scale), parameter(), any::<bool>()).prop_map(|(a, b, t, explicit)| {
-        let t = (t / OnSegment::UNIT).round() * OnSegment::UNIT;
-        let on = OnSegment { a, b, t };
-        if explicit { Sample { at: a, on: None } } else { Sample { at: on.rounded(), on: Some(on) } }
+    (prop::array::uniform3(point(scale)), weight(), weight(), 0..3u8).prop_map(|(corners, s, t, kind)| match kind {
+        0 => Sample { at: corners[0], on: None },
+        1 => implicit(OnTriangle::on_segment([corners[0], corners[1]], s)),
+        _ => implicit(OnTriangle { corners, weights: [s, rest(t, s)] }),
     })
+}
+
+/// A part of what another weight leaves of one.
+fn rest(t: u128, s: u128) -> u128 {
+    (t >> 60) * ((OnTriangle::ONE - s) >> 60)
+}
+
+/// A weight as a number.
+fn fraction(w: u128) -> BigRational {
+    let part = |x: u128| exact((x & ((1 << 40) - 1)) as f64);
+    let step = exact((1u64 << 40) as f64);
+    (part(w >> 120) * &step * &step * &step + part(w >> 80) * &step * &step + part(w >> 40) * &step + part(w))
+        / (&step * &step * &step)
+}
+
+fn implicit(on: OnTriangle) -> Sample {
+    Sample { at: on.rounded(), on: Some(on) }
 }
 
 fn check_orient(p: &[Sample]) {
@@ -82,18 +107,6 @@ fn check_orient(p: &[Sample]) {
     let sites = [p[0].site(), p[1].site(), p[2].site(), p[3].site()];
     assert_eq!(orient3d(sites), oracle);
     assert_eq!(orient3d_exact(&sites), oracle);
-}
-
-fn check_insphere(p: &[Sample]) {
-    let mut m = rows(&p[4], &p[..4]);
-    for r in &mut m {
-        let lift = r.iter().map(|x| x * x).fold(exact(0.0), |s, x| s + x);
-        r.push(lift);
-    }
-    let oracle = -sign_of(&det(&m));
-    let sites = [p[0].site(), p[1].site(), p[2].site(), p[3].site(), p[4].site()];
-    assert_eq!(insphere(sites), oracle);
-    assert_eq!(insphere_exact(&sites), oracle);
 }
 
 fn check_compare(p: &[Sample]) {
@@ -110,7 +123,6 @@ proptest! {
     #[test]
     fn signs_are_exact(p in prop::collection::vec(sample(1.0), 5)) {
         check_orient(&p);
-        check_insphere(&p);
         check_compare(&p[..2]);
     }
 
@@ -119,46 +131,50 @@ proptest! {
         p in prop::collection::vec(sample(1e-26), 3), q in prop::collection::vec(sample(2e57), 2)
     ) {
         let all: Vec<Sample> = p.into_iter().chain(q).collect();
-        let ends = |s: &Sample| s.on.map_or(vec![s.at], |on| vec![on.a, on.b]);
+        let ends = |s: &Sample| s.on.map_or(vec![s.at], |on| on.corners.to_vec());
         prop_assume!(all.iter().flat_map(ends).all(|p| p.iter().all(|&x| predicates::in_exact_range(x))));
         check_orient(&all);
-        check_insphere(&all);
         check_compare(&all[2..4]);
     }
 
     #[test]
     fn points_of_one_segment_and_of_one_plane_are_recognised(
-        a in point(1.0), b in point(1.0), c in point(1.0), d in point(1.0), t in prop::collection::vec(parameter(), 4)
+        a in point(1.0), b in point(1.0), c in point(1.0), d in point(1.0), t in prop::collection::vec(weight(), 4)
     ) {
-        let on = |a: Point3, b: Point3, t: f64| {
-            let on = OnSegment { a, b, t: (t / OnSegment::UNIT).round() * OnSegment::UNIT };
-            Sample { at: on.rounded(), on: Some(on) }
-        };
+        let on = |a: Point3, b: Point3, t: u128| implicit(OnTriangle::on_segment([a, b], t));
         let line = [on(a, b, t[0]), on(a, b, t[1]), on(b, a, t[2]), on(c, d, t[3]), on(c, a, t[0])];
         prop_assert_eq!(orient3d([0, 1, 2, 3].map(|i| line[i].site())), 0);
-        let plane = [on(a, b, t[0]), on(b, c, t[1]), on(c, a, t[2]), on(a, c, t[3]), on(c, d, t[3])];
+        let inside = implicit(OnTriangle { corners: [a, b, c], weights: [t[2], rest(t[3], t[2])] });
+        let plane = [on(a, b, t[0]), on(b, c, t[1]), on(c, a, t[2]), inside, on(c, d, t[3])];
         prop_assert_eq!(orient3d([0, 1, 2, 3].map(|i| plane[i].site())), 0);
         check_orient(&[plane[0].clone(), plane[1].clone(), plane[2].clone(), plane[4].clone()]);
-        check_insphere(&plane);
-        check_insphere(&line);
     }
 }
 
-#[test]
-fn ties_agree_with_the_order_of_coordinates() {
-    // Eight corners of a cube, one of them the middle of a segment twice as long.
-    let p = |x: f64, y: f64, z: f64| Sample { at: Point3::new(x, y, z), on: None };
-    let on = OnSegment { a: Point3::new(1.0, 1.0, 0.0), b: Point3::new(1.0, 1.0, 2.0), t: 0.5 };
-    let implicit = Sample { at: on.rounded(), on: Some(on) };
-    let tet = [p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(0., 0., 1.)];
-    for last in [implicit, p(1., 1., 1.)] {
-        let sites = [tet[0].site(), tet[1].site(), tet[2].site(), tet[3].site()];
-        assert_eq!(insphere([sites[0], sites[1], sites[2], sites[3], last.site()]), 0);
-        assert!(!in_sphere_perturbed(sites, last.site()));
-        // Seen from a tetrahedron that has the last point, another corner takes part.
-        let other = [tet[1].site(), tet[2].site(), tet[3].site(), last.site()];
-        let outward = orient3d(other) < 0;
-        let other = if outward { [other[1], other[0], other[2], other[3]] } else { other };
-        assert!(!in_sphere_perturbed(other, sites[0]) || !outward);
+/// Whether a weight is a number rounded down.
+fn is_floor(w: u128, x: &BigRational) -> bool {
+    fraction(w) <= *x && fraction(w + 1) > *x
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn crossings_are_right(p in prop::collection::vec(sample(1.0), 5)) {
+        let [a, b, c, u, v] = [0, 1, 2, 3, 4].map(|i| &p[i]);
+        let volume = |q: [&Sample; 4]| det(&rows(q[0], &q[1..].iter().map(|s| (*s).clone()).collect::<Vec<_>>()));
+        let [x, y, z] = [volume([u, v, b, c]), volume([u, v, c, a]), volume([u, v, a, b])];
+        let sum = &x + &y + &z;
+        let inside = [&x, &y, &z].iter().all(|w| sign_of(w) != 0 && sign_of(w) == sign_of(&sum));
+        let found = crossing([a.site(), b.site(), c.site()], [u.site(), v.site()]);
+        prop_assert_eq!(found.is_some(), inside);
+        if let Some([s, t]) = found {
+            prop_assert!(is_floor(s, &(&y / &sum)) && is_floor(t, &(&z / &sum)));
+        }
+        let (below, above) = (volume([a, b, c, u]), volume([a, b, c, v]));
+        if sign_of(&below) * sign_of(&above) < 0 {
+            let t = parameter([a.site(), b.site(), c.site()], [u.site(), v.site()]).unwrap();
+            prop_assert!(is_floor(t, &(&below / (&below - &above))));
+        }
     }
 }

@@ -8,7 +8,7 @@ use super::optimize::{Effort, OptimizeOptions, OptimizeReport, optimize_complex}
 use super::options::{Interior, Refinement, Sizing};
 use super::plc::{InputKind, Region};
 use super::progress::{Stage, Watch};
-use super::recover::exact::recover_exact;
+use super::recover::exact::{Missing, recover_exact};
 use super::recover::{self, RecoverySummary};
 use super::refine::RefineReport;
 use super::regions::Regions;
@@ -25,15 +25,6 @@ const CLEARANCE: f64 = 0.45;
 
 /// Volume of the lattice's tetrahedra over the bound on volumes.
 const VOLUME_SHARE: f64 = 0.6;
-
-/// Times that recovery is tried before the last tier.
-const ATTEMPTS: u32 = 2;
-
-/// Another lattice is worth a try where so few edges and triangles are lost.
-const FEW: usize = 64;
-
-/// How much coarser the interior is in each attempt.
-const FACTORS: [f64; 8] = [1.0, 1.07, 0.93, 1.15, 0.87, 1.23, 1.31, 0.8];
 
 /// A checked input and what is wanted of it.
 pub(super) struct Request<'a> {
@@ -117,47 +108,34 @@ fn diagnosis(r: &Request, error: TetError) -> TetError {
     checked.err().unwrap_or(error)
 }
 
-/// A complex that has all of the surface. Where recovery leaves a little over, it is tried again with other interior
-/// points: what blocks it is a matter of chance on smooth surfaces.
+/// A complex that has all of the surface: by flips and vertices off it, and where these leave something over exactly.
 fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
     let surface = r.surface;
-    let mut attempt = 0;
-    loop {
-        r.watch.report(Stage::Delaunay, 0, 1)?;
-        let mut points = surface.points.clone();
-        match sized::sized_points(r, FACTORS[attempt as usize % 8]) {
-            Some(inside) => points.extend(inside),
-            None => {
-                let interior = for_volume(surface, r.interior, r.refinement);
-                points.extend(interior_points(surface, &other_interior(surface, &interior, attempt))?);
-            }
-        }
-        let inner = points.len();
-        // The smaller the box, the smaller the bound on the roundoff in it; there is room to flip in for smooth walls.
-        let tight = matches!(r.interior, Interior::Graded { .. });
-        points.extend(if tight { box_around(&surface.points, 0.2) } else { box_corners(&surface.points) });
-        let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
-        r.watch.report(Stage::Delaunay, 1, 1)?;
-        match recover::recover(&mut complex, surface, r.edges, attempt, r.watch) {
-            Ok(summary) => return Ok((complex, summary)),
-            Err(TetError::NotRecovered { edges, triangles })
-                if attempt + 1 < ATTEMPTS && edges.len() + triangles.len() <= FEW => {}
-            Err(TetError::NotRecovered { edges, triangles }) => {
-                drop(complex);
-                let (complex, exact) =
-                    recover_exact(&points, &surface.triangles, r.segments).map_err(|error| diagnosis(r, error))?;
-                let summary = RecoverySummary {
-                    missing_edges: edges.len(),
-                    missing_triangles: triangles.len(),
-                    steiner_points: exact.steiner_points,
-                };
-                return Ok((complex, summary));
-            }
-            Err(TetError::Cancelled) => return Err(TetError::Cancelled),
-            Err(error) => return Err(diagnosis(r, error)),
-        }
-        attempt += 1;
+    r.watch.report(Stage::Delaunay, 0, 1)?;
+    let mut points = surface.points.clone();
+    match sized::sized_points(r) {
+        Some(inside) => points.extend(inside),
+        None => points.extend(interior_points(surface, &for_volume(surface, r.interior, r.refinement))?),
     }
+    let inner = points.len();
+    // The smaller the box, the smaller the bound on the roundoff in it; there is room to flip in for smooth walls.
+    let tight = matches!(r.interior, Interior::Graded { .. });
+    points.extend(if tight { box_around(&surface.points, 0.2) } else { box_corners(&surface.points) });
+    let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
+    r.watch.report(Stage::Delaunay, 1, 1)?;
+    let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, r.watch) {
+        Ok(summary) => return Ok((complex, summary)),
+        Err(TetError::NotRecovered { edges, triangles }) => (edges, triangles),
+        Err(TetError::Cancelled) => return Err(TetError::Cancelled),
+        Err(error) => return Err(diagnosis(r, error)),
+    };
+    // Exact recovery takes for granted that the surface does not meet itself.
+    contacts::no_contacts(surface, r.watch)?;
+    let before = complex.points.len() - points.len();
+    let missing = Missing { edges: &edges, triangles: &triangles };
+    let (complex, exact) = recover_exact(&complex, surface, r.edges, missing, r.watch)?;
+    let (missing_edges, missing_triangles) = (edges.len(), triangles.len());
+    Ok((complex, RecoverySummary { missing_edges, missing_triangles, steiner_points: before + exact.steiner_points }))
 }
 
 /// The interior asked for; a lattice whose size is left open gets tetrahedra within the bound on volumes.
@@ -171,24 +149,6 @@ fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refine
             Interior::Lattice { cell: Some(cell), clearance: Some(clearance.unwrap_or(near)) }
         }
         _ => interior.clone(),
-    }
-}
-
-/// The interior asked for, or for later attempts one like it.
-fn other_interior(surface: &TriMesh, interior: &Interior, attempt: u32) -> Interior {
-    let factor = FACTORS[attempt as usize % 8];
-    let h = lattice::mean_edge(surface);
-    match interior {
-        Interior::Lattice { cell, clearance } | Interior::Graded { cell, clearance } if attempt > 0 => {
-            Interior::Lattice {
-                cell: Some(cell.unwrap_or(CELL * h) * factor),
-                clearance: Some(clearance.unwrap_or(CLEARANCE * h) * factor.max(1.0)),
-            }
-        }
-        Interior::None if attempt > 0 => {
-            Interior::Lattice { cell: Some(4.0 * CELL * h * factor), clearance: Some(CELL * h) }
-        }
-        other => other.clone(),
     }
 }
 

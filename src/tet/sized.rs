@@ -46,8 +46,8 @@ pub(super) fn check(refinement: Option<&Refinement>, sizing: &Sizing, points: us
     }
 }
 
-/// The size field of a surface, with cubes `factor` times as large as usual.
-pub(super) fn size_tree(surface: &TriMesh, sizing: &Sizing, factor: f64) -> Option<(SizeTree, Vec<f64>)> {
+/// The size field of a surface.
+pub(super) fn size_tree(surface: &TriMesh, sizing: &Sizing) -> Option<(SizeTree, Vec<f64>)> {
     let sizes = vertex_sizes(surface);
     let function;
     let limit = match sizing {
@@ -59,20 +59,18 @@ pub(super) fn size_tree(surface: &TriMesh, sizing: &Sizing, factor: f64) -> Opti
             Some(SizeLimit::Function(&function))
         }
     };
-    let mut options = TreeOptions::default();
-    options.cell *= factor;
-    let tree = SizeTree::new(surface, &sizes, limit.as_slice(), &options)?;
+    let tree = SizeTree::new(surface, &sizes, limit.as_slice(), &TreeOptions::default())?;
     Some((tree, sizes))
 }
 
 /// The interior points of a run whose sizes are asked for; none where the interior or the sizes say otherwise.
-pub(super) fn sized_points(r: &Request, factor: f64) -> Option<Vec<Point3>> {
+pub(super) fn sized_points(r: &Request) -> Option<Vec<Point3>> {
     let asked =
         !matches!(r.sizing, Sizing::Surface) && matches!(r.interior, Interior::Lattice { cell: None, clearance: None });
     if !asked {
         return None;
     }
-    let (tree, sizes) = size_tree(r.surface, r.sizing, factor)?;
+    let (tree, sizes) = size_tree(r.surface, r.sizing)?;
     Some(graded_points(r.surface, &sizes, &tree, CLEARANCE))
 }
 
@@ -86,7 +84,7 @@ pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineR
         return Ok(None);
     }
     r.watch.report(Stage::Refine, 0, 0)?;
-    let tree = if sized { size_tree(r.surface, r.sizing, 1.0) } else { None };
+    let tree = if sized { size_tree(r.surface, r.sizing) } else { None };
     let size = tree.map(|(tree, _)| move |p: &Point3| tree.size_at(p));
     let mut goals = goals(r.refinement);
     goals.size = size.as_ref().map(|f| f as &dyn Fn(&Point3) -> f64);
@@ -124,7 +122,7 @@ pub(super) fn size_function(
     sizing: &Sizing,
     volume: Option<f64>,
 ) -> impl Fn(&Point3) -> f64 + use<> {
-    let tree = size_tree(surface, sizing, 1.0);
+    let tree = size_tree(surface, sizing);
     let mean = mean_edge(surface);
     let limit = volume.map_or(f64::INFINITY, edge_of_volume);
     move |p: &Point3| tree.as_ref().map_or(mean, |(tree, _)| tree.size_at(p)).min(limit)

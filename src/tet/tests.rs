@@ -228,7 +228,7 @@ fn a_carved_complex_is_sane_with_its_ghosts() {
     points.extend(fill::box_corners(&s.points));
     let mut c = delaunay::delaunay(&points).unwrap();
     c.sanity_check().unwrap();
-    recover::recover(&mut c, &s, &edges, 0, &Watch::NOBODY).unwrap();
+    recover::recover(&mut c, &s, &edges, &Watch::NOBODY).unwrap();
     c.sanity_check().unwrap();
     let carved = carve::carve(&c, &s, InputKind::Closed, &[]).unwrap();
     carved.sanity_check().unwrap();

@@ -71,7 +71,7 @@ impl Recovery<'_> {
     /// Removes an edge by some valid triangulation of its ring; another one in each round, so that what was stuck in
     /// one may come loose in the next.
     fn remove_edge(&mut self, t: u32, p: u32, q: u32) -> Result<(), Refusal> {
-        let (round, salt) = (self.round, self.salt(self.round));
+        let (round, salt) = (self.round, Self::salt(self.round));
         let score = |c: &Complex, v: &[u32; 4]| {
             let coin = v.iter().fold(salt, |h, &x| hash(h ^ u64::from(x)));
             valid(c, v).map(|s| if round == 0 { s } else { s + (coin >> 32) as f64 })

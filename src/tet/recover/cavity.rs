@@ -175,7 +175,7 @@ impl Recovery<'_> {
             return false;
         }
         let near = self.blend(&[p, q], round);
-        let k = hash(self.salt(round) ^ u64::from(p)) as usize % self.ring.len();
+        let k = hash(Self::salt(round) ^ u64::from(p)) as usize % self.ring.len();
         let aim = self.c.points[self.ring.rim[k] as usize];
         (0..8).any(|k| {
             let x = near + (aim - near) * 0.1_f64.powi(k + 1);
@@ -213,7 +213,7 @@ impl Recovery<'_> {
         let mut sum = 0.0;
         let mut p = crate::geometry::Vec3::zeros();
         for (k, &x) in vertices.iter().enumerate() {
-            let coin = hash(self.salt(round) + k as u64 + (u64::from(x) << 20)) >> 40;
+            let coin = hash(Self::salt(round) + k as u64 + (u64::from(x) << 20)) >> 40;
             let w = 1.0 + coin as f64 / (1_u64 << 24) as f64;
             p += self.c.points[x as usize].coords * w;
             sum += w;

@@ -52,31 +52,15 @@ pub struct RecoverySummary {
     pub steiner_points: usize,
 }
 
-/// Recovers all of the surface in `c`, whose first vertices are the surface's points; freezes its faces. Other attempts
-/// choose otherwise where there is a choice.
+/// Recovers all of the surface in `c`, whose first vertices are the surface's points; freezes its faces.
 pub(super) fn recover(
     c: &mut Complex,
     surface: &TriMesh,
     edges: &SurfaceEdges,
-    attempt: u32,
     watch: &Watch,
 ) -> Result<RecoverySummary, TetError> {
     let (mut lost_edges, mut lost_faces) = survey(c, surface, edges);
-    let mut r = Recovery {
-        c,
-        surface,
-        edges,
-        star: Star::default(),
-        flipper: Flipper::default(),
-        ring: EdgeRing::default(),
-        cavity: Cavity::default(),
-        way: Vec::new(),
-        piercers: Vec::new(),
-        budget: 0,
-        round: 0,
-        attempt,
-        met: None,
-    };
+    let mut r = Recovery::new(c, surface, edges);
     let mut summary = RecoverySummary::default();
     summary.missing_edges = lost_edges.len();
     summary.missing_triangles = lost_faces.len();
@@ -120,15 +104,31 @@ struct Recovery<'a> {
     piercers: Vec<(u32, u32, u32)>,
     budget: u32,
     round: u32,
-    attempt: u32,
     /// Proof that the surface meets itself.
     met: Option<TetError>,
 }
 
-impl Recovery<'_> {
-    /// What makes the choices of this round and attempt.
-    fn salt(&self, round: u32) -> u64 {
-        (u64::from(self.attempt) << 16) + 4 * u64::from(round)
+impl<'a> Recovery<'a> {
+    fn new(c: &'a mut Complex, surface: &'a TriMesh, edges: &'a SurfaceEdges) -> Self {
+        Self {
+            c,
+            surface,
+            edges,
+            star: Star::default(),
+            flipper: Flipper::default(),
+            ring: EdgeRing::default(),
+            cavity: Cavity::default(),
+            way: Vec::new(),
+            piercers: Vec::new(),
+            budget: 0,
+            round: 0,
+            met: None,
+        }
+    }
+
+    /// What makes the choices of this round.
+    fn salt(round: u32) -> u64 {
+        4 * u64::from(round)
     }
 
     /// Flips away what crosses an edge: the first crossing that gives way, from one end and then from the other.

@@ -1,69 +1,129 @@
-//! The exact tier, which does not fail in exact arithmetic: a constrained Delaunay tetrahedralization with implicit
-//! vertices on segments (Diazzi, Panozzo, Vaxman, Attene, 'Constrained Delaunay tetrahedrization: a robust and practical
-//! approach', 2023), which are then moved off the surface (George, Borouchaki, Saltel 2003).
+//! The exact tier, which does not fail in exact arithmetic: what is missing is cut into the complex with implicit vertices
+//! on it, which are then moved off the surface (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary
+//! polyhedron', 2003). Only what is crossed changes.
 //!
-//! 1. [`segments`]: missing edges are split until their pieces are Delaunay edges ([`insert`]).
-//! 2. [`facets`]: what crosses a triangle gives way to constrained Delaunay tetrahedralizations above and below ([`wrap`]).
-//! 3. [`push`]: each vertex on an edge gives way to copies inside the sectors around the edge ([`room`]).
+//! 1. [`segments`]: missing edges become chains of edges, with a vertex at each face or edge that they cross.
+//! 2. [`facets`]: missing triangles become unions of faces, with a vertex at each edge that pierces them.
+//! 3. [`push`]: each of these vertices gives way to copies inside the sectors between the facets around it ([`sectors`],
+//!    [`room`]).
 
+mod dig;
 mod facets;
-mod insert;
+mod parts;
 mod polygon;
 mod push;
 mod room;
+mod sectors;
 mod segments;
 mod space;
-mod wrap;
 
-use crate::geometry::Point3;
+use crate::mesh::TriMesh;
 use crate::tet::complex::Complex;
-use crate::tet::delaunay::delaunay;
-use crate::tet::error::TetError;
+use crate::tet::delaunay::hash;
+use crate::tet::error::{Stuck, TetError};
+use crate::tet::input::SurfaceEdges;
+use crate::tet::progress::Watch;
+use parts::{Part, parts, sides, sorted};
+use rustc_hash::FxHashMap;
 use push::Push;
 use segments::Segments;
 use space::Space;
+
+/// Times that it is tried in another order, where a vertex has found no room.
+const ATTEMPTS: u64 = 4;
+
+/// What the surface has and the complex lacks.
+#[derive(Clone, Copy)]
+pub(in crate::tet) struct Missing<'a> {
+    pub edges: &'a [[u32; 2]],
+    pub triangles: &'a [u32],
+}
 
 /// What the exact tier did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::tet) struct ExactSummary {
     /// Vertices that were put on edges.
     pub on_segments: usize,
-    /// Triangles that had to be recovered.
-    pub facets: usize,
+    /// Vertices that were put inside of triangles.
+    pub on_facets: usize,
     /// Vertices off the surface that remain.
     pub steiner_points: usize,
 }
 
-/// A complex over `points` (no two at one place, the triangles and edges well inside their convex hull) in which each
-/// of `triangles` is a frozen face and each of `edges` is an edge. Further vertices follow `points`; some may be unused.
-/// Triangles may meet in any way that shares whole edges and vertices.
+/// Recovers what is missing in a complex that has all the rest of the surface, its triangles frozen. The surface may not
+/// meet itself; its triangles may share whole edges and vertices in any way, well inside the complex.
 ///
 /// # Errors
-/// [`TetError::EdgeMeets`]; [`TetError::Stuck`] where no floating-point position exists off an edge; errors of
-/// [`delaunay`].
+/// [`TetError::EdgeMeets`]; [`TetError::Stuck`] where no floating-point position exists off the surface.
 pub(in crate::tet) fn recover_exact(
-    points: &[Point3],
-    triangles: &[[u32; 3]],
-    edges: &[[u32; 2]],
+    c: &Complex,
+    surface: &TriMesh,
+    edges: &SurfaceEdges,
+    missing: Missing,
+    watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
-    // One zero only: implicit points do not tell −0 from 0 where ties are broken by coordinates.
-    let positive_zeros: Vec<Point3> = points.iter().map(|p| p.map(|x| x + 0.0)).collect();
-    let mut s = Space::new(delaunay(&positive_zeros)?);
-    let mut segments = Segments::new(&positive_zeros, triangles, edges);
-    let on_segments = segments.recover(&mut s)?;
+    let mut attempt = 0;
+    loop {
+        match recover_parts(c.clone(), surface, edges, missing, attempt, watch) {
+            Err(TetError::Stuck { reason: Stuck::Precision, .. }) if attempt + 1 < ATTEMPTS => attempt += 1,
+            result => return result,
+        }
+    }
+}
+
+fn recover_parts(
+    c: Complex,
+    surface: &TriMesh,
+    edges: &SurfaceEdges,
+    missing: Missing,
+    salt: u64,
+    watch: &Watch,
+) -> Result<(Complex, ExactSummary), TetError> {
+    let triangles = &surface.triangles;
+    let segments = Segments::new(edges, surface.points.len());
+    let mut push = Push::new(Space::new(c), segments, triangles);
+    let mut summary = ExactSummary::default();
+    for part in parts(triangles, missing) {
+        watch.ask()?;
+        recover_part(&mut push, &part, triangles, salt, &mut summary)?;
+    }
+    Ok((push.s.c, summary))
+}
+
+fn recover_part(
+    push: &mut Push,
+    part: &Part,
+    triangles: &[[u32; 3]],
+    salt: u64,
+    summary: &mut ExactSummary,
+) -> Result<(), TetError> {
+    let first = push.segments.list.len() as u32;
+    // At random: fans of long thin triangles come in halves of halves then, where one after the other each next chain
+    // would have to fit between the one before and what lies beyond.
+    let mut edges = part.edges.clone();
+    edges.sort_by_key(|&[a, b]| (hash(salt ^ (u64::from(a) << 32 | u64::from(b))), a, b));
+    let mut facets: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+    for side in part.triangles.iter().flat_map(|&t| sides(triangles[t as usize])) {
+        *facets.entry(side).or_default() += 1;
+    }
+    for &[a, b] in &edges {
+        // Where no two facets make sectors, neighbours of two vertices have to, so these stay close.
+        let far = facets.get(&sorted(a, b)).is_some_and(|&n| n >= 2);
+        push.segments.cut(&mut push.s, [a, b], far)?;
+    }
     #[cfg(test)]
-    s.check();
-    let mut facets = facets::recover(&mut s, &segments, triangles)?;
+    push.s.check();
+    for id in first..push.segments.list.len() as u32 {
+        summary.on_segments += push.add_segment(id);
+    }
+    for &t in &part.triangles {
+        let cover = facets::cover(&mut push.s, &push.segments, triangles[t as usize])?;
+        summary.on_facets += push.add_facet(t, cover);
+    }
     #[cfg(test)]
-    s.check();
-    let summary = ExactSummary { on_segments, facets: facets.missing, steiner_points: 0 };
-    let mut push = Push::new(&mut s, &mut segments, &mut facets, triangles);
-    push.all()?;
-    let free = push.free;
-    let steiner_points = free.len();
-    let mut c = s.c;
-    c.points[..points.len()].copy_from_slice(points);
-    Ok((c, ExactSummary { steiner_points, ..summary }))
+    push.s.check();
+    summary.steiner_points += push.finish()?;
+    Ok(())
 }
 
 #[cfg(test)]

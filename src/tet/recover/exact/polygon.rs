@@ -1,24 +1,9 @@
-//! The Delaunay triangulation of a facet: a triangle with vertices on its sides.
+//! Polygons in the plane of a facet.
 
-use super::segments::Segments;
 use super::space::Space;
 use crate::geometry::implicit::{self, Site};
 use crate::geometry::{Point3, Vec3};
 use crate::tet::error::{Obstacle, Stuck, TetError};
-
-/// The corners of a facet and the vertices on its sides, counter-clockwise.
-pub(super) fn outline(segments: &Segments, [a, b, c]: [u32; 3], out: &mut Vec<u32>) {
-    out.clear();
-    for (p, q) in [(a, b), (b, c), (c, a)] {
-        let Some(i) = segments.between(p, q) else { continue };
-        let segment = &segments.list[i as usize];
-        if segment.ends[0] == p {
-            out.extend(&segment.chain[..segment.chain.len() - 1]);
-        } else {
-            out.extend(segment.chain[1..].iter().rev());
-        }
-    }
-}
 
 /// A point off the plane of a triangle, from which it runs counter-clockwise.
 pub(super) fn point_above(s: &Space, triangle: [u32; 3]) -> Result<Point3, TetError> {
@@ -34,31 +19,35 @@ pub(super) fn point_above(s: &Space, triangle: [u32; 3]) -> Result<Point3, TetEr
     above.ok_or(TetError::Stuck { part: Obstacle::Triangle(triangle), reason: Stuck::Precision })
 }
 
-/// Triangulates a polygon in the plane below `above`, counter-clockwise seen from there, whose Delaunay triangles
-/// (perturbed) are known not to cross its border: a convex one, or the hole that a vertex leaves when it is deleted.
+/// Triangulates a simple polygon in the plane below `above`, counter-clockwise seen from there, some of whose corners
+/// may be flat: ears are cut off, the best-shaped first. False when it is not simple.
 pub(super) fn triangulate(s: &Space, polygon: &[u32], above: &Point3, out: &mut Vec<[u32; 3]>) -> bool {
     out.clear();
-    let n = polygon.len();
-    let mut stack = vec![(0, n - 1)];
     let site = Site { at: above, on: None };
-    while let Some((low, high)) = stack.pop() {
-        if high - low < 2 {
-            continue;
-        }
-        let (p, q) = (polygon[low], polygon[high]);
-        let mut best: Option<usize> = None;
-        for k in low + 1..high {
-            let v = polygon[k];
-            if implicit::orient3d([s.site(p), s.site(v), s.site(q), site]) > 0
-                && best.is_none_or(|b| s.in_circle([p, polygon[b], q], above, v))
-            {
-                best = Some(k);
-            }
-        }
-        let Some(k) = best else { return false };
-        out.push([p, polygon[k], q]);
-        stack.push((k, high));
-        stack.push((low, k));
+    let turn = |[p, q, r]: [u32; 3]| implicit::orient3d([s.site(p), s.site(q), s.site(r), site]);
+    let mut rest = polygon.to_vec();
+    while rest.len() > 3 {
+        let n = rest.len();
+        let corner = |k: usize| [rest[(k + n - 1) % n], rest[k], rest[(k + 1) % n]];
+        let is_ear = |k: usize| {
+            let [p, q, r] = corner(k);
+            let outside = |w: u32| turn([p, q, w]) < 0 || turn([q, r, w]) < 0 || turn([r, p, w]) < 0;
+            turn([p, q, r]) > 0 && rest.iter().all(|&w| [p, q, r].contains(&w) || outside(w))
+        };
+        let mut order: Vec<(f64, usize)> = (0..n).map(|k| (shape(s, corner(k)), k)).collect();
+        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let Some(&(_, k)) = order.iter().find(|&&(_, k)| is_ear(k)) else { return false };
+        out.push(corner(k));
+        rest.remove(k);
     }
-    out.len() == n - 2
+    let &[p, q, r] = rest.as_slice() else { return false };
+    out.push([p, q, r]);
+    turn([p, q, r]) > 0
+}
+
+/// Area over the square of the longest side; a heuristic.
+fn shape(s: &Space, corners: [u32; 3]) -> f64 {
+    let [p, q, r] = corners.map(|v| s.point(v));
+    let longest = (q - p).norm_squared().max((r - q).norm_squared()).max((p - r).norm_squared());
+    (q - p).cross(&(r - p)).norm() / longest
 }

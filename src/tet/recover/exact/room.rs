@@ -1,15 +1,90 @@
-//! The deepest point of a convex room: a linear program in four variables (Seidel, 'Small-dimensional linear programming
-//! and convex hulls made easy', 1991). Floating point; what comes out is a proposal.
+//! The room that faces leave for a vertex, and its deepest point: a linear program in four variables (Seidel,
+//! 'Small-dimensional linear programming and convex hulls made easy', 1991). That is floating point, and a proposal;
+//! exact predicates decide.
 
-use crate::geometry::Vec3;
+use super::space::Space;
+use crate::geometry::{Point3, Vec3};
 use crate::tet::delaunay::hash;
+
+/// Shares of the way from the segment to the deepest point of the room at which a position is looked for.
+const SHARES: [f64; 9] = [1.0, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4];
+
+/// The room that some faces leave for a vertex that has to see all of them counter-clockwise, in coordinates relative
+/// to where it was.
+pub(super) struct Room<'a> {
+    origin: Point3,
+    faces: &'a [[u32; 3]],
+    /// Unit normal towards the room and height of the origin, per face.
+    planes: Vec<(Vec3, f64)>,
+    /// Largest distance of a corner.
+    pub size: f64,
+}
+
+impl<'a> Room<'a> {
+    pub(super) fn new(s: &Space, v: u32, faces: &'a [[u32; 3]]) -> Self {
+        let origin = *s.point(v);
+        let mut planes = Vec::with_capacity(faces.len());
+        let mut size = 0.0_f64;
+        for f in faces {
+            let [a, b, c] = f.map(|x| s.point(x) - origin);
+            size = size.max(a.norm()).max(b.norm()).max(c.norm());
+            let n = normal(a, b, c);
+            planes.push((n, -n.dot(&a)));
+        }
+        Self { origin, faces, planes, size }
+    }
+
+    /// Least distance from the planes of the faces, but for those that have vertex `without`.
+    pub(super) fn depth(&self, x: &Vec3, without: Option<u32>) -> f64 {
+        let counts = self.planes.iter().zip(self.faces).filter(|(_, f)| without.is_none_or(|w| !f.contains(&w)));
+        counts.map(|((n, h), _)| n.dot(x) + h).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The corner that sees all faces that do not have it, the one furthest from their planes; at least `least` times
+    /// the size.
+    pub(super) fn neighbor(&self, s: &Space, least: f64) -> Option<u32> {
+        let mut rim: Vec<u32> = self.faces.iter().flatten().copied().collect();
+        rim.sort_unstable();
+        rim.dedup();
+        let depth = |w: u32| self.depth(&(s.point(w) - self.origin), Some(w));
+        let mut rim: Vec<(f64, u32)> = rim.into_iter().map(|w| (depth(w), w)).collect();
+        rim.retain(|&(d, _)| d > least * self.size - 1e-14 * self.size);
+        rim.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let sees = |w: u32| self.faces.iter().all(|&[a, b, c]| [a, b, c].contains(&w) || s.orient([a, b, c, w]) > 0);
+        rim.into_iter().map(|(_, w)| w).find(|&w| sees(w))
+    }
+
+    /// A point that sees all faces, from a distance of at least `least`.
+    pub(super) fn place(&self, s: &Space, least: f64) -> Option<Point3> {
+        let (aim, depth) = deepest(&self.planes, self.size)?;
+        if depth < least {
+            return None;
+        }
+        let sees = |p: &Point3| self.faces.iter().all(|f| s.orient_to(*f, p) > 0);
+        SHARES.iter().map(|share| self.origin + aim * *share).find(sees)
+    }
+}
+
+fn normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
+    // Of the two shorter sides: less roundoff where the triangle is a needle.
+    let (ab, bc, ca) = (b - a, c - b, a - c);
+    let [x, y, z] = [ab, bc, ca].map(|v| v.norm_squared());
+    let n = if x >= y && x >= z {
+        bc.cross(&ca)
+    } else if y >= z {
+        ca.cross(&ab)
+    } else {
+        ab.cross(&bc)
+    };
+    n.try_normalize(0.0).unwrap_or(Vec3::zeros())
+}
 
 /// `a · x ≤ b`.
 type Constraint = ([f64; 4], f64);
 
 /// The point `x` that is furthest from the planes `normal · x + height = 0` among those on their positive sides, and
 /// its distance; normals have length 1. `size` bounds the coordinates.
-pub(super) fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
+fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
     let mut constraints: Vec<Constraint> = planes.iter().map(|(n, h)| ([-n.x, -n.y, -n.z, 1.0], *h / size)).collect();
     // A fixed shuffle: the expected time is linear.
     for i in (1..constraints.len()).rev() {

@@ -1,25 +1,44 @@
 //! A complex some of whose vertices are implicit, and the exact predicates on its vertices.
 
 use crate::geometry::Point3;
-use crate::geometry::implicit::{self, OnSegment, Site};
+use crate::geometry::implicit::{self, OnTriangle, Site};
 use crate::geometry::predicates;
 use crate::tet::complex::{Complex, NONE};
-use crate::tet::delaunay::in_sphere_perturbed;
+use crate::tet::star::{EdgeRing, Star};
 use std::cmp::Ordering;
 
 /// A complex whose points are rounded where they are implicit.
 pub(super) struct Space {
     pub c: Complex,
     /// What the implicit points are.
-    on: Vec<OnSegment>,
+    on: Vec<OnTriangle>,
     /// For each vertex its place in `on`, or [`NONE`].
     place: Vec<u32>,
+    created: Vec<u32>,
+    star: Star,
 }
 
 impl Space {
     pub(super) fn new(c: Complex) -> Self {
         let place = vec![NONE; c.points.len()];
-        Self { c, on: Vec::new(), place }
+        Self { c, on: Vec::new(), place, created: Vec::new(), star: Star::default() }
+    }
+
+    /// The tetrahedra at a vertex.
+    pub(super) fn star(&mut self, v: u32) -> Vec<u32> {
+        self.star.around(&self.c, v).to_vec()
+    }
+
+    /// The ring around an edge, inside the complex.
+    pub(super) fn ring(&mut self, a: u32, b: u32) -> Option<EdgeRing> {
+        let t = self.star.find_edge(&self.c, a, b)?;
+        let mut ring = EdgeRing::default();
+        (ring.collect(&self.c, t, a, b, usize::MAX) && !ring.touches_ghost()).then_some(ring)
+    }
+
+    /// The half-face with three vertices.
+    pub(super) fn find_face(&mut self, face: [u32; 3]) -> Option<u32> {
+        self.star.find_face(&self.c, face)
     }
 
     #[inline]
@@ -37,22 +56,58 @@ impl Space {
         self.place[v as usize] != NONE
     }
 
-    /// Where an implicit vertex lies on its segment.
-    pub(super) fn parameter(&self, v: u32) -> Option<f64> {
-        self.on.get(self.place[v as usize] as usize).map(|on| on.t)
-    }
-
-    /// Adds an implicit vertex without a tetrahedron.
-    pub(super) fn add_implicit(&mut self, on: OnSegment) -> u32 {
-        self.place.push(self.on.len() as u32);
-        self.on.push(on);
-        self.c.add_point(on.rounded())
-    }
-
     /// Adds a vertex without a tetrahedron.
     pub(super) fn add_point(&mut self, p: Point3) -> u32 {
         self.place.push(NONE);
         self.c.add_point(p)
+    }
+
+    /// Puts an implicit vertex in the place of `cavity`. It has to see all its walls; nothing happens when it does not.
+    pub(super) fn insert(&mut self, cavity: &[u32], walls: &[[u32; 3]], on: OnTriangle) -> Option<u32> {
+        let at = on.rounded();
+        let site = Site { at: &at, on: Some(&on) };
+        let sees = |&[a, b, c]: &[u32; 3]| implicit::orient3d([self.site(a), self.site(c), self.site(b), site]) > 0;
+        if !walls.iter().all(sees) {
+            return None;
+        }
+        let v = self.c.add_point(at);
+        self.place.push(self.on.len() as u32);
+        self.on.push(on);
+        let new: Vec<[u32; 4]> = walls.iter().map(|&[a, b, c]| [a, c, b, v]).collect();
+        let fits = self.c.replace(cavity, &new, &mut self.created);
+        debug_assert!(fits, "the walls are those of the cavity");
+        fits.then_some(v)
+    }
+
+    /// Moves an implicit vertex, whose star has the walls, to where it sees them all; nothing happens when it does not.
+    pub(super) fn move_to(&mut self, v: u32, walls: &[[u32; 3]], on: OnTriangle) -> bool {
+        let at = on.rounded();
+        let site = Site { at: &at, on: Some(&on) };
+        let sees = |&[a, b, c]: &[u32; 3]| implicit::orient3d([self.site(a), self.site(c), self.site(b), site]) > 0;
+        let Some(place) = self.on.get(self.place[v as usize] as usize).filter(|_| walls.iter().all(sees)) else {
+            return false;
+        };
+        if *place == on {
+            return false;
+        }
+        let place = self.place[v as usize] as usize;
+        self.on[place] = on;
+        self.c.points[v as usize] = at;
+        true
+    }
+
+    /// Joins all walls of `cavity` to one of its vertices, if that sees those that it is no corner of.
+    pub(super) fn join(&mut self, cavity: &[u32], walls: &[[u32; 3]], apex: u32) -> bool {
+        let others = walls.iter().filter(|f| !f.contains(&apex));
+        let new: Vec<[u32; 4]> = others.map(|&[a, b, c]| [a, c, b, apex]).collect();
+        new.iter().all(|&tet| self.orient(tet) > 0) && self.c.replace(cavity, &new, &mut self.created)
+    }
+
+    /// The faces around some tetrahedra, counter-clockwise seen from outside.
+    pub(super) fn walls(&self, cavity: &[u32]) -> Vec<[u32; 3]> {
+        let halves = cavity.iter().flat_map(|&t| 4 * t..4 * t + 4);
+        let outer = halves.filter(|&half| !cavity.contains(&(self.c.mate(half) >> 2)));
+        outer.map(|half| self.c.face(half)).collect()
     }
 
     /// The sign of the orientation of four vertices. Exact.
@@ -70,23 +125,6 @@ impl Space {
     #[inline]
     pub(super) fn orient_to(&self, [a, b, c]: [u32; 3], p: &Point3) -> i32 {
         implicit::orient3d([self.site(a), self.site(b), self.site(c), Site { at: p, on: None }])
-    }
-
-    /// Whether `e` lies in the perturbed sphere of a positive tetrahedron.
-    #[inline]
-    pub(super) fn in_sphere(&self, v: [u32; 4], e: u32) -> bool {
-        if self.is_implicit(e) || v.iter().any(|&x| self.is_implicit(x)) {
-            return implicit::in_sphere_perturbed(v.map(|x| self.site(x)), self.site(e));
-        }
-        in_sphere_perturbed(v.map(|x| self.point(x)), self.point(e))
-    }
-
-    /// Whether `e`, in the plane of the triangle `v`, lies in its perturbed circle. `above` is any point from which the
-    /// triangle runs counter-clockwise.
-    pub(super) fn in_circle(&self, [a, b, c]: [u32; 3], above: &Point3, e: u32) -> bool {
-        // The lift of `above` does not count, since the other four lie in one plane.
-        let above = Site { at: above, on: None };
-        implicit::in_sphere_perturbed([self.site(a), self.site(b), self.site(c), above], self.site(e))
     }
 
     /// Lexicographic order of two vertices. Exact.

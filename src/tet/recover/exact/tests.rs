@@ -2,22 +2,35 @@ use super::*;
 use crate::geometry::Vec3;
 use crate::mesh::TriMesh;
 use crate::tet::plc::InputKind;
+use crate::geometry::Point3;
+use crate::tet::delaunay::delaunay;
+use crate::tet::error::Obstacle;
+use crate::tet::input::validate;
+use crate::tet::survey::survey;
 use crate::tet::{carve, certify, fill};
 use proptest::prelude::*;
 
-/// Recovers all of a closed surface by this tier alone, carves, certifies.
-fn fills(surface: &TriMesh) -> Result<ExactSummary, TetError> {
+/// Recovers all of a surface by this tier alone, carves, certifies.
+fn fills(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<ExactSummary, TetError> {
+    let edges = validate(surface, segments, kind)?;
     let mut points = surface.points.clone();
     points.extend(fill::box_corners(&surface.points));
-    let (c, summary) = recover_exact(&points, &surface.triangles, &[])?;
-    let carved = carve::carve(&c, surface, InputKind::Closed, &[])?;
-    let mesh = carved.into_compact_mesh(surface.points.len());
-    certify::certify(&mesh, surface)?;
+    let mut c = delaunay(&points)?;
+    let (lost_edges, lost_triangles) = survey(&mut c, surface, &edges);
+    let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
+    let (c, summary) = recover_exact(&c, surface, &edges, missing, &Watch::NOBODY)?;
+    c.sanity_check()?;
+    let mut c = c;
+    assert_eq!(survey(&mut c, surface, &edges), (Vec::new(), Vec::new()));
+    if kind == InputKind::Closed {
+        let mesh = carve::carve(&c, surface, kind, &[])?.into_compact_mesh(surface.points.len());
+        certify::certify(&mesh, surface)?;
+    }
     Ok(summary)
 }
 
 fn fills_all(surface: &TriMesh) -> ExactSummary {
-    fills(surface).unwrap_or_else(|e| panic!("{e}"))
+    fills(surface, &[], InputKind::Closed).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A prism over a regular polygon, its top turned, with the diagonals that make its sides bend inwards.
@@ -160,44 +173,57 @@ proptest! {
     }
 }
 
-fn read_off(path: &std::path::Path) -> TriMesh {
-    let text = std::fs::read_to_string(path).unwrap();
-    let mut words = text.split_whitespace().skip(1);
-    let mut next = || words.next().unwrap();
-    let (n, m): (usize, usize) = (next().parse().unwrap(), next().parse().unwrap());
-    next();
-    let mut s = TriMesh::default();
-    for _ in 0..n {
-        let mut x = || next().parse::<f64>().unwrap();
-        s.points.push(Point3::new(x(), x(), x()));
+/// A fan of long thin triangles from one point, closed by another fan below, with the rim in a zigzag.
+fn fan(n: u32, length: f64) -> TriMesh {
+    let mut s = TriMesh { points: vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.1, 0.0, -0.05)], ..TriMesh::default() };
+    for i in 0..=n {
+        let x = f64::from(i) / f64::from(n) - 0.5;
+        s.points.push(Point3::new(length, x, if i % 2 == 0 { 0.0 } else { 1e-3 }));
     }
-    for _ in 0..m {
-        next();
-        let mut v = || next().parse::<u32>().unwrap();
-        s.triangles.push([v(), v(), v()]);
+    for i in 0..n {
+        s.triangles.push([0, i + 2, i + 3]);
+        s.triangles.push([1, i + 3, i + 2]);
     }
+    s.triangles.push([0, 1, 2]);
+    s.triangles.push([1, 0, n + 2]);
     s
 }
 
-/// All surfaces of a folder that have `ONLY` in their name, with times. By hand.
 #[test]
-#[ignore = "a survey of real surfaces; names in ONLY, folder in SURFACES"]
-fn survey() {
-    let dir = std::env::var("SURFACES").unwrap();
-    let only = std::env::var("ONLY").unwrap_or_default();
-    let mut files: Vec<_> = std::fs::read_dir(dir).unwrap().map(|f| f.unwrap().path()).collect();
-    files.sort();
-    for path in files {
-        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        if path.extension().is_some_and(|e| e == "off") && only.split(',').any(|o| name.contains(o)) {
-            let surface = read_off(&path);
-            let cpu = || {
-                let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-                text.split(' ').next().and_then(|x| x.parse::<f64>().ok()).unwrap_or(0.0) * 1e-9
-            };
-            let start = cpu();
-            let result = fills(&surface);
-            println!("{name:40} {:7} tris {:8.3} CPU s {result:?}", surface.triangles.len(), cpu() - start);
-        }
+fn fans_of_thin_triangles_are_filled() {
+    for (n, length) in [(10, 3.0), (60, 20.0), (150, 5.0)] {
+        fills_all(&fan(n, length));
     }
+}
+
+/// Points in a box at random.
+fn scatter(n: u64) -> Vec<Point3> {
+    let coin = |k: u64| (crate::tet::delaunay::hash(k) >> 11) as f64 / (1u64 << 53) as f64;
+    (0..n).map(|k| Point3::new(coin(3 * k), coin(3 * k + 1), coin(3 * k + 2))).collect()
+}
+
+#[test]
+fn facets_that_edges_pierce_are_recovered() {
+    // Pairs of points above and below a triangle, nearer to each other than to its corners.
+    let mut points: Vec<Point3> = [(-9.0, -5.0), (9.0, -5.5), (0.5, 9.0)].map(|(x, y)| Point3::new(x, y, 0.01 * x)).into();
+    for p in scatter(12) {
+        points.push(Point3::new(p.x - 0.5, p.y - 0.5, 0.3 + p.z));
+        points.push(Point3::new(p.y - 0.5, p.x - 0.5, -0.3 - p.z));
+    }
+    let surface = TriMesh { points, triangles: vec![[0, 1, 2]] };
+    let summary = fills(&surface, &[], InputKind::Plc).unwrap();
+    assert!(summary.on_facets > 3, "{summary:?}");
+}
+
+#[test]
+fn parts_that_meet_are_named() {
+    let mut points = scatter(60);
+    let n = points.len() as u32;
+    for p in [[0.1, 0.1, 0.5], [0.9, 0.1, 0.5], [0.5, 0.9, 0.5], [0.5, 0.4, -0.1], [0.5, 0.4, 1.1]] {
+        points.push(Point3::from(p));
+    }
+    let surface = TriMesh { points, triangles: vec![[n, n + 1, n + 2]] };
+    let met = fills(&surface, &[[n + 3, n + 4]], InputKind::Plc).unwrap_err();
+    let expected = TetError::EdgeMeets { edge: [n + 3, n + 4], obstacle: Obstacle::Triangle([n, n + 1, n + 2]) };
+    assert_eq!(met, expected);
 }

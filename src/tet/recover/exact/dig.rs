@@ -1,0 +1,216 @@
+//! Cavities for vertices on a segment: what it crosses first, made wider where the part of the segment that sees all
+//! walls is too short, and then longer along the segment as far as one vertex can see.
+
+use super::space::Space;
+use crate::geometry::implicit::{self, OnTriangle};
+use crate::tet::star::EdgeRing;
+
+/// Bits of a weight below those that the length of its interval has.
+const BITS: u32 = 4;
+
+/// Steps by which a cavity grows at most.
+const STEPS: usize = 32;
+
+/// Part of the segment that should see the walls.
+const WIDE: i128 = (OnTriangle::ONE >> 24).cast_signed();
+
+/// A cavity.
+pub(super) enum Dug {
+    /// One that can be joined to the vertex from which the segment comes, which leads to the segment's end.
+    Joins(Vec<u32>),
+    /// One all of whose walls are seen from a place on the segment.
+    Place(Vec<u32>, u128),
+}
+
+pub(super) struct Dig<'a> {
+    pub s: &'a Space,
+    /// Whether a cavity is made longer along the segment.
+    pub far: bool,
+    /// Number of the input's points.
+    pub points: usize,
+    /// Edges that may not go.
+    pub keep: &'a dyn Fn(u32, u32) -> bool,
+    /// Where the segment comes from.
+    pub at: u32,
+    pub ends: [u32; 2],
+}
+
+/// The weights from which all walls are seen from inside, those between two, and the walls, as half-faces of the
+/// cavity, that bound them.
+#[derive(Clone, Copy)]
+struct View {
+    low: (u128, u32),
+    high: (u128, u32),
+    /// A wall that is seen from nowhere on the segment.
+    blind: Option<u32>,
+}
+
+impl View {
+    fn of(s: &Space, ends: [u32; 2], walls: &[u32]) -> Self {
+        let mut view = Self { low: (0, u32::MAX), high: (OnTriangle::ONE, u32::MAX), blind: None };
+        for &half in walls {
+            let [x, y, z] = s.c.face(half);
+            let inside = ends.map(|end| s.orient([x, z, y, end]) > 0);
+            if inside == [true; 2] {
+                continue;
+            }
+            let t = implicit::parameter([x, z, y].map(|v| s.site(v)), ends.map(|v| s.site(v)));
+            match (inside, t) {
+                ([true, _], Some(t)) if t < view.high.0 => view.high = (t, half),
+                ([false, true], Some(t)) if t >= view.low.0 => view.low = (t, half),
+                ([true, false] | [false, true], Some(_)) => {}
+                _ => view.blind = Some(half),
+            }
+        }
+        view
+    }
+
+    fn width(&self) -> i128 {
+        if self.blind.is_some() { i128::MIN } else { self.high.0.cast_signed() - self.low.0.cast_signed() }
+    }
+
+    /// A weight in the middle half, with few bits: that makes exact arithmetic short.
+    fn middle(&self) -> u128 {
+        let (low, width) = (self.low.0, self.high.0 - self.low.0);
+        let shift = width.max(1).ilog2().saturating_sub(BITS);
+        let middle = low + width / 2;
+        ((middle >> shift) << shift).max(low + width / 4)
+    }
+}
+
+/// A weight on a segment from which all walls of a cavity are seen.
+pub(super) fn middle(s: &Space, ends: [u32; 2], cavity: &[u32]) -> Option<u128> {
+    let view = View::of(s, ends, &walls(s, cavity));
+    (view.width() > 0).then(|| view.middle())
+}
+
+/// The half-faces of a cavity's tetrahedra that have their mate outside.
+fn walls(s: &Space, tets: &[u32]) -> Vec<u32> {
+    let halves = tets.iter().flat_map(|&t| 4 * t..4 * t + 4);
+    halves.filter(|&half| !tets.contains(&(s.c.mate(half) >> 2))).collect()
+}
+
+impl Dig<'_> {
+    pub(super) fn dig(&self, first: Vec<u32>) -> Option<Dug> {
+        let mut tets = first;
+        let mut best: Option<(Vec<u32>, View)> = None;
+        for step in 0..STEPS {
+            let walls = walls(self.s, &tets);
+            let whole = step == 0 || self.keeps(&tets, &walls);
+            let view = View::of(self.s, self.ends, &walls);
+            if whole {
+                if self.joins(&walls) {
+                    return Some(Dug::Joins(tets));
+                }
+                let so_far = best.as_ref().map_or(0, |b| b.1.width());
+                if view.width() >= WIDE || view.width() > so_far {
+                    best = Some((tets.clone(), view));
+                } else if so_far >= WIDE {
+                    break;
+                }
+            } else if best.as_ref().is_some_and(|b| b.1.width() >= WIDE) {
+                break;
+            }
+            let further = if view.width() < WIDE {
+                self.widen(&mut tets, &view)
+            } else {
+                self.far && self.lengthen(&mut tets)
+            };
+            if !further {
+                break;
+            }
+        }
+        best.map(|(tets, view)| Dug::Place(tets, view.middle()))
+    }
+
+    /// Whether the vertex from which the segment comes sees all walls, one of which has the end.
+    fn joins(&self, walls: &[u32]) -> bool {
+        let s = self.s;
+        let sees = |half: u32| {
+            let [a, b, c] = s.c.face(half);
+            [a, b, c].contains(&self.at) || s.orient([a, c, b, self.at]) > 0
+        };
+        walls.iter().any(|&half| s.c.face(half).contains(&self.ends[1])) && walls.iter().all(|&half| sees(half))
+    }
+
+    /// Adds what lies behind one of the walls that bound the view, the one that gains more.
+    fn widen(&self, tets: &mut Vec<u32>, view: &View) -> bool {
+        let mut best: Option<(i128, u32)> = None;
+        let bounds = if let Some(half) = view.blind { vec![half] } else { vec![view.low.1, view.high.1] };
+        for half in bounds {
+            if half == u32::MAX || self.s.c.is_frozen(half) || self.s.c.is_ghost(self.s.c.mate(half) >> 2) {
+                continue;
+            }
+            let next = self.s.c.mate(half) >> 2;
+            tets.push(next);
+            let walls = walls(self.s, tets);
+            let width = View::of(self.s, self.ends, &walls).width();
+            tets.pop();
+            if best.is_none_or(|(w, _)| width > w) {
+                best = Some((width, next));
+            }
+        }
+        tets.extend(best.map(|b| b.1));
+        best.is_some()
+    }
+
+    /// Adds what the segment crosses next behind a cavity.
+    fn lengthen(&self, tets: &mut Vec<u32>) -> bool {
+        let (s, [p, q]) = (self.s, self.ends);
+        for half in walls(self.s, tets) {
+            let f = s.c.face(half);
+            if s.orient([f[0], f[1], f[2], q]) <= 0 {
+                continue;
+            }
+            let sides: [i32; 3] = std::array::from_fn(|i| s.orient([p, q, f[i], f[(i + 1) % 3]]));
+            if sides.iter().any(|&x| x < 0) {
+                continue;
+            }
+            let zeros: Vec<usize> = (0..3).filter(|&i| sides[i] == 0).collect();
+            return match zeros[..] {
+                [] => self.pass_face(tets, half),
+                [i] => self.pass_edge(tets, half >> 2, [f[i], f[(i + 1) % 3]]),
+                _ => false,
+            };
+        }
+        false
+    }
+
+    fn pass_face(&self, tets: &mut Vec<u32>, half: u32) -> bool {
+        let next = self.s.c.mate(half) >> 2;
+        let free = !self.s.c.is_frozen(half) && !self.s.c.is_ghost(next);
+        if free {
+            tets.push(next);
+        }
+        free
+    }
+
+    fn pass_edge(&self, tets: &mut Vec<u32>, t: u32, [u, v]: [u32; 2]) -> bool {
+        let mut ring = EdgeRing::default();
+        let found = ring.collect(&self.s.c, t, u, v, usize::MAX) && !ring.touches_ghost();
+        if !found || (self.keep)(u, v) {
+            return false;
+        }
+        for t in ring.tets {
+            if !tets.contains(&t) {
+                tets.push(t);
+            }
+        }
+        true
+    }
+
+    /// Whether nothing that has to stay is inside of a cavity.
+    fn keeps(&self, tets: &[u32], walls: &[u32]) -> bool {
+        let faces: Vec<[u32; 3]> = walls.iter().map(|&half| self.s.c.face(half)).collect();
+        let frozen = |half| self.s.c.is_frozen(half) && tets.contains(&(self.s.c.mate(half) >> 2));
+        tets.iter().all(|&t| {
+            let v = self.s.c.verts(t);
+            let edge_stays = |x: u32, y: u32| faces.iter().any(|f| f.contains(&x) && f.contains(&y));
+            // Free vertices may go.
+            let stays = |x: &&u32| (**x as usize) < self.points || self.s.is_implicit(**x);
+            v.iter().filter(stays).all(|x| faces.iter().any(|f| f.contains(x)))
+                && !(4 * t..4 * t + 4).any(frozen)
+                && (0..4).all(|i| (0..i).all(|j| edge_stays(v[i], v[j]) || !(self.keep)(v[i], v[j])))
+        })
+    }
+}
