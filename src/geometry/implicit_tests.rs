@@ -23,9 +23,7 @@ impl Sample {
             None => self.at.iter().map(|&x| exact(x)).collect(),
             Some(on) => {
                 let ([a, b, c], [s, t]) = (&on.corners, on.weights.map(fraction));
-                let at = |k: usize| {
-                    exact(a[k]) + &s * (exact(b[k]) - exact(a[k])) + &t * (exact(c[k]) - exact(a[k]))
-                };
+                let at = |k: usize| exact(a[k]) + &s * (exact(b[k]) - exact(a[k])) + &t * (exact(c[k]) - exact(a[k]));
                 (0..3).map(at).collect()
             }
         }
@@ -72,7 +70,8 @@ fn point(scale: f64) -> impl Strategy<Value = Point3> {
 }
 
 fn weight() -> impl Strategy<Value = u128> {
-    let any = prop_oneof![Just(0.5), Just(0.25), (1u32..1000).prop_map(|k| f64::from(k) / 1024.0), 0.0..1.0f64, Just(1e-3)];
+    let any =
+        prop_oneof![Just(0.5), Just(0.25), (1u32..1000).prop_map(|k| f64::from(k) / 1024.0), 0.0..1.0f64, Just(1e-3)];
     let coarse = any.prop_map(|t: f64| (t * (1u64 << 62) as f64) as u128 * (OnTriangle::ONE >> 62));
     prop_oneof![coarse, 0..=OnTriangle::ONE]
 }

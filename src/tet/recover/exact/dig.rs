@@ -111,11 +111,8 @@ impl Dig<'_> {
             } else if best.as_ref().is_some_and(|b| b.1.width() >= WIDE) {
                 break;
             }
-            let further = if view.width() < WIDE {
-                self.widen(&mut tets, &view)
-            } else {
-                self.far && self.lengthen(&mut tets)
-            };
+            let further =
+                if view.width() < WIDE { self.widen(&mut tets, &view) } else { self.far && self.lengthen(&mut tets) };
             if !further {
                 break;
             }

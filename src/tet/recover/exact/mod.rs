@@ -24,8 +24,8 @@ use crate::tet::error::{Stuck, TetError};
 use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
 use parts::{Part, parts, sides, sorted};
-use rustc_hash::FxHashMap;
 use push::Push;
+use rustc_hash::FxHashMap;
 use segments::Segments;
 use space::Space;
 

@@ -64,7 +64,8 @@ mod tests {
     fn triangles_that_share_a_missing_edge_are_one_part() {
         let triangles = [[0, 1, 2], [2, 1, 3], [3, 1, 4], [5, 6, 7], [7, 6, 8], [8, 9, 10]];
         let missing = Missing { edges: &[[6, 7], [1, 3], [1, 2], [20, 21]], triangles: &[0, 1, 2, 3, 4, 5] };
-        let part = |edges: &[[u32; 2]], triangles: &[u32]| Part { edges: edges.to_vec(), triangles: triangles.to_vec() };
+        let part =
+            |edges: &[[u32; 2]], triangles: &[u32]| Part { edges: edges.to_vec(), triangles: triangles.to_vec() };
         let expected =
             [part(&[[6, 7]], &[3, 4]), part(&[[1, 3], [1, 2]], &[0, 1, 2]), part(&[[20, 21]], &[]), part(&[], &[5])];
         assert_eq!(parts(&triangles, missing), expected);

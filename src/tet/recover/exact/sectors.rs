@@ -2,9 +2,9 @@
 
 use super::polygon::{point_above, triangulate};
 use super::space::Space;
+use crate::geometry::Vec3;
 use crate::tet::complex::{GHOST, face_key};
 use crate::tet::error::TetError;
-use crate::geometry::Vec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 

@@ -1,11 +1,11 @@
 use super::*;
+use crate::geometry::Point3;
 use crate::geometry::Vec3;
 use crate::mesh::TriMesh;
-use crate::tet::plc::InputKind;
-use crate::geometry::Point3;
 use crate::tet::delaunay::delaunay;
 use crate::tet::error::Obstacle;
 use crate::tet::input::validate;
+use crate::tet::plc::InputKind;
 use crate::tet::survey::survey;
 use crate::tet::{carve, certify, fill};
 use proptest::prelude::*;
@@ -175,7 +175,8 @@ proptest! {
 
 /// A fan of long thin triangles from one point, closed by another fan below, with the rim in a zigzag.
 fn fan(n: u32, length: f64) -> TriMesh {
-    let mut s = TriMesh { points: vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.1, 0.0, -0.05)], ..TriMesh::default() };
+    let mut s =
+        TriMesh { points: vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.1, 0.0, -0.05)], ..TriMesh::default() };
     for i in 0..=n {
         let x = f64::from(i) / f64::from(n) - 0.5;
         s.points.push(Point3::new(length, x, if i % 2 == 0 { 0.0 } else { 1e-3 }));
@@ -205,7 +206,8 @@ fn scatter(n: u64) -> Vec<Point3> {
 #[test]
 fn facets_that_edges_pierce_are_recovered() {
     // Pairs of points above and below a triangle, nearer to each other than to its corners.
-    let mut points: Vec<Point3> = [(-9.0, -5.0), (9.0, -5.5), (0.5, 9.0)].map(|(x, y)| Point3::new(x, y, 0.01 * x)).into();
+    let mut points: Vec<Point3> =
+        [(-9.0, -5.0), (9.0, -5.5), (0.5, 9.0)].map(|(x, y)| Point3::new(x, y, 0.01 * x)).into();
     for p in scatter(12) {
         points.push(Point3::new(p.x - 0.5, p.y - 0.5, 0.3 + p.z));
         points.push(Point3::new(p.y - 0.5, p.x - 0.5, -0.3 - p.z));
