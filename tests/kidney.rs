@@ -58,6 +58,10 @@ fn subtree_289_clear_is_valid_when_finer() {
 fn subtree_289_clear_is_valid() {
     let Some(meshed) = kidney("subtree_289_clear.vtp", 3.0) else { return };
     assert_clear(&meshed);
+    let quality = meshed.check.quality.as_ref().expect("sound arrays");
+    assert!(quality.mean >= 0.84, "mean radius ratio {}", quality.mean);
+    assert!(quality.percentile_1 >= 0.40, "1st percentile {}", quality.percentile_1);
+    assert!(quality.dihedral_min >= 8.0, "smallest dihedral {}°", quality.dihedral_min);
     let report = &meshed.report;
     assert!(report.blocks.clusters >= 120, "{} clusters", report.blocks.clusters);
     assert!(report.mesh.wall_triangles * 10 >= WALL_OF_BASELINE * 8, "{} triangles", report.mesh.wall_triangles);

@@ -61,9 +61,11 @@ pub(super) fn recover(
 ) -> Result<RecoverySummary, TetError> {
     let (mut lost_edges, mut lost_faces) = survey(c, surface, edges);
     let mut r = Recovery::new(c, surface, edges);
-    let mut summary = RecoverySummary::default();
-    summary.missing_edges = lost_edges.len();
-    summary.missing_triangles = lost_faces.len();
+    let mut summary = RecoverySummary {
+        missing_edges: lost_edges.len(),
+        missing_triangles: lost_faces.len(),
+        ..RecoverySummary::default()
+    };
     let mut before = usize::MAX;
     for round in 0..=ROUNDS {
         r.round = round;
