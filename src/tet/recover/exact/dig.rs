@@ -4,6 +4,7 @@
 use super::space::Space;
 use crate::geometry::implicit::{self, OnTriangle};
 use crate::tet::star::EdgeRing;
+use rustc_hash::FxHashMap;
 
 /// Bits of a weight below those that the length of its interval has.
 const BITS: u32 = 4;
@@ -23,16 +24,17 @@ pub(super) enum Dug {
 }
 
 pub(super) struct Dig<'a> {
-    pub s: &'a Space,
+    s: &'a Space,
     /// Whether a cavity is made longer along the segment.
     pub far: bool,
     /// Number of the input's points.
-    pub points: usize,
+    points: usize,
     /// Edges that may not go.
-    pub keep: &'a dyn Fn(u32, u32) -> bool,
+    keep: &'a dyn Fn(u32, u32) -> bool,
     /// Where the segment comes from.
-    pub at: u32,
-    pub ends: [u32; 2],
+    at: u32,
+    ends: [u32; 2],
+    known: FxHashMap<u32, Sight>,
 }
 
 /// The weights from which all walls are seen from inside, those between two, and the walls, as half-faces of the
@@ -45,21 +47,42 @@ struct View {
     blind: Option<u32>,
 }
 
+/// Where on a segment a wall is seen from inside.
+#[derive(Clone, Copy)]
+enum Sight {
+    Everywhere,
+    /// Before this weight.
+    Before(u128),
+    /// Behind this weight.
+    Behind(u128),
+    Nowhere,
+}
+
+impl Sight {
+    fn of(s: &Space, ends: [u32; 2], half: u32) -> Self {
+        let [x, y, z] = s.c.face(half);
+        let inside = ends.map(|end| s.orient([x, z, y, end]) > 0);
+        if inside == [true; 2] {
+            return Self::Everywhere;
+        }
+        let weight = || implicit::parameter([x, z, y].map(|v| s.site(v)), ends.map(|v| s.site(v)));
+        match inside {
+            [true, false] => weight().map_or(Self::Nowhere, Self::Before),
+            [false, true] => weight().map_or(Self::Nowhere, Self::Behind),
+            _ => Self::Nowhere,
+        }
+    }
+}
+
 impl View {
-    fn of(s: &Space, ends: [u32; 2], walls: &[u32]) -> Self {
+    fn of(walls: impl Iterator<Item = (u32, Sight)>) -> Self {
         let mut view = Self { low: (0, u32::MAX), high: (OnTriangle::ONE, u32::MAX), blind: None };
-        for &half in walls {
-            let [x, y, z] = s.c.face(half);
-            let inside = ends.map(|end| s.orient([x, z, y, end]) > 0);
-            if inside == [true; 2] {
-                continue;
-            }
-            let t = implicit::parameter([x, z, y].map(|v| s.site(v)), ends.map(|v| s.site(v)));
-            match (inside, t) {
-                ([true, _], Some(t)) if t < view.high.0 => view.high = (t, half),
-                ([false, true], Some(t)) if t >= view.low.0 => view.low = (t, half),
-                ([true, false] | [false, true], Some(_)) => {}
-                _ => view.blind = Some(half),
+        for (half, sight) in walls {
+            match sight {
+                Sight::Before(t) if t < view.high.0 => view.high = (t, half),
+                Sight::Behind(t) if t >= view.low.0 => view.low = (t, half),
+                Sight::Nowhere => view.blind = Some(half),
+                _ => {}
             }
         }
         view
@@ -80,7 +103,7 @@ impl View {
 
 /// A weight on a segment from which all walls of a cavity are seen.
 pub(super) fn middle(s: &Space, ends: [u32; 2], cavity: &[u32]) -> Option<u128> {
-    let view = View::of(s, ends, &walls(s, cavity));
+    let view = View::of(walls(s, cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
     (view.width() > 0).then(|| view.middle())
 }
 
@@ -90,14 +113,18 @@ fn walls(s: &Space, tets: &[u32]) -> Vec<u32> {
     halves.filter(|&half| !tets.contains(&(s.c.mate(half) >> 2))).collect()
 }
 
-impl Dig<'_> {
-    pub(super) fn dig(&self, first: Vec<u32>) -> Option<Dug> {
+impl<'a> Dig<'a> {
+    pub(super) fn new(s: &'a Space, points: usize, keep: &'a dyn Fn(u32, u32) -> bool, at: u32, ends: [u32; 2]) -> Self {
+        Self { s, far: true, points, keep, at, ends, known: FxHashMap::default() }
+    }
+
+    pub(super) fn dig(&mut self, first: Vec<u32>) -> Option<Dug> {
         let mut tets = first;
         let mut best: Option<(Vec<u32>, View)> = None;
         for step in 0..STEPS {
             let walls = walls(self.s, &tets);
             let whole = step == 0 || self.keeps(&tets, &walls);
-            let view = View::of(self.s, self.ends, &walls);
+            let view = self.view(&walls);
             if whole {
                 if self.joins(&walls) {
                     return Some(Dug::Joins(tets));
@@ -120,6 +147,11 @@ impl Dig<'_> {
         best.map(|(tets, view)| Dug::Place(tets, view.middle()))
     }
 
+    fn view(&mut self, walls: &[u32]) -> View {
+        let (s, ends, known) = (self.s, self.ends, &mut self.known);
+        View::of(walls.iter().map(|&half| (half, *known.entry(half).or_insert_with(|| Sight::of(s, ends, half)))))
+    }
+
     /// Whether the vertex from which the segment comes sees all walls, one of which has the end.
     fn joins(&self, walls: &[u32]) -> bool {
         let s = self.s;
@@ -131,7 +163,7 @@ impl Dig<'_> {
     }
 
     /// Adds what lies behind one of the walls that bound the view, the one that gains more.
-    fn widen(&self, tets: &mut Vec<u32>, view: &View) -> bool {
+    fn widen(&mut self, tets: &mut Vec<u32>, view: &View) -> bool {
         let mut best: Option<(i128, u32)> = None;
         let bounds = if let Some(half) = view.blind { vec![half] } else { vec![view.low.1, view.high.1] };
         for half in bounds {
@@ -141,7 +173,7 @@ impl Dig<'_> {
             let next = self.s.c.mate(half) >> 2;
             tets.push(next);
             let walls = walls(self.s, tets);
-            let width = View::of(self.s, self.ends, &walls).width();
+            let width = self.view(&walls).width();
             tets.pop();
             if best.is_none_or(|(w, _)| width > w) {
                 best = Some((width, next));

@@ -116,7 +116,9 @@ impl<'a> Segments<'a> {
         if first.iter().any(|&t| s.c.is_ghost(t)) {
             return Err(stuck(ends, Stuck::Intersection));
         }
-        let dig = Dig { s, far, points: self.points, keep: &|a, b| self.of_piece(a, b).is_some(), at, ends };
+        let keep = |a, b| self.of_piece(a, b).is_some();
+        let mut dig = Dig::new(s, self.points, &keep, at, ends);
+        dig.far = far;
         let (cavity, weight) = match dig.dig(first) {
             Some(Dug::Joins(cavity)) => {
                 let walls = s.walls(&cavity);
