@@ -114,7 +114,13 @@ fn walls(s: &Space, tets: &[u32]) -> Vec<u32> {
 }
 
 impl<'a> Dig<'a> {
-    pub(super) fn new(s: &'a Space, points: usize, keep: &'a dyn Fn(u32, u32) -> bool, at: u32, ends: [u32; 2]) -> Self {
+    pub(super) fn new(
+        s: &'a Space,
+        points: usize,
+        keep: &'a dyn Fn(u32, u32) -> bool,
+        at: u32,
+        ends: [u32; 2],
+    ) -> Self {
         Self { s, far: true, points, keep, at, ends, known: FxHashMap::default() }
     }
 
