@@ -80,7 +80,7 @@ impl Improver {
     }
 
     fn treat_with_all(&mut self, t: u32) -> bool {
-        let mended = if self.flip_tet(t) || CAVITIES.iter().any(|&(size, nodes)| self.reconnect(t, size, nodes)) {
+        if self.flip_tet(t) || CAVITIES.iter().any(|&(size, nodes)| self.reconnect(t, size, nodes)) {
             self.report.flips += 1;
             true
         } else if self.ease_corners(t) {
@@ -93,8 +93,7 @@ impl Improver {
             true
         } else {
             false
-        };
-        mended
+        }
     }
 
     /// Moves the vertices of `t`.
