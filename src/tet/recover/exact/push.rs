@@ -201,7 +201,7 @@ impl<'a> Push<'a> {
                     return false;
                 }
             }
-            let here = room.depth(&Vec3::zeros(), None);
+            let here = room.depth(&Vec3::zeros());
             if let Some(p) = room.place(&self.s, 1.2 * here) {
                 self.s.c.points[v as usize] = p;
                 self.changes.change(faces.iter().flatten().copied());

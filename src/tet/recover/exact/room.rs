@@ -34,10 +34,25 @@ impl<'a> Room<'a> {
         Self { origin, faces, planes, size }
     }
 
-    /// Least distance from the planes of the faces, but for those that have vertex `without`.
-    pub(super) fn depth(&self, x: &Vec3, without: Option<u32>) -> f64 {
-        let counts = self.planes.iter().zip(self.faces).filter(|(_, f)| without.is_none_or(|w| !f.contains(&w)));
-        counts.map(|((n, h), _)| n.dot(x) + h).fold(f64::INFINITY, f64::min)
+    /// Least distance from the planes of the faces.
+    pub(super) fn depth(&self, x: &Vec3) -> f64 {
+        self.planes.iter().map(|(n, h)| n.dot(x) + h).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Least distance of corner `w` from the planes of the faces that it is no corner of, if it is above a bound.
+    fn depth_of(&self, s: &Space, w: u32, bound: f64) -> Option<f64> {
+        let x = s.point(w) - self.origin;
+        let mut least = f64::INFINITY;
+        for ((n, h), face) in self.planes.iter().zip(self.faces) {
+            let d = n.dot(&x) + h;
+            if d < least && !face.contains(&w) {
+                if d <= bound {
+                    return None;
+                }
+                least = d;
+            }
+        }
+        Some(least)
     }
 
     /// The corner that sees all faces that do not have it, the one furthest from their planes; at least `least` times
@@ -46,9 +61,10 @@ impl<'a> Room<'a> {
         let mut rim: Vec<u32> = self.faces.iter().flatten().copied().collect();
         rim.sort_unstable();
         rim.dedup();
-        let depth = |w: u32| self.depth(&(s.point(w) - self.origin), Some(w));
-        let mut rim: Vec<(f64, u32)> = rim.into_iter().map(|w| (depth(w), w)).collect();
-        rim.retain(|&(d, _)| d > least * self.size - 1e-14 * self.size);
+        // Where nothing is asked for, roundoff may not decide.
+        let bound = least * self.size - 1e-14 * self.size;
+        let mut rim: Vec<(f64, u32)> =
+            rim.into_iter().filter_map(|w| self.depth_of(s, w, bound).map(|d| (d, w))).collect();
         rim.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let sees = |w: u32| self.faces.iter().all(|&[a, b, c]| [a, b, c].contains(&w) || s.orient([a, b, c, w]) > 0);
         rim.into_iter().map(|(_, w)| w).find(|&w| sees(w))
