@@ -129,19 +129,16 @@ impl<'a> Dig<'a> {
         let mut best: Option<(Vec<u32>, View)> = None;
         for step in 0..STEPS {
             let walls = walls(self.s, &tets);
-            let whole = step == 0 || self.keeps(&tets, &walls);
             let view = self.view(&walls);
-            if whole {
-                if self.joins(&walls) {
+            let so_far = best.as_ref().map_or(0, |b| b.1.width());
+            let joins = self.joins(&walls);
+            let better = view.width() >= WIDE || view.width() > so_far;
+            if (joins || better) && (step == 0 || self.keeps(&tets, &walls)) {
+                if joins {
                     return Some(Dug::Joins(tets));
                 }
-                let so_far = best.as_ref().map_or(0, |b| b.1.width());
-                if view.width() >= WIDE || view.width() > so_far {
-                    best = Some((tets.clone(), view));
-                } else if so_far >= WIDE {
-                    break;
-                }
-            } else if best.as_ref().is_some_and(|b| b.1.width() >= WIDE) {
+                best = Some((tets.clone(), view));
+            } else if so_far >= WIDE {
                 break;
             }
             let further =
@@ -237,15 +234,15 @@ impl<'a> Dig<'a> {
     /// Whether nothing that has to stay is inside of a cavity.
     fn keeps(&self, tets: &[u32], walls: &[u32]) -> bool {
         let faces: Vec<[u32; 3]> = walls.iter().map(|&half| self.s.c.face(half)).collect();
-        let frozen = |half| self.s.c.is_frozen(half) && tets.contains(&(self.s.c.mate(half) >> 2));
+        let has = |part: &[u32]| faces.iter().any(|f| part.iter().all(|x| f.contains(x)));
         tets.iter().all(|&t| {
             let v = self.s.c.verts(t);
-            let edge_stays = |x: u32, y: u32| faces.iter().any(|f| f.contains(&x) && f.contains(&y));
             // Free vertices may go.
-            let stays = |x: &&u32| (**x as usize) < self.points || self.s.is_implicit(**x);
-            v.iter().filter(stays).all(|x| faces.iter().any(|f| f.contains(x)))
+            let stays = |x: u32| (x as usize) < self.points || self.s.is_implicit(x);
+            let frozen = |half| self.s.c.is_frozen(half) && tets.contains(&(self.s.c.mate(half) >> 2));
+            v.iter().all(|&x| !stays(x) || has(&[x]))
                 && !(4 * t..4 * t + 4).any(frozen)
-                && (0..4).all(|i| (0..i).all(|j| edge_stays(v[i], v[j]) || !(self.keep)(v[i], v[j])))
+                && (0..4).all(|i| (0..i).all(|j| !(self.keep)(v[i], v[j]) || has(&[v[i], v[j]])))
         })
     }
 }
