@@ -221,8 +221,8 @@ impl Tetrahedralizer {
     }
 
     /// Checks an input without meshing it: all that [`Tetrahedralizer::run`] checks, and that no points coincide, no
-    /// triangle is there twice, and no two triangles meet but in common vertices and edges. Segments are not tested
-    /// against triangles.
+    /// triangle is there twice, no two triangles meet but in common vertices and edges, and no further point lies in a
+    /// triangle. Segments are not tested against triangles.
     ///
     /// # Errors
     /// The first fault, with the ids of the offenders.
@@ -235,6 +235,7 @@ impl Tetrahedralizer {
         input::no_duplicate_points(&surface.points)?;
         input::no_duplicate_triangles(&surface.triangles)?;
         contacts::no_contacts(&surface, &watch)?;
+        contacts::no_points_in_triangles(&surface)?;
         watch.report(Stage::Validate, 1, 1)
     }
 

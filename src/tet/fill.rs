@@ -104,7 +104,8 @@ fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError
 fn diagnosis(r: &Request, error: TetError) -> TetError {
     let checked = input::no_duplicate_points(&r.surface.points)
         .and_then(|()| input::no_duplicate_triangles(&r.surface.triangles))
-        .and_then(|()| contacts::no_contacts(r.surface, r.watch));
+        .and_then(|()| contacts::no_contacts(r.surface, r.watch))
+        .and_then(|()| contacts::no_points_in_triangles(r.surface));
     checked.err().unwrap_or(error)
 }
 
@@ -131,6 +132,7 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
     };
     // Exact recovery takes for granted that the surface does not meet itself.
     contacts::no_contacts(surface, r.watch)?;
+    contacts::no_points_in_triangles(surface)?;
     let before = complex.points.len() - points.len();
     let missing = Missing { edges: &edges, triangles: &triangles };
     let (complex, exact) = recover_exact(&complex, surface, r.edges, missing, r.watch)?;

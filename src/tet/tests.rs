@@ -185,6 +185,25 @@ fn wrong_surfaces_are_typed_errors() {
 }
 
 #[test]
+fn points_in_triangles_are_found_before_anything_is_made() {
+    let check = |p: Point3| {
+        let mut plc = Plc::from(&cube(1));
+        plc.points.push(p);
+        let tetrahedralizer = Tetrahedralizer::new();
+        let checked = tetrahedralizer.check(&plc);
+        assert_eq!(checked.clone().err(), tetrahedralizer.run(&plc).err());
+        checked
+    };
+    assert_eq!(check(Point3::new(0.5, 0.375, 0.25)), Ok(()));
+    assert!(matches!(
+        check(Point3::new(0.0, 0.25, 0.0)),
+        Err(TetError::EdgeMeets { obstacle: Obstacle::Point(8), .. })
+    ));
+    let inside = check(Point3::new(1.0, 0.75, 0.375));
+    assert!(matches!(inside, Err(TetError::Stuck { part: Obstacle::Triangle(_), reason: Stuck::Intersection })));
+}
+
+#[test]
 fn surfaces_that_meet_themselves_end_in_an_error() {
     let s = sphere_surface(2);
     let crossing = joined(s.clone(), &s, 1.0, Vec3::new(0.9, 0.1, 0.05));
