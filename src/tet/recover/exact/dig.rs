@@ -25,8 +25,6 @@ pub(super) enum Dug {
 
 pub(super) struct Dig<'a> {
     s: &'a Space,
-    /// Whether a cavity is made longer along the segment.
-    pub far: bool,
     /// Number of the input's points.
     points: usize,
     /// Edges that may not go.
@@ -121,7 +119,7 @@ impl<'a> Dig<'a> {
         at: u32,
         ends: [u32; 2],
     ) -> Self {
-        Self { s, far: true, points, keep, at, ends, known: FxHashMap::default() }
+        Self { s, points, keep, at, ends, known: FxHashMap::default() }
     }
 
     pub(super) fn dig(&mut self, first: Vec<u32>) -> Option<Dug> {
@@ -142,7 +140,7 @@ impl<'a> Dig<'a> {
                 break;
             }
             let further =
-                if view.width() < WIDE { self.widen(&mut tets, &view) } else { self.far && self.lengthen(&mut tets) };
+                if view.width() < WIDE { self.widen(&mut tets, &view) } else { self.lengthen(&mut tets) };
             if !further {
                 break;
             }

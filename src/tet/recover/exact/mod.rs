@@ -9,6 +9,7 @@
 
 mod dig;
 mod facets;
+mod helpers;
 mod parts;
 mod polygon;
 mod push;
@@ -20,12 +21,12 @@ mod space;
 use crate::mesh::TriMesh;
 use crate::tet::complex::Complex;
 use crate::tet::delaunay::hash;
-use crate::tet::error::{Stuck, TetError};
+use crate::tet::error::{Obstacle, Stuck, TetError};
 use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
-use parts::{Part, parts, sides, sorted};
+use helpers::add_helpers;
+use parts::{Part, parts};
 use push::Push;
-use rustc_hash::FxHashMap;
 use segments::Segments;
 use space::Space;
 
@@ -65,7 +66,7 @@ pub(in crate::tet) fn recover_exact(
     let mut attempt = 0;
     loop {
         match recover_parts(c.clone(), surface, edges, missing, attempt, watch) {
-            Err(TetError::Stuck { reason: Stuck::Precision, .. }) if attempt + 1 < ATTEMPTS => attempt += 1,
+            Err(TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling, .. }) if attempt + 1 < ATTEMPTS => attempt += 1,
             result => return result,
         }
     }
@@ -81,48 +82,65 @@ fn recover_parts(
 ) -> Result<(Complex, ExactSummary), TetError> {
     let triangles = &surface.triangles;
     let segments = Segments::new(edges, surface.points.len());
-    let mut push = Push::new(Space::new(c), segments, triangles);
+    let mut push = Push::new(Space::new(c), segments, triangles.clone());
     let mut summary = ExactSummary::default();
     for part in parts(triangles, missing) {
         watch.ask()?;
-        recover_part(&mut push, &part, triangles, salt, &mut summary)?;
+        recover_part(&mut push, &part, salt, &mut summary).map_err(|error| about_input(error, surface, &part))?;
     }
     Ok((push.s.c, summary))
 }
 
-fn recover_part(
-    push: &mut Push,
-    part: &Part,
-    triangles: &[[u32; 3]],
-    salt: u64,
-    summary: &mut ExactSummary,
-) -> Result<(), TetError> {
-    let first = push.segments.list.len() as u32;
+/// What happens to helpers is told of the edge that they were to help.
+fn about_input(error: TetError, surface: &TriMesh, part: &Part) -> TetError {
+    let known = |v: &u32| (*v as usize) < surface.points.len();
+    let of_input = |part: &Obstacle| match part {
+        Obstacle::Triangle(v) => v.iter().all(known),
+        Obstacle::Edge(v) => v.iter().all(known),
+        Obstacle::Point(v) => known(v),
+    };
+    let told = match &error {
+        TetError::EdgeMeets { edge, obstacle } => edge.iter().all(known) && of_input(obstacle),
+        TetError::Stuck { part, .. } => of_input(part),
+        _ => true,
+    };
+    let dangling = part.edges.first().filter(|_| !told);
+    dangling.map_or(error, |&edge| TetError::Stuck { part: Obstacle::Edge(edge), reason: Stuck::Dangling })
+}
+
+fn recover_part(push: &mut Push, part: &Part, salt: u64, summary: &mut ExactSummary) -> Result<(), TetError> {
+    let helpers = add_helpers(push, part, salt);
     // At random: fans of long thin triangles come in halves of halves then, where one after the other each next chain
     // would have to fit between the one before and what lies beyond.
     let mut edges = part.edges.clone();
     edges.sort_by_key(|&[a, b]| (hash(salt ^ (u64::from(a) << 32 | u64::from(b))), a, b));
-    let mut facets: FxHashMap<[u32; 2], u32> = FxHashMap::default();
-    for side in part.triangles.iter().flat_map(|&t| sides(triangles[t as usize])) {
-        *facets.entry(side).or_default() += 1;
-    }
-    for &[a, b] in &edges {
-        // Where no two facets make sectors, neighbours of two vertices have to, so these stay close.
-        let far = facets.get(&sorted(a, b)).is_some_and(|&n| n >= 2);
-        push.segments.cut(&mut push.s, [a, b], far)?;
-    }
-    #[cfg(test)]
-    push.s.check();
-    for id in first..push.segments.list.len() as u32 {
+    for &ends in &edges {
+        let id = push.segments.cut(&mut push.s, ends)?;
         summary.on_segments += push.add_segment(id);
     }
-    for &t in &part.triangles {
-        let cover = facets::cover(&mut push.s, &push.segments, triangles[t as usize])?;
-        summary.on_facets += push.add_facet(t, cover);
+    let beside = push.segments.list.len() as u32;
+    for &ends in &helpers.edges {
+        push.segments.cut(&mut push.s, ends)?;
     }
     #[cfg(test)]
     push.s.check();
-    summary.steiner_points += push.finish()?;
+    for &t in &part.triangles {
+        let cover = facets::cover(&mut push.s, &push.segments, push.triangles[t as usize])?;
+        summary.on_facets += push.add_facet(t, cover);
+    }
+    let mut inner = Vec::new();
+    for &t in &helpers.triangles {
+        let cover = facets::cover(&mut push.s, &push.segments, push.triangles[t as usize])?;
+        inner.extend(push.add_helper(t, cover));
+    }
+    #[cfg(test)]
+    push.s.check();
+    push.settle()?;
+    if !helpers.triangles.is_empty() {
+        push.drop_helpers(&helpers.triangles, beside..push.segments.list.len() as u32, inner);
+        push.settle()?;
+    }
+    summary.steiner_points += push.finish();
     Ok(())
 }
 

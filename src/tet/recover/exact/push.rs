@@ -14,6 +14,7 @@ use crate::geometry::{Point3, Vec3};
 use crate::tet::complex::face_key;
 use crate::tet::error::{Obstacle, Stuck, TetError};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::ops::Range;
 
 /// Least distances from the planes around, over the size of the room, that are asked for one after the other.
 const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
@@ -25,6 +26,8 @@ enum Host {
     Segment(u32),
     /// Index of a facet.
     Facet(u32),
+    /// Nothing any more.
+    Free(u32),
 }
 
 /// What takes the place of the vertex in a sector.
@@ -39,7 +42,8 @@ enum Apex {
 pub(super) struct Push<'a> {
     pub s: Space,
     pub segments: Segments<'a>,
-    triangles: &'a [[u32; 3]],
+    /// Those of the input, then helpers.
+    pub triangles: Vec<[u32; 3]>,
     /// Vertices that lie on something.
     left: Vec<(Host, u32)>,
     /// The faces of facets that have vertices.
@@ -82,7 +86,7 @@ impl Changes {
 }
 
 impl<'a> Push<'a> {
-    pub(super) fn new(s: Space, segments: Segments<'a>, triangles: &'a [[u32; 3]]) -> Self {
+    pub(super) fn new(s: Space, segments: Segments<'a>, triangles: Vec<[u32; 3]>) -> Self {
         let (pieces, around, changes) = (FxHashMap::default(), FxHashMap::default(), Changes::default());
         Self { s, segments, triangles, left: Vec::new(), pieces, around, free: Vec::new(), changes }
     }
@@ -106,10 +110,36 @@ impl<'a> Push<'a> {
         chain.len() - 2
     }
 
+    /// Takes a facet that has been covered and is only a helper.
+    pub(super) fn add_helper(&mut self, id: u32, cover: Cover) -> Vec<u32> {
+        let inner = cover.inner.clone();
+        self.add_facet(id, Cover { inner: Vec::new(), ..cover });
+        inner
+    }
+
+    /// Drops helpers: their faces, and the segments at their sides. What lies on them has to go, as `inner` has.
+    pub(super) fn drop_helpers(&mut self, triangles: &[u32], segments: Range<u32>, inner: Vec<u32>) {
+        for id in triangles {
+            for piece in self.pieces.remove(id).unwrap_or_default() {
+                if let Some(half) = self.s.find_face(piece) {
+                    self.s.c.thaw(half);
+                }
+            }
+        }
+        self.left.extend(inner.into_iter().map(|v| (Host::Free(v), v)));
+        for id in segments {
+            let chain = self.segments.forget(id);
+            self.left.extend(chain[1..chain.len() - 1].iter().map(|&v| (Host::Free(v), v)));
+            // The corners beside the edge are free, and may go as well.
+            self.free.extend(chain.last());
+        }
+        self.free.sort_unstable();
+        self.free.dedup();
+    }
+
     /// Pushes all vertices off what they lie on. Those that have no room are tried again when others have gone; little
-    /// room is taken only when there is no better, since it leaves even less to others. Returns the number of vertices
-    /// that were made.
-    pub(super) fn finish(&mut self) -> Result<usize, TetError> {
+    /// room is taken only when there is no better, since it leaves even less to others.
+    pub(super) fn settle(&mut self) -> Result<(), TetError> {
         let mut left = std::mem::take(&mut self.left);
         self.clear(&mut left)?;
         while !left.is_empty() {
@@ -126,12 +156,17 @@ impl<'a> Push<'a> {
         if let Some(&(host, _)) = left.first() {
             return Err(self.stuck(host, Stuck::Precision));
         }
+        Ok(())
+    }
+
+    /// Ends a part. Returns the number of vertices that were made.
+    pub(super) fn finish(&mut self) -> usize {
         self.changes = Changes::default();
         self.relax(0.0);
         self.pieces.clear();
         self.around.clear();
         self.changes = Changes::default();
-        Ok(std::mem::take(&mut self.free).len())
+        std::mem::take(&mut self.free).len()
     }
 
     /// Pushes as many as there is room for, at all levels.
@@ -215,13 +250,14 @@ impl<'a> Push<'a> {
         let part = match host {
             Host::Segment(i) => Obstacle::Edge(self.segments.list[i as usize].ends),
             Host::Facet(id) => Obstacle::Triangle(self.triangles[id as usize]),
+            Host::Free(v) => Obstacle::Point(v),
         };
         TetError::Stuck { part, reason }
     }
 
     fn push(&mut self, host: Host, v: u32, least: f64, new_points: bool) -> Result<bool, TetError> {
         let star = self.s.star(v);
-        let Some(fans) = self.fans(host, v, &star)? else { return Err(self.stuck(host, Stuck::Intersection)) };
+        let Some(fans) = self.fans(host, v)? else { return Err(self.stuck(host, Stuck::Intersection)) };
         if fans.len() < 2 && matches!(host, Host::Segment(_)) {
             return Ok(false);
         }
@@ -250,14 +286,14 @@ impl<'a> Push<'a> {
         Ok(true)
     }
 
-    /// The facets around a vertex without it, at least two around a segment if there is room for helpers; nothing where
-    /// facets are not what they should be.
-    fn fans(&self, host: Host, v: u32, star: &[u32]) -> Result<Option<Vec<Fan>>, TetError> {
+    /// The facets around a vertex without it; nothing where they are not what they should be.
+    fn fans(&self, host: Host, v: u32) -> Result<Option<Vec<Fan>>, TetError> {
         let fan = |facet: u32, ends| {
             let pieces = self.pieces.get(&facet).map_or(&[][..], |p| p);
             Fan::of(&self.s, pieces, (facet, self.triangles[facet as usize]), v, ends)
         };
         let segment = match host {
+            Host::Free(_) => return Ok(Some(Vec::new())),
             Host::Facet(id) => return Ok(fan(id, None)?.map(|fan| vec![fan])),
             Host::Segment(segment) => segment,
         };
@@ -268,10 +304,6 @@ impl<'a> Push<'a> {
         for &facet in self.around.get(&segment).into_iter().flatten() {
             let Some(fan) = fan(facet, Some(ends))? else { return Ok(None) };
             fans.push(fan);
-        }
-        if fans.len() < 2 {
-            let helpers = Fan::helpers(&self.s, v, ends, star, &fans, 2 - fans.len());
-            fans.extend(helpers);
         }
         Ok(Some(fans))
     }
@@ -293,15 +325,14 @@ impl<'a> Push<'a> {
             return false;
         }
         self.changes.change(new.iter().flatten().copied());
-        let facets = || fans.iter().filter_map(|fan| fan.facet.map(|id| (id, fan)));
-        let faces: FxHashSet<[u32; 3]> = facets().flat_map(|(_, fan)| fan.new.iter().map(|&t| face_key(t))).collect();
+        let faces: FxHashSet<[u32; 3]> = fans.iter().flat_map(|fan| fan.new.iter().map(|&t| face_key(t))).collect();
         for half in created.iter().flat_map(|&t| 4 * t..4 * t + 4) {
             if faces.contains(&face_key(self.s.c.face(half))) {
                 self.s.c.freeze(half);
             }
         }
-        for (id, fan) in facets() {
-            if let Some(pieces) = self.pieces.get_mut(&id) {
+        for fan in fans {
+            if let Some(pieces) = self.pieces.get_mut(&fan.facet) {
                 pieces.retain(|f| !f.contains(&v));
                 pieces.extend(&fan.new);
             }

@@ -2,16 +2,13 @@
 
 use super::polygon::{point_above, triangulate};
 use super::space::Space;
-use crate::geometry::Vec3;
-use crate::tet::complex::{GHOST, face_key};
+use crate::tet::complex::face_key;
 use crate::tet::error::TetError;
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 /// A facet around a vertex that lies on it: its faces at the vertex, and those that take their place.
 pub(super) struct Fan {
-    /// None for a pair of faces that only helps to make sectors.
-    pub facet: Option<u32>,
+    pub facet: u32,
     pub old: Vec<[u32; 3]>,
     pub new: Vec<[u32; 3]>,
 }
@@ -37,77 +34,8 @@ impl Fan {
         let above = point_above(s, triangle)?;
         let mut new = Vec::new();
         let simple = triangulate(s, &polygon, &above, &mut new);
-        Ok(simple.then_some(Self { facet: Some(facet), old, new }))
+        Ok(simple.then_some(Self { facet, old, new }))
     }
-
-    /// Faces that are in no facet, from one neighbour of a vertex on a segment to the other, and those that take their
-    /// place. As many as `needed`, far from each other and from `others`.
-    pub(super) fn helpers(
-        s: &Space,
-        v: u32,
-        [p, q]: [u32; 2],
-        star: &[u32],
-        others: &[Self],
-        needed: usize,
-    ) -> Vec<Self> {
-        let mut link: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
-        for &t in star {
-            let rim: Vec<u32> = s.c.verts(t).into_iter().filter(|&x| x != v && x != GHOST).collect();
-            for &x in &rim {
-                link.entry(x).or_default().extend(rim.iter().filter(|&&y| y != x));
-            }
-        }
-        for &x in others.iter().flat_map(|fan| &fan.old).flatten().filter(|&&x| x != p && x != q) {
-            link.remove(&x);
-        }
-        let (origin, along) = (s.point(v), (s.point(q) - s.point(p)).normalize());
-        let direction = |x: u32| {
-            let d = s.point(x) - origin;
-            (d - along * d.dot(&along)).normalize()
-        };
-        let middle = |f: &Self| f.old.first().and_then(|f| f.iter().copied().find(|&x| x != v && x != p && x != q));
-        let mut taken: Vec<Vec3> = others.iter().filter_map(middle).map(direction).collect();
-        let mut found = Vec::new();
-        while found.len() < needed {
-            let crowd = |x: u32| taken.iter().map(|d| d.dot(&direction(x))).fold(-1.0, f64::max);
-            let Some(path) = path(&link, [p, q], crowd) else { break };
-            for x in &path[1..path.len() - 1] {
-                link.remove(x);
-            }
-            taken.push(direction(path[path.len() / 2]));
-            let old = path.windows(2).map(|e| [e[0], v, e[1]]).collect();
-            let new = path[1..].windows(2).map(|e| [e[0], p, e[1]]).collect();
-            found.push(Self { facet: None, old, new });
-        }
-        found
-    }
-}
-
-/// A way from `p` to `q` with few edges, of those with one vertex between the one that is least crowded.
-fn path(link: &BTreeMap<u32, BTreeSet<u32>>, [p, q]: [u32; 2], crowd: impl Fn(u32) -> f64) -> Option<Vec<u32>> {
-    let (at_p, at_q) = (link.get(&p)?, link.get(&q)?);
-    let between = at_p.intersection(at_q).copied().filter(|x| link.contains_key(x));
-    if let Some(x) = between.min_by(|&x, &y| crowd(x).total_cmp(&crowd(y))) {
-        return Some(vec![p, x, q]);
-    }
-    let mut from: BTreeMap<u32, u32> = BTreeMap::from([(p, p)]);
-    let mut queue = VecDeque::from([p]);
-    while let Some(x) = queue.pop_front() {
-        for &y in link.get(&x).into_iter().flatten().filter(|y| link.contains_key(y)) {
-            if let std::collections::btree_map::Entry::Vacant(entry) = from.entry(y) {
-                entry.insert(x);
-                queue.push_back(y);
-            }
-        }
-    }
-    let mut path = vec![q];
-    let mut at = q;
-    while at != p {
-        at = *from.get(&at)?;
-        path.push(at);
-    }
-    path.reverse();
-    (path.len() > 2).then_some(path)
 }
 
 /// The vertices around one, in order: from one of `ends` to the other, or all around.

@@ -57,6 +57,16 @@ impl<'a> Segments<'a> {
         self.pieces.get(&sorted(a, b)).map(|&i| self.list[i as usize].ends)
     }
 
+    /// Lets a segment be nothing any more. Returns its chain.
+    pub(super) fn forget(&mut self, id: u32) -> Vec<u32> {
+        let Segment { ends, chain } = self.list[id as usize].clone();
+        self.by_ends.remove(&sorted(ends[0], ends[1]));
+        for piece in chain.windows(2) {
+            self.pieces.remove(&sorted(piece[0], piece[1]));
+        }
+        chain
+    }
+
     /// The sides of a facet, or the pieces of their chains, directed, the facet to their left.
     pub(super) fn outline(&self, [a, b, c]: [u32; 3]) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
@@ -76,15 +86,14 @@ impl<'a> Segments<'a> {
         edges
     }
 
-    /// Makes a chain of a missing edge, with vertices `far` from each other or at each crossing. Returns where in the
-    /// list it is.
-    pub(super) fn cut(&mut self, s: &mut Space, ends: [u32; 2], far: bool) -> Result<u32, TetError> {
+    /// Makes a chain of a missing edge. Returns where in the list it is.
+    pub(super) fn cut(&mut self, s: &mut Space, ends: [u32; 2]) -> Result<u32, TetError> {
         let id = self.list.len() as u32;
         self.by_ends.insert(sorted(ends[0], ends[1]), id);
         self.list.push(Segment { ends, chain: vec![ends[0]] });
         let mut at = ends[0];
         while at != ends[1] {
-            let next = self.step(s, at, ends, far)?.unwrap_or(ends[1]);
+            let next = self.step(s, at, ends)?.unwrap_or(ends[1]);
             // At once: what is there may not be destroyed again by what follows.
             self.pieces.insert(sorted(at, next), id);
             self.list[id as usize].chain.push(next);
@@ -95,7 +104,7 @@ impl<'a> Segments<'a> {
 
     /// Goes from vertex `at` of a segment to the next one on it, which is made where there is none; nothing when an edge
     /// leads to its end.
-    fn step(&self, s: &mut Space, at: u32, ends: [u32; 2], far: bool) -> Result<Option<u32>, TetError> {
+    fn step(&self, s: &mut Space, at: u32, ends: [u32; 2]) -> Result<Option<u32>, TetError> {
         let meets = |obstacle| TetError::EdgeMeets { edge: ends, obstacle };
         let first = match first_crossing(s, at, ends) {
             Crossing::Exists => return Ok(None),
@@ -118,7 +127,6 @@ impl<'a> Segments<'a> {
         }
         let keep = |a, b| self.of_piece(a, b).is_some();
         let mut dig = Dig::new(s, self.points, &keep, at, ends);
-        dig.far = far;
         let (cavity, weight) = match dig.dig(first) {
             Some(Dug::Joins(cavity)) => {
                 let walls = s.walls(&cavity);

@@ -79,6 +79,15 @@ impl Space {
         fits.then_some(v)
     }
 
+    /// Puts a vertex into the tetrahedron that has a place inside; nothing where none has.
+    pub(super) fn insert_point(&mut self, p: Point3) -> Option<u32> {
+        let inside = |t: u32| (4 * t..4 * t + 4).all(|half| self.orient_to(self.c.face(half), &p) < 0);
+        let t = self.c.real_tets().find(|&t| inside(t))?;
+        let v = self.add_point(p);
+        let new: Vec<[u32; 4]> = self.walls(&[t]).iter().map(|&[a, b, c]| [a, c, b, v]).collect();
+        self.c.replace(&[t], &new, &mut self.created).then_some(v)
+    }
+
     /// Moves an implicit vertex, whose star has the walls, to where it sees them all; nothing happens when it does not.
     pub(super) fn move_to(&mut self, v: u32, walls: &[[u32; 3]], on: OnTriangle) -> bool {
         let at = on.rounded();

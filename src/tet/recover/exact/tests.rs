@@ -218,6 +218,24 @@ fn facets_that_edges_pierce_are_recovered() {
 }
 
 #[test]
+fn segments_and_facets_that_dangle_are_recovered() {
+    let mut points = scatter(300);
+    let mut place = |x: f64, y: f64, z: f64| {
+        points.push(Point3::new(x, y, z));
+        points.len() as u32 - 1
+    };
+    let (mut segments, mut triangles) = (Vec::new(), Vec::new());
+    for k in 0..5 {
+        let z = 0.1 + 0.15 * f64::from(k);
+        segments.push([place(-0.2, 0.51, z), place(1.2, 0.503, z + 0.01)]);
+        triangles.push([(-0.1, -0.1), (1.1, -0.1), (0.4, 0.46)].map(|(x, y)| place(x, y, z + 0.003)));
+    }
+    let surface = TriMesh { points, triangles };
+    let summary = fills(&surface, &segments, InputKind::Plc).unwrap();
+    assert!(summary.on_segments > 20 && summary.on_facets > 20, "{summary:?}");
+}
+
+#[test]
 fn parts_that_meet_are_named() {
     let mut points = scatter(60);
     let n = points.len() as u32;
