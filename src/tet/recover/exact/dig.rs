@@ -139,8 +139,7 @@ impl<'a> Dig<'a> {
             } else if so_far >= WIDE {
                 break;
             }
-            let further =
-                if view.width() < WIDE { self.widen(&mut tets, &view) } else { self.lengthen(&mut tets) };
+            let further = if view.width() < WIDE { self.widen(&mut tets, &view) } else { self.lengthen(&mut tets) };
             if !further {
                 break;
             }

@@ -66,7 +66,9 @@ pub(in crate::tet) fn recover_exact(
     let mut attempt = 0;
     loop {
         match recover_parts(c.clone(), surface, edges, missing, attempt, watch) {
-            Err(TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling, .. }) if attempt + 1 < ATTEMPTS => attempt += 1,
+            Err(TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling, .. }) if attempt + 1 < ATTEMPTS => {
+                attempt += 1
+            }
             result => return result,
         }
     }
