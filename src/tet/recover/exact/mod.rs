@@ -67,7 +67,7 @@ pub(in crate::tet) fn recover_exact(
     loop {
         match recover_parts(c.clone(), surface, edges, missing, attempt, watch) {
             Err(TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling, .. }) if attempt + 1 < ATTEMPTS => {
-                attempt += 1
+                attempt += 1;
             }
             result => return result,
         }
