@@ -33,6 +33,9 @@ use space::Space;
 /// Times that it is tried in another order, where a vertex has found no room.
 const ATTEMPTS: u64 = 4;
 
+/// Edges of a part that is worth a copy of all, to be tried again alone.
+const LARGE: usize = 100;
+
 /// What the surface has and the complex lacks.
 #[derive(Clone, Copy)]
 pub(in crate::tet) struct Missing<'a> {
@@ -82,13 +85,25 @@ fn recover_parts(
     salt: u64,
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
-    let triangles = &surface.triangles;
     let segments = Segments::new(edges, surface.points.len());
-    let mut push = Push::new(Space::new(c), segments, triangles.clone());
+    let mut push = Push::new(Space::new(c), segments, surface.triangles.clone());
     let mut summary = ExactSummary::default();
-    for part in parts(triangles, missing) {
+    for part in parts(&surface.triangles, missing) {
         watch.ask()?;
-        recover_part(&mut push, &part, salt, &mut summary).map_err(|error| about_input(error, surface, &part))?;
+        // Large parts are tried again alone: they take most of the time.
+        let saved = (part.edges.len() >= LARGE).then(|| (push.clone(), summary));
+        let mut again = 0;
+        while let Err(error) = recover_part(&mut push, &part, salt + again, &mut summary) {
+            again += 1;
+            let Some(saved) = saved.as_ref().filter(|_| again < ATTEMPTS) else {
+                return Err(about_input(error, surface, &part));
+            };
+            if !matches!(error, TetError::Stuck { reason: Stuck::Precision, .. } | TetError::EdgeMeets { .. }) {
+                return Err(about_input(error, surface, &part));
+            }
+            watch.ask()?;
+            (push, summary) = saved.clone();
+        }
     }
     Ok((push.s.c, summary))
 }

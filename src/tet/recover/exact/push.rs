@@ -39,6 +39,7 @@ enum Apex {
     Point(Point3),
 }
 
+#[derive(Clone)]
 pub(super) struct Push<'a> {
     pub s: Space,
     pub segments: Segments<'a>,
@@ -56,7 +57,7 @@ pub(super) struct Push<'a> {
 }
 
 /// When the stars of vertices changed, and when they were looked at last without success.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Changes {
     now: u32,
     changed: FxHashMap<u32, u32>,

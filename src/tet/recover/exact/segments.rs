@@ -19,6 +19,7 @@ pub(super) struct Segment {
 }
 
 /// The edges of the input, and the chains of those that were missing.
+#[derive(Clone)]
 pub(super) struct Segments<'a> {
     input: &'a SurfaceEdges,
     /// Points of the input.

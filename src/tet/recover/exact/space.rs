@@ -8,6 +8,7 @@ use crate::tet::star::{EdgeRing, Star};
 use std::cmp::Ordering;
 
 /// A complex whose points are rounded where they are implicit.
+#[derive(Clone)]
 pub(super) struct Space {
     pub c: Complex,
     /// What the implicit points are.
