@@ -29,6 +29,10 @@ pub(super) fn add_helpers(push: &mut Push, part: &Part, salt: u64) -> Helpers {
     }
     let mut helpers = Helpers::default();
     for &[a, b] in &part.edges {
+        // What was missing may have come with something else.
+        if push.s.has_edge(a, b) {
+            continue;
+        }
         let at = facets.get(&sorted(a, b)).map_or(&[][..], |f| f);
         let corner = at.first().and_then(|&t| push.triangles[t as usize].into_iter().find(|v| ![a, b].contains(v)));
         for k in at.len()..2 {

@@ -37,6 +37,10 @@ impl Space {
         (ring.collect(&self.c, t, a, b, usize::MAX) && !ring.touches_ghost()).then_some(ring)
     }
 
+    pub(super) fn has_edge(&mut self, a: u32, b: u32) -> bool {
+        self.star.find_edge(&self.c, a, b).is_some()
+    }
+
     /// The half-face with three vertices.
     pub(super) fn find_face(&mut self, face: [u32; 3]) -> Option<u32> {
         self.star.find_face(&self.c, face)
