@@ -101,14 +101,8 @@ impl View {
 
 /// A weight on a segment from which all walls of a cavity are seen.
 pub(super) fn middle(s: &Space, ends: [u32; 2], cavity: &[u32]) -> Option<u128> {
-    let view = View::of(walls(s, cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
+    let view = View::of(s.outer(cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
     (view.width() > 0).then(|| view.middle())
-}
-
-/// The half-faces of a cavity's tetrahedra that have their mate outside.
-fn walls(s: &Space, tets: &[u32]) -> Vec<u32> {
-    let halves = tets.iter().flat_map(|&t| 4 * t..4 * t + 4);
-    halves.filter(|&half| !tets.contains(&(s.c.mate(half) >> 2))).collect()
 }
 
 impl<'a> Dig<'a> {
@@ -126,7 +120,7 @@ impl<'a> Dig<'a> {
         let mut tets = first;
         let mut best: Option<(Vec<u32>, View)> = None;
         for step in 0..STEPS {
-            let walls = walls(self.s, &tets);
+            let walls = self.s.outer(&tets);
             let view = self.view(&walls);
             let so_far = best.as_ref().map_or(0, |b| b.1.width());
             let joins = self.joins(&walls);
@@ -172,7 +166,7 @@ impl<'a> Dig<'a> {
             }
             let next = self.s.c.mate(half) >> 2;
             tets.push(next);
-            let walls = walls(self.s, tets);
+            let walls = self.s.outer(tets);
             let width = self.view(&walls).width();
             tets.pop();
             if best.is_none_or(|(w, _)| width > w) {
@@ -186,7 +180,7 @@ impl<'a> Dig<'a> {
     /// Adds what the segment crosses next behind a cavity.
     fn lengthen(&self, tets: &mut Vec<u32>) -> bool {
         let (s, [p, q]) = (self.s, self.ends);
-        for half in walls(self.s, tets) {
+        for half in self.s.outer(tets) {
             let f = s.c.face(half);
             if s.orient([f[0], f[1], f[2], q]) <= 0 {
                 continue;

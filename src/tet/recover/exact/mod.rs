@@ -36,6 +36,9 @@ const ATTEMPTS: u64 = 4;
 /// Edges of a part that is worth a copy of all, to be tried again alone.
 const LARGE: usize = 100;
 
+/// Implicit vertices allowed: for each missing edge, and in any case.
+const VERTICES: (usize, usize) = (256, 1_000_000);
+
 /// What the surface has and the complex lacks.
 #[derive(Clone, Copy)]
 pub(in crate::tet) struct Missing<'a> {
@@ -58,7 +61,8 @@ pub(in crate::tet) struct ExactSummary {
 /// meet itself; its triangles may share whole edges and vertices in any way, well inside the complex.
 ///
 /// # Errors
-/// [`TetError::EdgeMeets`]; [`TetError::Stuck`] where no floating-point position exists off the surface.
+/// [`TetError::EdgeMeets`]; [`TetError::Stuck`] where no floating-point position was found off the surface, or too many
+/// vertices were needed; [`TetError::Cancelled`].
 pub(in crate::tet) fn recover_exact(
     c: &Complex,
     surface: &TriMesh,
@@ -66,14 +70,25 @@ pub(in crate::tet) fn recover_exact(
     missing: Missing,
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
-    let mut attempt = 0;
+    let mut salt = 0;
     loop {
-        match recover_parts(c.clone(), surface, edges, missing, attempt, watch) {
-            Err(TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling, .. }) if attempt + 1 < ATTEMPTS => {
-                attempt += 1;
-            }
-            result => return result,
+        match recover_parts(c.clone(), surface, edges, missing, salt, watch) {
+            Ok(recovered) => return Ok(recovered),
+            Err(Failed { error, again }) if !again || salt + 1 == ATTEMPTS => return Err(error),
+            Err(_) => salt += 1,
         }
+    }
+}
+
+/// Why parts could not be recovered, and whether all may be tried again.
+struct Failed {
+    error: TetError,
+    again: bool,
+}
+
+impl From<TetError> for Failed {
+    fn from(error: TetError) -> Self {
+        Self { error, again: false }
     }
 }
 
@@ -84,24 +99,22 @@ fn recover_parts(
     missing: Missing,
     salt: u64,
     watch: &Watch,
-) -> Result<(Complex, ExactSummary), TetError> {
+) -> Result<(Complex, ExactSummary), Failed> {
+    let budget = VERTICES.0 * missing.edges.len() + VERTICES.1;
     let segments = Segments::new(edges, surface.points.len());
     let mut push = Push::new(Space::new(c), segments, surface.triangles.clone());
     let mut summary = ExactSummary::default();
     for part in parts(&surface.triangles, missing) {
-        watch.ask()?;
-        // Large parts are tried again alone: they take most of the time.
+        // Large parts take most of the time, and are tried again alone; a copy for each of the others would take longer.
         let saved = (part.edges.len() >= LARGE).then(|| (push.clone(), summary));
-        let mut again = 0;
-        while let Err(error) = recover_part(&mut push, &part, salt + again, &mut summary) {
-            again += 1;
-            let Some(saved) = saved.as_ref().filter(|_| again < ATTEMPTS) else {
-                return Err(about_input(error, surface, &part));
+        let mut tried = 0;
+        while let Err(error) = recover_part(&mut push, &part, salt + tried, &mut summary, budget, watch) {
+            tried += 1;
+            let error = about_input(error, surface, &part);
+            let luck = matches!(error, TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling, .. });
+            let Some(saved) = saved.as_ref().filter(|_| luck && tried < ATTEMPTS) else {
+                return Err(Failed { error, again: luck && saved.is_none() });
             };
-            if !matches!(error, TetError::Stuck { reason: Stuck::Precision, .. } | TetError::EdgeMeets { .. }) {
-                return Err(about_input(error, surface, &part));
-            }
-            watch.ask()?;
             (push, summary) = saved.clone();
         }
     }
@@ -125,23 +138,38 @@ fn about_input(error: TetError, surface: &TriMesh, part: &Part) -> TetError {
     dangling.map_or(error, |&edge| TetError::Stuck { part: Obstacle::Edge(edge), reason: Stuck::Dangling })
 }
 
-fn recover_part(push: &mut Push, part: &Part, salt: u64, summary: &mut ExactSummary) -> Result<(), TetError> {
+fn recover_part(
+    push: &mut Push,
+    part: &Part,
+    salt: u64,
+    summary: &mut ExactSummary,
+    budget: usize,
+    watch: &Watch,
+) -> Result<(), TetError> {
+    let spend = |push: &Push, on: Obstacle| {
+        watch.ask()?;
+        let over = push.s.implicit_vertices() > budget;
+        if over { Err(TetError::Stuck { part: on, reason: Stuck::Budget }) } else { Ok(()) }
+    };
     let helpers = add_helpers(push, part, salt);
     // At random: fans of long thin triangles come in halves of halves then, where one after the other each next chain
     // would have to fit between the one before and what lies beyond.
     let mut edges = part.edges.clone();
     edges.sort_by_key(|&[a, b]| (hash(salt ^ (u64::from(a) << 32 | u64::from(b))), a, b));
     for &ends in &edges {
+        spend(push, Obstacle::Edge(ends))?;
         let id = push.segments.cut(&mut push.s, ends)?;
         summary.on_segments += push.add_segment(id);
     }
     let beside = push.segments.list.len() as u32;
     for &ends in &helpers.edges {
+        spend(push, Obstacle::Edge(ends))?;
         push.segments.cut(&mut push.s, ends)?;
     }
     #[cfg(test)]
     push.s.check();
     for &t in &part.triangles {
+        spend(push, Obstacle::Triangle(push.triangles[t as usize]))?;
         let cover = facets::cover(&mut push.s, &push.segments, push.triangles[t as usize])?;
         summary.on_facets += push.add_facet(t, cover);
     }

@@ -61,6 +61,11 @@ impl Space {
         self.place[v as usize] != NONE
     }
 
+    /// Number of implicit vertices that were made.
+    pub(super) fn implicit_vertices(&self) -> usize {
+        self.on.len()
+    }
+
     /// Adds a vertex without a tetrahedron.
     pub(super) fn add_point(&mut self, p: Point3) -> u32 {
         self.place.push(NONE);
@@ -117,11 +122,15 @@ impl Space {
         new.iter().all(|&tet| self.orient(tet) > 0) && self.c.replace(cavity, &new, &mut self.created)
     }
 
+    /// The half-faces of some tetrahedra that have their mate outside.
+    pub(super) fn outer(&self, cavity: &[u32]) -> Vec<u32> {
+        let halves = cavity.iter().flat_map(|&t| 4 * t..4 * t + 4);
+        halves.filter(|&half| !cavity.contains(&(self.c.mate(half) >> 2))).collect()
+    }
+
     /// The faces around some tetrahedra, counter-clockwise seen from outside.
     pub(super) fn walls(&self, cavity: &[u32]) -> Vec<[u32; 3]> {
-        let halves = cavity.iter().flat_map(|&t| 4 * t..4 * t + 4);
-        let outer = halves.filter(|&half| !cavity.contains(&(self.c.mate(half) >> 2)));
-        outer.map(|half| self.c.face(half)).collect()
+        self.outer(cavity).into_iter().map(|half| self.c.face(half)).collect()
     }
 
     /// The sign of the orientation of four vertices. Exact.

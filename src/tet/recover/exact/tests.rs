@@ -54,21 +54,14 @@ fn twisted_prism(n: u32, turn: f64, height: f64) -> TriMesh {
     s
 }
 
-/// A thin box with `n × n` squares above and below, the diagonals turned by a coin.
-fn sheet(n: u32, thickness: f64, origin: f64, salt: u64) -> TriMesh {
-    let mut s = TriMesh::default();
-    let at = |i: u32, j: u32, top: u32| (i * (n + 1) + j) * 2 + top;
-    for i in 0..=n {
-        for j in 0..=n {
-            for z in [0.0, thickness] {
-                s.points.push(Point3::new(f64::from(i) + origin, f64::from(j) - origin, z));
-            }
-        }
-    }
-    let mut square = |a: u32, b: u32, c: u32, d: u32| {
-        let coin = crate::tet::delaunay::hash(u64::from(a) ^ (u64::from(c) << 20) ^ salt) & 1 == 0;
-        s.triangles.extend(if coin { [[a, b, c], [a, c, d]] } else { [[b, c, d], [b, d, a]] });
-    };
+/// The point of a box over a grid of `n × n` squares, below or above.
+fn corner(n: u32, i: u32, j: u32, top: u32) -> u32 {
+    (i * (n + 1) + j) * 2 + top
+}
+
+/// All squares of such a box, counter-clockwise seen from outside.
+fn box_of_squares(n: u32, mut square: impl FnMut(u32, u32, u32, u32)) {
+    let at = |i, j, top| corner(n, i, j, top);
     for i in 0..n {
         for j in 0..n {
             square(at(i, j, 1), at(i + 1, j, 1), at(i + 1, j + 1, 1), at(i, j + 1, 1));
@@ -79,6 +72,23 @@ fn sheet(n: u32, thickness: f64, origin: f64, salt: u64) -> TriMesh {
         square(at(0, i + 1, 0), at(0, i, 0), at(0, i, 1), at(0, i + 1, 1));
         square(at(n, i, 0), at(n, i + 1, 0), at(n, i + 1, 1), at(n, i, 1));
     }
+}
+
+/// A thin box with `n × n` squares above and below, the diagonals turned by a coin.
+fn sheet(n: u32, thickness: f64, origin: f64, salt: u64) -> TriMesh {
+    let mut s = TriMesh::default();
+    for i in 0..=n {
+        for j in 0..=n {
+            for z in [0.0, thickness] {
+                s.points.push(Point3::new(f64::from(i) + origin, f64::from(j) - origin, z));
+            }
+        }
+    }
+    let square = |a: u32, b: u32, c: u32, d: u32| {
+        let coin = crate::tet::delaunay::hash(u64::from(a) ^ (u64::from(c) << 20) ^ salt) & 1 == 0;
+        s.triangles.extend(if coin { [[a, b, c], [a, c, d]] } else { [[b, c, d], [b, d, a]] });
+    };
+    box_of_squares(n, square);
     s
 }
 
@@ -89,7 +99,6 @@ fn chazelle(notches: u32, gap: f64) -> TriMesh {
     let n = 2 * notches;
     let mut s = TriMesh::default();
     let half = f64::from(n) / 2.0;
-    let at = |i: u32, j: u32, top: u32| (i * (n + 1) + j) * 2 + top;
     for i in 0..=n {
         for j in 0..=n {
             let (x, y) = (f64::from(i) - half, f64::from(j) - half);
@@ -99,17 +108,8 @@ fn chazelle(notches: u32, gap: f64) -> TriMesh {
             s.points.push(Point3::new(x, y, high));
         }
     }
-    let mut square = |a: u32, b: u32, c: u32, d: u32| s.triangles.extend([[a, b, c], [a, c, d]]);
-    for i in 0..n {
-        for j in 0..n {
-            square(at(i, j, 1), at(i + 1, j, 1), at(i + 1, j + 1, 1), at(i, j + 1, 1));
-            square(at(i, j, 0), at(i, j + 1, 0), at(i + 1, j + 1, 0), at(i + 1, j, 0));
-        }
-        square(at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1));
-        square(at(i + 1, n, 0), at(i, n, 0), at(i, n, 1), at(i + 1, n, 1));
-        square(at(0, i + 1, 0), at(0, i, 0), at(0, i, 1), at(0, i + 1, 1));
-        square(at(n, i, 0), at(n, i + 1, 0), at(n, i + 1, 1), at(n, i, 1));
-    }
+    let square = |a: u32, b: u32, c: u32, d: u32| s.triangles.extend([[a, b, c], [a, c, d]]);
+    box_of_squares(n, square);
     s
 }
 
