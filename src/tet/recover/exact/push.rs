@@ -196,7 +196,7 @@ impl<'a> Push<'a> {
         let faces = self.s.walls(&star);
         let moved = self.s.move_to(v, &faces, on);
         if moved {
-            self.changes.change(faces.into_iter().flatten());
+            self.changes.change(faces.into_iter().flatten().chain([v]));
         }
         moved
     }
