@@ -5,8 +5,8 @@ use crate::geometry::Point3;
 use crate::tet::complex::{Complex, face_key};
 use rustc_hash::FxHashMap;
 
-/// Radius ratio of triangles below which they are needles: that with angles of 12, 84 and 84 degrees has this.
-const NEEDLE: f64 = 0.375;
+/// Needles are triangles with an angle whose sine is below this: 12 degrees.
+const SHARP: f64 = 0.2079;
 
 /// Radius ratios that the triangles which stay allow, where that is below 1.
 #[derive(Clone, Debug, Default)]
@@ -39,14 +39,33 @@ impl Allowance {
     }
 
     /// Whether no triangle is a needle.
+    #[inline]
     pub fn is_empty(&self) -> bool {
-        self.of_face.is_empty()
+        self.marked.is_empty()
+    }
+
+    /// Whether a vertex has a needle.
+    #[inline]
+    pub fn has_needle(&self, v: u32) -> bool {
+        self.marked.get(v as usize).copied().unwrap_or(false)
+    }
+
+    /// The radius ratio that a tetrahedron can be wished to have of whose faces this alone may stay.
+    #[inline]
+    pub fn of_face(&self, f: [u32; 3]) -> f64 {
+        if f.iter().all(|&v| self.has_needle(v)) { self.of_face.get(&face_key(f)).copied().unwrap_or(1.0) } else { 1.0 }
+    }
+
+    /// The radius ratio of a tetrahedron as a part of what is allowed.
+    #[inline]
+    pub fn relative(&self, v: &[u32; 4], ratio: f64) -> f64 {
+        if self.is_empty() { ratio } else { ratio / self.of_tet(v) }
     }
 
     /// The radius ratio that a tetrahedron with these vertices can be wished to have.
     #[inline]
     pub fn of_tet(&self, v: &[u32; 4]) -> f64 {
-        let marks = v.map(|w| self.marked.get(w as usize).copied().unwrap_or(false));
+        let marks = v.map(|w| self.has_needle(w));
         if marks.iter().filter(|&&m| m).count() < 3 {
             return 1.0;
         }
@@ -65,7 +84,9 @@ fn allowed_on([a, b, c]: [&Point3; 3]) -> f64 {
     // 2 r / R with r = 2 A / (x + y + z), R = x y z / (4 A).
     let area2 = u.cross(&v).norm_squared();
     let ratio = 4.0 * area2 / ((x + y + z) * (x * y * z));
-    if ratio < NEEDLE { ratio } else { 1.0 }
+    // The smallest angle lies opposite the shortest edge.
+    let sine = area2.sqrt() * x.min(y).min(z) / (x * y * z);
+    if sine < SHARP { ratio } else { 1.0 }
 }
 
 #[cfg(test)]

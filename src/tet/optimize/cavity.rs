@@ -2,7 +2,7 @@
 //! an edge that takes an inner vertex away.
 
 use super::{Effort, Improver};
-use crate::geometry::Point3;
+use crate::geometry::{Point3, Vec3};
 use crate::mesh::quality::{TET_EDGES, radius_ratio};
 use crate::tet::star::EdgeRing;
 
@@ -147,13 +147,18 @@ impl Improver {
         let mut done = false;
         for [i, j] in TET_EDGES {
             let (a, b) = (v[i], v[j]);
-            if !k.ring.collect(&self.c, t, a, b, MAX_RING) || k.ring.touches_ghost() {
+            if !k.ring.collect(&self.c, t, a, b, MAX_RING) {
+                continue;
+            }
+            // Under an edge of the boundary, where needles can be all that is left at it.
+            let under = k.ring.touches_ghost();
+            if under && self.allowance.is_empty() {
                 continue;
             }
             k.tets.clear();
-            k.tets.extend_from_slice(&k.ring.tets);
-            let middle = nalgebra::center(&self.c.points[a as usize], &self.c.points[b as usize]);
-            if self.insert_in_cavity(&mut k, middle, t) {
+            k.tets.extend(k.ring.tets.iter().filter(|&&t| !self.c.is_ghost(t)));
+            let start = if under { self.middle(&k.tets) } else { self.center([a, b]) };
+            if self.insert_in_cavity(&mut k, start, t) {
                 done = true;
                 break;
             }
@@ -161,11 +166,20 @@ impl Improver {
         if !done {
             k.tets.clear();
             k.tets.push(t);
-            let sum = v.iter().map(|&w| self.c.points[w as usize].coords).sum::<crate::geometry::Vec3>();
-            done = self.insert_in_cavity(&mut k, Point3::from(sum / 4.0), t);
+            done = self.insert_in_cavity(&mut k, self.center(v), t);
         }
         self.cavity = k;
         done
+    }
+
+    fn center<const N: usize>(&self, v: [u32; N]) -> Point3 {
+        Point3::from(v.iter().map(|&w| self.c.points[w as usize].coords).sum::<Vec3>() / N as f64)
+    }
+
+    /// The mean of the centres of tetrahedra.
+    fn middle(&self, tets: &[u32]) -> Point3 {
+        let sum: Vec3 = tets.iter().map(|&t| self.center(self.c.verts(t)).coords).sum();
+        Point3::from(sum / tets.len().max(1) as f64)
     }
 
     /// Grows the cavity `k.tets` around a new vertex near `p` as long as that helps, places the vertex, and makes the
@@ -218,7 +232,7 @@ impl Improver {
     fn grow(&self, k: &mut Cavity, p: &Point3, worst: f64) -> bool {
         let ratio = |f: &[u32; 3]| {
             let [a, b, c] = f.map(|w| &self.c.points[w as usize]);
-            radius_ratio(p, a, b, c)
+            radius_ratio(p, a, b, c) / self.allowance.of_face(*f)
         };
         let Some(at) = (0..k.faces.len()).min_by(|&i, &j| ratio(&k.faces[i]).total_cmp(&ratio(&k.faces[j]))) else {
             return false;

@@ -63,7 +63,8 @@ impl Improver {
 
     /// Plans a removal; returns the worst new radius ratio if it is above `floor`.
     fn plan(&mut self, t: u32, candidate: Candidate, floor: f64) -> Option<f64> {
-        let above = |c: &_, v: &_| score(c, v).filter(|&q| q > floor);
+        let allowance = &self.allowance;
+        let above = |c: &_, v: &_| score(c, v).map(|q| allowance.relative(v, q)).filter(|&q| q > floor);
         match candidate {
             Candidate::Face(half) => self.flipper.plan_face(&self.c, half, above).ok(),
             Candidate::Edge(a, b) => self.flipper.plan_edge(&self.c, t, a, b, MAX_RING, above).ok(),

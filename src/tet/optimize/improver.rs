@@ -212,7 +212,7 @@ impl Improver {
 
     /// Strain of a tetrahedron of this radius ratio, beside what its triangles allow.
     fn strain(&self, v: &[u32; 4], ratio: f64) -> f64 {
-        strain((ratio / self.allowance.of_tet(v)).min(1.0))
+        strain(self.allowance.relative(v, ratio).min(1.0))
     }
 
     /// Sum of the strain of tetrahedra.
@@ -226,13 +226,20 @@ impl Improver {
             let [a, b, c, d] = v.map(|i| &self.c.points[i as usize]);
             radius_ratio(a, b, c, d)
         };
-        self.options.effort != Effort::Full
-            || new.iter().map(|v| self.strain(v, ratio(v))).sum::<f64>() < self.strain_of(old) - EASED
+        if self.options.effort != Effort::Full {
+            return true;
+        }
+        let strain_with = |sum: f64, v: &[u32; 4]| match ratio(v) {
+            q if q < self.report.worst_before => f64::INFINITY,
+            q => sum + self.strain(v, q),
+        };
+        new.iter().fold(0.0, strain_with) < self.strain_of(old) - EASED
     }
 
-    /// Smallest radius ratio among tetrahedra.
+    /// Smallest radius ratio among tetrahedra, as a part of what is allowed.
     pub(super) fn worst_of(&self, tets: &[u32]) -> f64 {
-        tets.iter().map(|&t| self.quality[t as usize]).fold(f64::INFINITY, f64::min)
+        let ratio = |&t: &u32| self.allowance.relative(&self.c.verts(t), self.quality[t as usize]);
+        tets.iter().map(ratio).fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -34,6 +34,10 @@ pub struct StarEnergy {
     cells: Vec<Cell>,
     /// The faces opposite the vertex, seen from it in such order that (vertex, f₀, f₁, f₂) is positive.
     faces: Vec<[Point3; 3]>,
+    /// The radius ratio that each of these tetrahedra can be wished to have; empty where that is 1 for all.
+    allowed: Vec<f64>,
+    /// Where there is such, what falls below this counts as turned over.
+    least: f64,
     tets: Vec<u32>,
     /// What the direct search looks for.
     aim: Aim,
@@ -90,6 +94,7 @@ impl StarEnergy {
         let origin = c.points[v as usize];
         self.cells.clear();
         self.faces.clear();
+        self.allowed.clear();
         self.tets.clear();
         self.aim = Aim::Worst;
         for &t in tets {
@@ -161,10 +166,22 @@ impl StarEnergy {
         }
     }
 
+    /// Radius ratio of the tetrahedron on face `i` with the vertex at `p`, as a part of what is allowed.
+    #[inline]
+    fn ratio(&self, p: &Point3, i: usize) -> f64 {
+        let [a, b, c] = &self.faces[i];
+        let ratio = radius_ratio(p, a, b, c);
+        match self.allowed.get(i) {
+            None => ratio,
+            Some(_) if ratio < self.least => ratio - self.least,
+            Some(allowed) => (ratio / allowed).min(1.0),
+        }
+    }
+
     fn worst(&self, p: &Point3, floor: f64) -> f64 {
         let mut worst = f64::INFINITY;
-        for [a, b, c] in &self.faces {
-            worst = worst.min(radius_ratio(p, a, b, c));
+        for i in 0..self.faces.len() {
+            worst = worst.min(self.ratio(p, i));
             if worst <= floor {
                 break;
             }
@@ -174,8 +191,8 @@ impl StarEnergy {
 
     fn ease(&self, p: &Point3, least: f64, floor: f64) -> f64 {
         let mut ease = 0.0;
-        for [a, b, c] in &self.faces {
-            let q = radius_ratio(p, a, b, c);
+        for i in 0..self.faces.len() {
+            let q = self.ratio(p, i);
             if q < least {
                 return f64::NEG_INFINITY;
             }
@@ -320,6 +337,7 @@ impl Improver {
     fn seek(&mut self, v: u32, ease: bool) -> bool {
         let tets = self.star.around(&self.c, v);
         self.energy.gather(&self.c, v, tets);
+        self.allow_in_star();
         let start = self.c.points[v as usize];
         let mut before = self.energy.worst(&start, f64::NEG_INFINITY);
         if ease {
@@ -342,12 +360,26 @@ impl Improver {
         false
     }
 
+    /// Tells the search what the tetrahedra of the star can be wished to have.
+    fn allow_in_star(&mut self) {
+        if !self.allowance.is_empty() {
+            self.energy.least = self.report.worst_before;
+            let allowed = self.energy.tets.iter().map(|&t| self.allowance.of_tet(&self.c.verts(t)));
+            self.energy.allowed.extend(allowed);
+        }
+    }
+
     /// Where a new vertex would do best inside a star-shaped room with these faces, starting from `p`, and the worst
     /// radius ratio there.
     pub(super) fn best_in_room(&mut self, p: Point3, faces: &[[u32; 3]]) -> (Point3, f64) {
         self.energy.faces.clear();
         self.energy.aim = Aim::Worst;
         self.energy.faces.extend(faces.iter().map(|f| f.map(|w| self.c.points[w as usize])));
+        self.energy.allowed.clear();
+        if !self.allowance.is_empty() {
+            self.energy.least = self.report.worst_before;
+            self.energy.allowed.extend(faces.iter().map(|&f| self.allowance.of_face(f)));
+        }
         let before = self.energy.worst(&p, f64::NEG_INFINITY);
         search(&self.energy, p, before)
     }
@@ -408,8 +440,8 @@ fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
 /// Unit direction in which the worst tetrahedron of the star grows its height: away from its face.
 fn steepest(star: &StarEnergy, p: &Point3) -> Option<Vec3> {
     let mut worst = (f64::INFINITY, 0);
-    for (i, [a, b, c]) in star.faces.iter().enumerate() {
-        let q = radius_ratio(p, a, b, c);
+    for i in 0..star.faces.len() {
+        let q = star.ratio(p, i);
         if q < worst.0 {
             worst = (q, i);
         }

@@ -125,6 +125,59 @@ fn a_cavity_is_reconnected() {
     assert!(after.min > 2.0 * before, "{before} {after:?}");
 }
 
+/// A flat lid whose middle is the short edge 0-1 between two needles, (0, 1, 2) and (0, 1, 5); under the edge stands
+/// tetrahedron 1, which has no needle.
+fn short_edge_under_a_lid() -> TetMesh {
+    let mut points = vec![[0.0, -0.005, 0.0], [0.0, 0.005, 0.0]];
+    for i in 0..6 {
+        let (sin, cos) = (std::f64::consts::FRAC_PI_3 * f64::from(i)).sin_cos();
+        points.push([cos, sin, 0.0]);
+    }
+    points.extend([[0.5, 0.0, -0.8], [-0.5, 0.0, -0.8]]);
+    let points: Vec<_> = points.into_iter().map(crate::geometry::Point3::from).collect();
+    let mut tets = vec![[0, 1, 2, 8], [0, 1, 8, 9], [0, 1, 9, 5]];
+    tets.extend([[1, 2, 3, 8], [1, 3, 9, 8], [1, 3, 4, 9], [1, 4, 5, 9]]);
+    tets.extend([[0, 2, 7, 8], [0, 7, 9, 8], [0, 7, 6, 9], [0, 6, 5, 9]]);
+    for t in &mut tets {
+        let [p, q, r, s] = t.map(|v| &points[v as usize]);
+        if crate::geometry::predicates::orient3d(p, q, r, s) < 0.0 {
+            t.swap(0, 1);
+        }
+    }
+    TetMesh { points, tets }
+}
+
+/// How many tetrahedra have edge 0-1, and the smallest dihedral angle of those that do not stand on its needles.
+fn at_short_edge(mesh: &TetMesh) -> (usize, f64) {
+    let has = |t: &[u32; 4], f: &[u32]| f.iter().all(|v| t.contains(v));
+    let others = mesh.tets.iter().filter(|&t| !has(t, &[0, 1, 2]) && !has(t, &[0, 1, 5]));
+    let angle = |t: &[u32; 4]| crate::mesh::quality::dihedral_range(t.map(|v| &mesh.points[v as usize])).0.to_degrees();
+    (mesh.tets.iter().filter(|t| has(t, &[0, 1])).count(), others.map(angle).fold(180.0, f64::min))
+}
+
+#[test]
+fn only_needles_keep_tetrahedra_at_a_short_edge_of_the_surface() {
+    let mesh = short_edge_under_a_lid();
+    let (count, least) = at_short_edge(&mesh);
+    assert!(count == 3 && least < 1.0, "{count} {least}");
+    let c = Complex::from_mesh(mesh.points.clone(), &mesh.tets).unwrap();
+    let mut improver = Improver::new(c, &OptimizeOptions { fixed_points: 10, ..OptimizeOptions::full() });
+    assert!(!improver.insert_near(1), "those on needles are as bad");
+    improver.allowance = allowance::Allowance::of(&improver.c);
+    assert!(improver.insert_near(1));
+    let (c, _) = improver.finish();
+    c.sanity_check().unwrap();
+    let after = c.into_mesh();
+    let (count, least) = at_short_edge(&after);
+    assert!(count == 2 && least > 10.0, "{count} {least}");
+    assert_eq!(sorted_boundary(&mesh), sorted_boundary(&after));
+    // The thorough improvement comes to the same by itself, and those on the needles are not given up.
+    let (whole, _) = improve_with(&mesh, 10, Effort::Full);
+    let (count, least) = at_short_edge(&whole);
+    assert!(count == 2 && least > 10.0, "{count} {least}");
+    assert!(TetQuality::of(&whole).min > 0.5 * TetQuality::of(&mesh).min);
+}
+
 #[test]
 fn the_same_mesh_gives_the_same_mesh() {
     let (mesh, fixed) = shaken(cube_lattice(4), 0.2, 11);

@@ -54,10 +54,10 @@ impl Improver {
         self.allowance = allowance;
         for _ in 0..LAST_ROUNDS {
             let mut changes = 0;
-            let list = self.worst_first(VERY_BAD);
+            let list = self.worst_first(self.options.stubborn_below);
             for &(q, t) in &list {
-                let apart = self.is_current((q, t)) && self.allowance.of_tet(&self.c.verts(t)) >= 1.0;
-                changes += usize::from(apart && self.spend() && self.treat_with_all(t));
+                changes +=
+                    usize::from(self.is_current((q, t)) && self.is_spared(t) && self.spend() && self.treat_with_all(t));
             }
             self.keep_list(list);
             if changes == 0 {
@@ -65,6 +65,13 @@ impl Improver {
             }
         }
         self.allowance = Allowance::default();
+    }
+
+    /// Whether a tetrahedron is very bad, or at least bad beside a needle, but does not stand on one.
+    fn is_spared(&self, t: u32) -> bool {
+        let v = self.c.verts(t);
+        (self.quality[t as usize] < VERY_BAD || v.iter().any(|&v| self.allowance.has_needle(v)))
+            && self.allowance.of_tet(&v) >= 1.0
     }
 
     /// Whether something around a tetrahedron has changed since it was tried in vain.
