@@ -11,9 +11,9 @@ use crate::geometry::{Point3, Section, Vec3};
 use crate::mesh::TriMesh;
 use crate::partition::{ClusterEnd, EndKind};
 use crate::skeleton::NodeId;
-use crate::surface::Field;
 use crate::surface::halfedge::HalfEdges;
 use crate::surface::relax::{Hold, Level, Relaxation};
+use crate::surface::{Field, SizedWall, SurfaceParams};
 use disc::{Disc, disc};
 use std::f64::consts::TAU;
 use weave::weave;
@@ -82,27 +82,30 @@ const MEAN_EDGE: f64 = 0.92;
 /// Least number of corners of a ring.
 const LEAST_CORNERS: u32 = 8;
 
-/// Replaces the tips beyond the `ends` by flat discs. `field` is the field that the wall is a level set of, `edge` the
-/// usual edge length of the wall.
+/// Replaces the tips beyond the `ends` by flat discs. `field` is the field that the wall is a level set of, `params` are
+/// those that it was made with.
 ///
 /// # Errors
 /// A surface that is not closed; an end whose tip is missing, joined to another vessel, or does not leave one loop.
 pub fn cap_terminals(
-    surface: &TriMesh,
+    wall: &SizedWall,
     field: &mut Field,
     ends: &[ClusterEnd],
-    edge: f64,
+    params: &SurfaceParams,
 ) -> Result<CappedSurface, CapError> {
+    let surface = &wall.mesh;
     let halves = HalfEdges::new(surface).map_err(|edge| CapError::NotManifold { edge })?;
     let mut cutter = Cutter {
         surface: &halves,
         longest: longest_edge(surface),
         removed: vec![false; surface.triangles.len()],
         points: surface.points.clone(),
+        sizes: wall.sizes.clone(),
         added: Vec::new(),
         cap: Vec::new(),
     };
     for (i, end) in ends.iter().enumerate() {
+        let edge = params.edge_at(end.section.radius);
         cutter.cut(&end.section, i as u32, edge).map_err(|reason| CapError::End {
             end: i as u32,
             node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
@@ -110,8 +113,8 @@ pub fn cap_terminals(
             reason,
         })?;
     }
-    let (mesh, cap) = cutter.finish();
-    relaxed(&mesh, &cap, field, ends, edge)
+    let (wall, cap) = cutter.finish();
+    relaxed(wall, &cap, field, ends, params)
 }
 
 /// The surface while tips are taken off and discs put on.
@@ -121,6 +124,8 @@ struct Cutter<'a> {
     longest: f64,
     removed: Vec<bool>,
     points: Vec<Point3>,
+    /// The edge length aimed at, at each point.
+    sizes: Vec<f64>,
     added: Vec<[u32; 3]>,
     cap: Vec<Option<u32>>,
 }
@@ -138,6 +143,7 @@ impl Cutter<'_> {
         let corners = ((TAU * section.radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS);
         let ring = disc(section.radius, corners, phase(section, &low, corners)).ok_or(CapFailure::Disc)?;
         self.put(section, end, &rim, &low, corners, &ring);
+        self.sizes.resize(self.points.len(), edge);
         Ok(())
     }
 
@@ -283,7 +289,7 @@ impl Cutter<'_> {
     }
 
     /// The mesh with the triangles that are left and those added, without the vertices that are no longer used.
-    fn finish(self) -> (TriMesh, Vec<Option<u32>>) {
+    fn finish(self) -> (SizedWall, Vec<Option<u32>>) {
         let kept = (0..self.removed.len() as u32).filter(|&f| !self.removed[f as usize]);
         let mut triangles: Vec<[u32; 3]> = kept.map(|f| [0, 1, 2].map(|i| self.surface.from(3 * f + i))).collect();
         let mut cap = vec![None; triangles.len()];
@@ -294,16 +300,18 @@ impl Cutter<'_> {
             map[v as usize] = 0;
         }
         let mut points = Vec::with_capacity(self.points.len());
+        let mut sizes = Vec::with_capacity(self.points.len());
         for (v, slot) in map.iter_mut().enumerate() {
             if *slot == 0 {
                 *slot = points.len() as u32;
                 points.push(self.points[v]);
+                sizes.push(self.sizes[v]);
             }
         }
         for v in triangles.iter_mut().flatten() {
             *v = map[*v as usize];
         }
-        (TriMesh { points, triangles }, cap)
+        (SizedWall { mesh: TriMesh { points, triangles }, sizes }, cap)
     }
 }
 
@@ -349,13 +357,14 @@ impl Level for Raised<'_> {
 
 /// Relaxes the wall next to each disc; discs and everything further away stay.
 fn relaxed(
-    mesh: &TriMesh,
+    wall: SizedWall,
     cap: &[Option<u32>],
     field: &mut Field,
     ends: &[ClusterEnd],
-    edge: f64,
+    params: &SurfaceParams,
 ) -> Result<CappedSurface, CapError> {
-    let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
+    let SizedWall { mesh, mut sizes } = wall;
+    let mut surface = HalfEdges::new(&mesh).map_err(|edge| CapError::NotManifold { edge })?;
     let mut on_disc = vec![false; mesh.points.len()];
     for (t, _) in mesh.triangles.iter().zip(cap).filter(|(_, c)| c.is_some()) {
         for &v in t {
@@ -370,6 +379,7 @@ fn relaxed(
     }
     for end in ends {
         let section = &end.section;
+        let edge = params.edge_at(section.radius);
         let chord = MEAN_EDGE * edge / section.radius;
         let mut level = Raised { field: &mut *field, by: chord * chord / 16.0, section };
         let before = |height: f64| height > -RELAXED * edge && height < 0.0;
@@ -392,7 +402,9 @@ fn relaxed(
                 hold[v] = Hold::Free;
             }
         }
-        Relaxation::new(&mut surface, &mut level, edge, hold).mend(if leaned_on { 12 } else { 3 });
+        let mut relaxation = Relaxation::new(&mut surface, &mut level, sizes, hold);
+        relaxation.mend(if leaned_on { 12 } else { 3 });
+        sizes = relaxation.sizes;
     }
     let faces = surface.live_triangles();
     let cap = faces.iter().map(|&f| cap.get(f as usize).copied().flatten()).collect();

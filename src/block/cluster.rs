@@ -10,7 +10,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
-use crate::surface::{Field, SurfaceParams, euler_characteristic, vessel_surface};
+use crate::surface::{Field, SurfaceParams, euler_characteristic, vessel_wall};
 use crate::tet::tetrahedralize;
 use rustc_hash::FxHashMap;
 
@@ -81,11 +81,18 @@ pub fn cluster_surface(
     params: &BlockParams,
 ) -> Result<(CappedSurface, f64), BlockError> {
     params.check()?;
-    let voxel = 2.0 * smallest_radius(cluster) / params.rho * params.voxel_factor;
-    let surface_params = SurfaceParams { kappa: params.kappa, shift: params.shift, ..SurfaceParams::with_voxel(voxel) };
+    let thin = smallest_radius(cluster);
+    let voxel = 2.0 * thin / params.rho * params.voxel_factor;
+    let surface_params = SurfaceParams {
+        kappa: params.kappa,
+        shift: params.shift,
+        thin,
+        follow: params.follow,
+        ..SurfaceParams::with_voxel(voxel)
+    };
     let failed = |source| BlockError::Surface { cluster: id, source };
-    let wall = vessel_surface(&cluster.tubes, &surface_params).map_err(failed)?;
-    let (handles, loops) = (1 - euler_characteristic(&wall) / 2, independent_loops(&cluster.tubes));
+    let wall = vessel_wall(&cluster.tubes, &surface_params).map_err(failed)?;
+    let (handles, loops) = (1 - euler_characteristic(&wall.mesh) / 2, independent_loops(&cluster.tubes));
     if handles != loops && !params.allow_fused {
         return Err(BlockError::Genus { cluster: id, handles, loops });
     }
@@ -93,7 +100,7 @@ pub fn cluster_surface(
     let mut closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
     let mut capped = loop {
         let ends: Vec<ClusterEnd> = closed.iter().map(|(_, e)| (*e).clone()).collect();
-        match cap_terminals(&wall, &mut field, &ends, surface_params.edge * voxel) {
+        match cap_terminals(&wall, &mut field, &ends, &surface_params) {
             Ok(capped) => break capped,
             // One end less each time, so this ends.
             Err(CapError::End { end, node: Some(_), .. }) if params.allow_fused => drop(closed.remove(end as usize)),

@@ -21,6 +21,9 @@ pub enum EndStyle {
 pub struct BlockParams {
     /// Resolution ρ: voxels across the thinnest vessel of the cluster.
     pub rho: f64,
+    /// How far edges follow the radius of vessels wider than the thinnest of the cluster: they grow with it to this power,
+    /// 0 (not at all) to 1 (in proportion).
+    pub follow: f64,
     /// Factor on the voxel; below 1 is finer. For retries.
     pub voxel_factor: f64,
     /// Origin of the contouring grid in voxels, each in [−1, 1]. For retries: another shift, another triangulation.
@@ -43,6 +46,7 @@ impl Default for BlockParams {
     fn default() -> Self {
         Self {
             rho: 3.0,
+            follow: 1.0,
             voxel_factor: 1.0,
             shift: [0.0; 3],
             kappa: 0.4,
@@ -68,6 +72,9 @@ impl BlockParams {
                 return Err(BlockError::Parameter { name, value });
             }
         }
+        if !(0.0..=1.0).contains(&self.follow) {
+            return Err(BlockError::Parameter { name: "follow", value: self.follow });
+        }
         match self.shift.iter().find(|x| x.is_nan() || x.abs() > 1.0) {
             Some(&value) => Err(BlockError::Parameter { name: "shift", value }),
             None => Ok(()),
@@ -75,9 +82,9 @@ impl BlockParams {
     }
 }
 
-/// Side of the lattice's cubes inside a block and its distance from the wall, in mean edge lengths of the wall: dense and
-/// close enough for a mean radius ratio of 0.84 in vessels of three voxels across.
-const CELL: f64 = 1.44;
+/// Side of the lattice's cubes inside a block and its distance from the wall, in edge lengths of the wall nearby: dense
+/// and close enough for a mean radius ratio of 0.84 in vessels of three voxels across.
+const CELL: f64 = 1.35;
 const CLEARANCE: f64 = 0.37;
 
 /// In wide blocks, where most tetrahedra are good because they are far from the wall, the cubes are larger: by up to so
@@ -87,10 +94,8 @@ const WIDE: [f64; 2] = [2.8, 5.3];
 
 /// How a block is filled. There is no certificate: the whole mesh is checked in the end.
 pub(super) fn filling(surface: &TriMesh) -> TetOptions {
-    let h = mean_edge(surface);
-    let wide = ((half_width(surface) / h - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
-    let cell = CELL * (1.0 + WIDER * wide) * h;
-    let interior = Interior::Graded { cell: Some(cell), clearance: Some(CLEARANCE * h) };
+    let wide = ((half_width(surface) / mean_edge(surface) - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
+    let interior = Interior::Local { cell: CELL * (1.0 + WIDER * wide), clearance: CLEARANCE };
     TetOptions::default().interior(interior).effort(Effort::Quick).certify(false)
 }
 

@@ -22,6 +22,10 @@ pub struct Args {
     /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
     #[arg(long, default_value_t = 3.0, allow_negative_numbers = true)]
     rho: f64,
+    /// How far edges follow the radius of wider vessels: 1 in proportion, so that each has RHO voxels across; 0 not at all,
+    /// so that all of a cluster is as fine as its thinnest vessel
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    follow: f64,
     /// Node that is an inlet, counted from 0 in the file's order; may be given several times (default: in each component
     /// the terminal of largest radius)
     #[arg(long, value_name = "NODE")]
@@ -95,6 +99,7 @@ impl Args {
         beside.push(".failed");
         MeshPlan {
             rho: self.rho,
+            follow: self.follow,
             roots: self.root.clone(),
             keep_going: self.keep_going,
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
@@ -105,7 +110,7 @@ impl Args {
         MeshNotes {
             expectation: Some(result.expectation.clone()),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: format!("mesh --rho {}", self.rho),
+            options: format!("mesh --rho {} --follow {}", self.rho, self.follow),
             regions: false,
         }
     }

@@ -8,6 +8,9 @@ use crate::block::BlockParams;
 pub struct MeshPlan {
     /// Resolution ρ: voxels across the thinnest vessel of a cluster; larger is finer.
     pub rho: f64,
+    /// How far edges follow the radius of wider vessels: they grow with it to this power. 1: ρ voxels across every vessel;
+    /// 0: edges are as short all over a cluster as its thinnest vessel asks for.
+    pub follow: f64,
     /// Terminals that are inlets, as indices of nodes in the file that was read. Components without one take the
     /// terminal of largest radius.
     pub roots: Vec<u32>,
@@ -19,7 +22,7 @@ pub struct MeshPlan {
 
 impl Default for MeshPlan {
     fn default() -> Self {
-        Self { rho: 3.0, roots: Vec::new(), keep_going: false, dump_dir: None }
+        Self { rho: 3.0, follow: 1.0, roots: Vec::new(), keep_going: false, dump_dir: None }
     }
 }
 
@@ -30,18 +33,24 @@ pub enum PlanError {
     /// ρ outside of what makes sense.
     #[error("rho = {0} is not usable: it must lie between 2.5 and 64 (3 to 5 are usual; larger is finer)")]
     Rho(f64),
+    /// The power outside of what makes sense.
+    #[error("follow = {0} is not usable: it must lie between 0 (edges as short everywhere) and 1 (in proportion)")]
+    Follow(f64),
 }
 
 impl MeshPlan {
     /// Parameters of a block as it is first tried. The partition has to know the kernel's width, too.
     pub fn block_params(&self) -> BlockParams {
-        BlockParams::with_rho(self.rho)
+        BlockParams { follow: self.follow, ..BlockParams::with_rho(self.rho) }
     }
 
     /// # Errors
     /// When a parameter is out of its range.
     pub fn validate(&self) -> Result<(), PlanError> {
         // Below 2.5 voxels across, a vessel is no tube any more. Written so that NaN fails too.
-        if (2.5..=64.0).contains(&self.rho) { Ok(()) } else { Err(PlanError::Rho(self.rho)) }
+        if !(2.5..=64.0).contains(&self.rho) {
+            return Err(PlanError::Rho(self.rho));
+        }
+        if (0.0..=1.0).contains(&self.follow) { Ok(()) } else { Err(PlanError::Follow(self.follow)) }
     }
 }

@@ -7,10 +7,11 @@ mod erf;
 mod field;
 pub(crate) mod halfedge;
 pub(crate) mod relax;
+mod sizes;
 #[cfg(test)]
 mod tests;
 
-pub use field::Field;
+pub use field::{Field, Sample};
 
 use crate::geometry::{Point3, Tube, Vec3};
 use crate::mesh::TriMesh;
@@ -26,8 +27,13 @@ pub struct SurfaceParams {
     pub kappa: f64,
     /// Where the grid lies: its origin, in cells. Another shift gives another triangulation of the same wall.
     pub shift: [f64; 3],
-    /// Edge length to aim at, in cells.
+    /// Edge length to aim at, in cells, where vessels have the radius `thin` or less.
     pub edge: f64,
+    /// A radius.
+    pub thin: f64,
+    /// How far edges follow the radius of wider vessels: they grow with the radius to this power. 0: not at all; 1: in
+    /// proportion.
+    pub follow: f64,
     /// Rounds of relaxation.
     pub rounds: u32,
     /// Most cells that the wall may cross.
@@ -35,9 +41,23 @@ pub struct SurfaceParams {
 }
 
 impl SurfaceParams {
-    /// Usual parameters for a cell edge.
+    /// Usual parameters for a cell edge; edges are as long everywhere.
     pub fn with_voxel(voxel: f64) -> Self {
-        Self { voxel, kappa: 0.4, shift: [0.0; 3], edge: 0.998, rounds: 2, max_cells: 20_000_000 }
+        Self {
+            voxel,
+            kappa: 0.4,
+            shift: [0.0; 3],
+            edge: 0.998,
+            thin: 1.0,
+            follow: 0.0,
+            rounds: 2,
+            max_cells: 20_000_000,
+        }
+    }
+
+    /// The edge length to aim at where a vessel has this radius.
+    pub fn edge_at(&self, radius: f64) -> f64 {
+        self.edge * self.voxel * (radius / self.thin).max(1.0).powf(self.follow)
     }
 }
 
@@ -100,6 +120,23 @@ pub enum SurfaceError {
 /// Tubes or parameters that make no sense; a wall that is too large for the limit, not resolved by the grid, or not one
 /// piece.
 pub fn vessel_surface(tubes: &[Tube], params: &SurfaceParams) -> Result<TriMesh, SurfaceError> {
+    vessel_wall(tubes, params).map(|wall| wall.mesh)
+}
+
+/// A wall, and how long its edges are meant to be.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SizedWall {
+    /// Closed, oriented outwards.
+    pub mesh: TriMesh,
+    /// The edge length aimed at, at each vertex.
+    pub sizes: Vec<f64>,
+}
+
+/// As [`vessel_surface`], with the edge lengths aimed at.
+///
+/// # Errors
+/// As there.
+pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams) -> Result<SizedWall, SurfaceError> {
     check(params)?;
     let mut field = Field::new(tubes, params.kappa)?;
     let estimate = estimated_cells(tubes, params.voxel);
@@ -108,10 +145,14 @@ pub fn vessel_surface(tubes: &[Tube], params: &SurfaceParams) -> Result<TriMesh,
     }
     let mesh = contour_field(tubes, &mut field, params)?;
     let mut surface = HalfEdges::new(&mesh).map_err(|edge| SurfaceError::NotManifold { edge })?;
-    let mut relaxation = Relaxation::new(&mut surface, &mut field, params.edge * params.voxel, Vec::new());
+    let sizes = sizes::wall_sizes(&surface, &mut field, params);
+    let mut relaxation = Relaxation::new(&mut surface, &mut field, sizes, Vec::new());
     relaxation.run(params.rounds as usize);
     relaxation.compensate_chords();
-    Ok(surface.to_mesh().0)
+    let sizes = relaxation.sizes;
+    let (mesh, map) = surface.to_mesh();
+    let kept = sizes.into_iter().zip(map).filter(|(_, new)| *new != halfedge::NONE);
+    Ok(SizedWall { mesh, sizes: kept.map(|(size, _)| size).collect() })
 }
 
 /// Euler characteristic `V − E + F` of a closed triangle surface: 2 per component, less 2 per handle.
@@ -120,11 +161,14 @@ pub fn euler_characteristic(mesh: &TriMesh) -> i64 {
 }
 
 fn check(params: &SurfaceParams) -> Result<(), SurfaceError> {
-    let positive = [("voxel", params.voxel), ("edge", params.edge)];
+    let positive = [("voxel", params.voxel), ("edge", params.edge), ("thin", params.thin)];
     for (name, value) in positive {
         if !(value > 0.0 && value.is_finite()) {
             return Err(SurfaceError::InvalidParameter { name, value });
         }
+    }
+    if !(0.0..=1.0).contains(&params.follow) {
+        return Err(SurfaceError::InvalidParameter { name: "follow", value: params.follow });
     }
     match params.shift.iter().find(|x| x.is_nan() || x.abs() > 1.0) {
         Some(&value) => Err(SurfaceError::InvalidParameter { name: "shift", value }),

@@ -36,8 +36,8 @@ pub(crate) struct Relaxation<'a, L> {
     pub surface: &'a mut HalfEdges,
     /// The level set that its vertices lie on.
     pub level: &'a mut L,
-    /// The edge length to aim at.
-    pub edge: f64,
+    /// The edge length to aim at, at each vertex.
+    pub sizes: Vec<f64>,
     /// Which vertices may move; all, when empty.
     pub hold: Vec<Hold>,
     /// Unit normal of the level set at every vertex.
@@ -65,10 +65,10 @@ const GOOD_COSINE: f64 = 0.75;
 const MAX_STEP: f64 = 0.5;
 
 impl<'a, L: Level> Relaxation<'a, L> {
-    pub(crate) fn new(surface: &'a mut HalfEdges, level: &'a mut L, edge: f64, hold: Vec<Hold>) -> Self {
+    pub(crate) fn new(surface: &'a mut HalfEdges, level: &'a mut L, sizes: Vec<f64>, hold: Vec<Hold>) -> Self {
         let normals = vec![Vec3::zeros(); surface.points.len()];
         let patch = (!hold.is_empty()).then(|| Patch::of(surface, &hold));
-        let mut this = Self { surface, level, edge, hold, normals, patch };
+        let mut this = Self { surface, level, sizes, hold, normals, patch };
         // Contours and relaxed walls lie near the level: the normals of the surface will do until the first projection.
         for i in 0..this.vertex_count() {
             let v = this.vertex(i);
@@ -144,6 +144,12 @@ impl<'a, L: Level> Relaxation<'a, L> {
         }
     }
 
+    /// The length to aim at for an edge between two vertices.
+    #[inline]
+    fn aim(&self, a: u32, b: u32) -> f64 {
+        0.5 * (self.sizes[a as usize] + self.sizes[b as usize])
+    }
+
     fn is_free(&self, v: u32) -> bool {
         self.surface.has_vertex(v) && !self.is_locked(v)
     }
@@ -186,7 +192,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         }
         self.normals[v as usize] = gradient / g2.sqrt();
         let step = gradient * ((1.0 - value) / g2);
-        let limit = MAX_STEP * self.edge;
+        let limit = MAX_STEP * self.sizes[v as usize];
         let length = step.norm();
         p + if length > limit { step * (limit / length) } else { step }
     }
@@ -212,7 +218,9 @@ impl<'a, L: Level> Relaxation<'a, L> {
         for h in self.surface.fan(v) {
             let a = self.surface.points[self.surface.to(h) as usize] - p;
             let b = self.surface.points[self.surface.apex(h) as usize] - p;
-            let area = a.cross(&b).norm();
+            // Where sizes differ, triangles are to as well.
+            let size = self.sizes[self.surface.to(h) as usize] + self.sizes[self.surface.apex(h) as usize];
+            let area = a.cross(&b).norm() / (size * size);
             sum += (a + b) * (area / 3.0);
             weight += area;
         }
@@ -225,17 +233,17 @@ impl<'a, L: Level> Relaxation<'a, L> {
     }
 
     fn split_long(&mut self) {
-        let limit = SPLIT_ABOVE * self.edge;
         for i in 0..self.half_count() {
             let h = self.half(i);
             if !self.is_editable(h) {
                 continue;
             }
             let (a, b) = (self.surface.from(h), self.surface.to(h));
-            if a < b && self.surface.length(h) > limit {
+            if a < b && self.surface.length(h) > SPLIT_ABOVE * self.aim(a, b) {
                 let middle = nalgebra::center(&self.surface.points[a as usize], &self.surface.points[b as usize]);
                 let m = self.surface.split(h, middle);
                 self.normals.push(self.normals[a as usize]);
+                self.sizes.push(self.aim(a, b));
                 if let Some(patch) = &mut self.patch {
                     self.hold.push(Hold::Free);
                     patch.vertices.push(m);
@@ -257,13 +265,15 @@ impl<'a, L: Level> Relaxation<'a, L> {
     }
 
     fn collapse_short(&mut self) {
-        let limit = COLLAPSE_BELOW * self.edge;
         for i in 0..self.half_count() {
             let h = self.half(i);
-            if !self.surface.is_live(h) || self.surface.length(h) > limit || self.is_locked(self.surface.from(h)) {
+            if !self.surface.is_live(h) || self.is_locked(self.surface.from(h)) {
                 continue;
             }
             let (a, b) = (self.surface.from(h), self.surface.to(h));
+            if self.surface.length(h) > COLLAPSE_BELOW * self.aim(a, b) {
+                continue;
+            }
             let target = if self.is_locked(b) {
                 self.surface.points[b as usize]
             } else {
@@ -271,6 +281,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
             };
             if self.surface.can_collapse(h) && self.collapse_is_sound(h, target) {
                 self.surface.collapse(h);
+                self.sizes[b as usize] = self.aim(a, b);
                 if !self.is_locked(b) {
                     self.surface.points[b as usize] = self.projected(b, target);
                 }
@@ -281,7 +292,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// No triangle turns over and no edge becomes too long when both ends of `h` meet in `target`.
     fn collapse_is_sound(&self, h: u32, target: Point3) -> bool {
         let (a, b) = (self.surface.from(h), self.surface.to(h));
-        let limit = SPLIT_ABOVE * self.edge;
+        let limit = SPLIT_ABOVE * self.aim(a, b);
         [(a, b), (b, a)].iter().all(|&(v, other)| {
             self.surface.fan(v).all(|e| {
                 let (x, y) = (self.surface.to(e), self.surface.apex(e));

@@ -178,7 +178,7 @@ fn gradients_are_those_of_the_values() {
     for i in 0..60 {
         let t = f64::from(i) / 59.0;
         let p = tubes[0].point(1.2 * t - 0.05) + Vec3::new(0.1, 0.7 * (9.0 * t).sin(), 0.8 * (9.0 * t).cos());
-        let (value, gradient) = field.value_and_gradient(&p);
+        let Sample { value, gradient, .. } = field.sample(&p);
         if value > 0.3 && value < 1.5 {
             let h = 1e-4;
             let numeric = Vec3::from_fn(|k, _| {
@@ -223,6 +223,48 @@ fn direction() -> impl Strategy<Value = Vec3> {
         let r = (1.0 - z * z).sqrt();
         Vec3::new(r * a.cos(), r * a.sin(), z)
     })
+}
+
+/// Mean edge length of each triangle, and its middle.
+fn edges(mesh: &TriMesh) -> Vec<(Point3, f64)> {
+    let of = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| mesh.points[v as usize]);
+        (Point3::from((a.coords + b.coords + c.coords) / 3.0), ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0)
+    };
+    mesh.triangles.iter().map(of).collect()
+}
+
+#[test]
+fn edges_follow_the_radius() {
+    // A vessel with a branch of a third of its radius.
+    let tubes = [
+        tube([-9.0, 0.0, 0.0], [0.0, 0.0, 0.0], 1.5, 1.5),
+        tube([0.0, 0.0, 0.0], [9.0, 0.0, 0.0], 1.5, 1.5),
+        tube([0.0, 0.0, 0.0], [0.5, 6.0, 0.0], 0.5, 0.5),
+    ];
+    let params = SurfaceParams { thin: 0.5, follow: 1.0, ..SurfaceParams::with_voxel(1.0 / 3.0) };
+    let wall = vessel_wall(&tubes, &params).unwrap();
+    check_wall(&wall.mesh);
+    assert_eq!(wall.sizes.len(), wall.mesh.points.len());
+    let all = edges(&wall.mesh);
+    let mean = |keep: &dyn Fn(&Point3) -> bool| {
+        let kept: Vec<f64> = all.iter().filter(|(p, _)| keep(p)).map(|e| e.1).collect();
+        kept.iter().sum::<f64>() / kept.len() as f64
+    };
+    let (thick, thin) = (mean(&|p| p.x.abs() > 4.0), mean(&|p| p.y > 3.0));
+    assert!((2.6..3.6).contains(&(thick / thin)), "{thick} {thin}");
+    let as_fine = vessel_wall(&tubes, &SurfaceParams { follow: 0.0, ..params }).unwrap();
+    assert!(2 * wall.mesh.triangles.len() < as_fine.mesh.triangles.len());
+    // No triangle is half as large again as its neighbour.
+    let mut sides: Vec<([u32; 2], usize)> = Vec::new();
+    for (i, t) in wall.mesh.triangles.iter().enumerate() {
+        sides.extend((0..3).map(|k| ([t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])], i)));
+    }
+    sides.sort_unstable();
+    for pair in sides.chunks_exact(2) {
+        let ratio = all[pair[0].1].1 / all[pair[1].1].1;
+        assert!((1.0 / 1.5..1.5).contains(&ratio), "{ratio} at {}", all[pair[0].1].0);
+    }
 }
 
 proptest! {

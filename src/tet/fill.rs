@@ -120,7 +120,7 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
     }
     let inner = points.len();
     // The smaller the box, the smaller the bound on the roundoff in it; there is room to flip in for smooth walls.
-    let tight = matches!(r.interior, Interior::Graded { .. });
+    let tight = matches!(r.interior, Interior::Graded { .. } | Interior::Local { .. });
     points.extend(if tight { box_around(&surface.points, 0.2) } else { box_corners(&surface.points) });
     let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
     r.watch.report(Stage::Delaunay, 1, 1)?;
@@ -164,6 +164,7 @@ fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>
             let points = if graded { lattice::graded_lattice_points } else { lattice::lattice_points };
             Ok(points(surface, cell, clearance))
         }
+        Interior::Local { cell, clearance } => Ok(lattice::local_lattice_points(surface, *cell, *clearance)),
         Interior::Points(points) => {
             let inside = points.iter().zip(0..).find(|(p, _)| !p.iter().all(|x| x.is_finite()));
             match inside {

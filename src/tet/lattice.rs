@@ -1,6 +1,10 @@
 //! Interior points: a body-centred cubic lattice, off the wall and jittered, so that one Delaunay run over surface and
 //! lattice leaves only the layer at the wall to improve. Away from the wall its cubes may grow.
 
+mod local;
+
+pub use local::local_lattice_points;
+
 use super::delaunay::hash;
 use crate::geometry::{Point3, Vec3, point_triangle};
 use crate::mesh::TriMesh;
@@ -29,6 +33,30 @@ pub fn mean_edge(surface: &TriMesh) -> f64 {
     sum / (3 * surface.triangles.len()).max(1) as f64
 }
 
+/// Mean edge length at every vertex of a surface, evened out over its neighbours; 0 where there is none.
+fn edges_at_vertices(surface: &TriMesh) -> Vec<f64> {
+    let n = surface.points.len();
+    let mut sums = vec![(0.0, 0.0); n];
+    for t in &surface.triangles {
+        for k in 0..3 {
+            let (a, b) = (t[k] as usize, t[(k + 1) % 3] as usize);
+            // Every edge lies in two triangles: its other end is counted there.
+            let slot = &mut sums[a];
+            *slot = (slot.0 + (surface.points[a] - surface.points[b]).norm(), slot.1 + 1.0);
+        }
+    }
+    let mean = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { 0.0 };
+    let raw: Vec<f64> = sums.iter().map(|&s| mean(s)).collect();
+    let mut even: Vec<(f64, f64)> = raw.iter().map(|&s| (3.0 * s, 3.0)).collect();
+    for t in &surface.triangles {
+        for k in 0..3 {
+            let slot = &mut even[t[k] as usize];
+            *slot = (slot.0 + raw[t[(k + 1) % 3] as usize], slot.1 + 1.0);
+        }
+    }
+    even.into_iter().map(mean).collect()
+}
+
 /// A body-centred cubic lattice: index `2 i` along each axis for corners, `2 i + 1` for centres, in half cells.
 struct Lattice {
     origin: Point3,
@@ -54,19 +82,20 @@ fn pack([i, j, k]: [i64; 3]) -> u64 {
 /// `clearance` from it. The same surface gives the same points. Inside is decided along one scan line per column; a
 /// line that grazes an edge may leave points out or take in points outside, which carving drops.
 pub fn lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
-    sites(surface, cell, clearance).map_or_else(Vec::new, |(lattice, columns)| columns.places(&lattice))
+    sites(surface, cell, |_| Some(clearance)).map_or_else(Vec::new, |(lattice, columns)| columns.places(&lattice))
 }
 
 /// As [`lattice_points`], and away from the surface the lattice's cubes are twice, four times, .. as large.
 pub fn graded_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
-    sites(surface, cell, clearance).map_or_else(Vec::new, |(lattice, mut columns)| {
+    sites(surface, cell, |_| Some(clearance)).map_or_else(Vec::new, |(lattice, mut columns)| {
         columns.thin();
         columns.places(&lattice)
     })
 }
 
-/// The lattice, and which of its points are inside and off the wall; none when the cell makes no sense.
-fn sites(surface: &TriMesh, cell: f64, clearance: f64) -> Option<(Lattice, Columns)> {
+/// The lattice, and which of its points are inside and off the wall, by the clearance from each triangle; none when the
+/// cell makes no sense. Triangles without a clearance are not looked at.
+fn sites(surface: &TriMesh, cell: f64, clearance: impl Fn(&[u32; 3]) -> Option<f64>) -> Option<(Lattice, Columns)> {
     let first = surface.points.first()?;
     let (mut low, mut high) = (*first, *first);
     for p in &surface.points {
@@ -117,10 +146,16 @@ fn column_crossings(surface: &TriMesh, lattice: &Lattice) -> Vec<(u64, f64)> {
     crossings
 }
 
-/// Takes out the points closer than `clearance` to the surface.
-fn clear_wall(surface: &TriMesh, lattice: &Lattice, clearance: f64, columns: &mut Columns) {
-    let reach = clearance / lattice.half + 2.0 * JITTER * 2.0;
+/// Takes out the points closer to a triangle than its clearance.
+fn clear_wall(
+    surface: &TriMesh,
+    lattice: &Lattice,
+    clearance: impl Fn(&[u32; 3]) -> Option<f64>,
+    columns: &mut Columns,
+) {
     for t in &surface.triangles {
+        let Some(clearance) = clearance(t) else { continue };
+        let reach = clearance / lattice.half + 2.0 * JITTER * 2.0;
         let corners = t.map(|v| surface.points[v as usize]);
         let [a, b, c] = corners.map(|p| (p - lattice.origin) / lattice.half);
         let range = |k: usize| {

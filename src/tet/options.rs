@@ -23,6 +23,13 @@ pub enum Interior {
         /// Distance kept from the wall.
         clearance: Option<f64>,
     },
+    /// As `Graded`, with cubes that follow the surface: lengths are in edge lengths of the surface nearby.
+    Local {
+        /// Side of the cubes next to the wall.
+        cell: f64,
+        /// Distance kept from the wall.
+        clearance: f64,
+    },
     /// These points; those outside the surface are dropped.
     Points(Vec<Point3>),
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::{Tube, self_intersections};
-use crate::surface::{SurfaceParams, euler_characteristic, vessel_surface};
+use crate::surface::{SurfaceParams, euler_characteristic, vessel_wall};
 
 /// Tubes that start in one node, each with a terminal at its end, and the ends.
 fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<ClusterEnd>) {
@@ -23,9 +23,9 @@ fn capped(arms: &[([f64; 3], f64, f64)], rho: f64) -> (CappedSurface, Vec<Cluste
     let (tubes, ends) = star(arms);
     let smallest = tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
     let params = SurfaceParams::with_voxel(2.0 * smallest / rho);
-    let wall = vessel_surface(&tubes, &params).unwrap();
+    let wall = vessel_wall(&tubes, &params).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
-    (cap_terminals(&wall, &mut field, &ends, params.edge * params.voxel).unwrap(), ends)
+    (cap_terminals(&wall, &mut field, &ends, &params).unwrap(), ends)
 }
 
 fn check(surface: &CappedSurface, ends: &[ClusterEnd], smallest_angle: f64) {
@@ -92,8 +92,8 @@ fn a_terminal_inside_another_vessel_is_refused() {
     let arms = [([-9.0, 0.0, 0.0], 2.0, 2.0), ([9.0, 0.0, 0.0], 2.0, 2.0), ([3.0, 1.0, 0.0], 1.0, 1.0)];
     let (tubes, ends) = star(&arms);
     let params = SurfaceParams::with_voxel(0.6);
-    let wall = vessel_surface(&tubes, &params).unwrap();
+    let wall = vessel_wall(&tubes, &params).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
-    let error = cap_terminals(&wall, &mut field, &ends, params.edge * params.voxel).unwrap_err();
+    let error = cap_terminals(&wall, &mut field, &ends, &params).unwrap_err();
     assert!(matches!(error, CapError::End { end: 2, node: Some(NodeId(2)), .. }), "{error}");
 }
