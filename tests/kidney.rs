@@ -3,9 +3,9 @@
 mod common;
 
 use anastomesh::mesh::check::{CheckReport, Line, Outcome};
-use anastomesh::pipeline::{Meshed, RunReport};
+use anastomesh::pipeline::{MeshPlan, Meshed, RunReport};
 use anastomesh::report::check::text;
-use common::{mesh, network, shared};
+use common::{mesh, mesh_by, network, shared};
 
 /// Triangles of the wall of `subtree_289_clear` that another implementation of the method makes at ρ = 3.
 const WALL_OF_BASELINE: usize = 227_134;
@@ -64,7 +64,19 @@ fn subtree_289_clear_is_valid() {
     assert!(quality.dihedral_min >= 8.0, "smallest dihedral {}°", quality.dihedral_min);
     let report = &meshed.report;
     assert!(report.blocks.clusters >= 120, "{} clusters", report.blocks.clusters);
-    assert!(report.mesh.wall_triangles * 10 >= WALL_OF_BASELINE * 8, "{} triangles", report.mesh.wall_triangles);
+    // Edges in proportion to the radius: wide vessels need fewer than that one makes.
+    assert!(report.mesh.wall_triangles * 10 >= WALL_OF_BASELINE * 5, "{} triangles", report.mesh.wall_triangles);
+}
+
+#[test]
+fn subtree_289_clear_is_as_fine_everywhere_on_request() {
+    let Some(shared) = shared() else { return };
+    let mut plan = MeshPlan::default();
+    plan.follow = 0.0;
+    let meshed = mesh_by(&network(&shared.join("data/kidney/subtree_289_clear.vtp")), &plan);
+    assert_clear(&meshed);
+    let walls = meshed.report.mesh.wall_triangles;
+    assert!(walls * 10 >= WALL_OF_BASELINE * 8, "{walls} triangles");
 }
 
 /// Vessels overlap in this one: the mesh cannot be valid, but nothing else may be wrong with it.

@@ -94,9 +94,8 @@ pub fn cap_terminals(
     params: &SurfaceParams,
 ) -> Result<CappedSurface, CapError> {
     let surface = &wall.mesh;
-    let halves = HalfEdges::new(surface).map_err(|edge| CapError::NotManifold { edge })?;
     let mut cutter = Cutter {
-        surface: &halves,
+        surface: &wall.halves,
         longest: longest_edge(surface),
         removed: vec![false; surface.triangles.len()],
         points: surface.points.clone(),
@@ -113,8 +112,8 @@ pub fn cap_terminals(
             reason,
         })?;
     }
-    let (wall, cap) = cutter.finish();
-    relaxed(wall, &cap, field, ends, params)
+    let (mesh, sizes, cap) = cutter.finish();
+    relaxed(&mesh, sizes, &cap, field, ends, params)
 }
 
 /// The surface while tips are taken off and discs put on.
@@ -289,7 +288,7 @@ impl Cutter<'_> {
     }
 
     /// The mesh with the triangles that are left and those added, without the vertices that are no longer used.
-    fn finish(self) -> (SizedWall, Vec<Option<u32>>) {
+    fn finish(self) -> (TriMesh, Vec<f64>, Vec<Option<u32>>) {
         let kept = (0..self.removed.len() as u32).filter(|&f| !self.removed[f as usize]);
         let mut triangles: Vec<[u32; 3]> = kept.map(|f| [0, 1, 2].map(|i| self.surface.from(3 * f + i))).collect();
         let mut cap = vec![None; triangles.len()];
@@ -311,7 +310,7 @@ impl Cutter<'_> {
         for v in triangles.iter_mut().flatten() {
             *v = map[*v as usize];
         }
-        (SizedWall { mesh: TriMesh { points, triangles }, sizes }, cap)
+        (TriMesh { points, triangles }, sizes, cap)
     }
 }
 
@@ -357,14 +356,14 @@ impl Level for Raised<'_> {
 
 /// Relaxes the wall next to each disc; discs and everything further away stay.
 fn relaxed(
-    wall: SizedWall,
+    mesh: &TriMesh,
+    mut sizes: Vec<f64>,
     cap: &[Option<u32>],
     field: &mut Field,
     ends: &[ClusterEnd],
     params: &SurfaceParams,
 ) -> Result<CappedSurface, CapError> {
-    let SizedWall { mesh, mut sizes } = wall;
-    let mut surface = HalfEdges::new(&mesh).map_err(|edge| CapError::NotManifold { edge })?;
+    let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
     let mut on_disc = vec![false; mesh.points.len()];
     for (t, _) in mesh.triangles.iter().zip(cap).filter(|(_, c)| c.is_some()) {
         for &v in t {

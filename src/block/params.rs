@@ -84,7 +84,7 @@ impl BlockParams {
 
 /// Side of the lattice's cubes inside a block and its distance from the wall, in edge lengths of the wall nearby: dense
 /// and close enough for a mean radius ratio of 0.84 in vessels of three voxels across.
-const CELL: f64 = 1.35;
+const CELL: f64 = 1.38;
 const CLEARANCE: f64 = 0.37;
 
 /// In wide blocks, where most tetrahedra are good because they are far from the wall, the cubes are larger: by up to so

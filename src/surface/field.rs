@@ -25,17 +25,6 @@ const MOST_MERGED: usize = 64;
 /// Bits per coordinate of a search cell's key.
 const KEY_BITS: u32 = 21;
 
-/// The field at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// The distance form.
-    pub value: f64,
-    /// Its gradient; zero far from all tubes and on an axis.
-    pub gradient: Vec3,
-    /// Mean radius of the tubes near the point, each weighed by what it adds; 0 far from all.
-    pub radius: f64,
-}
-
 /// One tube, ready for evaluation.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
@@ -130,14 +119,13 @@ impl Field {
         self.distance(sum)
     }
 
-    /// The distance form at `p` with its gradient, and the radius of what is near.
-    pub fn sample(&mut self, p: &Point3) -> Sample {
-        let (mut sum, mut gradient, mut radii) = (0.0, Vec3::zeros(), 0.0);
+    /// The distance form at `p` and its gradient (zero far from all tubes and on an axis).
+    pub fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
+        let (mut sum, mut gradient) = (0.0, Vec3::zeros());
         let mut add = |piece: &Piece| {
-            if let Some((f, g, r)) = piece.value_gradient_radius(p, self.kappa, self.cutoff2, self.erf) {
+            if let Some((f, g)) = piece.value_and_gradient(p, self.kappa, self.cutoff2, self.erf) {
                 sum += f;
                 gradient += g;
-                radii += f * r;
             }
         };
         if let Some(locator) = &mut self.locator {
@@ -148,18 +136,30 @@ impl Field {
         } else {
             self.pieces.iter().for_each(&mut add);
         }
-        let value = self.distance(sum);
-        let radius = if sum > 0.0 { radii / sum } else { 0.0 };
-        if value >= self.far || value <= 1e-6 {
-            return Sample { value, gradient: Vec3::zeros(), radius };
+        let g = self.distance(sum);
+        if g >= self.far || g <= 1e-6 {
+            return (g, Vec3::zeros());
         }
-        Sample { value, gradient: gradient * (-self.kappa * self.kappa / (value * sum)), radius }
+        (g, gradient * (-self.kappa * self.kappa / (g * sum)))
     }
 
-    /// The distance form at `p` and its gradient.
-    pub fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
-        let Sample { value, gradient, .. } = self.sample(p);
-        (value, gradient)
+    /// Mean radius of the tubes near `p`, those weighing more that are nearer; 0 far from all.
+    pub fn radius(&mut self, p: &Point3) -> f64 {
+        let (mut sum, mut radii) = (0.0, 0.0);
+        let mut add = |piece: &Piece| {
+            let (weight, radius) = piece.weight_and_radius(p, self.kappa, self.cutoff2);
+            sum += weight;
+            radii += weight * radius;
+        };
+        if let Some(locator) = &mut self.locator {
+            let (start, end) = locator.range(&self.pieces, p);
+            for &i in &locator.lists[start as usize..end as usize] {
+                add(&self.pieces[i as usize]);
+            }
+        } else {
+            self.pieces.iter().for_each(&mut add);
+        }
+        if sum > 0.0 { radii / sum } else { 0.0 }
     }
 
     /// The largest radius of a tube.
@@ -254,7 +254,7 @@ impl Piece {
     }
 
     #[inline]
-    fn value_gradient_radius(&self, p: &Point3, kappa: f64, cutoff2: f64, table: &Table) -> Option<(f64, Vec3, f64)> {
+    fn value_and_gradient(&self, p: &Point3, kappa: f64, cutoff2: f64, table: &Table) -> Option<(f64, Vec3)> {
         let (w, s, d2, r) = self.locate(p, cutoff2)?;
         let q = std::f64::consts::FRAC_1_SQRT_2 / (kappa * r);
         // Relative change of sigma along the axis; none beyond the ends, where the radius is held.
@@ -266,7 +266,16 @@ impl Piece {
         let along_slope = 0.5 * q * (m0 * (1.0 - s * growth) - m1 * (1.0 + (self.length - s) * growth));
         let axial = across * (2.0 * d2 * q * q * growth * along + along_slope);
         let radial = -2.0 * q * q * across * along;
-        Some((across * along, (w - self.axis * s) * radial + self.axis * axial, r))
+        Some((across * along, (w - self.axis * s) * radial + self.axis * axial))
+    }
+
+    /// The kernel at the distance from the axis segment, and the radius there.
+    #[inline]
+    fn weight_and_radius(&self, p: &Point3, kappa: f64, cutoff2: f64) -> (f64, f64) {
+        let w = p - self.a;
+        let s = w.dot(&self.axis).clamp(0.0, self.length);
+        let (d2, r) = ((w - self.axis * s).norm_squared(), self.ra + self.slope * s);
+        if d2 < cutoff2 * r * r { ((-0.5 * d2 / (kappa * kappa * r * r)).exp(), r) } else { (0.0, r) }
     }
 
     /// Distance of `p` from the axis segment.

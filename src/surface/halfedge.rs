@@ -100,6 +100,25 @@ impl HalfEdges {
         (mesh, map)
     }
 
+    /// The same without what has been removed, as `to_mesh` numbers it.
+    pub(crate) fn compacted(&self) -> (Self, Vec<u32>) {
+        let mut vertex = vec![NONE; self.points.len()];
+        let mut points = Vec::with_capacity(self.points.len());
+        for (v, _) in self.out.iter().enumerate().filter(|(_, h)| **h != NONE) {
+            vertex[v] = points.len() as u32;
+            points.push(self.points[v]);
+        }
+        let mut half = vec![NONE; self.from.len()];
+        let live: Vec<u32> = (0..self.len()).filter(|&h| self.is_live(h)).collect();
+        for (new, &h) in (0..).zip(&live) {
+            half[h as usize] = new;
+        }
+        let from = live.iter().map(|&h| vertex[self.from[h as usize] as usize]).collect();
+        let twin = live.iter().map(|&h| half[self.twin[h as usize] as usize]).collect();
+        let out = self.out.iter().filter(|h| **h != NONE).map(|&h| half[h as usize]).collect();
+        (Self { points, from, twin, out }, vertex)
+    }
+
     /// The triangle (by its first half-edge over three) that each triangle of `to_mesh` was.
     pub(crate) fn live_triangles(&self) -> Vec<u32> {
         (0..self.len() / 3).filter(|&f| self.is_live(3 * f)).collect()
@@ -374,8 +393,13 @@ mod tests {
                     }
                     _ => continue,
                 }
-                let (mesh, _) = s.to_mesh();
+                let (mesh, map) = s.to_mesh();
                 prop_assert!(HalfEdges::new(&mesh).is_ok());
+                let (compact, numbers) = s.compacted();
+                prop_assert_eq!(numbers, map);
+                prop_assert_eq!(&compact.twin, &HalfEdges::new(&mesh).unwrap().twin);
+                prop_assert_eq!(&compact.from, mesh.triangles.as_flattened());
+                prop_assert!((0..mesh.points.len() as u32).all(|v| compact.from(compact.out[v as usize]) == v));
                 prop_assert_eq!(super::super::euler_characteristic(&mesh), 2);
             }
         }

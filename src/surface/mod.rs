@@ -11,7 +11,7 @@ mod sizes;
 #[cfg(test)]
 mod tests;
 
-pub use field::{Field, Sample};
+pub use field::Field;
 
 use crate::geometry::{Point3, Tube, Vec3};
 use crate::mesh::TriMesh;
@@ -40,6 +40,10 @@ pub struct SurfaceParams {
     pub max_cells: usize,
 }
 
+/// Collapsing a contour that is too fine leaves longer edges than a contour of the right size has: so much less is aimed
+/// at.
+const COARSENED: f64 = 0.93;
+
 impl SurfaceParams {
     /// Usual parameters for a cell edge; edges are as long everywhere.
     pub fn with_voxel(voxel: f64) -> Self {
@@ -57,7 +61,8 @@ impl SurfaceParams {
 
     /// The edge length to aim at where a vessel has this radius.
     pub fn edge_at(&self, radius: f64) -> f64 {
-        self.edge * self.voxel * (radius / self.thin).max(1.0).powf(self.follow)
+        let wider = (radius / self.thin).max(1.0).powf(self.follow);
+        self.edge * self.voxel * (COARSENED * wider).max(1.0)
     }
 }
 
@@ -124,12 +129,14 @@ pub fn vessel_surface(tubes: &[Tube], params: &SurfaceParams) -> Result<TriMesh,
 }
 
 /// A wall, and how long its edges are meant to be.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct SizedWall {
     /// Closed, oriented outwards.
     pub mesh: TriMesh,
     /// The edge length aimed at, at each vertex.
     pub sizes: Vec<f64>,
+    /// The mesh once more, its triangles linked.
+    pub(crate) halves: HalfEdges,
 }
 
 /// As [`vessel_surface`], with the edge lengths aimed at.
@@ -150,9 +157,10 @@ pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams) -> Result<SizedWall, 
     relaxation.run(params.rounds as usize);
     relaxation.compensate_chords();
     let sizes = relaxation.sizes;
-    let (mesh, map) = surface.to_mesh();
+    let (surface, map) = surface.compacted();
     let kept = sizes.into_iter().zip(map).filter(|(_, new)| *new != halfedge::NONE);
-    Ok(SizedWall { mesh, sizes: kept.map(|(size, _)| size).collect() })
+    let sizes = kept.map(|(size, _)| size).collect();
+    Ok(SizedWall { mesh: surface.to_mesh().0, sizes, halves: surface })
 }
 
 /// Euler characteristic `V − E + F` of a closed triangle surface: 2 per component, less 2 per handle.

@@ -282,9 +282,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
             if self.surface.can_collapse(h) && self.collapse_is_sound(h, target) {
                 self.surface.collapse(h);
                 self.sizes[b as usize] = self.aim(a, b);
-                if !self.is_locked(b) {
-                    self.surface.points[b as usize] = self.projected(b, target);
-                }
+                // It is projected when it is smoothed.
+                self.surface.points[b as usize] = target;
             }
         }
     }

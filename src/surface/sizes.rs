@@ -14,7 +14,7 @@ pub(super) fn wall_sizes(surface: &HalfEdges, field: &mut Field, params: &Surfac
     if params.edge_at(field.largest_radius()) <= params.edge_at(0.0) {
         return vec![params.edge_at(0.0); surface.points.len()];
     }
-    let mut sizes: Vec<f64> = surface.points.iter().map(|p| params.edge_at(field.sample(p).radius)).collect();
+    let mut sizes: Vec<f64> = surface.points.iter().map(|p| params.edge_at(field.radius(p))).collect();
     grade(surface, &mut sizes);
     sizes
 }

@@ -178,7 +178,7 @@ fn gradients_are_those_of_the_values() {
     for i in 0..60 {
         let t = f64::from(i) / 59.0;
         let p = tubes[0].point(1.2 * t - 0.05) + Vec3::new(0.1, 0.7 * (9.0 * t).sin(), 0.8 * (9.0 * t).cos());
-        let Sample { value, gradient, .. } = field.sample(&p);
+        let (value, gradient) = field.value_and_gradient(&p);
         if value > 0.3 && value < 1.5 {
             let h = 1e-4;
             let numeric = Vec3::from_fn(|k, _| {

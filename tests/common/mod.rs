@@ -38,7 +38,11 @@ pub fn network(path: &Path) -> Skeleton {
 pub fn mesh(network: &Skeleton, rho: f64) -> Meshed {
     let mut plan = MeshPlan::default();
     plan.rho = rho;
-    match mesh_network(network, &plan, &Silent, &mut Clock::default()) {
+    mesh_by(network, &plan)
+}
+
+pub fn mesh_by(network: &Skeleton, plan: &MeshPlan) -> Meshed {
+    match mesh_network(network, plan, &Silent, &mut Clock::default()) {
         Ok(meshed) => meshed,
         Err(RunError::BlocksFailed(report)) => panic!("blocks failed\n{}", report.text()),
         Err(error) => panic!("{error}"),
