@@ -10,6 +10,7 @@
 mod dig;
 mod facets;
 mod helpers;
+mod looks;
 mod parts;
 mod polygon;
 mod push;

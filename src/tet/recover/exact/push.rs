@@ -4,6 +4,7 @@
 
 use super::dig;
 use super::facets::Cover;
+use super::looks::Looks;
 use super::parts::sides;
 use super::room::Room;
 use super::sectors::{Fan, sectors};
@@ -39,6 +40,15 @@ enum Apex {
     Point(Point3),
 }
 
+/// What came of a vertex.
+enum Pushed {
+    Off,
+    /// There is at most that much room, over its size.
+    Not {
+        room: f64,
+    },
+}
+
 #[derive(Clone)]
 pub(super) struct Push<'a> {
     pub s: Space,
@@ -53,43 +63,13 @@ pub(super) struct Push<'a> {
     around: FxHashMap<u32, Vec<u32>>,
     /// Vertices that were made here and are free now.
     free: Vec<u32>,
-    changes: Changes,
-}
-
-/// When the stars of vertices changed, and when they were looked at last without success.
-#[derive(Clone, Default)]
-struct Changes {
-    now: u32,
-    changed: FxHashMap<u32, u32>,
-    looked: FxHashMap<(u32, Look), u32>,
-}
-
-/// What stars are looked at for; at a level of room.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Look {
-    Neighbor(usize),
-    Point(usize),
-    Relax,
-}
-
-impl Changes {
-    /// Whether a look at this vertex may find something new; it is taken to happen.
-    fn worth(&mut self, v: u32, look: Look) -> bool {
-        let changed = self.changed.get(&v).copied().unwrap_or(0);
-        self.looked.insert((v, look), self.now + 1).is_none_or(|last| last <= changed)
-    }
-
-    /// The stars of all corners of some faces change.
-    fn change(&mut self, corners: impl Iterator<Item = u32>) {
-        self.now += 1;
-        self.changed.extend(corners.map(|v| (v, self.now)));
-    }
+    looks: Looks,
 }
 
 impl<'a> Push<'a> {
     pub(super) fn new(s: Space, segments: Segments<'a>, triangles: Vec<[u32; 3]>) -> Self {
-        let (pieces, around, changes) = (FxHashMap::default(), FxHashMap::default(), Changes::default());
-        Self { s, segments, triangles, left: Vec::new(), pieces, around, free: Vec::new(), changes }
+        let (pieces, around, looks) = (FxHashMap::default(), FxHashMap::default(), Looks::default());
+        Self { s, segments, triangles, left: Vec::new(), pieces, around, free: Vec::new(), looks }
     }
 
     /// Takes a facet that has been covered; the vertices inside of it have to go. Returns their number.
@@ -162,11 +142,11 @@ impl<'a> Push<'a> {
 
     /// Ends a part. Returns the number of vertices that were made.
     pub(super) fn finish(&mut self) -> usize {
-        self.changes = Changes::default();
+        self.looks.forget();
         self.relax(0.0);
         self.pieces.clear();
         self.around.clear();
-        self.changes = Changes::default();
+        self.looks.forget();
         std::mem::take(&mut self.free).len()
     }
 
@@ -196,7 +176,7 @@ impl<'a> Push<'a> {
         let faces = self.s.walls(&star);
         let moved = self.s.move_to(v, &faces, on);
         if moved {
-            self.changes.change(faces.into_iter().flatten().chain([v]));
+            self.looks.change(faces.into_iter().flatten().chain([v]));
         }
         moved
     }
@@ -204,10 +184,14 @@ impl<'a> Push<'a> {
     fn pass(&mut self, left: &mut Vec<(Host, u32)>, level: usize, new_points: bool) -> Result<(), TetError> {
         let mut again = Vec::with_capacity(left.len());
         for &(host, v) in left.iter() {
-            let look = if new_points { Look::Point(level) } else { Look::Neighbor(level) };
-            if !self.changes.worth(v, look) || !self.push(host, v, LEVELS[level], new_points)? {
-                again.push((host, v));
+            let least = LEVELS[level];
+            if self.looks.worth(v, least, new_points) {
+                match self.push(host, v, least, new_points)? {
+                    Pushed::Off => continue,
+                    Pushed::Not { room } => self.looks.found(v, room, new_points),
+                }
             }
+            again.push((host, v));
         }
         *left = again;
         Ok(())
@@ -217,7 +201,7 @@ impl<'a> Push<'a> {
     fn relax(&mut self, least: f64) {
         let mut free = std::mem::take(&mut self.free);
         free.retain(|&v| {
-            if !self.changes.worth(v, Look::Relax) {
+            if !self.looks.worth_relaxing(v) {
                 return true;
             }
             let star = self.s.star(v);
@@ -229,18 +213,18 @@ impl<'a> Push<'a> {
                 }
             }
             let room = Room::new(&self.s, v, &faces);
-            if let Some(w) = room.neighbor(&self.s, least) {
+            if let Ok(w) = room.neighbor(&self.s, least) {
                 let others = faces.iter().filter(|f| !f.contains(&w));
                 let new: Vec<[u32; 4]> = others.map(|&[a, b, c]| [a, b, c, w]).collect();
                 if self.s.c.replace(&star, &new, &mut Vec::new()) {
-                    self.changes.change(faces.iter().flatten().copied());
+                    self.looks.change(faces.iter().flatten().copied());
                     return false;
                 }
             }
-            let here = room.depth(&Vec3::zeros());
-            if let Some(p) = room.place(&self.s, 1.2 * here) {
+            let here = room.depth(&Vec3::zeros()) / room.size;
+            if let Ok(p) = room.place(&self.s, 1.2 * here) {
                 self.s.c.points[v as usize] = p;
-                self.changes.change(faces.iter().flatten().copied());
+                self.looks.change(faces.iter().flatten().copied());
             }
             true
         });
@@ -256,11 +240,11 @@ impl<'a> Push<'a> {
         TetError::Stuck { part, reason }
     }
 
-    fn push(&mut self, host: Host, v: u32, least: f64, new_points: bool) -> Result<bool, TetError> {
+    fn push(&mut self, host: Host, v: u32, least: f64, new_points: bool) -> Result<Pushed, TetError> {
         let star = self.s.star(v);
         let Some(fans) = self.fans(host, v)? else { return Err(self.stuck(host, Stuck::Intersection)) };
         if fans.len() < 2 && matches!(host, Host::Segment(_)) {
-            return Ok(false);
+            return Ok(Pushed::Not { room: f64::NEG_INFINITY });
         }
         let Some(sectors) = sectors(&self.s, v, &star, &fans) else {
             return Err(self.stuck(host, Stuck::Intersection));
@@ -269,12 +253,12 @@ impl<'a> Push<'a> {
         for faces in sectors {
             let room = Room::new(&self.s, v, &faces);
             let apex = match room.neighbor(&self.s, least) {
-                Some(w) => Apex::Vertex(w),
-                None if new_points => match room.place(&self.s, least * room.size) {
-                    Some(p) => Apex::Point(p),
-                    None => return Ok(false),
+                Ok(w) => Apex::Vertex(w),
+                Err(room) if !new_points => return Ok(Pushed::Not { room }),
+                Err(at_corners) => match room.place(&self.s, least) {
+                    Ok(p) => Apex::Point(p),
+                    Err(inside) => return Ok(Pushed::Not { room: inside.max(at_corners) }),
                 },
-                None => return Ok(false),
             };
             filled.push((faces, apex));
         }
@@ -284,7 +268,7 @@ impl<'a> Push<'a> {
         if let Host::Segment(i) = host {
             self.segments.list[i as usize].chain.retain(|&x| x != v);
         }
-        Ok(true)
+        Ok(Pushed::Off)
     }
 
     /// The facets around a vertex without it; nothing where they are not what they should be.
@@ -325,7 +309,7 @@ impl<'a> Push<'a> {
         if !self.s.c.replace(star, &new, &mut created) {
             return false;
         }
-        self.changes.change(new.iter().flatten().copied());
+        self.looks.change(new.iter().flatten().copied());
         let faces: FxHashSet<[u32; 3]> = fans.iter().flat_map(|fan| fan.new.iter().map(|&t| face_key(t))).collect();
         for half in created.iter().flat_map(|&t| 4 * t..4 * t + 4) {
             if faces.contains(&face_key(self.s.c.face(half))) {

@@ -4,10 +4,12 @@
 
 use super::space::Space;
 use crate::geometry::{Point3, Vec3};
-use crate::tet::delaunay::hash;
 
 /// Shares of the way from the segment to the deepest point of the room at which a position is looked for.
 const SHARES: [f64; 9] = [1.0, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4];
+
+/// Roundoff of distances over the size of the room.
+const ROUNDOFF: f64 = 1e-14;
 
 /// The room that some faces leave for a vertex that has to see all of them counter-clockwise, in coordinates relative
 /// to where it was.
@@ -56,28 +58,36 @@ impl<'a> Room<'a> {
     }
 
     /// The corner that sees all faces that do not have it, the one furthest from their planes; at least `least` times
-    /// the size.
-    pub(super) fn neighbor(&self, s: &Space, least: f64) -> Option<u32> {
+    /// the size. Where there is none, the largest such distance over the size that a corner further down has.
+    pub(super) fn neighbor(&self, s: &Space, least: f64) -> Result<u32, f64> {
         let mut rim: Vec<u32> = self.faces.iter().flatten().copied().collect();
         rim.sort_unstable();
         rim.dedup();
         // Where nothing is asked for, roundoff may not decide.
-        let bound = least * self.size - 1e-14 * self.size;
-        let mut rim: Vec<(f64, u32)> =
-            rim.into_iter().filter_map(|w| self.depth_of(s, w, bound).map(|d| (d, w))).collect();
-        rim.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let bound = (least - ROUNDOFF) * self.size;
+        let mut near = f64::NEG_INFINITY;
+        let mut deep: Vec<(f64, u32)> = Vec::new();
+        for w in rim {
+            match self.depth_of(s, w, near) {
+                Some(d) if d > bound => deep.push((d, w)),
+                Some(d) => near = d,
+                None => {}
+            }
+        }
+        deep.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let sees = |w: u32| self.faces.iter().all(|&[a, b, c]| [a, b, c].contains(&w) || s.orient([a, b, c, w]) > 0);
-        rim.into_iter().map(|(_, w)| w).find(|&w| sees(w))
+        deep.into_iter().map(|(_, w)| w).find(|&w| sees(w)).ok_or(near / self.size + ROUNDOFF)
     }
 
-    /// A point that sees all faces, from a distance of at least `least`.
-    pub(super) fn place(&self, s: &Space, least: f64) -> Option<Point3> {
-        let (aim, depth) = deepest(&self.planes, self.size)?;
-        if depth < least {
-            return None;
+    /// A point that sees all faces, from a distance of at least `least` times the size. Where there is none, the largest
+    /// such distance over the size, if a look for less may find one.
+    pub(super) fn place(&self, s: &Space, least: f64) -> Result<Point3, f64> {
+        let (aim, depth) = deepest(&self.planes, self.size).ok_or(f64::NEG_INFINITY)?;
+        if depth < least * self.size {
+            return Err(depth / self.size);
         }
         let sees = |p: &Point3| self.faces.iter().all(|f| s.orient_to(*f, p) > 0);
-        SHARES.iter().map(|share| self.origin + aim * *share).find(sees)
+        SHARES.iter().map(|share| self.origin + aim * *share).find(sees).ok_or(f64::NEG_INFINITY)
     }
 }
 
@@ -102,49 +112,49 @@ type Constraint = ([f64; 4], f64);
 /// its distance; normals have length 1. `size` bounds the coordinates.
 fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
     let mut constraints: Vec<Constraint> = planes.iter().map(|(n, h)| ([-n.x, -n.y, -n.z, 1.0], *h / size)).collect();
-    // A fixed shuffle: the expected time is linear.
-    for i in (1..constraints.len()).rev() {
-        constraints.swap(i, hash(i as u64) as usize % (i + 1));
-    }
-    let x = maximize(&constraints, [0.0, 0.0, 0.0, 1.0], 4)?;
+    let x = maximize(&mut constraints, [0.0, 0.0, 0.0, 1.0], 4)?;
     Some((Vec3::new(x[0], x[1], x[2]) * size, x[3] * size))
 }
 
-/// Maximizes `c · x` over the first `d` coordinates, each between −1 and 1.
-fn maximize(constraints: &[Constraint], c: [f64; 4], d: usize) -> Option<[f64; 4]> {
+/// Maximizes `c · x` over the first `d` coordinates, each between −1 and 1. Constraints are taken into account one after
+/// the other, the most violated one first: few are needed.
+fn maximize(constraints: &mut [Constraint], c: [f64; 4], d: usize) -> Option<[f64; 4]> {
     if d == 1 {
         return interval(constraints, c[0]);
     }
     let mut x = c.map(|c| if c > 0.0 { 1.0 } else { -1.0 });
-    for (i, (a, b)) in constraints.iter().enumerate() {
-        let value: f64 = (0..d).map(|k| a[k] * x[k]).sum();
-        if value <= b + 1e-13 {
-            continue;
-        }
-        // The optimum lies on this plane: solve for the coordinate with the largest coefficient, and put it last.
-        let pivot = (0..d).max_by(|&j, &k| a[j].abs().total_cmp(&a[k].abs()))?;
-        if a[pivot].abs() < 1e-13 {
-            return None;
-        }
-        let eliminate = |(e, f): &Constraint| -> Constraint {
-            let factor = e[pivot] / a[pivot];
-            let mut reduced: [f64; 4] = std::array::from_fn(|k| e[k] - factor * a[k]);
-            reduced[pivot] = reduced[d - 1];
-            (reduced, f - factor * b)
-        };
-        let mut below: Vec<Constraint> = constraints[..i].iter().map(eliminate).collect();
-        for bound in [1.0, -1.0] {
-            let mut e = [0.0; 4];
-            e[pivot] = bound;
-            below.push(eliminate(&(e, 1.0)));
-        }
-        let objective = eliminate(&(c, 0.0)).0;
-        let mut y = maximize(&below, objective, d - 1)?;
-        y[d - 1] = y[pivot];
-        let rest: f64 = (0..d).filter(|&k| k != pivot).map(|k| a[k] * y[k]).sum();
-        y[pivot] = (b - rest) / a[pivot];
-        x = y;
+    for i in 0..constraints.len() {
+        let excess = |(a, b): &Constraint| (0..d).map(|k| a[k] * x[k]).sum::<f64>() - b;
+        let rest = constraints[i..].iter().map(excess).zip(i..);
+        let Some((_, next)) = rest.filter(|&(e, _)| e > 1e-13).max_by(|e, f| e.0.total_cmp(&f.0)) else { break };
+        constraints.swap(i, next);
+        x = maximize_on(&constraints[..i], &constraints[i], c, d)?;
     }
+    Some(x)
+}
+
+/// The same with one constraint an equation: solved for the coordinate with the largest coefficient, which is put last.
+fn maximize_on(constraints: &[Constraint], (a, b): &Constraint, c: [f64; 4], d: usize) -> Option<[f64; 4]> {
+    let pivot = (0..d).max_by(|&j, &k| a[j].abs().total_cmp(&a[k].abs()))?;
+    if a[pivot].abs() < 1e-13 {
+        return None;
+    }
+    let eliminate = |(e, f): &Constraint| -> Constraint {
+        let factor = e[pivot] / a[pivot];
+        let mut reduced: [f64; 4] = std::array::from_fn(|k| e[k] - factor * a[k]);
+        reduced[pivot] = reduced[d - 1];
+        (reduced, f - factor * b)
+    };
+    let bounds = [1.0, -1.0].map(|bound| {
+        let mut e = [0.0; 4];
+        e[pivot] = bound;
+        (e, 1.0)
+    });
+    let mut below: Vec<Constraint> = bounds.iter().chain(constraints).map(eliminate).collect();
+    let mut x = maximize(&mut below, eliminate(&(c, 0.0)).0, d - 1)?;
+    x[d - 1] = x[pivot];
+    let rest: f64 = (0..d).filter(|&k| k != pivot).map(|k| a[k] * x[k]).sum();
+    x[pivot] = (b - rest) / a[pivot];
     Some(x)
 }
 
@@ -168,6 +178,7 @@ fn interval(constraints: &[Constraint], c: f64) -> Option<[f64; 4]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tet::delaunay::hash;
 
     #[test]
     fn the_deepest_point_of_a_box_is_its_middle() {
