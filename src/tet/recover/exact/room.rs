@@ -1,15 +1,18 @@
-//! The room that faces leave for a vertex, and its deepest point: a linear program in four variables (Seidel,
-//! 'Small-dimensional linear programming and convex hulls made easy', 1991). That is floating point, and a proposal;
-//! exact predicates decide.
+//! The room that faces leave for a vertex, and its deepest point: a linear program in four variables. That is
+//! floating point, and a proposal; exact predicates decide.
 
 use super::space::Space;
 use crate::geometry::{Point3, Vec3};
+use nalgebra::{Matrix4, Vector4};
 
 /// Shares of the way from the segment to the deepest point of the room at which a position is looked for.
 const SHARES: [f64; 9] = [1.0, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4];
 
 /// Roundoff of distances over the size of the room.
 const ROUNDOFF: f64 = 1e-14;
+
+/// Exchanges of a constraint in a linear program at most; ten are usual.
+const EXCHANGES: usize = 100;
 
 /// The room that some faces leave for a vertex that has to see all of them counter-clockwise, in coordinates relative
 /// to where it was.
@@ -106,73 +109,50 @@ fn normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
 }
 
 /// `a · x ≤ b`.
-type Constraint = ([f64; 4], f64);
+type Constraint = (Vector4<f64>, f64);
 
 /// The point `x` that is furthest from the planes `normal · x + height = 0` among those on their positive sides, and
 /// its distance; normals have length 1. `size` bounds the coordinates.
 fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
-    let mut constraints: Vec<Constraint> = planes.iter().map(|(n, h)| ([-n.x, -n.y, -n.z, 1.0], *h / size)).collect();
-    let x = maximize(&mut constraints, [0.0, 0.0, 0.0, 1.0], 4)?;
-    Some((Vec3::new(x[0], x[1], x[2]) * size, x[3] * size))
+    let mut constraints: Vec<Constraint> = Vec::with_capacity(planes.len() + 8);
+    for k in 0..8 {
+        let bound = if k < 4 { 1.0 } else { -1.0 };
+        constraints.push((Vector4::ith(k % 4, bound), 1.0));
+    }
+    constraints.extend(planes.iter().map(|(n, h)| (Vector4::new(-n.x, -n.y, -n.z, 1.0), h / size)));
+    let x = highest(&constraints)?;
+    Some((x.xyz() * size, x[3] * size))
 }
 
-/// Maximizes `c · x` over the first `d` coordinates, each between −1 and 1. Constraints are taken into account one after
-/// the other, the most violated one first: few are needed.
-fn maximize(constraints: &mut [Constraint], c: [f64; 4], d: usize) -> Option<[f64; 4]> {
-    if d == 1 {
-        return interval(constraints, c[0]);
-    }
-    let mut x = c.map(|c| if c > 0.0 { 1.0 } else { -1.0 });
-    for i in 0..constraints.len() {
-        let excess = |(a, b): &Constraint| (0..d).map(|k| a[k] * x[k]).sum::<f64>() - b;
-        let rest = constraints[i..].iter().map(excess).zip(i..);
-        let Some((_, next)) = rest.filter(|&(e, _)| e > 1e-13).max_by(|e, f| e.0.total_cmp(&f.0)) else { break };
-        constraints.swap(i, next);
-        x = maximize_on(&constraints[..i], &constraints[i], c, d)?;
-    }
-    Some(x)
-}
-
-/// The same with one constraint an equation: solved for the coordinate with the largest coefficient, which is put last.
-fn maximize_on(constraints: &[Constraint], (a, b): &Constraint, c: [f64; 4], d: usize) -> Option<[f64; 4]> {
-    let pivot = (0..d).max_by(|&j, &k| a[j].abs().total_cmp(&a[k].abs()))?;
-    if a[pivot].abs() < 1e-13 {
-        return None;
-    }
-    let eliminate = |(e, f): &Constraint| -> Constraint {
-        let factor = e[pivot] / a[pivot];
-        let mut reduced: [f64; 4] = std::array::from_fn(|k| e[k] - factor * a[k]);
-        reduced[pivot] = reduced[d - 1];
-        (reduced, f - factor * b)
-    };
-    let bounds = [1.0, -1.0].map(|bound| {
-        let mut e = [0.0; 4];
-        e[pivot] = bound;
-        (e, 1.0)
-    });
-    let mut below: Vec<Constraint> = bounds.iter().chain(constraints).map(eliminate).collect();
-    let mut x = maximize(&mut below, eliminate(&(c, 0.0)).0, d - 1)?;
-    x[d - 1] = x[pivot];
-    let rest: f64 = (0..d).filter(|&k| k != pivot).map(|k| a[k] * x[k]).sum();
-    x[pivot] = (b - rest) / a[pivot];
-    Some(x)
-}
-
-fn interval(constraints: &[Constraint], c: f64) -> Option<[f64; 4]> {
-    let (mut low, mut high) = (-1.0_f64, 1.0_f64);
-    for (a, b) in constraints {
-        if a[0] > 1e-15 {
-            high = high.min(b / a[0]);
-        } else if a[0] < -1e-15 {
-            low = low.max(b / a[0]);
-        } else if *b < -1e-12 {
-            return None;
+/// The point with the largest last coordinate that satisfies all constraints, the first four of which bound it from
+/// above. Dual simplex method: four constraints hold with equality; the most violated one takes the place of one of them
+/// as long as there is one.
+fn highest(constraints: &[Constraint]) -> Option<Vector4<f64>> {
+    let mut tight = [0, 1, 2, 3];
+    for _ in 0..EXCHANGES {
+        let rows = Matrix4::from_rows(&tight.map(|i: usize| constraints[i].0.transpose()));
+        let lu = rows.lu();
+        // Not by the inverse: the tight constraints hold to the last bits, however thin the wedge between them is.
+        let x = lu.solve(&Vector4::from(tight.map(|i| constraints[i].1)))?;
+        let inverse = lu.try_inverse()?;
+        let mut worst = (1e-13, None);
+        for (i, (a, b)) in constraints.iter().enumerate() {
+            let excess = a.dot(&x) - b;
+            if excess > worst.0 {
+                worst = (excess, Some(i));
+            }
         }
+        let Some(enters) = worst.1 else { return Some(x) };
+        // The objective's gradient is a sum of these rows with weights that are not negative, and stays one.
+        let weight = inverse.row(3);
+        let share = inverse.tr_mul(&constraints[enters].0);
+        let slack = |k: usize| weight[k].max(0.0) / share[k];
+        let leaves = (0..4)
+            .filter(|&k| share[k] > 1e-12)
+            .min_by(|&j, &k| slack(j).total_cmp(&slack(k)).then(share[k].total_cmp(&share[j])));
+        tight[leaves?] = enters;
     }
-    if low > high + 1e-12 {
-        return None;
-    }
-    Some([if c > 0.0 { high } else { low }, 0.0, 0.0, 0.0])
+    None
 }
 
 #[cfg(test)]
