@@ -1,15 +1,24 @@
 //! What is known of the room around vertices. Their stars are looked at again and again for less and less room; as long
 //! as they have not changed, what was found the last time tells whether that is worth it.
 
+/// How a place for a vertex is looked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Way {
+    /// At its neighbors.
+    Corners,
+    /// There, or anywhere in its star.
+    Points,
+    /// There, or in a wider cavity.
+    Wider,
+}
+
 /// What is known of one vertex.
 #[derive(Clone, Copy, Default)]
 struct Known {
     /// When the star changed.
     changed: u32,
-    /// When it was looked at for a corner that sees enough, and the largest room that one may have.
-    corner: (u32, f64),
-    /// The same for a new point.
-    point: (u32, f64),
+    /// When a place was looked for in each way, and the largest room that one may have.
+    places: [(u32, f64); 3],
     /// When it was looked at for a better place.
     relaxed: u32,
 }
@@ -39,20 +48,18 @@ impl Looks {
         }
     }
 
-    /// Whether there may be more than `least` room at a vertex for one of its neighbors or, if they are asked for, for
-    /// new points.
-    pub(super) fn worth(&mut self, v: u32, least: f64, new_points: bool) -> bool {
+    /// Whether there may be a place with at least `least` room for a vertex.
+    pub(super) fn worth(&mut self, v: u32, least: f64, way: Way) -> bool {
         let since = self.since;
         let known = self.of(v);
-        let (when, room) = if new_points { known.point } else { known.corner };
+        let (when, room) = known.places[way as usize];
         when <= known.changed.max(since) || room >= least
     }
 
-    /// There is at most that much room at a vertex.
-    pub(super) fn found(&mut self, v: u32, room: f64, new_points: bool) {
+    /// There is no place with more than that much room for a vertex.
+    pub(super) fn found(&mut self, v: u32, room: f64, way: Way) {
         let now = self.now + 1;
-        let known = self.of(v);
-        *(if new_points { &mut known.point } else { &mut known.corner }) = (now, room);
+        self.of(v).places[way as usize] = (now, room);
     }
 
     /// Whether a vertex may have a better place now; it is taken to be looked for.

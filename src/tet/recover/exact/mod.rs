@@ -18,6 +18,7 @@ mod room;
 mod sectors;
 mod segments;
 mod space;
+mod wider;
 
 use crate::mesh::TriMesh;
 use crate::tet::complex::Complex;

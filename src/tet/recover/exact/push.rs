@@ -4,14 +4,15 @@
 
 use super::dig;
 use super::facets::Cover;
-use super::looks::Looks;
+use super::looks::{Looks, Way};
 use super::parts::sides;
-use super::room::Room;
-use super::sectors::{Fan, sectors};
+use super::room::{Apex, Room};
+use super::sectors::{Fan, Sector, sectors};
 use super::segments::Segments;
 use super::space::Space;
+use super::wider::Wider;
+use crate::geometry::Vec3;
 use crate::geometry::implicit::OnTriangle;
-use crate::geometry::{Point3, Vec3};
 use crate::tet::complex::face_key;
 use crate::tet::error::{Obstacle, Stuck, TetError};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -19,6 +20,9 @@ use std::ops::Range;
 
 /// Least distances from the planes around, over the size of the room, that are asked for one after the other.
 const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
+
+/// Place in [`LEVELS`] of the room that wider cavities have to have: they cost most, and are for what is left.
+const WIDER_FROM: usize = 3;
 
 /// What a vertex that has to go lies on.
 #[derive(Clone, Copy, Debug)]
@@ -29,15 +33,6 @@ enum Host {
     Facet(u32),
     /// Nothing any more.
     Free(u32),
-}
-
-/// What takes the place of the vertex in a sector.
-#[derive(Clone, Copy, Debug)]
-enum Apex {
-    /// One of the vertices around it.
-    Vertex(u32),
-    /// A new one.
-    Point(Point3),
 }
 
 /// What came of a vertex.
@@ -123,6 +118,7 @@ impl<'a> Push<'a> {
     pub(super) fn settle(&mut self) -> Result<(), TetError> {
         let mut left = std::mem::take(&mut self.left);
         self.clear(&mut left)?;
+        self.clear_wider(&mut left)?;
         while !left.is_empty() {
             let before = left.len();
             let moved = left.iter().filter(|&&(host, v)| self.slide(host, v)).count();
@@ -130,6 +126,7 @@ impl<'a> Push<'a> {
                 break;
             }
             self.clear(&mut left)?;
+            self.clear_wider(&mut left)?;
             if left.len() == before {
                 break;
             }
@@ -156,12 +153,27 @@ impl<'a> Push<'a> {
         while level < LEVELS.len() && !left.is_empty() {
             let before = left.len();
             // Vertices that go without a trace give room to the others, so they come first.
-            self.pass(left, level, false)?;
+            self.pass(left, level, Way::Corners)?;
             if left.len() == before {
                 self.relax(LEVELS[level]);
-                self.pass(left, level, true)?;
+                self.pass(left, level, Way::Points)?;
             }
             level = if left.len() == before { level + 1 } else { level };
+        }
+        Ok(())
+    }
+
+    /// Pushes vertices that have no room into wider cavities.
+    fn clear_wider(&mut self, left: &mut Vec<(Host, u32)>) -> Result<(), TetError> {
+        let mut level = WIDER_FROM;
+        while level < LEVELS.len() && !left.is_empty() {
+            let before = left.len();
+            self.pass(left, level, Way::Wider)?;
+            if left.len() == before {
+                level += 1;
+            } else {
+                self.clear(left)?;
+            }
         }
         Ok(())
     }
@@ -181,14 +193,14 @@ impl<'a> Push<'a> {
         moved
     }
 
-    fn pass(&mut self, left: &mut Vec<(Host, u32)>, level: usize, new_points: bool) -> Result<(), TetError> {
+    fn pass(&mut self, left: &mut Vec<(Host, u32)>, level: usize, way: Way) -> Result<(), TetError> {
         let mut again = Vec::with_capacity(left.len());
         for &(host, v) in left.iter() {
             let least = LEVELS[level];
-            if self.looks.worth(v, least, new_points) {
-                match self.push(host, v, least, new_points)? {
+            if self.looks.worth(v, least, way) {
+                match self.push(host, v, least, way)? {
                     Pushed::Off => continue,
-                    Pushed::Not { room } => self.looks.found(v, room, new_points),
+                    Pushed::Not { room } => self.looks.found(v, room, way),
                 }
             }
             again.push((host, v));
@@ -240,7 +252,7 @@ impl<'a> Push<'a> {
         TetError::Stuck { part, reason }
     }
 
-    fn push(&mut self, host: Host, v: u32, least: f64, new_points: bool) -> Result<Pushed, TetError> {
+    fn push(&mut self, host: Host, v: u32, least: f64, way: Way) -> Result<Pushed, TetError> {
         let star = self.s.star(v);
         let Some(fans) = self.fans(host, v)? else { return Err(self.stuck(host, Stuck::Intersection)) };
         if fans.len() < 2 && matches!(host, Host::Segment(_)) {
@@ -249,20 +261,22 @@ impl<'a> Push<'a> {
         let Some(sectors) = sectors(&self.s, v, &star, &fans) else {
             return Err(self.stuck(host, Stuck::Intersection));
         };
+        let mut wider = Wider::new(&self.s, &self.segments, v);
         let mut filled = Vec::with_capacity(sectors.len());
-        for faces in sectors {
-            let room = Room::new(&self.s, v, &faces);
-            let apex = match room.neighbor(&self.s, least) {
-                Ok(w) => Apex::Vertex(w),
-                Err(room) if !new_points => return Ok(Pushed::Not { room }),
-                Err(at_corners) => match room.place(&self.s, least) {
-                    Ok(p) => Apex::Point(p),
-                    Err(inside) => return Ok(Pushed::Not { room: inside.max(at_corners) }),
-                },
+        for mut sector in sectors {
+            let room = Room::new(&self.s, v, &sector.faces);
+            let apex = match way {
+                Way::Corners => room.neighbor(&self.s, least).map(Apex::Vertex),
+                Way::Points => room.apex(&self.s, least),
+                Way::Wider => wider.apex(&mut sector, least).ok_or(least.next_down()),
             };
-            filled.push((faces, apex));
+            match apex {
+                Ok(apex) => filled.push((sector, apex)),
+                Err(room) => return Ok(Pushed::Not { room }),
+            }
         }
-        if !self.commit(v, &star, &fans, &filled) {
+        let cavity: Vec<u32> = star.iter().chain(&wider.taken).copied().collect();
+        if !self.commit(v, &cavity, &fans, &filled) {
             return Err(self.stuck(host, Stuck::Intersection));
         }
         if let Host::Segment(i) = host {
@@ -294,25 +308,29 @@ impl<'a> Push<'a> {
     }
 
     /// Puts the new apices in the place of a vertex.
-    fn commit(&mut self, v: u32, star: &[u32], fans: &[Fan], sectors: &[(Vec<[u32; 3]>, Apex)]) -> bool {
+    fn commit(&mut self, v: u32, cavity: &[u32], fans: &[Fan], sectors: &[(Sector, Apex)]) -> bool {
         let before = self.s.c.points.len() as u32;
         let mut new = Vec::new();
-        for (faces, apex) in sectors {
+        for (sector, apex) in sectors {
             let apex = match apex {
                 Apex::Vertex(w) => *w,
                 Apex::Point(p) => self.s.add_point(*p),
             };
-            let faces = faces.iter().filter(|f| !f.contains(&apex));
+            let faces = sector.faces.iter().filter(|f| !f.contains(&apex));
             new.extend(faces.map(|&[a, b, c]| [a, b, c, apex]));
         }
+        // Facets have new faces, and frozen walls may lie between two of the sectors.
+        let c = &self.s.c;
+        let walls = sectors.iter().flat_map(|(sector, _)| &sector.halves).filter(|&&half| c.is_frozen(half));
+        let mut frozen: FxHashSet<[u32; 3]> = walls.map(|&half| face_key(c.face(half))).collect();
+        frozen.extend(fans.iter().flat_map(|fan| &fan.new).map(|&face| face_key(face)));
         let mut created = Vec::new();
-        if !self.s.c.replace(star, &new, &mut created) {
+        if !self.s.c.replace(cavity, &new, &mut created) {
             return false;
         }
         self.looks.change(new.iter().flatten().copied());
-        let faces: FxHashSet<[u32; 3]> = fans.iter().flat_map(|fan| fan.new.iter().map(|&t| face_key(t))).collect();
         for half in created.iter().flat_map(|&t| 4 * t..4 * t + 4) {
-            if faces.contains(&face_key(self.s.c.face(half))) {
+            if frozen.contains(&face_key(self.s.c.face(half))) {
                 self.s.c.freeze(half);
             }
         }

@@ -14,6 +14,15 @@ const ROUNDOFF: f64 = 1e-14;
 /// Exchanges of a constraint in a linear program at most; ten are usual.
 const EXCHANGES: usize = 100;
 
+/// What takes the place of a vertex in a sector.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Apex {
+    /// One of the vertices around it.
+    Vertex(u32),
+    /// A new one.
+    Point(Point3),
+}
+
 /// The room that some faces leave for a vertex that has to see all of them counter-clockwise, in coordinates relative
 /// to where it was.
 pub(super) struct Room<'a> {
@@ -82,12 +91,27 @@ impl<'a> Room<'a> {
         deep.into_iter().map(|(_, w)| w).find(|&w| sees(w)).ok_or(near / self.size + ROUNDOFF)
     }
 
+    /// What may take the place of the vertex, with at least `least` times the size of room; a corner if there is one.
+    pub(super) fn apex(&self, s: &Space, least: f64) -> Result<Apex, f64> {
+        self.neighbor(s, least)
+            .map(Apex::Vertex)
+            .or_else(|at_corners| self.place(s, least).map(Apex::Point).map_err(|inside| inside.max(at_corners)))
+    }
+
+    /// The faces that bound the room at its deepest point, up to four, and its depth over the size.
+    pub(super) fn bounds(&self) -> Option<(Vec<usize>, f64)> {
+        let highest = highest(&constraints(&self.planes, self.size))?;
+        let faces = highest.tight.iter().filter_map(|i| i.checked_sub(BOUNDS)).collect();
+        Some((faces, highest.x[3]))
+    }
+
     /// A point that sees all faces, from a distance of at least `least` times the size. Where there is none, the largest
     /// such distance over the size, if a look for less may find one.
     pub(super) fn place(&self, s: &Space, least: f64) -> Result<Point3, f64> {
-        let (aim, depth) = deepest(&self.planes, self.size).ok_or(f64::NEG_INFINITY)?;
-        if depth < least * self.size {
-            return Err(depth / self.size);
+        let Highest { x, .. } = highest(&constraints(&self.planes, self.size)).ok_or(f64::NEG_INFINITY)?;
+        let (aim, depth) = (x.xyz() * self.size, x[3]);
+        if depth < least {
+            return Err(depth);
         }
         let sees = |p: &Point3| self.faces.iter().all(|f| s.orient_to(*f, p) > 0);
         SHARES.iter().map(|share| self.origin + aim * *share).find(sees).ok_or(f64::NEG_INFINITY)
@@ -111,23 +135,29 @@ fn normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
 /// `a · x ≤ b`.
 type Constraint = (Vector4<f64>, f64);
 
-/// The point `x` that is furthest from the planes `normal · x + height = 0` among those on their positive sides, and
-/// its distance; normals have length 1. `size` bounds the coordinates.
-fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
-    let mut constraints: Vec<Constraint> = Vec::with_capacity(planes.len() + 8);
-    for k in 0..8 {
-        let bound = if k < 4 { 1.0 } else { -1.0 };
-        constraints.push((Vector4::ith(k % 4, bound), 1.0));
-    }
+/// Constraints that bound all coordinates.
+const BOUNDS: usize = 8;
+
+/// That the point `x`, given as its coordinates over `size` and a distance over `size`, lies no nearer than that to the
+/// planes `normal · x + height = 0`, on their positive sides; normals have length 1.
+fn constraints(planes: &[(Vec3, f64)], size: f64) -> Vec<Constraint> {
+    let mut constraints = Vec::with_capacity(planes.len() + BOUNDS);
+    constraints.extend((0..BOUNDS).map(|k| (Vector4::ith(k % 4, if k < 4 { 1.0 } else { -1.0 }), 1.0)));
     constraints.extend(planes.iter().map(|(n, h)| (Vector4::new(-n.x, -n.y, -n.z, 1.0), h / size)));
-    let x = highest(&constraints)?;
-    Some((x.xyz() * size, x[3] * size))
+    constraints
+}
+
+/// A solution of a linear program.
+struct Highest {
+    x: Vector4<f64>,
+    /// Constraints that hold with equality there, by number.
+    tight: [usize; 4],
 }
 
 /// The point with the largest last coordinate that satisfies all constraints, the first four of which bound it from
 /// above. Dual simplex method: four constraints hold with equality; the most violated one takes the place of one of them
 /// as long as there is one.
-fn highest(constraints: &[Constraint]) -> Option<Vector4<f64>> {
+fn highest(constraints: &[Constraint]) -> Option<Highest> {
     let mut tight = [0, 1, 2, 3];
     for _ in 0..EXCHANGES {
         let rows = Matrix4::from_rows(&tight.map(|i: usize| constraints[i].0.transpose()));
@@ -142,7 +172,7 @@ fn highest(constraints: &[Constraint]) -> Option<Vector4<f64>> {
                 worst = (excess, Some(i));
             }
         }
-        let Some(enters) = worst.1 else { return Some(x) };
+        let Some(enters) = worst.1 else { return Some(Highest { x, tight }) };
         // The objective's gradient is a sum of these rows with weights that are not negative, and stays one.
         let weight = inverse.row(3);
         let share = inverse.tr_mul(&constraints[enters].0);
@@ -159,6 +189,11 @@ fn highest(constraints: &[Constraint]) -> Option<Vector4<f64>> {
 mod tests {
     use super::*;
     use crate::tet::delaunay::hash;
+
+    /// The deepest point between planes, and its distance from them.
+    fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
+        highest(&constraints(planes, size)).map(|h| (h.x.xyz() * size, h.x[3] * size))
+    }
 
     #[test]
     fn the_deepest_point_of_a_box_is_its_middle() {

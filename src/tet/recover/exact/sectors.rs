@@ -61,9 +61,16 @@ fn outline(next: &FxHashMap<u32, u32>, ends: Option<[u32; 2]>) -> Option<Vec<u32
     (faces == next.len() && polygon.len() >= 3).then_some(polygon)
 }
 
-/// The faces that the vertex that takes the place of another has to see in one sector, counter-clockwise from there:
-/// those of the star opposite to the vertex, and the new faces of fans. Nothing if a frozen face is none of the fans'.
-pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<Vec<Vec<[u32; 3]>>> {
+/// The faces that the vertex that takes the place of another has to see in one sector, counter-clockwise from there.
+pub(super) struct Sector {
+    pub faces: Vec<[u32; 3]>,
+    /// What the first of these are as half-faces of the sector's tetrahedra; the others are new faces of facets.
+    pub halves: Vec<u32>,
+}
+
+/// The sectors around a vertex. They have the faces of the star opposite to the vertex, and the new faces of fans. Nothing
+/// if a frozen face is none of the fans'.
+pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<Vec<Sector>> {
     let mut of: FxHashMap<[u32; 3], (usize, [u32; 3])> = FxHashMap::default();
     for (k, fan) in fans.iter().enumerate() {
         of.extend(fan.old.iter().map(|&piece| (face_key(piece), (k, piece))));
@@ -74,7 +81,7 @@ pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<V
         if !seen.insert(first) {
             continue;
         }
-        let mut faces = Vec::new();
+        let mut halves = Vec::new();
         // Per fan, whether the sector lies in front of it, behind it.
         let mut touched = vec![[false; 2]; fans.len()];
         let mut stack = vec![first];
@@ -82,7 +89,7 @@ pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<V
             for half in 4 * t..4 * t + 4 {
                 let f = s.c.face(half);
                 if s.c.apex(half) == v {
-                    faces.push([f[0], f[2], f[1]]);
+                    halves.push(half);
                 } else if let Some(&(k, piece)) = of.get(&face_key(f)) {
                     // Seen from outside its tetrahedron the face runs as the facet: the sector lies behind.
                     touched[k][usize::from(same_turn(f, piece))] = true;
@@ -96,6 +103,7 @@ pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<V
                 }
             }
         }
+        let mut faces: Vec<[u32; 3]> = halves.iter().map(|&half| s.wall(half)).collect();
         for (fan, touched) in fans.iter().zip(&touched) {
             if touched[0] {
                 faces.extend(&fan.new);
@@ -104,7 +112,7 @@ pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<V
                 faces.extend(fan.new.iter().map(|&[a, b, c]| [a, c, b]));
             }
         }
-        sectors.push(faces);
+        sectors.push(Sector { faces, halves });
     }
     Some(sectors)
 }

@@ -133,6 +133,12 @@ impl Space {
         self.outer(cavity).into_iter().map(|half| self.c.face(half)).collect()
     }
 
+    /// A half-face as a wall of a cavity that has its tetrahedron, counter-clockwise seen from inside.
+    pub(super) fn wall(&self, half: u32) -> [u32; 3] {
+        let [a, b, c] = self.c.face(half);
+        [a, c, b]
+    }
+
     /// The sign of the orientation of four vertices. Exact.
     #[inline]
     pub(super) fn orient(&self, v: [u32; 4]) -> i32 {
