@@ -24,6 +24,12 @@ const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
 /// Place in [`LEVELS`] of the room that wider cavities have to have: they cost most, and are for what is left.
 const WIDER_FROM: usize = 3;
 
+#[cfg(test)]
+thread_local! {
+    /// Whether wider cavities are not kept for what is left.
+    pub(super) static WIDER_FIRST: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
 /// What a vertex that has to go lies on.
 #[derive(Clone, Copy, Debug)]
 enum Host {
@@ -117,6 +123,10 @@ impl<'a> Push<'a> {
     /// room is taken only when there is no better, since it leaves even less to others.
     pub(super) fn settle(&mut self) -> Result<(), TetError> {
         let mut left = std::mem::take(&mut self.left);
+        #[cfg(test)]
+        if WIDER_FIRST.get() {
+            self.clear_wider(&mut left)?;
+        }
         self.clear(&mut left)?;
         self.clear_wider(&mut left)?;
         while !left.is_empty() {
@@ -166,6 +176,10 @@ impl<'a> Push<'a> {
     /// Pushes vertices that have no room into wider cavities.
     fn clear_wider(&mut self, left: &mut Vec<(Host, u32)>) -> Result<(), TetError> {
         let mut level = WIDER_FROM;
+        #[cfg(test)]
+        if WIDER_FIRST.get() {
+            level = 0;
+        }
         while level < LEVELS.len() && !left.is_empty() {
             let before = left.len();
             self.pass(left, level, Way::Wider)?;

@@ -137,6 +137,17 @@ fn thin_sheets_with_unlike_sides_are_filled() {
 }
 
 #[test]
+fn wider_cavities_fill_as_well() {
+    push::WIDER_FIRST.set(true);
+    fills_all(&twisted_prism(5, 0.3, 1.0));
+    fills_all(&chazelle(2, 0.1));
+    let wide = fills_all(&sheet(6, 1e-3, 0.0, 1));
+    push::WIDER_FIRST.set(false);
+    let narrow = fills_all(&sheet(6, 1e-3, 0.0, 1));
+    assert!(wide.steiner_points < narrow.steiner_points, "{wide:?} {narrow:?}");
+}
+
+#[test]
 fn notched_boxes_are_filled() {
     for (n, gap) in [(1, 0.5), (2, 0.1), (3, 0.01)] {
         fills_all(&chazelle(n, gap));
