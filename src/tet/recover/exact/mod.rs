@@ -5,7 +5,7 @@
 //! 1. [`segments`]: missing edges become chains of edges, with a vertex at each face or edge that they cross.
 //! 2. [`facets`]: missing triangles become unions of faces, with a vertex at each edge that pierces them.
 //! 3. [`push`]: each of these vertices gives way to copies inside the sectors between the facets around it ([`sectors`],
-//!    [`room`]).
+//!    [`room`]); where a sector is too narrow, what lies beside it is taken as well ([`wider`]).
 
 mod dig;
 mod facets;
