@@ -91,8 +91,9 @@ impl Improver {
                 self.smooth_and_flip();
                 if self.options.effort == Effort::Full {
                     self.guard = self.options.stubborn_below;
-                    self.treat_thoroughly();
-                    self.spare_others();
+                    let allowance = Allowance::of(&self.c);
+                    self.treat_thoroughly(&allowance);
+                    self.spare_others(allowance);
                 } else {
                     self.treat_stubborn();
                 }

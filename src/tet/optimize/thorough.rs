@@ -18,13 +18,18 @@ const GAIN: f64 = 1.1;
 const WORTHWHILE: usize = 100;
 
 impl Improver {
-    /// Treats all tetrahedra below the stubborn limit, the worst first.
-    pub(super) fn treat_thoroughly(&mut self) {
+    /// Treats all tetrahedra below the stubborn limit, the worst first, but for those on needles that are about as good
+    /// as the needle allows.
+    pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
         for _ in 0..ROUNDS {
             let list = self.worst_first(self.options.stubborn_below);
             let (mut tried, mut changes) = (0, 0);
             for &entry in &list {
                 if !self.is_current(entry) || !self.has_news(entry.1) {
+                    continue;
+                }
+                let allowed = allowance.of_tet(&self.c.verts(entry.1));
+                if allowed < 1.0 && entry.0 >= allowed {
                     continue;
                 }
                 if !self.spend() {
@@ -46,8 +51,7 @@ impl Improver {
     }
 
     /// Treats what is still very bad but does not stand on a needle, even if those that do become worse.
-    pub(super) fn spare_others(&mut self) {
-        let allowance = Allowance::of(&self.c);
+    pub(super) fn spare_others(&mut self, allowance: Allowance) {
         if allowance.is_empty() {
             return;
         }
