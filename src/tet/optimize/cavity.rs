@@ -12,6 +12,8 @@ const MAX_CAVITY: usize = 40;
 const MAX_RING: usize = 10;
 /// What an insertion or contraction must gain in the worst radius ratio, relative to the old one.
 const GAIN: f64 = 1.1;
+/// Rise of the worst radius ratio beside needles, relative to the old one, that may cost strain.
+const LEAP: f64 = 3.0;
 /// Rounds over the stubborn tetrahedra.
 const ROUNDS: usize = 4;
 
@@ -114,7 +116,7 @@ impl Improver {
             let stays = k.tets.iter().map(|&t| self.c.verts(t)).filter(|x| !x.contains(&w));
             k.new.clear();
             k.new.extend(stays.map(|x| x.map(|u| if u == v { w } else { u })));
-            done = self.exchange(&mut k);
+            done = self.eases(&k.tets, &k.new) && self.exchange(&mut k);
             if done {
                 self.movable[v as usize] = false;
             }
@@ -157,9 +159,18 @@ impl Improver {
             }
             k.tets.clear();
             k.tets.extend(k.ring.tets.iter().filter(|&&t| !self.c.is_ghost(t)));
-            let start = if under { self.middle(&k.tets) } else { self.center([a, b]) };
-            if self.insert_in_cavity(&mut k, start, t) {
-                done = true;
+            let start = if under {
+                self.widen(&mut k.tets);
+                self.middle(&k.tets)
+            } else {
+                self.center([a, b])
+            };
+            done = self.insert_in_cavity(&mut k, start, t);
+            if !done && under {
+                let ends = v.into_iter().filter(|&w| w != a && w != b);
+                done = self.insert_for_both(&mut k, ends, t);
+            }
+            if done {
                 break;
             }
         }
@@ -172,8 +183,45 @@ impl Improver {
         done
     }
 
+    /// Puts one vertex in the place of the two that `t` has off an edge of the boundary, if both may go: of the
+    /// tetrahedra around the edge those on the boundary remain.
+    fn insert_for_both(&mut self, k: &mut Cavity, ends: impl Iterator<Item = u32>, t: u32) -> bool {
+        let mut pair = [0; 2];
+        for (slot, w) in pair.iter_mut().zip(ends) {
+            *slot = w;
+        }
+        if self.options.keep_points || pair.iter().any(|&w| !self.movable[w as usize]) {
+            return false;
+        }
+        k.tets.clear();
+        for w in pair {
+            k.tets.extend_from_slice(self.star.around(&self.c, w));
+        }
+        k.tets.sort_unstable();
+        k.tets.dedup();
+        let done = self.insert_in_cavity(k, self.center(pair), t);
+        if done {
+            for w in pair {
+                self.movable[w as usize] = false;
+            }
+        }
+        done
+    }
+
     fn center<const N: usize>(&self, v: [u32; N]) -> Point3 {
         Point3::from(v.iter().map(|&w| self.c.points[w as usize].coords).sum::<Vec3>() / N as f64)
+    }
+
+    /// Adds the neighbours of tetrahedra: those around a short edge alone leave no room between its ends.
+    fn widen(&self, tets: &mut Vec<u32>) {
+        for at in 0..tets.len() {
+            for half in 4 * tets[at]..4 * tets[at] + 4 {
+                let n = self.c.mate(half) >> 2;
+                if !self.c.is_frozen(half) && !self.c.is_ghost(n) && !tets.contains(&n) {
+                    tets.push(n);
+                }
+            }
+        }
     }
 
     /// The mean of the centres of tetrahedra.
@@ -196,14 +244,17 @@ impl Improver {
                 break;
             }
         }
-        if worst <= floor || worst <= self.worst_of(&k.tets) * GAIN || !self.sees(&p, &k.faces) || !self.keeps_all(k) {
+        let before = self.worst_of(&k.tets);
+        if worst <= floor || worst <= before * GAIN || !self.sees(&p, &k.faces) || !self.keeps_all(k) {
             return false;
         }
         let vertex = self.c.add_point(p);
         self.movable.push(true);
         k.new.clear();
         k.new.extend(k.faces.iter().map(|&[a, b, c]| [vertex, a, b, c]));
-        if self.exchange(k) {
+        // Beside needles a worst that rises so far outweighs more strain, which the rounds to come can ease.
+        let leap = !self.allowance.is_empty() && worst > LEAP * before;
+        if (leap || self.eases(&k.tets, &k.new)) && self.exchange(k) {
             return true;
         }
         self.c.pop_point();
@@ -225,7 +276,7 @@ impl Improver {
                 }
             }
         }
-        k.tets.len() <= MAX_CAVITY
+        k.tets.len() <= 2 * MAX_CAVITY
     }
 
     /// Adds the tetrahedron behind the worst face, if there is one and the vertex sees its other faces better.
@@ -268,7 +319,7 @@ impl Improver {
 
     /// Exchanges `k.tets` for `k.new`.
     fn exchange(&mut self, k: &mut Cavity) -> bool {
-        let done = self.eases(&k.tets, &k.new) && self.c.replace(&k.tets, &k.new, &mut k.created);
+        let done = self.c.replace(&k.tets, &k.new, &mut k.created);
         if done {
             self.remeasure(&k.created);
         }

@@ -244,9 +244,15 @@ impl Reconnection {
         self.volume = self.tets.iter().map(|&t| room.c.orient(&room.c.verts(t))).sum();
         self.slack = 1e-9 * self.volume;
         self.loose = self.loose_vertices(room.c);
+        let mut least = 0.0;
         for k in 0..self.halves.len() {
             let [a, b, d] = room.c.face(self.halves[k]).map(|v| self.local(v));
             let face = self.front_face(room, [a, b, d]);
+            least += face.least;
+            // The search would end where it begins.
+            if SHARE * least >= self.limit {
+                return;
+            }
             self.front.push(face);
         }
         self.branch(room, 0.0, self.volume);

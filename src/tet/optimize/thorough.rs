@@ -23,31 +23,37 @@ impl Improver {
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
         for _ in 0..ROUNDS {
             let list = self.worst_first(self.options.stubborn_below);
-            let (mut tried, mut changes) = (0, 0);
-            for &entry in &list {
-                if !self.is_current(entry) || !self.has_news(entry.1) {
-                    continue;
-                }
-                let allowed = allowance.of_tet(&self.c.verts(entry.1));
-                if allowed < 1.0 && entry.0 >= allowed {
-                    continue;
-                }
-                if !self.spend() {
-                    break;
-                }
-                tried += 1;
-                if self.treat_with_all(entry.1) {
-                    changes += 1;
-                } else {
-                    self.note_tried(entry.1);
-                }
-            }
+            let (tried, changes) = self.treat_each(&list, |s, t| {
+                let allowed = allowance.of_tet(&s.c.verts(t));
+                allowed >= 1.0 || s.quality[t as usize] < allowed
+            });
             self.keep_list(list);
             self.smooth_stars_below(self.options.smooth_below);
             if changes * WORTHWHILE <= tried {
                 break;
             }
         }
+    }
+
+    /// Treats those of a list that are as they were, are wanted, and have changed since they were tried in vain. Returns
+    /// how many were tried and how many improved.
+    fn treat_each(&mut self, list: &[(f64, u32)], wanted: impl Fn(&Self, u32) -> bool) -> (usize, usize) {
+        let (mut tried, mut changes) = (0, 0);
+        for &(q, t) in list {
+            if !self.is_current((q, t)) || !self.has_news(t) || !wanted(self, t) {
+                continue;
+            }
+            if !self.spend() {
+                break;
+            }
+            tried += 1;
+            if self.treat_with_all(t) {
+                changes += 1;
+            } else {
+                self.note_tried(t);
+            }
+        }
+        (tried, changes)
     }
 
     /// Treats what is still very bad but does not stand on a needle, even if those that do become worse.
@@ -57,14 +63,12 @@ impl Improver {
         }
         self.allowance = allowance;
         for _ in 0..LAST_ROUNDS {
-            let mut changes = 0;
+            // What was in vain need not be now; small moves, which count for no news, can decide.
+            self.tried.clear();
             let list = self.worst_first(self.options.stubborn_below);
-            for &(q, t) in &list {
-                changes +=
-                    usize::from(self.is_current((q, t)) && self.is_spared(t) && self.spend() && self.treat_with_all(t));
-            }
+            let (tried, changes) = self.treat_each(&list, |s, t| s.is_spared(t));
             self.keep_list(list);
-            if changes == 0 {
+            if changes * WORTHWHILE <= tried {
                 break;
             }
         }
