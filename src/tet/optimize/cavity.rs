@@ -185,7 +185,7 @@ impl Improver {
 
     /// Puts one vertex in the place of the two that `t` has off an edge of the boundary, if both may go: of the
     /// tetrahedra around the edge those on the boundary remain.
-    fn insert_for_both(&mut self, k: &mut Cavity, ends: impl Iterator<Item = u32>, t: u32) -> bool {
+    pub(super) fn insert_for_both(&mut self, k: &mut Cavity, ends: impl Iterator<Item = u32>, t: u32) -> bool {
         let mut pair = [0; 2];
         for (slot, w) in pair.iter_mut().zip(ends) {
             *slot = w;

@@ -133,11 +133,15 @@ fn short_edge_under_a_lid() -> TetMesh {
         let (sin, cos) = (std::f64::consts::FRAC_PI_3 * f64::from(i)).sin_cos();
         points.push([cos, sin, 0.0]);
     }
-    points.extend([[0.5, 0.0, -0.8], [-0.5, 0.0, -0.8]]);
+    points.extend([[0.5, 0.0, -0.8], [-0.5, 0.0, -0.8], [0.0, 0.0, -2.0]]);
     let points: Vec<_> = points.into_iter().map(crate::geometry::Point3::from).collect();
     let mut tets = vec![[0, 1, 2, 8], [0, 1, 8, 9], [0, 1, 9, 5]];
     tets.extend([[1, 2, 3, 8], [1, 3, 9, 8], [1, 3, 4, 9], [1, 4, 5, 9]]);
     tets.extend([[0, 2, 7, 8], [0, 7, 9, 8], [0, 7, 6, 9], [0, 6, 5, 9]]);
+    // What lies below: the outer faces of these, but for the lid, down to one point.
+    for [p, q, r] in [[2, 3, 8], [3, 9, 8], [3, 4, 9], [4, 5, 9], [2, 7, 8], [7, 9, 8], [7, 6, 9], [6, 5, 9]] {
+        tets.push([p, q, r, 10]);
+    }
     for t in &mut tets {
         let [p, q, r, s] = t.map(|v| &points[v as usize]);
         if crate::geometry::predicates::orient3d(p, q, r, s) < 0.0 {
@@ -157,7 +161,9 @@ fn at_short_edge(mesh: &TetMesh) -> (usize, f64) {
 
 #[test]
 fn only_needles_keep_tetrahedra_at_a_short_edge_of_the_surface() {
-    let mesh = short_edge_under_a_lid();
+    let mut mesh = short_edge_under_a_lid();
+    mesh.tets.retain(|t| !t.contains(&10));
+    mesh.points.pop();
     let (count, least) = at_short_edge(&mesh);
     assert!(count == 3 && least < 1.0, "{count} {least}");
     let c = Complex::from_mesh(mesh.points.clone(), &mesh.tets).unwrap();
@@ -176,6 +182,22 @@ fn only_needles_keep_tetrahedra_at_a_short_edge_of_the_surface() {
     let (count, least) = at_short_edge(&whole);
     assert!(count == 2 && least > 10.0, "{count} {least}");
     assert!(TetQuality::of(&whole).min > 0.5 * TetQuality::of(&mesh).min);
+}
+
+#[test]
+fn one_vertex_takes_the_place_of_two_under_a_short_edge() {
+    let mesh = short_edge_under_a_lid();
+    let c = Complex::from_mesh(mesh.points.clone(), &mesh.tets).unwrap();
+    let mut improver = Improver::new(c, &OptimizeOptions { fixed_points: 8, ..OptimizeOptions::full() });
+    improver.allowance = allowance::Allowance::of(&improver.c);
+    assert!(improver.insert_for_both(&mut cavity::Cavity::default(), [8, 9].into_iter(), 1));
+    let (c, _) = improver.finish();
+    c.sanity_check().unwrap();
+    let after = c.into_mesh();
+    assert!(!after.tets.iter().flatten().any(|v| [8, 9].contains(v)));
+    let (count, least) = at_short_edge(&after);
+    assert!(count == 2 && least > 10.0, "{count} {least}");
+    assert_eq!(sorted_boundary(&mesh), sorted_boundary(&after));
 }
 
 #[test]
