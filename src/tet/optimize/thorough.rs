@@ -66,7 +66,7 @@ impl Improver {
             // What was in vain need not be now; small moves, which count for no news, can decide.
             self.tried.clear();
             let list = self.worst_first(self.options.stubborn_below);
-            let (tried, changes) = self.treat_each(&list, |s, t| s.is_spared(t));
+            let (tried, changes) = self.treat_each(&list, Self::is_spared);
             self.keep_list(list);
             if changes * WORTHWHILE <= tried {
                 break;
