@@ -51,7 +51,7 @@ impl SurfaceParams {
             voxel,
             kappa: 0.4,
             shift: [0.0; 3],
-            edge: 0.998,
+            edge: 0.965,
             thin: 1.0,
             follow: 0.0,
             rounds: 2,
