@@ -6,6 +6,7 @@ mod clean;
 mod crowding;
 mod error;
 mod graph;
+mod metrics;
 mod overlap;
 #[cfg(test)]
 mod tests;
@@ -16,7 +17,12 @@ pub use clean::{CleanReport, clean};
 pub use crowding::CrowdedTerminals;
 pub use error::{LARGEST, SkeletonError};
 pub use graph::{Adjacency, Component, Components};
+pub use metrics::{Barrier, CutRoom, FOLD, LENGTH, Metrics, NARROW, PairGradient, Share, separation};
 pub use overlap::{Overlap, Overlaps};
+
+pub(crate) use metrics::paper_unit;
+pub(crate) use overlap::{JOINED, deepest_apart};
+pub use walk::LocalDistances;
 
 use crate::geometry::{Point3, Tube};
 

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 /// Points closer than this along the skeleton, in radii, belong to one junction or bend.
-const JOINED: f64 = 6.0;
+pub(crate) const JOINED: f64 = 6.0;
 
 /// Pairs of edges that are looked at, at most: more than any network that is not one tangle has.
 const MOST_PAIRS: usize = 100_000_000;
@@ -125,7 +125,7 @@ impl Skeleton {
         for &second in &scratch.close {
             let ends = self.edge(second).nodes;
             let way = scratch.ways.each_ref().map(|ways| ends.map(|n| ways.of(n)));
-            if let Some((s, t)) = deepest_apart(&tube, &self.tube(second), way) {
+            if let Some((s, t)) = deepest_apart(&tube, &self.tube(second), way, 1.0) {
                 found.pairs.push(self.overlap([first, second], s, t));
             }
         }
@@ -171,10 +171,10 @@ fn tube_box(tube: &Tube) -> Aabb {
 
 /// Where two tubes overlap most among the points that are not joined by a short way; none when they do not.
 ///
-/// `way[i][j]` is the distance along the skeleton from end i of `a` to end j of `b`. The way from s to t leads over one
+/// They overlap when their distance is below `clearance` times the sum of their radii. `way[i][j]` is the distance along the skeleton from end i of `a` to end j of `b`. The way from s to t leads over one
 /// of the four pairs of ends, so "more than 6 r apart" is a set of linear conditions on (s, t): the places that count
 /// are a convex polygon, and the gap between the tubes is a convex function on it.
-fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2]) -> Option<(f64, f64)> {
+pub(crate) fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: f64) -> Option<(f64, f64)> {
     let conditions = apart_conditions(a, b, way);
     let polygon = clip_square(&conditions)?;
     let (mut low, mut high) = (1.0_f64, 0.0_f64);
@@ -182,6 +182,8 @@ fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2]) -> Option<(f64, f64)> {
         low = low.min(corner[0]);
         high = high.max(corner[0]);
     }
+    let wide = |tube: &Tube| Tube { ra: clearance * tube.ra, rb: clearance * tube.rb, ..*tube };
+    let (a, b) = (&wide(a), &wide(b));
     let at = |s: f64| {
         let range = t_range(&polygon, s);
         let t = point_tube(&a.point(s), b).0.clamp(range.0, range.1);

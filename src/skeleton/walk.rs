@@ -8,14 +8,14 @@ use std::collections::BinaryHeap;
 /// Distances along the skeleton from one node, as far as a limit (Dijkstra's algorithm). Keeps its memory between
 /// searches.
 #[derive(Default)]
-pub(super) struct LocalDistances {
+pub struct LocalDistances {
     found: FxHashMap<NodeId, f64>,
     heap: BinaryHeap<Nearest>,
 }
 
 impl LocalDistances {
     /// Finds all nodes within `limit` of `start`.
-    pub(super) fn search(&mut self, skeleton: &Skeleton, adjacency: &Adjacency, start: NodeId, limit: f64) {
+    pub fn search(&mut self, skeleton: &Skeleton, adjacency: &Adjacency, start: NodeId, limit: f64) {
         self.found.clear();
         self.heap.clear();
         self.heap.push(Nearest { distance: 0.0, node: start });
@@ -35,7 +35,7 @@ impl LocalDistances {
     }
 
     /// Distance of a node; infinite beyond the limit.
-    pub(super) fn of(&self, node: NodeId) -> f64 {
+    pub fn of(&self, node: NodeId) -> f64 {
         self.found.get(&node).copied().unwrap_or(f64::INFINITY)
     }
 }

@@ -1,0 +1,48 @@
+//! Bends: vessels that are stuck get a node in the middle.
+//!
+//! A straight vessel between two terminals on either side of a thick one cannot leave it, and two long vessels that
+//! leave a node side by side would have to move as a whole; a bend lets them part where they are too close.
+
+use super::frame::Frame;
+use crate::skeleton::{EdgeId, Overlap, Overlaps};
+
+/// Pieces that a bend makes are at least this long, in radii.
+const SHORTEST: f64 = 5.0;
+
+/// Puts bends into vessels that overlap; returns how many.
+pub(super) fn add_bends(frame: &mut Frame, overlaps: &Overlaps) -> usize {
+    let edges = frame.skeleton.edges.len();
+    let mut done = vec![false; edges];
+    let mut count = 0;
+    for overlap in &overlaps.pairs {
+        if overlap.edges.iter().any(|e| done[e.index()]) {
+            continue;
+        }
+        if let Some((edge, t)) = place(frame, overlap) {
+            done[edge.index()] = true;
+            frame.add_bend(edge, t);
+            count += 1;
+        }
+    }
+    if count > 0 {
+        frame.rejoin();
+    }
+    count
+}
+
+/// Where to bend which of the two edges: the thinner one if it is long enough, else the other one.
+fn place(frame: &Frame, overlap: &Overlap) -> Option<(EdgeId, f64)> {
+    let at = |i: usize| {
+        let edge = overlap.edges[i];
+        let tube = frame.skeleton.tube(edge);
+        let length = tube.length();
+        let margin = SHORTEST * tube.max_radius() / length;
+        let own = (overlap.points[i] - tube.a).norm() / length;
+        // Both pieces long enough.
+        (margin <= 0.5).then(|| (edge, own.clamp(margin, 1.0 - margin), length / tube.max_radius(), tube.max_radius()))
+    };
+    let mut both: Vec<_> = [0, 1].into_iter().filter_map(at).collect();
+    // The thinner one; the one that is longer for its radius among equals.
+    both.sort_by(|x, y| x.3.total_cmp(&y.3).then(y.2.total_cmp(&x.2)).then(x.0.cmp(&y.0)));
+    both.first().map(|&(edge, t, ..)| (edge, t))
+}

@@ -1,0 +1,216 @@
+//! Vessels that are too close to each other: which pairs to watch, and how they are pushed apart.
+
+use super::frame::Frame;
+use super::push::{Push, project};
+use crate::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tube};
+use crate::skeleton::{EdgeId, JOINED, LocalDistances, NodeId, deepest_apart};
+use rayon::prelude::*;
+
+/// Distances along the skeleton between the ends of two edges; infinite when long.
+type Ways = [[f64; 2]; 2];
+
+/// Two edges that share no node and may come close to each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub edges: [EdgeId; 2],
+    /// Index into `Contacts::ways`; `u32::MAX` when every way is long.
+    ways: u32,
+}
+
+/// The pairs to watch.
+#[derive(Default)]
+pub(super) struct Contacts {
+    pub pairs: Vec<Pair>,
+    ways: Vec<Ways>,
+    /// Pairs of edges of one node.
+    forks: Vec<(NodeId, [EdgeId; 2])>,
+}
+
+/// A box that holds a tube and all within `clearance` radii of its axis.
+fn reach_box(tube: &Tube, clearance: f64) -> Aabb {
+    let ball = |p, r: f64| Aabb::of_points([p]).grown(clearance * r);
+    ball(&tube.a, tube.ra).union(&ball(&tube.b, tube.rb))
+}
+
+impl Contacts {
+    /// Finds all pairs that can come within `clearance` sums of their radii while no node moves more than `skin / 2`.
+    pub fn find(frame: &Frame, clearance: f64, skin: f64) -> Self {
+        let s = &frame.skeleton;
+        let boxes: Vec<Aabb> = s.edge_ids().map(|e| reach_box(&s.tube(e), clearance).grown(0.5 * skin)).collect();
+        let tree = Bvh::new(&boxes);
+        let chunk = 256;
+        let found: Vec<(Vec<Pair>, Vec<Ways>)> = (0..boxes.len().div_ceil(chunk))
+            .into_par_iter()
+            .map_init(
+                || (Vec::new(), [LocalDistances::default(), LocalDistances::default()]),
+                |(near, walks), c| {
+                    let mut out = (Vec::new(), Vec::new());
+                    for e in c * chunk..((c + 1) * chunk).min(boxes.len()) {
+                        near.clear();
+                        tree.query(&boxes[e], |f| {
+                            if f as usize > e {
+                                near.push(EdgeId(f));
+                            }
+                        });
+                        near.sort_unstable();
+                        pairs_of(frame, EdgeId(e as u32), near, clearance, skin, walks, &mut out);
+                    }
+                    out
+                },
+            )
+            .collect();
+        let mut contacts = Self::default();
+        for (pairs, ways) in found {
+            let shift = contacts.ways.len() as u32;
+            contacts.ways.extend(ways);
+            contacts.pairs.extend(
+                pairs.into_iter().map(|p| Pair { ways: if p.ways == u32::MAX { p.ways } else { p.ways + shift }, ..p }),
+            );
+        }
+        for node in s.node_ids() {
+            let edges = frame.adjacency.edges(node);
+            if edges.len() > 2 || frame.is_fold[node.index()] {
+                for (i, &e) in edges.iter().enumerate() {
+                    contacts.forks.extend(edges[..i].iter().map(|&f| (node, [f, e])));
+                }
+            }
+        }
+        contacts
+    }
+
+    /// Whether the two edges of a pair are near each other along the skeleton.
+    pub fn is_near_along(&self, pair: &Pair) -> bool {
+        pair.ways != u32::MAX
+    }
+
+    /// What the pairs ask for that are closer than `clearance` sums of their radii.
+    pub fn pushes(&self, frame: &Frame, clearance: f64) -> Vec<Push> {
+        let apart = self.pairs.par_iter().with_min_len(512).fold(Vec::new, |mut out, pair| {
+            self.push_apart(frame, pair, clearance, &mut out);
+            out
+        });
+        let forks = self.forks.par_iter().with_min_len(512).fold(Vec::new, |mut out, fork| {
+            push_fork(frame, fork, clearance, &mut out);
+            out
+        });
+        // Folds keep the order of the pairs, however the work was divided.
+        let mut all: Vec<Push> = apart.collect::<Vec<_>>().concat();
+        all.extend(forks.collect::<Vec<_>>().concat());
+        all
+    }
+
+    fn push_apart(&self, frame: &Frame, pair: &Pair, clearance: f64, out: &mut Vec<Push>) {
+        let [a, b] = pair.edges.map(|e| frame.skeleton.tube(e));
+        let axes = segment_segment([&a.a, &a.b], [&b.a, &b.b]);
+        if axes.distance >= clearance * (a.max_radius() + b.max_radius()) {
+            return;
+        }
+        let place = if let Some(&ways) = self.ways.get(pair.ways as usize) {
+            deepest_apart(&a, &b, ways, clearance)
+        } else {
+            let wide = |t: &Tube| Tube { ra: clearance * t.ra, rb: clearance * t.rb, ..*t };
+            let near = tube_tube(&wide(&a), &wide(&b));
+            (near.gap < 0.0).then_some((near.s, near.t))
+        };
+        if let Some(place) = place {
+            push_tubes(frame, pair.edges, [a, b], place, clearance, out);
+        }
+    }
+}
+
+fn pairs_of(
+    frame: &Frame,
+    first: EdgeId,
+    near: &[EdgeId],
+    clearance: f64,
+    skin: f64,
+    walks: &mut [LocalDistances; 2],
+    out: &mut (Vec<Pair>, Vec<Ways>),
+) {
+    let s = &frame.skeleton;
+    let tube = s.tube(first);
+    let ends = s.edge(first).nodes;
+    let mut radius = tube.max_radius();
+    let start = out.0.len();
+    for &second in near {
+        let other = s.tube(second);
+        let nodes = s.edge(second).nodes;
+        if ends.iter().any(|n| nodes.contains(n)) {
+            continue;
+        }
+        let axes = segment_segment([&tube.a, &tube.b], [&other.a, &other.b]);
+        if axes.distance < clearance * (tube.max_radius() + other.max_radius()) + skin {
+            radius = radius.max(other.max_radius());
+            out.0.push(Pair { edges: [first, second], ways: u32::MAX });
+        }
+    }
+    if out.0.len() == start {
+        return;
+    }
+    for (walk, end) in walks.iter_mut().zip(ends) {
+        walk.search(s, &frame.adjacency, end, JOINED * radius + skin);
+    }
+    for i in start..out.0.len() {
+        let nodes = s.edge(out.0[i].edges[1]).nodes;
+        let ways = walks.each_ref().map(|walk| nodes.map(|n| walk.of(n)));
+        if ways.iter().flatten().any(|w| w.is_finite()) {
+            out.0[i].ways = out.1.len() as u32;
+            out.1.push(ways);
+        }
+    }
+}
+
+/// Pushes two vessels of one node apart where they are too close to each other beyond three radii.
+fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f64, out: &mut Vec<Push>) {
+    let [a, b] = edges.map(|e| frame.skeleton.tube(e));
+    let [e, f] = edges.map(|e| frame.skeleton.edge(e));
+    let far = [e.other(node), f.other(node)];
+    let [u, v] = far.map(|n| frame.at(n) - frame.at(node));
+    let (lu, lv) = (u.norm(), v.norm());
+    let radius = a.min_radius().max(b.min_radius());
+    if lu + lv <= JOINED * radius {
+        return;
+    }
+    // Equal vessels are apart at three radii when sin(angle / 2) > clearance / 3.
+    let half = (clearance / 3.0).min(1.0);
+    if u.dot(&v) < (1.0 - 2.0 * half * half) * lu * lv {
+        return;
+    }
+    let mut ways = [[f64::INFINITY; 2]; 2];
+    ways[e.end(node)][f.end(node)] = 0.0;
+    if let Some(place) = deepest_apart(&a, &b, ways, clearance) {
+        push_tubes(frame, edges, [a, b], place, clearance, out);
+    }
+}
+
+/// Asks for the distance at one place of each tube.
+fn push_tubes(
+    frame: &Frame,
+    edges: [EdgeId; 2],
+    [a, b]: [Tube; 2],
+    (s, t): (f64, f64),
+    clearance: f64,
+    out: &mut Vec<Push>,
+) {
+    let way = a.point(s) - b.point(t);
+    let radii = a.radius(s) + b.radius(t);
+    let wanted = clearance * radii;
+    let distance = way.norm();
+    // Axes that meet have no direction to part in.
+    let normal = if distance > 1e-6 * radii { way / distance } else { parting(&a, &b) };
+    let [e, f] = edges.map(|e| frame.skeleton.edge(e).nodes);
+    let gradient = [(e[0], normal * (1.0 - s)), (e[1], normal * s), (f[0], normal * (t - 1.0)), (f[1], normal * -t)];
+    project(frame, &gradient, wanted - distance, 0.5 * radii, out);
+}
+
+/// A direction in which two vessels part whose axes meet: across both, or across one if they are parallel.
+fn parting(a: &Tube, b: &Tube) -> Vec3 {
+    let (d, e) = (a.b - a.a, b.b - b.a);
+    let across = d.cross(&e);
+    if across.norm() > 1e-6 * d.norm() * e.norm() {
+        return across.normalize();
+    }
+    let mut axis = Vec3::zeros();
+    axis[d.iamin()] = 1.0;
+    d.cross(&axis).try_normalize(0.0).unwrap_or(axis)
+}

@@ -1,0 +1,142 @@
+//! What stays the same while a skeleton is refined: who is joined to whom, who may move, and how chains of vessel run.
+
+use crate::geometry::Point3;
+use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
+
+/// A vessel between two nodes at which something happens: a branch, or a part of one between nodes that are held.
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    /// Nodes along the way, one more than edges.
+    pub nodes: Vec<NodeId>,
+    /// Edges along the way.
+    pub edges: Vec<EdgeId>,
+}
+
+impl Chain {
+    /// First and last node.
+    pub fn ends(&self) -> [NodeId; 2] {
+        [self.nodes[0], self.nodes[self.nodes.len() - 1]]
+    }
+}
+
+/// The skeleton that moves and what does not change about it.
+pub(super) struct Frame {
+    /// The skeleton at its present places.
+    pub skeleton: Skeleton,
+    /// Where the nodes were.
+    pub origin: Vec<Point3>,
+    /// Who is joined to whom.
+    pub adjacency: Adjacency,
+    /// How readily a node moves: 0 for one that is held.
+    pub mobility: Vec<f64>,
+    /// How far a node may go from its origin.
+    pub leash: Vec<f64>,
+    /// Nodes of valence 2 at which the vessel turns back: terminals that two trees share.
+    pub is_fold: Vec<bool>,
+    /// Nodes that were put in so that a vessel can bend.
+    pub is_bend: Vec<bool>,
+    /// All vessels between junctions, terminals and folds.
+    pub chains: Vec<Chain>,
+}
+
+impl Frame {
+    /// `furthest` is how far a node may go, `free_terminals` how far a terminal may.
+    pub fn new(skeleton: Skeleton, free_terminals: f64, furthest: f64, unit: f64) -> Self {
+        let adjacency = skeleton.adjacency();
+        let is_fold: Vec<bool> = skeleton
+            .node_ids()
+            .map(|n| match adjacency.edges(n) {
+                &[e, f] => skeleton.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
+                _ => false,
+            })
+            .collect();
+        let mut leash = vec![furthest; skeleton.nodes.len()];
+        let mut mobility = Vec::with_capacity(skeleton.nodes.len());
+        for node in skeleton.node_ids() {
+            let i = node.index();
+            if adjacency.valence(node) == 1 || is_fold[i] {
+                leash[i] = free_terminals.min(furthest);
+            }
+            // Thick vessels give way more readily: a thin one that is pinned by its terminals close to a thick one
+            // cannot, and what the thick one has to go is little for its size.
+            mobility.push(if leash[i] > 0.0 { (skeleton.node(node).radius / unit).sqrt() } else { 0.0 });
+        }
+        let origin = skeleton.nodes.iter().map(|n| n.position).collect();
+        let is_bend = vec![false; skeleton.nodes.len()];
+        let mut frame = Self { skeleton, origin, adjacency, mobility, leash, is_fold, is_bend, chains: Vec::new() };
+        frame.chains = frame.find_chains();
+        frame
+    }
+
+    fn find_chains(&self) -> Vec<Chain> {
+        let mut chains = Vec::new();
+        for branch in self.skeleton.branches(&self.adjacency).list {
+            let mut chain = Chain { nodes: vec![branch.nodes[0]], edges: Vec::new() };
+            for (i, &edge) in branch.edges.iter().enumerate() {
+                let node = branch.nodes[i + 1];
+                chain.edges.push(edge);
+                chain.nodes.push(node);
+                if self.is_fold[node.index()] && i + 1 < branch.edges.len() {
+                    chains.push(std::mem::replace(&mut chain, Chain { nodes: vec![node], edges: Vec::new() }));
+                }
+            }
+            chains.push(chain);
+        }
+        chains
+    }
+
+    /// Puts a node into an edge at parameter `t`, so that the vessel can bend there.
+    pub fn add_bend(&mut self, edge: EdgeId, t: f64) {
+        let [a, b] = self.skeleton.edge(edge).nodes;
+        let tube = self.skeleton.tube(edge);
+        let (radius, node) = (tube.radius(t), NodeId(self.skeleton.nodes.len() as u32));
+        let nearer = self.skeleton.node(if t < 0.5 { a } else { b }).original;
+        self.skeleton.nodes.push(Node { position: tube.point(t), radius, original: nearer });
+        let first = &mut self.skeleton.edges[edge.index()];
+        let old = first.radii[1];
+        *first = Edge { nodes: [a, node], radii: [first.radii[0], radius] };
+        self.skeleton.edges.push(Edge { nodes: [node, b], radii: [radius, old] });
+        self.origin.push(self.origin[a.index()] + (self.origin[b.index()] - self.origin[a.index()]) * t);
+        let at = |list: &[f64]| list[a.index()].max(list[b.index()]);
+        let (mobility, leash) = (at(&self.mobility), at(&self.leash));
+        self.mobility.push(mobility);
+        self.leash.push(leash);
+        self.is_fold.push(false);
+        self.is_bend.push(true);
+    }
+
+    /// Finds who is joined to whom again, after bends were put in.
+    pub fn rejoin(&mut self) {
+        self.adjacency = self.skeleton.adjacency();
+        self.chains = self.find_chains();
+    }
+
+    /// Position of a node.
+    pub fn at(&self, node: NodeId) -> Point3 {
+        self.skeleton.nodes[node.index()].position
+    }
+
+    /// Radius of an edge at one of its nodes.
+    pub fn radius_at(&self, edge: EdgeId, node: NodeId) -> f64 {
+        let e = self.skeleton.edge(edge);
+        e.radii[e.end(node)]
+    }
+
+    /// The node over which the direction is measured in which a vessel leaves `node` by `edge`: the first along the way
+    /// that is three radii off, or the vessel's end.
+    pub fn lever(&self, node: NodeId, mut edge: EdgeId) -> NodeId {
+        let start = self.at(node);
+        let window = 3.0 * self.skeleton.node(node).radius;
+        let mut at = node;
+        for _ in 0..64 {
+            at = self.skeleton.edge(edge).other(at);
+            let stops = self.adjacency.valence(at) != 2 || self.is_fold[at.index()];
+            if stops || (self.at(at) - start).norm() >= window {
+                break;
+            }
+            let pair = self.adjacency.edges(at);
+            edge = if pair[0] == edge { pair[1] } else { pair[0] };
+        }
+        at
+    }
+}

@@ -1,0 +1,32 @@
+//! Corrections: what each condition asks of the nodes, and their sum.
+//!
+//! Conditions are solved by projection (position based dynamics; Müller, Heidelberger, Hennix, Ratcliff 2007): each one
+//! that is not met asks its nodes for the smallest move, weighted by their mobility, that meets it to first order.
+
+use super::frame::Frame;
+use crate::geometry::Vec3;
+use crate::skeleton::NodeId;
+
+/// A move that one condition asks of one node.
+pub(super) type Push = (NodeId, Vec3);
+
+/// The moves that meet a condition which lacks `deficit`, `gradient` being its derivatives by its nodes. Each move is
+/// at most `cap` long.
+pub(super) fn project(frame: &Frame, gradient: &[(NodeId, Vec3)], deficit: f64, cap: f64, out: &mut Vec<Push>) {
+    let mobility = |n: NodeId| frame.mobility[n.index()];
+    let below: f64 = gradient.iter().map(|(n, g)| mobility(*n) * g.norm_squared()).sum();
+    if below.is_nan() || below <= 0.0 {
+        return;
+    }
+    let largest = gradient.iter().map(|(n, g)| mobility(*n) * g.norm()).fold(0.0, f64::max);
+    let factor = (deficit / below).min(cap / largest);
+    if !factor.is_finite() {
+        return;
+    }
+    for &(node, g) in gradient {
+        let weight = factor * mobility(node);
+        if weight > 0.0 {
+            out.push((node, g * weight));
+        }
+    }
+}

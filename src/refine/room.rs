@@ -1,0 +1,139 @@
+//! Room for a cut on every vessel: long enough for the angles at which it leaves its neighbours.
+
+use super::frame::{Chain, Frame};
+use super::push::{Push, project};
+use crate::geometry::Vec3;
+use crate::skeleton::{EdgeId, LENGTH, NARROW, NodeId, separation};
+use rayon::prelude::*;
+
+/// Where conditions are taken as met: a little beyond what is asked for.
+const MARGIN: f64 = 1.02;
+
+/// What the vessels ask for that cannot be cut, are too short for equation 11, or leave their node too close together.
+pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
+    let chains = frame.chains.par_iter().with_min_len(512).fold(Vec::new, |mut out, chain| {
+        push_chain(frame, chain, &mut out);
+        out
+    });
+    let nodes = (0..frame.origin.len() as u32).into_par_iter().with_min_len(512).fold(Vec::new, |mut out, node| {
+        push_angles(frame, NodeId(node), &mut out);
+        out
+    });
+    let mut all = chains.collect::<Vec<_>>().concat();
+    all.extend(nodes.collect::<Vec<_>>().concat());
+    all
+}
+
+/// The length that a vessel needs: for a cut if both ends are junctions, else for equation 11. None for a loop at one
+/// node.
+pub(super) fn need(frame: &Frame, chain: &Chain) -> Option<f64> {
+    needed(frame, chain, &mut Vec::new())
+}
+
+/// The length that a vessel needs; adds its derivatives, taken away, to `gradient`.
+fn needed(frame: &Frame, chain: &Chain, gradient: &mut Vec<(NodeId, Vec3)>) -> Option<f64> {
+    let ends = chain.ends();
+    if ends[0] == ends[1] {
+        return None;
+    }
+    let own = [chain.edges[0], chain.edges[chain.edges.len() - 1]];
+    let radii = [0, 1].map(|i| frame.radius_at(own[i], ends[i]));
+    let by_11 = LENGTH * (radii[0] + radii[1]);
+    if ends.iter().any(|&n| frame.adjacency.valence(n) < 3) {
+        return Some(by_11);
+    }
+    let mut cut = radii[0] + radii[1];
+    for i in [0, 1] {
+        cut += distance(frame, ends[i], own[i], gradient);
+    }
+    Some(cut.max(by_11))
+}
+
+fn push_chain(frame: &Frame, chain: &Chain, out: &mut Vec<Push>) {
+    let length: f64 = chain.edges.iter().map(|&e| frame.skeleton.length(e)).sum();
+    let ends = chain.ends();
+    let own = [chain.edges[0], chain.edges[chain.edges.len() - 1]];
+    let mut gradient: Vec<(NodeId, Vec3)> = Vec::with_capacity(8);
+    for (node, edge) in ends.into_iter().zip(own) {
+        let away = frame.at(node) - frame.at(frame.lever(node, edge));
+        gradient.push((node, away.try_normalize(0.0).unwrap_or_else(Vec3::x)));
+    }
+    let Some(need) = needed(frame, chain, &mut gradient) else { return };
+    let deficit = MARGIN * need - length;
+    if deficit > 0.0 {
+        let radii = frame.radius_at(own[0], ends[0]) + frame.radius_at(own[1], ends[1]);
+        project(frame, &gradient, deficit, 0.5 * radii, out);
+    }
+}
+
+/// Least distance of a cut from a node; adds its derivatives, taken away, to `gradient`.
+fn distance(frame: &Frame, node: NodeId, own: EdgeId, gradient: &mut Vec<(NodeId, Vec3)>) -> f64 {
+    let lever = frame.lever(node, own);
+    let u = frame.at(lever) - frame.at(node);
+    let r = frame.radius_at(own, node);
+    let mut worst: Option<(f64, NodeId, f64)> = None;
+    for &other in frame.adjacency.edges(node).iter().filter(|&&e| e != own) {
+        let (end, r2) = (frame.lever(node, other), frame.radius_at(other, node));
+        let apart = separation(&u, &(frame.at(end) - frame.at(node)), [r, r2]);
+        if worst.is_none_or(|(w, ..)| apart > w) {
+            worst = Some((apart, end, r2));
+        }
+    }
+    let Some((apart, end, r2)) = worst else { return LENGTH * r };
+    if 1.25 * apart <= LENGTH * r {
+        return LENGTH * r;
+    }
+    let v = frame.at(end) - frame.at(node);
+    let (lu, lv) = (u.norm(), v.norm());
+    let cos = u.dot(&v) / (lu * lv);
+    // Angles below two degrees or so give no useful derivative.
+    let sin = (u.cross(&v).norm() / (lu * lv)).max(0.04);
+    let slope = 1.25 * (r + r2 * cos) / (sin * sin);
+    let [by_u, by_v] = opening(&u, &v);
+    gradient.push((lever, by_u * slope));
+    gradient.push((end, by_v * slope));
+    gradient.push((node, (by_u + by_v) * -slope));
+    // No more than can be had by both ways together.
+    1.25 * (r2 + r * cos) / sin
+}
+
+/// Derivatives of the angle between `u` and `v` by both.
+fn opening(u: &Vec3, v: &Vec3) -> [Vec3; 2] {
+    let (lu, lv) = (u.norm(), v.norm());
+    let (u, v) = (u / lu, v / lv);
+    let cos = u.dot(&v);
+    let out = |from: Vec3, x: Vec3| {
+        let across = from * cos - x;
+        across.try_normalize(1e-9)
+    };
+    match (out(u, v), out(v, u)) {
+        (Some(a), Some(b)) => [a / lu, b / lv],
+        _ => {
+            let mut axis = Vec3::zeros();
+            axis[u.iamin()] = 1.0;
+            let side = u.cross(&axis).normalize();
+            [side / lu, -side / lv]
+        }
+    }
+}
+
+fn push_angles(frame: &Frame, node: NodeId, out: &mut Vec<Push>) {
+    let edges = frame.adjacency.edges(node);
+    if edges.len() < 3 && !frame.is_fold[node.index()] {
+        return;
+    }
+    for (i, &e) in edges.iter().enumerate() {
+        for &f in &edges[..i] {
+            let levers = [e, f].map(|e| frame.lever(node, e));
+            let [u, v] = levers.map(|n| frame.at(n) - frame.at(node));
+            let wanted = 1.1 * NARROW;
+            if u.dot(&v) <= wanted.cos() * u.norm() * v.norm() {
+                continue;
+            }
+            let angle = u.cross(&v).norm().atan2(u.dot(&v));
+            let [by_u, by_v] = opening(&u, &v);
+            let gradient = [(levers[0], by_u), (levers[1], by_v), (node, -by_u - by_v)];
+            project(frame, &gradient, wanted - angle, 0.5 * frame.skeleton.node(node).radius, out);
+        }
+    }
+}

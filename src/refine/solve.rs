@@ -1,0 +1,218 @@
+//! The loop: forces first, then projection until nothing is asked for any more.
+
+use super::bend::add_bends;
+use super::contact::Contacts;
+use super::forces::{self, Rates};
+use super::frame::Frame;
+use super::params::{RefineError, RefineParams};
+use super::push::Push;
+use super::{room, shape};
+use crate::geometry::{Point3, Vec3};
+use crate::skeleton::{Barrier, Metrics, Skeleton, paper_unit};
+use serde::Serialize;
+
+/// How much of what is asked of a node by several conditions at once it does: their sum over the number to this power.
+const AVERAGE: f64 = 0.25;
+/// Bounds of a node's rate, and how it falls when the node turns back and rises when it does not.
+const RATES: [f64; 2] = [0.1, 1.5];
+const FALL: f64 = 0.7;
+const RISE: f64 = 1.1;
+/// Bends are put in after this share of the iterations, and again as often.
+const BENDS: f64 = 0.25;
+
+/// The metrics after some iterations.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Sample {
+    /// How many iterations.
+    pub iteration: usize,
+    /// Displacement of the nodes.
+    pub displacement: Displacement,
+    /// The metrics.
+    pub metrics: Metrics,
+    /// Pairs of vessels pushed apart in this iteration, and vessels lengthened or opened.
+    pub asked: usize,
+}
+
+/// How far nodes have moved, in the unit of the skeleton.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Displacement {
+    /// Mean.
+    pub mean: f64,
+    /// Median.
+    pub median: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+impl Displacement {
+    /// Of the nodes of `skeleton` from where they were.
+    pub fn of(skeleton: &Skeleton, origin: &[Point3]) -> Self {
+        let mut far: Vec<f64> = skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).norm()).collect();
+        if far.is_empty() {
+            return Self::default();
+        }
+        far.sort_unstable_by(f64::total_cmp);
+        let at = |share: f64| far[(share * (far.len() - 1) as f64).round() as usize];
+        Self {
+            mean: far.iter().sum::<f64>() / far.len() as f64,
+            median: at(0.5),
+            p95: at(0.95),
+            p99: at(0.99),
+            max: at(1.0),
+        }
+    }
+}
+
+/// What the loop hands over.
+pub(super) struct Moved {
+    pub skeleton: Skeleton,
+    pub origin: Vec<Point3>,
+    pub history: Vec<Sample>,
+    pub bends: usize,
+    pub unit: f64,
+}
+
+/// Moves the nodes of a split skeleton.
+pub(super) fn solve(
+    skeleton: &Skeleton,
+    params: &RefineParams,
+    progress: &mut dyn FnMut(usize, Option<(&Sample, &Skeleton)>),
+) -> Result<Moved, RefineError> {
+    let mut solver = Solver::new(skeleton, params);
+    let start = solver.sample(0, 0);
+    progress(0, Some((&start, &solver.frame.skeleton)));
+    let mut history = vec![start];
+    let with_forces = (params.forces * params.iterations as f64).round() as usize;
+    let between = ((BENDS * params.iterations as f64).round() as usize).max(1);
+    for iteration in 1..=params.iterations {
+        let asked = solver.step(iteration <= with_forces);
+        let quiet = asked == 0 && iteration > with_forces;
+        if params.bends && (iteration % between == 0) && iteration + between / 2 <= params.iterations {
+            solver.bend();
+        }
+        let last = iteration == params.iterations || quiet;
+        if last || (params.every > 0 && iteration % params.every == 0) {
+            let sample = solver.sample(iteration, asked);
+            progress(iteration, Some((&sample, &solver.frame.skeleton)));
+            history.push(sample);
+        } else {
+            progress(iteration, None);
+        }
+        if quiet {
+            break;
+        }
+    }
+    let Solver { frame, unit, bends, .. } = solver;
+    Ok(Moved { skeleton: frame.skeleton, origin: frame.origin, history, bends, unit })
+}
+
+struct Solver<'a> {
+    params: &'a RefineParams,
+    frame: Frame,
+    unit: f64,
+    contacts: Contacts,
+    /// How far each node has moved at most since the contacts were found.
+    moved: Vec<f64>,
+    last: Vec<Vec3>,
+    rate: Vec<f64>,
+    bends: usize,
+}
+
+impl<'a> Solver<'a> {
+    fn new(skeleton: &Skeleton, params: &'a RefineParams) -> Self {
+        let unit = paper_unit(skeleton);
+        let frame = Frame::new(skeleton.clone(), params.free_terminals, params.furthest * unit, unit);
+        let mut solver = Self {
+            params,
+            frame,
+            unit,
+            contacts: Contacts::default(),
+            moved: Vec::new(),
+            last: Vec::new(),
+            rate: Vec::new(),
+            bends: 0,
+        };
+        solver.restart();
+        solver
+    }
+
+    /// After a change of the nodes there are: contacts have to be found again.
+    fn restart(&mut self) {
+        let n = self.frame.origin.len();
+        self.moved.clear();
+        self.moved.resize(n, f64::INFINITY);
+        self.last.resize(n, Vec3::zeros());
+        self.rate.resize(n, 1.0);
+    }
+
+    /// One step; returns how much was asked for.
+    fn step(&mut self, with_forces: bool) -> usize {
+        // Pairs further apart than the skin cannot come together while no node has moved half of it.
+        let skin = 2.0 * self.unit;
+        if self.moved.iter().any(|&m| m > 0.5 * skin) {
+            self.contacts = Contacts::find(&self.frame, self.params.clearance, skin);
+            self.moved.fill(0.0);
+        }
+        let mut sum = vec![Vec3::zeros(); self.moved.len()];
+        let mut count = vec![0_u32; self.moved.len()];
+        let mut add = |list: &[Push]| {
+            for &(node, d) in list {
+                sum[node.index()] += d;
+                count[node.index()] += 1;
+            }
+        };
+        if with_forces {
+            let p = self.params;
+            let rates = Rates { barrier: p.barrier_rate, repel: p.repel_rate, angle: p.angle_rate };
+            let barrier = Barrier { support: p.clearance, unit: self.unit };
+            add(&forces::pushes(&self.frame, &self.contacts, &barrier, rates));
+        }
+        let contacts = self.contacts.pushes(&self.frame, self.params.clearance);
+        let room = room::pushes(&self.frame);
+        add(&contacts);
+        add(&room);
+        for (sum, &count) in sum.iter_mut().zip(&count) {
+            *sum /= f64::from(count.max(1)).powf(AVERAGE);
+        }
+        shape::smooth_steps(&self.frame, &mut sum, &count);
+        self.advance(&sum);
+        contacts.len() + room.len()
+    }
+
+    /// Moves every node by its step times its rate, no further than its leash.
+    fn advance(&mut self, steps: &[Vec3]) {
+        for (i, step) in steps.iter().enumerate() {
+            if step.norm_squared() <= 0.0 {
+                continue;
+            }
+            let turned = step.dot(&self.last[i]) < 0.0;
+            self.rate[i] =
+                if turned { (self.rate[i] * FALL).max(RATES[0]) } else { (self.rate[i] * RISE).min(RATES[1]) };
+            self.last[i] = *step;
+            let (from, home) = (self.frame.skeleton.nodes[i].position, self.frame.origin[i]);
+            let mut to = from + step * self.rate[i];
+            let off = (to - home).norm();
+            if off > self.frame.leash[i] {
+                to = home + (to - home) * (self.frame.leash[i] / off);
+            }
+            self.frame.skeleton.nodes[i].position = to;
+            self.moved[i] += (to - from).norm();
+        }
+    }
+
+    fn bend(&mut self) {
+        let overlaps = self.frame.skeleton.overlaps(&self.frame.adjacency);
+        self.bends += add_bends(&mut self.frame, &overlaps);
+        self.restart();
+    }
+
+    fn sample(&self, iteration: usize, asked: usize) -> Sample {
+        let (skeleton, adjacency) = (&self.frame.skeleton, &self.frame.adjacency);
+        let metrics = skeleton.metrics(adjacency, &skeleton.branches(adjacency));
+        Sample { iteration, displacement: Displacement::of(skeleton, &self.frame.origin), metrics, asked }
+    }
+}
