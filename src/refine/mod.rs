@@ -6,51 +6,138 @@ mod forces;
 mod frame;
 mod params;
 mod push;
+mod residual;
 mod room;
 mod shape;
 mod solve;
 mod split;
 
 pub use params::{RefineError, RefineParams, Residual};
+pub use residual::{ResidualPair, ResidualReport, Treatment};
 pub use solve::{Displacement, Sample};
 pub use split::{SplitNode, SplitReport, split};
 
 use crate::geometry::Point3;
-use crate::skeleton::Skeleton;
+use crate::skeleton::{Metrics, Skeleton};
+use serde::Serialize;
 
 /// A refined skeleton.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Refined {
     /// The skeleton. Nodes keep their `original`.
     pub skeleton: Skeleton,
-    /// Where each node was before it moved: after splitting.
+    /// Where each node was before it moved: after splitting; for a bend, the place on the straight vessel.
     pub origin: Vec<Point3>,
-    /// The metrics over the iterations.
-    pub history: Vec<Sample>,
-    /// How many bends were put in.
-    pub bends: usize,
-    /// The paper's unit of length in the unit of the skeleton.
-    pub unit: f64,
+    /// What was found and done.
+    pub report: RefineReport,
 }
 
-/// Refines a skeleton.
+/// What a refinement found and did.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct RefineReport {
+    /// Nodes and edges before.
+    pub size_before: [usize; 2],
+    /// Nodes and edges after.
+    pub size_after: [usize; 2],
+    /// Nodes that were split, as they had more than three vessels.
+    pub nodes_split: usize,
+    /// Bends that were put into vessels that were stuck.
+    pub bends: usize,
+    /// The paper's unit of length, in the unit of the skeleton: the median radius is 0.448 of it.
+    pub unit: f64,
+    /// As given.
+    pub given: Figures,
+    /// After splitting, before anything moved.
+    pub split: Figures,
+    /// When the nodes had come to rest, before what is left was treated.
+    pub moved: Figures,
+    /// In the end.
+    pub result: Figures,
+    /// How far the nodes moved.
+    pub displacement: Displacement,
+    /// What was left, and what was done about it.
+    pub residual: ResidualReport,
+    /// The metrics over the iterations.
+    pub history: Vec<Sample>,
+}
+
+/// Metrics and numbers of overlaps of one state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Figures {
+    /// The metrics.
+    pub metrics: Metrics,
+    /// Overlapping pairs of edges.
+    pub overlaps: usize,
+    /// Those of them that share a node.
+    pub beside: usize,
+    /// Pairs of edges that share no node and meet, neighbours along a vessel included.
+    pub unconnected: usize,
+    /// Those of them that no edge joins.
+    pub far: usize,
+}
+
+impl Figures {
+    /// Of a skeleton.
+    pub fn of(skeleton: &Skeleton) -> Self {
+        let adjacency = skeleton.adjacency();
+        let overlaps = skeleton.overlaps(&adjacency);
+        Self {
+            metrics: skeleton.metrics(&adjacency, &skeleton.branches(&adjacency)),
+            overlaps: overlaps.pairs.len(),
+            beside: overlaps.pairs.iter().filter(|o| o.shares_node()).count(),
+            unconnected: overlaps.unconnected.len(),
+            far: overlaps.far,
+        }
+    }
+}
+
+/// Who is told about progress.
+pub trait Progress {
+    /// An iteration is done, of at most `of`; `sample` is there when the metrics were measured.
+    fn step(&mut self, iteration: usize, of: usize, sample: Option<&Sample>);
+}
+
+impl Progress for () {
+    fn step(&mut self, _: usize, _: usize, _: Option<&Sample>) {}
+}
+
+/// Refines a skeleton (3.1 of the paper): nodes of more than three vessels are split; the paper's three forces act; then
+/// vessels are pushed apart, lengthened and opened by projection until none overlap and all can be cut, or the
+/// iterations are over; what is left is treated as `params.residual` says.
+///
+/// The result depends on nothing but the arguments, and not on the unit of length. Memory grows with the number of
+/// edges.
 ///
 /// # Errors
 /// When a parameter is out of its range, or the skeleton does not satisfy `Skeleton::check`.
 pub fn refine(
-    skeleton: &Skeleton,
+    given: &Skeleton,
     params: &RefineParams,
-    progress: &mut dyn FnMut(usize, Option<(&Sample, &Skeleton)>),
+    progress: &mut dyn Progress,
 ) -> Result<Refined, RefineError> {
     params.check()?;
-    skeleton.check()?;
-    let (split, _) = split(skeleton);
-    let moved = solve::solve(&split, params, progress)?;
-    Ok(Refined {
-        skeleton: moved.skeleton,
-        origin: moved.origin,
-        history: moved.history,
-        bends: moved.bends,
-        unit: moved.unit,
-    })
+    given.check()?;
+    let (split, splits) = split(given);
+    let solve::Moved { mut skeleton, mut origin, history, bends, unit } = solve::solve(&split, params, progress);
+    let moved = Figures::of(&skeleton);
+    let displacement = Displacement::of(&skeleton, &origin);
+    let residual = residual::treat(&mut skeleton, &mut origin, params);
+    let report = RefineReport {
+        size_before: [given.nodes.len(), given.edges.len()],
+        size_after: [skeleton.nodes.len(), skeleton.edges.len()],
+        nodes_split: splits.nodes.len(),
+        bends,
+        unit,
+        given: Figures::of(given),
+        split: Figures::of(&split),
+        moved,
+        result: if residual.shrunk_edges > 0 { Figures::of(&skeleton) } else { moved },
+        displacement,
+        residual,
+        history,
+    };
+    Ok(Refined { skeleton, origin, report })
 }

@@ -39,7 +39,7 @@ pub struct RefineParams {
     pub furthest: f64,
     /// Vessels that are stuck get a bend: a new node of valence 2.
     pub bends: bool,
-    /// Whether the bends may be put into the two vessels of a shared terminal before anything moves.
+    /// What is done about vessels that overlap in the end.
     pub residual: Residual,
     /// Largest share by which a radius may be reduced.
     pub shrink: f64,

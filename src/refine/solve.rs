@@ -4,7 +4,8 @@ use super::bend::add_bends;
 use super::contact::Contacts;
 use super::forces::{self, Rates};
 use super::frame::Frame;
-use super::params::{RefineError, RefineParams};
+use super::Progress;
+use super::params::RefineParams;
 use super::push::Push;
 use super::{room, shape};
 use crate::geometry::{Point3, Vec3};
@@ -80,11 +81,11 @@ pub(super) struct Moved {
 pub(super) fn solve(
     skeleton: &Skeleton,
     params: &RefineParams,
-    progress: &mut dyn FnMut(usize, Option<(&Sample, &Skeleton)>),
-) -> Result<Moved, RefineError> {
+    progress: &mut dyn Progress,
+) -> Moved {
     let mut solver = Solver::new(skeleton, params);
     let start = solver.sample(0, 0);
-    progress(0, Some((&start, &solver.frame.skeleton)));
+    progress.step(0, params.iterations, Some(&start));
     let mut history = vec![start];
     let with_forces = (params.forces * params.iterations as f64).round() as usize;
     let between = ((BENDS * params.iterations as f64).round() as usize).max(1);
@@ -97,17 +98,17 @@ pub(super) fn solve(
         let last = iteration == params.iterations || quiet;
         if last || (params.every > 0 && iteration % params.every == 0) {
             let sample = solver.sample(iteration, asked);
-            progress(iteration, Some((&sample, &solver.frame.skeleton)));
+            progress.step(iteration, params.iterations, Some(&sample));
             history.push(sample);
         } else {
-            progress(iteration, None);
+            progress.step(iteration, params.iterations, None);
         }
         if quiet {
             break;
         }
     }
     let Solver { frame, unit, bends, .. } = solver;
-    Ok(Moved { skeleton: frame.skeleton, origin: frame.origin, history, bends, unit })
+    Moved { skeleton: frame.skeleton, origin: frame.origin, history, bends, unit }
 }
 
 struct Solver<'a> {

@@ -4,9 +4,11 @@ mod swc;
 #[cfg(test)]
 mod tests;
 mod vtp;
+mod write;
 
 pub use swc::SwcError;
 pub use vtp::VtpError;
+pub use write::{END_RADII, NetworkArray, ensure_network_writable, refinement_arrays, write_network};
 
 use crate::skeleton::{Skeleton, SkeletonError};
 use serde::Serialize;
@@ -128,6 +130,20 @@ pub enum NetworkFileError {
     /// The operating system refused.
     #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
     Read {
+        /// The file.
+        path: PathBuf,
+        /// Its reason.
+        source: std::io::Error,
+    },
+    /// Networks are not written in this format.
+    #[error("{}: networks are written as .vtp; name a file with this extension", path.display())]
+    NotWritten {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The operating system refused to write.
+    #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]
+    Write {
         /// The file.
         path: PathBuf,
         /// Its reason.

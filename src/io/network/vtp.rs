@@ -1,5 +1,6 @@
 //! VTP: VTK poly data whose lines are vessels.
 
+use super::write::END_RADII;
 use super::{NetworkFile, NetworkNote, NetworkOptions};
 use crate::geometry::Point3;
 use crate::io::vtk_xml::{ElementId, VtkError, VtkXml};
@@ -136,6 +137,8 @@ struct Choice {
     points: Option<String>,
     cells: Option<String>,
     unused: Vec<String>,
+    /// Whether the arrays were found by their names.
+    by_name: bool,
 }
 
 impl Choice {
@@ -147,18 +150,18 @@ impl Choice {
         let (points, cells) = (names("PointData"), names("CellData"));
         let available = || points.iter().chain(&cells).cloned().collect();
         if let Some(wanted) = &options.radius_array {
-            let choice = Self { points: named(&points, wanted), cells: named(&cells, wanted), unused: Vec::new() };
+            let choice = Self { points: named(&points, wanted), cells: named(&cells, wanted), unused: Vec::new(), by_name: false };
             if choice.points.is_none() && choice.cells.is_none() {
                 return Err(VtpError::UnknownArray { wanted: wanted.clone(), available: available() });
             }
             return Ok(choice);
         }
-        let choice = Self { points: best(&points), cells: best(&cells), unused: Vec::new() };
+        let choice = Self { points: best(&points), cells: best(&cells), unused: Vec::new(), by_name: true };
         if choice.points.is_none() && choice.cells.is_none() {
             return Err(VtpError::NoRadius { available: available() });
         }
         let used = |n: &String| Some(n) == choice.points.as_ref() || Some(n) == choice.cells.as_ref();
-        let unused = points.iter().chain(&cells).filter(|n| rank(n).is_some() && !used(n)).cloned().collect();
+        let unused = points.iter().chain(&cells).filter(|n| rank(n).is_some() && !used(n) && *n != END_RADII).cloned().collect();
         Ok(Self { unused, ..choice })
     }
 
@@ -245,6 +248,7 @@ fn read_piece(
         let radius = node_radii.as_ref().map_or(0.0, |r| r[i]);
         skeleton.nodes.push(Node { position: *position, radius, original: (base + i) as u32 });
     }
+    let end_radii = read_end_radii(document, piece, choice, cells)?;
     // Cell data run over vertex cells first, then lines.
     let line_radius = |line: usize| cell_radii.as_ref().map(|r| r[vertices + line]);
     let mut start = 0;
@@ -256,9 +260,11 @@ fn read_piece(
         }
         for pair in ids.windows(2) {
             let nodes = [pair[0], pair[1]].map(|p| NodeId((base as i64 + p) as u32));
-            let radii = match line_radius(line) {
-                Some(radius) => [radius; 2],
-                None => nodes.map(|n| skeleton.node(n).radius),
+            let of_line = end_radii.as_ref().map(|r| r[vertices + line]).filter(|_| ids.len() == 2);
+            let radii = match (of_line, line_radius(line)) {
+                (Some(radii), _) => radii,
+                (None, Some(radius)) => [radius; 2],
+                (None, None) => nodes.map(|n| skeleton.node(n).radius),
             };
             skeleton.edges.push(Edge { nodes, radii });
         }
@@ -270,6 +276,26 @@ fn read_piece(
     others.vertices += vertices;
     others.polygons += polygons;
     Ok(())
+}
+
+/// The radii at both ends of each line, which our own files hold beside those of the lines; none when the caller chose
+/// another array.
+fn read_end_radii(
+    document: &VtkXml,
+    piece: ElementId,
+    choice: &Choice,
+    cells: usize,
+) -> Result<Option<Vec<[f64; 2]>>, VtpError> {
+    if !choice.by_name {
+        return Ok(None);
+    }
+    let arrays = document.child(piece, "CellData").map(|s| document.arrays(s).find(|(n, _)| *n == END_RADII));
+    let Some((_, element)) = arrays.flatten() else { return Ok(None) };
+    let array = document.read(element)?;
+    if array.len() != 2 * cells {
+        return Err(VtpError::WrongLength { array: END_RADII.to_owned(), expected: 2 * cells, found: array.len() });
+    }
+    Ok(Some(array.into_floats().as_chunks::<2>().0.to_vec()))
 }
 
 /// Points on no line get any legal radius: cleaning drops them.
