@@ -1,11 +1,13 @@
 //! Floor 6: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
 mod check;
+mod dual;
 mod exit;
 mod info;
 mod mesh;
 mod network;
 mod progress;
+mod refine;
 mod tetrahedralize;
 
 use std::process::ExitCode;
@@ -27,6 +29,10 @@ struct Args {
 enum Verb {
     /// Mesh a network: skeleton in, labelled tetrahedral mesh out
     Mesh(mesh::Args),
+    /// Move the nodes of a network until its vessels do not overlap and can be cut
+    Refine(refine::Args),
+    /// Grow a second tree that shares the terminals of the first, as veins do with arteries
+    Dual(dual::Args),
     /// Fill a surface, a complex of facets or points with tetrahedra
     Tetrahedralize(tetrahedralize::Args),
     /// Verify a volume mesh line by line
@@ -48,6 +54,8 @@ pub fn main() -> ExitCode {
     };
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
+        Verb::Refine(args) => refine::run(args),
+        Verb::Dual(args) => dual::run(args),
         Verb::Tetrahedralize(args) => tetrahedralize::run(args),
         Verb::Check(args) => check::run(args),
         Verb::Info(args) => info::run(args),

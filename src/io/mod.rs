@@ -18,3 +18,14 @@ mod vtu_read;
 
 pub use file_error::FileError;
 pub use text::TextFault;
+
+/// Writes a text file: whole or not at all.
+///
+/// # Errors
+/// What the operating system reports.
+pub fn write_text(path: &std::path::Path, text: &str) -> std::io::Result<()> {
+    use std::io::Write as _;
+    let mut file = atomic::AtomicFile::create(path)?;
+    file.write_all(text.as_bytes())?;
+    file.commit()
+}

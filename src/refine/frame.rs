@@ -1,7 +1,7 @@
 //! What stays the same while a skeleton is refined: who is joined to whom, who may move, and how chains of vessel run.
 
 use crate::geometry::Point3;
-use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
+use crate::skeleton::{Adjacency, Edge, EdgeId, LENGTH, Node, NodeId, Skeleton};
 
 /// A vessel between two nodes at which something happens: a branch, or a part of one between nodes that are held.
 #[derive(Clone, Debug)]
@@ -35,6 +35,8 @@ pub(super) struct Frame {
     pub is_fold: Vec<bool>,
     /// Nodes that were put in so that a vessel can bend.
     pub is_bend: Vec<bool>,
+    /// Length that each edge keeps at least: what it had, or what equation 11 asks of it if that is less.
+    pub kept: Vec<f64>,
     /// All vessels between junctions, terminals and folds.
     pub chains: Vec<Chain>,
 }
@@ -63,9 +65,17 @@ impl Frame {
         }
         let origin = skeleton.nodes.iter().map(|n| n.position).collect();
         let is_bend = vec![false; skeleton.nodes.len()];
-        let mut frame = Self { skeleton, origin, adjacency, mobility, leash, is_fold, is_bend, chains: Vec::new() };
+        let chains = Vec::new();
+        let kept = Vec::new();
+        let mut frame = Self { skeleton, origin, adjacency, mobility, leash, is_fold, is_bend, kept, chains };
+        frame.kept = frame.skeleton.edge_ids().map(|e| frame.keep(e)).collect();
         frame.chains = frame.find_chains();
         frame
+    }
+
+    fn keep(&self, edge: EdgeId) -> f64 {
+        let radii = self.skeleton.edge(edge).radii;
+        self.skeleton.length(edge).min(LENGTH * (radii[0] + radii[1]))
     }
 
     fn find_chains(&self) -> Vec<Chain> {
@@ -90,7 +100,10 @@ impl Frame {
         let [a, b] = self.skeleton.edge(edge).nodes;
         let tube = self.skeleton.tube(edge);
         let (radius, node) = (tube.radius(t), NodeId(self.skeleton.nodes.len() as u32));
-        let nearer = self.skeleton.node(if t < 0.5 { a } else { b }).original;
+        // Not a terminal: these are found by their number.
+        let inner = |n: NodeId| self.adjacency.valence(n) > 1;
+        let nearer = if (t < 0.5 || !inner(b)) && inner(a) { a } else { b };
+        let nearer = self.skeleton.node(nearer).original;
         self.skeleton.nodes.push(Node { position: tube.point(t), radius, original: nearer });
         let first = &mut self.skeleton.edges[edge.index()];
         let old = first.radii[1];
@@ -103,6 +116,8 @@ impl Frame {
         self.leash.push(leash);
         self.is_fold.push(false);
         self.is_bend.push(true);
+        self.kept[edge.index()] = self.keep(edge);
+        self.kept.push(self.keep(EdgeId(self.kept.len() as u32)));
     }
 
     /// Finds who is joined to whom again, after bends were put in.

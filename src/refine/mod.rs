@@ -2,6 +2,7 @@
 
 mod bend;
 mod contact;
+mod dual;
 mod forces;
 mod frame;
 mod params;
@@ -11,14 +12,17 @@ mod room;
 mod shape;
 mod solve;
 mod split;
+#[cfg(test)]
+mod tests;
 
+pub use dual::{Dual, dual};
 pub use params::{RefineError, RefineParams, Residual};
 pub use residual::{ResidualPair, ResidualReport, Treatment};
 pub use solve::{Displacement, Sample};
 pub use split::{SplitNode, SplitReport, split};
 
 use crate::geometry::Point3;
-use crate::skeleton::{Metrics, Skeleton};
+use crate::skeleton::{Metrics, Share, Skeleton};
 use serde::Serialize;
 
 /// A refined skeleton.
@@ -45,6 +49,8 @@ pub struct RefineReport {
     pub nodes_split: usize,
     /// Bends that were put into vessels that were stuck.
     pub bends: usize,
+    /// The iteration after which the result was best: that state is the one that is kept.
+    pub chosen: usize,
     /// The paper's unit of length, in the unit of the skeleton: the median radius is 0.448 of it.
     pub unit: f64,
     /// As given.
@@ -59,6 +65,8 @@ pub struct RefineReport {
     pub displacement: Displacement,
     /// What was left, and what was done about it.
     pub residual: ResidualReport,
+    /// Metrics that are worse in the end than they were after splitting.
+    pub worse: Vec<&'static str>,
     /// The metrics over the iterations.
     pub history: Vec<Sample>,
 }
@@ -94,6 +102,32 @@ impl Figures {
     }
 }
 
+impl Figures {
+    /// The metrics in which this state is worse than another one: larger counts of what is bad, or shares of it that
+    /// grew.
+    fn worse_than(&self, before: &Self) -> Vec<&'static str> {
+        let bad = |f: &Self| {
+            let m = f.metrics;
+            let missing = |s: Share| (s.of - s.count) as f64 / s.of.max(1) as f64;
+            let share = |s: Share| s.count as f64 / s.of.max(1) as f64;
+            [
+                ("overlapping pairs", f.overlaps as f64),
+                ("far pairs", f.far as f64),
+                ("shorter than 2 r", share(m.shorter_than_2)),
+                ("shorter than 2.5 r", share(m.shorter_than_2_5)),
+                ("shorter than 3 r", share(m.shorter_than_3)),
+                ("angles under pi/10", share(m.narrow)),
+                ("folds", share(m.folds)),
+                ("equation 11", missing(m.long_enough)),
+                ("equation 12", missing(m.open_enough)),
+                ("cuttable branches", missing(m.cuttable)),
+            ]
+        };
+        let pairs = bad(self).into_iter().zip(bad(before));
+        pairs.filter(|((_, now), (_, was))| now > was).map(|((name, _), _)| name).collect()
+    }
+}
+
 /// Who is told about progress.
 pub trait Progress {
     /// An iteration is done, of at most `of`; `sample` is there when the metrics were measured.
@@ -121,22 +155,26 @@ pub fn refine(
     params.check()?;
     given.check()?;
     let (split, splits) = split(given);
-    let solve::Moved { mut skeleton, mut origin, history, bends, unit } = solve::solve(&split, params, progress);
+    let solve::Moved { mut skeleton, mut origin, history, bends, chosen, unit } = solve::solve(&split, params, progress);
     let moved = Figures::of(&skeleton);
     let displacement = Displacement::of(&skeleton, &origin);
     let residual = residual::treat(&mut skeleton, &mut origin, params);
+    let before = Figures::of(&split);
+    let result = if residual.shrunk_edges > 0 { Figures::of(&skeleton) } else { moved };
     let report = RefineReport {
         size_before: [given.nodes.len(), given.edges.len()],
         size_after: [skeleton.nodes.len(), skeleton.edges.len()],
         nodes_split: splits.nodes.len(),
         bends,
+        chosen,
         unit,
         given: Figures::of(given),
-        split: Figures::of(&split),
+        split: before,
         moved,
-        result: if residual.shrunk_edges > 0 { Figures::of(&skeleton) } else { moved },
+        result,
         displacement,
         residual,
+        worse: result.worse_than(&before),
         history,
     };
     Ok(Refined { skeleton, origin, report })

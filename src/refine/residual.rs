@@ -85,7 +85,9 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
         report.left = if params.residual == Residual::Fuse { 0 } else { found.len() };
         return report;
     }
-    let mut shrinker = Shrinker { skeleton, origin, params, least: Vec::new() };
+    let adjacency = skeleton.adjacency();
+    let is_terminal = skeleton.node_ids().map(|n| adjacency.valence(n) == 1).collect();
+    let mut shrinker = Shrinker { skeleton, origin, params, least: Vec::new(), is_terminal };
     let edges_before = shrinker.skeleton.edges.len();
     let mut touched = vec![false; edges_before];
     for round in 0..ROUNDS {
@@ -137,6 +139,7 @@ struct Shrinker<'a> {
     params: &'a RefineParams,
     /// Radius of an edge's ends before anything was shrunk; for edges in the order of their ids as far as it was asked.
     least: Vec<[f64; 2]>,
+    is_terminal: Vec<bool>,
 }
 
 impl Shrinker<'_> {
@@ -180,9 +183,8 @@ impl Shrinker<'_> {
             self.taper(edge, end, narrow);
             return Some(narrow / was[end]);
         }
-        let node = self.insert(edge, t, radius);
+        self.insert(edge, t, radius);
         let after = EdgeId(self.skeleton.edges.len() as u32 - 1);
-        let _ = node;
         // The radius is back to what it was a few radii on: nodes there, where the pieces are long enough for them.
         for (piece, end) in [(edge, 1), (after, 0)] {
             self.taper(piece, end, radius);
@@ -209,12 +211,15 @@ impl Shrinker<'_> {
     }
 
     /// Puts a node into an edge.
-    fn insert(&mut self, edge: EdgeId, t: f64, radius: f64) -> NodeId {
+    fn insert(&mut self, edge: EdgeId, t: f64, radius: f64) {
         self.remember();
         let Edge { nodes: [a, b], radii } = *self.skeleton.edge(edge);
         let tube = self.skeleton.tube(edge);
         let node = NodeId(self.skeleton.nodes.len() as u32);
-        let original = self.skeleton.node(if t < 0.5 { a } else { b }).original;
+        // Not a terminal: these are found by their number.
+        let inner = |n: NodeId| !self.is_terminal.get(n.index()).copied().unwrap_or(false);
+        let nearer = if (t < 0.5 || !inner(b)) && inner(a) { a } else { b };
+        let original = self.skeleton.node(nearer).original;
         self.skeleton.nodes.push(Node { position: tube.point(t), radius, original });
         let (p, q) = (self.origin[a.index()], self.origin[b.index()]);
         self.origin.push(p + (q - p) * t);
@@ -224,6 +229,5 @@ impl Shrinker<'_> {
         let middle = was[0] + (was[1] - was[0]) * t;
         self.least[edge.index()] = [was[0], middle];
         self.least.push([middle, was[1]]);
-        node
     }
 }

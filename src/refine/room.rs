@@ -13,6 +13,9 @@ const MARGIN: f64 = 1.02;
 pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
     let chains = frame.chains.par_iter().with_min_len(512).fold(Vec::new, |mut out, chain| {
         push_chain(frame, chain, &mut out);
+        if chain.edges.len() > 1 {
+            chain.edges.iter().for_each(|&e| keep_length(frame, e, &mut out));
+        }
         out
     });
     let nodes = (0..frame.origin.len() as u32).into_par_iter().with_min_len(512).fold(Vec::new, |mut out, node| {
@@ -63,6 +66,16 @@ fn push_chain(frame: &Frame, chain: &Chain, out: &mut Vec<Push>) {
     if deficit > 0.0 {
         let radii = frame.radius_at(own[0], ends[0]) + frame.radius_at(own[1], ends[1]);
         project(frame, &gradient, deficit, 0.5 * radii, out);
+    }
+}
+
+/// Pieces of a polyline do not become shorter than they were, as far as equation 11 minds.
+fn keep_length(frame: &Frame, edge: EdgeId, out: &mut Vec<Push>) {
+    let deficit = 1.001 * frame.kept[edge.index()] - frame.skeleton.length(edge);
+    if deficit > 0.0 {
+        let [a, b] = frame.skeleton.edge(edge).nodes;
+        let way = (frame.at(b) - frame.at(a)).try_normalize(0.0).unwrap_or_else(Vec3::x);
+        project(frame, &[(a, -way), (b, way)], deficit, 0.5 * frame.kept[edge.index()], out);
     }
 }
 
@@ -135,5 +148,90 @@ fn push_angles(frame: &Frame, node: NodeId, out: &mut Vec<Push>) {
             let gradient = [(levers[0], by_u), (levers[1], by_v), (node, -by_u - by_v)];
             project(frame, &gradient, wanted - angle, 0.5 * frame.skeleton.node(node).radius, out);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::frame::Frame;
+    use super::*;
+    use crate::geometry::Point3;
+    use crate::skeleton::{Edge, Node, Skeleton};
+    use proptest::prelude::*;
+
+    /// A vessel between two junctions: 0-1 with 2, 3 at 0 and 4, 5 at 1.
+    fn tree(points: &[[f64; 3]; 6], radii: &[f64; 5]) -> Skeleton {
+        let node = |(i, &p): (usize, &[f64; 3])| Node { position: p.into(), radius: 1.0, original: i as u32 };
+        let ends = [(0, 1), (0, 2), (0, 3), (1, 4), (1, 5)];
+        let edge = |(&(a, b), &r): (&(u32, u32), &f64)| Edge { nodes: [NodeId(a), NodeId(b)], radii: [r; 2] };
+        Skeleton {
+            nodes: points.iter().enumerate().map(node).collect(),
+            edges: ends.iter().zip(radii).map(edge).collect(),
+        }
+    }
+
+    /// Length less need of the first chain.
+    fn slack(skeleton: &Skeleton) -> (f64, Vec<(NodeId, Vec3)>) {
+        let frame = Frame::new(skeleton.clone(), 1e9, 1e9, 1.0);
+        let chain = frame.chains.iter().find(|c| c.edges == [EdgeId(0)]).expect("edge 0 is a chain");
+        let mut gradient = Vec::new();
+        for (node, other) in [(0, 1), (1, 0)].map(|(a, b)| (NodeId(a), NodeId(b))) {
+            if chain.ends()[0] == node || chain.ends()[1] == node {
+                gradient.push((node, (frame.at(node) - frame.at(other)).normalize()));
+            }
+        }
+        let need = needed(&frame, chain, &mut gradient).expect("two ends");
+        (frame.skeleton.length(EdgeId(0)) - need, gradient)
+    }
+
+    proptest! {
+        #[test]
+        fn gradient_is_that_of_the_room(
+            shift in prop::array::uniform6(prop::array::uniform3(-1.0..1.0_f64)),
+            radii in prop::array::uniform5(0.5..1.5_f64),
+        ) {
+            let base = [[0.0; 3], [12.0, 0.0, 0.0], [9.0, 7.0, 2.0], [-9.0, 3.0, 1.0], [20.0, -5.0, 3.0], [4.0, -5.0, 4.0]];
+            let mut points = base;
+            for (p, d) in points.iter_mut().zip(&shift) {
+                for k in 0..3 {
+                    p[k] += d[k];
+                }
+            }
+            let skeleton = tree(&points, &radii);
+            let (value, gradient) = slack(&skeleton);
+            let mut total = [Vec3::zeros(); 6];
+            for (node, g) in gradient {
+                total[node.index()] += g;
+            }
+            let h = 1e-6;
+            for i in 0..6 {
+                for k in 0..3 {
+                    let moved = |d: f64| {
+                        let mut s = skeleton.clone();
+                        s.nodes[i].position[k] += d;
+                        slack(&s).0
+                    };
+                    let (up, down) = (moved(h), moved(-h));
+                    // Not across a change of the neighbour that asks for most, or of what decides.
+                    if (up - 2.0 * value + down).abs() > 1e-9 {
+                        continue;
+                    }
+                    let slope = (up - down) / (2.0 * h);
+                    prop_assert!((slope - total[i][k]).abs() < 1e-3 * (1.0 + slope.abs()), "{i} {k}: {slope} {}", total[i][k]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_vessel_that_is_too_short_is_lengthened_by_both_ends() {
+        let points = [[0.0; 3], [4.0, 0.0, 0.0], [-5.0, 9.0, 0.0], [-5.0, -9.0, 0.0], [9.0, 9.0, 0.0], [9.0, -9.0, 0.0]];
+        let frame = Frame::new(tree(&points, &[1.0; 5]), 0.0, 1e9, 1.0);
+        let moves = pushes(&frame);
+        let of = |n: u32| moves.iter().filter(|m| m.0 == NodeId(n)).map(|m| m.1.x).sum::<f64>();
+        assert!(of(0) < 0.0 && of(1) > 0.0);
+        assert!(moves.iter().all(|m| m.0.0 < 2), "terminals are held");
+        let end: Point3 = frame.at(NodeId(1));
+        assert!((end.x - 4.0).abs() < 1e-12);
     }
 }

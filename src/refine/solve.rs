@@ -9,7 +9,7 @@ use super::params::RefineParams;
 use super::push::Push;
 use super::{room, shape};
 use crate::geometry::{Point3, Vec3};
-use crate::skeleton::{Barrier, Metrics, Skeleton, paper_unit};
+use crate::skeleton::{Barrier, Metrics, Overlaps, Skeleton, paper_unit};
 use serde::Serialize;
 
 /// How much of what is asked of a node by several conditions at once it does: their sum over the number to this power.
@@ -19,7 +19,9 @@ const RATES: [f64; 2] = [0.1, 1.5];
 const FALL: f64 = 0.7;
 const RISE: f64 = 1.1;
 /// Bends are put in after this share of the iterations, and again as often.
-const BENDS: f64 = 0.25;
+const BENDS: f64 = 0.125;
+/// It stops when the state has not become better in so many rounds of bends.
+const PATIENCE: usize = 4;
 
 /// The metrics after some iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -74,6 +76,8 @@ pub(super) struct Moved {
     pub origin: Vec<Point3>,
     pub history: Vec<Sample>,
     pub bends: usize,
+    /// After how many iterations the best state was reached.
+    pub chosen: usize,
     pub unit: f64,
 }
 
@@ -89,26 +93,76 @@ pub(super) fn solve(
     let mut history = vec![start];
     let with_forces = (params.forces * params.iterations as f64).round() as usize;
     let between = ((BENDS * params.iterations as f64).round() as usize).max(1);
+    let mut best = Best::default();
+    best.offer(&solver, 0);
     for iteration in 1..=params.iterations {
         let asked = solver.step(iteration <= with_forces);
         let quiet = asked == 0 && iteration > with_forces;
-        if params.bends && (iteration % between == 0) && iteration + between / 2 <= params.iterations {
-            solver.bend();
+        let mut last = iteration == params.iterations || quiet;
+        if last || iteration % between == 0 {
+            let was_perfect = best.is_perfect();
+            let overlaps = best.offer(&solver, iteration);
+            // Once more after all is well, for the clearance.
+            last |= was_perfect && best.is_perfect() || iteration >= best.improved + PATIENCE * between;
+            if params.bends && !last && iteration + between / 2 <= params.iterations {
+                solver.bend(&overlaps);
+            }
         }
-        let last = iteration == params.iterations || quiet;
         if last || (params.every > 0 && iteration % params.every == 0) {
             let sample = solver.sample(iteration, asked);
-            progress.step(iteration, params.iterations, Some(&sample));
+            progress.step(if last { params.iterations } else { iteration }, params.iterations, Some(&sample));
             history.push(sample);
         } else {
             progress.step(iteration, params.iterations, None);
         }
-        if quiet {
+        if last {
             break;
         }
     }
-    let Solver { frame, unit, bends, .. } = solver;
-    Moved { skeleton: frame.skeleton, origin: frame.origin, history, bends, unit }
+    let Best { skeleton, origin, iteration, bends, .. } = best;
+    Moved { skeleton, origin, history, bends, chosen: iteration, unit: solver.unit }
+}
+
+/// The best state so far.
+#[derive(Default)]
+struct Best {
+    /// Overlaps, far pairs, inner branches that cannot be cut, edges that fail equation 11: fewer are better.
+    score: Option<[usize; 4]>,
+    iteration: usize,
+    /// When the score last fell.
+    improved: usize,
+    skeleton: Skeleton,
+    origin: Vec<Point3>,
+    bends: usize,
+}
+
+impl Best {
+    /// Keeps the solver's state if it is better than what there is.
+    fn offer(&mut self, solver: &Solver, iteration: usize) -> Overlaps {
+        let (skeleton, adjacency) = (&solver.frame.skeleton, &solver.frame.adjacency);
+        let overlaps = skeleton.overlaps(adjacency);
+        let m = skeleton.metrics(adjacency, &skeleton.branches(adjacency));
+        let missing = |share: crate::skeleton::Share| share.of - share.count;
+        let score = [overlaps.pairs.len(), overlaps.far, missing(m.cuttable), missing(m.long_enough)];
+        if self.score.is_none_or(|best| score <= best) {
+            let improved = if self.score == Some(score) { self.improved } else { iteration };
+            *self = Self {
+                score: Some(score),
+                iteration,
+                improved,
+                skeleton: skeleton.clone(),
+                origin: solver.frame.origin.clone(),
+                bends: solver.bends,
+            };
+        }
+        overlaps
+    }
+
+    /// Whether nothing is left to do. Pairs of a polyline's own pieces count as far in the plain count, and its pieces
+    /// are shorter than equation 11 asks: only what the others say counts.
+    fn is_perfect(&self) -> bool {
+        self.score.is_some_and(|s| s[0] == 0 && s[2] == 0)
+    }
 }
 
 struct Solver<'a> {
@@ -205,9 +259,8 @@ impl<'a> Solver<'a> {
         }
     }
 
-    fn bend(&mut self) {
-        let overlaps = self.frame.skeleton.overlaps(&self.frame.adjacency);
-        self.bends += add_bends(&mut self.frame, &overlaps);
+    fn bend(&mut self, overlaps: &Overlaps) {
+        self.bends += add_bends(&mut self.frame, overlaps);
         self.restart();
     }
 

@@ -1,0 +1,66 @@
+//! `anastomesh dual`: a second tree that shares the terminals of the first.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::exit::{Exit, Failure};
+use super::network::NetworkArgs;
+use crate::io::network::{NetworkArray, ensure_network_writable, write_network};
+use crate::refine::dual;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    network: NetworkArgs,
+    /// Where the network of both trees goes: .vtp, with the arrays `OriginalNode` and `Tree` (0 the first tree, 1 the
+    /// second, 2 the terminals that they share)
+    #[arg(short, long, value_name = "NETWORK")]
+    output: PathBuf,
+    /// Print what was grown as JSON on standard output
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What was grown.
+#[derive(Serialize)]
+struct Grown {
+    nodes: usize,
+    edges: usize,
+    shared_terminals: usize,
+    /// Roots of the second tree: indices of the points in the output.
+    roots: Vec<u32>,
+}
+
+/// Grows the second tree and writes both.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    let network = args.network.read()?;
+    if !args.quiet {
+        for remark in network.remarks() {
+            eprintln!("{remark}");
+        }
+    }
+    let both = dual(&network.skeleton);
+    let grown = Grown {
+        nodes: both.skeleton.nodes.len(),
+        edges: both.skeleton.edges.len(),
+        shared_terminals: both.tree.iter().filter(|t| **t == 2).count(),
+        roots: both.roots.iter().map(|n| n.0).collect(),
+    };
+    let originals = both.skeleton.nodes.iter().map(|n| n.original).collect();
+    let arrays = [NetworkArray::NodeInts("OriginalNode", originals), NetworkArray::NodeInts("Tree", both.tree)];
+    write_network(&args.output, &both.skeleton, &arrays).map_err(|e| Failure::input(e.to_string()))?;
+    if args.json {
+        super::print(true, &grown, String::new)?;
+    } else if !args.quiet {
+        eprintln!(
+            "{} nodes, {} edges, {} shared terminals; `anastomesh refine` separates the two trees",
+            grown.nodes, grown.edges, grown.shared_terminals
+        );
+    }
+    Ok(Exit::Fine)
+}

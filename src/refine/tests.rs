@@ -1,0 +1,265 @@
+//! Refinement as a whole.
+
+use super::*;
+use crate::geometry::Vec3;
+use crate::skeleton::{Edge, Node, NodeId, clean};
+use proptest::prelude::*;
+
+pub(super) fn network(points: &[[f64; 3]], radius: f64, edges: &[(u32, u32)]) -> Skeleton {
+    let node = |(i, &p): (usize, &[f64; 3])| Node { position: p.into(), radius, original: i as u32 };
+    Skeleton {
+        nodes: points.iter().enumerate().map(node).collect(),
+        edges: edges.iter().map(|&(a, b)| Edge { nodes: [NodeId(a), NodeId(b)], radii: [radius; 2] }).collect(),
+    }
+}
+
+pub(super) fn run(s: &Skeleton, params: &RefineParams) -> Refined {
+    let refined = refine(s, params, &mut ()).unwrap();
+    assert_eq!(refined.skeleton.check(), Ok(()));
+    assert_eq!(refined.skeleton.nodes.len(), refined.origin.len());
+    refined
+}
+
+/// A binary tree grown by a simple rule, with vessels that run into each other.
+pub(super) fn tangle(depth: u32, seed: u32) -> Skeleton {
+    let mut state = seed.wrapping_mul(2_654_435_761).max(1);
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        f64::from(state) / f64::from(u32::MAX) - 0.5
+    };
+    let mut points = vec![[0.0; 3], [0.0, 0.0, 12.0]];
+    let mut edges = vec![(0, 1)];
+    let mut tips = vec![(1_u32, Vec3::z())];
+    for level in 0..depth {
+        let mut next = Vec::new();
+        for (tip, way) in tips {
+            for _ in 0..2 {
+                let turn = Vec3::new(random(), random(), random()) * 1.6;
+                let way = (way + turn).normalize();
+                let from = points[tip as usize];
+                let length = 14.0 - f64::from(level);
+                let to = [0, 1, 2].map(|k| from[k] + way[k] * length);
+                edges.push((tip, points.len() as u32));
+                next.push((points.len() as u32, way));
+                points.push(to);
+            }
+        }
+        tips = next;
+    }
+    network(&points, 1.0, &edges)
+}
+
+fn scaled(s: &Skeleton, f: f64) -> Skeleton {
+    let mut out = s.clone();
+    for node in &mut out.nodes {
+        node.position = (node.position.coords * f).into();
+        node.radius *= f;
+    }
+    for edge in &mut out.edges {
+        edge.radii = edge.radii.map(|r| r * f);
+    }
+    out
+}
+
+#[test]
+fn a_tangle_is_parted_and_can_be_cut() {
+    let s = tangle(6, 3);
+    let refined = run(&s, &RefineParams::default());
+    let r = &refined.report;
+    assert!(r.given.overlaps > 20, "{}", r.given.overlaps);
+    assert!(10 * r.moved.overlaps < r.given.overlaps && r.moved.far <= 1, "{:?}", r.moved);
+    assert!(r.moved.metrics.cuttable.percent() > 97.0, "{:?}", r.moved.metrics.cuttable);
+    // Terminals and the root are where they were.
+    let before = s.adjacency();
+    for node in before.terminals() {
+        assert_eq!(refined.skeleton.node(node).position, s.node(node).position);
+    }
+    assert!(r.displacement.max <= 21.0 * r.unit * (1.0 + 1e-12));
+    assert!(r.residual.volume_lost <= 0.005 * r.residual.volume);
+}
+
+#[test]
+fn the_unit_makes_no_difference() {
+    let s = tangle(5, 7);
+    // Few steps: rounding differs between units, and a tangle is sensitive to it in the long run.
+    let params = RefineParams { iterations: 40, ..RefineParams::default() };
+    let reference = run(&s, &params).skeleton;
+    for f in [1e-3, 1e-6, 22.7] {
+        let other = run(&scaled(&s, f), &params).skeleton;
+        assert_eq!(other.edges.len(), reference.edges.len());
+        for (a, b) in reference.nodes.iter().zip(&other.nodes) {
+            let wrong = (a.position.coords * f - b.position.coords).norm();
+            assert!(wrong <= 1e-6 * f * a.position.coords.norm().max(1.0), "{wrong} at factor {f}");
+        }
+    }
+}
+
+#[test]
+fn the_number_of_threads_makes_no_difference() {
+    let s = tangle(6, 11);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| run(&s, &RefineParams { iterations: 60, ..RefineParams::default() }))
+    };
+    let (one, three) = (with(1), with(3));
+    assert_eq!(one.skeleton, three.skeleton);
+    assert_eq!(one.report, three.report);
+}
+
+#[test]
+fn vessels_that_cross_exactly_in_a_plane_are_parted() {
+    let points = [[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 9.0, 0.0], [20.0, -9.0, 0.0], [-9.0, -15.0, 0.0], [
+        -9.0, 15.0, 0.0,
+    ], [-1.0, 25.0, 0.0], [-17.0, 25.0, 0.0]];
+    let s = network(&points, 1.0, &[(0, 1), (1, 2), (1, 3), (4, 5), (5, 6), (5, 7)]);
+    let refined = run(&s, &RefineParams::default());
+    assert_eq!((refined.report.given.far, refined.report.moved.overlaps), (1, 0));
+}
+
+#[test]
+fn what_cannot_move_is_bent_or_shrunk_or_listed() {
+    // Two vessels between fixed terminals: they can part only by bends.
+    let s = network(&[[-20.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, -20.0, 0.5], [0.0, 20.0, 0.5]], 1.0, &[(0, 1), (2, 3)]);
+    let refined = run(&s, &RefineParams::default());
+    assert!(refined.report.bends > 0);
+    assert_eq!(refined.report.moved.overlaps, 0, "{:?}", refined.report);
+    let stiff = RefineParams { bends: false, residual: Residual::Report, ..RefineParams::default() };
+    let listed = run(&s, &stiff).report.residual;
+    assert_eq!((listed.pairs.len(), listed.left), (1, 1));
+    assert_eq!(listed.pairs[0].edges, [[0, 1], [2, 3]]);
+    assert_eq!(listed.pairs[0].treatment, Treatment::Left);
+    let fused = run(&s, &RefineParams { residual: Residual::Fuse, ..stiff }).report.residual;
+    assert_eq!(fused.pairs[0].treatment, Treatment::Fused);
+}
+
+#[test]
+fn shrinking_is_local_and_at_most_by_a_third() {
+    let points = [[-30.0, 0.0, 0.0], [30.0, 0.0, 0.0], [0.0, -30.0, 1.8], [0.0, 30.0, 1.8]];
+    let s = network(&points, 1.0, &[(0, 1), (2, 3)]);
+    let params = RefineParams { bends: false, ..RefineParams::default() };
+    let refined = run(&s, &params);
+    let r = &refined.report;
+    assert_eq!((r.moved.overlaps, r.result.overlaps, r.residual.left), (1, 0, 0), "{:?}", r.residual);
+    assert!(r.residual.shrunk_edges == 2 && r.residual.volume_lost < 0.1 * r.residual.volume);
+    let radii = refined.skeleton.edges.iter().flat_map(|e| e.radii);
+    assert!(radii.clone().fold(f64::INFINITY, f64::min) >= 0.7 - 1e-12);
+    // The ends keep theirs, and the radius does not jump.
+    assert!(radii.fold(0.0, f64::max) <= 1.0 + 1e-12);
+    let adjacency = refined.skeleton.adjacency();
+    for node in refined.skeleton.node_ids() {
+        if let &[e, f] = adjacency.edges(node) {
+            let at = |e| refined.skeleton.edge(e).radii[refined.skeleton.edge(e).end(node)];
+            assert!((at(e) - at(f)).abs() < 1e-12);
+        } else {
+            assert!((refined.skeleton.node(node).radius - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn terminals_move_only_as_far_as_they_may() {
+    let s = network(&[[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 0.2, 0.0], [20.0, -0.2, 0.0]], 1.0, &[
+        (0, 1),
+        (1, 2),
+        (1, 3),
+    ]);
+    let held = run(&s, &RefineParams::default());
+    assert!(held.report.residual.pairs.iter().all(|p| p.terminals_too_close));
+    assert_eq!(held.skeleton.nodes[2].position, s.nodes[2].position);
+    let free = run(&s, &RefineParams { free_terminals: 3.0, ..RefineParams::default() });
+    let far = (free.skeleton.nodes[2].position - s.nodes[2].position).norm();
+    assert!(far > 0.1 && far <= 3.0 + 1e-9, "{far}");
+    assert_eq!(free.report.moved.overlaps, 0, "{:?}", free.report.residual);
+}
+
+#[test]
+fn polylines_keep_their_shape() {
+    // A vessel in short pieces along an arc, crossed by a straight one.
+    let mut points: Vec<[f64; 3]> = (0..=60)
+        .map(|i| {
+            let a = std::f64::consts::PI * f64::from(i) / 60.0;
+            [30.0 * a.cos(), 30.0 * a.sin(), 0.0]
+        })
+        .collect();
+    let mut edges: Vec<(u32, u32)> = (0..60).map(|i| (i, i + 1)).collect();
+    points.extend([[0.0, 10.0, 0.4], [0.0, 50.0, 0.4]]);
+    edges.push((61, 62));
+    let s = network(&points, 1.0, &edges);
+    let refined = run(&s, &RefineParams { bends: false, ..RefineParams::default() });
+    assert_eq!((refined.report.given.overlaps > 0, refined.report.moved.overlaps), (true, 0));
+    // Neighbours move together: no piece turns by much more than it did.
+    for i in 1..60 {
+        let at = |j: usize| refined.skeleton.nodes[j].position;
+        let (u, v) = (at(i) - at(i - 1), at(i + 1) - at(i));
+        let turn = u.cross(&v).norm().atan2(u.dot(&v)).to_degrees();
+        assert!(turn < 25.0, "{turn} at {i}");
+    }
+}
+
+#[test]
+fn parameters_out_of_range_are_refused() {
+    let s = tangle(1, 1);
+    for bad in [
+        RefineParams { clearance: f64::NAN, ..RefineParams::default() },
+        RefineParams { barrier_rate: -1.0, ..RefineParams::default() },
+        RefineParams { free_terminals: f64::INFINITY, ..RefineParams::default() },
+    ] {
+        assert!(matches!(refine(&s, &bad, &mut ()), Err(RefineError::Parameter { .. })));
+    }
+    let mut broken = s;
+    broken.nodes[0].position.x = f64::NAN;
+    assert!(matches!(refine(&broken, &RefineParams::default(), &mut ()), Err(RefineError::Skeleton(_))));
+}
+
+#[test]
+fn odd_networks_end_in_something_finite() {
+    let ring: Vec<(u32, u32)> = (0..8).map(|i| (i, (i + 1) % 8)).collect();
+    let circle: Vec<[f64; 3]> = (0..8)
+        .map(|i| [f64::from(i).cos() * 9.0, f64::from(i).sin() * 9.0, 0.0])
+        .collect();
+    let line = [[0.0; 3], [5.0, 0.0, 0.0], [10.0, 0.0, 0.0]];
+    let coincident = [[0.0; 3], [10.0, 0.0, 0.0], [5.0, 0.0, 0.0], [15.0, 0.0, 0.0]];
+    let cases = [
+        network(&line[..2], 1.0, &[(0, 1)]),
+        network(&line, 1.0, &[(0, 1), (1, 2)]),
+        network(&circle, 1.0, &ring),
+        network(&coincident, 1.0, &[(0, 1), (2, 3)]),
+        network(&coincident, 1e-12, &[(0, 1), (2, 3)]),
+        network(&coincident, 1e12, &[(0, 1), (2, 3)]),
+        scaled(&tangle(3, 5), 1e-12),
+        scaled(&tangle(3, 5), 1e12),
+    ];
+    for s in cases {
+        let params = RefineParams { iterations: 40, ..RefineParams::default() };
+        let refined = run(&s, &params);
+        assert!(refined.skeleton.nodes.iter().all(|n| n.position.iter().all(|x| x.is_finite())));
+        assert!(refined.report.displacement.max.is_finite());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #[test]
+    fn any_graph_ends_finite_with_the_same_shape(
+        points in prop::collection::vec(prop::array::uniform3(-20.0..20.0_f64), 14),
+        ends in prop::collection::vec((0..14_u32, 0..14_u32, 1..5_u8), 1..24),
+    ) {
+        let mut raw = network(&points, 1.0, &ends.iter().map(|e| (e.0, e.1)).collect::<Vec<_>>());
+        for (edge, e) in raw.edges.iter_mut().zip(&ends) {
+            edge.radii = [0.4 * f64::from(e.2); 2];
+        }
+        if let Ok((s, _)) = clean(&raw) {
+            let refined = run(&s, &RefineParams { iterations: 30, ..RefineParams::default() });
+            let shape = |s: &Skeleton| {
+                let a = s.adjacency();
+                let list = s.components(&a).list;
+                (list.len(), list.iter().map(crate::skeleton::Component::loops).sum::<usize>(), a.terminals().len())
+            };
+            prop_assert_eq!(shape(&s), shape(&refined.skeleton));
+            prop_assert!(refined.report.moved.overlaps <= refined.report.split.overlaps);
+            prop_assert!(refined.report.displacement.max <= 21.0 * refined.report.unit * (1.0 + 1e-9));
+        }
+    }
+}
