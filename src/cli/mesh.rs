@@ -7,10 +7,14 @@ use serde::Serialize;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::Bars;
+use super::refine::RefineArgs;
 use crate::io::mesh_file::{MeshNotes, ensure_writable, write_mesh};
+use crate::io::network::ensure_network_writable;
 use crate::mesh::check::CheckReport;
 use crate::pipeline::RunReport;
 use crate::pipeline::{self, Clock, MeshPlan, Observer, RunError, Stage};
+use crate::refine::{RefineReport, Refined};
+use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -26,6 +30,12 @@ pub struct Args {
     /// so that all of a cluster is as fine as its thinnest vessel
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     follow: f64,
+    /// Refine the network first, in at most N iterations, so that its vessels do not overlap and can be cut
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
+    refine: Option<usize>,
+    /// Write the refined network
+    #[arg(long, value_name = "NETWORK.vtp", requires = "refine")]
+    refined: Option<PathBuf>,
     /// Node that is an inlet, counted from 0 in the file's order; may be given several times (default: in each component
     /// the terminal of largest radius)
     #[arg(long, value_name = "NODE")]
@@ -45,6 +55,8 @@ pub struct Args {
     /// Print nothing but errors
     #[arg(short, long)]
     quiet: bool,
+    #[command(flatten)]
+    how: RefineArgs,
 }
 
 /// What `--json` prints.
@@ -52,6 +64,8 @@ pub struct Args {
 struct Output<'a> {
     program: &'static str,
     plan: &'a MeshPlan,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refine: Option<&'a RefineReport>,
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
 }
@@ -61,17 +75,23 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let plan = args.plan();
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
     ensure_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    if let Some(path) = &args.refined {
+        ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
+    }
     let network = args.network.read()?;
     let bars = Bars::new(args.quiet);
     for remark in network.remarks() {
         bars.note(&remark);
     }
     let pool = super::thread_pool(args.threads)?;
+    let refined = pool.install(|| args.refined(&network.skeleton))?;
+    let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
+    let refinement = refined.as_ref().map(|r| &r.report);
     let mut clock = Clock::default();
-    let mut result = match pool.install(|| pipeline::mesh_network(&network.skeleton, &plan, &bars, &mut clock)) {
+    let mut result = match pool.install(|| pipeline::mesh_network(skeleton, &plan, &bars, &mut clock)) {
         Ok(result) => result,
         Err(RunError::BlocksFailed(report)) => {
-            args.print(&plan, &report, None)?;
+            args.print(&plan, refinement, &report, None)?;
             return Err(Failure::stage(format!(
                 "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
                 report.failed.len()
@@ -85,7 +105,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         clock.time(&bars, Stage::Write, 0, || pool.install(|| write_mesh(&args.output, &result.mesh, &notes)));
     written.map_err(|e| Failure::input(e.to_string()))?;
     result.report.stages = clock.stages();
-    args.print(&plan, &result.report, Some(&result.check))?;
+    args.print(&plan, refinement, &result.report, Some(&result.check))?;
     Ok(match () {
         () if !result.report.failed.is_empty() => Exit::StageFailed,
         () if !result.check.is_valid() => Exit::GateNotMet,
@@ -110,15 +130,37 @@ impl Args {
         MeshNotes {
             expectation: Some(result.expectation.clone()),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: format!("mesh --rho {} --follow {}", self.rho, self.follow),
+            options: match self.refine {
+                Some(n) => format!("mesh --rho {} --follow {} --refine {n}", self.rho, self.follow),
+                None => format!("mesh --rho {} --follow {}", self.rho, self.follow),
+            },
             regions: false,
         }
     }
 
-    fn print(&self, plan: &MeshPlan, run: &RunReport, check: Option<&CheckReport>) -> Result<(), Failure> {
+    /// The network refined, if that was asked for.
+    fn refined(&self, skeleton: &Skeleton) -> Result<Option<Refined>, Failure> {
+        let Some(iterations) = self.refine else { return Ok(None) };
+        let refined = super::refine::moved(skeleton, &self.how.params(iterations), self.quiet)?;
+        if let Some(path) = &self.refined {
+            super::refine::write(path, &refined)?;
+        }
+        if !self.quiet && !self.json {
+            eprint!("{}", super::refine_report::text(&refined.report));
+        }
+        Ok(Some(refined))
+    }
+
+    fn print(
+        &self,
+        plan: &MeshPlan,
+        refine: Option<&RefineReport>,
+        run: &RunReport,
+        check: Option<&CheckReport>,
+    ) -> Result<(), Failure> {
         if self.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            return super::print(true, &Output { program, plan, run, check }, String::new);
+            return super::print(true, &Output { program, plan, refine, run, check }, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {

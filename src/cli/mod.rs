@@ -8,6 +8,7 @@ mod mesh;
 mod network;
 mod progress;
 mod refine;
+mod refine_report;
 mod tetrahedralize;
 
 use std::process::ExitCode;

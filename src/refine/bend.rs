@@ -9,7 +9,7 @@ use crate::skeleton::{EdgeId, Overlap, Overlaps};
 /// Pieces that a bend makes are at least this long, in radii.
 const SHORTEST: f64 = 5.0;
 
-/// Puts bends into vessels that overlap; returns how many.
+/// Puts bends into vessels that overlap; returns how many. `Frame::rejoin` has to follow.
 pub(super) fn add_bends(frame: &mut Frame, overlaps: &Overlaps) -> usize {
     let edges = frame.skeleton.edges.len();
     let mut done = vec![false; edges];
@@ -23,9 +23,6 @@ pub(super) fn add_bends(frame: &mut Frame, overlaps: &Overlaps) -> usize {
             frame.add_bend(edge, t);
             count += 1;
         }
-    }
-    if count > 0 {
-        frame.rejoin();
     }
     count
 }

@@ -178,9 +178,19 @@ fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f
     }
     let mut ways = [[f64::INFINITY; 2]; 2];
     ways[e.end(node)][f.end(node)] = 0.0;
-    if let Some(place) = deepest_apart(&a, &b, ways, clearance) {
-        push_tubes(frame, edges, [a, b], place, clearance, out);
-    }
+    let Some((s, t)) = deepest_apart(&a, &b, ways, clearance) else { return };
+    let way = a.point(s) - b.point(t);
+    let radii = a.radius(s) + b.radius(t);
+    let distance = way.norm();
+    let normal = if distance > 1e-6 * radii { way / distance } else { parting(&a, &b) };
+    // The places keep their way from the node, where vessels begin to count as apart: so the node itself can open the
+    // fork by moving towards both ends, though their directions do not change to first order.
+    let (u, v) = (u / lu, v / lv);
+    let [s, t] = [(s, e), (t, f)].map(|(x, edge)| if edge.end(node) == 0 { x } else { 1.0 - x });
+    let across = |axis: &Vec3| normal - axis * axis.dot(&normal);
+    let (by_e, by_f) = (across(&u) * s, across(&v) * -t);
+    let gradient = [(far[0], by_e), (far[1], by_f), (node, -by_e - by_f)];
+    project(frame, &gradient, clearance * radii - distance, 0.5 * radii, out);
 }
 
 /// Asks for the distance at one place of each tube.

@@ -114,7 +114,8 @@ fn side_of(skeleton: &Skeleton, adjacency: &Adjacency, node: NodeId, way: &Vec3,
             normal += if across.dot(&carried) < 0.0 { -across } else { across };
         }
     }
-    let blended = carried + normal.try_normalize(1e-6).unwrap_or_else(Vec3::zeros) * if edges.len() > 2 { FORK } else { 0.0 };
+    let blended =
+        carried + normal.try_normalize(1e-6).unwrap_or_else(Vec3::zeros) * if edges.len() > 2 { FORK } else { 0.0 };
     let blended = blended - way * way.dot(&blended);
     blended.try_normalize(1e-6).unwrap_or(carried)
 }

@@ -35,6 +35,8 @@ pub(super) struct Frame {
     pub is_fold: Vec<bool>,
     /// Nodes that were put in so that a vessel can bend.
     pub is_bend: Vec<bool>,
+    /// Nodes of vessels that overlapped at the last count: parting them comes before room for cuts.
+    pub urgent: Vec<bool>,
     /// Length that each edge keeps at least: what it had, or what equation 11 asks of it if that is less.
     pub kept: Vec<f64>,
     /// All vessels between junctions, terminals and folds.
@@ -45,13 +47,7 @@ impl Frame {
     /// `furthest` is how far a node may go, `free_terminals` how far a terminal may.
     pub fn new(skeleton: Skeleton, free_terminals: f64, furthest: f64, unit: f64) -> Self {
         let adjacency = skeleton.adjacency();
-        let is_fold: Vec<bool> = skeleton
-            .node_ids()
-            .map(|n| match adjacency.edges(n) {
-                &[e, f] => skeleton.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
-                _ => false,
-            })
-            .collect();
+        let is_fold = find_folds(&skeleton, &adjacency);
         let mut leash = vec![furthest; skeleton.nodes.len()];
         let mut mobility = Vec::with_capacity(skeleton.nodes.len());
         for node in skeleton.node_ids() {
@@ -65,9 +61,10 @@ impl Frame {
         }
         let origin = skeleton.nodes.iter().map(|n| n.position).collect();
         let is_bend = vec![false; skeleton.nodes.len()];
+        let urgent = is_bend.clone();
         let chains = Vec::new();
         let kept = Vec::new();
-        let mut frame = Self { skeleton, origin, adjacency, mobility, leash, is_fold, is_bend, kept, chains };
+        let mut frame = Self { skeleton, origin, adjacency, mobility, leash, is_fold, is_bend, urgent, kept, chains };
         frame.kept = frame.skeleton.edge_ids().map(|e| frame.keep(e)).collect();
         frame.chains = frame.find_chains();
         frame
@@ -116,13 +113,17 @@ impl Frame {
         self.leash.push(leash);
         self.is_fold.push(false);
         self.is_bend.push(true);
+        self.urgent.push(true);
         self.kept[edge.index()] = self.keep(edge);
         self.kept.push(self.keep(EdgeId(self.kept.len() as u32)));
     }
 
-    /// Finds who is joined to whom again, after bends were put in.
+    /// Finds again who is joined to whom and where vessels turn back, after nodes were put in or moved.
     pub fn rejoin(&mut self) {
         self.adjacency = self.skeleton.adjacency();
+        for (fold, now) in self.is_fold.iter_mut().zip(find_folds(&self.skeleton, &self.adjacency)) {
+            *fold |= now;
+        }
         self.chains = self.find_chains();
     }
 
@@ -154,4 +155,13 @@ impl Frame {
         }
         at
     }
+}
+
+/// Nodes of valence 2 at which the vessel turns back.
+fn find_folds(skeleton: &Skeleton, adjacency: &Adjacency) -> Vec<bool> {
+    let folds = skeleton.node_ids().map(|n| match adjacency.edges(n) {
+        &[e, f] => skeleton.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
+        _ => false,
+    });
+    folds.collect()
 }

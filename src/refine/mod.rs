@@ -2,7 +2,9 @@
 
 mod bend;
 mod contact;
+mod crowd;
 mod dual;
+mod figures;
 mod forces;
 mod frame;
 mod params;
@@ -15,14 +17,16 @@ mod split;
 #[cfg(test)]
 mod tests;
 
+pub use crowd::CrowdedPair;
 pub use dual::{Dual, dual};
-pub use params::{RefineError, RefineParams, Residual};
+pub use figures::{Figures, Metric};
+pub use params::{Crowded, RefineError, RefineParams, Residual};
 pub use residual::{ResidualPair, ResidualReport, Treatment};
 pub use solve::{Displacement, Sample};
 pub use split::{SplitNode, SplitReport, split};
 
 use crate::geometry::Point3;
-use crate::skeleton::{Metrics, Share, Skeleton};
+use crate::skeleton::Skeleton;
 use serde::Serialize;
 
 /// A refined skeleton.
@@ -49,8 +53,9 @@ pub struct RefineReport {
     pub nodes_split: usize,
     /// Bends that were put into vessels that were stuck.
     pub bends: usize,
-    /// The iteration after which the result was best: that state is the one that is kept.
-    pub chosen: usize,
+    /// The iteration after which the result was best: that state is the one that is kept. None when every state was
+    /// worse than the input in a metric that was to be held: then the result is the input.
+    pub chosen: Option<usize>,
     /// The paper's unit of length, in the unit of the skeleton: the median radius is 0.448 of it.
     pub unit: f64,
     /// As given.
@@ -63,69 +68,14 @@ pub struct RefineReport {
     pub result: Figures,
     /// How far the nodes moved.
     pub displacement: Displacement,
+    /// Terminals that are too close to each other for two caps.
+    pub crowded: Vec<CrowdedPair>,
     /// What was left, and what was done about it.
     pub residual: ResidualReport,
-    /// Metrics that are worse in the end than they were after splitting.
-    pub worse: Vec<&'static str>,
+    /// Metrics that are worse in the end than they were given.
+    pub worse: Vec<Metric>,
     /// The metrics over the iterations.
     pub history: Vec<Sample>,
-}
-
-/// Metrics and numbers of overlaps of one state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct Figures {
-    /// The metrics.
-    pub metrics: Metrics,
-    /// Overlapping pairs of edges.
-    pub overlaps: usize,
-    /// Those of them that share a node.
-    pub beside: usize,
-    /// Pairs of edges that share no node and meet, neighbours along a vessel included.
-    pub unconnected: usize,
-    /// Those of them that no edge joins.
-    pub far: usize,
-}
-
-impl Figures {
-    /// Of a skeleton.
-    pub fn of(skeleton: &Skeleton) -> Self {
-        let adjacency = skeleton.adjacency();
-        let overlaps = skeleton.overlaps(&adjacency);
-        Self {
-            metrics: skeleton.metrics(&adjacency, &skeleton.branches(&adjacency)),
-            overlaps: overlaps.pairs.len(),
-            beside: overlaps.pairs.iter().filter(|o| o.shares_node()).count(),
-            unconnected: overlaps.unconnected.len(),
-            far: overlaps.far,
-        }
-    }
-}
-
-impl Figures {
-    /// The metrics in which this state is worse than another one: larger counts of what is bad, or shares of it that
-    /// grew.
-    fn worse_than(&self, before: &Self) -> Vec<&'static str> {
-        let bad = |f: &Self| {
-            let m = f.metrics;
-            let missing = |s: Share| (s.of - s.count) as f64 / s.of.max(1) as f64;
-            let share = |s: Share| s.count as f64 / s.of.max(1) as f64;
-            [
-                ("overlapping pairs", f.overlaps as f64),
-                ("far pairs", f.far as f64),
-                ("shorter than 2 r", share(m.shorter_than_2)),
-                ("shorter than 2.5 r", share(m.shorter_than_2_5)),
-                ("shorter than 3 r", share(m.shorter_than_3)),
-                ("angles under pi/10", share(m.narrow)),
-                ("folds", share(m.folds)),
-                ("equation 11", missing(m.long_enough)),
-                ("equation 12", missing(m.open_enough)),
-                ("cuttable branches", missing(m.cuttable)),
-            ]
-        };
-        let pairs = bad(self).into_iter().zip(bad(before));
-        pairs.filter(|((_, now), (_, was))| now > was).map(|((name, _), _)| name).collect()
-    }
 }
 
 /// Who is told about progress.
@@ -147,35 +97,42 @@ impl Progress for () {
 ///
 /// # Errors
 /// When a parameter is out of its range, or the skeleton does not satisfy `Skeleton::check`.
-pub fn refine(
-    given: &Skeleton,
-    params: &RefineParams,
-    progress: &mut dyn Progress,
-) -> Result<Refined, RefineError> {
+pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progress) -> Result<Refined, RefineError> {
     params.check()?;
     given.check()?;
-    let (split, splits) = split(given);
-    let solve::Moved { mut skeleton, mut origin, history, bends, chosen, unit } = solve::solve(&split, params, progress);
-    let moved = Figures::of(&skeleton);
+    let given_figures = Figures::of(given);
+    let (mut start, splits) = split(given);
+    let mut origin: Vec<Point3> = start.nodes.iter().map(|n| n.position).collect();
+    let crowded = crowd::treat(&mut start, &mut origin, params);
+    let split_figures = Figures::of(&start);
+    let moved = solve::solve(&start, &given_figures, params, progress);
+    let chosen = moved.best.as_ref().map(|best| best.iteration);
+    let bends = moved.best.as_ref().map_or(0, |best| best.bends);
+    let (mut skeleton, mut origin) = match moved.best {
+        // Nodes that came with bends follow the others.
+        Some(best) => (best.skeleton, [&origin[..], &best.origin[origin.len()..]].concat()),
+        None => (given.clone(), given.nodes.iter().map(|n| n.position).collect()),
+    };
+    let at_rest = Figures::of(&skeleton);
     let displacement = Displacement::of(&skeleton, &origin);
     let residual = residual::treat(&mut skeleton, &mut origin, params);
-    let before = Figures::of(&split);
-    let result = if residual.shrunk_edges > 0 { Figures::of(&skeleton) } else { moved };
+    let result = if residual.shrunk_edges > 0 { Figures::of(&skeleton) } else { at_rest };
     let report = RefineReport {
         size_before: [given.nodes.len(), given.edges.len()],
         size_after: [skeleton.nodes.len(), skeleton.edges.len()],
         nodes_split: splits.nodes.len(),
         bends,
         chosen,
-        unit,
-        given: Figures::of(given),
-        split: before,
-        moved,
+        unit: moved.unit,
+        given: given_figures,
+        split: split_figures,
+        moved: at_rest,
         result,
         displacement,
+        crowded,
         residual,
-        worse: result.worse_than(&before),
-        history,
+        worse: result.worse_than(&given_figures, &Metric::ALL),
+        history: moved.history,
     };
     Ok(Refined { skeleton, origin, report })
 }

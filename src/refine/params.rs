@@ -1,5 +1,6 @@
 //! What a caller may choose about the refinement, and what may be wrong with it.
 
+use super::figures::Metric;
 use crate::skeleton::SkeletonError;
 use serde::Serialize;
 
@@ -15,6 +16,20 @@ pub enum Residual {
     Shrink,
     /// They are listed as vessels that are to be meshed together.
     Fuse,
+}
+
+/// What is done about terminals that are too close to each other for two caps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Crowded {
+    /// They are listed.
+    #[default]
+    Keep,
+    /// They are moved apart.
+    Part,
+    /// They become one: of two vessels that leave one node the thinner is taken away, others are joined.
+    Merge,
 }
 
 /// How a skeleton is refined. Lengths are in the paper's unit (`unit` of the report: the length in which the median
@@ -39,6 +54,10 @@ pub struct RefineParams {
     pub furthest: f64,
     /// Vessels that are stuck get a bend: a new node of valence 2.
     pub bends: bool,
+    /// What is done about terminals that are too close to each other.
+    pub crowded: Crowded,
+    /// The result is not worse than the input in these.
+    pub hold: Vec<Metric>,
     /// What is done about vessels that overlap in the end.
     pub residual: Residual,
     /// Largest share by which a radius may be reduced.
@@ -61,6 +80,8 @@ impl Default for RefineParams {
             free_terminals: 0.0,
             furthest: 21.0,
             bends: true,
+            crowded: Crowded::Keep,
+            hold: vec![Metric::Overlaps, Metric::FarPairs],
             residual: Residual::Shrink,
             shrink: 0.3,
             rho: 3.0,

@@ -8,6 +8,9 @@ use rayon::prelude::*;
 
 /// Where conditions are taken as met: a little beyond what is asked for.
 const MARGIN: f64 = 1.02;
+/// Length that a vessel keeps while it overlaps another one, in radii: parting comes before room for cuts, and two
+/// terminals close to each other can have the fork that leads to them only near by.
+const LEAST: f64 = 2.5;
 
 /// What the vessels ask for that cannot be cut, are too short for equation 11, or leave their node too close together.
 pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
@@ -41,6 +44,9 @@ fn needed(frame: &Frame, chain: &Chain, gradient: &mut Vec<(NodeId, Vec3)>) -> O
     }
     let own = [chain.edges[0], chain.edges[chain.edges.len() - 1]];
     let radii = [0, 1].map(|i| frame.radius_at(own[i], ends[i]));
+    if ends.iter().any(|n| frame.urgent[n.index()]) {
+        return Some(LEAST * radii[0].max(radii[1]));
+    }
     let by_11 = LENGTH * (radii[0] + radii[1]);
     if ends.iter().any(|&n| frame.adjacency.valence(n) < 3) {
         return Some(by_11);
@@ -225,7 +231,8 @@ mod tests {
 
     #[test]
     fn a_vessel_that_is_too_short_is_lengthened_by_both_ends() {
-        let points = [[0.0; 3], [4.0, 0.0, 0.0], [-5.0, 9.0, 0.0], [-5.0, -9.0, 0.0], [9.0, 9.0, 0.0], [9.0, -9.0, 0.0]];
+        let points =
+            [[0.0; 3], [4.0, 0.0, 0.0], [-5.0, 9.0, 0.0], [-5.0, -9.0, 0.0], [9.0, 9.0, 0.0], [9.0, -9.0, 0.0]];
         let frame = Frame::new(tree(&points, &[1.0; 5]), 0.0, 1e9, 1.0);
         let moves = pushes(&frame);
         let of = |n: u32| moves.iter().filter(|m| m.0 == NodeId(n)).map(|m| m.1.x).sum::<f64>();

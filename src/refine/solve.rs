@@ -2,12 +2,12 @@
 
 use super::bend::add_bends;
 use super::contact::Contacts;
+use super::figures::Figures;
 use super::forces::{self, Rates};
 use super::frame::Frame;
-use super::Progress;
 use super::params::RefineParams;
 use super::push::Push;
-use super::{room, shape};
+use super::{Progress, room, shape};
 use crate::geometry::{Point3, Vec3};
 use crate::skeleton::{Barrier, Metrics, Overlaps, Skeleton, paper_unit};
 use serde::Serialize;
@@ -72,28 +72,30 @@ impl Displacement {
 
 /// What the loop hands over.
 pub(super) struct Moved {
-    pub skeleton: Skeleton,
-    pub origin: Vec<Point3>,
+    /// The best state; none when each was worse than the input in what was to be held.
+    pub best: Option<State>,
     pub history: Vec<Sample>,
-    pub bends: usize,
-    /// After how many iterations the best state was reached.
-    pub chosen: usize,
     pub unit: f64,
 }
 
-/// Moves the nodes of a split skeleton.
-pub(super) fn solve(
-    skeleton: &Skeleton,
-    params: &RefineParams,
-    progress: &mut dyn Progress,
-) -> Moved {
+/// One state.
+pub(super) struct State {
+    pub skeleton: Skeleton,
+    pub origin: Vec<Point3>,
+    pub bends: usize,
+    /// After how many iterations.
+    pub iteration: usize,
+}
+
+/// Moves the nodes of a split skeleton; `given` is what the input had.
+pub(super) fn solve(skeleton: &Skeleton, given: &Figures, params: &RefineParams, progress: &mut dyn Progress) -> Moved {
     let mut solver = Solver::new(skeleton, params);
     let start = solver.sample(0, 0);
     progress.step(0, params.iterations, Some(&start));
     let mut history = vec![start];
     let with_forces = (params.forces * params.iterations as f64).round() as usize;
     let between = ((BENDS * params.iterations as f64).round() as usize).max(1);
-    let mut best = Best::default();
+    let mut best = Best { given: *given, score: None, improved: 0, state: None };
     best.offer(&solver, 0);
     for iteration in 1..=params.iterations {
         let asked = solver.step(iteration <= with_forces);
@@ -104,8 +106,8 @@ pub(super) fn solve(
             let overlaps = best.offer(&solver, iteration);
             // Once more after all is well, for the clearance.
             last |= was_perfect && best.is_perfect() || iteration >= best.improved + PATIENCE * between;
-            if params.bends && !last && iteration + between / 2 <= params.iterations {
-                solver.bend(&overlaps);
+            if !last && iteration + between / 2 <= params.iterations {
+                solver.attend(&overlaps);
             }
         }
         if last || (params.every > 0 && iteration % params.every == 0) {
@@ -119,41 +121,36 @@ pub(super) fn solve(
             break;
         }
     }
-    let Best { skeleton, origin, iteration, bends, .. } = best;
-    Moved { skeleton, origin, history, bends, chosen: iteration, unit: solver.unit }
+    Moved { best: best.state, history, unit: solver.unit }
 }
 
 /// The best state so far.
-#[derive(Default)]
 struct Best {
-    /// Overlaps, far pairs, inner branches that cannot be cut, edges that fail equation 11: fewer are better.
+    given: Figures,
+    /// Its figures that decide, the first first: fewer are better.
     score: Option<[usize; 4]>,
-    iteration: usize,
     /// When the score last fell.
     improved: usize,
-    skeleton: Skeleton,
-    origin: Vec<Point3>,
-    bends: usize,
+    state: Option<State>,
 }
 
 impl Best {
-    /// Keeps the solver's state if it is better than what there is.
+    /// Keeps the solver's state if it is better than what there is, and not worse than the input in what is to be held.
     fn offer(&mut self, solver: &Solver, iteration: usize) -> Overlaps {
-        let (skeleton, adjacency) = (&solver.frame.skeleton, &solver.frame.adjacency);
-        let overlaps = skeleton.overlaps(adjacency);
-        let m = skeleton.metrics(adjacency, &skeleton.branches(adjacency));
-        let missing = |share: crate::skeleton::Share| share.of - share.count;
-        let score = [overlaps.pairs.len(), overlaps.far, missing(m.cuttable), missing(m.long_enough)];
-        if self.score.is_none_or(|best| score <= best) {
-            let improved = if self.score == Some(score) { self.improved } else { iteration };
-            *self = Self {
-                score: Some(score),
-                iteration,
-                improved,
-                skeleton: skeleton.clone(),
+        let (figures, overlaps) = Figures::with_overlaps(&solver.frame.skeleton);
+        let score = figures.score();
+        let held = figures.worse_than(&self.given, &solver.params.hold).is_empty();
+        if held && self.score.is_none_or(|best| score <= best) {
+            if self.score != Some(score) {
+                self.improved = iteration;
+            }
+            self.score = Some(score);
+            self.state = Some(State {
+                skeleton: solver.frame.skeleton.clone(),
                 origin: solver.frame.origin.clone(),
                 bends: solver.bends,
-            };
+                iteration,
+            });
         }
         overlaps
     }
@@ -259,8 +256,16 @@ impl<'a> Solver<'a> {
         }
     }
 
-    fn bend(&mut self, overlaps: &Overlaps) {
-        self.bends += add_bends(&mut self.frame, overlaps);
+    /// Vessels that overlap come first until the next count, and may bend.
+    fn attend(&mut self, overlaps: &Overlaps) {
+        self.frame.urgent.fill(false);
+        for node in overlaps.pairs.iter().flat_map(|o| o.nodes).flatten() {
+            self.frame.urgent[node.index()] = true;
+        }
+        if self.params.bends {
+            self.bends += add_bends(&mut self.frame, overlaps);
+        }
+        self.frame.rejoin();
         self.restart();
     }
 

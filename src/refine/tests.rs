@@ -110,9 +110,16 @@ fn the_number_of_threads_makes_no_difference() {
 
 #[test]
 fn vessels_that_cross_exactly_in_a_plane_are_parted() {
-    let points = [[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 9.0, 0.0], [20.0, -9.0, 0.0], [-9.0, -15.0, 0.0], [
-        -9.0, 15.0, 0.0,
-    ], [-1.0, 25.0, 0.0], [-17.0, 25.0, 0.0]];
+    let points = [
+        [-20.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0],
+        [20.0, 9.0, 0.0],
+        [20.0, -9.0, 0.0],
+        [-9.0, -15.0, 0.0],
+        [-9.0, 15.0, 0.0],
+        [-1.0, 25.0, 0.0],
+        [-17.0, 25.0, 0.0],
+    ];
     let s = network(&points, 1.0, &[(0, 1), (1, 2), (1, 3), (4, 5), (5, 6), (5, 7)]);
     let refined = run(&s, &RefineParams::default());
     assert_eq!((refined.report.given.far, refined.report.moved.overlaps), (1, 0));
@@ -121,7 +128,8 @@ fn vessels_that_cross_exactly_in_a_plane_are_parted() {
 #[test]
 fn what_cannot_move_is_bent_or_shrunk_or_listed() {
     // Two vessels between fixed terminals: they can part only by bends.
-    let s = network(&[[-20.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, -20.0, 0.5], [0.0, 20.0, 0.5]], 1.0, &[(0, 1), (2, 3)]);
+    let s =
+        network(&[[-20.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, -20.0, 0.5], [0.0, 20.0, 0.5]], 1.0, &[(0, 1), (2, 3)]);
     let refined = run(&s, &RefineParams::default());
     assert!(refined.report.bends > 0);
     assert_eq!(refined.report.moved.overlaps, 0, "{:?}", refined.report);
@@ -160,11 +168,11 @@ fn shrinking_is_local_and_at_most_by_a_third() {
 
 #[test]
 fn terminals_move_only_as_far_as_they_may() {
-    let s = network(&[[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 0.2, 0.0], [20.0, -0.2, 0.0]], 1.0, &[
-        (0, 1),
-        (1, 2),
-        (1, 3),
-    ]);
+    let s = network(
+        &[[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 0.2, 0.0], [20.0, -0.2, 0.0]],
+        1.0,
+        &[(0, 1), (1, 2), (1, 3)],
+    );
     let held = run(&s, &RefineParams::default());
     assert!(held.report.residual.pairs.iter().all(|p| p.terminals_too_close));
     assert_eq!(held.skeleton.nodes[2].position, s.nodes[2].position);
@@ -216,9 +224,7 @@ fn parameters_out_of_range_are_refused() {
 #[test]
 fn odd_networks_end_in_something_finite() {
     let ring: Vec<(u32, u32)> = (0..8).map(|i| (i, (i + 1) % 8)).collect();
-    let circle: Vec<[f64; 3]> = (0..8)
-        .map(|i| [f64::from(i).cos() * 9.0, f64::from(i).sin() * 9.0, 0.0])
-        .collect();
+    let circle: Vec<[f64; 3]> = (0..8).map(|i| [f64::from(i).cos() * 9.0, f64::from(i).sin() * 9.0, 0.0]).collect();
     let line = [[0.0; 3], [5.0, 0.0, 0.0], [10.0, 0.0, 0.0]];
     let coincident = [[0.0; 3], [10.0, 0.0, 0.0], [5.0, 0.0, 0.0], [15.0, 0.0, 0.0]];
     let cases = [

@@ -43,12 +43,7 @@ pub fn svg(panels: &[Panel]) -> String {
     );
     for (i, panel) in panels.iter().enumerate() {
         // Writing to a string cannot fail.
-        let _ = writeln!(
-            out,
-            "<g transform=\"translate({},{})\">",
-            WIDTH * (i % 2) as f64,
-            HEIGHT * (i / 2) as f64
-        );
+        let _ = writeln!(out, "<g transform=\"translate({},{})\">", WIDTH * (i % 2) as f64, HEIGHT * (i / 2) as f64);
         draw(panel, &mut out);
         out.push_str("</g>\n");
     }
@@ -131,7 +126,11 @@ fn draw(panel: &Panel, out: &mut String) {
     let (w, h) = (WIDTH - left - right, HEIGHT - top - bottom);
     let x = |share: f64| left + w * share;
     let y = |share: f64| top + h * (1.0 - share);
-    let _ = writeln!(out, "<text x=\"{left}\" y=\"20\" font-size=\"14\" font-weight=\"bold\">{}</text>", escaped(&panel.title));
+    let _ = writeln!(
+        out,
+        "<text x=\"{left}\" y=\"20\" font-size=\"14\" font-weight=\"bold\">{}</text>",
+        escaped(&panel.title)
+    );
     for (tick, place) in up.ticks.iter().map(|&t| (t, y((t - up.low) / (up.high - up.low)))) {
         let _ = writeln!(
             out,
@@ -154,7 +153,8 @@ fn draw(panel: &Panel, out: &mut String) {
             across.label(tick)
         );
     }
-    let _ = writeln!(out, "<rect x=\"{left}\" y=\"{top}\" width=\"{w}\" height=\"{h}\" fill=\"none\" stroke=\"#444\"/>");
+    let _ =
+        writeln!(out, "<rect x=\"{left}\" y=\"{top}\" width=\"{w}\" height=\"{h}\" fill=\"none\" stroke=\"#444\"/>");
     let _ = writeln!(
         out,
         "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text><text transform=\"translate(16,{}) rotate(-90)\" \

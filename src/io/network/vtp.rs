@@ -150,7 +150,12 @@ impl Choice {
         let (points, cells) = (names("PointData"), names("CellData"));
         let available = || points.iter().chain(&cells).cloned().collect();
         if let Some(wanted) = &options.radius_array {
-            let choice = Self { points: named(&points, wanted), cells: named(&cells, wanted), unused: Vec::new(), by_name: false };
+            let choice = Self {
+                points: named(&points, wanted),
+                cells: named(&cells, wanted),
+                unused: Vec::new(),
+                by_name: false,
+            };
             if choice.points.is_none() && choice.cells.is_none() {
                 return Err(VtpError::UnknownArray { wanted: wanted.clone(), available: available() });
             }
@@ -161,7 +166,8 @@ impl Choice {
             return Err(VtpError::NoRadius { available: available() });
         }
         let used = |n: &String| Some(n) == choice.points.as_ref() || Some(n) == choice.cells.as_ref();
-        let unused = points.iter().chain(&cells).filter(|n| rank(n).is_some() && !used(n) && *n != END_RADII).cloned().collect();
+        let unused =
+            points.iter().chain(&cells).filter(|n| rank(n).is_some() && !used(n) && *n != END_RADII).cloned().collect();
         Ok(Self { unused, ..choice })
     }
 

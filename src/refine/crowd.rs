@@ -1,0 +1,179 @@
+//! Terminals that are too close to each other for two caps: listed, and moved apart or merged on request.
+
+use super::params::{Crowded, RefineParams};
+use crate::skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
+use serde::Serialize;
+
+/// How far terminals are moved apart, in sums of their radii: their walls must not fuse either.
+const APART: f64 = 1.3;
+/// Sweeps at most: a terminal that gives way to one may come close to a third.
+const SWEEPS: usize = 100;
+
+/// Two terminals closer than the sum of their radii, and what became of them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CrowdedPair {
+    /// The two, as indices into the input.
+    pub nodes: [u32; 2],
+    /// Their distance as given.
+    pub distance: f64,
+    /// The sum of their radii.
+    pub radii: f64,
+    /// Whether they are apart now, or one.
+    pub resolved: bool,
+}
+
+/// Lists crowded terminals and treats them as `params.crowded` says. Nodes that a merger removes are removed from
+/// `origin`, too.
+pub(super) fn treat(
+    skeleton: &mut Skeleton,
+    origin: &mut Vec<crate::geometry::Point3>,
+    params: &RefineParams,
+) -> Vec<CrowdedPair> {
+    let adjacency = skeleton.adjacency();
+    let found = skeleton.crowded_terminals(&adjacency);
+    let resolved = match params.crowded {
+        Crowded::Keep => vec![false; found.len()],
+        Crowded::Part => part(skeleton, &found),
+        Crowded::Merge => vec![true; found.len()],
+    };
+    let original = |n: NodeId| skeleton.node(n).original;
+    let pairs = found.iter().zip(resolved).map(|(pair, resolved)| CrowdedPair {
+        nodes: pair.nodes.map(original),
+        distance: pair.distance,
+        radii: pair.radii,
+        resolved,
+    });
+    let pairs = pairs.collect();
+    if params.crowded == Crowded::Merge {
+        merge(skeleton, origin, &found);
+    }
+    pairs
+}
+
+/// Moves the terminals of each pair apart, half the way each, until all are apart; says which are.
+fn part(skeleton: &mut Skeleton, found: &[CrowdedTerminals]) -> Vec<bool> {
+    let mut close = found.to_vec();
+    for _ in 0..SWEEPS {
+        for pair in &close {
+            let [a, b] = pair.nodes.map(|n| *skeleton.node(n));
+            let lacking = APART * pair.radii - (b.position - a.position).norm();
+            if lacking > 0.0 {
+                let way = direction(&a, &b) * (0.5 * lacking);
+                skeleton.nodes[pair.nodes[0].index()].position -= way;
+                skeleton.nodes[pair.nodes[1].index()].position += way;
+            }
+        }
+        close = skeleton.crowded_terminals(&skeleton.adjacency());
+        if close.is_empty() {
+            break;
+        }
+    }
+    found.iter().map(|pair| close.iter().all(|c| c.nodes != pair.nodes)).collect()
+}
+
+/// From one terminal to another; any direction if they are at one place.
+fn direction(a: &Node, b: &Node) -> crate::geometry::Vec3 {
+    (b.position - a.position).try_normalize(0.0).unwrap_or_else(crate::geometry::Vec3::x)
+}
+
+/// Makes one terminal of each pair: of two that hang on one node the thinner vessel is taken away, others are joined
+/// where they lie, halfway.
+fn merge(skeleton: &mut Skeleton, origin: &mut Vec<crate::geometry::Point3>, found: &[CrowdedTerminals]) {
+    let adjacency = skeleton.adjacency();
+    let mut gone = vec![false; skeleton.nodes.len()];
+    let mut dropped = vec![false; skeleton.edges.len()];
+    for pair in found {
+        let [a, b] = pair.nodes;
+        if gone[a.index()] || gone[b.index()] {
+            continue;
+        }
+        let [e, f] = pair.nodes.map(|n| adjacency.edges(n)[0]);
+        if skeleton.edge(e).other(a) == skeleton.edge(f).other(b) {
+            let thinner = skeleton.edge(f).mean_radius() < skeleton.edge(e).mean_radius();
+            let (node, edge) = if thinner { (b, f) } else { (a, e) };
+            (gone[node.index()], dropped[edge.index()]) = (true, true);
+        } else {
+            let middle = nalgebra::center(&skeleton.node(a).position, &skeleton.node(b).position);
+            skeleton.nodes[a.index()].position = middle;
+            let end = skeleton.edge(f).end(b);
+            skeleton.edges[f.index()].nodes[end] = a;
+            gone[b.index()] = true;
+        }
+    }
+    drop_nodes(skeleton, origin, &gone, &dropped);
+}
+
+fn drop_nodes(skeleton: &mut Skeleton, origin: &mut Vec<crate::geometry::Point3>, gone: &[bool], dropped: &[bool]) {
+    let mut next = 0;
+    let new: Vec<NodeId> = gone
+        .iter()
+        .map(|gone| {
+            let id = NodeId(next);
+            next += u32::from(!gone);
+            id
+        })
+        .collect();
+    let mut kept = dropped.iter().map(|d| !d);
+    skeleton.edges.retain(|_| kept.next().unwrap_or(true));
+    for edge in &mut skeleton.edges {
+        edge.nodes = edge.nodes.map(|n| new[n.index()]);
+    }
+    let mut kept = gone.iter().map(|g| !g);
+    skeleton.nodes.retain(|_| kept.next().unwrap_or(true));
+    let mut kept = gone.iter().map(|g| !g);
+    origin.retain(|_| kept.next().unwrap_or(true));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{network, run};
+    use super::*;
+
+    /// A fork whose two ends lie close to each other, and a vessel that ends close to one of them.
+    fn crowd() -> Skeleton {
+        let points = [
+            [0.0, 0.0, 0.0],
+            [20.0, 0.0, 0.0],
+            [40.0, 0.1, 0.0],
+            [40.0, -0.1, 0.0],
+            [70.0, 0.0, 0.5],
+            [41.0, 0.0, 0.5],
+        ];
+        network(&points, 1.0, &[(0, 1), (1, 2), (1, 3), (4, 5)])
+    }
+
+    fn with(crowded: Crowded) -> super::super::Refined {
+        run(&crowd(), &RefineParams { crowded, ..RefineParams::default() })
+    }
+
+    #[test]
+    fn they_are_listed() {
+        let kept = with(Crowded::Keep);
+        let pairs: Vec<_> = kept.report.crowded.iter().map(|p| (p.nodes, p.resolved)).collect();
+        assert_eq!(pairs, [([2, 3], false), ([2, 5], false), ([3, 5], false)]);
+        assert_eq!(kept.skeleton.nodes[2].position, crowd().nodes[2].position);
+    }
+
+    #[test]
+    fn they_are_parted() {
+        let parted = with(Crowded::Part);
+        assert!(parted.report.crowded.iter().all(|p| p.resolved));
+        assert!(parted.skeleton.crowded_terminals(&parted.skeleton.adjacency()).is_empty());
+        let moved = (parted.skeleton.nodes[2].position - parted.origin[2]).norm();
+        assert!(moved > 0.5 && moved < 5.0, "{moved}");
+        assert_eq!(parted.origin[2], crowd().nodes[2].position);
+        assert_eq!(parted.skeleton.nodes[0].position, crowd().nodes[0].position);
+    }
+
+    #[test]
+    fn they_are_merged() {
+        let merged = with(Crowded::Merge);
+        assert_eq!(merged.skeleton.check(), Ok(()));
+        assert_eq!(merged.origin.len(), merged.skeleton.nodes.len());
+        let adjacency = merged.skeleton.adjacency();
+        let left: Vec<u32> = adjacency.terminals().iter().map(|&n| merged.skeleton.node(n).original).collect();
+        // 2 went, as its vessel was no thicker than that of 3, which then was joined to 5.
+        assert_eq!(left, [0, 4]);
+        assert_eq!(merged.skeleton.components(&adjacency).list.len(), 1);
+    }
+}

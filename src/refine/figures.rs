@@ -1,0 +1,135 @@
+//! The figures of one state, and which of two states is worse in what.
+
+use crate::skeleton::{Metrics, Overlaps, Share, Skeleton};
+use serde::Serialize;
+
+/// Metrics and numbers of overlaps of one state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Figures {
+    /// The metrics.
+    pub metrics: Metrics,
+    /// Overlapping pairs of edges.
+    pub overlaps: usize,
+    /// Those of them that share a node.
+    pub beside: usize,
+    /// Pairs of edges that share no node and meet, neighbours along a vessel included.
+    pub unconnected: usize,
+    /// Those of them that no edge joins.
+    pub far: usize,
+}
+
+/// A metric that a caller may ask to be held: the result is not worse in it than what was given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Metric {
+    /// Overlapping pairs of edges.
+    Overlaps,
+    /// Pairs of edges that meet and that no edge joins.
+    FarPairs,
+    /// Barrier potential.
+    Barrier,
+    /// Edges shorter than 2 radii.
+    Shorter2,
+    /// Edges shorter than 2.5 radii.
+    Shorter25,
+    /// Edges shorter than 3 radii.
+    Shorter3,
+    /// Pairs of edges that leave a node at less than π/10.
+    Angles,
+    /// Nodes of valence 2 at which a vessel turns back on itself.
+    Folds,
+    /// Edges that fail equation 11.
+    Equation11,
+    /// Edges that fail equation 12.
+    Equation12,
+    /// Inner branches that cannot be cut.
+    Cuttable,
+}
+
+impl Metric {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::Overlaps,
+        Self::FarPairs,
+        Self::Barrier,
+        Self::Shorter2,
+        Self::Shorter25,
+        Self::Shorter3,
+        Self::Angles,
+        Self::Folds,
+        Self::Equation11,
+        Self::Equation12,
+        Self::Cuttable,
+    ];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Overlaps => "overlaps",
+            Self::FarPairs => "far-pairs",
+            Self::Barrier => "barrier",
+            Self::Shorter2 => "shorter2",
+            Self::Shorter25 => "shorter25",
+            Self::Shorter3 => "shorter3",
+            Self::Angles => "angles",
+            Self::Folds => "folds",
+            Self::Equation11 => "equation11",
+            Self::Equation12 => "equation12",
+            Self::Cuttable => "cuttable",
+        }
+    }
+
+    /// How much there is of what is bad: less is better.
+    fn bad(self, of: &Figures) -> f64 {
+        let m = of.metrics;
+        let missing = |s: Share| (s.of - s.count) as f64;
+        match self {
+            Self::Overlaps => of.overlaps as f64,
+            Self::FarPairs => of.far as f64,
+            Self::Barrier => m.barrier,
+            Self::Shorter2 => m.shorter_than_2.count as f64,
+            Self::Shorter25 => m.shorter_than_2_5.count as f64,
+            Self::Shorter3 => m.shorter_than_3.count as f64,
+            Self::Angles => m.narrow.count as f64,
+            Self::Folds => m.folds.count as f64,
+            Self::Equation11 => missing(m.long_enough),
+            Self::Equation12 => missing(m.open_enough),
+            Self::Cuttable => missing(m.cuttable),
+        }
+    }
+}
+
+impl Figures {
+    /// Of a skeleton.
+    pub fn of(skeleton: &Skeleton) -> Self {
+        Self::with_overlaps(skeleton).0
+    }
+
+    /// Of a skeleton, and its overlaps.
+    pub(super) fn with_overlaps(skeleton: &Skeleton) -> (Self, Overlaps) {
+        let adjacency = skeleton.adjacency();
+        let overlaps = skeleton.overlaps(&adjacency);
+        let figures = Self {
+            metrics: skeleton.metrics(&adjacency, &skeleton.branches(&adjacency)),
+            overlaps: overlaps.pairs.len(),
+            beside: overlaps.pairs.iter().filter(|o| o.shares_node()).count(),
+            unconnected: overlaps.unconnected.len(),
+            far: overlaps.far,
+        };
+        (figures, overlaps)
+    }
+
+    /// The metrics among some in which this state is worse than another one.
+    pub fn worse_than(&self, other: &Self, among: &[Metric]) -> Vec<Metric> {
+        among.iter().copied().filter(|m| m.bad(self) > m.bad(other)).collect()
+    }
+
+    /// What decides between two states, the first number first: overlaps, far pairs, inner branches that cannot be cut,
+    /// edges that fail equation 11.
+    pub(super) fn score(&self) -> [usize; 4] {
+        let missing = |s: Share| s.of - s.count;
+        [self.overlaps, self.far, missing(self.metrics.cuttable), missing(self.metrics.long_enough)]
+    }
+}
