@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn refinement_separates_the_two() {
-        let grown = dual(&run(&tangle(4, 2), &RefineParams::default()).skeleton).skeleton;
+        let grown = dual(&run(&tangle(4, 3), &RefineParams::default()).skeleton).skeleton;
         let refined = run(&grown, &RefineParams::default());
         let before = Figures::of(&grown);
         let r = &refined.report;

@@ -29,6 +29,9 @@ pub(super) struct Frame {
     pub adjacency: Adjacency,
     /// How readily a node moves: 0 for one that is held.
     pub mobility: Vec<f64>,
+    /// How far a node that is not held may go from its origin, and the paper's unit.
+    furthest: f64,
+    unit: f64,
     /// How far a node may go from its origin.
     pub leash: Vec<f64>,
     /// Nodes of valence 2 at which the vessel turns back: terminals that two trees share.
@@ -55,16 +58,27 @@ impl Frame {
             if adjacency.valence(node) == 1 || is_fold[i] {
                 leash[i] = free_terminals.min(furthest);
             }
-            // Thick vessels give way more readily: a thin one that is pinned by its terminals close to a thick one
-            // cannot, and what the thick one has to go is little for its size.
-            mobility.push(if leash[i] > 0.0 { (skeleton.node(node).radius / unit).sqrt() } else { 0.0 });
+            mobility.push(if leash[i] > 0.0 { readiness(skeleton.node(node).radius, unit) } else { 0.0 });
         }
         let origin = skeleton.nodes.iter().map(|n| n.position).collect();
         let is_bend = vec![false; skeleton.nodes.len()];
         let urgent = is_bend.clone();
         let chains = Vec::new();
         let kept = Vec::new();
-        let mut frame = Self { skeleton, origin, adjacency, mobility, leash, is_fold, is_bend, urgent, kept, chains };
+        let mut frame = Self {
+            skeleton,
+            origin,
+            adjacency,
+            mobility,
+            furthest,
+            unit,
+            leash,
+            is_fold,
+            is_bend,
+            urgent,
+            kept,
+            chains,
+        };
         frame.kept = frame.skeleton.edge_ids().map(|e| frame.keep(e)).collect();
         frame.chains = frame.find_chains();
         frame
@@ -107,10 +121,8 @@ impl Frame {
         *first = Edge { nodes: [a, node], radii: [first.radii[0], radius] };
         self.skeleton.edges.push(Edge { nodes: [node, b], radii: [radius, old] });
         self.origin.push(self.origin[a.index()] + (self.origin[b.index()] - self.origin[a.index()]) * t);
-        let at = |list: &[f64]| list[a.index()].max(list[b.index()]);
-        let (mobility, leash) = (at(&self.mobility), at(&self.leash));
-        self.mobility.push(mobility);
-        self.leash.push(leash);
+        self.mobility.push(readiness(radius, self.unit));
+        self.leash.push(self.furthest);
         self.is_fold.push(false);
         self.is_bend.push(true);
         self.urgent.push(true);
@@ -155,6 +167,12 @@ impl Frame {
         }
         at
     }
+}
+
+/// How readily a node moves. Thick vessels give way more readily: a thin one that is pinned by its terminals close to a
+/// thick one cannot, and what the thick one has to go is little for its size.
+fn readiness(radius: f64, unit: f64) -> f64 {
+    (radius / unit).sqrt()
 }
 
 /// Nodes of valence 2 at which the vessel turns back.

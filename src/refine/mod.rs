@@ -115,8 +115,7 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progre
     };
     let at_rest = Figures::of(&skeleton);
     let displacement = Displacement::of(&skeleton, &origin);
-    let residual = residual::treat(&mut skeleton, &mut origin, params);
-    let result = if residual.shrunk_edges > 0 { Figures::of(&skeleton) } else { at_rest };
+    let (residual, result) = treat_residual(&mut skeleton, &mut origin, &at_rest, &given_figures, params);
     let report = RefineReport {
         size_before: [given.nodes.len(), given.edges.len()],
         size_after: [skeleton.nodes.len(), skeleton.edges.len()],
@@ -135,4 +134,26 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progre
         history: moved.history,
     };
     Ok(Refined { skeleton, origin, report })
+}
+
+/// Treats what is left; undone when shrinking made it worse than the input in what is to be held.
+fn treat_residual(
+    skeleton: &mut Skeleton,
+    origin: &mut Vec<Point3>,
+    at_rest: &Figures,
+    given: &Figures,
+    params: &RefineParams,
+) -> (ResidualReport, Figures) {
+    let before = (skeleton.clone(), origin.clone());
+    let report = residual::treat(skeleton, origin, params);
+    if report.shrunk_edges == 0 {
+        return (report, *at_rest);
+    }
+    let after = Figures::of(skeleton);
+    if after.worse_than(given, &params.hold).is_empty() {
+        return (report, after);
+    }
+    (*skeleton, *origin) = before;
+    let listed = RefineParams { residual: Residual::Report, ..params.clone() };
+    (residual::treat(skeleton, origin, &listed), *at_rest)
 }

@@ -2,7 +2,8 @@
 
 use super::params::{RefineParams, Residual};
 use crate::geometry::{Point3, Tube};
-use crate::skeleton::{Edge, EdgeId, Node, NodeId, Overlap, Skeleton};
+use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Skeleton};
+use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
 
 /// Rounds of shrinking at most: a vessel may have several others in its way.
@@ -70,12 +71,13 @@ fn total_volume(skeleton: &Skeleton) -> f64 {
 
 /// Treats what overlaps. New nodes are added to `origin`, too.
 pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &RefineParams) -> ResidualReport {
-    let found = skeleton.overlaps(&skeleton.adjacency()).pairs;
+    let adjacency = skeleton.adjacency();
+    let found = skeleton.overlaps(&adjacency).pairs;
     let mut report = ResidualReport { volume: total_volume(skeleton), ..ResidualReport::default() };
     let treatment = if params.residual == Residual::Fuse { Treatment::Fused } else { Treatment::Left };
     let entry = |skeleton: &Skeleton, o: &Overlap| ResidualPair {
         edges: o.nodes.map(|ends| ends.map(|n| skeleton.node(n).original)),
-        terminals_too_close: terminals_too_close(skeleton, o),
+        terminals_too_close: terminals_too_close(skeleton, &adjacency, o),
         distance: o.distance,
         radii: o.radii,
         treatment,
@@ -85,9 +87,10 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
         report.left = if params.residual == Residual::Fuse { 0 } else { found.len() };
         return report;
     }
-    let adjacency = skeleton.adjacency();
-    let is_terminal = skeleton.node_ids().map(|n| adjacency.valence(n) == 1).collect();
-    let mut shrinker = Shrinker { skeleton, origin, params, least: Vec::new(), is_terminal };
+    let around: Vec<Vec<EdgeId>> = skeleton.node_ids().map(|n| adjacency.edges(n).to_vec()).collect();
+    let was = skeleton.edges.iter().map(|e| e.radii).collect();
+    let mut shrinker = Shrinker { skeleton, origin, params, was, around };
+    let place: FxHashMap<[EdgeId; 2], usize> = found.iter().enumerate().map(|(i, o)| (o.edges, i)).collect();
     let edges_before = shrinker.skeleton.edges.len();
     let mut touched = vec![false; edges_before];
     for round in 0..ROUNDS {
@@ -100,7 +103,7 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
                 touched[e.index()] = true;
             }
             if let (0, Some(kept)) = (round, kept)
-                && let Some(i) = found.iter().position(|o| o.edges == overlap.edges)
+                && let Some(&i) = place.get(&overlap.edges)
             {
                 report.pairs[i].treatment = Treatment::Shrunk { kept };
             }
@@ -110,14 +113,10 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
         }
     }
     let after = skeleton.overlaps(&skeleton.adjacency()).pairs;
-    for pair in &mut report.pairs {
-        let same = |o: &Overlap| {
-            let ends = o.nodes.map(|ends| ends.map(|n| skeleton.node(n).original));
-            ends == pair.edges
-        };
-        if after.iter().any(same) {
-            pair.treatment = Treatment::Left;
-        }
+    let originals = |o: &Overlap| o.nodes.map(|ends| ends.map(|n| skeleton.node(n).original));
+    let still: FxHashSet<[[u32; 2]; 2]> = after.iter().map(originals).collect();
+    for pair in report.pairs.iter_mut().filter(|p| still.contains(&p.edges)) {
+        pair.treatment = Treatment::Left;
     }
     report.left = after.len();
     report.shrunk_edges = touched.iter().filter(|t| **t).count();
@@ -125,27 +124,32 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
     report
 }
 
-fn terminals_too_close(skeleton: &Skeleton, overlap: &Overlap) -> bool {
-    let adjacency = skeleton.adjacency();
-    let terminals = overlap.nodes.map(|ends| ends.into_iter().find(|&n| adjacency.valence(n) == 1));
+/// A terminal has one vessel, or the two of the trees that share it, which turn back there.
+fn terminals_too_close(skeleton: &Skeleton, adjacency: &Adjacency, overlap: &Overlap) -> bool {
+    let ends = |n: NodeId| match adjacency.edges(n) {
+        &[_] => true,
+        &[e, f] => skeleton.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
+        _ => false,
+    };
+    let terminals = overlap.nodes.map(|nodes| nodes.into_iter().find(|&n| ends(n)));
     let [Some(a), Some(b)] = terminals else { return false };
     let (a, b) = (skeleton.node(a), skeleton.node(b));
-    (a.position - b.position).norm() < a.radius + b.radius
+    a != b && (a.position - b.position).norm() < a.radius + b.radius
 }
 
 struct Shrinker<'a> {
     skeleton: &'a mut Skeleton,
     origin: &'a mut Vec<Point3>,
     params: &'a RefineParams,
-    /// Radius of an edge's ends before anything was shrunk; for edges in the order of their ids as far as it was asked.
-    least: Vec<[f64; 2]>,
-    is_terminal: Vec<bool>,
+    /// Radii of each edge's ends before anything was shrunk.
+    was: Vec<[f64; 2]>,
+    /// The edges at each node.
+    around: Vec<Vec<EdgeId>>,
 }
 
 impl Shrinker<'_> {
     /// Reduces the radii of an overlapping pair where they meet; the share kept, none when it cannot be helped.
     fn shrink(&mut self, overlap: &Overlap) -> Option<f64> {
-        self.remember();
         let thin = overlap.edges.map(|e| self.skeleton.tube(e).min_radius()).into_iter().fold(f64::INFINITY, f64::min);
         let voxel = 2.0 * thin / self.params.rho;
         // Clear by a voxel if that can be had, else as far as it goes.
@@ -160,74 +164,86 @@ impl Shrinker<'_> {
         (least_kept < 1.0).then_some(least_kept)
     }
 
-    fn remember(&mut self) {
-        for edge in &self.skeleton.edges[self.least.len()..] {
-            self.least.push(edge.radii);
-        }
-    }
-
     /// Reduces the radius of an edge at a point to `share` of what it is, tapering back to either side.
     fn pinch(&mut self, edge: EdgeId, point: &Point3, share: f64) -> Option<f64> {
         let tube = self.skeleton.tube(edge);
         let length = tube.length();
         let t = (point - tube.a).norm() / length;
         let room = SHORTEST * tube.max_radius() / length;
-        let floor = 1.0 - self.params.shrink;
-        let was = self.least[edge.index()];
-        let before = was[0] + (was[1] - was[0]) * t;
-        let radius = (tube.radius(t) * share).max(floor * before);
         if t < room || t > 1.0 - room {
             // Too close to an end for a node of its own.
-            let end = usize::from(t > 0.5);
-            let narrow = (tube.radius(end as f64) * share).max(floor * was[end]);
-            self.taper(edge, end, narrow);
-            return Some(narrow / was[end]);
+            return self.pinch_end(self.skeleton.edge(edge).nodes[usize::from(t > 0.5)], edge, share);
         }
-        self.insert(edge, t, radius);
-        let after = EdgeId(self.skeleton.edges.len() as u32 - 1);
-        // The radius is back to what it was a few radii on: nodes there, where the pieces are long enough for them.
-        for (piece, end) in [(edge, 1), (after, 0)] {
-            self.taper(piece, end, radius);
+        let was = self.was[edge.index()];
+        let before = was[0] + (was[1] - was[0]) * t;
+        let radius = (tube.radius(t) * share).max((1.0 - self.params.shrink) * before);
+        // From far to near, so that the part before keeps its id.
+        let reach = TAPER * tube.max_radius() / length;
+        if t + reach <= 1.0 - room {
+            self.insert(edge, t + reach, tube.radius(t + reach));
+        }
+        let rest = self.skeleton.tube(edge).length() / length;
+        self.insert(edge, t / rest, radius);
+        if t - reach >= room {
+            self.insert(edge, (t - reach) / t, tube.radius(t - reach));
         }
         Some(radius / before)
+    }
+
+    /// Reduces the radius of an edge at one of its nodes; of both edges when the vessel goes on there.
+    fn pinch_end(&mut self, node: NodeId, edge: EdgeId, share: f64) -> Option<f64> {
+        let around = &self.around[node.index()];
+        let all = if around.len() == 2 { around.clone() } else { vec![edge] };
+        let floor = 1.0 - self.params.shrink;
+        let mut kept: f64 = 1.0;
+        for edge in all {
+            let end = self.skeleton.edge(edge).end(node);
+            let was = self.was[edge.index()][end];
+            let narrow = (self.skeleton.edge(edge).radii[end] * share).max(floor * was);
+            kept = kept.min(narrow / was);
+            self.taper(edge, end, narrow);
+        }
+        Some(kept)
     }
 
     /// Gives one end of an edge a radius and keeps the rest as it was from `TAPER` radii on, if it is long enough.
     fn taper(&mut self, edge: EdgeId, end: usize, radius: f64) {
         let tube = self.skeleton.tube(edge);
         let length = tube.length();
-        let reach = TAPER * tube.max_radius();
-        if length >= reach + SHORTEST * tube.max_radius() {
-            let t = if end == 0 { reach / length } else { 1.0 - reach / length };
-            let was = self.least[edge.index()];
-            let full = was[0] + (was[1] - was[0]) * t;
-            let full = full.min(tube.radius(t).max(full * (1.0 - self.params.shrink)));
-            self.insert(edge, t, full);
-            let near = if end == 0 { edge } else { EdgeId(self.skeleton.edges.len() as u32 - 1) };
-            self.skeleton.edges[near.index()].radii[end] = radius;
-        } else {
-            self.skeleton.edges[edge.index()].radii[end] = radius;
+        let reach = TAPER * tube.max_radius() / length;
+        let mut near = edge;
+        if reach + SHORTEST * tube.max_radius() / length <= 1.0 {
+            let t = if end == 0 { reach } else { 1.0 - reach };
+            self.insert(edge, t, tube.radius(t));
+            if end == 1 {
+                near = EdgeId(self.skeleton.edges.len() as u32 - 1);
+            }
         }
+        self.skeleton.edges[near.index()].radii[end] = radius;
     }
 
     /// Puts a node into an edge.
     fn insert(&mut self, edge: EdgeId, t: f64, radius: f64) {
-        self.remember();
         let Edge { nodes: [a, b], radii } = *self.skeleton.edge(edge);
         let tube = self.skeleton.tube(edge);
         let node = NodeId(self.skeleton.nodes.len() as u32);
         // Not a terminal: these are found by their number.
-        let inner = |n: NodeId| !self.is_terminal.get(n.index()).copied().unwrap_or(false);
+        let inner = |n: NodeId| self.around[n.index()].len() > 1;
         let nearer = if (t < 0.5 || !inner(b)) && inner(a) { a } else { b };
         let original = self.skeleton.node(nearer).original;
         self.skeleton.nodes.push(Node { position: tube.point(t), radius, original });
         let (p, q) = (self.origin[a.index()], self.origin[b.index()]);
         self.origin.push(p + (q - p) * t);
         self.skeleton.edges[edge.index()] = Edge { nodes: [a, node], radii: [radii[0], radius] };
+        let beyond = EdgeId(self.skeleton.edges.len() as u32);
         self.skeleton.edges.push(Edge { nodes: [node, b], radii: [radius, radii[1]] });
-        let was = self.least[edge.index()];
+        self.around.push(vec![edge, beyond]);
+        for e in self.around[b.index()].iter_mut().filter(|e| **e == edge) {
+            *e = beyond;
+        }
+        let was = self.was[edge.index()];
         let middle = was[0] + (was[1] - was[0]) * t;
-        self.least[edge.index()] = [was[0], middle];
-        self.least.push([middle, was[1]]);
+        self.was[edge.index()] = [was[0], middle];
+        self.was.push([middle, was[1]]);
     }
 }

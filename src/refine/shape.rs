@@ -4,20 +4,19 @@ use super::frame::{Chain, Frame};
 use crate::geometry::Vec3;
 use rayon::prelude::*;
 
-/// How strongly neighbours along a vessel move together, against what is asked of each.
-const STIFFNESS: f64 = 2.0;
+/// Over how many radii along a vessel its nodes move together.
+const REACH: f64 = 4.0;
 
-/// Replaces the steps of the nodes inside each chain by smooth ones: Σ w |x − step|² + Σ k |difference|² is least, w
-/// being 1 where something was asked of a node and 0 elsewhere, k = `STIFFNESS` times radius over length. Ends keep their
-/// steps.
+/// Replaces the steps of the nodes inside each chain by smooth ones. Ends keep their steps.
 pub(super) fn smooth_steps(frame: &Frame, steps: &mut [Vec3], asked: &[u32]) {
     let smooth: Vec<Vec<Vec3>> = frame
         .chains
         .par_iter()
-        .map(|chain| if chain.nodes.len() > 2 { along(frame, chain, steps, asked) } else { Vec::new() })
+        .map(|chain| if chain.nodes.len() > 2 { smoothed(frame, chain, steps, asked) } else { Vec::new() })
         .collect();
-    for (chain, inner) in frame.chains.iter().zip(smooth) {
-        for (node, step) in chain.nodes[1..].iter().zip(inner) {
+    for (chain, values) in frame.chains.iter().zip(smooth) {
+        let inner = chain.nodes.iter().zip(values).skip(1).take(chain.nodes.len() - 2);
+        for (node, step) in inner {
             if frame.mobility[node.index()] > 0.0 {
                 steps[node.index()] = step;
             }
@@ -25,34 +24,41 @@ pub(super) fn smooth_steps(frame: &Frame, steps: &mut [Vec3], asked: &[u32]) {
     }
 }
 
-/// The tridiagonal system of one chain, solved by elimination.
-fn along(frame: &Frame, chain: &Chain, steps: &[Vec3], asked: &[u32]) -> Vec<Vec3> {
-    let n = chain.nodes.len();
-    let spring = |i: usize| {
-        let edge = chain.edges[i];
-        let tube = frame.skeleton.tube(edge);
-        // A bend is there to bend.
-        let bend = [chain.nodes[i], chain.nodes[i + 1]].iter().any(|m| frame.is_bend[m.index()]);
-        let k = STIFFNESS * 0.5 * (tube.ra + tube.rb) / tube.length().max(1e-9 * tube.max_radius());
-        if bend { 1e-2 * k } else { k }
-    };
-    let springs: Vec<f64> = (0..n - 1).map(spring).collect();
-    let step = |i: usize| steps[chain.nodes[i].index()];
-    let (mut factors, mut values) = (Vec::with_capacity(n - 2), Vec::with_capacity(n - 2));
-    let (mut above, mut value) = (0.0, step(0));
-    for i in 1..n - 1 {
-        let weight = if asked[chain.nodes[i].index()] > 0 { 1.0 } else { 0.0 };
-        let left = springs[i - 1];
-        let diagonal = weight + left * (1.0 - above) + springs[i];
-        value = (step(i) * weight + value * left) / diagonal;
-        above = springs[i] / diagonal;
-        factors.push(above);
-        values.push(value);
-    }
-    let mut next = step(n - 1);
-    for (value, factor) in values.iter_mut().zip(&factors).rev() {
-        *value += next * *factor;
-        next = *value;
-    }
+/// The steps of a chain's nodes: those of which nothing was asked follow the others, then all are smoothed once more,
+/// as the first pass leaves a kink where something was asked.
+fn smoothed(frame: &Frame, chain: &Chain, steps: &[Vec3], asked: &[u32]) -> Vec<Vec3> {
+    let springs: Vec<f64> = (0..chain.edges.len()).map(|i| spring(frame, chain, i)).collect();
+    let mut values: Vec<Vec3> = chain.nodes.iter().map(|n| steps[n.index()]).collect();
+    along(&springs, &mut values, |i| if asked[chain.nodes[i].index()] > 0 { 1.0 } else { 0.0 });
+    along(&springs, &mut values, |_| 1.0);
     values
+}
+
+/// How strongly the nodes at both ends of a chain's edge move together: (`REACH` radii over length)², so that a step
+/// falls off by a factor e over `REACH` radii.
+fn spring(frame: &Frame, chain: &Chain, i: usize) -> f64 {
+    let tube = frame.skeleton.tube(chain.edges[i]);
+    let k = (REACH * 0.5 * (tube.ra + tube.rb) / tube.length().max(1e-3 * tube.max_radius())).powi(2);
+    // A bend is there to bend.
+    let bend = [chain.nodes[i], chain.nodes[i + 1]].iter().any(|m| frame.is_bend[m.index()]);
+    if bend { 1e-2 * k } else { k }
+}
+
+/// Makes Σ weight |x − value|² + Σ spring |difference|² least over the inner values; a tridiagonal system, solved by
+/// elimination.
+fn along(springs: &[f64], values: &mut [Vec3], weight: impl Fn(usize) -> f64) {
+    let n = values.len();
+    let (mut above, mut before) = (0.0, values[0]);
+    let mut factors = vec![0.0; n];
+    for i in 1..n - 1 {
+        let (weight, left) = (weight(i), springs[i - 1]);
+        let diagonal = weight + left * (1.0 - above) + springs[i];
+        before = (values[i] * weight + before * left) / diagonal;
+        above = springs[i] / diagonal;
+        (factors[i], values[i]) = (above, before);
+    }
+    for i in (1..n - 1).rev() {
+        let next = values[i + 1];
+        values[i] += next * factors[i];
+    }
 }

@@ -100,14 +100,16 @@ pub(super) fn solve(skeleton: &Skeleton, given: &Figures, params: &RefineParams,
     for iteration in 1..=params.iterations {
         let asked = solver.step(iteration <= with_forces);
         let quiet = asked == 0 && iteration > with_forces;
-        let mut last = iteration == params.iterations || quiet;
-        if last || iteration % between == 0 {
+        let mut last = iteration == params.iterations;
+        if last || quiet || iteration % between == 0 {
             let was_perfect = best.is_perfect();
             let overlaps = best.offer(&solver, iteration);
             // Once more after all is well, for the clearance.
             last |= was_perfect && best.is_perfect() || iteration >= best.improved + PATIENCE * between;
+            last |= quiet && best.is_perfect();
             if !last && iteration + between / 2 <= params.iterations {
-                solver.attend(&overlaps);
+                let bends = solver.attend(&overlaps);
+                last = quiet && bends == 0;
             }
         }
         if last || (params.every > 0 && iteration % params.every == 0) {
@@ -256,17 +258,17 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Vessels that overlap come first until the next count, and may bend.
-    fn attend(&mut self, overlaps: &Overlaps) {
+    /// Vessels that overlap come first until the next count, and may bend; returns how many bends were put in.
+    fn attend(&mut self, overlaps: &Overlaps) -> usize {
         self.frame.urgent.fill(false);
         for node in overlaps.pairs.iter().flat_map(|o| o.nodes).flatten() {
             self.frame.urgent[node.index()] = true;
         }
-        if self.params.bends {
-            self.bends += add_bends(&mut self.frame, overlaps);
-        }
+        let bends = if self.params.bends { add_bends(&mut self.frame, overlaps) } else { 0 };
+        self.bends += bends;
         self.frame.rejoin();
         self.restart();
+        bends
     }
 
     fn sample(&self, iteration: usize, asked: usize) -> Sample {

@@ -1,7 +1,7 @@
 //! What `info` says about a network.
 
 use crate::geometry::Aabb;
-use crate::skeleton::{CleanReport, CrowdedTerminals, Overlaps, Skeleton};
+use crate::skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Skeleton};
 use serde::Serialize;
 use std::fmt;
 
@@ -126,6 +126,8 @@ pub struct NetworkInfo {
     pub bounding_box: [[f64; 3]; 2],
     /// A guess at the unit of length from the sizes.
     pub unit_guess: UnitGuess,
+    /// How well it can be meshed.
+    pub metrics: Metrics,
     /// Where vessels run into each other.
     pub overlaps: Overlaps,
     /// Terminals too close to each other for two caps.
@@ -137,7 +139,9 @@ impl NetworkInfo {
     pub fn new(skeleton: &Skeleton, cleaned: CleanReport, notes: Vec<String>) -> Self {
         let adjacency = skeleton.adjacency();
         let components = skeleton.components(&adjacency).list;
-        let branches = skeleton.branches(&adjacency).list;
+        let branches = skeleton.branches(&adjacency);
+        let metrics = skeleton.metrics(&adjacency, &branches);
+        let branches = branches.list;
         let mut valences = Vec::new();
         for node in skeleton.node_ids() {
             let valence = adjacency.valence(node);
@@ -167,6 +171,7 @@ impl NetworkInfo {
             edge_length: Spread::of(lengths),
             bounding_box: [aabb.min.into(), aabb.max.into()],
             unit_guess: UnitGuess::of(radius.max, aabb.diagonal()),
+            metrics,
             overlaps: skeleton.overlaps(&adjacency),
             crowded_terminals: skeleton.crowded_terminals(&adjacency),
         }
@@ -177,6 +182,22 @@ impl NetworkInfo {
             writeln!(f, "cleaned: {count} {what}")?;
         }
         Ok(())
+    }
+
+    fn write_metrics(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let m = &self.metrics;
+        writeln!(f, "barrier potential: {}", digits(m.barrier))?;
+        let short = [m.shorter_than_2, m.shorter_than_2_5, m.shorter_than_3].map(|s| format!("{:.3} %", s.percent()));
+        writeln!(f, "edges shorter than 2, 2.5, 3 radii: {}", short.join(", "))?;
+        writeln!(f, "pairs of edges at a node under pi/10: {} ({:.3} %)", m.narrow.count, m.narrow.percent())?;
+        writeln!(f, "vessels that turn back at a node (under 30 degrees): {} of {}", m.folds.count, m.folds.of)?;
+        writeln!(
+            f,
+            "edges that satisfy equation 11: {:.3} %, equation 12: {:.3} %",
+            m.long_enough.percent(),
+            m.open_enough.percent()
+        )?;
+        writeln!(f, "inner branches that can be cut: {} of {}", m.cuttable.count, m.cuttable.of)
     }
 
     fn write_overlaps(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -241,6 +262,7 @@ impl fmt::Display for NetworkInfo {
         let [low, high] = self.bounding_box.map(|p| p.map(digits).join(" "));
         writeln!(f, "bounding box: {low} to {high}")?;
         writeln!(f, "unit: perhaps {} (a guess from the largest radius and the extent)", self.unit_guess)?;
+        self.write_metrics(f)?;
         self.write_overlaps(f)?;
         self.write_crowded(f)
     }
