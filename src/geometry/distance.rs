@@ -2,6 +2,7 @@
 //!
 //! Floating-point throughout: these measure, they decide no topology.
 
+use super::convex::minimise_convex;
 use super::{Point3, Tube};
 
 /// The closest points of two segments.
@@ -119,40 +120,16 @@ pub fn point_tube(p: &Point3, tube: &Tube) -> (f64, f64) {
 /// lengths. The function is convex (a norm less linear terms), so a search along one axis with the other one solved
 /// for finds it.
 pub fn tube_tube(a: &Tube, b: &Tube) -> TubePair {
-    let at = |s: f64| {
-        let (t, gap) = point_tube(&a.point(s), b);
-        TubePair { s, t, gap: gap - a.radius(s) }
-    };
-    let mut best = at(0.0);
-    let keep = |pair: TubePair, best: &mut TubePair| {
-        if pair.gap < best.gap {
-            *best = pair;
-        }
-    };
-    keep(at(1.0), &mut best);
     if (a.ra, b.ra) == (a.rb, b.rb) {
         let pair = segment_segment([&a.a, &a.b], [&b.a, &b.b]);
         return TubePair { s: pair.s, t: pair.t, gap: pair.distance - a.ra - b.ra };
     }
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut left = at(high - ratio * (high - low));
-    let mut right = at(low + ratio * (high - low));
-    // 0.618^44 < 1e-9.
-    for _ in 0..44 {
-        if left.gap <= right.gap {
-            high = right.s;
-            right = left;
-            left = at(high - ratio * (high - low));
-        } else {
-            low = left.s;
-            left = right;
-            right = at(low + ratio * (high - low));
-        }
-    }
-    keep(left, &mut best);
-    keep(right, &mut best);
-    best
+    let at = |s: f64| {
+        let (t, gap) = point_tube(&a.point(s), b);
+        (gap - a.radius(s), s, t)
+    };
+    let (gap, s, t) = minimise_convex(at, [0.0, 1.0], f64::INFINITY);
+    TubePair { s, t, gap }
 }
 
 #[cfg(test)]

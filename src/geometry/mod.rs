@@ -2,6 +2,7 @@
 
 mod aabb;
 mod bvh;
+mod convex;
 mod distance;
 mod dyadic;
 mod fans;
@@ -14,6 +15,7 @@ mod tube;
 
 pub use aabb::Aabb;
 pub use bvh::Bvh;
+pub(crate) use convex::minimise_convex;
 pub use distance::{SegmentPair, TubePair, point_segment, point_triangle, point_tube, segment_segment, tube_tube};
 pub use tri_tri::{Contact, Improper, classify, self_contacts, self_intersections};
 pub use tube::{Section, Tube};

@@ -7,7 +7,7 @@
 
 use super::walk::LocalDistances;
 use super::{Adjacency, EdgeId, NodeId, Skeleton};
-use crate::geometry::{Aabb, Bvh, Point3, Tube, point_tube, tube_tube};
+use crate::geometry::{Aabb, Bvh, Point3, Tube, minimise_convex, point_tube, tube_tube};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -189,7 +189,7 @@ pub(crate) fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: f
         let t = point_tube(&a.point(s), b).0.clamp(range.0, range.1);
         ((a.point(s) - b.point(t)).norm() - a.radius(s) - b.radius(t), s, t)
     };
-    let best = minimise(at, low, high);
+    let best = minimise_convex(at, [low, high], 0.0);
     (best.0 < 0.0).then_some((best.1, best.2))
 }
 
@@ -263,32 +263,6 @@ fn t_range(polygon: &[[f64; 2]], s: f64) -> (f64, f64) {
         return (t, t);
     }
     (low, high)
-}
-
-/// Minimum of a convex function of s by golden section; the function returns its value first, then s.
-fn minimise(at: impl Fn(f64) -> (f64, f64, f64), mut low: f64, mut high: f64) -> (f64, f64, f64) {
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (first, last) = (at(low), at(high));
-    let mut best = if last.0 < first.0 { last } else { first };
-    let mut left = at(high - ratio * (high - low));
-    let mut right = at(low + ratio * (high - low));
-    for _ in 0..40 {
-        if left.0 <= right.0 {
-            high = right.1;
-            right = left;
-            left = at(high - ratio * (high - low));
-        } else {
-            low = left.1;
-            left = right;
-            right = at(low + ratio * (high - low));
-        }
-    }
-    for candidate in [left, right] {
-        if candidate.0 < best.0 {
-            best = candidate;
-        }
-    }
-    best
 }
 
 #[cfg(test)]

@@ -1,0 +1,100 @@
+//! Refinement of real networks, against the figures that it is to reach. The data is not in the repository; without it
+//! these tests say so and pass.
+
+mod common;
+
+use anastomesh::geometry::Point3;
+use anastomesh::refine::{Crowded, Figures, RefineParams, Refined, Residual, dual, refine};
+use anastomesh::skeleton::Skeleton;
+
+fn refined(skeleton: &Skeleton, params: &RefineParams) -> Refined {
+    let refined = refine(skeleton, params, &mut ()).expect("a cleaned network can be refined");
+    assert_eq!(refined.skeleton.check(), Ok(()));
+    // Terminals stay where they are.
+    let adjacency = refined.skeleton.adjacency();
+    for n in adjacency.terminals() {
+        assert!(params.crowded != Crowded::Keep || refined.skeleton.node(n).position == refined.origin[n.index()]);
+    }
+    refined
+}
+
+fn percent_missing(share: anastomesh::skeleton::Share) -> f64 {
+    100.0 - share.percent()
+}
+
+#[test]
+fn the_fixture_can_be_cut_afterwards() {
+    let tree = common::network(&common::fixture("tree_30.swc"));
+    let report = refined(&tree, &RefineParams::default()).report;
+    assert_eq!((report.result.overlaps, percent_missing(report.result.metrics.cuttable)), (0, 0.0));
+}
+
+/// 48,108 nodes of valence up to 5; two terminals lie 0.1 radii apart.
+#[test]
+fn the_kidney_tree() {
+    let Some(shared) = common::shared() else { return };
+    let tree = common::network(&shared.join("data/kidney/tree_original.vtp"));
+    let keep = RefineParams { residual: Residual::Report, ..RefineParams::default() };
+    let report = refined(&tree, &keep).report;
+    println!("{:?}\n{:?}", report.result, report.displacement);
+    let (r, d) = (&report.result, &report.displacement);
+    assert_eq!(report.given.far, 739);
+    assert!(r.far <= 5 && r.overlaps == 0, "{r:?}");
+    assert!(percent_missing(r.metrics.long_enough) <= 0.05 && r.metrics.cuttable.percent() >= 97.0, "{r:?}");
+    assert_eq!(r.metrics.shorter_than_2.count, 0, "{r:?}");
+    assert!(d.mean <= 42.0 && d.p99 <= 210.0 && d.max <= 500.0, "{d:?}");
+    let crowded: Vec<_> = report.crowded.iter().map(|p| (p.nodes, p.resolved)).collect();
+    assert_eq!(crowded, [([13299, 43836], false)]);
+    assert!(report.worse.is_empty(), "{:?}", report.worse);
+}
+
+/// Part of the tree with a second one grown beside it: every shared terminal is a fold at first.
+#[test]
+fn two_trees_that_share_their_terminals() {
+    let Some(shared) = common::shared() else { return };
+    let tree = common::network(&shared.join("data/kidney/subtree_9947.vtp"));
+    let both = dual(&tree).skeleton;
+    let before = Figures::of(&both);
+    let report = refined(&both, &RefineParams::default()).report;
+    let r = &report.result;
+    println!("{before:?}\n{r:?}\n{:?}", report.residual);
+    assert!(before.far > 1000 && report.moved.far <= 5, "{before:?} {r:?}");
+    assert!(before.metrics.folds.percent() > 50.0 && r.metrics.folds.percent() <= 1.0, "{r:?}");
+    assert_eq!(report.residual.left, 0, "{:?}", report.residual);
+    assert!(report.residual.volume_lost <= 0.005 * report.residual.volume);
+    assert!(r.metrics.cuttable.percent() >= 97.0, "{r:?}");
+}
+
+#[test]
+fn the_unit_of_length_makes_no_difference() {
+    let Some(shared) = common::shared() else { return };
+    let tree = common::network(&shared.join("data/kidney/subtree_989.vtp"));
+    let in_micrometres = refined(&tree, &RefineParams::default()).skeleton;
+    for unit in [1e-3, 1e-6] {
+        let mut other = tree.clone();
+        for node in &mut other.nodes {
+            (node.position, node.radius) = (Point3::from(node.position.coords * unit), node.radius * unit);
+        }
+        for edge in &mut other.edges {
+            edge.radii = edge.radii.map(|r| r * unit);
+        }
+        let other = refined(&other, &RefineParams::default()).skeleton;
+        assert_eq!(other.edges.len(), in_micrometres.edges.len());
+        for (a, b) in in_micrometres.nodes.iter().zip(&other.nodes) {
+            let wrong = (a.position.coords * unit - b.position.coords).norm();
+            assert!(wrong <= 1e-6 * b.position.coords.norm(), "{wrong} in units of {unit}");
+        }
+    }
+}
+
+/// What overlaps or cannot be cut as it is has a valid mesh when it was refined: loops, repeated edges, a plane.
+#[test]
+fn refined_networks_have_valid_meshes() {
+    let Some(shared) = common::shared() else { return };
+    for name in ["kidney/subtree_989.vtp", "skeletons/flows_breast1.vtp"] {
+        let network = common::network(&shared.join("data").join(name));
+        let skeleton = refined(&network, &RefineParams::default()).skeleton;
+        let meshed = common::mesh(&skeleton, 2.5);
+        assert!(meshed.check.is_valid(), "{name}: {:?}", meshed.check);
+    }
+}
