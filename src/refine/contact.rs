@@ -171,6 +171,9 @@ fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f
     if lu + lv <= JOINED * radius {
         return;
     }
+    if frame.is_as_close_as_may_be(node, far) {
+        return;
+    }
     // Equal vessels are apart at three radii when sin(angle / 2) > clearance / 3.
     let half = (clearance / 3.0).min(1.0);
     if u.dot(&v) < (1.0 - 2.0 * half * half) * lu * lv {

@@ -3,6 +3,10 @@
 use crate::geometry::Point3;
 use crate::skeleton::{Adjacency, Edge, EdgeId, LENGTH, Node, NodeId, Skeleton};
 
+/// Length that a vessel keeps while it overlaps another one, in radii: parting comes before room for cuts, and two
+/// terminals close to each other can have the fork that leads to them only near by.
+pub(super) const LEAST: f64 = 2.5;
+
 /// A vessel between two nodes at which something happens: a branch, or a part of one between nodes that are held.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
@@ -148,6 +152,14 @@ impl Frame {
     pub fn radius_at(&self, edge: EdgeId, node: NodeId) -> f64 {
         let e = self.skeleton.edge(edge);
         e.radii[e.end(node)]
+    }
+
+    /// Whether the vessels from a node to two ends that are held are so short that the node is not to come closer to them,
+    /// the only way in which it could open the angle between them.
+    pub fn is_as_close_as_may_be(&self, node: NodeId, ends: [NodeId; 2]) -> bool {
+        let radius = self.skeleton.node(node).radius;
+        let is_close = |n: NodeId| (self.at(n) - self.at(node)).norm() <= LEAST * radius;
+        ends.iter().all(|n| self.mobility[n.index()] <= 0.0) && ends.into_iter().any(is_close)
     }
 
     /// The node over which the direction is measured in which a vessel leaves `node` by `edge`: the first along the way

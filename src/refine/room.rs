@@ -1,6 +1,6 @@
 //! Room for a cut on every vessel: long enough for the angles at which it leaves its neighbours.
 
-use super::frame::{Chain, Frame};
+use super::frame::{Chain, Frame, LEAST};
 use super::push::{Push, project};
 use crate::geometry::Vec3;
 use crate::skeleton::{EdgeId, LENGTH, NARROW, NodeId, separation};
@@ -8,9 +8,6 @@ use rayon::prelude::*;
 
 /// Where conditions are taken as met: a little beyond what is asked for.
 const MARGIN: f64 = 1.02;
-/// Length that a vessel keeps while it overlaps another one, in radii: parting comes before room for cuts, and two
-/// terminals close to each other can have the fork that leads to them only near by.
-const LEAST: f64 = 2.5;
 
 /// What the vessels ask for that cannot be cut, are too short for equation 11, or leave their node too close together.
 pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
@@ -30,8 +27,8 @@ pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
     all
 }
 
-/// The length that a vessel needs: for a cut if both ends are junctions, else for equation 11. None for a loop at one
-/// node.
+/// The length that a vessel needs: to leave the others at its junctions and have room for a cut or a cap; at least what
+/// equation 11 asks. None for a loop at one node.
 pub(super) fn need(frame: &Frame, chain: &Chain) -> Option<f64> {
     needed(frame, chain, &mut Vec::new())
 }
@@ -48,12 +45,14 @@ fn needed(frame: &Frame, chain: &Chain, gradient: &mut Vec<(NodeId, Vec3)>) -> O
         return Some(LEAST * radii[0].max(radii[1]));
     }
     let by_11 = LENGTH * (radii[0] + radii[1]);
-    if ends.iter().any(|&n| frame.adjacency.valence(n) < 3) {
-        return Some(by_11);
-    }
-    let mut cut = radii[0] + radii[1];
+    let inner = ends.map(|n| frame.adjacency.valence(n) > 2);
+    // Between two junctions a connector of 2 r, at a terminal a piece of r with its cap.
+    let mut cut = 0.0;
     for i in [0, 1] {
-        cut += distance(frame, ends[i], own[i], gradient);
+        cut += radii[i];
+        if inner[i] {
+            cut += distance(frame, ends[i], own[i], gradient);
+        }
     }
     Some(cut.max(by_11))
 }
@@ -99,7 +98,7 @@ fn distance(frame: &Frame, node: NodeId, own: EdgeId, gradient: &mut Vec<(NodeId
         }
     }
     let Some((apart, end, r2)) = worst else { return LENGTH * r };
-    if 1.25 * apart <= LENGTH * r {
+    if 1.25 * apart <= LENGTH * r || frame.is_as_close_as_may_be(node, [lever, end]) {
         return LENGTH * r;
     }
     let v = frame.at(end) - frame.at(node);
@@ -146,6 +145,9 @@ fn push_angles(frame: &Frame, node: NodeId, out: &mut Vec<Push>) {
             let levers = [e, f].map(|e| frame.lever(node, e));
             let [u, v] = levers.map(|n| frame.at(n) - frame.at(node));
             let wanted = 1.1 * NARROW;
+            if frame.is_as_close_as_may_be(node, levers) {
+                continue;
+            }
             if u.dot(&v) <= wanted.cos() * u.norm() * v.norm() {
                 continue;
             }
