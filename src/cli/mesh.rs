@@ -121,6 +121,7 @@ impl Args {
             rho: self.rho,
             follow: self.follow,
             roots: self.root.clone(),
+            fuse: self.refine.is_some() && self.how.fuses(),
             keep_going: self.keep_going,
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
         }

@@ -102,11 +102,16 @@ enum ResidualArg {
     Report,
     /// Reduce their radii where they meet, by 30 % at most
     Shrink,
-    /// List them as vessels that are to be meshed together
+    /// Mesh them together as one lumen; `refine` lists them
     Fuse,
 }
 
 impl RefineArgs {
+    /// Whether vessels that overlap in the end are to be meshed together.
+    pub fn fuses(&self) -> bool {
+        matches!(self.residual, ResidualArg::Fuse)
+    }
+
     /// The parameters for so many iterations.
     pub fn params(&self, iterations: usize) -> RefineParams {
         RefineParams {

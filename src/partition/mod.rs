@@ -167,6 +167,9 @@ pub struct Cut {
 pub fn partition(skeleton: &Skeleton, params: &PartitionParams) -> Result<Partition, PartitionError> {
     params.check()?;
     params::check_skeleton(skeleton)?;
+    let mut params = params.clone();
+    params.forbidden_cuts.extend(params.together.iter().flatten());
+    let params = &params;
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
     let courses: Vec<_> = branches.list.iter().map(|b| course::Course::new(skeleton, b)).collect();

@@ -33,6 +33,8 @@ pub struct PartitionParams {
     pub max_turn: f64,
     /// Branches that must not be cut.
     pub forbidden_cuts: BTreeSet<BranchId>,
+    /// Pairs of branches that are to be in one cluster, though they may meet nowhere in the skeleton. They are not cut.
+    pub together: BTreeSet<[BranchId; 2]>,
     /// Branches whose planes are to be moved off their usual place by a share of the room there is, in [−1, 1]: a
     /// positive value moves the plane at the branch's start towards its end, a negative one the plane at its end
     /// towards its start.
@@ -55,6 +57,7 @@ impl Default for PartitionParams {
             longest_connector: 200.0,
             max_turn: 20.0_f64.to_radians(),
             forbidden_cuts: BTreeSet::new(),
+            together: BTreeSet::new(),
             shifted_cuts: BTreeMap::new(),
         }
     }

@@ -108,6 +108,9 @@ impl<'a> Settler<'a> {
             self.union.join(self.piece(branch, 0), self.node(a));
             self.union.join(self.piece(branch, count), self.node(b));
         }
+        for &[a, b] in &self.params.together {
+            self.union.join(self.piece(a.0, 0), self.piece(b.0, 0));
+        }
     }
 
     /// Moves planes and gives up cuts until every end is clear; returns why cuts were given up, by branch.

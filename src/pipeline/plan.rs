@@ -14,6 +14,9 @@ pub struct MeshPlan {
     /// Terminals that are inlets, as indices of nodes in the file that was read. Components without one take the
     /// terminal of largest radius.
     pub roots: Vec<u32>,
+    /// Mesh vessels that overlap together, so that they become one lumen, knowingly: the mesh is to have the loops that
+    /// come of it.
+    pub fuse: bool,
     /// Leave out blocks that fail instead of stopping.
     pub keep_going: bool,
     /// Folder for the inputs of blocks that fail; none writes no dumps.
@@ -22,7 +25,7 @@ pub struct MeshPlan {
 
 impl Default for MeshPlan {
     fn default() -> Self {
-        Self { rho: 3.0, follow: 1.0, roots: Vec::new(), keep_going: false, dump_dir: None }
+        Self { rho: 3.0, follow: 1.0, roots: Vec::new(), fuse: false, keep_going: false, dump_dir: None }
     }
 }
 

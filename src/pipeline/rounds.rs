@@ -60,12 +60,14 @@ pub fn build(
     clock: &mut Clock,
 ) -> Result<Blocks, PartitionError> {
     let mut cures: BTreeMap<BranchId, Cure> = BTreeMap::new();
+    let together = if plan.fuse { overlapping_branches(skeleton, overlaps) } else { BTreeSet::new() };
     let mut retries = Vec::new();
     let mut settled: Option<Blocks> = None;
     let mut round = 0;
     loop {
-        let partition = clock
-            .time(observer, Stage::Partition, 0, || partition::partition(skeleton, &partition_params(plan, &cures)))?;
+        let partition = clock.time(observer, Stage::Partition, 0, || {
+            partition::partition(skeleton, &partition_params(plan, &cures, &together))
+        })?;
         let reuse = Reuse::new(settled.as_ref());
         let tangled = tangled_clusters(skeleton, &partition, overlaps);
         let clusters = clock.time(observer, Stage::Clusters, partition.clusters.len() as u64, || {
@@ -87,8 +89,23 @@ pub fn build(
     }
 }
 
-fn partition_params(plan: &MeshPlan, cures: &BTreeMap<BranchId, Cure>) -> PartitionParams {
-    let mut params = PartitionParams { rho: plan.rho, kappa: plan.block_params().kappa, ..PartitionParams::default() };
+/// The branches of vessels that overlap.
+fn overlapping_branches(skeleton: &Skeleton, overlaps: &Overlaps) -> BTreeSet<[BranchId; 2]> {
+    let branches = skeleton.branches(&skeleton.adjacency());
+    overlaps.pairs.iter().map(|o| o.edges.map(|e| branches.of_edge[e.index()].0)).collect()
+}
+
+fn partition_params(
+    plan: &MeshPlan,
+    cures: &BTreeMap<BranchId, Cure>,
+    together: &BTreeSet<[BranchId; 2]>,
+) -> PartitionParams {
+    let mut params = PartitionParams {
+        rho: plan.rho,
+        kappa: plan.block_params().kappa,
+        together: together.clone(),
+        ..PartitionParams::default()
+    };
     for (&branch, &cure) in cures {
         match cure {
             Cure::Forward => drop(params.shifted_cuts.insert(branch, SHIFT)),

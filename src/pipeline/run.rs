@@ -14,6 +14,7 @@ use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::{ClusterId, CutId, PartitionError};
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
+use std::collections::BTreeMap;
 
 /// A mesh, what it has to be, what was found, what was done.
 #[derive(Debug)]
@@ -72,10 +73,13 @@ pub fn mesh_network(
         report.stages = clock.stages();
         return Err(RunError::BlocksFailed(Box::new(report)));
     }
+    let mut expectation = expectation(&skeleton);
+    if plan.fuse {
+        expectation.loops = fused_loops(&blocks);
+    }
     let mut assembly = clock.time(observer, Stage::Merge, 0, || assemble::join(&skeleton, blocks, &terminals))?;
     report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
     let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
-    let expectation = expectation(&skeleton);
     let check = clock.time(observer, Stage::Check, 0, || check_volume_with(&mesh, neighbors, Some(&expectation)));
     report.mesh = size(&mesh);
     report.stages = clock.stages();
@@ -193,6 +197,35 @@ fn expectation(skeleton: &Skeleton) -> Expectation {
         loops: components.list.iter().map(|c| c.loops() as u32).collect(),
         terminals: adjacency.terminals().iter().map(|&n| skeleton.node(n).original).collect(),
     }
+}
+
+/// Loops of each connected piece when vessels are meshed together on purpose: the handles of its clusters, and the loops
+/// of the graph in which clusters are nodes and connectors are edges. Sorted, as pieces have no other name.
+fn fused_loops(blocks: &Blocks) -> Vec<u32> {
+    let clusters = &blocks.partition.clusters;
+    let mut piece: Vec<usize> = (0..clusters.len()).collect();
+    let root = |piece: &mut [usize], mut i: usize| {
+        while piece[i] != i {
+            piece[i] = piece[piece[i]];
+            i = piece[i];
+        }
+        i
+    };
+    for cut in &blocks.partition.cuts {
+        let [a, b] = cut.sides.map(|(cluster, _)| root(&mut piece, cluster.0 as usize));
+        piece[a.max(b)] = a.min(b);
+    }
+    let mut loops: BTreeMap<usize, i64> = BTreeMap::new();
+    for (i, cluster) in blocks.clusters.iter().enumerate() {
+        let handles = cluster.as_ref().map_or(0, |mesh| mesh.handles);
+        *loops.entry(root(&mut piece, i)).or_insert(1) += handles - 1;
+    }
+    for cut in &blocks.partition.cuts {
+        *loops.entry(root(&mut piece, cut.sides[0].0.0 as usize)).or_insert(1) += 1;
+    }
+    let mut loops: Vec<u32> = loops.into_values().map(|n| u32::try_from(n).unwrap_or(0)).collect();
+    loops.sort_unstable();
+    loops
 }
 
 fn size(mesh: &VolumeMesh) -> MeshSize {

@@ -68,6 +68,27 @@ fn vessels_that_overlap_are_meshed_and_named() {
     assert_eq!(positive.outcome, crate::mesh::check::Outcome::Pass);
 }
 
+#[test]
+fn vessels_that_overlap_become_one_lumen_on_request() {
+    // Two vessels that cross become one piece; a terminal's vessel that crosses the trunk of its own tree makes a loop.
+    let crossing = skeleton(
+        &[[-9.0, 0.0, 0.0, 1.0], [9.0, 0.0, 0.0, 1.0], [0.0, -9.0, 0.8, 1.0], [0.0, 9.0, 0.8, 1.0]],
+        &[[0, 1], [2, 3]],
+    );
+    let mut bent = h(40.0);
+    bent.nodes.push(Node { position: Point3::new(20.0, 9.0, 0.0), radius: 0.9, original: 6 });
+    bent.nodes.push(Node { position: Point3::new(20.0, -9.0, 0.5), radius: 0.9, original: 7 });
+    bent.edges.push(Edge { nodes: [NodeId(2), NodeId(6)], radii: [0.9; 2] });
+    bent.edges.push(Edge { nodes: [NodeId(6), NodeId(7)], radii: [0.9; 2] });
+    for (network, loops) in [(crossing, 0), (bent, 1)] {
+        let apart = run(&network, &MeshPlan::default()).expect("meshed");
+        assert!(!apart.check.is_valid());
+        let fused = run(&network, &MeshPlan { fuse: true, ..MeshPlan::default() }).expect("meshed");
+        assert_eq!(fused.expectation.loops, [loops]);
+        assert!(fused.check.is_valid(), "{:?}", fused.check.failed().collect::<Vec<_>>());
+    }
+}
+
 /// A vessel so thin beside the other that its voxels would fill any memory.
 fn hair_on_a_trunk() -> Skeleton {
     let nodes = [[0.0, 0.0, 0.0, 1e3], [0.0, 0.0, 5e3, 1e3], [0.0, 3e3, 9e3, 8e2], [0.0, -1.2e3, 6e3, 0.1]];
