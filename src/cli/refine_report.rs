@@ -5,6 +5,9 @@ use std::fmt::Write as _;
 use crate::refine::{Figures, RefineReport, Sample, Treatment};
 use crate::report::plot::{Panel, Series};
 
+/// A line of the table of figures: its name and what it shows of a state.
+type Row = (&'static str, fn(&Figures) -> String);
+
 /// Pairs that are spelt out for people.
 const LISTED: usize = 50;
 
@@ -41,7 +44,6 @@ pub fn text(report: &RefineReport) -> String {
     );
     let _ = writeln!(out, "{:26}{:>12}{:>12}{:>12}{:>12}", "", "given", "split", "moved", "result");
     let states = [&report.given, &report.split, &report.moved, &report.result];
-    type Row = (&'static str, fn(&Figures) -> String);
     let rows: [Row; 13] = [
         ("overlapping pairs", |f| f.overlaps.to_string()),
         ("  that share a node", |f| f.beside.to_string()),

@@ -17,6 +17,13 @@ pub(super) struct Pair {
     ways: u32,
 }
 
+impl Pair {
+    /// Whether the two edges are near each other along the skeleton.
+    pub fn is_near_along(&self) -> bool {
+        self.ways != u32::MAX
+    }
+}
+
 /// The pairs to watch.
 #[derive(Default)]
 pub(super) struct Contacts {
@@ -76,11 +83,6 @@ impl Contacts {
             }
         }
         contacts
-    }
-
-    /// Whether the two edges of a pair are near each other along the skeleton.
-    pub fn is_near_along(&self, pair: &Pair) -> bool {
-        pair.ways != u32::MAX
     }
 
     /// What the pairs ask for that are closer than `clearance` sums of their radii.

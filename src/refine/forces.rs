@@ -35,7 +35,7 @@ pub(super) fn pushes(frame: &Frame, contacts: &Contacts, barrier: &Barrier, rate
         out
     });
     let pairs = contacts.pairs.par_iter().with_min_len(256).fold(Vec::new, |mut out, pair| {
-        if !contacts.is_near_along(pair) {
+        if !pair.is_near_along() {
             push_barrier(frame, pair.edges, barrier, rates.barrier, &mut out);
         }
         out

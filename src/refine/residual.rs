@@ -126,9 +126,9 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
 
 /// A terminal has one vessel, or the two of the trees that share it, which turn back there.
 fn terminals_too_close(skeleton: &Skeleton, adjacency: &Adjacency, overlap: &Overlap) -> bool {
-    let ends = |n: NodeId| match adjacency.edges(n) {
-        &[_] => true,
-        &[e, f] => skeleton.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
+    let ends = |n: NodeId| match *adjacency.edges(n) {
+        [_] => true,
+        [e, f] => skeleton.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
         _ => false,
     };
     let terminals = overlap.nodes.map(|nodes| nodes.into_iter().find(|&n| ends(n)));
@@ -159,13 +159,13 @@ impl Shrinker<'_> {
         }
         let mut least_kept: f64 = 1.0;
         for (edge, point) in overlap.edges.into_iter().zip(overlap.points) {
-            least_kept = least_kept.min(self.pinch(edge, &point, wanted)?);
+            least_kept = least_kept.min(self.pinch(edge, &point, wanted));
         }
         (least_kept < 1.0).then_some(least_kept)
     }
 
     /// Reduces the radius of an edge at a point to `share` of what it is, tapering back to either side.
-    fn pinch(&mut self, edge: EdgeId, point: &Point3, share: f64) -> Option<f64> {
+    fn pinch(&mut self, edge: EdgeId, point: &Point3, share: f64) -> f64 {
         let tube = self.skeleton.tube(edge);
         let length = tube.length();
         let t = (point - tube.a).norm() / length;
@@ -187,11 +187,11 @@ impl Shrinker<'_> {
         if t - reach >= room {
             self.insert(edge, (t - reach) / t, tube.radius(t - reach));
         }
-        Some(radius / before)
+        radius / before
     }
 
     /// Reduces the radius of an edge at one of its nodes; of both edges when the vessel goes on there.
-    fn pinch_end(&mut self, node: NodeId, edge: EdgeId, share: f64) -> Option<f64> {
+    fn pinch_end(&mut self, node: NodeId, edge: EdgeId, share: f64) -> f64 {
         let around = &self.around[node.index()];
         let all = if around.len() == 2 { around.clone() } else { vec![edge] };
         let floor = 1.0 - self.params.shrink;
@@ -203,7 +203,7 @@ impl Shrinker<'_> {
             kept = kept.min(narrow / was);
             self.taper(edge, end, narrow);
         }
-        Some(kept)
+        kept
     }
 
     /// Gives one end of an edge a radius and keeps the rest as it was from `TAPER` radii on, if it is long enough.

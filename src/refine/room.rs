@@ -124,15 +124,13 @@ fn opening(u: &Vec3, v: &Vec3) -> [Vec3; 2] {
         let across = from * cos - x;
         across.try_normalize(1e-9)
     };
-    match (out(u, v), out(v, u)) {
-        (Some(a), Some(b)) => [a / lu, b / lv],
-        _ => {
-            let mut axis = Vec3::zeros();
-            axis[u.iamin()] = 1.0;
-            let side = u.cross(&axis).normalize();
-            [side / lu, -side / lv]
-        }
+    if let (Some(a), Some(b)) = (out(u, v), out(v, u)) {
+        return [a / lu, b / lv];
     }
+    let mut axis = Vec3::zeros();
+    axis[u.iamin()] = 1.0;
+    let side = u.cross(&axis).normalize();
+    [side / lu, -side / lv]
 }
 
 fn push_angles(frame: &Frame, node: NodeId, out: &mut Vec<Push>) {

@@ -99,7 +99,7 @@ impl Axis {
         }
         let magnitude = self.high.abs().max(self.low.abs());
         match magnitude {
-            m if m >= 1e5 || m < 1e-3 => format!("{tick:.1e}"),
+            m if !(1e-3..1e5).contains(&m) => format!("{tick:.1e}"),
             m if m >= 10.0 => format!("{tick:.0}"),
             m if m >= 1.0 => format!("{tick:.1}"),
             m if m >= 0.1 => format!("{tick:.2}"),

@@ -93,7 +93,8 @@ fn vtp_bytes(skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<Vec<u8>
     for array in arrays {
         match array {
             NetworkArray::NodeInts(name, values) => {
-                data_array(&mut text, "UInt32", name, 1, values.iter().flat_map(|v| v.to_le_bytes()).collect())?;
+                let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+                data_array(&mut text, "UInt32", name, 1, &bytes)?;
             }
             NetworkArray::NodeVectors(name, values) => floats(&mut text, name, 3, values.iter().flatten().copied())?,
         }
@@ -104,20 +105,20 @@ fn vtp_bytes(skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<Vec<u8>
     text.push_str("</CellData>\n<Points>\n");
     floats(&mut text, "Points", 3, nodes.iter().flat_map(|n| <[f64; 3]>::from(n.position)))?;
     text.push_str("</Points>\n<Lines>\n");
-    let ends = edges.iter().flat_map(|e| e.nodes).flat_map(|n| i64::from(n.0).to_le_bytes()).collect();
-    data_array(&mut text, "Int64", "connectivity", 1, ends)?;
-    let offsets = (1..=edges.len() as i64).flat_map(|i| (2 * i).to_le_bytes()).collect();
-    data_array(&mut text, "Int64", "offsets", 1, offsets)?;
+    let ends: Vec<u8> = edges.iter().flat_map(|e| e.nodes).flat_map(|n| i64::from(n.0).to_le_bytes()).collect();
+    data_array(&mut text, "Int64", "connectivity", 1, &ends)?;
+    let offsets: Vec<u8> = (1..=edges.len() as i64).flat_map(|i| (2 * i).to_le_bytes()).collect();
+    data_array(&mut text, "Int64", "offsets", 1, &offsets)?;
     text.push_str("</Lines>\n</Piece>\n</PolyData>\n</VTKFile>\n");
     Ok(text.into_bytes())
 }
 
 fn floats(text: &mut String, name: &str, components: usize, values: impl Iterator<Item = f64>) -> io::Result<()> {
-    data_array(text, "Float64", name, components, values.flat_map(f64::to_le_bytes).collect())
+    data_array(text, "Float64", name, components, &values.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
 }
 
 /// One array: base64 of the compressed bytes, in blocks of VTK's usual size.
-fn data_array(text: &mut String, kind: &str, name: &str, components: usize, bytes: Vec<u8>) -> io::Result<()> {
+fn data_array(text: &mut String, kind: &str, name: &str, components: usize, bytes: &[u8]) -> io::Result<()> {
     const BLOCK: usize = 1 << 20;
     let blocks: Vec<Vec<u8>> = bytes
         .chunks(BLOCK)
