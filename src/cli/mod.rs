@@ -3,6 +3,7 @@
 mod check;
 mod dual;
 mod exit;
+mod generate;
 mod info;
 mod mesh;
 mod network;
@@ -34,6 +35,8 @@ enum Verb {
     Refine(refine::Args),
     /// Grow a second tree that shares the terminals of the first, as veins do with arteries
     Dual(dual::Args),
+    /// Grow a network of vessels that fills an organ
+    Generate(generate::Args),
     /// Fill a surface, a complex of facets or points with tetrahedra
     Tetrahedralize(tetrahedralize::Args),
     /// Verify a volume mesh line by line
@@ -57,6 +60,7 @@ pub fn main() -> ExitCode {
         Verb::Mesh(args) => mesh::run(args),
         Verb::Refine(args) => refine::run(args),
         Verb::Dual(args) => dual::run(args),
+        Verb::Generate(args) => generate::run(args),
         Verb::Tetrahedralize(args) => tetrahedralize::run(args),
         Verb::Check(args) => check::run(args),
         Verb::Info(args) => info::run(args),

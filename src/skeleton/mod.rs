@@ -5,6 +5,7 @@ mod check;
 mod clean;
 mod crowding;
 mod error;
+pub mod generate;
 mod graph;
 mod metrics;
 mod overlap;

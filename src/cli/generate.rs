@@ -1,0 +1,136 @@
+//! `anastomesh generate`: grows a network of vessels in an organ.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::exit::{Exit, Failure};
+use crate::io::network::{ensure_network_writable, write_network};
+use crate::skeleton::generate::{GenerateParams, Morphometry, Organ, RAT_KIDNEY, generate};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Number of terminals (outlets); 29566 is a rat's kidney
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    terminals: u32,
+    /// What is filled with vessels
+    #[arg(long, value_enum, default_value_t = OrganArg::Kidney)]
+    organ: OrganArg,
+    /// Seed of the random numbers; the same seed gives the same network
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+    /// Mean radius of the terminals, in um
+    #[arg(long, value_name = "R", default_value_t = GenerateParams::new(Organ::Kidney, 2).terminal_radius, allow_negative_numbers = true)]
+    terminal_radius: f64,
+    /// Exponent p of Murray's law r0^p = r1^p + r2^p (default: 3.2 for a kidney, as measured, and 3 for an ellipsoid)
+    #[arg(long, value_name = "P", allow_negative_numbers = true)]
+    exponent: Option<f64>,
+    /// Longest extent of the organ, in um (default: terminals as dense as in a rat's kidney)
+    #[arg(long, value_name = "L", allow_negative_numbers = true)]
+    size: Option<f64>,
+    /// Where the network goes: .vtp, in um
+    #[arg(short, long, value_name = "NETWORK")]
+    output: PathBuf,
+    /// Number of threads (default: all cores); the output does not depend on it
+    #[arg(short = 'j', long, value_name = "N")]
+    threads: Option<std::num::NonZeroUsize>,
+    /// Print the parameters and the vessels of each order as JSON on standard output
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What can be filled.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum OrganArg {
+    /// A rat's: dense cortex, thin medulla, a hilum where the artery enters
+    Kidney,
+    /// Filled evenly
+    Ellipsoid,
+}
+
+/// What was grown.
+#[derive(Serialize)]
+struct Grown<'a> {
+    program: &'static str,
+    parameters: &'a GenerateParams,
+    /// Longest extent of the organ, um.
+    size: f64,
+    nodes: usize,
+    edges: usize,
+    root_radius: f64,
+    morphometry: &'a Morphometry,
+}
+
+impl Args {
+    fn params(&self) -> GenerateParams {
+        let organ = match self.organ {
+            OrganArg::Kidney => Organ::Kidney,
+            OrganArg::Ellipsoid => Organ::Ellipsoid,
+        };
+        let usual = GenerateParams::new(organ, self.terminals);
+        GenerateParams {
+            seed: self.seed,
+            terminal_radius: self.terminal_radius,
+            exponent: self.exponent.unwrap_or(usual.exponent),
+            size: self.size,
+            ..usual
+        }
+    }
+}
+
+/// Grows a network and writes it.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    let params = args.params();
+    let pool = super::thread_pool(args.threads)?;
+    let network = pool.install(|| generate(&params)).map_err(|e| Failure::usage(e.to_string()))?;
+    write_network(&args.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;
+    if args.quiet && !args.json {
+        return Ok(Exit::Fine);
+    }
+    let morphometry = Morphometry::of(&network);
+    let grown = Grown {
+        program: concat!("anastomesh ", env!("CARGO_PKG_VERSION")),
+        parameters: &params,
+        size: params.resolved_size(),
+        nodes: network.nodes.len(),
+        edges: network.edges.len(),
+        root_radius: network.nodes.first().map_or(0.0, |root| root.radius),
+        morphometry: &morphometry,
+    };
+    if args.json {
+        super::print(true, &grown, String::new)?;
+    } else {
+        eprint!("{}", text(&grown));
+    }
+    Ok(Exit::Fine)
+}
+
+/// For people: what was grown, and the orders of vessels beside those of a rat's kidney.
+fn text(grown: &Grown) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        out,
+        "{} nodes, {} edges, {} terminals and a root of radius {:.1} um in {:.0} um",
+        grown.nodes, grown.edges, grown.parameters.terminals, grown.root_radius, grown.size
+    );
+    let _ = writeln!(out, "order    vessels         radius/um         length/um   (mean +- deviation; below: measured in rats)");
+    for (order, figures) in grown.morphometry.orders.iter().enumerate() {
+        let f = figures;
+        let _ = writeln!(
+            out,
+            "{order:>5}{:>11}{:>10.1} +-{:>5.1}{:>10.0} +-{:>5.0}",
+            f.count, f.radius, f.radius_deviation, f.length, f.length_deviation
+        );
+        if let Some(p) = RAT_KIDNEY.get(order) {
+            let [[n, dn], [r, dr], [l, dl]] = [p.count, p.radius, p.length];
+            let _ = writeln!(out, "{:>16}{r:>10.1} +-{dr:>5.1}{l:>10.0} +-{dl:>5.0}", format!("({n:.0} +-{dn:.0})"));
+        }
+    }
+    out
+}
