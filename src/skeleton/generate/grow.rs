@@ -14,7 +14,7 @@ const PARALLEL: usize = 2048;
 
 /// Along the vessel, distances count so much less when the direction is chosen in which terminals are split: vessels fork
 /// to the sides rather than into near and far.
-const ALONG: f64 = 1.0;
+const ALONG: f64 = 0.5;
 
 /// A tree with one fork or terminal per node; every node but the inlet has the vessel that leads to it.
 #[derive(Clone, Debug, Default)]
