@@ -11,6 +11,9 @@ const ROUNDS: usize = 6;
 /// Sweeps over all forks per round; each moves every other level of the tree, then the others.
 const SWEEPS: usize = 10;
 
+/// Cosine and sine of the angle up to which vessels that leave a fork side by side are opened.
+const NARROW: (f64, f64) = (0.6, 0.8);
+
 /// Vessels this many times as thick as the thinnest are kept clear of nodes.
 const THICK: f64 = 2.0;
 
@@ -55,7 +58,7 @@ fn least_length(tree: &Tree, radii: &[f64], node: usize) -> f64 {
     from + to + 4.0 * radii[node]
 }
 
-/// A better place of a fork.
+/// A better place of a fork: towards the least volume, then so that vessels are long enough and angles wide enough.
 fn better(tree: &Tree, radii: &[f64], fork: usize) -> Point3 {
     let [a, b] = tree.branches(fork);
     let ends = [tree.parents[fork] as usize, a, b];
@@ -74,8 +77,25 @@ fn better(tree: &Tree, radii: &[f64], fork: usize) -> Point3 {
                 x += direction * (half * (least - length));
             }
         }
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            x += opening(&x, &targets[i], &targets[j]);
+        }
     }
     x
+}
+
+/// How a fork has to move so that its vessels to `p` and `q` are not side by side: around the nearer end.
+fn opening(x: &Point3, p: &Point3, q: &Point3) -> Vec3 {
+    let (u, v) = (p - x, q - x);
+    let (near, far) = if u.norm_squared() <= v.norm_squared() { (u, v) } else { (v, u) };
+    let (Some(n), Some(f)) = (near.try_normalize(0.0), far.try_normalize(0.0)) else { return Vec3::zeros() };
+    let cosine = n.dot(&f);
+    if cosine <= NARROW.0 {
+        return Vec3::zeros();
+    }
+    let Some(aside) = (n - f * cosine).try_normalize(1e-9) else { return Vec3::zeros() };
+    let wide = f * NARROW.0 + aside * NARROW.1;
+    (near - wide * near.norm()) * 0.5
 }
 
 /// A direction that depends on the node alone, for nodes at one place.

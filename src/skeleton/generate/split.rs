@@ -9,7 +9,7 @@
 use super::random::{Random, Stream};
 
 /// Least number of terminals of each order; from the last on, each order has `RATIO` times as many as the one before.
-const LEAST: [u32; 11] = [1, 2, 4, 9, 32, 68, 156, 451, 1929, 6264, 12_608];
+const LEAST: [u32; 11] = [1, 2, 4, 9, 31, 65, 151, 446, 1878, 6330, 13_487];
 
 /// Mean ratio of the numbers of vessels of neighbouring orders: the tenth root of 29,566.
 const RATIO: f64 = 2.8;
@@ -35,13 +35,14 @@ pub fn order(terminals: u32) -> usize {
 pub fn lesser(terminals: u32, random: Random, index: u64) -> u32 {
     let k = order(terminals);
     let n = f64::from(terminals);
-    let chance = random.unit(Stream::Split, index);
+    // The middle half: numbers of vessels vary little from seed to seed.
+    let chance = 0.25 + 0.5 * random.unit(Stream::Split, index);
     let (here, below) = (least(k), least(k.saturating_sub(1)));
     let share = if n < 2.0 * here {
         // Both below `here`, neither below `below`; around the half.
         let low = below.max(n - here + 1.0);
         let high = (here - 1.0).min(n - below);
-        low + (high - low + 1.0) * (0.25 + 0.5 * chance)
+        low + (high - low + 1.0) * chance
     } else {
         below + (here - below) * chance
     };
