@@ -119,7 +119,10 @@ fn text(grown: &Grown) -> String {
         "{} nodes, {} edges, {} terminals and a root of radius {:.1} um in {:.0} um",
         grown.nodes, grown.edges, grown.parameters.terminals, grown.root_radius, grown.size
     );
-    let _ = writeln!(out, "order    vessels         radius/um         length/um   (mean +- deviation; below: measured in rats)");
+    let _ = writeln!(
+        out,
+        "order    vessels         radius/um         length/um   (mean +- deviation; below: measured in rats)"
+    );
     for (order, figures) in grown.morphometry.orders.iter().enumerate() {
         let f = figures;
         let _ = writeln!(

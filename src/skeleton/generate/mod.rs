@@ -213,10 +213,8 @@ fn skeleton(tree: &grow::Tree, radii: &[f64]) -> Skeleton {
         radius: *radius,
         original: i as u32,
     };
-    let edge = |(i, (&parent, &r)): (usize, (&u32, &f64))| Edge {
-        nodes: [NodeId(parent), NodeId(i as u32)],
-        radii: [r, r],
-    };
+    let edge =
+        |(i, (&parent, &r)): (usize, (&u32, &f64))| Edge { nodes: [NodeId(parent), NodeId(i as u32)], radii: [r, r] };
     Skeleton {
         nodes: tree.positions.iter().zip(radii).enumerate().map(node).collect(),
         edges: tree.parents.iter().zip(radii).enumerate().skip(1).map(edge).collect(),

@@ -39,7 +39,8 @@ impl Organ {
     /// Longest extent of an organ with so many terminals, in µm: volume goes with the number of terminals, and all
     /// lengths with their radius.
     pub fn usual_size(self, terminals: u32, terminal_radius: f64) -> f64 {
-        let kidney = KIDNEY * (f64::from(terminals) / super::TERMINALS).cbrt() * terminal_radius / super::TERMINAL_RADIUS;
+        let kidney =
+            KIDNEY * (f64::from(terminals) / super::TERMINALS).cbrt() * terminal_radius / super::TERMINAL_RADIUS;
         match self {
             Self::Kidney => kidney,
             Self::Ellipsoid => kidney * FILLED.cbrt(),

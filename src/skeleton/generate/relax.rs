@@ -15,7 +15,7 @@ const SWEEPS: usize = 10;
 const NARROW: (f64, f64) = (0.6, 0.8);
 
 /// Vessels this many times as thick as the thinnest are kept clear of nodes.
-const THICK: f64 = 2.0;
+const THICK: f64 = 1.2;
 
 /// Distance of a node from the wall of such a vessel, in radii of the node and of the vessel.
 const CLEAR: [f64; 2] = [4.0, 0.15];

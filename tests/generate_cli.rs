@@ -1,0 +1,79 @@
+//! `generate` as it is run, and what the other verbs make of its networks.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn run(arguments: &[&str], output: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_anastomesh")).args(arguments).arg(output).output().expect("the program runs")
+}
+
+fn json(output: &Output) -> Value {
+    let text = String::from_utf8_lossy(&output.stdout);
+    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text} {}", String::from_utf8_lossy(&output.stderr)))
+}
+
+#[test]
+fn the_same_seed_gives_the_same_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let grow = |name: &str, seed: &str, threads: &str| {
+        let path = folder.path().join(name);
+        let done = run(&["generate", "--terminals", "3000", "--seed", seed, "-j", threads, "-q", "-o"], &path);
+        assert!(done.status.success() && done.stdout.is_empty() && done.stderr.is_empty(), "{done:?}");
+        std::fs::read(path).unwrap()
+    };
+    let first = grow("a.vtp", "7", "1");
+    assert!(first == grow("b.vtp", "7", "2"));
+    assert!(first != grow("c.vtp", "8", "2"));
+}
+
+#[test]
+fn a_grown_network_is_read_and_refined() {
+    let folder = tempfile::tempdir().unwrap();
+    for organ in ["kidney", "ellipsoid"] {
+        let path = folder.path().join("net.vtp");
+        let grown = json(&run(&["generate", "--terminals", "3000", "--organ", organ, "--json", "-o"], &path));
+        assert_eq!(grown["parameters"]["organ"], organ);
+        assert_eq!(grown["morphometry"]["orders"][0]["count"], 3000);
+        let info = json(&run(&["info", "--json"], &path));
+        assert_eq!((&info["nodes"], &info["terminals"]), (&grown["nodes"], &Value::from(3001)));
+        assert_eq!((&info["components"], &info["loops"]), (&Value::from(1), &Value::from(0)));
+        assert_eq!(info["radius"]["max"], grown["root_radius"]);
+        let refined = Command::new(env!("CARGO_BIN_EXE_anastomesh"))
+            .args(["refine", "--json"])
+            .arg(&path)
+            .arg("-o")
+            .arg(folder.path().join("refined.vtp"))
+            .output()
+            .unwrap();
+        assert_eq!(refined.status.code(), Some(0), "{refined:?}");
+        let result = &json(&refined)["report"]["result"];
+        assert_eq!(result["overlaps"], 0);
+        let cuttable = &result["metrics"]["cuttable"];
+        let share = cuttable["count"].as_f64().unwrap_or(f64::NAN) / cuttable["of"].as_f64().unwrap_or(f64::NAN);
+        assert!(share >= 0.97, "{organ}: {cuttable}");
+    }
+}
+
+#[test]
+fn what_cannot_be_grown_is_a_usage_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("net.vtp");
+    for (arguments, says) in [
+        (&["--terminals", "1"][..], "a tree has 2 to"),
+        (&["--terminals", "-5"], "invalid value"),
+        (&["--terminals", "100", "--size", "100"], "do not fit"),
+        (&["--terminals", "100", "--size", "nan"], "size NaN"),
+        (&["--terminals", "100", "--terminal-radius", "-1"], "terminal radius -1"),
+        (&["--terminals", "100", "--exponent", "0"], "exponent 0"),
+        (&["--terminals", "100", "--organ", "heart"], "invalid value"),
+        (&[], "--terminals"),
+    ] {
+        let refused = run(&[&["generate"], arguments, &["-o"]].concat(), &path);
+        let text = String::from_utf8_lossy(&refused.stderr);
+        assert!(refused.status.code() == Some(2) && text.contains(says), "{arguments:?}: {text}");
+        assert!(!path.exists());
+    }
+    let refused = run(&["generate", "--terminals", "100", "-o"], &folder.path().join("net.swc"));
+    assert_eq!(refused.status.code(), Some(3));
+}
