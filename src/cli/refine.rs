@@ -27,7 +27,7 @@ pub struct Args {
     /// Iterations at most; it stops earlier when nothing is left to do
     #[arg(long, value_name = "N", default_value_t = RefineParams::default().iterations)]
     iterations: usize,
-    /// Measure the metrics every so many iterations
+    /// Measure the metrics every so many iterations, and after each of the first ten (0: at both ends only)
     #[arg(long, value_name = "N", default_value_t = RefineParams::default().every)]
     every: usize,
     #[command(flatten)]

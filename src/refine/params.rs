@@ -64,7 +64,7 @@ pub struct RefineParams {
     pub shrink: f64,
     /// Voxels across the thinnest vessel, as in meshing: shrunk vessels clear each other by a voxel.
     pub rho: f64,
-    /// The metrics are measured every so many iterations.
+    /// The metrics are measured every so many iterations, and after each of the first ten; 0: at the ends only.
     pub every: usize,
 }
 

@@ -20,6 +20,8 @@ const FALL: f64 = 0.7;
 const RISE: f64 = 1.1;
 /// Bends are put in after this share of the iterations, and again as often.
 const BENDS: f64 = 0.125;
+/// The first so many iterations are measured each, if any are.
+const EARLY: usize = 10;
 /// It stops when the state has not become better in so many rounds of bends.
 const PATIENCE: usize = 4;
 
@@ -112,7 +114,8 @@ pub(super) fn solve(skeleton: &Skeleton, given: &Figures, params: &RefineParams,
                 last = quiet && bends == 0;
             }
         }
-        if last || (params.every > 0 && iteration % params.every == 0) {
+        // Most happens at the beginning.
+        if last || (params.every > 0 && (iteration % params.every == 0 || iteration < params.every.min(EARLY))) {
             let sample = solver.sample(iteration, asked);
             progress.step(if last { params.iterations } else { iteration }, params.iterations, Some(&sample));
             history.push(sample);

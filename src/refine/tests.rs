@@ -183,6 +183,30 @@ fn terminals_move_only_as_far_as_they_may() {
 }
 
 #[test]
+fn a_fork_to_terminals_side_by_side_comes_close_enough_to_part() {
+    // The ends are clear of each other, and cannot move; long legs overlap whatever their fork does.
+    let points = [[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 1.2, 0.0], [20.0, -1.2, 0.0]];
+    let s = network(&points, 1.0, &[(0, 1), (1, 2), (1, 3)]);
+    let params = RefineParams { bends: false, ..RefineParams::default() };
+    let refined = run(&s, &params);
+    assert_eq!((refined.report.given.overlaps, refined.report.moved.overlaps), (1, 0));
+    let leg = (refined.skeleton.nodes[1].position - refined.skeleton.nodes[2].position).norm();
+    assert!(leg > 2.0 && leg < 4.0, "{leg}");
+    assert_eq!(refined.report.result.metrics.shorter_than_2.count, 0);
+}
+
+#[test]
+fn what_is_held_does_not_become_worse() {
+    // Each leg satisfies equation 11; to part they have to become shorter than that.
+    let points = [[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 1.2, 0.0], [20.0, -1.2, 0.0]];
+    let s = network(&points, 1.0, &[(0, 1), (1, 2), (1, 3)]);
+    let params = RefineParams { bends: false, residual: Residual::Report, ..RefineParams::default() };
+    assert_eq!(run(&s, &params).report.worse, [Metric::Equation11]);
+    let held = run(&s, &RefineParams { hold: vec![Metric::Equation11], ..params });
+    assert_eq!((held.report.worse.as_slice(), held.report.result.overlaps), (&[][..], 1));
+}
+
+#[test]
 fn polylines_keep_their_shape() {
     // A vessel in short pieces along an arc, crossed by a straight one.
     let mut points: Vec<[f64; 3]> = (0..=60)

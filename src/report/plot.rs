@@ -95,7 +95,7 @@ impl Axis {
 
     fn label(&self, tick: f64) -> String {
         if self.logarithmic {
-            return format!("10<tspan dy=\"-4\" font-size=\"9\">{tick:.0}</tspan>");
+            return format!("10{}", superscript(&format!("{tick:.0}")));
         }
         let magnitude = self.high.abs().max(self.low.abs());
         match magnitude {
@@ -106,6 +106,12 @@ impl Axis {
             _ => format!("{tick:.4}"),
         }
     }
+}
+
+/// An integer in raised digits: a raised `tspan` is misplaced by some viewers.
+fn superscript(number: &str) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    number.chars().map(|c| c.to_digit(10).map_or('⁻', |d| RAISED[d as usize])).collect()
 }
 
 /// 1, 2 or 5 times a power of ten, at least `x`.
