@@ -75,35 +75,36 @@ pub fn grow(inlet: Point3, points: &mut [Point3], exponent: f64, random: Random)
 
 /// Recursion goes as deep as the tree: some tens of forks.
 fn branch(part: Part, weight: f64, random: Random) {
-    let n = part.points.len();
-    part.parents[0] = part.parent;
-    part.sizes[0] = n as u32;
+    let Part { points, positions, parents, sizes, first, parent, from } = part;
+    let n = points.len();
+    parents[0] = parent;
+    sizes[0] = n as u32;
     if n == 1 {
-        part.positions[0] = part.points[0];
+        positions[0] = points[0];
         return;
     }
-    let near = lesser(n as u32, random, u64::from(part.first)) as usize;
-    part_points(part.points, near, &part.from);
-    let (near_points, far_points) = part.points.split_at_mut(near);
-    let targets = [part.from, centroid(far_points), centroid(near_points)];
+    let near = lesser(n as u32, random, u64::from(first)) as usize;
+    part_points(points, near, &from);
+    let (near_points, far_points) = points.split_at_mut(near);
+    let targets = [from, centroid(far_points), centroid(near_points)];
     let fork = fermat(&targets, [n, n - near, near].map(|count| (count as f64).powf(weight)));
-    part.positions[0] = fork;
+    positions[0] = fork;
     let cut = 2 * (n - near) - 1;
-    let (positions, parents, sizes) = (&mut part.positions[1..], &mut part.parents[1..], &mut part.sizes[1..]);
+    let (positions, parents, sizes) = (&mut positions[1..], &mut parents[1..], &mut sizes[1..]);
     let (far_positions, near_positions) = positions.split_at_mut(cut);
     let (far_parents, near_parents) = parents.split_at_mut(cut);
     let (far_sizes, near_sizes) = sizes.split_at_mut(cut);
-    let child = |first, points, positions, parents, sizes| Part {
+    let child = |own, points, positions, parents, sizes| Part {
         points,
         positions,
         parents,
         sizes,
-        first,
-        parent: part.first,
+        first: own,
+        parent: first,
         from: fork,
     };
-    let far = child(part.first + 1, far_points, far_positions, far_parents, far_sizes);
-    let near = child(part.first + 1 + cut as u32, near_points, near_positions, near_parents, near_sizes);
+    let far = child(first + 1, far_points, far_positions, far_parents, far_sizes);
+    let near = child(first + 1 + cut as u32, near_points, near_positions, near_parents, near_sizes);
     if n > PARALLEL {
         rayon::join(|| branch(far, weight, random), || branch(near, weight, random));
     } else {
