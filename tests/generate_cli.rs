@@ -56,6 +56,21 @@ fn a_grown_network_is_read_and_refined() {
 }
 
 #[test]
+fn an_swc_file_holds_the_same_nodes() {
+    let folder = tempfile::tempdir().unwrap();
+    let info = |name: &str| {
+        let path = folder.path().join(name);
+        assert!(run(&["generate", "--terminals", "200", "-q", "-o"], &path).status.success());
+        json(&run(&["info", "--json"], &path))
+    };
+    let (vtp, swc) = (info("net.vtp"), info("net.swc"));
+    for same in ["nodes", "edges", "terminals", "components", "edge_length"] {
+        assert_eq!(vtp[same], swc[same]);
+    }
+    assert_eq!(vtp["radius"]["max"], swc["radius"]["max"]);
+}
+
+#[test]
 fn what_cannot_be_grown_is_a_usage_error() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("net.vtp");
@@ -74,6 +89,6 @@ fn what_cannot_be_grown_is_a_usage_error() {
         assert!(refused.status.code() == Some(2) && text.contains(says), "{arguments:?}: {text}");
         assert!(!path.exists());
     }
-    let refused = run(&["generate", "--terminals", "100", "-o"], &folder.path().join("net.swc"));
+    let refused = run(&["generate", "--terminals", "100", "-o"], &folder.path().join("net.obj"));
     assert_eq!(refused.status.code(), Some(3));
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::exit::{Exit, Failure};
-use crate::io::network::{ensure_network_writable, write_network};
+use crate::io::network::{ensure_tree_writable, write_tree};
 use crate::skeleton::generate::{GenerateParams, Morphometry, Organ, RAT_KIDNEY, generate};
 
 #[derive(Debug, clap::Args)]
@@ -29,7 +29,7 @@ pub struct Args {
     /// Longest extent of the organ, in um (default: terminals as dense as in a rat's kidney)
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     size: Option<f64>,
-    /// Where the network goes: .vtp, in um
+    /// Where the network goes, in um: .vtp, or .swc (node radii only)
     #[arg(short, long, value_name = "NETWORK")]
     output: PathBuf,
     /// Number of threads (default: all cores); the output does not depend on it
@@ -84,11 +84,11 @@ impl Args {
 
 /// Grows a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    ensure_tree_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     let params = args.params();
     let pool = super::thread_pool(args.threads)?;
     let network = pool.install(|| generate(&params)).map_err(|e| Failure::usage(e.to_string()))?;
-    write_network(&args.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;
+    write_tree(&args.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;
     if args.quiet && !args.json {
         return Ok(Exit::Fine);
     }

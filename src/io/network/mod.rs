@@ -5,12 +5,14 @@ mod swc;
 mod tests;
 mod vtp;
 mod write;
+mod write_swc;
 
 pub use swc::SwcError;
 pub use vtp::VtpError;
 pub use write::{END_RADII, NetworkArray, ensure_network_writable, refinement_arrays, write_network};
+pub use write_swc::{ensure_tree_writable, write_tree};
 
-use crate::skeleton::{Skeleton, SkeletonError};
+use crate::skeleton::{NodeId, Skeleton, SkeletonError};
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -140,6 +142,14 @@ pub enum NetworkFileError {
     NotWritten {
         /// The file.
         path: PathBuf,
+    },
+    /// SWC holds trees only.
+    #[error("{}: several vessels lead to node {}: only trees are written as .swc; name a .vtp file", path.display(), node.0)]
+    NotATree {
+        /// The file.
+        path: PathBuf,
+        /// The node, numbered from 0.
+        node: NodeId,
     },
     /// The operating system refused to write.
     #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]

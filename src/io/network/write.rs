@@ -56,6 +56,11 @@ pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) 
 /// When the name has another extension than `.vtp`, or its folder does not exist.
 pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
     ensure_vtp(path)?;
+    ensure_folder(path)
+}
+
+/// Checks that a file can be made at a path.
+pub(super) fn ensure_folder(path: &Path) -> Result<(), NetworkFileError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() || !folder.is_dir() {
         let kind = if path.is_dir() { io::ErrorKind::IsADirectory } else { io::ErrorKind::NotFound };

@@ -72,7 +72,7 @@ impl Shape {
         }
     }
 
-    /// Whether a point is inside the organ.
+    /// Whether a point is where terminals are.
     #[cfg(test)]
     pub fn holds(&self, p: &Point3) -> bool {
         self.density(p) > 0.0

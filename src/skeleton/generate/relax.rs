@@ -20,6 +20,9 @@ const THICK: f64 = 1.2;
 /// Distance of a node from the wall of such a vessel, in radii of the node and of the vessel.
 const CLEAR: [f64; 2] = [4.0, 0.15];
 
+/// Least distance of terminals, in their radii.
+const APART: f64 = 8.0;
+
 /// Moves forks (and terminals that lie in a thick vessel) of a tree whose vessels have the given radii, by node.
 pub fn relax(tree: &mut Tree, radii: &[f64]) {
     let parity = levels(tree);
@@ -29,6 +32,7 @@ pub fn relax(tree: &mut Tree, radii: &[f64]) {
             sweep(tree, radii, &parity, true);
         }
         clear(tree, radii);
+        part_terminals(tree, radii);
     }
 }
 
@@ -141,6 +145,27 @@ fn clear(tree: &mut Tree, radii: &[f64]) {
         })
         .collect();
     tree.positions = moved;
+}
+
+/// Moves terminals apart that leaving thick vessels brought close to each other.
+fn part_terminals(tree: &mut Tree, radii: &[f64]) {
+    let ends: Vec<usize> = (1..radii.len()).filter(|&i| !tree.is_fork(i)).collect();
+    let boxes: Vec<Aabb> =
+        ends.iter().map(|&i| Aabb::of_points([&tree.positions[i]]).grown(0.5 * APART * radii[i])).collect();
+    let mut close = Vec::new();
+    Bvh::new(&boxes).self_pairs(|i, j| close.push([ends[i as usize], ends[j as usize]]));
+    close.sort_unstable();
+    for [i, j] in close {
+        let least = 0.5 * APART * (radii[i] + radii[j]);
+        let off = tree.positions[j] - tree.positions[i];
+        let distance = off.norm();
+        if distance < least {
+            let direction = off.try_normalize(0.0).unwrap_or_else(|| any_direction(i));
+            let half = direction * (0.5 * (least - distance));
+            tree.positions[i] -= half;
+            tree.positions[j] += half;
+        }
+    }
 }
 
 /// Whether a vessel ends at a node, or at a neighbour of it.
