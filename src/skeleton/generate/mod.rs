@@ -33,6 +33,13 @@ const TERMINAL_SPREAD: f64 = 0.014;
 /// Terminals closer than this, in their radii, leave no room for vessels between them.
 const CLOSEST: f64 = 6.0;
 
+/// Radii of terminals, µm.
+const LEAST_RADIUS: f64 = 1e-6;
+const LARGEST_RADIUS: f64 = 1e6;
+
+/// Radius of the root, in longest extents of the organ, above which it would be most of it.
+const THICKEST: f64 = 0.15;
+
 /// More terminals have more nodes than ids.
 const MOST_TERMINALS: u32 = 1_000_000_000;
 
@@ -105,7 +112,7 @@ impl GenerateParams {
         if !(2..=MOST_TERMINALS).contains(&self.terminals) {
             return Err(GenerateError::BadCount { terminals: self.terminals });
         }
-        if !(self.terminal_radius > 0.0 && self.terminal_radius <= 1e6) {
+        if !(LEAST_RADIUS..=LARGEST_RADIUS).contains(&self.terminal_radius) {
             return Err(GenerateError::BadRadius { radius: self.terminal_radius });
         }
         if !(1.5..=10.0).contains(&self.exponent) {
@@ -119,6 +126,10 @@ impl GenerateParams {
         let closest = CLOSEST * self.terminal_radius;
         if spacing < closest {
             return Err(GenerateError::TooDense { size, least: size * closest / spacing, terminals: self.terminals });
+        }
+        let root = self.terminal_radius * f64::from(self.terminals).powf(1.0 / self.exponent);
+        if root > THICKEST * size {
+            return Err(GenerateError::TooThick { root, size });
         }
         Ok(())
     }
@@ -135,7 +146,7 @@ pub enum GenerateError {
         terminals: u32,
     },
     /// The radius of the terminals is not one.
-    #[error("terminal radius {radius}: it must be above 0 and at most 1e6 µm")]
+    #[error("terminal radius {radius}: from {LEAST_RADIUS:e} to {LARGEST_RADIUS:e} µm is possible")]
     BadRadius {
         /// What was asked for, µm.
         radius: f64,
@@ -149,6 +160,16 @@ pub enum GenerateError {
     /// The size is not one.
     #[error("size {size} µm: it must be above 0 and at most {LARGEST_SIZE:e} µm")]
     BadSize {
+        /// Longest extent, µm.
+        size: f64,
+    },
+    /// The root would fill the organ.
+    #[error(
+        "a root of radius {root:.0} µm does not fit into {size:.0} µm: take a larger exponent or size, or thinner terminals"
+    )]
+    TooThick {
+        /// Radius that Murray's law gives it, µm.
+        root: f64,
         /// Longest extent, µm.
         size: f64,
     },

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Rounds of sweeps and clearing.
 const ROUNDS: usize = 6;
 
-/// Sweeps over all forks per round; each moves every other level of the tree, then the others.
+/// Sweeps over all forks per round, and over those that are squeezed in the end.
 const SWEEPS: usize = 10;
 
 /// Cosine and sine of the angle up to which vessels that leave a fork side by side are opened.
@@ -28,11 +28,16 @@ pub fn relax(tree: &mut Tree, radii: &[f64]) {
     let parity = levels(tree);
     for _ in 0..ROUNDS {
         for _ in 0..SWEEPS {
-            sweep(tree, radii, &parity, false);
-            sweep(tree, radii, &parity, true);
+            sweep(tree, &parity, |tree, fork| better(tree, radii, fork));
         }
         clear(tree, radii);
         part_terminals(tree, radii);
+    }
+    // What was moved last may be close to its neighbours.
+    for _ in 0..SWEEPS {
+        sweep(tree, &parity, |tree, fork| {
+            if squeezed(tree, radii, fork) { better(tree, radii, fork) } else { tree.positions[fork] }
+        });
     }
 }
 
@@ -45,13 +50,24 @@ fn levels(tree: &Tree) -> Vec<bool> {
     odd
 }
 
-/// Moves the forks of one parity; none of their neighbours moves meanwhile.
-fn sweep(tree: &mut Tree, radii: &[f64], parity: &[bool], odd: bool) {
-    let moved: Vec<Point3> = (0..tree.positions.len())
-        .into_par_iter()
-        .map(|i| if parity[i] == odd && tree.is_fork(i) { better(tree, radii, i) } else { tree.positions[i] })
-        .collect();
-    tree.positions = moved;
+/// Moves the forks of one parity, then the others; none of their neighbours moves meanwhile.
+fn sweep(tree: &mut Tree, parity: &[bool], place: impl Fn(&Tree, usize) -> Point3 + Sync) {
+    for odd in [false, true] {
+        let moved = (0..tree.positions.len())
+            .into_par_iter()
+            .map(|i| if parity[i] == odd && tree.is_fork(i) { place(tree, i) } else { tree.positions[i] })
+            .collect();
+        tree.positions = moved;
+    }
+}
+
+/// Whether a vessel at a fork has less than half the length that it needs.
+fn squeezed(tree: &Tree, radii: &[f64], fork: usize) -> bool {
+    let [a, b] = tree.branches(fork);
+    [fork, a, b].into_iter().any(|node| {
+        let length = (tree.positions[node] - tree.positions[tree.parents[node] as usize]).norm();
+        length < 0.5 * least_length(tree, radii, node)
+    })
 }
 
 /// Length that the vessel to `node` needs: for a cut at either end, and to leave the vessel that it comes from.
