@@ -184,10 +184,7 @@ fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f
     let mut ways = [[f64::INFINITY; 2]; 2];
     ways[e.end(node)][f.end(node)] = 0.0;
     let Some((s, t)) = deepest_apart(&a, &b, ways, clearance) else { return };
-    let way = a.point(s) - b.point(t);
-    let radii = a.radius(s) + b.radius(t);
-    let distance = way.norm();
-    let normal = if distance > 1e-6 * radii { way / distance } else { parting(&a, &b) };
+    let Closeness { normal, distance, radii } = closeness(&a, &b, (s, t));
     // The places keep their way from the node, where vessels begin to count as apart: so the node itself can open the
     // fork by moving towards both ends, though their directions do not change to first order.
     let (u, v) = (u / lu, v / lv);
@@ -207,15 +204,28 @@ fn push_tubes(
     clearance: f64,
     out: &mut Vec<Push>,
 ) {
-    let way = a.point(s) - b.point(t);
-    let radii = a.radius(s) + b.radius(t);
-    let wanted = clearance * radii;
-    let distance = way.norm();
-    // Axes that meet have no direction to part in.
-    let normal = if distance > 1e-6 * radii { way / distance } else { parting(&a, &b) };
+    let Closeness { normal, distance, radii } = closeness(&a, &b, (s, t));
     let [e, f] = edges.map(|e| frame.skeleton.edge(e).nodes);
     let gradient = [(e[0], normal * (1.0 - s)), (e[1], normal * s), (f[0], normal * (t - 1.0)), (f[1], normal * -t)];
-    project(frame, &gradient, wanted - distance, 0.5 * radii, out);
+    project(frame, &gradient, clearance * radii - distance, 0.5 * radii, out);
+}
+
+/// How two tubes lie to each other at a place of each.
+struct Closeness {
+    /// The direction in which the first is pushed.
+    normal: Vec3,
+    /// Distance of the axes.
+    distance: f64,
+    /// Sum of the radii.
+    radii: f64,
+}
+
+fn closeness(a: &Tube, b: &Tube, (s, t): (f64, f64)) -> Closeness {
+    let way = a.point(s) - b.point(t);
+    let (distance, radii) = (way.norm(), a.radius(s) + b.radius(t));
+    // Axes that meet have no direction to part in.
+    let normal = if distance > 1e-6 * radii { way / distance } else { parting(a, b) };
+    Closeness { normal, distance, radii }
 }
 
 /// A direction in which two vessels part whose axes meet: across both, or across one if they are parallel.

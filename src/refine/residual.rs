@@ -6,8 +6,8 @@ use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Skeleton};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
 
-/// Rounds of shrinking at most: a vessel may have several others in its way.
-const ROUNDS: usize = 8;
+/// Rounds of shrinking at most: a vessel may have several others in its way, and one of them is looked at in a round.
+const ROUNDS: usize = 12;
 /// Length over which a radius returns to its old value, in radii.
 const TAPER: f64 = 3.0;
 /// Pieces that shrinking makes are at least this long, in radii.
@@ -148,8 +148,13 @@ struct Shrinker<'a> {
 }
 
 impl Shrinker<'_> {
-    /// Reduces the radii of an overlapping pair where they meet; the share kept, none when it cannot be helped.
+    /// Reduces the radii of an overlapping pair where they meet; the share kept, none when it cannot be helped or one of
+    /// the edges has been cut in pieces since the pair was found.
     fn shrink(&mut self, overlap: &Overlap) -> Option<f64> {
+        let is_whole = |(e, nodes): (EdgeId, [NodeId; 2])| self.skeleton.edge(e).nodes == nodes;
+        if !overlap.edges.into_iter().zip(overlap.nodes).all(is_whole) {
+            return None;
+        }
         let thin = overlap.edges.map(|e| self.skeleton.tube(e).min_radius()).into_iter().fold(f64::INFINITY, f64::min);
         let voxel = 2.0 * thin / self.params.rho;
         // Clear by a voxel if that can be had, else as far as it goes.
