@@ -2,19 +2,21 @@
 //! regular ring is put on the plane and filled, a strip is woven between the wall that is left and the ring, and the
 //! wall near it is relaxed on the level set.
 
-mod disc;
+pub(super) mod disc;
 #[cfg(test)]
 mod tests;
 mod weave;
 
+use super::shared_disc::SharedDisc;
 use crate::geometry::{Point3, Section, Vec3};
 use crate::mesh::TriMesh;
 use crate::partition::{ClusterEnd, EndKind};
 use crate::skeleton::NodeId;
+use crate::surface::GROWTH;
 use crate::surface::halfedge::HalfEdges;
 use crate::surface::relax::{Hold, Level, Relaxation};
 use crate::surface::{Field, SizedWall, SurfaceParams};
-use disc::{Disc, disc};
+use disc::disc;
 use std::f64::consts::TAU;
 use weave::weave;
 
@@ -78,9 +80,30 @@ const LONGEST_TIP: f64 = 3.0;
 /// What lies further (in radii) from the axis than this belongs to another vessel.
 const WIDTH: f64 = 1.1;
 /// Mean edge length of a relaxed wall over the length that was aimed at.
-const MEAN_EDGE: f64 = 0.92;
+pub(super) const MEAN_EDGE: f64 = 0.92;
 /// Least number of corners of a ring.
 const LEAST_CORNERS: u32 = 8;
+
+/// An end, and the disc that closes it where that is given.
+#[derive(Clone, Copy, Debug)]
+pub struct Closing<'a> {
+    /// The end.
+    pub end: &'a ClusterEnd,
+    /// The disc, seen along the end's axis; none: one that suits the wall.
+    pub disc: Option<&'a SharedDisc>,
+}
+
+impl Closing<'_> {
+    /// The edge length of the disc.
+    fn edge(&self, params: &SurfaceParams) -> f64 {
+        self.disc.map_or_else(|| params.edge_at(self.end.section.radius), |disc| disc.edge)
+    }
+}
+
+/// How many corners the ring of a disc has where edges of the wall are aimed to be so long.
+pub(super) fn corners(radius: f64, edge: f64) -> u32 {
+    ((TAU * radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS)
+}
 
 /// Replaces the tips beyond the `ends` by flat discs. `field` is the field that the wall is a level set of, `params` are
 /// those that it was made with.
@@ -90,7 +113,7 @@ const LEAST_CORNERS: u32 = 8;
 pub fn cap_terminals(
     wall: &SizedWall,
     field: &mut Field,
-    ends: &[ClusterEnd],
+    ends: &[Closing],
     params: &SurfaceParams,
 ) -> Result<CappedSurface, CapError> {
     let surface = &wall.mesh;
@@ -103,9 +126,9 @@ pub fn cap_terminals(
         added: Vec::new(),
         cap: Vec::new(),
     };
-    for (i, end) in ends.iter().enumerate() {
-        let edge = params.edge_at(end.section.radius);
-        cutter.cut(&end.section, i as u32, edge).map_err(|reason| CapError::End {
+    for (i, closing) in ends.iter().enumerate() {
+        let end = closing.end;
+        cutter.cut(closing, i as u32, closing.edge(params)).map_err(|reason| CapError::End {
             end: i as u32,
             node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
             origin: end.section.origin,
@@ -131,7 +154,8 @@ struct Cutter<'a> {
 
 impl Cutter<'_> {
     /// Takes one tip off and puts the disc on.
-    fn cut(&mut self, section: &Section, end: u32, edge: f64) -> Result<(), CapFailure> {
+    fn cut(&mut self, closing: &Closing, end: u32, edge: f64) -> Result<(), CapFailure> {
+        let section = &closing.end.section;
         let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
         let mut tip = self.beyond(section, seed, MARGIN * edge)?;
         let rim = self.rim(section, &mut tip, edge)?;
@@ -139,9 +163,12 @@ impl Cutter<'_> {
             return Err(CapFailure::Merged);
         }
         let low: Vec<Point3> = rim.iter().map(|&v| self.points[v as usize]).collect();
-        let corners = ((TAU * section.radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS);
-        let ring = disc(section.radius, corners, phase(section, &low, corners)).ok_or(CapFailure::Disc)?;
-        self.put(section, end, &rim, &low, corners, &ring);
+        if let Some(given) = closing.disc {
+            self.put(section, end, &rim, &low, given);
+        } else {
+            let suited = suited_disc(section, &low, edge).ok_or(CapFailure::Disc)?;
+            self.put(section, end, &rim, &low, &suited);
+        }
         self.sizes.resize(self.points.len(), edge);
         Ok(())
     }
@@ -274,16 +301,15 @@ impl Cutter<'_> {
     }
 
     /// Adds the disc and the strip between it and the rim.
-    fn put(&mut self, section: &Section, end: u32, rim: &[u32], low: &[Point3], corners: u32, ring: &Disc) {
-        let (u, w) = section.frame();
+    fn put(&mut self, section: &Section, end: u32, rim: &[u32], low: &[Point3], disc: &SharedDisc) {
         let first = self.points.len() as u32;
-        self.points.extend(ring.points.iter().map(|&[x, y]| section.origin + u * x + w * y));
-        let high = &self.points[first as usize..(first + corners) as usize];
-        let strip = weave(low, high, &section.origin, &section.axis);
-        let ids: Vec<u32> = (first..first + corners).collect();
+        self.points.extend(&disc.points);
+        let high: Vec<Point3> = disc.rim.iter().map(|&v| disc.points[v as usize]).collect();
+        let strip = weave(low, &high, &section.origin, &section.axis);
+        let ids: Vec<u32> = disc.rim.iter().map(|v| first + v).collect();
         self.added.extend(strip.iter().map(|step| step.triangle(rim, &ids)));
         self.cap.resize(self.added.len(), None);
-        self.added.extend(ring.triangles.iter().map(|t| t.map(|v| first + v)));
+        self.added.extend(disc.triangles.iter().map(|t| t.map(|v| first + v)));
         self.cap.resize(self.added.len(), Some(end));
     }
 
@@ -319,6 +345,19 @@ fn longest_edge(surface: &TriMesh) -> f64 {
         (surface.points[t[(i + 1) % 3] as usize] - surface.points[t[i] as usize]).norm_squared()
     };
     surface.triangles.iter().flat_map(|t| (0..3).map(|i| length(t, i))).fold(0.0, f64::max).sqrt()
+}
+
+/// The disc whose ring goes best with the loop's points.
+fn suited_disc(section: &Section, low: &[Point3], edge: f64) -> Option<SharedDisc> {
+    let corners = corners(section.radius, edge);
+    let flat = disc(section.radius, corners, phase(section, low, corners))?;
+    let (u, w) = section.frame();
+    Some(SharedDisc {
+        points: flat.points.iter().map(|&[x, y]| section.origin + u * x + w * y).collect(),
+        triangles: flat.triangles,
+        rim: (0..corners).collect(),
+        edge,
+    })
 }
 
 /// The angle of the first ring point at which a regular ring fits the loop's points best.
@@ -360,7 +399,7 @@ fn relaxed(
     mut sizes: Vec<f64>,
     cap: &[Option<u32>],
     field: &mut Field,
-    ends: &[ClusterEnd],
+    ends: &[Closing],
     params: &SurfaceParams,
 ) -> Result<CappedSurface, CapError> {
     let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
@@ -376,9 +415,9 @@ fn relaxed(
             on_rim[v as usize] = !on_disc[v as usize];
         }
     }
-    for end in ends {
-        let section = &end.section;
-        let edge = params.edge_at(section.radius);
+    for closing in ends {
+        let section = &closing.end.section;
+        let edge = closing.edge(params);
         let chord = MEAN_EDGE * edge / section.radius;
         let mut level = Raised { field: &mut *field, by: chord * chord / 16.0, section };
         let before = |height: f64| height > -RELAXED * edge && height < 0.0;
@@ -399,6 +438,11 @@ fn relaxed(
             leaned_on |= leans;
             if leans || near && before(height) {
                 hold[v] = Hold::Free;
+                if closing.disc.is_some() {
+                    // A disc that is given may have longer or shorter edges than the wall.
+                    let stray = GROWTH * height.abs();
+                    sizes[v] = sizes[v].clamp(edge - stray.min(edge), edge + stray);
+                }
             }
         }
         let mut relaxation = Relaxation::new(&mut surface, &mut level, sizes, hold);

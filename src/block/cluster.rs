@@ -1,9 +1,10 @@
 //! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
 
-use super::cap::{CapError, CappedSurface, cap_terminals};
+use super::cap::{CapError, CappedSurface, Closing, cap_terminals};
 use super::end_surface::{EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::params::{BlockParams, EndStyle, filling, mean_edge};
+use super::shared_disc::{SharedDisc, disc_of_end};
 use super::trim::{CutEnd, TrimOptions, Trimmed, trim};
 use crate::geometry::{Point3, Section, Tube};
 use crate::mesh::TetMesh;
@@ -67,6 +68,10 @@ pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> R
     match params.ends {
         EndStyle::Trimmed => trim_cluster(id, cluster, params, &mut out)?,
         EndStyle::Disc => out.ends = disc_ends(id, cluster, &surface, &out.mesh)?,
+        EndStyle::Shared => {
+            out.ends = disc_ends(id, cluster, &surface, &out.mesh)?;
+            check_shared(id, cluster, &out, params.rho)?;
+        }
     }
     Ok(out)
 }
@@ -99,7 +104,11 @@ pub fn cluster_surface(
     let mut field = Field::new(&cluster.tubes, params.kappa).map_err(failed)?;
     let mut closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
     let mut capped = loop {
-        let ends: Vec<ClusterEnd> = closed.iter().map(|(_, e)| (*e).clone()).collect();
+        let given =
+            |e: &ClusterEnd| disc_of_end(&e.section, e.kind, params.rho).filter(|_| params.ends == EndStyle::Shared);
+        let discs: Vec<Option<SharedDisc>> = closed.iter().map(|(_, e)| given(e)).collect();
+        let ends: Vec<Closing> =
+            closed.iter().zip(&discs).map(|((_, end), disc)| Closing { end, disc: disc.as_ref() }).collect();
         match cap_terminals(&wall, &mut field, &ends, &surface_params) {
             Ok(capped) => break capped,
             // One end less each time, so this ends.
@@ -116,7 +125,7 @@ pub fn cluster_surface(
 
 /// The ends that are closed by discs, with their indices in `Cluster::ends`.
 fn capped_ends(cluster: &Cluster, style: EndStyle) -> impl Iterator<Item = (u32, &ClusterEnd)> {
-    let closed = move |e: &ClusterEnd| style == EndStyle::Disc || matches!(e.kind, EndKind::Terminal(_));
+    let closed = move |e: &ClusterEnd| style != EndStyle::Trimmed || matches!(e.kind, EndKind::Terminal(_));
     (0..).zip(&cluster.ends).filter(move |(_, e)| closed(e))
 }
 
@@ -254,4 +263,21 @@ fn disc_ends(
             Ok(surface)
         })
         .collect()
+}
+
+/// Whether every shared disc is in the mesh as the vessel gives it: the same points in the same order, the same triangles.
+fn check_shared(id: ClusterId, cluster: &Cluster, mesh: &ClusterMesh, rho: f64) -> Result<(), BlockError> {
+    for ((i, end), surface) in cut_ends(cluster).iter().zip(&mesh.ends) {
+        let vertices = surface.vertices();
+        let same = SharedDisc::at_end(&end.section, end.side, rho).is_some_and(|disc| {
+            let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
+            let points = vertices.iter().map(|&v| mesh.mesh.points[v as usize]);
+            points.eq(disc.points.iter().copied())
+                && surface.triangles.iter().map(|t| t.map(local)).eq(disc.triangles.iter().copied())
+        });
+        if !same {
+            return Err(end_error(id, *i, end, FlattenFailure::NotShared));
+        }
+    }
+    Ok(())
 }

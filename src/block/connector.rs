@@ -3,8 +3,11 @@
 use super::connector_surface::{
     ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface,
 };
+use super::end_surface::EndSurface;
 use super::error::BlockError;
 use super::params::{BlockParams, filling};
+use super::shared_disc::SharedDisc;
+use crate::geometry::Section;
 use crate::mesh::TetMesh;
 use crate::partition::{Cut, CutId};
 use crate::tet::{TetError, tetrahedralize};
@@ -77,6 +80,45 @@ pub fn mesh_connector(
     }
     let at = cut.path.get(cut.path.len() / 2).map_or([f64::NAN; 3], |s| s.origin.coords.into());
     Err(BlockError::Connector { cut: id, at, attempts: failed })
+}
+
+/// Meshes one connector between the two discs that the vessel alone gives; no cluster is needed. `shared` counts the
+/// discs' vertices.
+///
+/// # Errors
+/// As [`mesh_connector`].
+pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result<ConnectorMesh, BlockError> {
+    params.check()?;
+    let failed = |fault| BlockError::Connector {
+        cut: id,
+        at: cut.path.first().map_or([f64::NAN; 3], |s| s.origin.coords.into()),
+        attempts: vec![ConnectorAttempt { division: DIVISIONS[0], failure: ConnectorFailure::Surface(fault) }],
+    };
+    let ends = FreeEnds::new(id, cut, params).map_err(failed)?;
+    mesh_connector(id, cut, ends.both(), params)
+}
+
+/// The discs at the two ends of a connector, which the vessel alone gives.
+pub(super) struct FreeEnds {
+    discs: [SharedDisc; 2],
+    surfaces: [EndSurface; 2],
+}
+
+impl FreeEnds {
+    pub(super) fn new(id: CutId, cut: &Cut, params: &BlockParams) -> Result<Self, ConnectorFault> {
+        let (Some(first), Some(last)) = (cut.path.first(), cut.path.last()) else { return Err(ConnectorFault::Path) };
+        let outward = [*first, Section { axis: -last.axis, ..*last }];
+        let disc = |side: u8| {
+            SharedDisc::at_end(&outward[usize::from(side)], side, params.rho).ok_or(ConnectorFault::Disc(side))
+        };
+        let discs = [disc(0)?, disc(1)?];
+        let surfaces = [0_u8, 1].map(|side| discs[usize::from(side)].end_surface(id, side, outward[usize::from(side)]));
+        Ok(Self { discs, surfaces })
+    }
+
+    pub(super) fn both(&self) -> [ConnectorEnd<'_>; 2] {
+        [0, 1].map(|side| ConnectorEnd { surface: &self.surfaces[side], points: &self.discs[side].points })
+    }
 }
 
 fn filled(surface: ConnectorSurface, mesh: TetMesh, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {

@@ -23,7 +23,7 @@ pub struct ConnectorEnd<'a> {
 pub struct EndVertex {
     /// Side of the cut, 0 or 1.
     pub side: u8,
-    /// Index in that side's cluster.
+    /// Index in that side's cluster, or in that side's [`super::SharedDisc`] for a connector made without clusters.
     pub vertex: u32,
 }
 
@@ -47,6 +47,9 @@ pub enum ConnectorFault {
     /// The path has no length.
     #[error("the path has no length")]
     Path,
+    /// The disc of a side cannot be triangulated.
+    #[error("the disc of side {0} cannot be triangulated")]
+    Disc(u8),
     /// A rim does not run once round the axis.
     #[error("the rim of side {0} does not run once round the axis")]
     Rim(u8),

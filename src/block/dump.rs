@@ -1,7 +1,7 @@
 //! Failing inputs as small self-contained JSON files, and a way to run them again.
 
 use super::cluster::{ClusterMesh, mesh_cluster};
-use super::connector::{ConnectorMesh, mesh_connector};
+use super::connector::{ConnectorMesh, FreeEnds, mesh_connector};
 use super::connector_surface::ConnectorEnd;
 use super::end_surface::EndSurface;
 use super::error::BlockError;
@@ -127,6 +127,12 @@ pub fn dump_connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], params: &Bl
         path: cut.path.iter().map(|&s| s.into()).collect(),
         surfaces: ends.map(surface),
     }))
+}
+
+/// The dump of a connector that is made without its clusters; none when its discs cannot be made.
+pub fn dump_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Option<BlockDump> {
+    let ends = FreeEnds::new(id, cut, params).ok()?;
+    Some(dump_connector(id, cut, ends.both(), params))
 }
 
 impl BlockDump {

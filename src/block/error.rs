@@ -22,6 +22,9 @@ pub enum FlattenFailure {
     /// Handles, pinched vertices or several loops remain.
     #[error("the end surface is not one disc")]
     NotADisc,
+    /// The disc at the cut is not the one that the vessel gives.
+    #[error("the disc at the cut is not the shared one")]
+    NotShared,
     /// The work budget is spent.
     #[error("flattening does not end")]
     Budget,

@@ -18,20 +18,24 @@ mod region;
 mod relax;
 mod rings;
 mod shape;
+mod shared_disc;
 mod strip;
 mod trim;
 mod wall;
 mod weave;
 
-pub use cap::{CapError, CapFailure, CappedSurface, cap_terminals};
+pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
-pub use connector::{ConnectorAttempt, ConnectorFailure, ConnectorMesh, mesh_connector};
+pub use connector::{ConnectorAttempt, ConnectorFailure, ConnectorMesh, mesh_connector, mesh_free_connector};
 pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
-pub use dump::{BlockDump, BlockOutcome, ClusterDump, ConnectorDump, dump_cluster, dump_connector};
+pub use dump::{
+    BlockDump, BlockOutcome, ClusterDump, ConnectorDump, dump_cluster, dump_connector, dump_free_connector,
+};
 pub use end_surface::{EndFault, EndSurface};
 pub use error::{BlockError, FlattenFailure};
 pub use params::{BlockParams, EndStyle};
 pub use path::AxisPath;
+pub use shared_disc::SharedDisc;
 pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
 pub use weave::{WeaveCost, weave};
 

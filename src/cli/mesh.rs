@@ -12,7 +12,7 @@ use crate::io::mesh_file::{MeshNotes, ensure_writable, write_mesh};
 use crate::io::network::ensure_network_writable;
 use crate::mesh::check::CheckReport;
 use crate::pipeline::RunReport;
-use crate::pipeline::{self, Clock, MeshPlan, Observer, RunError, Stage};
+use crate::pipeline::{self, Clock, JointStyle, MeshPlan, Observer, RunError, Stage};
 use crate::refine::{RefineReport, Refined};
 use crate::skeleton::Skeleton;
 
@@ -30,6 +30,10 @@ pub struct Args {
     /// so that all of a cluster is as fine as its thinnest vessel
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     follow: f64,
+    /// How blocks meet where vessels are cut: woven, each connector between the ends of its two clusters; or disc, in one
+    /// pass, every block ending in discs that the vessel alone gives
+    #[arg(long, value_enum, default_value_t = Joint::Woven)]
+    joint: Joint,
     /// Refine the network first, in at most N iterations, so that its vessels do not overlap and can be cut
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
     refine: Option<usize>,
@@ -57,6 +61,12 @@ pub struct Args {
     quiet: bool,
     #[command(flatten)]
     how: RefineArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Joint {
+    Woven,
+    Disc,
 }
 
 /// What `--json` prints.
@@ -120,6 +130,10 @@ impl Args {
         MeshPlan {
             rho: self.rho,
             follow: self.follow,
+            joint: match self.joint {
+                Joint::Woven => JointStyle::Woven,
+                Joint::Disc => JointStyle::Disc,
+            },
             roots: self.root.clone(),
             fuse: self.refine.is_some() && self.how.fuses(),
             keep_going: self.keep_going,

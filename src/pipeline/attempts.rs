@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::plan::MeshPlan;
+use super::plan::{JointStyle, MeshPlan};
 use crate::block::{
     BlockDump, BlockError, BlockParams, ClusterMesh, ConnectorEnd, ConnectorMesh, EndStyle, dump_cluster,
-    dump_connector, mesh_cluster, mesh_connector,
+    dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
 
@@ -23,7 +23,7 @@ const CHANGES: [&str; 6] = [
     "as usual",
     "grid shifted",
     "narrower kernel",
-    "trimmed at the cuts",
+    "other ends or grid",
     "finer voxel, grid shifted",
     "finer voxel, narrower kernel",
 ];
@@ -39,9 +39,12 @@ fn variants(plan: &MeshPlan, overlapping: bool) -> [BlockParams; CHANGES.len()] 
     let shifted = BlockParams { shift: [0.37, -0.23, 0.11], ..usual };
     // Parallel vessels fuse when their axes are closer than √(1 + 2 κ² ln 2) times the sum of their radii.
     let narrower = BlockParams { kappa: 0.3, ..usual };
-    let trimmed = BlockParams { ends: EndStyle::Trimmed, ..usual };
+    let other = match plan.joint {
+        JointStyle::Woven => BlockParams { ends: EndStyle::Trimmed, ..usual },
+        JointStyle::Disc => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.35, ..usual },
+    };
     let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
-    [usual, shifted, narrower, trimmed, finer(shifted), finer(narrower)]
+    [usual, shifted, narrower, other, finer(shifted), finer(narrower)]
 }
 
 /// Meshes a cluster, with other parameters after each failure. When none helps, the failure of the usual way counts: it
@@ -63,6 +66,12 @@ pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan)
     Tried { result, failures: Vec::new() }
 }
 
+/// The same for a connector that is made without its clusters.
+pub fn free_connector(id: CutId, cut: &Cut, plan: &MeshPlan) -> Tried<ConnectorMesh> {
+    let result = mesh_free_connector(id, cut, &plan.block_params()).map(Arc::new);
+    Tried { result, failures: Vec::new() }
+}
+
 /// The input of a cluster as it is first tried.
 pub fn cluster_input(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> BlockDump {
     dump_cluster(id, cluster, &plan.block_params())
@@ -71,4 +80,9 @@ pub fn cluster_input(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> Block
 /// The input of a connector as it is first tried.
 pub fn connector_input(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> BlockDump {
     dump_connector(id, cut, ends, &plan.block_params())
+}
+
+/// The input of a connector that is made without its clusters; none when it has no path or its discs cannot be made.
+pub fn free_connector_input(id: CutId, cut: &Cut, plan: &MeshPlan) -> Option<BlockDump> {
+    dump_free_connector(id, cut, &plan.block_params())
 }

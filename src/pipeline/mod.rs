@@ -14,7 +14,7 @@ mod timing;
 
 pub use assemble::AssembleError;
 pub use observer::{Observer, Silent, Stage};
-pub use plan::{MeshPlan, PlanError};
+pub use plan::{JointStyle, MeshPlan, PlanError};
 pub use report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, Retry, RunReport, StageTime};
 pub use run::{Meshed, RunError, mesh_network};
 pub use terminals::{NotATerminal, TerminalPatches, assign as assign_patches};

@@ -12,6 +12,8 @@ pub enum Stage {
     Clusters,
     /// Connectors are woven and meshed (3.2.3).
     Connectors,
+    /// Clusters and connectors are meshed in one pass.
+    Blocks,
     /// Blocks become one mesh.
     Merge,
     /// Joints are smoothed (3.2.4).
@@ -30,6 +32,7 @@ impl Stage {
             Stage::Partition => "partition",
             Stage::Clusters => "clusters",
             Stage::Connectors => "connectors",
+            Stage::Blocks => "blocks",
             Stage::Merge => "merge",
             Stage::Joints => "joints",
             Stage::Check => "check",

@@ -1,6 +1,17 @@
 //! What a run is asked to do.
 
-use crate::block::BlockParams;
+use crate::block::{BlockParams, EndStyle};
+
+/// How blocks meet at a cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JointStyle {
+    /// In two passes: clusters end as suits their walls, then a connector is woven between the ends of its two clusters.
+    #[default]
+    Woven,
+    /// In one pass: each plane has the disc that the vessel alone gives, and blocks are meshed in any order.
+    Disc,
+}
 
 /// Parameters of a run of the mesher.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -11,6 +22,8 @@ pub struct MeshPlan {
     /// How far edges follow the radius of wider vessels: they grow with it to this power. 1: ρ voxels across every vessel;
     /// 0: edges are as short all over a cluster as its thinnest vessel asks for.
     pub follow: f64,
+    /// How blocks meet at a cut.
+    pub joint: JointStyle,
     /// Terminals that are inlets, as indices of nodes in the file that was read. Components without one take the
     /// terminal of largest radius.
     pub roots: Vec<u32>,
@@ -25,7 +38,15 @@ pub struct MeshPlan {
 
 impl Default for MeshPlan {
     fn default() -> Self {
-        Self { rho: 3.0, follow: 1.0, roots: Vec::new(), fuse: false, keep_going: false, dump_dir: None }
+        Self {
+            rho: 3.0,
+            follow: 1.0,
+            joint: JointStyle::default(),
+            roots: Vec::new(),
+            fuse: false,
+            keep_going: false,
+            dump_dir: None,
+        }
     }
 }
 
@@ -44,7 +65,11 @@ pub enum PlanError {
 impl MeshPlan {
     /// Parameters of a block as it is first tried. The partition has to know the kernel's width, too.
     pub fn block_params(&self) -> BlockParams {
-        BlockParams { follow: self.follow, ..BlockParams::with_rho(self.rho) }
+        let ends = match self.joint {
+            JointStyle::Woven => EndStyle::Disc,
+            JointStyle::Disc => EndStyle::Shared,
+        };
+        BlockParams { follow: self.follow, ends, ..BlockParams::with_rho(self.rho) }
     }
 
     /// # Errors

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::attempts::{self, Tried};
 use super::observer::{Observer, Stage};
-use super::plan::MeshPlan;
+use super::plan::{JointStyle, MeshPlan};
 use super::report::Retry;
 use super::timing::Clock;
 use crate::block::{BlockError, ClusterMesh, ConnectorEnd, ConnectorMesh};
@@ -70,22 +70,115 @@ pub fn build(
         })?;
         let reuse = Reuse::new(settled.as_ref());
         let tangled = tangled_clusters(skeleton, &partition, overlaps);
-        let clusters = clock.time(observer, Stage::Clusters, partition.clusters.len() as u64, || {
-            mesh_clusters(&partition, &tangled, plan, &reuse, observer)
-        });
-        let clusters = note_clusters(skeleton, &partition, clusters, &mut retries);
-        let connectors = clock.time(observer, Stage::Connectors, partition.cuts.len() as u64, || {
-            mesh_connectors(&partition, plan, &clusters, observer)
-        });
-        let connectors = note_connectors(skeleton, &partition, connectors, &mut retries);
+        let (clusters, connectors) = match plan.joint {
+            JointStyle::Woven => {
+                two_passes(skeleton, &partition, &tangled, plan, &reuse, observer, clock, &mut retries)
+            }
+            JointStyle::Disc => one_pass(skeleton, &partition, &tangled, plan, &reuse, observer, clock, &mut retries),
+        };
         let blocks = Blocks { partition, clusters, connectors, retries: Vec::new() };
         let found = if round < ROUNDS { cure(skeleton, &blocks, &mut cures) } else { Vec::new() };
         if found.is_empty() {
-            return Ok(Blocks { retries, ..blocks });
+            let mut blocks = Blocks { retries, ..blocks };
+            if plan.joint == JointStyle::Disc {
+                name_shared_vertices(&mut blocks);
+            }
+            return Ok(blocks);
         }
         retries.extend(found);
         settled = Some(blocks);
         round += 1;
+    }
+}
+
+type Clusters = Vec<Result<Arc<ClusterMesh>, BlockError>>;
+type Connectors = Vec<Option<Result<Arc<ConnectorMesh>, BlockError>>>;
+
+/// Clusters first, then the connectors between them.
+#[allow(clippy::too_many_arguments)]
+fn two_passes(
+    skeleton: &Skeleton,
+    partition: &Partition,
+    tangled: &[bool],
+    plan: &MeshPlan,
+    reuse: &Reuse,
+    observer: &dyn Observer,
+    clock: &mut Clock,
+    retries: &mut Vec<Retry>,
+) -> (Clusters, Connectors) {
+    let clusters = clock.time(observer, Stage::Clusters, partition.clusters.len() as u64, || {
+        let mesh = |i: usize| mesh_cluster(partition, tangled, plan, reuse, observer, i);
+        (0..partition.clusters.len()).into_par_iter().with_max_len(1).map(mesh).collect()
+    });
+    let clusters = note_clusters(skeleton, partition, clusters, retries);
+    let connectors = clock.time(observer, Stage::Connectors, partition.cuts.len() as u64, || {
+        mesh_connectors(partition, plan, &clusters, observer)
+    });
+    let connectors = note_connectors(skeleton, partition, connectors, retries);
+    (clusters, connectors)
+}
+
+/// A block that was tried.
+enum TriedBlock {
+    Cluster(Tried<ClusterMesh>),
+    Connector(Tried<ConnectorMesh>),
+}
+
+/// All blocks at once: none needs another.
+#[allow(clippy::too_many_arguments)]
+fn one_pass(
+    skeleton: &Skeleton,
+    partition: &Partition,
+    tangled: &[bool],
+    plan: &MeshPlan,
+    reuse: &Reuse,
+    observer: &dyn Observer,
+    clock: &mut Clock,
+    retries: &mut Vec<Retry>,
+) -> (Clusters, Connectors) {
+    let count = partition.clusters.len();
+    let total = count + partition.cuts.len();
+    let tried: Vec<TriedBlock> = clock.time(observer, Stage::Blocks, total as u64, || {
+        let mesh = |i: usize| {
+            if i < count {
+                return TriedBlock::Cluster(mesh_cluster(partition, tangled, plan, reuse, observer, i));
+            }
+            let cut = &partition.cuts[i - count];
+            let tried = match reuse.connector(cut) {
+                Some(mesh) => Tried { result: Ok(mesh), failures: Vec::new() },
+                None => attempts::free_connector(CutId((i - count) as u32), cut, plan),
+            };
+            observer.step();
+            TriedBlock::Connector(tried)
+        };
+        (0..total).into_par_iter().with_max_len(1).map(mesh).collect()
+    });
+    let (mut clusters, mut connectors) = (Vec::with_capacity(count), Vec::with_capacity(total - count));
+    for block in tried {
+        match block {
+            TriedBlock::Cluster(tried) => clusters.push(tried),
+            TriedBlock::Connector(tried) => connectors.push(Some(tried)),
+        }
+    }
+    let clusters = note_clusters(skeleton, partition, clusters, retries);
+    let connectors = note_connectors(skeleton, partition, connectors, retries);
+    (clusters, connectors)
+}
+
+/// Names the vertices that connectors share by those of their clusters, which have the discs' vertices in the discs'
+/// order. A connector beside a failed cluster goes.
+fn name_shared_vertices(blocks: &mut Blocks) {
+    let Blocks { partition, clusters, connectors, .. } = blocks;
+    for (cut, slot) in partition.cuts.iter().zip(connectors) {
+        let Some(ends) = connector_ends(partition, cut, clusters) else {
+            *slot = None;
+            continue;
+        };
+        let Some(Ok(connector)) = slot else { continue };
+        let vertices = ends.map(|end| end.surface.vertices());
+        for shared in &mut Arc::make_mut(connector).shared {
+            shared.vertex = vertices[usize::from(shared.side)].get(shared.vertex as usize).copied().unwrap_or(u32::MAX);
+        }
     }
 }
 
@@ -120,13 +213,25 @@ fn partition_params(
 struct Reuse<'a> {
     before: Option<&'a Blocks>,
     by_first_node: BTreeMap<NodeId, usize>,
+    by_branch: BTreeMap<BranchId, Vec<usize>>,
 }
 
 impl<'a> Reuse<'a> {
     fn new(before: Option<&'a Blocks>) -> Self {
         let clusters = before.map_or(&[][..], |b| &b.partition.clusters);
         let first = |(i, c): (usize, &Cluster)| c.nodes.first().map(|&n| (n, i));
-        Self { before, by_first_node: clusters.iter().enumerate().filter_map(first).collect() }
+        let mut by_branch: BTreeMap<BranchId, Vec<usize>> = BTreeMap::new();
+        for (i, cut) in before.iter().flat_map(|b| b.partition.cuts.iter().enumerate()) {
+            by_branch.entry(cut.branch).or_default().push(i);
+        }
+        Self { before, by_first_node: clusters.iter().enumerate().filter_map(first).collect(), by_branch }
+    }
+
+    /// The mesh of a connector that has not changed, if it was made without its clusters.
+    fn connector(&self, cut: &Cut) -> Option<Arc<ConnectorMesh>> {
+        let before = self.before?;
+        let i = *self.by_branch.get(&cut.branch)?.iter().find(|&&i| before.partition.cuts[i].path == cut.path)?;
+        before.connectors[i].as_ref()?.as_ref().ok().cloned()
     }
 
     /// The mesh of a cluster that has not changed.
@@ -160,23 +265,21 @@ fn tangled_clusters(skeleton: &Skeleton, partition: &Partition, overlaps: &Overl
     tangled
 }
 
-fn mesh_clusters(
+fn mesh_cluster(
     partition: &Partition,
     tangled: &[bool],
     plan: &MeshPlan,
     reuse: &Reuse,
     observer: &dyn Observer,
-) -> Vec<Tried<ClusterMesh>> {
-    let mesh = |(i, cluster): (usize, &Cluster)| {
-        let id = ClusterId(i as u32);
-        let tried = match reuse.cluster(cluster) {
-            Some(mesh) => Tried { result: Ok(mesh), failures: Vec::new() },
-            None => attempts::cluster(id, cluster, plan, tangled[i]),
-        };
-        observer.step();
-        tried
+    i: usize,
+) -> Tried<ClusterMesh> {
+    let cluster = &partition.clusters[i];
+    let tried = match reuse.cluster(cluster) {
+        Some(mesh) => Tried { result: Ok(mesh), failures: Vec::new() },
+        None => attempts::cluster(ClusterId(i as u32), cluster, plan, tangled[i]),
     };
-    partition.clusters.par_iter().enumerate().with_max_len(1).map(mesh).collect()
+    observer.step();
+    tried
 }
 
 fn mesh_connectors(

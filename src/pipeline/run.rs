@@ -3,7 +3,7 @@
 use super::assemble::{self, AssembleError};
 use super::attempts;
 use super::observer::{Observer, Stage};
-use super::plan::{MeshPlan, PlanError};
+use super::plan::{JointStyle, MeshPlan, PlanError};
 use super::report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, RunReport};
 use super::rounds::{self, Blocks, connector_ends, original_nodes};
 use super::terminals::{self, NotATerminal};
@@ -169,8 +169,11 @@ fn describe_blocks(skeleton: &Skeleton, plan: &MeshPlan, blocks: &Blocks, report
     for (i, (cut, mesh)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
         let Some(Err(error)) = mesh else { continue };
         let id = CutId(i as u32);
-        let input =
-            connector_ends(partition, cut, &blocks.clusters).map(|ends| attempts::connector_input(id, cut, ends, plan));
+        let input = match plan.joint {
+            JointStyle::Woven => connector_ends(partition, cut, &blocks.clusters)
+                .map(|ends| attempts::connector_input(id, cut, ends, plan)),
+            JointStyle::Disc => attempts::free_connector_input(id, cut, plan),
+        };
         report.failed.push(FailedBlock {
             block: format!("connector {i}"),
             nodes: rounds::cut_nodes(skeleton, partition, cut),

@@ -12,6 +12,7 @@ mod sizes;
 mod tests;
 
 pub use field::Field;
+pub(crate) use sizes::GROWTH;
 
 use crate::geometry::{Point3, Tube, Vec3};
 use crate::mesh::TriMesh;

@@ -7,7 +7,7 @@ use super::halfedge::HalfEdges;
 use std::collections::VecDeque;
 
 /// How much longer edges may become on a way, over its length: edges that share a vertex differ by a fifth.
-const GROWTH: f64 = 0.25;
+pub(crate) const GROWTH: f64 = 0.25;
 
 /// The edge length to aim at, at each vertex of a surface near the wall.
 pub(super) fn wall_sizes(surface: &HalfEdges, field: &mut Field, params: &SurfaceParams) -> Vec<f64> {

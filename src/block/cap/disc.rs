@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 /// A triangulated disc in its plane; the first points are the ring, counter-clockwise from angle `phase`.
 #[derive(Clone, Debug)]
-pub(crate) struct Disc {
+pub(in crate::block) struct Disc {
     /// Points in the plane.
     pub points: Vec<[f64; 2]>,
     /// Triangles, counter-clockwise.
@@ -24,7 +24,7 @@ const KEPT: usize = 128;
 
 /// The disc of `radius` whose ring has `corners` points, filled at the ring's spacing; none if the triangulation does
 /// not keep the ring.
-pub(crate) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
+pub(in crate::block) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
     static DISCS: [OnceLock<Option<Disc>>; KEPT] = [const { OnceLock::new() }; KEPT];
     match DISCS.get(corners as usize) {
         Some(slot) => slot.get_or_init(|| unit_disc(corners)).as_ref().map(|d| d.placed(radius, phase)),

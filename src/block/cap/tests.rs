@@ -19,13 +19,17 @@ fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<ClusterEnd>) {
     (tubes, ends)
 }
 
+fn closings(ends: &[ClusterEnd]) -> Vec<Closing<'_>> {
+    ends.iter().map(|end| Closing { end, disc: None }).collect()
+}
+
 fn capped(arms: &[([f64; 3], f64, f64)], rho: f64) -> (CappedSurface, Vec<ClusterEnd>) {
     let (tubes, ends) = star(arms);
     let smallest = tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
     let params = SurfaceParams::with_voxel(2.0 * smallest / rho);
     let wall = vessel_wall(&tubes, &params).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
-    (cap_terminals(&wall, &mut field, &ends, &params).unwrap(), ends)
+    (cap_terminals(&wall, &mut field, &closings(&ends), &params).unwrap(), ends)
 }
 
 fn check(surface: &CappedSurface, ends: &[ClusterEnd], smallest_angle: f64) {
@@ -94,6 +98,6 @@ fn a_terminal_inside_another_vessel_is_refused() {
     let params = SurfaceParams::with_voxel(0.6);
     let wall = vessel_wall(&tubes, &params).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
-    let error = cap_terminals(&wall, &mut field, &ends, &params).unwrap_err();
+    let error = cap_terminals(&wall, &mut field, &closings(&ends), &params).unwrap_err();
     assert!(matches!(error, CapError::End { end: 2, node: Some(NodeId(2)), .. }), "{error}");
 }
