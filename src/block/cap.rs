@@ -71,8 +71,8 @@ pub enum CapFailure {
     Disc,
 }
 
-/// The strip between wall and ring starts so far (in edge lengths) before the plane.
-const MARGIN: f64 = 0.4;
+/// The strip between wall and ring starts so far (in edge lengths) before the plane; less where that leaves no wall.
+const MARGINS: [f64; 3] = [0.4, 0.2, 0.05];
 /// The wall is relaxed up to so far (in edge lengths) before the plane.
 const RELAXED: f64 = 3.5;
 /// A tip is longer than so many radii only where it runs into another vessel.
@@ -157,8 +157,7 @@ impl Cutter<'_> {
     fn cut(&mut self, closing: &Closing, end: u32, edge: f64) -> Result<(), CapFailure> {
         let section = &closing.end.section;
         let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
-        let mut tip = self.beyond(section, seed, MARGIN * edge)?;
-        let rim = self.rim(section, &mut tip, edge)?;
+        let rim = self.opened(section, seed, edge)?;
         if rim.iter().any(|&v| section.height(&self.points[v as usize]) > LONGEST_TIP * section.radius) {
             return Err(CapFailure::Merged);
         }
@@ -171,6 +170,23 @@ impl Cutter<'_> {
         }
         self.sizes.resize(self.points.len(), edge);
         Ok(())
+    }
+
+    /// Takes the tip off; the loop in which the wall then ends. Where another end is so near that nothing is left of the
+    /// wall between the two, less is taken.
+    fn opened(&mut self, section: &Section, seed: u32, edge: f64) -> Result<Vec<u32>, CapFailure> {
+        let mut failure = CapFailure::Loops;
+        for margin in MARGINS {
+            let mut tip = self.beyond(section, seed, margin * edge)?;
+            match self.rim(section, &mut tip, edge) {
+                Ok(rim) => return Ok(rim),
+                Err(why) => failure = why,
+            }
+            for face in tip {
+                self.removed[face as usize] = false;
+            }
+        }
+        Err(failure)
     }
 
     fn triangle(&self, face: u32) -> [Point3; 3] {

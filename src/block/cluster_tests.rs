@@ -3,8 +3,8 @@
 use super::fixtures::direction;
 use super::trim_tests::assert_mesh;
 use super::{
-    BlockDump, BlockError, BlockOutcome, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, dump_cluster,
-    dump_connector, mesh_cluster, mesh_connector,
+    BlockDump, BlockError, BlockOutcome, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, SharedDisc, dump_cluster,
+    dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
 };
 use crate::geometry::{Point3, Section, Tube, Vec3};
 use crate::mesh::TetMesh;
@@ -97,6 +97,78 @@ fn bifurcations_are_meshed_and_joined() {
         assert_eq!(again, dump);
         let Ok(BlockOutcome::Connector(copy)) = again.run() else { panic!("connector runs again") };
         assert_eq!(copy.mesh, connector.mesh);
+    }
+}
+
+/// The points of a cluster's end, in the order of the shared disc.
+fn end_points(mesh: &ClusterMesh, end: usize) -> Vec<Point3> {
+    mesh.ends[end].vertices().iter().map(|&v| mesh.mesh.points[v as usize]).collect()
+}
+
+#[test]
+fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
+    for seed in 0..4 {
+        let rho = 3.0 + (seed % 3) as f64;
+        let params = BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(rho) };
+        let (cluster, lower) = meshed(seed, &params);
+        let first = cluster.ends[0].section;
+        let center = first.origin + first.axis * 7.0;
+        let facing = star(center, &[(-first.axis, 1.0, cut(0, 1)), (first.axis, 1.0, EndKind::Terminal(NodeId(3)))]);
+        // However the neighbour was made, its disc is the same.
+        let finer = BlockParams { voxel_factor: 0.75, shift: [0.3, -0.2, 0.1], follow: 0.5, ..params };
+        let upper = [params, finer].map(|p| mesh_cluster(ClusterId(1), &facing, &p).expect("facing cluster"));
+        assert_eq!(end_points(&upper[0], 0), end_points(&upper[1], 0));
+        let path = vec![first, Section { origin: facing.ends[0].section.origin, ..first }];
+        let gap = Cut { branch: BranchId(0), sides: [(ClusterId(0), 0), (ClusterId(1), 0)], path };
+        let connector = mesh_free_connector(CutId(0), &gap, &params).expect("connector");
+        assert_mesh(&connector.mesh, 2);
+        let sides = [end_points(&lower, 0), end_points(&upper[1], 0)];
+        assert_eq!(connector.shared.len(), sides[0].len() + sides[1].len());
+        for (p, v) in connector.mesh.points.iter().zip(&connector.shared) {
+            assert_eq!(*p, sides[v.side as usize][v.vertex as usize]);
+        }
+        assert!(worst_ratio(&connector.mesh) > 0.3, "{}", worst_ratio(&connector.mesh));
+
+        let dump = dump_free_connector(CutId(0), &gap, &params).expect("dump");
+        let Ok(BlockOutcome::Connector(copy)) = dump.run() else { panic!("connector runs again") };
+        assert_eq!(copy.mesh, connector.mesh);
+    }
+}
+
+#[test]
+fn a_shared_disc_is_the_same_from_both_sides() {
+    for seed in 0..20 {
+        let along = Section { origin: Point3::new(0.3, 1e3, -7.0), axis: direction(seed), radius: 0.7 + seed as f64 };
+        let ahead = SharedDisc::at_end(&along, 0, 3.0).expect("disc");
+        let behind = SharedDisc::at_end(&Section { axis: -along.axis, ..along }, 1, 3.0).expect("disc");
+        assert_eq!(ahead.points, behind.points);
+        assert_eq!(ahead, behind.turned());
+        let surface = ahead.end_surface(CutId(0), 0, along);
+        assert_eq!(surface.check(&ahead.points), Ok(()));
+    }
+}
+
+#[test]
+fn ends_beside_each_other_leave_a_wall_between() {
+    // Two vessels that leave a node at an angle so small that the crotch lies just below their planes.
+    for (height, seed) in [(1.60, 0), (1.69, 1), (1.75, 2), (1.80, 3), (1.69, 4)] {
+        let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
+        let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
+        let arms = [(0.0, 2.92), (2.38, height), (-1.94, -1.04)];
+        for (i, (x, z)) in arms.into_iter().enumerate() {
+            let origin = turn * Point3::new(x, 0.0, z);
+            let axis = origin.coords.normalize();
+            cluster.tubes.push(Tube { a: Point3::origin(), b: origin, ra: 1.0, rb: 1.0 });
+            cluster.tubes.push(Tube { a: origin, b: origin + axis, ra: 1.0, rb: 1.0 });
+            let overrun = vec![cluster.tubes.len() as u32 - 1];
+            let kind = cut(i as u32, (i % 2) as u8);
+            cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius: 1.0 }, kind, overrun });
+        }
+        for ends in [EndStyle::Disc, EndStyle::Shared] {
+            let params = BlockParams { ends, ..BlockParams::default() };
+            let mesh = mesh_cluster(ClusterId(0), &cluster, &params).expect("cluster");
+            assert_mesh(&mesh.mesh, 2);
+        }
     }
 }
 

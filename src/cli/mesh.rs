@@ -34,6 +34,9 @@ pub struct Args {
     /// pass, every block ending in discs that the vessel alone gives
     #[arg(long, value_enum, default_value_t = Joint::Woven)]
     joint: Joint,
+    /// Leave joints as the blocks have them instead of smoothing across them
+    #[arg(long)]
+    frozen_joints: bool,
     /// Refine the network first, in at most N iterations, so that its vessels do not overlap and can be cut
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
     refine: Option<usize>,
@@ -134,6 +137,7 @@ impl Args {
                 Joint::Woven => JointStyle::Woven,
                 Joint::Disc => JointStyle::Disc,
             },
+            frozen_joints: self.frozen_joints,
             roots: self.root.clone(),
             fuse: self.refine.is_some() && self.how.fuses(),
             keep_going: self.keep_going,

@@ -24,6 +24,8 @@ pub struct MeshPlan {
     pub follow: f64,
     /// How blocks meet at a cut.
     pub joint: JointStyle,
+    /// Leave joints as the blocks have them instead of smoothing across them.
+    pub frozen_joints: bool,
     /// Terminals that are inlets, as indices of nodes in the file that was read. Components without one take the
     /// terminal of largest radius.
     pub roots: Vec<u32>,

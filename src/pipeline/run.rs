@@ -78,7 +78,9 @@ pub fn mesh_network(
         expectation.loops = fused_loops(&blocks);
     }
     let mut assembly = clock.time(observer, Stage::Merge, 0, || assemble::join(&skeleton, blocks, &terminals))?;
-    report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
+    if !plan.frozen_joints {
+        report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
+    }
     let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
     let check = clock.time(observer, Stage::Check, 0, || check_volume_with(&mesh, neighbors, Some(&expectation)));
     report.mesh = size(&mesh);

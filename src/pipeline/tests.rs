@@ -56,6 +56,40 @@ fn the_threads_do_not_show_in_the_mesh() {
 }
 
 #[test]
+fn disc_joints_make_one_valid_mesh_in_one_pass() {
+    for (frozen_joints, follow) in [(false, 1.0), (true, 1.0), (false, 0.0)] {
+        let plan = MeshPlan { joint: JointStyle::Disc, frozen_joints, follow, ..MeshPlan::default() };
+        let mut network = h(16.0);
+        // Thin vessels at one side only: where edges do not follow radii, the clusters' walls are of different fineness.
+        for edge in &mut network.edges[3..] {
+            edge.radii = [0.5; 2];
+        }
+        let mesh = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| run(&network, &plan)).expect("meshed")
+        };
+        let meshed = mesh(2);
+        assert_eq!((meshed.report.blocks.clusters, meshed.report.blocks.connectors), (2, 1));
+        assert!(meshed.check.is_valid(), "{:?}", meshed.check.failed().collect::<Vec<_>>());
+        assert!(meshed.report.retries.is_empty() && meshed.report.failed.is_empty(), "{:?}", meshed.report.retries);
+        assert_eq!(meshed.report.joints.is_none(), frozen_joints);
+        assert_eq!(meshed.mesh, mesh(1).mesh);
+    }
+}
+
+#[test]
+fn a_disc_joint_beside_a_failed_block_is_left_out() {
+    let mut network = h(30.0);
+    let base = network.nodes.len() as u32;
+    // A hair at the second junction, too thin for any grid.
+    network.nodes.push(Node { position: Point3::new(30.0, 30.0, 0.0), radius: 1e-5, original: base });
+    network.edges.push(Edge { nodes: [NodeId(1), NodeId(base)], radii: [1e-5; 2] });
+    let plan = MeshPlan { joint: JointStyle::Disc, keep_going: true, ..MeshPlan::default() };
+    let meshed = run(&network, &plan).expect("the rest");
+    assert!(!meshed.report.failed.is_empty() && !meshed.check.is_valid());
+}
+
+#[test]
 fn vessels_that_overlap_are_meshed_and_named() {
     // The second terminal of the first junction lies inside the vessel between the junctions.
     let mut network = h(12.0);
