@@ -44,6 +44,7 @@ impl Default for MeshPlan {
             rho: 3.0,
             follow: 1.0,
             joint: JointStyle::default(),
+            frozen_joints: false,
             roots: Vec::new(),
             fuse: false,
             keep_going: false,

@@ -78,18 +78,6 @@ fn disc_joints_make_one_valid_mesh_in_one_pass() {
 }
 
 #[test]
-fn a_disc_joint_beside_a_failed_block_is_left_out() {
-    let mut network = h(30.0);
-    let base = network.nodes.len() as u32;
-    // A hair at the second junction, too thin for any grid.
-    network.nodes.push(Node { position: Point3::new(30.0, 30.0, 0.0), radius: 1e-5, original: base });
-    network.edges.push(Edge { nodes: [NodeId(1), NodeId(base)], radii: [1e-5; 2] });
-    let plan = MeshPlan { joint: JointStyle::Disc, keep_going: true, ..MeshPlan::default() };
-    let meshed = run(&network, &plan).expect("the rest");
-    assert!(!meshed.report.failed.is_empty() && !meshed.check.is_valid());
-}
-
-#[test]
 fn vessels_that_overlap_are_meshed_and_named() {
     // The second terminal of the first junction lies inside the vessel between the junctions.
     let mut network = h(12.0);
