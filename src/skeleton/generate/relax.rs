@@ -17,6 +17,9 @@ const NARROW: (f64, f64) = (0.6, 0.8);
 /// Vessels this many times as thick as the thinnest are kept clear of nodes.
 const THICK: f64 = 1.2;
 
+/// Vessels this many times as thick as the thinnest are not moved after the last clearing.
+const THIN: f64 = 4.0;
+
 /// Distance of a node from the wall of such a vessel, in radii of the node and of the vessel.
 const CLEAR: [f64; 2] = [4.0, 0.15];
 
@@ -33,10 +36,15 @@ pub fn relax(tree: &mut Tree, radii: &[f64]) {
         clear(tree, radii);
         part_terminals(tree, radii);
     }
-    // What was moved last may be close to its neighbours.
+    // What was moved last may be close to its neighbours; thick vessels stay where they were cleared.
+    let thin = THIN * radii.iter().copied().fold(f64::INFINITY, f64::min);
     for _ in 0..SWEEPS {
         sweep(tree, &parity, |tree, fork| {
-            if squeezed(tree, radii, fork) { better(tree, radii, fork) } else { tree.positions[fork] }
+            if radii[fork] < thin && squeezed(tree, radii, fork) {
+                better(tree, radii, fork)
+            } else {
+                tree.positions[fork]
+            }
         });
     }
 }
