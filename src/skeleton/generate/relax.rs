@@ -21,7 +21,7 @@ const THICK: f64 = 1.2;
 const THIN: f64 = 4.0;
 
 /// Distance of a node from the wall of such a vessel, in radii of the node and of the vessel.
-const CLEAR: [f64; 2] = [4.0, 0.15];
+const CLEAR: [f64; 2] = [4.0, 0.3];
 
 /// Least distance of terminals, in their radii.
 const APART: f64 = 8.0;
