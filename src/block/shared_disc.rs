@@ -52,6 +52,7 @@ impl SharedDisc {
     }
 
     /// The same disc seen from behind.
+    #[must_use]
     pub fn turned(mut self) -> Self {
         self.rim.reverse();
         for t in &mut self.triangles {
