@@ -110,6 +110,7 @@ fn residual_text(report: &RefineReport, out: &mut String) {
         let [[a, b], [c, d]] = pair.edges;
         let done = match pair.treatment {
             Treatment::Shrunk { kept } => format!("shrunk to {:.0} %", 100.0 * kept),
+            Treatment::Cleared => "parted by what was done about others".into(),
             Treatment::Fused => "to be meshed together".into(),
             Treatment::Left if pair.terminals_too_close => {
                 "left: their terminals are too close to each other (--crowded-terminals part)".into()

@@ -25,6 +25,8 @@ pub enum Treatment {
         /// Share of the radius that is left.
         kept: f64,
     },
+    /// What was done about other pairs parted them, too.
+    Cleared,
     /// They are to be meshed together.
     Fused,
 }
@@ -115,8 +117,12 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
     let after = skeleton.overlaps(&skeleton.adjacency()).pairs;
     let originals = |o: &Overlap| o.nodes.map(|ends| ends.map(|n| skeleton.node(n).original));
     let still: FxHashSet<[[u32; 2]; 2]> = after.iter().map(originals).collect();
-    for pair in report.pairs.iter_mut().filter(|p| still.contains(&p.edges)) {
-        pair.treatment = Treatment::Left;
+    for pair in &mut report.pairs {
+        if still.contains(&pair.edges) {
+            pair.treatment = Treatment::Left;
+        } else if pair.treatment == Treatment::Left {
+            pair.treatment = Treatment::Cleared;
+        }
     }
     report.left = after.len();
     report.shrunk_edges = touched.iter().filter(|t| **t).count();
