@@ -8,6 +8,7 @@ pub mod repair;
 #[cfg(test)]
 pub(crate) mod shapes;
 pub mod smooth;
+pub mod source;
 
 use crate::geometry::Point3;
 
