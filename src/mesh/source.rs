@@ -37,11 +37,17 @@ pub struct FacePiece<'a> {
     pub blocks: &'a [i32],
 }
 
-/// Takes a piece; what it fails with ends the pass.
-pub type Each<'a, T> = &'a mut dyn FnMut(T) -> io::Result<()>;
+/// Takes consecutive points; what it fails with ends the pass.
+pub type EachPoints<'a> = &'a mut dyn FnMut(&[Point3]) -> io::Result<()>;
+
+/// Takes consecutive tetrahedra; what it fails with ends the pass.
+pub type EachTets<'a> = &'a mut dyn FnMut(TetPiece) -> io::Result<()>;
+
+/// Takes consecutive boundary faces; what it fails with ends the pass.
+pub type EachFaces<'a> = &'a mut dyn FnMut(FacePiece) -> io::Result<()>;
 
 /// A labelled mesh, read in passes. Every pass gives the same things in the same order; how they are cut into pieces says
-/// nothing.
+/// nothing. A pass may be made inside another one: no lock may be held while `each` runs.
 pub trait MeshSource: Sync {
     /// How much there is.
     fn counts(&self) -> SourceCounts;
@@ -53,19 +59,58 @@ pub trait MeshSource: Sync {
     ///
     /// # Errors
     /// What reading the mesh or `each` fails with.
-    fn points(&self, each: Each<&[Point3]>) -> io::Result<()>;
+    fn points(&self, each: EachPoints) -> io::Result<()>;
 
     /// Gives all tetrahedra, in order.
     ///
     /// # Errors
     /// What reading the mesh or `each` fails with.
-    fn tets(&self, each: Each<TetPiece>) -> io::Result<()>;
+    fn tets(&self, each: EachTets) -> io::Result<()>;
 
     /// Gives all boundary faces, in order.
     ///
     /// # Errors
     /// What reading the mesh or `each` fails with.
-    fn boundary(&self, each: Each<FacePiece>) -> io::Result<()>;
+    fn boundary(&self, each: EachFaces) -> io::Result<()>;
+
+    /// The whole mesh, when it stands in memory: for formats that cannot be written in passes.
+    fn whole(&self) -> Option<&VolumeMesh> {
+        None
+    }
+}
+
+/// Puts a mesh together in memory.
+///
+/// # Errors
+/// What reading the mesh fails with.
+pub fn gather(source: &dyn MeshSource) -> io::Result<VolumeMesh> {
+    let counts = source.counts();
+    let mut volume = VolumeMesh { patches: source.patches().to_vec(), ..VolumeMesh::default() };
+    volume.mesh.points.reserve_exact(counts.points);
+    volume.mesh.tets.reserve_exact(counts.tets);
+    source.points(&mut |points| {
+        volume.mesh.points.extend_from_slice(points);
+        Ok(())
+    })?;
+    source.tets(&mut |piece| {
+        volume.mesh.tets.extend_from_slice(piece.tets);
+        extend_or_zero(&mut volume.tet_block, piece.blocks, piece.tets.len());
+        Ok(())
+    })?;
+    source.boundary(&mut |piece| {
+        volume.boundary.extend_from_slice(piece.faces);
+        extend_or_zero(&mut volume.boundary_patch, piece.patches, piece.faces.len());
+        extend_or_zero(&mut volume.boundary_block, piece.blocks, piece.faces.len());
+        Ok(())
+    })?;
+    Ok(volume)
+}
+
+/// Appends as many values as there are things; those that are not known are 0.
+fn extend_or_zero(values: &mut Vec<i32>, piece: &[i32], count: usize) {
+    let (before, known) = (values.len(), piece.len().min(count));
+    values.extend_from_slice(&piece[..known]);
+    values.resize(before + count, 0);
 }
 
 impl MeshSource for VolumeMesh {
@@ -77,15 +122,18 @@ impl MeshSource for VolumeMesh {
         &self.patches
     }
 
-    fn points(&self, each: Each<&[Point3]>) -> io::Result<()> {
+    fn points(&self, each: EachPoints) -> io::Result<()> {
         each(&self.mesh.points)
     }
 
-    fn tets(&self, each: Each<TetPiece>) -> io::Result<()> {
+    fn tets(&self, each: EachTets) -> io::Result<()> {
         each(TetPiece { tets: &self.mesh.tets, blocks: &self.tet_block })
     }
 
-    fn boundary(&self, each: Each<FacePiece>) -> io::Result<()> {
+    fn boundary(&self, each: EachFaces) -> io::Result<()> {
         each(FacePiece { faces: &self.boundary, patches: &self.boundary_patch, blocks: &self.boundary_block })
+    }
+    fn whole(&self) -> Option<&VolumeMesh> {
+        Some(self)
     }
 }
