@@ -26,7 +26,7 @@ pub enum FileError<F: Error + 'static> {
         source: io::Error,
     },
     /// The operating system refused to write.
-    #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]
+    #[error("{}: cannot be written: {source}; {}", path.display(), advice(source))]
     Write {
         /// The file.
         path: PathBuf,
@@ -56,6 +56,18 @@ pub enum FileError<F: Error + 'static> {
         /// The first such cell.
         cell: usize,
     },
+}
+
+/// What to do when a file cannot be written.
+pub(super) fn advice(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "the disk is full: free space or name a file on another disk; an earlier file of this name is as it was"
+        }
+        // The system has no complaint: the mesh has one.
+        io::ErrorKind::InvalidData => "an earlier file of this name is as it was",
+        _ => "name a file in a folder that exists and can be written to",
+    }
 }
 
 /// The bytes of a file that is not empty.
@@ -110,10 +122,15 @@ pub(super) fn ensure_sound<F: Error, const N: usize>(
     cells: &[[u32; N]],
     points: usize,
 ) -> Result<(), FileError<F>> {
-    match cells.iter().position(|cell| cell.iter().any(|&v| v as usize >= points)) {
+    match unsound(cells, points) {
         Some(cell) => Err(FileError::BadMesh { path: path.to_path_buf(), cell }),
         None => Ok(()),
     }
+}
+
+/// The first cell that names a point that does not exist.
+pub(super) fn unsound<const N: usize>(cells: &[[u32; N]], points: usize) -> Option<usize> {
+    cells.iter().position(|cell| cell.iter().any(|&v| v as usize >= points))
 }
 
 /// The extension of a path in lower case.

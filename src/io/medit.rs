@@ -1,8 +1,9 @@
 //! Medit's text format `.mesh`: keyworded lists of vertices, triangles and tetrahedra, each item with a reference.
 
-use super::file_error::{FileError, ensure_sound, read_bytes, write_whole};
+use super::file_error::{FileError, read_bytes, unsound, write_whole};
 use super::text::{TextFault, Words, shown};
 use super::vtu_read::usual_name;
+use crate::mesh::source::MeshSource;
 use crate::mesh::{Patch, TetMesh, VolumeMesh};
 use std::io::{self, Write};
 use std::path::Path;
@@ -208,34 +209,51 @@ fn indices<const N: usize>(
 ///
 /// # Errors
 /// `BadMesh` when a cell names a point that does not exist, or `Write` with the reason.
-pub fn write_medit(path: &Path, mesh: &VolumeMesh) -> Result<(), MeditFileError> {
-    let points = mesh.mesh.points.len();
-    ensure_sound(path, &mesh.mesh.tets, points)?;
-    ensure_sound(path, &mesh.boundary, points)?;
+pub fn write_medit(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeditFileError> {
+    let unread = |source| FileError::Write { path: path.to_path_buf(), source };
+    if let Some(cell) = unsound_cell(mesh).map_err(unread)? {
+        return Err(FileError::BadMesh { path: path.to_path_buf(), cell });
+    }
     write_whole(path, |out| write_medit_to(out, mesh))
 }
 
-/// Writes a mesh to a stream: blocks and patches become references; points have the reference 0.
+/// The first cell, in its list, that names a point that does not exist.
+fn unsound_cell(mesh: &dyn MeshSource) -> io::Result<Option<usize>> {
+    let points = mesh.counts().points;
+    let (mut found, mut before) = (None, 0);
+    mesh.tets(&mut |piece| {
+        found = found.or_else(|| unsound(piece.tets, points).map(|cell| before + cell));
+        before += piece.tets.len();
+        Ok(())
+    })?;
+    before = 0;
+    mesh.boundary(&mut |piece| {
+        found = found.or_else(|| unsound(piece.faces, points).map(|cell| before + cell));
+        before += piece.faces.len();
+        Ok(())
+    })?;
+    Ok(found)
+}
+
+/// Writes a mesh to a stream: blocks and patches become references; points have the reference 0. Memory does not grow
+/// with the mesh, which is read in one pass.
 ///
 /// # Errors
-/// What the stream reports.
-pub fn write_medit_to(out: &mut impl Write, mesh: &VolumeMesh) -> io::Result<()> {
-    writeln!(out, "MeshVersionFormatted 2\nDimension 3\n{VERTICES}\n{}", mesh.mesh.points.len())?;
-    for p in &mesh.mesh.points {
-        writeln!(out, "{:?} {:?} {:?} 0", p.x, p.y, p.z)?;
-    }
-    write_cells(out, TRIANGLES, &mesh.boundary, &mesh.boundary_patch)?;
-    write_cells(out, TETRAHEDRA, &mesh.mesh.tets, &mesh.tet_block)?;
+/// What the stream or reading the mesh reports.
+pub fn write_medit_to(out: &mut impl Write, mesh: &dyn MeshSource) -> io::Result<()> {
+    let counts = mesh.counts();
+    writeln!(out, "MeshVersionFormatted 2\nDimension 3\n{VERTICES}\n{}", counts.points)?;
+    mesh.points(&mut |points| {
+        points.iter().try_for_each(|p| writeln!(out, "{:?} {:?} {:?} 0", p.x, p.y, p.z))
+    })?;
+    writeln!(out, "{TRIANGLES}\n{}", counts.boundary)?;
+    mesh.boundary(&mut |piece| write_cells(out, piece.faces, piece.patches))?;
+    writeln!(out, "{TETRAHEDRA}\n{}", counts.tets)?;
+    mesh.tets(&mut |piece| write_cells(out, piece.tets, piece.blocks))?;
     writeln!(out, "End")
 }
 
-fn write_cells<const N: usize>(
-    out: &mut impl Write,
-    kind: &str,
-    cells: &[[u32; N]],
-    references: &[i32],
-) -> io::Result<()> {
-    writeln!(out, "{kind}\n{}", cells.len())?;
+fn write_cells<const N: usize>(out: &mut impl Write, cells: &[[u32; N]], references: &[i32]) -> io::Result<()> {
     for (i, corners) in cells.iter().enumerate() {
         for &v in corners {
             write!(out, "{} ", u64::from(v) + 1)?;

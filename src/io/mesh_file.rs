@@ -1,13 +1,15 @@
 //! Meshes in files: which format, safe writing, and what goes into a file beside the mesh.
 
 use super::atomic::AtomicFile;
-use super::file_error::FileError;
+use super::counted::Counted;
+use super::file_error::{FileError, advice};
 use super::medit::{self, MeditFault};
 use super::tetgen::{self, MeshFamily, TetgenFault};
 use super::vtk_xml::VtkError;
 use super::{msh, vtu};
 use crate::mesh::VolumeMesh;
 use crate::mesh::check::Expectation;
+use crate::mesh::source::{MeshSource, gather};
 use std::io::{self, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
 
@@ -85,7 +87,7 @@ pub enum MeshFileError {
         source: io::Error,
     },
     /// The operating system refused to write.
-    #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]
+    #[error("{}: cannot be written: {source}; {}", path.display(), advice(source))]
     Write {
         /// The file.
         path: PathBuf,
@@ -251,11 +253,10 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
 ///
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
-pub fn write_mesh(path: &Path, mesh: &VolumeMesh, notes: &MeshNotes) -> Result<(), MeshFileError> {
+pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Result<(), MeshFileError> {
     let format = MeshFormat::of(path)?;
     if format == MeshFormat::Tetgen {
-        MeshFamily::of_volume(mesh).write(path)?;
-        return Ok(());
+        return write_family(path, mesh);
     }
     let write = || {
         let mut file = AtomicFile::create(path)?;
@@ -265,22 +266,37 @@ pub fn write_mesh(path: &Path, mesh: &VolumeMesh, notes: &MeshNotes) -> Result<(
     write().map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })
 }
 
+/// The neighbours of tetrahedra are not found in passes: this format holds the mesh in memory.
+fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError> {
+    let gathered;
+    let volume = match mesh.whole() {
+        Some(volume) => volume,
+        None => {
+            gathered = gather(mesh).map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })?;
+            &gathered
+        }
+    };
+    MeshFamily::of_volume(volume).write(path)?;
+    Ok(())
+}
+
 /// Writes a mesh to a stream, such as standard output; the file is put together in memory first.
 ///
 /// # Errors
 /// What the stream reports.
-pub fn write_mesh_to(out: &mut impl Write, format: MeshFormat, mesh: &VolumeMesh, notes: &MeshNotes) -> io::Result<()> {
+pub fn write_mesh_to(out: &mut impl Write, format: MeshFormat, mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<()> {
     let mut bytes = Cursor::new(Vec::new());
     write_format(&mut bytes, format, mesh, notes)?;
     out.write_all(bytes.get_ref())
 }
 
-fn write_format(
+pub(super) fn write_format(
     out: &mut (impl Write + Seek),
     format: MeshFormat,
-    mesh: &VolumeMesh,
+    mesh: &dyn MeshSource,
     notes: &MeshNotes,
 ) -> io::Result<()> {
+    let mesh = &Counted(mesh);
     match format {
         MeshFormat::Vtu => vtu::write_vtu(out, mesh, notes),
         MeshFormat::Msh => msh::write_msh(out, mesh, notes),

@@ -1,6 +1,9 @@
 //! Floor 3: readers and writers, one file per format.
 
 mod atomic;
+mod counted;
+#[cfg(test)]
+mod cut_source;
 mod file_error;
 pub mod medit;
 #[cfg(test)]
@@ -8,12 +11,16 @@ mod medit_tests;
 pub mod mesh_file;
 pub mod msh;
 mod msh_read;
+mod msh_surfaces;
 pub mod network;
+#[cfg(test)]
+mod source_tests;
 pub mod surface;
 pub mod tetgen;
 mod text;
 pub mod vtk_xml;
 pub mod vtu;
+mod vtu_blocks;
 mod vtu_read;
 
 pub use file_error::FileError;

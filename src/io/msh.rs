@@ -5,9 +5,12 @@
 //! others pass over.
 
 use super::mesh_file::MeshNotes;
-use crate::geometry::Point3;
-use crate::mesh::VolumeMesh;
+use super::msh_surfaces::{Surfaces, run};
+use crate::geometry::Aabb;
+use crate::mesh::{Patch, VolumeMesh};
 use crate::mesh::check::Expectation;
+use crate::mesh::source::MeshSource;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 pub use super::msh_read::read_msh;
@@ -43,7 +46,7 @@ pub(super) struct ExtraCap {
 }
 
 impl Extra {
-    fn of(mesh: &VolumeMesh, notes: &MeshNotes) -> Self {
+    fn of(patches: &[Patch], notes: &MeshNotes) -> Self {
         let cap = |id: i32, cap: &crate::mesh::Cap| ExtraCap {
             patch: id,
             node: cap.node,
@@ -56,7 +59,7 @@ impl Extra {
             options: notes.options.clone(),
             loops: notes.expectation.as_ref().map(|expected| expected.loops.clone()),
             terminals: notes.expectation.as_ref().map(|expected| expected.terminals.clone()),
-            caps: mesh.patches.iter().filter_map(|p| p.cap.as_ref().map(|c| cap(p.id, c))).collect(),
+            caps: patches.iter().filter_map(|p| p.cap.as_ref().map(|c| cap(p.id, c))).collect(),
         }
     }
 
@@ -68,93 +71,72 @@ impl Extra {
     }
 }
 
-/// A surface: the boundary faces of one patch.
-struct Surface {
-    patch: i32,
-    faces: Vec<u32>,
-    /// Nodes that are on this surface and on none before it.
-    nodes: Vec<u32>,
-    /// Corners of the box round it.
-    bounds: [f64; 6],
-}
-
 /// Part of the tetrahedra: a volume.
 struct Volume {
     /// The physical group, and the name of it; none for regions whose id can be no physical tag.
     group: Option<(i32, String)>,
-    /// Its tetrahedra; none for all.
-    tets: Option<Vec<u32>>,
+    /// How many tetrahedra it has.
+    tets: usize,
+    /// The region whose tetrahedra these are; none for all.
+    region: Option<i32>,
 }
 
 /// One volume for all, or one for each region.
-fn volumes_of(mesh: &VolumeMesh, notes: &MeshNotes) -> Vec<Volume> {
-    let mut of_region: Vec<(i32, u32)> = mesh.tet_block.iter().copied().zip(0..).collect();
-    of_region.sort_unstable();
-    if notes.regions && of_region.first().map(|r| r.0) != of_region.last().map(|r| r.0) {
-        let volume = |run: &[(i32, u32)]| Volume {
-            group: Some((run[0].0, format!("region_{}", run[0].0))).filter(|group| group.0 > 0),
-            tets: Some(run.iter().map(|&(_, tet)| tet).collect()),
-        };
-        return of_region.chunk_by(|a, b| a.0 == b.0).map(volume).collect();
+fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> io::Result<Vec<Volume>> {
+    if notes.regions {
+        let mut sizes: BTreeMap<i32, usize> = BTreeMap::new();
+        mesh.tets(&mut |piece| {
+            piece.blocks.iter().for_each(|&region| *sizes.entry(region).or_default() += 1);
+            Ok(())
+        })?;
+        if sizes.len() > 1 {
+            let volume = |(id, tets)| Volume {
+                group: Some((id, format!("region_{id}"))).filter(|&(id, _)| id > 0),
+                tets,
+                region: Some(id),
+            };
+            return Ok(sizes.into_iter().map(volume).collect());
+        }
     }
-    let patches = mesh.boundary_patch.iter().chain(mesh.patches.iter().map(|p| &p.id));
-    let tag = patches.max().map_or(1, |&id| id.max(0).saturating_add(1));
-    vec![Volume { group: Some((tag, VOLUME_NAME.into())), tets: None }]
+    let largest = mesh.patches().iter().map(|p| p.id).chain(surfaces.largest).max();
+    let tag = largest.map_or(1, |id| id.max(0).saturating_add(1));
+    let tets = mesh.counts().tets;
+    Ok(vec![Volume { group: Some((tag, VOLUME_NAME.into())), tets, region: None }])
 }
 
 /// Writes a mesh as MSH 4.1. Blocks that are regions become volumes; other blocks are not written: the format has no
 /// place for them.
 ///
+/// Points and boundary are read three times, tetrahedra once. What is held is two bits for each point, and the faces and
+/// points of all surfaces but that of lowest id (the wall). Each region costs a
+/// pass over the tetrahedra of its own, or, of a mesh in memory, all together 8 bytes for each tetrahedron.
+///
 /// # Errors
-/// What the writer `out` reports.
-pub fn write_msh(out: &mut impl Write, mesh: &VolumeMesh, notes: &MeshNotes) -> io::Result<()> {
-    let mut owned = vec![false; mesh.mesh.points.len()];
-    let surfaces = surfaces_of(mesh, &mut owned);
-    let volumes = volumes_of(mesh, notes);
+/// What the writer `out` or reading the mesh reports.
+pub fn write_msh(out: &mut impl Write, mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<()> {
+    let surfaces = Surfaces::of(mesh)?;
+    let volumes = volumes_of(mesh, notes, &surfaces)?;
     out.write_all(b"$MeshFormat\n4.1 1 8\n")?;
     ints(out, &[1])?;
     out.write_all(b"\n$EndMeshFormat\n")?;
-    write_names(out, mesh, &volumes)?;
-    write_entities(out, mesh, &surfaces, &volumes)?;
-    write_nodes(out, mesh, &surfaces, &owned)?;
+    write_names(out, mesh.patches(), &volumes)?;
+    write_entities(out, &surfaces, &volumes)?;
+    write_nodes(out, mesh, &surfaces)?;
     write_elements(out, mesh, &surfaces, &volumes)?;
     writeln!(out, "${SECTION}")?;
-    serde_json::to_writer(&mut *out, &Extra::of(mesh, notes))?;
+    serde_json::to_writer(&mut *out, &Extra::of(mesh.patches(), notes))?;
     write!(out, "\n$End{SECTION}\n")
 }
 
-/// The patches that have faces, in ascending order; marks the points that lie on them in `owned`.
-fn surfaces_of(mesh: &VolumeMesh, owned: &mut [bool]) -> Vec<Surface> {
-    let mut by_patch: Vec<(i32, u32)> =
-        mesh.boundary_patch.iter().enumerate().map(|(face, &id)| (id, face as u32)).collect();
-    by_patch.sort_unstable();
-    let mut surfaces = Vec::new();
-    for run in by_patch.chunk_by(|a, b| a.0 == b.0) {
-        let faces: Vec<u32> = run.iter().map(|&(_, face)| face).collect();
-        let mut nodes = Vec::new();
-        let vertices = || faces.iter().flat_map(|&face| mesh.boundary[face as usize]);
-        for v in vertices() {
-            if !std::mem::replace(&mut owned[v as usize], true) {
-                nodes.push(v);
-            }
-        }
-        nodes.sort_unstable();
-        let bounds = bounds(vertices().map(|v| &mesh.mesh.points[v as usize]));
-        surfaces.push(Surface { patch: run[0].0, faces, nodes, bounds });
-    }
-    surfaces
-}
-
-fn bounds<'a>(points: impl Iterator<Item = &'a Point3>) -> [f64; 6] {
-    let aabb = crate::geometry::Aabb::of_points(points);
-    if aabb.min.x > aabb.max.x {
+fn corners(bounds: &Aabb) -> [f64; 6] {
+    if bounds.min.x > bounds.max.x {
         return [0.0; 6];
     }
-    [aabb.min.x, aabb.min.y, aabb.min.z, aabb.max.x, aabb.max.y, aabb.max.z]
+    [bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z]
 }
 
-fn write_names(out: &mut impl Write, mesh: &VolumeMesh, volumes: &[Volume]) -> io::Result<()> {
-    let named = || mesh.patches.iter().filter(|p| p.id > 0);
+fn write_names(out: &mut impl Write, patches: &[Patch], volumes: &[Volume]) -> io::Result<()> {
+    let named = || patches.iter().filter(|p| p.id > 0);
     let groups = || volumes.iter().filter_map(|volume| volume.group.as_ref());
     writeln!(out, "$PhysicalNames\n{}", named().count() + groups().count())?;
     for patch in named() {
@@ -166,12 +148,13 @@ fn write_names(out: &mut impl Write, mesh: &VolumeMesh, volumes: &[Volume]) -> i
     writeln!(out, "$EndPhysicalNames")
 }
 
-fn write_entities(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface], volumes: &[Volume]) -> io::Result<()> {
+fn write_entities(out: &mut impl Write, surfaces: &Surfaces, volumes: &[Volume]) -> io::Result<()> {
+    let count = surfaces.list.len();
     out.write_all(b"$Entities\n")?;
-    sizes(out, &[0, 0, surfaces.len(), volumes.len()])?;
-    for (i, surface) in surfaces.iter().enumerate() {
+    sizes(out, &[0, 0, count, volumes.len()])?;
+    for (i, surface) in surfaces.list.iter().enumerate() {
         ints(out, &[i as i32 + 1])?;
-        floats(out, &surface.bounds)?;
+        floats(out, &corners(&surface.bounds))?;
         // Physical tags are positive: a patch without such an id stays outside the groups.
         let groups: &[i32] = if surface.patch > 0 { &[surface.patch] } else { &[] };
         sizes(out, &[groups.len()])?;
@@ -180,12 +163,12 @@ fn write_entities(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface],
     }
     for (i, volume) in volumes.iter().enumerate() {
         ints(out, &[i as i32 + 1])?;
-        floats(out, &bounds(mesh.mesh.points.iter()))?;
+        floats(out, &corners(&surfaces.bounds))?;
         let group = volume.group.as_ref().map(|group| group.0);
         sizes(out, &[usize::from(group.is_some())])?;
         ints(out, group.as_slice())?;
         // Which surfaces bound which region is not known here.
-        let bounding = if volumes.len() == 1 { surfaces.len() } else { 0 };
+        let bounding = if volumes.len() == 1 { count } else { 0 };
         sizes(out, &[bounding])?;
         for i in 0..bounding {
             ints(out, &[i as i32 + 1])?;
@@ -194,56 +177,130 @@ fn write_entities(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface],
     out.write_all(b"\n$EndEntities\n")
 }
 
-fn write_nodes(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface], owned: &[bool]) -> io::Result<()> {
-    let count = mesh.mesh.points.len();
-    let inner: Vec<u32> = (0..count as u32).filter(|&v| !owned[v as usize]).collect();
-    let blocks = || {
-        let on_surfaces = surfaces.iter().enumerate().map(|(i, surface)| (2, i as i32 + 1, &surface.nodes));
-        on_surfaces.chain([(3, 1, &inner)]).filter(|(_, _, nodes)| !nodes.is_empty())
-    };
+fn write_nodes(out: &mut impl Write, mesh: &dyn MeshSource, surfaces: &Surfaces) -> io::Result<()> {
+    let count = mesh.counts().points;
+    let inner = count - surfaces.outer.count();
+    let blocks = surfaces.list.iter().filter(|surface| surface.points > 0).count() + usize::from(inner > 0);
     out.write_all(b"$Nodes\n")?;
-    sizes(out, &[blocks().count(), count, usize::from(count > 0), count])?;
-    for (dimension, tag, nodes) in blocks() {
-        ints(out, &[dimension, tag, 0])?;
-        sizes(out, &[nodes.len()])?;
-        for &v in nodes {
+    sizes(out, &[blocks, count, usize::from(count > 0), count])?;
+    for (i, surface) in surfaces.list.iter().enumerate().filter(|(_, surface)| surface.points > 0) {
+        ints(out, &[2, i as i32 + 1, 0])?;
+        sizes(out, &[surface.points])?;
+        if i == 0 {
+            write_chosen_points(out, mesh, |v| surfaces.first.has(v))?;
+            continue;
+        }
+        for &(v, _) in surfaces.points_of(surface.patch) {
             sizes(out, &[v as usize + 1])?;
         }
-        for &v in nodes {
-            let p = &mesh.mesh.points[v as usize];
+        for (_, p) in surfaces.points_of(surface.patch) {
             floats(out, &[p.x, p.y, p.z])?;
         }
+    }
+    if inner > 0 {
+        ints(out, &[3, 1, 0])?;
+        sizes(out, &[inner])?;
+        write_chosen_points(out, mesh, |v| !surfaces.outer.has(v))?;
     }
     out.write_all(b"\n$EndNodes\n")
 }
 
-fn write_elements(out: &mut impl Write, mesh: &VolumeMesh, surfaces: &[Surface], volumes: &[Volume]) -> io::Result<()> {
-    let (tets, faces) = (&mesh.mesh.tets, &mesh.boundary);
-    let count = tets.len() + surfaces.iter().map(|surface| surface.faces.len()).sum::<usize>();
+/// The tags of some points, then their positions.
+fn write_chosen_points(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    chosen: impl Fn(u32) -> bool,
+) -> io::Result<()> {
+    for v in (0..mesh.counts().points as u32).filter(|&v| chosen(v)) {
+        sizes(out, &[v as usize + 1])?;
+    }
+    let mut before = 0;
+    mesh.points(&mut |points| {
+        for (_, p) in (before..).zip(points).filter(|&(v, _)| chosen(v)) {
+            floats(out, &[p.x, p.y, p.z])?;
+        }
+        before += points.len() as u32;
+        Ok(())
+    })
+}
+
+fn write_elements(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    surfaces: &Surfaces,
+    volumes: &[Volume],
+) -> io::Result<()> {
+    let tets = mesh.counts().tets;
+    let count = tets + surfaces.list.iter().map(|surface| surface.faces).sum::<usize>();
     out.write_all(b"$Elements\n")?;
-    let filled = if tets.is_empty() { 0 } else { volumes.len() };
-    sizes(out, &[surfaces.len() + filled, count, usize::from(count > 0), count])?;
-    for (i, surface) in surfaces.iter().enumerate() {
+    let filled = if tets == 0 { 0 } else { volumes.len() };
+    sizes(out, &[surfaces.list.len() + filled, count, usize::from(count > 0), count])?;
+    for (i, surface) in surfaces.list.iter().enumerate() {
         ints(out, &[2, i as i32 + 1, MSH_TRIANGLE])?;
-        sizes(out, &[surface.faces.len()])?;
-        for &face in &surface.faces {
-            let [a, b, c] = faces[face as usize].map(|v| v as usize + 1);
-            sizes(out, &[tets.len() + face as usize + 1, a, b, c])?;
+        sizes(out, &[surface.faces])?;
+        if i == 0 {
+            write_faces(out, mesh, surface.patch)?;
+            continue;
+        }
+        for held in surfaces.faces_of(surface.patch) {
+            write_element(out, tets + held.face, held.corners)?;
         }
     }
+    let by_region = match mesh.whole() {
+        Some(whole) if volumes.len() > 1 => by_region(whole),
+        _ => Vec::new(),
+    };
     for (i, volume) in volumes.iter().enumerate().take(filled) {
         ints(out, &[3, i as i32 + 1, MSH_TETRA])?;
-        sizes(out, &[volume.tets.as_ref().map_or(tets.len(), Vec::len)])?;
-        let mut write = |tet: usize| {
-            let [a, b, c, d] = tets[tet].map(|v| v as usize + 1);
-            sizes(out, &[tet + 1, a, b, c, d])
-        };
-        match &volume.tets {
-            Some(list) => list.iter().try_for_each(|&tet| write(tet as usize))?,
-            None => (0..tets.len()).try_for_each(&mut write)?,
+        sizes(out, &[volume.tets])?;
+        match (mesh.whole(), volume.region) {
+            (Some(whole), Some(region)) => {
+                for &(_, tet) in run(&by_region, region, |tet| tet.0) {
+                    write_element(out, tet as usize, whole.mesh.tets[tet as usize])?;
+                }
+            }
+            _ => write_tets(out, mesh, volume.region)?,
         }
     }
     out.write_all(b"\n$EndElements\n")
+}
+
+/// The tetrahedra of a mesh in memory by their region: many regions need not as many passes.
+fn by_region(mesh: &VolumeMesh) -> Vec<(i32, u32)> {
+    let mut tets: Vec<(i32, u32)> = mesh.tet_block.iter().copied().zip(0..mesh.mesh.tets.len() as u32).collect();
+    tets.sort_unstable();
+    tets
+}
+
+/// The faces of one patch.
+fn write_faces(out: &mut impl Write, mesh: &dyn MeshSource, patch: i32) -> io::Result<()> {
+    let mut tag = mesh.counts().tets;
+    mesh.boundary(&mut |piece| {
+        for (i, (&face, _)) in piece.faces.iter().zip(piece.patches).enumerate().filter(|(_, (_, id))| **id == patch) {
+            write_element(out, tag + i, face)?;
+        }
+        tag += piece.faces.len();
+        Ok(())
+    })
+}
+
+/// The tetrahedra of one region, or all.
+fn write_tets(out: &mut impl Write, mesh: &dyn MeshSource, region: Option<i32>) -> io::Result<()> {
+    let mut tag = 0;
+    mesh.tets(&mut |piece| {
+        let chosen = |i: usize| region.is_none_or(|id| piece.blocks.get(i) == Some(&id));
+        for (i, &tet) in piece.tets.iter().enumerate().filter(|&(i, _)| chosen(i)) {
+            write_element(out, tag + i, tet)?;
+        }
+        tag += piece.tets.len();
+        Ok(())
+    })
+}
+
+/// An element, given by its index and those of its corners.
+fn write_element<const N: usize>(out: &mut impl Write, index: usize, corners: [u32; N]) -> io::Result<()> {
+    sizes(out, &[index + 1])?;
+    sizes(out, &corners.map(|v| v as usize + 1))
 }
 
 fn ints(out: &mut impl Write, values: &[i32]) -> io::Result<()> {

@@ -1,6 +1,7 @@
 //! What is written can be read again; text as Gmsh writes it is read.
 
 use super::*;
+use crate::geometry::Point3;
 use crate::io::mesh_file::{MeshFile, MeshFormat, write_mesh_to};
 use crate::io::vtu::tests::labelled_tube;
 

@@ -5,20 +5,15 @@
 //! later check needs to know: the caps, the loops of each component, the terminals.
 
 use super::mesh_file::MeshNotes;
-use crate::mesh::VolumeMesh;
-use flate2::{Compression, write::ZlibEncoder};
-use rayon::prelude::*;
+use super::vtu_blocks::{Blocks, write_blocks, write_spaces};
+use crate::geometry::Point3;
+use crate::mesh::Patch;
+use crate::mesh::source::{MeshSource, SourceCounts};
+use flate2::Compression;
 use std::fmt::Write as _;
 use std::io::{self, Seek, SeekFrom, Write};
-use std::ops::Range;
 
 pub use super::vtu_read::read_vtu;
-
-/// Values in a compressed block: a multiple of 12, so that points, triangles and tetrahedra do not straddle blocks.
-const BLOCK: usize = 98_304;
-
-/// Blocks compressed at a time: bounds the memory whatever the size of the mesh.
-const WAVE: usize = 64;
 
 /// VTK's cell types.
 pub(super) const VTK_TRIANGLE: u8 = 5;
@@ -38,17 +33,21 @@ pub(super) mod field {
     pub const OPTIONS: &str = "options";
 }
 
+/// Name of the point array that says which point of the whole mesh each point of a piece is.
+pub(super) const GLOBAL_IDS: &str = "GlobalPointIds";
+
 /// Where an array stands in the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Place {
     Field,
+    PointData,
     Points,
     Cells,
     CellData,
 }
 
-/// Appends the little-endian bytes of a range of an array's values.
-type Fill<'a> = Box<dyn Fn(Range<usize>, &mut Vec<u8>) + Sync + 'a>;
+/// Gives an array's values, as little-endian bytes.
+type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
 
 /// One array of the file: what it is called and where its values come from.
 struct Array<'a> {
@@ -63,56 +62,100 @@ struct Array<'a> {
     shrinks: bool,
 }
 
-/// Writes a mesh as VTU. The bytes depend on the mesh and the notes alone, not on the number of threads.
+/// Writes a mesh as VTU. The bytes depend on the mesh and the notes alone, not on the number of threads, nor on the
+/// pieces in which the mesh is read. Points and boundary faces are read in one and three passes, tetrahedra in two;
+/// memory does not grow with the mesh: some blocks for each thread are all that is held.
 ///
 /// # Errors
-/// What the writer `out` reports.
-pub fn write_vtu(out: &mut (impl Write + Seek), mesh: &VolumeMesh, notes: &MeshNotes) -> io::Result<()> {
-    let names = patch_names(mesh);
-    let arrays = arrays_of(mesh, notes, &names);
-    // The offsets are known only after compression: room for the longest possible header is left in front.
-    let reserved = header(mesh, &arrays, &vec![u64::MAX; arrays.len()]).len();
-    let start = out.stream_position()?;
-    write_spaces(out, reserved)?;
-    out.write_all(APPENDED_OPEN)?;
-    let base = out.stream_position()?;
-    let mut offsets = Vec::with_capacity(arrays.len());
-    for array in &arrays {
-        offsets.push(out.stream_position()? - base);
-        write_array(out, array)?;
+/// What the writer `out` or reading the mesh reports.
+pub fn write_vtu(out: &mut (impl Write + Seek), mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<()> {
+    Grid { mesh, notes: Some(notes), global_ids: None }.write(out)
+}
+
+/// What goes into a file.
+pub(super) struct Grid<'a> {
+    pub mesh: &'a dyn MeshSource,
+    /// What the field data say; none for a piece without.
+    pub notes: Option<&'a MeshNotes>,
+    /// For a piece of a mesh: which point of the whole each point is.
+    pub global_ids: Option<&'a [u32]>,
+}
+
+impl Grid<'_> {
+    /// Writes the file.
+    pub(super) fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
+        let arrays = self.arrays();
+        // The offsets are known only after compression: room for the longest possible header is left in front.
+        let reserved = self.header(&arrays, &vec![u64::MAX; arrays.len()]).len();
+        let start = out.stream_position()?;
+        write_spaces(out, reserved)?;
+        out.write_all(APPENDED_OPEN)?;
+        let base = out.stream_position()?;
+        let mut offsets = Vec::with_capacity(arrays.len());
+        for array in &arrays {
+            offsets.push(out.stream_position()? - base);
+            let level = if array.shrinks { Compression::fast() } else { Compression::none() };
+            write_blocks(out, array.values, array.width, level, &array.fill)?;
+        }
+        out.write_all(APPENDED_CLOSE)?;
+        let end = out.stream_position()?;
+        out.seek(SeekFrom::Start(start))?;
+        out.write_all(self.header(&arrays, &offsets).as_bytes())?;
+        out.seek(SeekFrom::Start(end))?;
+        Ok(())
     }
-    out.write_all(APPENDED_CLOSE)?;
-    let end = out.stream_position()?;
-    out.seek(SeekFrom::Start(start))?;
-    out.write_all(header(mesh, &arrays, &offsets).as_bytes())?;
-    out.seek(SeekFrom::Start(end))?;
-    Ok(())
+
+    fn arrays(&self) -> Vec<Array<'_>> {
+        let mesh = self.mesh;
+        let mut arrays = match self.notes {
+            Some(notes) => field_arrays(mesh.patches(), notes),
+            None => Vec::new(),
+        };
+        arrays.extend(self.global_ids.map(id_array));
+        arrays.push(points_array(mesh));
+        arrays.extend(cell_arrays(mesh, Width::of(mesh.counts())));
+        arrays.push(patch_array(mesh));
+        arrays.push(block_array(mesh));
+        arrays
+    }
+
+    fn header(&self, arrays: &[Array], offsets: &[u64]) -> String {
+        let mut text = String::from(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+             header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n",
+        );
+        if self.notes.is_some() {
+            section(&mut text, "FieldData", "", Place::Field, arrays, offsets);
+        }
+        let SourceCounts { points, tets, boundary } = self.mesh.counts();
+        let cells = tets + boundary;
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
+        if self.global_ids.is_some() {
+            let attributes = format!(" GlobalIds=\"{GLOBAL_IDS}\"");
+            section(&mut text, "PointData", &attributes, Place::PointData, arrays, offsets);
+        }
+        section(&mut text, "Points", "", Place::Points, arrays, offsets);
+        section(&mut text, "Cells", "", Place::Cells, arrays, offsets);
+        section(&mut text, "CellData", " Scalars=\"patch\"", Place::CellData, arrays, offsets);
+        text.push_str("</Piece>\n</UnstructuredGrid>");
+        text
+    }
 }
 
 const APPENDED_OPEN: &[u8] = b"\n<AppendedData encoding=\"raw\">\n_";
 const APPENDED_CLOSE: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
 
-fn write_spaces(out: &mut impl Write, count: usize) -> io::Result<()> {
-    let spaces = [b' '; 256];
-    let mut left = count;
-    while left > 0 {
-        let now = left.min(spaces.len());
-        out.write_all(&spaces[..now])?;
-        left -= now;
-    }
-    Ok(())
-}
-
 /// Patches with larger ids have no name in the file: the list has a place for every number below.
 const LARGEST_NAMED: i32 = 1 << 16;
 
 /// Names by patch id: `lumen` stands for the inside (0), ids that no patch has stay empty.
-pub(super) fn patch_names(mesh: &VolumeMesh) -> Vec<String> {
+fn patch_names(patches: &[Patch]) -> Vec<String> {
     let largest =
-        mesh.patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
+        patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
     let mut names = vec![String::new(); largest + 1];
     names[0] = "lumen".into();
-    for patch in &mesh.patches {
+    for patch in patches {
         if patch.id > 0
             && let Some(name) = names.get_mut(patch.id as usize)
         {
@@ -122,18 +165,9 @@ pub(super) fn patch_names(mesh: &VolumeMesh) -> Vec<String> {
     names
 }
 
-fn arrays_of<'a>(mesh: &'a VolumeMesh, notes: &'a MeshNotes, names: &[String]) -> Vec<Array<'a>> {
-    let mut arrays = field_arrays(mesh, notes, names);
-    arrays.push(points_array(mesh));
-    arrays.extend(cell_arrays(mesh));
-    arrays.push(cell_data("patch", Some(0), &[], mesh, &mesh.boundary_patch));
-    arrays.push(cell_data("block", None, &mesh.tet_block, mesh, &mesh.boundary_block));
-    arrays
-}
-
-fn field_arrays<'a>(mesh: &'a VolumeMesh, notes: &'a MeshNotes, names: &[String]) -> Vec<Array<'a>> {
-    let caps: Vec<_> = mesh.patches.iter().filter_map(|p| p.cap.map(|cap| (p.id, cap))).collect();
-    let mut arrays = vec![strings(field::PATCH_NAMES, names)];
+fn field_arrays<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<Array<'a>> {
+    let caps: Vec<_> = patches.iter().filter_map(|p| p.cap.map(|cap| (p.id, cap))).collect();
+    let mut arrays = vec![strings(field::PATCH_NAMES, &patch_names(patches))];
     if !caps.is_empty() {
         let vectors = |f: fn(&crate::mesh::Cap) -> [f64; 3]| caps.iter().flat_map(|(_, cap)| f(cap)).collect();
         arrays.push(ints(field::CAP_PATCH, caps.iter().map(|&(id, _)| i64::from(id)).collect()));
@@ -171,7 +205,7 @@ fn strings<'a>(name: &'static str, texts: &[String]) -> Array<'a> {
         width: 1,
         components: tuples,
         values: bytes.len(),
-        fill: Box::new(move |range, out| out.extend_from_slice(&bytes[range])),
+        fill: Box::new(move |out| out.push(bytes.len(), |i| [bytes[i]])),
         shrinks: true,
     }
 }
@@ -184,7 +218,7 @@ fn ints<'a>(name: &'static str, values: Vec<i64>) -> Array<'a> {
         width: 8,
         components: 1,
         values: values.len(),
-        fill: Box::new(move |range, out| out.extend(values[range].iter().flat_map(|v| v.to_le_bytes()))),
+        fill: Box::new(move |out| out.push(values.len(), |i| values[i].to_le_bytes())),
         shrinks: true,
     }
 }
@@ -197,66 +231,90 @@ fn floats<'a>(name: &'static str, components: usize, values: Vec<f64>) -> Array<
         width: 8,
         components,
         values: values.len(),
-        fill: Box::new(move |range, out| out.extend(values[range].iter().flat_map(|v| v.to_le_bytes()))),
+        fill: Box::new(move |out| out.push(values.len(), |i| values[i].to_le_bytes())),
         shrinks: true,
     }
 }
 
-fn points_array(mesh: &VolumeMesh) -> Array<'_> {
-    let points = &mesh.mesh.points;
+fn id_array(ids: &[u32]) -> Array<'_> {
+    Array {
+        place: Place::PointData,
+        name: GLOBAL_IDS,
+        kind: "Int64",
+        width: 8,
+        components: 1,
+        values: ids.len(),
+        fill: Box::new(move |out| out.push(ids.len(), |i| u64::from(ids[i]).to_le_bytes())),
+        shrinks: true,
+    }
+}
+
+fn points_array(mesh: &dyn MeshSource) -> Array<'_> {
     Array {
         place: Place::Points,
         name: "Points",
         kind: "Float64",
         width: 8,
         components: 3,
-        values: 3 * points.len(),
-        fill: Box::new(move |range, out| {
-            for p in &points[range.start / 3..range.end / 3] {
-                for x in [p.x, p.y, p.z] {
-                    out.extend_from_slice(&x.to_le_bytes());
-                }
-            }
-        }),
+        values: 3 * mesh.counts().points,
+        fill: Box::new(move |out| mesh.points(&mut |points| out.push(points.len(), |i| point_bytes(&points[i])))),
         shrinks: false,
     }
 }
 
-fn cell_arrays(mesh: &VolumeMesh) -> [Array<'_>; 3] {
-    let (tets, triangles) = (mesh.mesh.tets.as_flattened(), mesh.boundary.as_flattened());
-    let (tet_count, cells) = (mesh.mesh.tets.len(), mesh.mesh.tets.len() + mesh.boundary.len());
-    let connectivity: Fill = Box::new(move |range, out| {
-        for slice in [part(tets, &range, 0), part(triangles, &range, tets.len())] {
-            out.extend(slice.iter().flat_map(|v| v.to_le_bytes()));
+fn point_bytes(p: &Point3) -> [u8; 24] {
+    let mut bytes = [0; 24];
+    let (words, _) = bytes.as_chunks_mut::<8>();
+    for (word, x) in words.iter_mut().zip([p.x, p.y, p.z]) {
+        *word = x.to_le_bytes();
+    }
+    bytes
+}
+
+/// How wide vertex numbers and offsets are.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Width {
+    Int32,
+    Int64,
+}
+
+impl Width {
+    /// Ids are u32: within the signed range they can be written as they are, else they need 64 bits.
+    fn of(counts: SourceCounts) -> Self {
+        let fits = |count: usize| i32::try_from(count).is_ok();
+        let narrow = fits(4 * counts.tets + 3 * counts.boundary) && fits(counts.points);
+        if narrow { Self::Int32 } else { Self::Int64 }
+    }
+
+    fn bytes(self) -> usize {
+        if self == Self::Int32 { 4 } else { 8 }
+    }
+
+    fn push(self, out: &mut Blocks, count: usize, value: impl Fn(usize) -> u64 + Sync) -> io::Result<()> {
+        match self {
+            Self::Int32 => out.push(count, |i| (value(i) as u32).to_le_bytes()),
+            Self::Int64 => out.push(count, |i| value(i).to_le_bytes()),
         }
+    }
+}
+
+fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
+    let SourceCounts { tets, boundary, .. } = mesh.counts();
+    let corners: Fill = Box::new(move |out| {
+        let mut push = |ids: &[u32]| width.push(out, ids.len(), |i| u64::from(ids[i]));
+        mesh.tets(&mut |piece| push(piece.tets.as_flattened()))?;
+        mesh.boundary(&mut |piece| push(piece.faces.as_flattened()))
     });
-    let end_of = move |cell: usize| if cell < tet_count { 4 * (cell + 1) } else { tet_count + 3 * (cell + 1) };
-    let fits = |count: usize| i32::try_from(count).is_ok();
-    let narrow = fits(tets.len() + triangles.len()) && fits(mesh.mesh.points.len());
-    let offsets: Fill = Box::new(move |range, out| {
-        for cell in range {
-            if narrow {
-                out.extend_from_slice(&(end_of(cell) as i32).to_le_bytes());
-            } else {
-                out.extend_from_slice(&(end_of(cell) as i64).to_le_bytes());
-            }
-        }
+    let offsets: Fill = Box::new(move |out| {
+        width.push(out, tets, |tet| 4 * (tet as u64 + 1))?;
+        width.push(out, boundary, |face| 4 * tets as u64 + 3 * (face as u64 + 1))
     });
-    let types: Fill = Box::new(move |range, out| {
-        out.extend(range.map(|cell| if cell < tet_count { VTK_TETRA } else { VTK_TRIANGLE }));
+    let types: Fill = Box::new(move |out| {
+        out.push(tets, |_| [VTK_TETRA])?;
+        out.push(boundary, |_| [VTK_TRIANGLE])
     });
-    // Ids are u32: within the signed range they can be written as they are, else they need 64 bits.
-    let (kind, width) = if narrow { ("Int32", 4) } else { ("Int64", 8) };
-    let connectivity: Fill = if narrow {
-        connectivity
-    } else {
-        Box::new(move |range, out| {
-            for slice in [part(tets, &range, 0), part(triangles, &range, tets.len())] {
-                out.extend(slice.iter().flat_map(|&v| u64::from(v).to_le_bytes()));
-            }
-        })
-    };
-    let array = |name, kind, width, values, fill| Array {
+    let kind = if width == Width::Int32 { "Int32" } else { "Int64" };
+    let array = |name, kind, width, values, fill, shrinks| Array {
         place: Place::Cells,
         name,
         kind,
@@ -264,61 +322,51 @@ fn cell_arrays(mesh: &VolumeMesh) -> [Array<'_>; 3] {
         components: 1,
         values,
         fill,
-        shrinks: true,
+        shrinks,
     };
-    let corners = array("connectivity", kind, width, tets.len() + triangles.len(), connectivity);
     [
-        Array { shrinks: false, ..corners },
-        array("offsets", kind, width, cells, offsets),
-        array("types", "UInt8", 1, cells, types),
+        array("connectivity", kind, width.bytes(), 4 * tets + 3 * boundary, corners, false),
+        array("offsets", kind, width.bytes(), tets + boundary, offsets, true),
+        array("types", "UInt8", 1, tets + boundary, types, true),
     ]
 }
 
-/// What of `range` falls into `values`, whose first value has the index `start` in the whole.
-fn part<'a, T>(values: &'a [T], range: &Range<usize>, start: usize) -> &'a [T] {
-    let clip = |i: usize| i.clamp(start, start + values.len()) - start;
-    &values[clip(range.start)..clip(range.end)]
-}
-
-/// A cell array whose tetrahedra all have `constant`, or the values `of_tets` (0 where these are missing).
-fn cell_data<'a>(
-    name: &'static str,
-    constant: Option<i32>,
-    of_tets: &'a [i32],
-    mesh: &VolumeMesh,
-    of_boundary: &'a [i32],
-) -> Array<'a> {
-    let tets = mesh.mesh.tets.len();
-    let value = move |cell: usize| match cell.checked_sub(tets) {
-        Some(face) => of_boundary.get(face).copied().unwrap_or(0),
-        None => constant.unwrap_or_else(|| of_tets.get(cell).copied().unwrap_or(0)),
-    };
+fn cell_data<'a>(name: &'static str, counts: SourceCounts, fill: Fill<'a>) -> Array<'a> {
     Array {
         place: Place::CellData,
         name,
         kind: "Int32",
         width: 4,
         components: 1,
-        values: tets + mesh.boundary.len(),
-        fill: Box::new(move |range, out| out.extend(range.flat_map(|cell| value(cell).to_le_bytes()))),
+        values: counts.tets + counts.boundary,
+        fill,
         shrinks: true,
     }
 }
 
-fn header(mesh: &VolumeMesh, arrays: &[Array], offsets: &[u64]) -> String {
-    let mut text = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n",
-    );
-    section(&mut text, "FieldData", "", Place::Field, arrays, offsets);
-    let (points, cells) = (mesh.mesh.points.len(), mesh.mesh.tets.len() + mesh.boundary.len());
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
-    section(&mut text, "Points", "", Place::Points, arrays, offsets);
-    section(&mut text, "Cells", "", Place::Cells, arrays, offsets);
-    section(&mut text, "CellData", " Scalars=\"patch\"", Place::CellData, arrays, offsets);
-    text.push_str("</Piece>\n</UnstructuredGrid>");
-    text
+/// Patches of the boundary faces; those of tetrahedra are 0.
+fn patch_array(mesh: &dyn MeshSource) -> Array<'_> {
+    let counts = mesh.counts();
+    let fill: Fill = Box::new(move |out| {
+        out.push(counts.tets, |_| [0; 4])?;
+        mesh.boundary(&mut |piece| push_known(out, piece.patches, piece.faces.len()))
+    });
+    cell_data("patch", counts, fill)
+}
+
+fn block_array(mesh: &dyn MeshSource) -> Array<'_> {
+    let fill: Fill = Box::new(move |out| {
+        mesh.tets(&mut |piece| push_known(out, piece.blocks, piece.tets.len()))?;
+        mesh.boundary(&mut |piece| push_known(out, piece.blocks, piece.faces.len()))
+    });
+    cell_data("block", mesh.counts(), fill)
+}
+
+/// Pushes `count` values, 0 where they are not known.
+fn push_known(out: &mut Blocks, values: &[i32], count: usize) -> io::Result<()> {
+    let known = values.len().min(count);
+    out.push_ints(&values[..known])?;
+    out.push(count - known, |_| [0; 4])
 }
 
 fn section(text: &mut String, tag: &str, attributes: &str, place: Place, arrays: &[Array], offsets: &[u64]) {
@@ -337,53 +385,17 @@ fn section(text: &mut String, tag: &str, attributes: &str, place: Place, arrays:
                 Place::Field => format!(" NumberOfTuples=\"{}\"", array.values / components),
                 _ => String::new(),
             };
+            // VTK takes global ids only from arrays of its own type of ids.
+            let ids = if place == Place::PointData { " IdType=\"1\"" } else { "" };
             // One component is the default, and readers shape an explicit one as a column.
             let width = if *components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
             writeln!(
                 text,
-                "<DataArray type=\"{kind}\" Name=\"{name}\"{width}{tuples} format=\"appended\" offset=\"{offset}\"/>"
+                "<DataArray type=\"{kind}\"{ids} Name=\"{name}\"{width}{tuples} format=\"appended\" offset=\"{offset}\"/>"
             )
         };
     }
     let _ = writeln!(text, "</{tag}>");
-}
-
-/// Writes the number and sizes of the blocks, then the blocks, compressed a wave at a time.
-fn write_array(out: &mut (impl Write + Seek), array: &Array) -> io::Result<()> {
-    let blocks = array.values.div_ceil(BLOCK);
-    let size = (BLOCK * array.width) as u64;
-    let last = ((array.values % BLOCK) * array.width) as u64;
-    let mut sizes = vec![blocks as u64, size, last];
-    let head = out.stream_position()?;
-    write_spaces(out, 8 * (3 + blocks))?;
-    for first in (0..blocks).step_by(WAVE) {
-        let wave: Vec<io::Result<Vec<u8>>> = (first..blocks.min(first + WAVE))
-            .into_par_iter()
-            .map(|block| compress(array, block * BLOCK..array.values.min((block + 1) * BLOCK)))
-            .collect();
-        for bytes in wave {
-            let bytes = bytes?;
-            sizes.push(bytes.len() as u64);
-            out.write_all(&bytes)?;
-        }
-    }
-    let end = out.stream_position()?;
-    out.seek(SeekFrom::Start(head))?;
-    for size in sizes {
-        out.write_all(&size.to_le_bytes())?;
-    }
-    out.seek(SeekFrom::Start(end))?;
-    Ok(())
-}
-
-fn compress(array: &Array, range: Range<usize>) -> io::Result<Vec<u8>> {
-    let mut raw = Vec::with_capacity(range.len() * array.width);
-    (array.fill)(range, &mut raw);
-    let level = if array.shrinks { Compression::fast() } else { Compression::none() };
-    let mut encoder =
-        ZlibEncoder::new(Vec::with_capacity(if array.shrinks { raw.len() / 2 } else { raw.len() + 64 }), level);
-    encoder.write_all(&raw)?;
-    encoder.finish()
 }
 
 #[cfg(test)]

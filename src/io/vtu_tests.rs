@@ -5,7 +5,7 @@ use crate::geometry::{Point3, Vec3};
 use crate::io::mesh_file::{MeshFile, MeshFormat, ensure_writable, read_mesh, write_mesh, write_mesh_to};
 use crate::mesh::check::Expectation;
 use crate::mesh::shapes::tube_lattice;
-use crate::mesh::{Cap, Patch, WALL};
+use crate::mesh::{Cap, Patch, VolumeMesh, WALL};
 
 /// A tube with its foot labelled as inlet; every second tetrahedron is in block 1.
 pub(in crate::io) fn labelled_tube(layers: u32) -> (VolumeMesh, MeshNotes) {
@@ -159,5 +159,33 @@ fn a_large_patch_id_makes_no_large_file() {
         let bytes = bytes_of(&volume, &notes);
         assert!(bytes.len() < 100_000);
         assert_eq!(read_vtu(&bytes).unwrap().volume.boundary_patch, volume.boundary_patch);
+    }
+}
+
+#[test]
+fn many_cells_or_points_need_wide_numbers() {
+    let of = |points, tets, boundary| Width::of(SourceCounts { points, tets, boundary });
+    assert_eq!(of(1 << 30, 150_000_000, 40_000_000), Width::Int32);
+    assert_eq!(of(4, (1 << 29) - 1, 1), Width::Int32);
+    assert_eq!(of(4, 1 << 29, 0), Width::Int64);
+    assert_eq!(of(4, (1 << 29) - 1, 2), Width::Int64);
+    assert_eq!(of(1 << 31, 1, 0), Width::Int64);
+}
+
+#[test]
+fn wide_numbers_are_read() {
+    let (volume, _) = labelled_tube(200);
+    let [corners, offsets, _] = cell_arrays(&volume, Width::Int64);
+    for (array, first) in [(corners, u64::from(volume.mesh.tets[0][0])), (offsets, 4)] {
+        assert_eq!((array.kind, array.width), ("Int64", 8));
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        write_blocks(&mut bytes, array.values, 8, Compression::none(), &array.fill).unwrap();
+        let bytes = bytes.into_inner();
+        let size = |word: usize| u64::from_le_bytes(bytes[8 * word..8 * word + 8].try_into().unwrap());
+        let mut raw = Vec::new();
+        let mut block = &bytes[8 * (3 + size(0) as usize)..][..size(3) as usize];
+        std::io::Read::read_to_end(&mut flate2::read::ZlibDecoder::new(&mut block), &mut raw).unwrap();
+        assert_eq!(u64::from_le_bytes(raw[..8].try_into().unwrap()), first);
+        assert_eq!(raw.len() as u64, if size(0) > 1 { size(1) } else { size(2) });
     }
 }

@@ -1,0 +1,150 @@
+//! What is written does not depend on how a mesh is read, and a disk that is full is an error.
+
+use super::cut_source::Cut;
+use super::mesh_file::{MeshFormat, MeshNotes, write_format, write_mesh, write_mesh_to};
+use super::vtu::tests::labelled_tube;
+use crate::mesh::VolumeMesh;
+use crate::mesh::source::{MeshSource, gather};
+use proptest::prelude::*;
+use std::io::{self, Cursor, Seek, SeekFrom, Write};
+
+const STREAMED: [MeshFormat; 3] = [MeshFormat::Vtu, MeshFormat::Msh, MeshFormat::Medit];
+
+fn bytes_of(format: MeshFormat, mesh: &dyn MeshSource, notes: &MeshNotes) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_mesh_to(&mut bytes, format, mesh, notes).unwrap();
+    bytes
+}
+
+/// A tube with some patches, names of which there are more and fewer than patches that have faces.
+fn tube(layers: u32) -> (VolumeMesh, MeshNotes) {
+    let (mut volume, notes) = labelled_tube(layers);
+    for (i, patch) in volume.boundary_patch.iter_mut().enumerate() {
+        *patch += [0, 0, 4, 0, 2, 0, -7][i % 7];
+    }
+    (volume, notes)
+}
+
+fn same_bytes(volume: &VolumeMesh, notes: &MeshNotes, sizes: &[usize]) {
+    let cut = Cut { volume, sizes };
+    assert_eq!(&gather(&cut).unwrap().mesh, &volume.mesh);
+    for format in STREAMED {
+        assert!(bytes_of(format, &cut, notes) == bytes_of(format, volume, notes), "{format:?} {sizes:?}");
+    }
+}
+
+#[test]
+fn pieces_make_no_difference() {
+    // Enough layers for several compressed blocks and waves of them.
+    for (layers, sizes) in [(1, [1]), (40, [1]), (200, [7]), (3000, [1000])] {
+        let (volume, notes) = tube(layers);
+        same_bytes(&volume, &notes, &sizes);
+    }
+    let (mut volume, mut notes) = tube(20);
+    notes.regions = true;
+    same_bytes(&volume, &notes, &[13]);
+    volume.tet_block.clear();
+    volume.boundary_block.clear();
+    volume.boundary_patch.clear();
+    same_bytes(&volume, &notes, &[13]);
+    same_bytes(&VolumeMesh::default(), &MeshNotes::default(), &[1]);
+}
+
+#[test]
+fn pieces_make_no_difference_to_the_family_of_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let (volume, notes) = tube(9);
+    write_mesh(&folder.path().join("whole.ele"), &volume, &notes).unwrap();
+    write_mesh(&folder.path().join("cut.ele"), &Cut { volume: &volume, sizes: &[1, 7, 30] }, &notes).unwrap();
+    for kind in ["node", "ele", "face", "edge", "neigh"] {
+        let read = |name: &str| std::fs::read(folder.path().join(name).with_extension(kind)).unwrap();
+        assert!(read("cut") == read("whole"), "{kind}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20))]
+
+    #[test]
+    fn random_pieces_make_no_difference(layers in 1_u32..60, sizes in prop::collection::vec(1_usize..400, 1..20)) {
+        let (volume, notes) = tube(layers);
+        same_bytes(&volume, &notes, &sizes);
+    }
+}
+
+/// A source that gives another number of points than it says.
+struct Liar<'a>(Cut<'a>, usize);
+
+impl MeshSource for Liar<'_> {
+    fn counts(&self) -> crate::mesh::source::SourceCounts {
+        let counts = self.0.counts();
+        crate::mesh::source::SourceCounts { points: counts.points + self.1 - 1, ..counts }
+    }
+    fn patches(&self) -> &[crate::mesh::Patch] {
+        self.0.patches()
+    }
+    fn points(&self, each: crate::mesh::source::EachPoints) -> io::Result<()> {
+        self.0.points(each)
+    }
+    fn tets(&self, each: crate::mesh::source::EachTets) -> io::Result<()> {
+        self.0.tets(each)
+    }
+    fn boundary(&self, each: crate::mesh::source::EachFaces) -> io::Result<()> {
+        self.0.boundary(each)
+    }
+}
+
+#[test]
+fn a_source_that_lies_is_found_out() {
+    let (volume, notes) = tube(4);
+    for error in [0, 2] {
+        let liar = Liar(Cut { volume: &volume, sizes: &[5] }, error);
+        for format in STREAMED {
+            let result = write_mesh_to(&mut Vec::new(), format, &liar, &notes);
+            assert_eq!(result.unwrap_err().kind(), io::ErrorKind::InvalidData, "{format:?}");
+        }
+    }
+}
+
+/// A disk with so much room.
+struct Disk {
+    bytes: Cursor<Vec<u8>>,
+    room: u64,
+}
+
+impl Write for Disk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let free = self.room.saturating_sub(self.bytes.position());
+        if free == 0 && !bytes.is_empty() {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.bytes.write(&bytes[..bytes.len().min(free as usize)])
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Disk {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.bytes.seek(to)
+    }
+}
+
+#[test]
+fn a_full_disk_is_an_error_wherever_it_happens() {
+    let (volume, notes) = tube(6);
+    for format in STREAMED {
+        let whole = bytes_of(format, &volume, &notes);
+        let length = whole.len() as u64;
+        for room in (0..length).step_by(53).chain([length - 1]) {
+            let mut disk = Disk { bytes: Cursor::default(), room };
+            let error = write_format(&mut disk, format, &volume, &notes).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{format:?} {room} of {length}");
+        }
+        let mut disk = Disk { bytes: Cursor::default(), room: length };
+        write_format(&mut disk, format, &volume, &notes).unwrap();
+        assert!(disk.bytes.into_inner() == whole);
+    }
+}
