@@ -249,7 +249,8 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
     AtomicFile::create(path).map(drop).map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })
 }
 
-/// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all.
+/// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all. The bytes depend
+/// on the mesh and the notes alone. No format but `TetGen`'s holds a mesh that is read in passes: see the writers of each.
 ///
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
@@ -269,12 +270,11 @@ pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Resu
 /// The neighbours of tetrahedra are not found in passes: this format holds the mesh in memory.
 fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError> {
     let gathered;
-    let volume = match mesh.whole() {
-        Some(volume) => volume,
-        None => {
-            gathered = gather(mesh).map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })?;
-            &gathered
-        }
+    let volume = if let Some(volume) = mesh.whole() {
+        volume
+    } else {
+        gathered = gather(mesh).map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })?;
+        &gathered
     };
     MeshFamily::of_volume(volume).write(path)?;
     Ok(())
