@@ -243,9 +243,7 @@ fn unsound_cell(mesh: &dyn MeshSource) -> io::Result<Option<usize>> {
 pub fn write_medit_to(out: &mut impl Write, mesh: &dyn MeshSource) -> io::Result<()> {
     let counts = mesh.counts();
     writeln!(out, "MeshVersionFormatted 2\nDimension 3\n{VERTICES}\n{}", counts.points)?;
-    mesh.points(&mut |points| {
-        points.iter().try_for_each(|p| writeln!(out, "{:?} {:?} {:?} 0", p.x, p.y, p.z))
-    })?;
+    mesh.points(&mut |points| points.iter().try_for_each(|p| writeln!(out, "{:?} {:?} {:?} 0", p.x, p.y, p.z)))?;
     writeln!(out, "{TRIANGLES}\n{}", counts.boundary)?;
     mesh.boundary(&mut |piece| write_cells(out, piece.faces, piece.patches))?;
     writeln!(out, "{TETRAHEDRA}\n{}", counts.tets)?;

@@ -284,7 +284,12 @@ fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError>
 ///
 /// # Errors
 /// What the stream reports.
-pub fn write_mesh_to(out: &mut impl Write, format: MeshFormat, mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<()> {
+pub fn write_mesh_to(
+    out: &mut impl Write,
+    format: MeshFormat,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+) -> io::Result<()> {
     let mut bytes = Cursor::new(Vec::new());
     write_format(&mut bytes, format, mesh, notes)?;
     out.write_all(bytes.get_ref())

@@ -7,9 +7,9 @@
 use super::mesh_file::MeshNotes;
 use super::msh_surfaces::{Surfaces, run};
 use crate::geometry::Aabb;
-use crate::mesh::{Patch, VolumeMesh};
 use crate::mesh::check::Expectation;
 use crate::mesh::source::MeshSource;
+use crate::mesh::{Patch, VolumeMesh};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
@@ -206,11 +206,7 @@ fn write_nodes(out: &mut impl Write, mesh: &dyn MeshSource, surfaces: &Surfaces)
 }
 
 /// The tags of some points, then their positions.
-fn write_chosen_points(
-    out: &mut impl Write,
-    mesh: &dyn MeshSource,
-    chosen: impl Fn(u32) -> bool,
-) -> io::Result<()> {
+fn write_chosen_points(out: &mut impl Write, mesh: &dyn MeshSource, chosen: impl Fn(u32) -> bool) -> io::Result<()> {
     for v in (0..mesh.counts().points as u32).filter(|&v| chosen(v)) {
         sizes(out, &[v as usize + 1])?;
     }

@@ -151,8 +151,7 @@ const LARGEST_NAMED: i32 = 1 << 16;
 
 /// Names by patch id: `lumen` stands for the inside (0), ids that no patch has stay empty.
 fn patch_names(patches: &[Patch]) -> Vec<String> {
-    let largest =
-        patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
+    let largest = patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
     let mut names = vec![String::new(); largest + 1];
     names[0] = "lumen".into();
     for patch in patches {
