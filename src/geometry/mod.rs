@@ -10,6 +10,7 @@ pub mod hilbert;
 pub mod implicit;
 mod integer;
 pub mod predicates;
+mod ray;
 mod tri_tri;
 mod tube;
 
@@ -17,7 +18,8 @@ pub use aabb::Aabb;
 pub use bvh::Bvh;
 pub(crate) use convex::minimise_convex;
 pub use distance::{SegmentPair, TubePair, point_segment, point_triangle, point_tube, segment_segment, tube_tube};
-pub use tri_tri::{Contact, Improper, classify, self_contacts, self_intersections};
+pub use ray::crossing;
+pub use tri_tri::{Contact, Improper, Triangle, classify, classify_triangles, self_contacts, self_intersections};
 pub use tube::{Section, Tube};
 
 /// A point in space; the unit is the network's.

@@ -22,7 +22,7 @@ pub enum Contact {
 }
 
 /// How two triangles meet that should not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Improper {
@@ -78,10 +78,12 @@ impl Hits {
 }
 
 /// A triangle with the ids of its vertices.
-#[derive(Clone, Copy)]
-struct Triangle<'a> {
-    ids: [u32; 3],
-    corners: [&'a Point3; 3],
+#[derive(Clone, Copy, Debug)]
+pub struct Triangle<'a> {
+    /// Ids of the vertices: by them neighbours are recognised.
+    pub ids: [u32; 3],
+    /// Where the vertices are.
+    pub corners: [&'a Point3; 3],
 }
 
 impl<'a> Triangle<'a> {
@@ -126,7 +128,12 @@ impl<'a> Triangle<'a> {
 /// How triangles `a` and `b` (vertex ids) lie to each other. Exact for finite coordinates in the range of the
 /// predicates; symmetric in `a` and `b`.
 pub fn classify(points: &[Point3], a: [u32; 3], b: [u32; 3]) -> Contact {
-    let (p, q) = (Triangle::new(points, a), Triangle::new(points, b));
+    classify_triangles(Triangle::new(points, a), Triangle::new(points, b))
+}
+
+/// As [`classify`], for triangles whose vertices need not stand in one array; equal ids must have equal positions.
+pub fn classify_triangles(p: Triangle, q: Triangle) -> Contact {
+    let (a, b) = (p.ids, q.ids);
     let shared = a.iter().filter(|v| b.contains(v)).count() as u32;
     if shared == 3 {
         return Contact::Improper(Improper::SameVertices);
@@ -326,7 +333,13 @@ fn test_pairs(points: &[Point3], triangles: &[[u32; 3]], pairs: &[(u32, u32)], f
         Contact::Improper(kind) => Some((i, j, kind)),
         Contact::Apart | Contact::Neighbours => None,
     };
-    found.par_extend(pairs.par_iter().with_min_len(1 << 12).filter_map(test));
+    const SHARE: usize = 1 << 12;
+    // Few pairs are no work for a pool, which would have its own ideas of what to do next.
+    if pairs.len() < SHARE {
+        found.extend(pairs.iter().filter_map(test));
+    } else {
+        found.par_extend(pairs.par_iter().with_min_len(SHARE).filter_map(test));
+    }
 }
 
 #[cfg(test)]

@@ -74,7 +74,7 @@ pub fn dihedral_range(corners: [&Point3; 4]) -> (f64, f64) {
 
 /// The range of the cotangents of dihedral angles: on [0, π] they fall from ∞ to −∞, so the extreme angles can be told
 /// without computing any other.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct CotangentRange {
     low: f64,
     high: f64,
@@ -173,25 +173,137 @@ impl TetQuality {
     /// Measures a mesh. A mesh without tetrahedra has zeros everywhere.
     pub fn of(mesh: &TetMesh) -> Self {
         let mut ratios = Vec::with_capacity(mesh.tets.len());
-        let mut histogram = [0; HISTOGRAM_BINS];
-        let mut dihedral = CotangentRange::default();
+        let mut sum = QualitySum::default();
         for t in &mesh.tets {
-            let p = t.map(|v| &mesh.points[v as usize]);
-            let q = radius_ratio(p[0], p[1], p[2], p[3]);
-            histogram[((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1)] += 1;
-            ratios.push(q);
-            dihedral.include_if_wider(p);
+            ratios.push(sum.include(t.map(|v| &mesh.points[v as usize])));
         }
-        let (low, high) = if ratios.is_empty() { (0.0, 0.0) } else { dihedral.angles() };
-        Self {
-            tets: ratios.len(),
-            mean: ratios.iter().sum::<f64>() / ratios.len().max(1) as f64,
-            percentile_1: percentile(&mut ratios, 0.01),
-            min: ratios.iter().copied().reduce(f64::min).unwrap_or(0.0),
+        Self { percentile_1: percentile(&mut ratios, 0.01), ..sum.quality() }
+    }
+}
+
+/// Equal bins over [0, 1] of [`QualitySum`]; each of `TetQuality`'s holds as many of them.
+pub const FINE_BINS: usize = 400;
+
+const PER_BIN: usize = FINE_BINS / HISTOGRAM_BINS;
+
+/// Shape of the tetrahedra of a piece of a mesh; pieces are added up.
+#[derive(Clone, Debug)]
+pub struct QualitySum {
+    sum: f64,
+    min: f64,
+    dihedral: CotangentRange,
+    /// Counts of the radius ratio in `FINE_BINS` bins; negative ones are in the first.
+    bins: Vec<u64>,
+}
+
+impl Default for QualitySum {
+    fn default() -> Self {
+        let dihedral = CotangentRange::default();
+        Self { sum: 0.0, min: f64::INFINITY, dihedral, bins: vec![0; FINE_BINS] }
+    }
+}
+
+impl QualitySum {
+    /// Adds a tetrahedron; its radius ratio.
+    #[inline]
+    pub fn include(&mut self, p: [&Point3; 4]) -> f64 {
+        let q = radius_ratio(p[0], p[1], p[2], p[3]);
+        // The fine bin lies in the coarse one, whatever rounding does.
+        let coarse = ((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1) * PER_BIN;
+        let fine = ((q * FINE_BINS as f64) as usize).clamp(coarse, coarse + PER_BIN - 1);
+        self.bins[fine] += 1;
+        self.sum += q;
+        self.min = self.min.min(q);
+        self.dihedral.include_if_wider(p);
+        q
+    }
+
+    /// The shape of all that was added. The percentile is linear within a bin, and so right to a bin's width, 0.0025; all
+    /// else is exact, but for the order in which the mean is summed.
+    pub fn quality(&self) -> TetQuality {
+        let tets: u64 = self.bins.iter().sum();
+        let (low, high) = if tets == 0 { (0.0, 0.0) } else { self.dihedral.angles() };
+        let mut histogram = [0; HISTOGRAM_BINS];
+        for (i, &count) in self.bins.iter().enumerate() {
+            histogram[i / PER_BIN] += count;
+        }
+        TetQuality {
+            tets: tets as usize,
+            mean: self.sum / tets.max(1) as f64,
+            percentile_1: self.percentile(0.01, tets),
+            min: if tets == 0 { 0.0 } else { self.min },
             histogram,
             dihedral_min: low.to_degrees(),
             dihedral_max: high.to_degrees(),
         }
+    }
+
+    fn percentile(&self, share: f64, tets: u64) -> f64 {
+        let rank = share * tets.saturating_sub(1) as f64;
+        let mut below = 0;
+        for (i, &count) in self.bins.iter().enumerate().filter(|(_, count)| **count > 0) {
+            if rank < (below + count) as f64 {
+                // The values of a bin are taken as evenly spread, the first bin's from the smallest.
+                let edge = |i: usize| i as f64 / FINE_BINS as f64;
+                let low = if below == 0 { self.min } else { edge(i) };
+                return low + (edge(i + 1) - low) * (rank - below as f64) / count as f64;
+            }
+            below += count;
+        }
+        0.0
+    }
+}
+
+/// A [`QualitySum`] to be kept: some hundred bytes.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct QualityPiece {
+    sum: f64,
+    min: f64,
+    /// Range of the cotangents of dihedral angles.
+    cotangents: [f64; 2],
+    /// The bins up to the last that is not empty, seven bits in a byte, lowest first, the eighth set where more follow.
+    counts: Vec<u8>,
+}
+
+impl QualitySum {
+    /// The sum in its small form.
+    pub fn piece(&self) -> QualityPiece {
+        let Some(last) = self.bins.iter().rposition(|&count| count > 0) else { return QualityPiece::default() };
+        let mut counts = Vec::with_capacity(last + 16);
+        for &count in &self.bins[..=last] {
+            let mut left = count;
+            while left > 0x7f {
+                counts.push((left & 0x7f) as u8 | 0x80);
+                left >>= 7;
+            }
+            counts.push(left as u8);
+        }
+        // Infinities, which not all formats know, as the largest numbers.
+        let finite = |x: f64| x.clamp(f64::MIN, f64::MAX);
+        let cotangents = [self.dihedral.low, self.dihedral.high].map(finite);
+        QualityPiece { sum: self.sum, min: self.min, cotangents, counts }
+    }
+
+    /// Adds a piece; says whether it could be read.
+    pub fn add_piece(&mut self, piece: &QualityPiece) -> bool {
+        if piece.counts.is_empty() {
+            return true;
+        }
+        let (mut bin, mut count, mut shift) = (0, 0_u64, 0);
+        for &byte in &piece.counts {
+            let Some(slot) = self.bins.get_mut(bin).filter(|_| shift < 63) else { return false };
+            count |= u64::from(byte & 0x7f) << shift;
+            shift += 7;
+            if byte & 0x80 == 0 {
+                *slot += count;
+                (bin, count, shift) = (bin + 1, 0, 0);
+            }
+        }
+        self.sum += piece.sum;
+        self.min = self.min.min(piece.min);
+        self.dihedral.low = self.dihedral.low.min(piece.cotangents[0]);
+        self.dihedral.high = self.dihedral.high.max(piece.cotangents[1]);
+        true
     }
 }
 

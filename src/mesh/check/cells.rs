@@ -13,13 +13,20 @@ pub(super) fn centroid(points: &[Point3], ids: &[u32]) -> Point3 {
     Point3::from(sum / ids.len() as f64)
 }
 
+/// The mean of points.
+pub(super) fn middle<'a>(points: impl IntoIterator<Item = &'a Point3>) -> Point3 {
+    let sum = |(sum, n), p: &Point3| (sum + p.coords, n + 1.0);
+    let (sum, n): (crate::geometry::Vec3, f64) = points.into_iter().fold((crate::geometry::Vec3::zeros(), 0.0), sum);
+    Point3::from(sum / n)
+}
+
 fn tet_offender(mesh: &TetMesh, tet: u32) -> Offender {
     let place = centroid(&mesh.points, &mesh.tets[tet as usize]);
     Offender::new(OffenderKind::Tet, &[tet], Some(place))
 }
 
-fn point_offender(mesh: &TetMesh, point: u32) -> Offender {
-    Offender::new(OffenderKind::Point, &[point], Some(mesh.points[point as usize]))
+pub(super) fn point_offender(points: &[Point3], point: u32) -> Offender {
+    Offender::new(OffenderKind::Point, &[point], Some(points[point as usize]))
 }
 
 pub(super) fn not_empty(mesh: &TetMesh) -> LineResult {
@@ -83,7 +90,7 @@ pub(super) fn positive_tets(mesh: &TetMesh) -> LineResult {
     tally.done()
 }
 
-fn sorted<const N: usize>(mut ids: [u32; N]) -> [u32; N] {
+pub(super) fn sorted<const N: usize>(mut ids: [u32; N]) -> [u32; N] {
     ids.sort_unstable();
     ids
 }
@@ -149,7 +156,7 @@ pub(super) fn opposite_sides(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineRe
 }
 
 /// A key under which equal points (and 0 and −0) are equal.
-fn bits(p: &Point3) -> [u64; 3] {
+pub(super) fn bits(p: &Point3) -> [u64; 3] {
     [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits())
 }
 
@@ -177,7 +184,7 @@ pub(super) fn no_unused_points(mesh: &TetMesh) -> LineResult {
     let used = crate::mesh::adjacency::vertices_of(&mesh.tets, mesh.points.len());
     let mut tally = Tally::new(Line::NoUnusedPoints);
     for (i, _) in used.iter().enumerate().filter(|&(_, &used)| !used) {
-        tally.add(|| point_offender(mesh, i as u32));
+        tally.add(|| point_offender(&mesh.points, i as u32));
     }
     tally.done()
 }

@@ -2,7 +2,7 @@
 
 use super::cells::{face_offender, same_turn};
 use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally};
-use crate::geometry::Vec3;
+use crate::geometry::{Point3, Vec3};
 use crate::mesh::quality::triangle_area_vector;
 use crate::mesh::{Cap, Patch, VolumeMesh, WALL};
 use rustc_hash::FxHashMap;
@@ -36,7 +36,7 @@ pub(super) fn labels_match(volume: &VolumeMesh, faces: &[[u32; 3]]) -> LineResul
         let label = labelled.next_if(|_| first.is_ge()).map(|(_, j)| volume.boundary[j as usize]);
         match (face, label) {
             (Some(face), Some(label)) if same_turn(face, label) => {}
-            (_, Some(label)) => tally.add(|| face_at(volume, label)),
+            (_, Some(label)) => tally.add(|| face_at(points, label)),
             (Some(face), None) => tally.add(|| face_offender(points, face)),
             (None, None) => {}
         }
@@ -45,8 +45,7 @@ pub(super) fn labels_match(volume: &VolumeMesh, faces: &[[u32; 3]]) -> LineResul
 }
 
 /// A labelled triangle that may name points that do not exist.
-fn face_at(volume: &VolumeMesh, face: [u32; 3]) -> Offender {
-    let points = &volume.mesh.points;
+pub(super) fn face_at(points: &[Point3], face: [u32; 3]) -> Offender {
     if face.iter().all(|&v| (v as usize) < points.len()) {
         face_offender(points, face)
     } else {
@@ -71,24 +70,35 @@ fn by_vertices(triangles: &[[u32; 3]]) -> Vec<([u32; 3], u32)> {
 
 /// The lines about patches and caps; the labelled triangles must name points that exist.
 pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) -> Vec<LineResult> {
-    let own = own_patch(volume);
-    let no_caps = volume.patches.iter().all(|patch| patch.cap.is_none());
-    if no_caps && expectation.is_none_or(|expected| !expected.terminals.is_empty()) {
-        // Labels by others: they name parts of the boundary, but say of none what cap it is.
-        let mut lines = vec![own];
-        lines.extend(CAP_LINES.map(|line| LineResult::skipped(line, Skipped::NoCaps)));
-        if let Some(expected) = expectation {
-            lines[2] = cap_per_terminal(volume, expected);
-        }
+    if let Some(lines) = lines_without_caps(&volume.patches, expectation) {
         return lines;
     }
-    let mut lines = vec![own, wall_or_cap(volume)];
-    lines.push(match expectation {
-        Some(expected) => cap_per_terminal(volume, expected),
-        None => LineResult::skipped(Line::CapPerTerminal, Skipped::NoExpectation),
-    });
+    let mut lines = vec![own_patch(&volume.patches), wall_or_cap(volume)];
+    lines.push(terminals_with_caps(&volume.patches, expectation));
     lines.extend(cap_shapes(volume));
     lines
+}
+
+/// The lines about patches and caps where others have labelled the boundary: they name parts of it, but say of none what
+/// cap it is.
+pub(super) fn lines_without_caps(patches: &[Patch], expectation: Option<&Expectation>) -> Option<Vec<LineResult>> {
+    let no_caps = patches.iter().all(|patch| patch.cap.is_none());
+    if !no_caps || expectation.is_some_and(|expected| expected.terminals.is_empty()) {
+        return None;
+    }
+    let mut lines = vec![own_patch(patches)];
+    lines.extend(CAP_LINES.map(|line| LineResult::skipped(line, Skipped::NoCaps)));
+    if let Some(expected) = expectation {
+        lines[2] = cap_per_terminal(patches, expected);
+    }
+    Some(lines)
+}
+
+pub(super) fn terminals_with_caps(patches: &[Patch], expectation: Option<&Expectation>) -> LineResult {
+    match expectation {
+        Some(expected) => cap_per_terminal(patches, expected),
+        None => LineResult::skipped(Line::CapPerTerminal, Skipped::NoExpectation),
+    }
 }
 
 const CAP_LINES: [Line; 7] = [
@@ -108,19 +118,19 @@ fn wall_or_cap(volume: &VolumeMesh) -> LineResult {
     for (i, &face) in volume.boundary.iter().enumerate() {
         let known = volume.boundary_patch.get(i).is_some_and(|&id| id == WALL || caps.binary_search(&id).is_ok());
         if !known {
-            tally.add(|| face_at(volume, face));
+            tally.add(|| face_at(&volume.mesh.points, face));
         }
     }
     tally.done()
 }
 
-fn patch_offender(id: i32, cap: Option<&Cap>) -> Offender {
+pub(super) fn patch_offender(id: i32, cap: Option<&Cap>) -> Offender {
     Offender { kind: OffenderKind::Patch, ids: vec![i64::from(id)], position: cap.map(|cap| cap.center.coords.into()) }
 }
 
-fn own_patch(volume: &VolumeMesh) -> LineResult {
+pub(super) fn own_patch(patches: &[Patch]) -> LineResult {
     let mut tally = Tally::new(Line::OwnPatch);
-    let mut by_id: Vec<&Patch> = volume.patches.iter().collect();
+    let mut by_id: Vec<&Patch> = patches.iter().collect();
     by_id.sort_by_key(|patch| patch.id);
     for pair in by_id.windows(2).filter(|pair| pair[0].id == pair[1].id) {
         tally.add(|| patch_offender(pair[1].id, pair[1].cap.as_ref()));
@@ -129,15 +139,15 @@ fn own_patch(volume: &VolumeMesh) -> LineResult {
     for pair in by_id.windows(2).filter(|pair| pair[0].name == pair[1].name && pair[0].id != pair[1].id) {
         tally.add(|| patch_offender(pair[1].id, pair[1].cap.as_ref()));
     }
-    for patch in volume.patches.iter().filter(|p| p.id == WALL && p.cap.is_some()) {
+    for patch in patches.iter().filter(|p| p.id == WALL && p.cap.is_some()) {
         tally.add(|| patch_offender(patch.id, patch.cap.as_ref()));
     }
     tally.done()
 }
 
 /// Terminals without a cap, with several, and caps of nodes that are no terminals.
-fn cap_per_terminal(volume: &VolumeMesh, expected: &Expectation) -> LineResult {
-    let mut caps: Vec<u32> = volume.patches.iter().filter_map(|p| p.cap.map(|cap| cap.node)).collect();
+fn cap_per_terminal(patches: &[Patch], expected: &Expectation) -> LineResult {
+    let mut caps: Vec<u32> = patches.iter().filter_map(|p| p.cap.map(|cap| cap.node)).collect();
     let mut terminals = expected.terminals.clone();
     caps.sort_unstable();
     terminals.sort_unstable();
@@ -163,25 +173,34 @@ fn cap_per_terminal(volume: &VolumeMesh, expected: &Expectation) -> LineResult {
 
 /// Shape of every cap.
 fn cap_shapes(volume: &VolumeMesh) -> Vec<LineResult> {
-    let mut tallies = [Line::CapDisc, Line::CapFlat, Line::CapCentred, Line::CapArea, Line::CapNormal].map(Tally::new);
+    let mut tallies = SHAPE_LINES.map(Tally::new);
     let triangles = triangles_by_patch(volume);
     for patch in &volume.patches {
         let Some(cap) = &patch.cap else { continue };
         let own = triangles.get(&patch.id).map_or(&[][..], Vec::as_slice);
-        let shape = CapShape::measure(volume, cap, own);
-        let disc = PI * cap.radius * cap.radius;
-        let holds = [
-            is_disc(own),
-            shape.off_plane <= FLATNESS * cap.radius,
-            shape.off_centre <= OFF_CENTRE * cap.radius,
-            (shape.area - disc).abs() <= AREA * disc,
-            shape.faces_outwards,
-        ];
+        let holds = cap_shape(&volume.mesh.points, cap, own);
         for (tally, _) in tallies.iter_mut().zip(holds).filter(|(_, holds)| !holds) {
             tally.add(|| patch_offender(patch.id, Some(cap)));
         }
     }
     tallies.map(Tally::done).into()
+}
+
+/// The lines about the shape of a cap.
+pub(super) const SHAPE_LINES: [Line; 5] =
+    [Line::CapDisc, Line::CapFlat, Line::CapCentred, Line::CapArea, Line::CapNormal];
+
+/// Whether a cap with these triangles has the shape that each of `SHAPE_LINES` asks for.
+pub(super) fn cap_shape(points: &[Point3], cap: &Cap, triangles: &[[u32; 3]]) -> [bool; 5] {
+    let shape = CapShape::measure(points, cap, triangles);
+    let disc = PI * cap.radius * cap.radius;
+    [
+        is_disc(triangles),
+        shape.off_plane <= FLATNESS * cap.radius,
+        shape.off_centre <= OFF_CENTRE * cap.radius,
+        (shape.area - disc).abs() <= AREA * disc,
+        shape.faces_outwards,
+    ]
 }
 
 /// The triangles of each patch but the wall, in file order.
@@ -205,12 +224,12 @@ struct CapShape {
 }
 
 impl CapShape {
-    fn measure(volume: &VolumeMesh, cap: &Cap, triangles: &[[u32; 3]]) -> Self {
+    fn measure(points: &[Point3], cap: &Cap, triangles: &[[u32; 3]]) -> Self {
         let (mut area, mut moment) = (0.0, Vec3::zeros());
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut faces_outwards = !triangles.is_empty();
         for t in triangles {
-            let corners = t.map(|v| &volume.mesh.points[v as usize]);
+            let corners = t.map(|v| &points[v as usize]);
             let normal = triangle_area_vector(corners[0], corners[1], corners[2]);
             faces_outwards &= normal.dot(&cap.normal) > 0.0;
             let a = normal.norm();
@@ -229,7 +248,7 @@ impl CapShape {
 
 /// Whether triangles form one disc: joined by edges, every edge in one triangle or two that run along it in opposite
 /// directions, one boundary loop, Euler number 1.
-fn is_disc(triangles: &[[u32; 3]]) -> bool {
+pub(super) fn is_disc(triangles: &[[u32; 3]]) -> bool {
     let Ok(count) = u32::try_from(triangles.len()) else { return false };
     let mut directed: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
     let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();

@@ -8,6 +8,8 @@
 mod cells;
 mod disjoint_sets;
 mod labels;
+mod nested;
+pub mod parts;
 mod result;
 mod surface;
 
@@ -98,12 +100,12 @@ impl Check<'_> {
         drop(adjacency);
         let boundary = Boundary::new(&mesh.points, &faces);
         counts.boundary_faces = faces.len();
-        counts.boundary_components = boundary.part_count();
+        counts.boundary_components = boundary.surfaces().all.len();
         lines.push(boundary.edges_closed());
         lines.push(boundary.single_fans());
-        let (line, intersections) = boundary.self_intersections();
-        lines.push(line);
         let open = [Line::BoundaryEdges, Line::BoundaryFans].into_iter().find(|&line| fails(&lines, line));
+        let (line, intersections) = boundary.self_intersections(!fails(&lines, Line::BoundaryEdges));
+        lines.push(line);
         lines.push(self.loops(&boundary, open));
         drop(boundary);
         lines.extend(self.labels(&faces));

@@ -2,7 +2,7 @@
 
 use crate::geometry::Point3;
 use crate::mesh::quality::TetQuality;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a mesh has to be, known from the network it was made of.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -15,7 +15,7 @@ pub struct Expectation {
 }
 
 /// The lines of the definition of 'valid', in the order in which they are reported.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Line {
@@ -43,7 +43,7 @@ pub enum Line {
     BoundaryEdges,
     /// The boundary faces round a vertex form a single fan.
     BoundaryFans,
-    /// The boundary does not meet itself.
+    /// The boundary does not meet itself, and no boundary surface lies within the mesh.
     NoSelfIntersection,
     /// As many components (tetrahedra joined by faces) as the skeleton has.
     Components,
@@ -157,7 +157,7 @@ pub enum Outcome {
 }
 
 /// What an offender's ids are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OffenderKind {
     /// One point.
@@ -179,7 +179,7 @@ pub enum OffenderKind {
 }
 
 /// Something that breaks a line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Offender {
     /// What the ids are.
     pub kind: OffenderKind,
@@ -219,6 +219,10 @@ pub struct LineResult {
 }
 
 impl LineResult {
+    pub(super) fn fails(&self) -> bool {
+        self.outcome == Outcome::Fail
+    }
+
     pub(super) fn skipped(line: Line, why: Skipped) -> Self {
         Self { outcome: Outcome::NotChecked(why), ..Tally::new(line).done() }
     }
@@ -289,7 +293,7 @@ pub enum Verdict {
 }
 
 /// Two boundary faces that meet improperly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Intersection {
     /// Their vertices; the same face twice when it has no area.
     pub faces: [[u32; 3]; 2],

@@ -1,7 +1,8 @@
 //! Lines about the boundary as a surface.
 
-use super::cells::{centroid, face_offender};
+use super::cells::{centroid, face_offender, point_offender};
 use super::disjoint_sets::DisjointSets;
+use super::nested::nested_surfaces;
 use super::result::{Intersection, Line, LineResult, Offender, OffenderKind, Tally};
 use crate::geometry::{Point3, self_contacts};
 use crate::mesh::adjacency::{NONE, TriAdjacency, tri_adjacency};
@@ -11,19 +12,35 @@ pub(super) struct Boundary<'a> {
     points: &'a [Point3],
     faces: &'a [[u32; 3]],
     edges: TriAdjacency,
-    parts: Vec<Part>,
+    surfaces: Surfaces,
 }
 
-/// A boundary surface: faces joined by vertices.
-struct Part {
-    vertex: u32,
-    vertices: i64,
-    faces: i64,
+/// The boundary surfaces: faces joined by vertices.
+pub(super) struct Surfaces {
+    /// Surface of each vertex; `NONE` off the boundary.
+    pub of: Vec<u32>,
+    /// Ascending by their smallest vertex.
+    pub all: Vec<Surface>,
+}
+
+/// A boundary surface.
+pub(super) struct Surface {
+    /// Its smallest vertex.
+    pub vertex: u32,
+    pub vertices: i64,
+    pub faces: i64,
+}
+
+impl Surface {
+    /// Euler number of a closed one: 2 E = 3 F there.
+    pub(super) fn euler(&self) -> i64 {
+        self.vertices - self.faces / 2
+    }
 }
 
 impl<'a> Boundary<'a> {
     pub(super) fn new(points: &'a [Point3], faces: &'a [[u32; 3]]) -> Self {
-        Self { points, faces, edges: tri_adjacency(faces, points.len()), parts: parts(points.len(), faces) }
+        Self { points, faces, edges: tri_adjacency(faces, points.len()), surfaces: surfaces(points.len(), faces) }
     }
 
     /// Start and end of an edge (`3 · face + i`).
@@ -100,40 +117,20 @@ impl<'a> Boundary<'a> {
         Some(3 * face + i as u32)
     }
 
-    pub(super) fn part_count(&self) -> usize {
-        self.parts.len()
+    pub(super) fn surfaces(&self) -> &Surfaces {
+        &self.surfaces
     }
 
     /// Compares the genera of the boundary surfaces, which must be closed manifolds, with the expected loops.
     pub(super) fn loops(&self, expected: &[u32]) -> LineResult {
-        let mut tally = Tally::new(Line::Loops);
-        let mut expected = expected.to_vec();
-        expected.sort_unstable();
-        let mut found = Vec::new();
-        for part in &self.parts {
-            // In a closed triangle surface 2 E = 3 F, so χ = V − F / 2 = 2 − 2 genus.
-            let genus = 1 - (2 * part.vertices - part.faces) / 4;
-            found.push((genus.max(0) as u32, part.vertex));
-        }
-        let mut genera: Vec<u32> = found.iter().map(|&(genus, _)| genus).collect();
-        genera.sort_unstable();
-        let mut left = expected.clone();
-        found.retain(|(genus, _)| match left.iter().position(|g| g == genus) {
-            Some(i) => {
-                left.swap_remove(i);
-                false
-            }
-            None => true,
-        });
-        for (_, vertex) in found {
-            let place = Some(self.points[vertex as usize]);
-            tally.add(|| Offender::new(OffenderKind::Point, &[vertex], place));
-        }
-        tally.compare(expected, genera);
-        tally.done()
+        let genus = |s: &Surface| genus(s.euler());
+        compare_loops(expected, self.surfaces.all.iter().map(|s| (genus(s), s.vertex)).collect(), |vertex| {
+            point_offender(self.points, vertex)
+        })
     }
 
-    pub(super) fn self_intersections(&self) -> (LineResult, Vec<Intersection>) {
+    /// Faces that meet improperly; when the boundary is closed and there are none, surfaces that lie within the mesh.
+    pub(super) fn self_intersections(&self, closed: bool) -> (LineResult, Vec<Intersection>) {
         let mut tally = Tally::new(Line::NoSelfIntersection);
         let contacts = self_contacts(self.points, self.faces);
         let mut intersections = Vec::with_capacity(contacts.len());
@@ -147,33 +144,80 @@ impl<'a> Boundary<'a> {
                 tally.add(|| Offender::new(OffenderKind::FacePair, faces.as_flattened(), place));
             }
         }
+        if closed && intersections.is_empty() {
+            for surface in nested_surfaces(self.points, self.faces, &self.surfaces) {
+                let vertex = self.surfaces.all[surface as usize].vertex;
+                tally.add(|| point_offender(self.points, vertex));
+            }
+        }
         (tally.done(), intersections)
     }
 }
 
-/// The boundary surfaces, by their smallest vertex.
-fn parts(points: usize, faces: &[[u32; 3]]) -> Vec<Part> {
+/// Genus of a closed surface of this Euler number, 2 − 2 genus.
+pub(super) fn genus(euler: i64) -> u32 {
+    (1 - euler.div_euclid(2)).max(0) as u32
+}
+
+/// Compares boundary surfaces, each given by its genus and a vertex, with the expected loops.
+pub(super) fn compare_loops(
+    expected: &[u32],
+    mut found: Vec<(u32, u32)>,
+    offender: impl Fn(u32) -> Offender,
+) -> LineResult {
+    let mut tally = Tally::new(Line::Loops);
+    let mut expected = expected.to_vec();
+    expected.sort_unstable();
+    let mut genera: Vec<u32> = found.iter().map(|&(genus, _)| genus).collect();
+    genera.sort_unstable();
+    let mut left = Vec::new();
+    for &genus in &expected {
+        match left.last_mut() {
+            Some((g, count)) if *g == genus => *count += 1,
+            _ => left.push((genus, 1_usize)),
+        }
+    }
+    found.retain(|(genus, _)| match left.binary_search_by_key(genus, |entry| entry.0) {
+        Ok(i) if left[i].1 > 0 => {
+            left[i].1 -= 1;
+            false
+        }
+        _ => true,
+    });
+    for (_, vertex) in found {
+        tally.add(|| offender(vertex));
+    }
+    tally.compare(expected, genera);
+    tally.done()
+}
+
+fn surfaces(points: usize, faces: &[[u32; 3]]) -> Surfaces {
     let mut sets = DisjointSets::new(points);
-    let mut on = vec![false; points];
+    let mut of = vec![NONE; points];
     for &[a, b, c] in faces {
         sets.join(a, b);
         sets.join(b, c);
         for v in [a, b, c] {
-            on[v as usize] = true;
+            of[v as usize] = v;
         }
     }
-    let mut slot = vec![NONE; points];
-    let mut parts: Vec<Part> = Vec::new();
-    for v in (0..points as u32).filter(|&v| on[v as usize]) {
-        let root = sets.root(v) as usize;
-        if slot[root] == NONE {
-            slot[root] = parts.len() as u32;
-            parts.push(Part { vertex: v, vertices: 0, faces: 0 });
+    let mut all: Vec<Surface> = Vec::new();
+    for v in 0..points as u32 {
+        if of[v as usize] == NONE {
+            continue;
         }
-        parts[slot[root] as usize].vertices += 1;
+        // The root is the smallest vertex, which comes first.
+        let root = sets.root(v);
+        if root == v {
+            of[v as usize] = all.len() as u32;
+            all.push(Surface { vertex: v, vertices: 0, faces: 0 });
+        } else {
+            of[v as usize] = of[root as usize];
+        }
+        all[of[v as usize] as usize].vertices += 1;
     }
     for face in faces {
-        parts[slot[sets.root(face[0]) as usize] as usize].faces += 1;
+        all[of[face[0] as usize] as usize].faces += 1;
     }
-    parts
+    Surfaces { of, all }
 }

@@ -1,0 +1,276 @@
+//! The lines of the whole.
+
+use super::glue::{Glued, Held, needs_sound_arrays};
+use super::joints::Joined;
+use super::nests;
+use super::walls::{self, Meetings, Reader};
+use super::{Fault, HeldCap, Parts, ids, joints};
+use crate::geometry::Bvh;
+use crate::mesh::Patch;
+use crate::mesh::check::labels;
+use crate::mesh::check::result::{
+    CheckReport, Counts, Expectation, Intersection, KEPT_OFFENDERS, Line, LineResult, Offender, OffenderKind, Outcome,
+    Skipped, Tally,
+};
+use crate::mesh::check::surface::{compare_loops, genus};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+use std::io;
+
+/// More offenders than that are not held at a time.
+const MOST_HELD: usize = 4096;
+
+/// Offenders of lines, in numbers of the whole.
+#[derive(Debug, Default)]
+pub(super) struct Tallies(BTreeMap<Line, (u64, Vec<Offender>)>);
+
+impl Tallies {
+    pub(super) fn add(&mut self, line: Line, offender: Offender) {
+        self.add_some(line, 1, [offender]);
+    }
+
+    fn add_some(&mut self, line: Line, count: u64, offenders: impl IntoIterator<Item = Offender>) {
+        let (all, held) = self.0.entry(line).or_default();
+        *all += count;
+        held.extend(offenders);
+        if held.len() > MOST_HELD {
+            *all -= tidy(held);
+            held.truncate(KEPT_OFFENDERS);
+        }
+    }
+
+    /// Adds what a part breaks.
+    pub(super) fn add_fault(&mut self, parts: &dyn Parts, part: u32, fault: &Fault) {
+        let id = |kind: OffenderKind, id: i64| match (kind, u32::try_from(id)) {
+            (OffenderKind::Patch | OffenderKind::Node, _) | (_, Err(_)) => id,
+            (OffenderKind::Tet | OffenderKind::TetPair, Ok(tet)) => parts.tet(part, tet) as i64,
+            (_, Ok(vertex)) => i64::from(parts.vertex(part, vertex)),
+        };
+        let whole = |offender: &Offender| Offender {
+            ids: offender.ids.iter().map(|&i| id(offender.kind, i)).collect(),
+            ..offender.clone()
+        };
+        self.add_some(fault.line, fault.count, fault.offenders.iter().map(whole));
+    }
+
+    fn fails(&self, line: Line) -> bool {
+        self.0.contains_key(&line)
+    }
+
+    fn first_of(&self, lines: &[Line]) -> Option<Line> {
+        lines.iter().copied().find(|&line| self.fails(line))
+    }
+
+    /// The result of a line.
+    fn take(&mut self, line: Line) -> LineResult {
+        let Some((mut count, mut offenders)) = self.0.remove(&line) else { return Tally::new(line).done() };
+        count -= tidy(&mut offenders);
+        offenders.truncate(KEPT_OFFENDERS);
+        LineResult { outcome: Outcome::Fail, count, offenders, ..Tally::new(line).done() }
+    }
+}
+
+/// Sorts offenders; how many were there twice (as both parts of a joint name what is on it).
+fn tidy(offenders: &mut Vec<Offender>) -> u64 {
+    let before = offenders.len();
+    offenders.sort_by(|a, b| a.ids.cmp(&b.ids));
+    offenders.dedup_by(|a, b| a.ids == b.ids);
+    (before - offenders.len()) as u64
+}
+
+/// Checks a mesh that is made of parts. Of walls some `memory` bytes are held at a time (two walls at least), of every
+/// part some 200 bytes. The result does not depend on the number of threads.
+///
+/// # Errors
+/// What reading the parts fails with, and `InvalidData` where certificates, walls and joints do not belong together.
+pub fn check_parts(
+    parts: &dyn Parts,
+    patches: &[Patch],
+    expectation: Option<&Expectation>,
+    memory: usize,
+) -> io::Result<CheckReport> {
+    let mut tallies = Tallies::default();
+    let held = Held::read(parts, &mut tallies)?;
+    let counts = Counts { points: held.points as usize, tets: held.tets as usize, ..Counts::default() };
+    if held.tets == 0 {
+        tallies.add(Line::NotEmpty, Offender { kind: OffenderKind::Tet, ids: Vec::new(), position: None });
+    }
+    let arrays = [Line::NotEmpty, Line::FinitePoints, Line::IndicesInRange];
+    if let Some(line) = tallies.first_of(&arrays) {
+        let result =
+            |l| if needs_sound_arrays(l) { LineResult::skipped(l, Skipped::Because(line)) } else { tallies.take(l) };
+        let lines = Line::ALL.into_iter().map(result).collect();
+        return Ok(CheckReport::new(counts, lines, None, Vec::new()));
+    }
+    let mut whole = Whole { parts, patches, expectation, held, tallies, joined: Joined::default() };
+    whole.joined = joints::check(parts, &whole.held, &mut whole.tallies)?;
+    whole.check(counts, memory)
+}
+
+struct Whole<'a> {
+    parts: &'a dyn Parts,
+    patches: &'a [Patch],
+    expectation: Option<&'a Expectation>,
+    held: Held,
+    tallies: Tallies,
+    joined: Joined,
+}
+
+impl Whole<'_> {
+    fn check(mut self, mut counts: Counts, memory: usize) -> io::Result<CheckReport> {
+        if self.joined.broken.is_none() {
+            ids::check(self.parts, &self.held, &self.joined, &mut self.tallies)?;
+        }
+        let glued = Glued::new(&self.held, &self.joined.pairs);
+        let boxes: Vec<_> = (0..self.held.count()).map(|part| *self.held.bounds(part)).collect();
+        let tree = Bvh::new(&boxes);
+        drop(boxes);
+        let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.is_joined };
+        let meetings = walls::meetings(reader, &tree, memory)?;
+        let meets = !meetings.intersections.is_empty();
+        let intersections = self.take_meetings(meetings);
+        let roots: Vec<u32> = glued.surfaces().collect();
+        let mut nested = false;
+        let needed = [Line::PositiveTets, Line::BoundaryEdges, Line::NoSelfIntersection, Line::LabelsMatchBoundary];
+        if roots.len() > 1 && self.joined.broken.is_none() && self.tallies.first_of(&needed).is_none() {
+            let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.is_joined };
+            for offender in nests::within(reader, &glued, &tree)? {
+                nested = true;
+                self.tallies.add(Line::NoSelfIntersection, offender);
+            }
+        }
+        counts.points = ids::count(&self.held, &self.joined) as usize;
+        counts.volume = self.held.volume;
+        counts.components = glued.components;
+        counts.boundary_components = roots.len();
+        counts.boundary_faces =
+            (0..self.held.count()).map(|part| self.held.faces_of(part, &self.joined.is_joined) as usize).sum();
+        counts.caps = self.patches.iter().filter(|patch| patch.cap.is_some()).count();
+        let mut lines = vec![self.components(glued.components), self.loops(&glued, &roots)];
+        // Points of parts that lie over each other are not all known.
+        if (meets || nested) && !self.tallies.fails(Line::NoDuplicatePoints) {
+            lines.push(LineResult::skipped(Line::NoDuplicatePoints, Skipped::Because(Line::NoSelfIntersection)));
+        }
+        lines.extend(self.labels());
+        for line in Line::ALL {
+            if lines.iter().all(|result| result.line != line) {
+                lines.push(self.tallies.take(line));
+            }
+        }
+        Ok(CheckReport::new(counts, lines, Some(self.held.quality.quality()), intersections))
+    }
+
+    /// All pairs of faces that meet, ascending.
+    fn take_meetings(&mut self, mut meetings: Meetings) -> Vec<Intersection> {
+        let pair = |i: &Intersection| {
+            let mut faces = i.faces.as_flattened().to_vec();
+            if i.faces[0] == i.faces[1] {
+                faces.truncate(3);
+            }
+            faces
+        };
+        meetings.intersections.sort_by_key(|(i, _)| (i.faces, i.kind));
+        for (intersection, place) in &meetings.intersections {
+            let offender = Offender::new(OffenderKind::FacePair, &pair(intersection), Some(*place));
+            self.tallies.add(Line::NoSelfIntersection, offender);
+        }
+        for (line, edges) in [(Line::BoundaryEdges, meetings.edges), (Line::NoDuplicatePoints, meetings.twins)] {
+            let mut edges = edges;
+            edges.sort_by_key(|edge| edge.0);
+            edges.dedup_by_key(|edge| edge.0);
+            for (edge, place) in edges {
+                self.tallies.add(line, Offender::new(OffenderKind::Edge, &edge, Some(place)));
+            }
+        }
+        let mut all = std::mem::take(&mut self.held.intersections);
+        all.extend(meetings.intersections.into_iter().map(|(intersection, _)| intersection));
+        all.sort_by_key(|i| (i.faces, i.kind));
+        all
+    }
+
+    fn components(&self, found: usize) -> LineResult {
+        let Some(expected) = self.expectation else {
+            return LineResult::skipped(Line::Components, Skipped::NoExpectation);
+        };
+        let mut tally = Tally::new(Line::Components);
+        tally.compare(vec![expected.loops.len() as u32], vec![found as u32]);
+        tally.done()
+    }
+
+    fn loops(&self, glued: &Glued, roots: &[u32]) -> LineResult {
+        let Some(expected) = self.expectation else {
+            return LineResult::skipped(Line::Loops, Skipped::NoExpectation);
+        };
+        let open = self.tallies.first_of(&[Line::BoundaryEdges, Line::BoundaryFans]).or(self.joined.broken);
+        if let Some(line) = open {
+            return LineResult::skipped(Line::Loops, Skipped::Because(line));
+        }
+        let found = roots.iter().map(|&root| (genus(glued.euler(root)), root)).collect();
+        compare_loops(&expected.loops, found, |root| self.surface_offender(glued, root))
+    }
+
+    /// A surface is named by the smallest of the vertices that name its parts' surfaces.
+    fn surface_offender(&self, glued: &Glued, root: u32) -> Offender {
+        let named = |surface: u32| {
+            let part = self.held.part_of_surface(surface);
+            (self.parts.vertex(part, self.held.surface(surface).vertex), part)
+        };
+        let (vertex, part) = glued.joined_to(root).map(named).min().unwrap_or_default();
+        let place = || {
+            let wall = self.parts.wall(part).ok()?;
+            let i = wall.vertices.iter().position(|&v| v == vertex)?;
+            wall.points.get(i).copied()
+        };
+        Offender::new(OffenderKind::Point, &[vertex], place())
+    }
+
+    fn labels(&mut self) -> Vec<LineResult> {
+        if let Some(lines) = labels::lines_without_caps(self.patches, self.expectation) {
+            return lines;
+        }
+        let mut lines =
+            vec![labels::own_patch(self.patches), labels::terminals_with_caps(self.patches, self.expectation)];
+        lines.extend(self.caps());
+        lines
+    }
+
+    /// The lines about the shapes of caps, and caps that no patch names.
+    fn caps(&mut self) -> Vec<LineResult> {
+        let mut tallies = labels::SHAPE_LINES.map(Tally::new);
+        let mut by_node: FxHashMap<u32, Vec<(bool, &HeldCap)>> = FxHashMap::default();
+        for cap in &self.held.caps {
+            by_node.entry(cap.node).or_default().push((false, cap));
+        }
+        for (patch, cap) in self.patches.iter().filter_map(|patch| Some((patch, patch.cap.as_ref()?))) {
+            let held = by_node.get_mut(&cap.node).into_iter().flatten().filter(|(_, held)| held.is(cap));
+            let mut shape = [false; 5];
+            for (i, (named, held)) in held.enumerate() {
+                *named = true;
+                // Several are one patch in pieces.
+                shape = if i == 0 { held.shape } else { [false; 5] };
+            }
+            for (tally, _) in tallies.iter_mut().zip(shape).filter(|(_, holds)| !holds) {
+                tally.add(|| labels::patch_offender(patch.id, Some(cap)));
+            }
+        }
+        let unnamed = self.held.caps.iter().filter(|cap| {
+            by_node.get(&cap.node).into_iter().flatten().any(|(named, held)| !named && std::ptr::eq(*held, *cap))
+        });
+        for cap in unnamed {
+            let offender =
+                Offender { kind: OffenderKind::Node, ids: vec![i64::from(cap.node)], position: Some(cap.center) };
+            self.tallies.add_some(Line::WallOrCap, u64::from(cap.faces), [offender]);
+        }
+        tallies.map(Tally::done).into()
+    }
+}
+
+impl HeldCap {
+    fn is(&self, cap: &crate::mesh::Cap) -> bool {
+        let same = |a: &[f64; 3], b: &[f64]| a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits());
+        self.node == cap.node
+            && self.radius.to_bits() == cap.radius.to_bits()
+            && same(&self.center, cap.center.coords.as_slice())
+            && same(&self.normal, cap.normal.as_slice())
+    }
+}
