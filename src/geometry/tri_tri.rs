@@ -287,6 +287,9 @@ fn sign(x: f64) -> i8 {
 /// Pairs tested at a time.
 const BATCH: usize = 1 << 16;
 
+/// Pairs that a thread tests at least.
+const SHARE: usize = 1 << 12;
+
 /// Every pair `(i, j)`, i < j, of triangles that meet improperly, and `(i, i)` for every triangle without area, which is
 /// left out of the pairs; ascending. Coordinates must be finite.
 ///
@@ -333,7 +336,6 @@ fn test_pairs(points: &[Point3], triangles: &[[u32; 3]], pairs: &[(u32, u32)], f
         Contact::Improper(kind) => Some((i, j, kind)),
         Contact::Apart | Contact::Neighbours => None,
     };
-    const SHARE: usize = 1 << 12;
     // Few pairs are no work for a pool, which would have its own ideas of what to do next.
     if pairs.len() < SHARE {
         found.extend(pairs.iter().filter_map(test));

@@ -14,7 +14,7 @@ use std::io;
 #[derive(Debug, Default)]
 pub(super) struct Joined {
     /// For each joint, by its number, whether it is joined to something.
-    pub is_joined: Vec<bool>,
+    pub flags: Vec<bool>,
     /// Pairs that are joined, as (part, number of the joint).
     pub pairs: Vec<[(u32, u32); 2]>,
     /// A line that a joint breaks.
@@ -23,7 +23,7 @@ pub(super) struct Joined {
 
 /// Looks at every pair of joints.
 pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io::Result<Joined> {
-    let mut joined = Joined { is_joined: vec![false; held.joint_count()], ..Joined::default() };
+    let mut joined = Joined { flags: vec![false; held.joint_count()], ..Joined::default() };
     let mut once: Vec<[(u32, u32); 2]> = Vec::new();
     for pair in parts.joined() {
         let numbers = pair.map(|joint| held.joint_number(joint));
@@ -32,7 +32,7 @@ pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io
         };
         let mut free = a != b;
         for (number, &(part, joint)) in [a, b].into_iter().zip(pair) {
-            if std::mem::replace(&mut joined.is_joined[number as usize], true) {
+            if std::mem::replace(&mut joined.flags[number as usize], true) {
                 free = false;
                 if let Some(joint) = read(parts, held, (part, joint))? {
                     third_tets(&joint, tallies);

@@ -8,7 +8,7 @@ use crate::geometry::hilbert::hilbert_keys;
 use crate::geometry::{Aabb, Bvh, Contact, Improper, Point3, Triangle, classify_triangles};
 use crate::mesh::check::result::Intersection;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::io;
 use std::sync::Arc;
 
@@ -130,11 +130,11 @@ fn partners(held: &Held, tree: &Bvh, rank: &[u32], part: u32) -> Vec<[u32; 2]> {
 
 /// Number of pairs, one at least, whose walls fit in memory.
 fn fitting(reader: &Reader, pairs: &[[u32; 2]], memory: u64) -> usize {
-    let mut needed: FxHashMap<u32, ()> = FxHashMap::default();
+    let mut needed: FxHashSet<u32> = FxHashSet::default();
     let mut bytes = 0;
     for (i, pair) in pairs.iter().enumerate() {
         for &part in pair {
-            if needed.insert(part, ()).is_none() {
+            if needed.insert(part) {
                 bytes += reader.bytes(part);
             }
         }
@@ -167,7 +167,9 @@ fn test(pairs: &[[u32; 2]], walls: &FxHashMap<u32, Arc<Wall>>) -> Meetings {
     };
     let found: Vec<Meetings> = pairs.par_iter().with_min_len(8).filter_map(test).collect();
     let mut all = Meetings::default();
-    found.into_iter().for_each(|meetings| all.append(meetings));
+    for meetings in found {
+        all.append(meetings);
+    }
     all
 }
 

@@ -125,7 +125,7 @@ impl Whole<'_> {
         let boxes: Vec<_> = (0..self.held.count()).map(|part| *self.held.bounds(part)).collect();
         let tree = Bvh::new(&boxes);
         drop(boxes);
-        let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.is_joined };
+        let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.flags };
         let meetings = walls::meetings(reader, &tree, memory)?;
         let meets = !meetings.intersections.is_empty();
         let intersections = self.take_meetings(meetings);
@@ -133,7 +133,7 @@ impl Whole<'_> {
         let mut nested = false;
         let needed = [Line::PositiveTets, Line::BoundaryEdges, Line::NoSelfIntersection, Line::LabelsMatchBoundary];
         if roots.len() > 1 && self.joined.broken.is_none() && self.tallies.first_of(&needed).is_none() {
-            let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.is_joined };
+            let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.flags };
             for offender in nests::within(reader, &glued, &tree)? {
                 nested = true;
                 self.tallies.add(Line::NoSelfIntersection, offender);
@@ -144,7 +144,7 @@ impl Whole<'_> {
         counts.components = glued.components;
         counts.boundary_components = roots.len();
         counts.boundary_faces =
-            (0..self.held.count()).map(|part| self.held.faces_of(part, &self.joined.is_joined) as usize).sum();
+            (0..self.held.count()).map(|part| self.held.faces_of(part, &self.joined.flags) as usize).sum();
         counts.caps = self.patches.iter().filter(|patch| patch.cap.is_some()).count();
         let mut lines = vec![self.components(glued.components), self.loops(&glued, &roots)];
         // Points of parts that lie over each other are not all known.
