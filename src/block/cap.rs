@@ -116,6 +116,26 @@ pub fn cap_terminals(
     ends: &[Closing],
     params: &SurfaceParams,
 ) -> Result<CappedSurface, CapError> {
+    let mut closed = closed(wall, ends, params, &MARGINS);
+    // An end that was closed before may have left nothing of the wall between the two.
+    for first in 1..MARGINS.len() {
+        if !matches!(closed, Err(CapError::End { reason: CapFailure::Loops, .. })) {
+            break;
+        }
+        closed = self::closed(wall, ends, params, &MARGINS[first..]).or(closed);
+    }
+    let (mesh, sizes, cap) = closed?.finish();
+    relaxed(&mesh, sizes, &cap, field, ends, params)
+}
+
+/// The wall with all ends closed, the strips beginning so far before the planes as the first of `margins` says that can be
+/// had.
+fn closed<'a>(
+    wall: &'a SizedWall,
+    ends: &[Closing],
+    params: &SurfaceParams,
+    margins: &[f64],
+) -> Result<Cutter<'a>, CapError> {
     let surface = &wall.mesh;
     let mut cutter = Cutter {
         surface: &wall.halves,
@@ -128,15 +148,14 @@ pub fn cap_terminals(
     };
     for (i, closing) in ends.iter().enumerate() {
         let end = closing.end;
-        cutter.cut(closing, i as u32, closing.edge(params)).map_err(|reason| CapError::End {
+        cutter.cut(closing, i as u32, closing.edge(params), margins).map_err(|reason| CapError::End {
             end: i as u32,
             node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
             origin: end.section.origin,
             reason,
         })?;
     }
-    let (mesh, sizes, cap) = cutter.finish();
-    relaxed(&mesh, sizes, &cap, field, ends, params)
+    Ok(cutter)
 }
 
 /// The surface while tips are taken off and discs put on.
@@ -154,10 +173,10 @@ struct Cutter<'a> {
 
 impl Cutter<'_> {
     /// Takes one tip off and puts the disc on.
-    fn cut(&mut self, closing: &Closing, end: u32, edge: f64) -> Result<(), CapFailure> {
+    fn cut(&mut self, closing: &Closing, end: u32, edge: f64, margins: &[f64]) -> Result<(), CapFailure> {
         let section = &closing.end.section;
         let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
-        let rim = self.opened(section, seed, edge)?;
+        let rim = self.opened(section, seed, edge, margins)?;
         if rim.iter().any(|&v| section.height(&self.points[v as usize]) > LONGEST_TIP * section.radius) {
             return Err(CapFailure::Merged);
         }
@@ -174,9 +193,9 @@ impl Cutter<'_> {
 
     /// Takes the tip off; the loop in which the wall then ends. Where another end is so near that nothing is left of the
     /// wall between the two, less is taken.
-    fn opened(&mut self, section: &Section, seed: u32, edge: f64) -> Result<Vec<u32>, CapFailure> {
+    fn opened(&mut self, section: &Section, seed: u32, edge: f64, margins: &[f64]) -> Result<Vec<u32>, CapFailure> {
         let mut failure = CapFailure::Loops;
-        for margin in MARGINS {
+        for margin in margins {
             let mut tip = self.beyond(section, seed, margin * edge)?;
             match self.rim(section, &mut tip, edge) {
                 Ok(rim) => return Ok(rim),

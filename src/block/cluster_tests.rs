@@ -9,8 +9,10 @@ use super::{
 use crate::geometry::{Point3, Section, Tube, Vec3};
 use crate::mesh::TetMesh;
 use crate::mesh::quality::radius_ratio;
-use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
-use crate::skeleton::{BranchId, NodeId};
+use crate::partition::{
+    Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, PartitionParams, PartitionWarning, partition,
+};
+use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
 
 /// A star of vessels from a node: one per direction, ending in a cut or a terminal at 4 radii.
 fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
@@ -170,6 +172,53 @@ fn ends_beside_each_other_leave_a_wall_between() {
             assert_mesh(&mesh.mesh, 2);
         }
     }
+}
+
+#[test]
+fn ends_that_take_each_others_wall_take_less() {
+    // Two planes so close to each other that taking off the tip at one leaves nothing of the wall before the other.
+    let arms = [([-1.634, -0.86, -2.417], 0.899), ([-0.229, 1.085, -3.082], 0.933), ([0.083, -2.087, 0.69], 1.0)];
+    for seed in 0..24 {
+        let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
+        let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
+        for (i, (place, radius)) in arms.into_iter().enumerate() {
+            let origin = turn * Point3::from(place);
+            let axis = origin.coords.normalize();
+            cluster.tubes.push(Tube { a: origin, b: Point3::origin(), ra: radius, rb: 1.0 });
+            cluster.tubes.push(Tube { a: origin, b: origin + axis, ra: radius, rb: radius });
+            let overrun = vec![cluster.tubes.len() as u32 - 1];
+            cluster.ends.push(ClusterEnd {
+                section: Section { origin, axis, radius },
+                kind: cut(i as u32, 0),
+                overrun,
+            });
+        }
+        let params = BlockParams { ends: EndStyle::Shared, ..BlockParams::default() };
+        let mesh = mesh_cluster(ClusterId(0), &cluster, &params).expect("cluster");
+        assert_mesh(&mesh.mesh, 2);
+    }
+}
+
+#[test]
+fn a_terminal_that_looks_at_a_thick_vessel_stays_apart_from_it() {
+    // Its tip is 1.25 sums of the radii off the axis; with the usual overrun the two walls would touch.
+    let points =
+        [[0.0, 0.0, 0.0], [-20.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, 14.0, 0.0], [9.0, 14.0, 0.0], [9.0, 5.0, 0.0]];
+    let edges = [(0, 1, 3.0), (0, 2, 3.0), (0, 3, 1.0), (3, 4, 1.0), (4, 5, 1.0)];
+    let node = |(i, &p): (u32, &[f64; 3])| Node { position: p.into(), radius: 1.0, original: i };
+    let skeleton = Skeleton {
+        nodes: (0..).zip(&points).map(node).collect(),
+        edges: edges.iter().map(|&(a, b, r)| Edge { nodes: [NodeId(a), NodeId(b)], radii: [r; 2] }).collect(),
+    };
+    let params = PartitionParams { forbidden_cuts: (0..3).map(BranchId).collect(), ..PartitionParams::default() };
+    let partition = partition(&skeleton, &params).expect("a partition");
+    let [PartitionWarning::ShortOverrun { node: NodeId(5), radii, .. }] = partition.warnings[..] else {
+        panic!("{:?}", partition.warnings)
+    };
+    assert!((0.4..0.8).contains(&radii), "{radii}");
+    let mesh = mesh_cluster(ClusterId(0), &partition.clusters[0], &BlockParams::default()).expect("a cluster");
+    assert_eq!((mesh.handles, mesh.caps.len()), (0, 3));
+    assert_mesh(&mesh.mesh, 2);
 }
 
 #[test]

@@ -68,8 +68,8 @@ pub struct RefineArgs {
     /// Let terminals and roots move this far, in the unit of the network
     #[arg(long, value_name = "R", default_value_t = 0.0, allow_negative_numbers = true)]
     free_terminals: f64,
-    /// What to do with terminals that are closer to each other than the sum of their radii
-    #[arg(long, value_enum, default_value_t = CrowdedArg::Keep)]
+    /// What to do with terminals that are closer to each other than the sum of their radii; all others stay where they are
+    #[arg(long, value_enum, default_value_t = CrowdedArg::Part)]
     crowded_terminals: CrowdedArg,
     /// What to do with vessels that overlap in the end
     #[arg(long, value_enum, default_value_t = ResidualArg::Shrink)]
@@ -82,9 +82,9 @@ pub struct RefineArgs {
 /// What to do with crowded terminals.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum CrowdedArg {
-    /// List them
+    /// List them: where they lie no two caps have room
     Keep,
-    /// Move them apart, half the way each
+    /// Move them apart, half the way each, as far as two caps need
     Part,
     /// Make them one: of two vessels that leave one node the thinner goes, others are joined
     Merge,

@@ -86,7 +86,11 @@ fn crowded_text(report: &RefineReport, out: &mut String) {
     let _ = writeln!(out, "{} pairs of terminals are too close to each other for two caps", report.crowded.len());
     for pair in report.crowded.iter().take(LISTED) {
         let [a, b] = pair.nodes;
-        let done = if pair.resolved { "resolved" } else { "left (--crowded-terminals part or merge)" };
+        let done = match (pair.resolved, pair.moved) {
+            (false, _) => "left; the mesh will lack a cap (--crowded-terminals part or merge)".into(),
+            (true, [a, b]) if a + b == 0.0 => "made one".into(),
+            (true, [a, b]) => format!("moved by {a:.4} and {b:.4} (--crowded-terminals keep leaves them)"),
+        };
         let _ = writeln!(out, "  {a} and {b}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
     }
 }

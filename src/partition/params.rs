@@ -21,7 +21,8 @@ pub struct PartitionParams {
     pub overrun: f64,
     /// Least length of that piece in voxels.
     pub overrun_voxels: f64,
-    /// What a terminal's overrun may be shortened to when another vessel is in its way.
+    /// What a terminal's overrun may be shortened to when another vessel is in its way. At 0.4 the wall is 3 % thinner
+    /// at the plane than the vessel (with κ = 0.4), and its tip no longer than the ball at the vessel's end.
     pub shortest_overrun: f64,
     /// A branch with a terminal is cut when it is longer than this; a longer piece of any branch is cut again.
     pub long: f64,
@@ -51,7 +52,7 @@ impl Default for PartitionParams {
             room: 2.0,
             overrun: 1.0,
             overrun_voxels: 1.6,
-            shortest_overrun: 0.8,
+            shortest_overrun: 0.4,
             long: 30.0,
             taper: 2.0,
             longest_connector: 200.0,

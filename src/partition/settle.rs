@@ -4,7 +4,7 @@
 //! cuts are made at first; then planes whose vessel is not clear move away from their cluster, and cuts for which there
 //! is no such place are given up, which joins two clusters. Both only ever go one way, so it ends.
 
-use super::clearance::Tip;
+use super::clearance::{Tip, tip_middle};
 use super::course::{Course, Way};
 use super::window::{Slot, room};
 use super::{PartitionParams, UncutReason};
@@ -262,11 +262,12 @@ impl<'a> Settler<'a> {
                 reach[way.end_index()] = s;
             }
             // The overruns follow the course closely enough.
+            let beyond = |radius| tip_middle(radius, self.overrun(radius, root));
             if slots[0].is_some() {
-                reach[0] -= self.overrun(course.radius(reach[0], Way::Back), root);
+                reach[0] -= beyond(course.radius(reach[0], Way::Back));
             }
             if slots[1].is_some() {
-                reach[1] += self.overrun(course.radius(reach[1], Way::Onward), root);
+                reach[1] += beyond(course.radius(reach[1], Way::Onward));
             }
             let tube = match obstacle.kind {
                 Kind::Edge(i) => {
@@ -305,12 +306,12 @@ impl Way {
     }
 }
 
-/// The longest overrun that a terminal may have.
+/// The axis of the tip beyond a terminal, with the longest overrun that it may have.
 fn terminal_overrun(course: &Course, end: Way, params: &PartitionParams) -> Tube {
     let s = if end == Way::Onward { course.length() } else { 0.0 };
     let section = course.section(s, end);
     let r = section.radius;
-    let length = params.overrun_length(r, r);
+    let length = tip_middle(r, params.overrun_length(r, r));
     Tube { a: section.origin, b: section.origin + section.axis * length, ra: r, rb: r }
 }
 

@@ -19,23 +19,26 @@ pub struct Tried<T> {
 }
 
 /// What is changed from attempt to attempt; the first is the usual way.
-const CHANGES: [&str; 6] = [
+const CHANGES: [&str; 7] = [
     "as usual",
     "grid shifted",
     "narrower kernel",
     "other ends or grid",
     "finer voxel, grid shifted",
     "finer voxel, narrower kernel",
+    "much finer voxel, thin kernel",
 ];
 
 /// What helped after so many failures.
 pub fn remedy(failures: usize) -> String {
-    CHANGES.get(failures).copied().unwrap_or("other division of the tube").to_owned()
+    match CHANGES.get(failures) {
+        Some(change) => (*change).to_owned(),
+        None => format!("vessels that overlap taken as one, {}", CHANGES[failures % CHANGES.len()]),
+    }
 }
 
-/// `overlapping`: vessels of the network overlap in the block, so that no parameter keeps them apart.
-fn variants(plan: &MeshPlan, overlapping: bool) -> [BlockParams; CHANGES.len()] {
-    let usual = BlockParams { allow_fused: overlapping, ..plan.block_params() };
+fn variants(plan: &MeshPlan) -> [BlockParams; CHANGES.len()] {
+    let usual = plan.block_params();
     let shifted = BlockParams { shift: [0.37, -0.23, 0.11], ..usual };
     // Parallel vessels fuse when their axes are closer than √(1 + 2 κ² ln 2) times the sum of their radii.
     let narrower = BlockParams { kappa: 0.3, ..usual };
@@ -44,14 +47,27 @@ fn variants(plan: &MeshPlan, overlapping: bool) -> [BlockParams; CHANGES.len()] 
         JointStyle::Disc => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.35, ..usual },
     };
     let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
-    [usual, shifted, narrower, other, finer(shifted), finer(narrower)]
+    let finest = BlockParams { kappa: 0.22, voxel_factor: 0.5, ..shifted };
+    [usual, shifted, narrower, other, finer(shifted), finer(narrower), finest]
+}
+
+/// The ways in which a cluster is tried. `overlapping`: vessels of the network overlap in it, or come so close to each
+/// other that they may; only when no way keeps them apart are they taken as one, unless that is what is wanted.
+fn ways(plan: &MeshPlan, overlapping: bool) -> Vec<BlockParams> {
+    let apart = variants(plan);
+    let fused = apart.map(|params| BlockParams { allow_fused: true, ..params });
+    match (overlapping, plan.fuse) {
+        (false, _) => apart.to_vec(),
+        (true, true) => fused.to_vec(),
+        (true, false) => [apart, fused].concat(),
+    }
 }
 
 /// Meshes a cluster, with other parameters after each failure. When none helps, the failure of the usual way counts: it
 /// is what the dump of the input reproduces.
 pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan, overlapping: bool) -> Tried<ClusterMesh> {
     let mut failures = Vec::new();
-    for params in variants(plan, overlapping) {
+    for params in ways(plan, overlapping) {
         match mesh_cluster(id, cluster, &params) {
             Ok(mesh) => return Tried { result: Ok(Arc::new(mesh)), failures },
             Err(error) => failures.push(error),

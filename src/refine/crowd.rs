@@ -5,7 +5,7 @@ use crate::skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
 use serde::Serialize;
 
 /// How far terminals are moved apart, in sums of their radii: their walls must not fuse either.
-const APART: f64 = 1.3;
+const APART: f64 = 1.2;
 /// Sweeps at most: a terminal that gives way to one may come close to a third.
 const SWEEPS: usize = 100;
 
@@ -20,6 +20,8 @@ pub struct CrowdedPair {
     pub radii: f64,
     /// Whether they are apart now, or one.
     pub resolved: bool,
+    /// How far each was moved.
+    pub moved: [f64; 2],
 }
 
 /// Lists crowded terminals and treats them as `params.crowded` says. Nodes that a merger removes are removed from
@@ -31,17 +33,23 @@ pub(super) fn treat(
 ) -> Vec<CrowdedPair> {
     let adjacency = skeleton.adjacency();
     let found = skeleton.crowded_terminals(&adjacency);
+    let place = |s: &Skeleton, pair: &CrowdedTerminals| pair.nodes.map(|n| s.node(n).position);
+    let before: Vec<_> = found.iter().map(|pair| place(skeleton, pair)).collect();
     let resolved = match params.crowded {
         Crowded::Keep => vec![false; found.len()],
         Crowded::Part => part(skeleton, &found),
         Crowded::Merge => vec![true; found.len()],
     };
     let original = |n: NodeId| skeleton.node(n).original;
-    let pairs = found.iter().zip(resolved).map(|(pair, resolved)| CrowdedPair {
-        nodes: pair.nodes.map(original),
-        distance: pair.distance,
-        radii: pair.radii,
-        resolved,
+    let pairs = found.iter().zip(resolved).zip(before).map(|((pair, resolved), before)| {
+        let after = place(skeleton, pair);
+        CrowdedPair {
+            nodes: pair.nodes.map(original),
+            distance: pair.distance,
+            radii: pair.radii,
+            resolved,
+            moved: [0, 1].map(|i| (after[i] - before[i]).norm()),
+        }
     });
     let pairs = pairs.collect();
     if params.crowded == Crowded::Merge {
@@ -151,16 +159,18 @@ mod tests {
         let kept = with(Crowded::Keep);
         let pairs: Vec<_> = kept.report.crowded.iter().map(|p| (p.nodes, p.resolved)).collect();
         assert_eq!(pairs, [([2, 3], false), ([2, 5], false), ([3, 5], false)]);
+        assert!(kept.report.crowded.iter().all(|p| p.moved == [0.0, 0.0]));
         assert_eq!(kept.skeleton.nodes[2].position, crowd().nodes[2].position);
     }
 
     #[test]
-    fn they_are_parted() {
-        let parted = with(Crowded::Part);
+    fn they_are_parted_by_default() {
+        let parted = with(RefineParams::default().crowded);
         assert!(parted.report.crowded.iter().all(|p| p.resolved));
         assert!(parted.skeleton.crowded_terminals(&parted.skeleton.adjacency()).is_empty());
         let moved = (parted.skeleton.nodes[2].position - parted.origin[2]).norm();
         assert!(moved > 0.5 && moved < 5.0, "{moved}");
+        assert!((parted.report.crowded[0].moved[0] - moved).abs() < 1e-9);
         assert_eq!(parted.origin[2], crowd().nodes[2].position);
         assert_eq!(parted.skeleton.nodes[0].position, crowd().nodes[0].position);
     }

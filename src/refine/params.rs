@@ -24,9 +24,9 @@ pub enum Residual {
 #[non_exhaustive]
 pub enum Crowded {
     /// They are listed.
-    #[default]
     Keep,
-    /// They are moved apart.
+    /// They are moved apart, no further than two caps need.
+    #[default]
     Part,
     /// They become one: of two vessels that leave one node the thinner is taken away, others are joined.
     Merge,
@@ -80,7 +80,7 @@ impl Default for RefineParams {
             free_terminals: 0.0,
             furthest: 21.0,
             bends: true,
-            crowded: Crowded::Keep,
+            crowded: Crowded::Part,
             hold: vec![Metric::Overlaps, Metric::FarPairs],
             residual: Residual::Shrink,
             shrink: 0.3,
