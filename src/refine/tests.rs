@@ -66,7 +66,7 @@ fn scaled(s: &Skeleton, f: f64) -> Skeleton {
 #[test]
 fn a_tangle_is_parted_and_can_be_cut() {
     let s = tangle(6, 3);
-    let refined = run(&s, &RefineParams::default());
+    let refined = run(&s, &RefineParams { crowded: Crowded::Keep, ..RefineParams::default() });
     let r = &refined.report;
     assert!(r.given.overlaps > 20, "{}", r.given.overlaps);
     assert!(10 * r.moved.overlaps < r.given.overlaps && r.moved.far <= 1, "{:?}", r.moved);
@@ -173,10 +173,11 @@ fn terminals_move_only_as_far_as_they_may() {
         1.0,
         &[(0, 1), (1, 2), (1, 3)],
     );
-    let held = run(&s, &RefineParams::default());
+    let kept = RefineParams { crowded: Crowded::Keep, ..RefineParams::default() };
+    let held = run(&s, &kept);
     assert!(held.report.residual.pairs.iter().all(|p| p.terminals_too_close));
     assert_eq!(held.skeleton.nodes[2].position, s.nodes[2].position);
-    let free = run(&s, &RefineParams { free_terminals: 3.0, ..RefineParams::default() });
+    let free = run(&s, &RefineParams { free_terminals: 3.0, ..kept });
     let far = (free.skeleton.nodes[2].position - s.nodes[2].position).norm();
     assert!(far > 0.1 && far <= 3.0 + 1e-9, "{far}");
     assert_eq!(free.report.moved.overlaps, 0, "{:?}", free.report.residual);
