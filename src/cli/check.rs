@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The mesh: VTU, MSH 4.1, Medit .mesh, or TetGen's .ele
+    /// The mesh: VTU, PVTU, MSH 4.1, Medit .mesh, or TetGen's .ele
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Print JSON

@@ -20,7 +20,8 @@ use crate::skeleton::Skeleton;
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the mesh goes: .vtu, .msh (Gmsh 4.1), .mesh (Medit), or .ele (TetGen's family of files)
+    /// Where the mesh goes: .vtu, .pvtu (pieces in a folder beside it), .msh (Gmsh 4.1), .mesh (Medit), or .ele (TetGen's
+    /// family of files)
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
     /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer

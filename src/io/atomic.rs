@@ -18,31 +18,24 @@ impl AtomicFile {
         if target.is_dir() {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
         }
-        let name = target.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
-        let mut attempt = 0_u32;
-        loop {
-            let mut hidden = std::ffi::OsString::from(".");
-            hidden.push(name);
-            hidden.push(format!(".{}-{attempt}.part", std::process::id()));
-            let temporary = target.with_file_name(hidden);
-            match OpenOptions::new().write(true).create_new(true).open(&temporary) {
-                Ok(file) => {
-                    let file = Some(BufWriter::with_capacity(1 << 18, file));
-                    return Ok(Self { file, temporary, target: target.to_path_buf() });
-                }
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => attempt += 1,
-                Err(error) => return Err(error),
-            }
-        }
+        let make = |path: &Path| OpenOptions::new().write(true).create_new(true).open(path);
+        let (temporary, file) = make_hidden(target, "part", make)?;
+        Ok(Self { file: Some(BufWriter::with_capacity(1 << 18, file)), temporary, target: target.to_path_buf() })
     }
 
-    /// Writes out what is buffered and moves the file to its target, replacing what was there.
-    pub(super) fn commit(mut self) -> io::Result<()> {
+    /// Writes out what is buffered: afterwards no full disk can be in the way of `commit`.
+    pub(super) fn complete(&mut self) -> io::Result<()> {
         if let Some(file) = self.file.take() {
             let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
             // Without this a crash of the machine could leave the new name on an empty file.
             file.sync_data()?;
         }
+        Ok(())
+    }
+
+    /// Writes out what is buffered and moves the file to its target, replacing what was there.
+    pub(super) fn commit(mut self) -> io::Result<()> {
+        self.complete()?;
         fs::rename(&self.temporary, &self.target)?;
         self.temporary = PathBuf::new();
         Ok(())
@@ -50,6 +43,27 @@ impl AtomicFile {
 
     fn open(&mut self) -> io::Result<&mut BufWriter<File>> {
         self.file.as_mut().ok_or_else(|| io::Error::from(io::ErrorKind::BrokenPipe))
+    }
+}
+
+/// Makes something under a hidden name beside `target` that nothing has yet.
+pub(super) fn make_hidden<T>(
+    target: &Path,
+    kind: &str,
+    make: impl Fn(&Path) -> io::Result<T>,
+) -> io::Result<(PathBuf, T)> {
+    let name = target.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
+    let mut attempt = 0_u32;
+    loop {
+        let mut hidden = std::ffi::OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{}-{attempt}.{kind}", std::process::id()));
+        let path = target.with_file_name(hidden);
+        match make(&path) {
+            Ok(made) => return Ok((path, made)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => attempt += 1,
+            Err(error) => return Err(error),
+        }
     }
 }
 

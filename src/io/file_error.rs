@@ -64,6 +64,7 @@ pub(super) fn advice(error: &io::Error) -> &'static str {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "the disk is full: free space or name a file on another disk; an earlier file of this name is as it was"
         }
+        io::ErrorKind::AlreadyExists => "name another file",
         // The system has no complaint: the mesh has one.
         io::ErrorKind::InvalidData => "an earlier file of this name is as it was",
         _ => "name a file in a folder that exists and can be written to",
@@ -106,6 +107,7 @@ pub(super) fn write_all_whole<F: Error>(files: &[Writing]) -> Result<(), FileErr
         let make = || {
             let mut file = AtomicFile::create(path)?;
             write(&mut file)?;
+            file.complete()?;
             Ok(file)
         };
         complete.push(make().map_err(|source| FileError::Write { path: path.clone(), source })?);

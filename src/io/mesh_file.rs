@@ -6,6 +6,8 @@ use super::file_error::{FileError, advice};
 use super::medit::{self, MeditFault};
 use super::tetgen::{self, MeshFamily, TetgenFault};
 use super::vtk_xml::VtkError;
+use super::pvtu::{self, Pieces};
+use super::pvtu_folder::PieceFolder;
 use super::{msh, vtu};
 use crate::mesh::VolumeMesh;
 use crate::mesh::check::Expectation;
@@ -19,6 +21,8 @@ use std::path::{Path, PathBuf};
 pub enum MeshFormat {
     /// VTK unstructured grid, `.vtu`.
     Vtu,
+    /// VTK unstructured grid in pieces, `.pvtu` and a folder beside it.
+    Pvtu,
     /// Gmsh 4.1, `.msh`.
     Msh,
     /// Medit's text format, `.mesh`.
@@ -36,6 +40,7 @@ impl MeshFormat {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
         match extension.to_ascii_lowercase().as_str() {
             "vtu" => Ok(Self::Vtu),
+            "pvtu" => Ok(Self::Pvtu),
             "msh" => Ok(Self::Msh),
             "mesh" => Ok(Self::Medit),
             "ele" | "node" => Ok(Self::Tetgen),
@@ -73,7 +78,7 @@ pub struct MeshFile {
 #[non_exhaustive]
 pub enum MeshFileError {
     /// No format has this extension.
-    #[error("{}: the extension names no known mesh format (known: .vtu, .msh, .mesh, .ele)", path.display())]
+    #[error("{}: the extension names no known mesh format (known: .vtu, .pvtu, .msh, .mesh, .ele)", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -125,7 +130,7 @@ pub enum ContentFault {
     #[error(transparent)]
     Tetgen(#[from] TetgenFault),
     /// The format spreads a mesh over several files.
-    #[error("a mesh of TetGen's is several files: name the path of its .ele file")]
+    #[error("a mesh of this format is several files: name the path of its .ele or .pvtu file")]
     SeveralFiles,
     /// Something that every such file has is not there.
     #[error("'{what}' is missing")]
@@ -148,6 +153,12 @@ pub enum ContentFault {
     BadOffset {
         /// The first such cell.
         cell: usize,
+    },
+    /// Two pieces say of a point that they share that it is elsewhere.
+    #[error("the pieces have different positions for the point {id}: they are not of one mesh; write them again")]
+    PointsDiffer {
+        /// Its global id.
+        id: i64,
     },
     /// The file ends before it is complete.
     #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
@@ -200,7 +211,7 @@ where
     }
 }
 
-/// Reads a mesh from a file, in the format that its extension names.
+/// Reads a mesh from a file (or several: `.pvtu`, `.ele`), in the format that its extension names.
 ///
 /// # Errors
 /// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
@@ -210,8 +221,10 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
         return Err(refused(io::ErrorKind::IsADirectory.into()));
     }
     let format = MeshFormat::of(path)?;
-    if format == MeshFormat::Tetgen {
-        return Ok(unnoted(tetgen::read_mesh(path)?));
+    match format {
+        MeshFormat::Tetgen => return Ok(unnoted(tetgen::read_mesh(path)?)),
+        MeshFormat::Pvtu => return pvtu::read_pvtu(path),
+        _ => {}
     }
     let bytes = std::fs::read(path).map_err(refused)?;
     if bytes.trim_ascii().is_empty() {
@@ -229,7 +242,7 @@ pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, Cont
         MeshFormat::Vtu => vtu::read_vtu(bytes),
         MeshFormat::Msh => msh::read_msh(bytes),
         MeshFormat::Medit => Ok(unnoted(medit::read_medit_from(bytes)?)),
-        MeshFormat::Tetgen => Err(ContentFault::SeveralFiles),
+        MeshFormat::Tetgen | MeshFormat::Pvtu => Err(ContentFault::SeveralFiles),
     }
 }
 
@@ -245,8 +258,10 @@ fn unnoted(volume: VolumeMesh) -> MeshFile {
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
-    MeshFormat::of(path)?;
-    AtomicFile::create(path).map(drop).map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })
+    let format = MeshFormat::of(path)?;
+    let pieces = || if format == MeshFormat::Pvtu { PieceFolder::ensure_replaceable(path) } else { Ok(()) };
+    let tried = AtomicFile::create(path).map(drop).and_then(|()| pieces());
+    tried.map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })
 }
 
 /// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all. The bytes depend
@@ -260,6 +275,9 @@ pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Resu
         return write_family(path, mesh);
     }
     let write = || {
+        if format == MeshFormat::Pvtu {
+            return pvtu::write_pvtu(path, mesh, notes, Pieces::default());
+        }
         let mut file = AtomicFile::create(path)?;
         write_format(&mut file, format, mesh, notes)?;
         file.commit()
@@ -306,6 +324,8 @@ pub(super) fn write_format(
         MeshFormat::Vtu => vtu::write_vtu(out, mesh, notes),
         MeshFormat::Msh => msh::write_msh(out, mesh, notes),
         MeshFormat::Medit => medit::write_medit_to(out, mesh),
-        MeshFormat::Tetgen => Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of TetGen's is several files")),
+        MeshFormat::Tetgen | MeshFormat::Pvtu => {
+            Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
+        }
     }
 }

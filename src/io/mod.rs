@@ -1,6 +1,7 @@
 //! Floor 3: readers and writers, one file per format.
 
 mod atomic;
+mod bits;
 mod counted;
 #[cfg(test)]
 mod cut_source;
@@ -13,6 +14,12 @@ pub mod msh;
 mod msh_read;
 mod msh_surfaces;
 pub mod network;
+pub mod pvtu;
+mod pvtu_folder;
+mod pvtu_plan;
+mod pvtu_read;
+#[cfg(test)]
+mod pvtu_tests;
 #[cfg(test)]
 mod source_tests;
 pub mod surface;

@@ -4,6 +4,7 @@
 //! (the vessel wall, nearly all of the boundary) only a bit for each point is kept, and its faces are read again when
 //! they are written; those of the others (caps) are few, and held.
 
+use super::bits::Bits;
 use crate::geometry::{Aabb, Point3};
 use crate::mesh::source::MeshSource;
 use rustc_hash::FxHashMap;
@@ -186,33 +187,4 @@ pub(super) fn run<T>(sorted: &[T], key: i32, of: impl Fn(&T) -> i32) -> &[T] {
     let start = sorted.partition_point(|item| of(item) < key);
     let length = sorted[start..].partition_point(|item| of(item) == key);
     &sorted[start..start + length]
-}
-
-/// A set of points: a bit for each.
-pub(super) struct Bits {
-    words: Vec<u64>,
-    points: usize,
-}
-
-impl Bits {
-    pub(super) fn new(points: usize) -> Self {
-        Self { words: vec![0; points.div_ceil(64)], points }
-    }
-
-    /// False when there is no such point.
-    pub(super) fn insert(&mut self, v: u32) -> bool {
-        let there = (v as usize) < self.points;
-        if let Some(word) = self.words.get_mut(v as usize / 64).filter(|_| there) {
-            *word |= 1 << (v % 64);
-        }
-        there
-    }
-
-    pub(super) fn has(&self, v: u32) -> bool {
-        self.words.get(v as usize / 64).is_some_and(|word| word >> (v % 64) & 1 == 1)
-    }
-
-    pub(super) fn count(&self) -> usize {
-        self.words.iter().map(|word| word.count_ones() as usize).sum()
-    }
 }

@@ -148,3 +148,59 @@ fn a_full_disk_is_an_error_wherever_it_happens() {
         assert!(disk.bytes.into_inner() == whole);
     }
 }
+
+/// A source that cannot be read to its end.
+struct Broken<'a>(&'a VolumeMesh);
+
+impl MeshSource for Broken<'_> {
+    fn counts(&self) -> crate::mesh::source::SourceCounts {
+        self.0.counts()
+    }
+    fn patches(&self) -> &[crate::mesh::Patch] {
+        &self.0.patches
+    }
+    fn points(&self, each: crate::mesh::source::EachPoints) -> io::Result<()> {
+        self.0.points(each)
+    }
+    fn tets(&self, each: crate::mesh::source::EachTets) -> io::Result<()> {
+        let tets = &self.0.mesh.tets;
+        each(crate::mesh::source::TetPiece { tets: &tets[..tets.len() / 2], blocks: &[] })?;
+        Err(io::Error::other("a block is gone"))
+    }
+    fn boundary(&self, each: crate::mesh::source::EachFaces) -> io::Result<()> {
+        self.0.boundary(each)
+    }
+}
+
+#[test]
+fn earlier_files_stay_when_writing_fails() {
+    let (volume, notes) = tube(6);
+    for name in ["a.vtu", "a.msh", "a.mesh", "a.ele", "a.pvtu"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        write_mesh(&path, &volume, &notes).unwrap();
+        let files = || std::fs::read_dir(folder.path()).unwrap().count();
+        let before = (files(), std::fs::read(&path).unwrap());
+        let error = write_mesh(&path, &Broken(&volume), &notes).unwrap_err().to_string();
+        assert!(error.contains("a block is gone"), "{error}");
+        assert!((files(), std::fs::read(&path).unwrap()) == before, "{name}");
+    }
+}
+
+#[test]
+fn a_full_disk_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.mesh");
+    std::fs::write(&path, "earlier").unwrap();
+    let (volume, _) = tube(6);
+    let error = super::file_error::write_whole::<super::medit::MeditFault>(&path, |file| {
+        let mut disk = Disk { bytes: Cursor::default(), room: 3000 };
+        let written = super::medit::write_medit_to(&mut disk, &volume);
+        file.write_all(disk.bytes.get_ref())?;
+        written
+    });
+    let text = error.unwrap_err().to_string();
+    assert!(text.contains("out.mesh: cannot be written: ") && text.contains("the disk is full"), "{text}");
+    assert_eq!(std::fs::read(&path).unwrap(), b"earlier");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}

@@ -2,10 +2,11 @@
 
 use super::mesh_file::{ContentFault, MeshFile, MeshNotes};
 use super::vtk_xml::{ElementId, VtkXml};
-use super::vtu::{VTK_TETRA, VTK_TRIANGLE, field};
+use super::vtu::{GLOBAL_IDS, VTK_TETRA, VTK_TRIANGLE, field};
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::check::Expectation;
-use crate::mesh::{Cap, Patch, WALL};
+use crate::mesh::{Cap, Patch, VolumeMesh, WALL};
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 /// Cell arrays that are taken for the labels of the boundary, in order of preference.
@@ -27,80 +28,141 @@ const LABEL_ARRAYS: [&str; 9] = [
 /// # Errors
 /// When the file is no such file or incomplete, its arrays do not fit each other, or it holds other cells.
 pub fn read_vtu(bytes: &[u8]) -> Result<MeshFile, ContentFault> {
-    let xml = VtkXml::parse(bytes, "UnstructuredGrid")?;
-    let grid = xml.child(xml.root(), "UnstructuredGrid").ok_or(ContentFault::Missing { what: "UnstructuredGrid" })?;
-    let mut file = MeshFile::default();
-    let mut label_array = None;
-    for piece in xml.children(grid, "Piece") {
-        read_piece(&xml, piece, &mut file, &mut label_array)?;
-    }
-    let fields = Fields::read(&xml, grid)?;
-    file.notes = fields.notes();
-    match label_array {
-        Some(name) if !file.volume.boundary.is_empty() => {
-            file.labelled = true;
-            file.volume.patches = fields.patches(&name, &file.volume.boundary_patch);
-        }
-        // Triangles that no array labels are no boundary.
-        _ => {
-            file.volume.boundary.clear();
-            file.volume.boundary_patch.clear();
-            file.volume.boundary_block.clear();
-        }
-    }
-    Ok(file)
+    let mut reader = GridReader::default();
+    reader.read(bytes)?;
+    Ok(reader.finish())
 }
 
-fn read_piece(
-    xml: &VtkXml,
-    piece: ElementId,
-    file: &mut MeshFile,
-    label_array: &mut Option<String>,
-) -> Result<(), ContentFault> {
-    let first_point = file.volume.mesh.points.len();
-    read_points(xml, piece, file)?;
-    let cells = Cells::read(xml, piece)?;
-    let count = cells.types.len();
-    let data = xml.child(piece, "CellData");
-    let (name, labels) = match data {
-        Some(data) => label_values(xml, data, count, label_array.as_deref())?,
-        None => (None, None),
-    };
-    if label_array.is_none() {
-        *label_array = name;
-    }
-    let blocks = match data {
-        Some(data) => int_array(xml, data, "block", count)?,
-        None => None,
-    };
-    let volume = &mut file.volume;
-    let at = |values: &Option<Vec<i64>>, cell: usize| values.as_ref().map_or(0, |v| v[cell] as i32);
-    let mut start = 0;
-    for (cell, (&kind, &end)) in cells.types.iter().zip(&cells.offsets).enumerate() {
-        let ids = usize::try_from(end).ok().and_then(|end| cells.connectivity.get(start..end));
-        let ids = ids.ok_or(ContentFault::BadOffset { cell })?;
-        start += ids.len();
-        let id = |v: i64| u32::try_from(v + first_point as i64).unwrap_or(u32::MAX);
-        match (kind as u8, ids) {
-            (VTK_TETRA, &[a, b, c, d]) => {
-                volume.mesh.tets.push([id(a), id(b), id(c), id(d)]);
-                volume.tet_block.push(at(&blocks, cell));
-            }
-            (VTK_TRIANGLE, &[a, b, c]) => {
-                volume.boundary.push([id(a), id(b), id(c)]);
-                volume.boundary_patch.push(at(&labels, cell));
-                volume.boundary_block.push(at(&blocks, cell));
-            }
-            (VTK_TETRA | VTK_TRIANGLE, _) => return Err(ContentFault::BadOffset { cell }),
-            // Empty cells, points and lines bound no volume.
-            (0..=4, _) => {}
-            _ => return Err(ContentFault::UnsupportedCell { kind, cell }),
-        }
-    }
-    Ok(())
+/// A mesh that is read from one file, or from several, one after another.
+#[derive(Default)]
+pub(super) struct GridReader {
+    volume: VolumeMesh,
+    /// Name of the array of labels; a later piece uses that of the first.
+    label_array: Option<String>,
+    /// The field data of the first file that has any.
+    fields: Fields,
+    /// The number of each point in the mesh of which this is a piece.
+    global_ids: Vec<i64>,
 }
 
-fn read_points(xml: &VtkXml, piece: ElementId, file: &mut MeshFile) -> Result<(), ContentFault> {
+impl GridReader {
+    /// Reads a file.
+    pub(super) fn read(&mut self, bytes: &[u8]) -> Result<(), ContentFault> {
+        let xml = VtkXml::parse(bytes, "UnstructuredGrid")?;
+        let grid = xml.child(xml.root(), "UnstructuredGrid").ok_or(ContentFault::Missing { what: "UnstructuredGrid" })?;
+        for piece in xml.children(grid, "Piece") {
+            self.read_piece(&xml, piece)?;
+        }
+        if self.fields.is_empty() {
+            self.fields = Fields::read(&xml, grid)?;
+        }
+        Ok(())
+    }
+
+    /// Unites the points that are the same by their global ids, if every point has one: afterwards points are in the order
+    /// of these.
+    pub(super) fn unite(&mut self) -> Result<(), ContentFault> {
+        let ids = std::mem::take(&mut self.global_ids);
+        let mesh = &mut self.volume.mesh;
+        if ids.len() != mesh.points.len() {
+            return Ok(());
+        }
+        let mut distinct = ids.clone();
+        distinct.par_sort_unstable();
+        distinct.dedup();
+        let index_of: Vec<u32> =
+            ids.par_iter().map(|id| distinct.binary_search(id).map_or(u32::MAX, |i| i as u32)).collect();
+        let mut points = vec![None; distinct.len()];
+        for ((&index, &p), &id) in index_of.iter().zip(&mesh.points).zip(&ids) {
+            if let Some(place) = points.get_mut(index as usize)
+                && place.replace(p).is_some_and(|other| other != p)
+            {
+                return Err(ContentFault::PointsDiffer { id });
+            }
+        }
+        mesh.points = points.into_iter().flatten().collect();
+        let united = |v: &mut u32| *v = index_of.get(*v as usize).copied().unwrap_or(u32::MAX);
+        mesh.tets.as_flattened_mut().par_iter_mut().for_each(united);
+        self.volume.boundary.as_flattened_mut().par_iter_mut().for_each(united);
+        Ok(())
+    }
+
+    /// What was read.
+    pub(super) fn finish(self) -> MeshFile {
+        let mut file = MeshFile { volume: self.volume, labelled: false, notes: self.fields.notes() };
+        match self.label_array {
+            Some(name) if !file.volume.boundary.is_empty() => {
+                file.labelled = true;
+                file.volume.patches = self.fields.patches(&name, &file.volume.boundary_patch);
+            }
+            // Triangles that no array labels are no boundary.
+            _ => {
+                file.volume.boundary.clear();
+                file.volume.boundary_patch.clear();
+                file.volume.boundary_block.clear();
+            }
+        }
+        file
+    }
+
+    fn read_piece(&mut self, xml: &VtkXml, piece: ElementId) -> Result<(), ContentFault> {
+        let volume = &mut self.volume;
+        let first_point = volume.mesh.points.len();
+        read_points(xml, piece, &mut volume.mesh.points)?;
+        self.global_ids.extend(global_ids(xml, piece, volume.mesh.points.len() - first_point)?);
+        let cells = Cells::read(xml, piece)?;
+        let count = cells.types.len();
+        let data = xml.child(piece, "CellData");
+        let (name, labels) = match data {
+            Some(data) => label_values(xml, data, count, self.label_array.as_deref())?,
+            None => (None, None),
+        };
+        if self.label_array.is_none() {
+            self.label_array = name;
+        }
+        let array = |name| data.map_or(Ok(None), |data| int_array(xml, data, name, count));
+        let (blocks, ghosts) = (array("block")?, array("vtkGhostType")?);
+        let at = |values: &Option<Vec<i64>>, cell: usize| values.as_ref().map_or(0, |v| v[cell] as i32);
+        let mut start = 0;
+        for (cell, (&kind, &end)) in cells.types.iter().zip(&cells.offsets).enumerate() {
+            let ids = usize::try_from(end).ok().and_then(|end| cells.connectivity.get(start..end));
+            let ids = ids.ok_or(ContentFault::BadOffset { cell })?;
+            start += ids.len();
+            let id = |v: i64| u32::try_from(v + first_point as i64).unwrap_or(u32::MAX);
+            if at(&ghosts, cell) & DUPLICATE != 0 {
+                continue;
+            }
+            match (kind as u8, ids) {
+                (VTK_TETRA, &[a, b, c, d]) => {
+                    volume.mesh.tets.push([id(a), id(b), id(c), id(d)]);
+                    volume.tet_block.push(at(&blocks, cell));
+                }
+                (VTK_TRIANGLE, &[a, b, c]) => {
+                    volume.boundary.push([id(a), id(b), id(c)]);
+                    volume.boundary_patch.push(at(&labels, cell));
+                    volume.boundary_block.push(at(&blocks, cell));
+                }
+                (VTK_TETRA | VTK_TRIANGLE, _) => return Err(ContentFault::BadOffset { cell }),
+                // Empty cells, points and lines bound no volume.
+                (0..=4, _) => {}
+                _ => return Err(ContentFault::UnsupportedCell { kind, cell }),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The bit in VTK's array of ghosts of a cell that another piece has.
+const DUPLICATE: i32 = 1;
+
+/// The global id of each point; empty when the file does not know.
+fn global_ids(xml: &VtkXml, piece: ElementId, points: usize) -> Result<Vec<i64>, ContentFault> {
+    let Some(data) = xml.child(piece, "PointData") else { return Ok(Vec::new()) };
+    let name = xml.attribute(data, "GlobalIds").unwrap_or(GLOBAL_IDS);
+    Ok(int_array(xml, data, name, points)?.unwrap_or_default())
+}
+
+fn read_points(xml: &VtkXml, piece: ElementId, into: &mut Vec<Point3>) -> Result<(), ContentFault> {
     let expected = 3 * xml.count(piece, "NumberOfPoints")?;
     let points = xml.child(piece, "Points").and_then(|points| xml.arrays(points).next());
     let values = match points {
@@ -111,7 +173,7 @@ fn read_points(xml: &VtkXml, piece: ElementId, file: &mut MeshFile) -> Result<()
         return Err(ContentFault::Length { array: "Points".into(), expected, found: values.len() });
     }
     let (triples, _) = values.as_chunks::<3>();
-    file.volume.mesh.points.extend(triples.iter().map(|&p| Point3::from(p)));
+    into.extend(triples.iter().map(|&p| Point3::from(p)));
     Ok(())
 }
 
@@ -174,6 +236,10 @@ struct Fields {
 }
 
 impl Fields {
+    fn is_empty(&self) -> bool {
+        self.ints.is_empty() && self.floats.is_empty() && self.strings.is_empty()
+    }
+
     fn read(xml: &VtkXml, grid: ElementId) -> Result<Self, ContentFault> {
         let mut fields = Self::default();
         for data in xml.children(grid, "FieldData") {
