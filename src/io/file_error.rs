@@ -65,8 +65,8 @@ pub(super) fn advice(error: &io::Error) -> &'static str {
             "the disk is full: free space or name a file on another disk; an earlier file of this name is as it was"
         }
         io::ErrorKind::AlreadyExists => "name another file",
-        // The system has no complaint: the mesh has one.
-        io::ErrorKind::InvalidData => "an earlier file of this name is as it was",
+        // Not the file is at fault, but the mesh.
+        io::ErrorKind::InvalidData | io::ErrorKind::Other => "an earlier file of this name is as it was",
         _ => "name a file in a folder that exists and can be written to",
     }
 }

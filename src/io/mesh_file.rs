@@ -4,10 +4,10 @@ use super::atomic::AtomicFile;
 use super::counted::Counted;
 use super::file_error::{FileError, advice};
 use super::medit::{self, MeditFault};
-use super::tetgen::{self, MeshFamily, TetgenFault};
-use super::vtk_xml::VtkError;
 use super::pvtu::{self, Pieces};
 use super::pvtu_folder::PieceFolder;
+use super::tetgen::{self, MeshFamily, TetgenFault};
+use super::vtk_xml::VtkError;
 use super::{msh, vtu};
 use crate::mesh::VolumeMesh;
 use crate::mesh::check::Expectation;
@@ -46,6 +46,11 @@ impl MeshFormat {
             "ele" | "node" => Ok(Self::Tetgen),
             _ => Err(MeshFileError::UnknownFormat { path: path.to_path_buf() }),
         }
+    }
+
+    /// Whether a mesh can be written without being held in memory as a whole.
+    pub fn is_written_in_passes(self) -> bool {
+        self != Self::Tetgen
     }
 }
 
@@ -291,7 +296,8 @@ fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError>
     let volume = if let Some(volume) = mesh.whole() {
         volume
     } else {
-        gathered = gather(mesh).map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })?;
+        gathered =
+            gather(&Counted(mesh)).map_err(|source| MeshFileError::Write { path: path.to_path_buf(), source })?;
         &gathered
     };
     MeshFamily::of_volume(volume).write(path)?;

@@ -66,9 +66,10 @@ impl PieceFolder {
         index.complete()?;
         Self::ensure_replaceable(path)?;
         // An empty folder takes the place that the one of the earlier pieces is moved to.
-        let earlier = match self.target.exists() {
-            true => Some(make_hidden(&self.target, "old", |old| fs::create_dir(old))?.0),
-            false => None,
+        let earlier = if self.target.exists() {
+            Some(make_hidden(&self.target, "old", |old| fs::create_dir(old))?.0)
+        } else {
+            None
         };
         if let Some(old) = &earlier
             && let Err(error) = fs::rename(&self.target, old)

@@ -141,7 +141,9 @@ mod tests {
 
     fn cut(blocks: &[i32], limit: usize) -> Plan {
         let mut cutter = Cutter { limit, ..Cutter::default() };
-        blocks.iter().for_each(|&block| cutter.add(block));
+        for &block in blocks {
+            cutter.add(block);
+        }
         cutter.finish()
     }
 

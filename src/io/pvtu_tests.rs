@@ -33,8 +33,13 @@ fn sorted(mut face: [u32; 3]) -> [u32; 3] {
 
 /// The boundary in an order that does not depend on the pieces.
 fn in_order(mut volume: VolumeMesh) -> VolumeMesh {
-    let mut faces: Vec<_> =
-        volume.boundary.iter().zip(&volume.boundary_patch).zip(&volume.boundary_block).map(|((a, b), c)| (*a, *b, *c)).collect();
+    let mut faces: Vec<_> = volume
+        .boundary
+        .iter()
+        .zip(&volume.boundary_patch)
+        .zip(&volume.boundary_block)
+        .map(|((a, b), c)| (*a, *b, *c))
+        .collect();
     faces.sort_unstable();
     volume.boundary = faces.iter().map(|face| face.0).collect();
     volume.boundary_patch = faces.iter().map(|face| face.1).collect();

@@ -49,7 +49,8 @@ impl GridReader {
     /// Reads a file.
     pub(super) fn read(&mut self, bytes: &[u8]) -> Result<(), ContentFault> {
         let xml = VtkXml::parse(bytes, "UnstructuredGrid")?;
-        let grid = xml.child(xml.root(), "UnstructuredGrid").ok_or(ContentFault::Missing { what: "UnstructuredGrid" })?;
+        let grid =
+            xml.child(xml.root(), "UnstructuredGrid").ok_or(ContentFault::Missing { what: "UnstructuredGrid" })?;
         for piece in xml.children(grid, "Piece") {
             self.read_piece(&xml, piece)?;
         }

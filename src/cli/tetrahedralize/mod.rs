@@ -28,8 +28,8 @@ pub struct Args {
     /// `-` for standard input
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// Where the mesh goes: .vtu, .msh (Gmsh 4.1), .mesh (Medit), .ele (TetGen's files .node .ele .face .edge .neigh);
-    /// `-` for standard output
+    /// Where the mesh goes: .vtu, .pvtu (pieces), .msh (Gmsh 4.1), .mesh (Medit), .ele (TetGen's files .node .ele .face
+    /// .edge .neigh); `-` for standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// Format of the input, whatever its extension

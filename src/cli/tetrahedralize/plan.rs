@@ -182,7 +182,7 @@ impl TetPlan {
 pub fn ensure_fits(plan: &TetPlan, args: &Args, target: Option<&Target>) -> Result<(), Failure> {
     match target {
         None if !plan.check_only => Err(Failure::usage(
-            "there is no output: name one with -o MESH (.vtu, .msh, .mesh or .ele), or give --check-only",
+            "there is no output: name one with -o MESH (.vtu, .pvtu, .msh, .mesh or .ele), or give --check-only",
         )),
         Some(Target::Stream(_)) if args.json && !plan.check_only => {
             Err(Failure::usage("--json and -o - both write to standard output: name a file with -o"))
