@@ -356,7 +356,7 @@ fn an_output_that_cannot_be_written_is_refused_first() {
         let out = folder.path().join(name);
         let refused = mesh(&network, &out, &[]);
         assert_code(&refused, BAD_INPUT);
-        assert_message(&refused, &out, &["extension", ".vtu, .msh"]);
+        assert_message(&refused, &out, &["extension", ".vtu, .pvtu, .msh"]);
     }
     let below_a_file = fixture("tree_30.vtp").join("out.vtu");
     let refused = mesh(&network, &below_a_file, &[]);
@@ -452,7 +452,7 @@ fn check_refuses_what_is_no_mesh() {
     }
     let path = folder.path().join("mesh.stl");
     fs::write(&path, "solid\n").expect("a file");
-    refused(&path, &["extension", ".vtu, .msh"]);
+    refused(&path, &["extension", ".vtu, .pvtu, .msh"]);
     // A network is no mesh.
     let network = folder.path().join("network.vtu");
     fs::copy(fixture("tree_30.vtp"), &network).expect("a copy");
