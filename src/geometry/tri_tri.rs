@@ -304,10 +304,11 @@ pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32
     let mut boxes = Vec::with_capacity(triangles.len());
     // On a smooth surface nearly all vertices: then neighbours there need no look.
     let proved = proved_fans(points, triangles);
-    let is_proved = |v: u32| proved[v as usize];
+    let proved_or_none = |v: u32| if proved[v as usize] { v } else { u32::MAX };
+    let known: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(proved_or_none)).collect();
     for (i, t) in triangles.iter().enumerate() {
         let [a, b, c] = t.map(|v| &points[v as usize]);
-        if !t.iter().any(|&v| is_proved(v)) && collinear(a, b, c) {
+        if known[i] == [u32::MAX; 3] && collinear(a, b, c) {
             found.push((i as u32, i as u32, Improper::Degenerate));
             boxes.push(Aabb::EMPTY);
         } else {
@@ -316,8 +317,7 @@ pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32
     }
     let mut batch: Vec<(u32, u32)> = Vec::with_capacity(BATCH);
     Bvh::new(&boxes).self_pairs(|i, j| {
-        let other = triangles[j as usize];
-        if triangles[i as usize].iter().any(|&v| other.contains(&v) && is_proved(v)) {
+        if have_common(known[i as usize], known[j as usize]) {
             return;
         }
         batch.push((i, j));
@@ -329,6 +329,13 @@ pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32
     test_pairs(points, triangles, &batch, &mut found);
     found.sort_unstable();
     found
+}
+
+/// Whether two triangles have a number in common that is not the largest; without branches, which could not be foretold.
+#[inline]
+fn have_common(a: [u32; 3], b: [u32; 3]) -> bool {
+    let is_in = |v: u32| ((v == b[0]) | (v == b[1]) | (v == b[2])) & (v != u32::MAX);
+    is_in(a[0]) | is_in(a[1]) | is_in(a[2])
 }
 
 fn test_pairs(points: &[Point3], triangles: &[[u32; 3]], pairs: &[(u32, u32)], found: &mut Vec<(u32, u32, Improper)>) {

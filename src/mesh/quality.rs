@@ -21,14 +21,34 @@ pub fn volume6(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
 /// Radius ratio `3·r_in / R_circ`, with the sign of the volume: 1 for the regular tetrahedron, 0 for a flat one.
 #[inline]
 pub fn radius_ratio(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
-    let (u, v, w) = (b - a, c - a, d - a);
-    let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
-    let volume = uv.dot(&w);
-    let doubled_area = vw.norm() + wu.norm() + uv.norm() + (vw + wu + uv).norm();
-    let center = vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared();
-    // r = |V6| / ΣA2 and R = |center| / (2 |V6|), where V6 is six volumes and A2 two areas.
-    let product = doubled_area * center.norm();
-    if product > 0.0 { 6.0 * volume * volume.abs() / product } else { 0.0 }
+    Spokes::new([a, b, c, d]).radius_ratio()
+}
+
+/// What ratio and angles are computed from: the edges from the first vertex, their cross products and six volumes.
+struct Spokes {
+    edges: [Vec3; 3],
+    /// Of the second and third edge, of the third and first, of the first and second.
+    crossed: [Vec3; 3],
+    volume: f64,
+}
+
+impl Spokes {
+    #[inline]
+    fn new([a, b, c, d]: [&Point3; 4]) -> Self {
+        let (u, v, w) = (b - a, c - a, d - a);
+        let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
+        Self { edges: [u, v, w], crossed: [vw, wu, uv], volume: uv.dot(&w) }
+    }
+
+    #[inline]
+    fn radius_ratio(&self) -> f64 {
+        let ([u, v, w], [vw, wu, uv]) = (&self.edges, &self.crossed);
+        let doubled_area = vw.norm() + wu.norm() + uv.norm() + (vw + wu + uv).norm();
+        let center = vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared();
+        // r = |V6| / ΣA2 and R = |center| / (2 |V6|), where V6 is six volumes and A2 two areas.
+        let product = doubled_area * center.norm();
+        if product > 0.0 { 6.0 * self.volume * self.volume.abs() / product } else { 0.0 }
+    }
 }
 
 /// The six dihedral angles in radians, in the order of `TET_EDGES`; each in [0, π].
@@ -97,15 +117,15 @@ impl CotangentRange {
 
     /// As [`Self::include`], for many tetrahedra few of which widen the range: squares without roots tell that most do
     /// not.
-    fn include_if_wider(&mut self, corners: [&Point3; 4]) {
-        let [a, b, c, d] = corners;
-        let (u, v, w) = (b - a, c - a, d - a);
-        let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
+    #[inline]
+    fn include_if_wider(&mut self, corners: [&Point3; 4], spokes: &Spokes) {
+        let ([u, v, w], [vw, wu, uv]) = (&spokes.edges, &spokes.crossed);
         let away = -(vw + wu + uv);
-        let volume = uv.dot(&w);
+        let volume = spokes.volume;
         // Faces at the edges of `u`, `v`, `w` and of the three others.
-        let adjacent = [wu.dot(&uv), vw.dot(&uv), vw.dot(&wu), uv.dot(&away), wu.dot(&away), vw.dot(&away)].map(|x| -x);
-        let squares = [u, v, w, c - b, d - b, d - c].map(|e| e.norm_squared() * (volume * volume));
+        let adjacent = [wu.dot(uv), vw.dot(uv), vw.dot(wu), uv.dot(&away), wu.dot(&away), vw.dot(&away)].map(|x| -x);
+        let [_, b, c, d] = corners;
+        let squares = [*u, *v, *w, c - b, d - b, d - c].map(|e| e.norm_squared() * (volume * volume));
         let square = |x: f64| x * x.abs();
         let (low, high) = (
             square(self.low) * (1.0 + ROUNDOFF * self.low.signum()),
@@ -207,14 +227,15 @@ impl QualitySum {
     /// Adds a tetrahedron; its radius ratio.
     #[inline]
     pub fn include(&mut self, p: [&Point3; 4]) -> f64 {
-        let q = radius_ratio(p[0], p[1], p[2], p[3]);
+        let spokes = Spokes::new(p);
+        let q = spokes.radius_ratio();
         // The fine bin lies in the coarse one, whatever rounding does.
         let coarse = ((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1) * PER_BIN;
         let fine = ((q * FINE_BINS as f64) as usize).clamp(coarse, coarse + PER_BIN - 1);
         self.bins[fine] += 1;
         self.sum += q;
         self.min = self.min.min(q);
-        self.dihedral.include_if_wider(p);
+        self.dihedral.include_if_wider(p, &spokes);
         q
     }
 
@@ -238,15 +259,22 @@ impl QualitySum {
         }
     }
 
+    /// As [`percentile`], of values known to a bin.
     fn percentile(&self, share: f64, tets: u64) -> f64 {
-        let rank = share * tets.saturating_sub(1) as f64;
+        let last = tets.saturating_sub(1);
+        let rank = share * last as f64;
+        let low = self.value_at(rank as u64);
+        low + (self.value_at((rank as u64 + 1).min(last)) - low) * rank.fract()
+    }
+
+    /// The value of a rank: those of a bin are taken as evenly spread, those of the first bin from the smallest.
+    fn value_at(&self, rank: u64) -> f64 {
         let mut below = 0;
         for (i, &count) in self.bins.iter().enumerate().filter(|(_, count)| **count > 0) {
-            if rank < (below + count) as f64 {
-                // The values of a bin are taken as evenly spread, the first bin's from the smallest.
+            if rank < below + count {
                 let edge = |i: usize| i as f64 / FINE_BINS as f64;
                 let low = if below == 0 { self.min } else { edge(i) };
-                return low + (edge(i + 1) - low) * (rank - below as f64) / count as f64;
+                return low + (edge(i + 1) - low) * ((rank - below) as f64 + 0.5) / count as f64;
             }
             below += count;
         }

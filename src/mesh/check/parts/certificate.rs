@@ -10,7 +10,7 @@ use crate::mesh::check::cells;
 use crate::mesh::check::disjoint_sets::DisjointSets;
 use crate::mesh::check::labels;
 use crate::mesh::check::nested::{Enclosed, enclosed};
-use crate::mesh::check::result::{Line, LineResult, Tally};
+use crate::mesh::check::result::{Line, LineResult, Offender, OffenderKind, Tally};
 use crate::mesh::check::surface::{Boundary, Surfaces};
 use crate::mesh::quality::{QualitySum, volume6};
 
@@ -179,7 +179,14 @@ impl Certificate {
             let held = &mut self.joints[j as usize];
             held.faces = faces.len() as u32;
             let exist = faces.as_flattened().iter().all(|&v| (v as usize) < points.len());
-            let Some(first) = faces.first().filter(|_| exist) else { continue };
+            let Some(first) = faces.first() else {
+                fans.add(|| Offender { kind: OffenderKind::Face, ids: Vec::new(), position: None });
+                continue;
+            };
+            if !exist {
+                // Named with the labels.
+                continue;
+            }
             for &v in faces.as_flattened() {
                 let of = &mut joint_of[v as usize];
                 held.vertices += u32::from(*of != j);

@@ -17,7 +17,7 @@ pub(super) struct Joined {
     pub flags: Vec<bool>,
     /// Pairs that are joined, as (part, number of the joint).
     pub pairs: Vec<[(u32, u32); 2]>,
-    /// A line that a joint breaks.
+    /// A line that is broken because a joint is.
     pub broken: Option<Line>,
 }
 
@@ -51,6 +51,9 @@ pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io
     let mut keep = Vec::new();
     for differences in results {
         keep.push(!differences.all);
+        if differences.all {
+            joined.broken = Some(Line::LabelsMatchBoundary);
+        }
         for (line, offender) in differences.found {
             joined.broken = Some(line);
             tallies.add(line, offender);

@@ -293,3 +293,31 @@ fn common_edges(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wall(ids: &[u32], faces: &[[u32; 3]], z: f64) -> Wall {
+        // The first two points are those of a common edge.
+        let at = |i: usize| match i {
+            0 | 1 => Point3::new(i as f64, 0.0, 0.0),
+            _ => Point3::new(0.5, i as f64 - 2.5, z),
+        };
+        let points: Vec<Point3> = (0..ids.len()).map(at).collect();
+        Wall { aabb: Aabb::of_points(&points), points, ids: ids.to_vec(), faces: faces.to_vec() }
+    }
+
+    #[test]
+    fn an_edge_that_both_walls_have_is_a_rim_or_a_fault() {
+        let rim = test_pair(&wall(&[7, 9, 1], &[[0, 1, 2]], 1.0), &wall(&[7, 9, 2], &[[1, 0, 2]], -1.0));
+        assert_eq!(rim, Meetings::default());
+        let two = [[0, 1, 2], [1, 0, 3]];
+        let chord = test_pair(&wall(&[7, 9, 1, 2], &two, 1.0), &wall(&[7, 9, 3, 4], &two, -1.0));
+        assert_eq!(chord.edges.iter().map(|edge| edge.0).collect::<Vec<_>>(), [[7, 9]]);
+        assert!(chord.intersections.is_empty() && chord.twins.is_empty());
+        // Without common ids the edges lie on each other.
+        let apart = test_pair(&wall(&[7, 9, 1, 2], &two, 1.0), &wall(&[17, 19, 3, 4], &two, -1.0));
+        assert_eq!((apart.edges.len(), apart.intersections.len(), apart.twins.len()), (0, 4, 8));
+    }
+}

@@ -79,7 +79,7 @@ fn tidy(offenders: &mut Vec<Offender>) -> u64 {
 }
 
 /// Checks a mesh that is made of parts. Of walls some `memory` bytes are held at a time (two walls at least), of every
-/// part some 200 bytes. The result does not depend on the number of threads.
+/// part some 300 bytes. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// What reading the parts fails with, and `InvalidData` where certificates, walls and joints do not belong together.
@@ -118,7 +118,10 @@ struct Whole<'a> {
 
 impl Whole<'_> {
     fn check(mut self, mut counts: Counts, memory: usize) -> io::Result<CheckReport> {
-        if self.joined.broken.is_none() {
+        // What follows from joints is only looked at where they are sound.
+        let sound = self.joined.broken.is_none()
+            && self.tallies.first_of(&[Line::BoundaryFans, Line::LabelsMatchBoundary]).is_none();
+        if sound {
             ids::check(self.parts, &self.held, &self.joined, &mut self.tallies)?;
         }
         let glued = Glued::new(&self.held, &self.joined.pairs);
@@ -131,8 +134,8 @@ impl Whole<'_> {
         let intersections = self.take_meetings(meetings);
         let roots: Vec<u32> = glued.surfaces().collect();
         let mut nested = false;
-        let needed = [Line::PositiveTets, Line::BoundaryEdges, Line::NoSelfIntersection, Line::LabelsMatchBoundary];
-        if roots.len() > 1 && self.joined.broken.is_none() && self.tallies.first_of(&needed).is_none() {
+        let needed = [Line::PositiveTets, Line::BoundaryEdges, Line::NoSelfIntersection];
+        if sound && roots.len() > 1 && self.tallies.first_of(&needed).is_none() {
             let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.flags };
             for offender in nests::within(reader, &glued, &tree)? {
                 nested = true;

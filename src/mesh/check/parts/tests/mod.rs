@@ -1,5 +1,8 @@
 //! Meshes cut into parts: the check of the parts says what the check of the whole says, and planted faults are found.
 
+mod faults;
+mod random;
+
 use super::*;
 use crate::geometry::Vec3;
 use crate::mesh::adjacency::{boundary_faces, face_vertices, tet_adjacency};
@@ -11,7 +14,7 @@ use crate::mesh::{Patch, VolumeMesh, WALL};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A part in memory.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 struct Piece {
     mesh: TetMesh,
     joints: Vec<Vec<[u32; 3]>>,
@@ -22,7 +25,7 @@ struct Piece {
 }
 
 /// Parts in memory.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 struct Cut {
     pieces: Vec<Piece>,
     joined: Vec<[(u32, u32); 2]>,
@@ -95,11 +98,15 @@ impl Cut {
     fn new(mesh: &TetMesh, part_of: impl Fn(Vec3) -> u32, caps: &[Patch], loops: Vec<u32>) -> Self {
         let middle = |t: &[u32; 4]| t.iter().fold(Vec3::zeros(), |s, &v| s + mesh.points[v as usize].coords) / 4.0;
         let parts: Vec<u32> = mesh.tets.iter().map(|t| part_of(middle(t))).collect();
+        Self::with_parts(mesh, &parts, caps, loops)
+    }
+
+    fn with_parts(mesh: &TetMesh, parts: &[u32], caps: &[Patch], loops: Vec<u32>) -> Self {
         let count = parts.iter().max().map_or(0, |&p| p + 1);
         let terminals = caps.iter().filter_map(|p| p.cap.map(|c| c.node)).collect();
         let mut cut = Self { patches: caps.to_vec(), expectation: Expectation { loops, terminals }, ..Self::default() };
         for part in 0..count {
-            let tets: Vec<u64> = (0..).zip(&parts).filter(|(_, p)| **p == part).map(|(i, _)| i).collect();
+            let tets: Vec<u64> = (0..).zip(parts).filter(|(_, p)| **p == part).map(|(i, _)| i).collect();
             let mut vertices: Vec<u32> = tets.iter().flat_map(|&i| mesh.tets[i as usize]).collect();
             vertices.sort_unstable();
             vertices.dedup();
@@ -122,7 +129,7 @@ impl Cut {
             }
             cut.pieces.push(piece);
         }
-        cut.find_joints(mesh, &parts);
+        cut.find_joints(mesh, parts);
         cut.certify();
         cut
     }
@@ -315,272 +322,4 @@ fn ring(parts: u32) -> Cut {
         };
         on.then_some(part % parts)
     })
-}
-
-#[test]
-fn parts_of_sound_meshes_pass_as_the_whole_does() {
-    let bar = bar();
-    assert_eq!((bar.pieces.len(), bar.joined.len()), (10, 9));
-    assert_eq!(bar.check().verdict, Verdict::Valid);
-    for cut in [bar, star(), ring(4), ring(2)] {
-        assert!(cut.certificates.iter().all(Certificate::is_sound));
-        assert_same(&cut);
-        assert_eq!(cut.check().verdict, Verdict::Valid, "{:?}", cut.check().failed().collect::<Vec<_>>());
-    }
-    assert_eq!(ring(2).joined.len(), 4);
-}
-
-#[test]
-fn certificates_survive_being_stored() {
-    for certificate in
-        bar().certificates.iter().chain(&planted(&bar(), |c| c.pieces[3].mesh.tets[5].swap(0, 1)).0.certificates)
-    {
-        let text = serde_json::to_string(certificate).unwrap();
-        assert_eq!(&serde_json::from_str::<Certificate>(&text).unwrap(), certificate);
-    }
-}
-
-#[test]
-fn genus_and_components_are_compared() {
-    let mut cut = ring(4);
-    cut.expectation.loops = vec![0];
-    let report = cut.check();
-    assert_eq!(report.failed().map(|l| l.line).collect::<Vec<_>>(), [Line::Loops]);
-    assert_same(&cut);
-    cut.expectation.loops = vec![1, 0];
-    assert_eq!(cut.failing(), [Line::Components, Line::Loops]);
-    assert_same(&cut);
-}
-
-#[test]
-fn faults_inside_a_part_are_named_in_numbers_of_the_whole() {
-    let inverted = planted(&bar(), |c| c.pieces[4].mesh.tets[7].swap(1, 2)).0;
-    assert_same(&inverted);
-    assert_eq!(inverted.failing(), [Line::PositiveTets, Line::OppositeSides]);
-    let (twice, lines) = planted(&star(), |c| {
-        let t = c.pieces[0].mesh.tets[5];
-        c.pieces[0].mesh.tets.push(t);
-        c.pieces[0].tets.push(10_000);
-    });
-    assert!(lines.contains(&Line::NoDuplicateTets) && lines.contains(&Line::FacesSharedByTwo));
-    same_offenders(&twice.check(), &twice.whole(), Line::FacesSharedByTwo);
-    let (unused, lines) = planted(&star(), |c| {
-        c.pieces[3].mesh.points.push(Point3::new(0.3, 0.2, 0.1));
-        let id = c.pieces.iter().flat_map(|p| &p.vertices).max().unwrap() + 1;
-        c.pieces[3].vertices.push(id);
-    });
-    assert_eq!(lines, [Line::NoUnusedPoints]);
-    assert_same(&unused);
-    let (copied, lines) = planted(&star(), |c| {
-        let p = c.pieces[3].mesh.points[2];
-        c.pieces[3].mesh.points.push(p);
-        let id = c.pieces.iter().flat_map(|p| &p.vertices).max().unwrap() + 1;
-        c.pieces[3].vertices.push(id);
-    });
-    assert_eq!(lines, [Line::NoDuplicatePoints, Line::NoUnusedPoints]);
-    assert_same(&copied);
-    let (moved, lines) = planted(&bar(), |c| c.pieces[4].mesh.points[0] = Point3::new(f64::NAN, 0.0, 0.0));
-    assert_eq!(lines, [Line::FinitePoints]);
-    assert_eq!(
-        moved.check().line(Line::Loops).unwrap().outcome,
-        Outcome::NotChecked(Skipped::Because(Line::FinitePoints))
-    );
-    let (_, lines) = planted(&bar(), |c| c.pieces[4].mesh.tets[3][1] = 1_000_000);
-    assert_eq!(lines, [Line::IndicesInRange]);
-    assert_eq!(Cut::default().failing(), [Line::NotEmpty]);
-}
-
-#[test]
-fn faults_of_joints() {
-    // A joint's vertex moved in one of its parts.
-    let bar = bar();
-    let v = bar.pieces[5].joints[0][0][0];
-    let id = i64::from(bar.pieces[5].vertices[v as usize]);
-    let (moved, lines) = planted(&bar, |c| c.pieces[5].mesh.points[v as usize].x += 1e-9);
-    assert_eq!(lines, [Line::NoDuplicatePoints]);
-    assert_eq!(moved.check().line(Line::NoDuplicatePoints).unwrap().offenders[0].ids, [id]);
-    // A joint that is joined to nothing: twice the same faces.
-    let (_, lines) = planted(&bar, |c| {
-        c.joined.remove(4);
-    });
-    assert!(lines.contains(&Line::NoSelfIntersection) && lines.contains(&Line::Components), "{lines:?}");
-    // Joined twice.
-    let (twice, lines) = planted(&bar, |c| c.joined.push(c.joined[4]));
-    assert_eq!(lines, [Line::FacesSharedByTwo]);
-    assert_eq!(twice.check().line(Line::FacesSharedByTwo).unwrap().count, bar.pieces[5].joints[0].len() as u64);
-    // A face less in one of its parts.
-    let face = bar.pieces[5].joints[0][3];
-    let (less, lines) = planted(&bar, |c| {
-        c.pieces[5].joints[0].remove(3);
-    });
-    assert!(lines.contains(&Line::LabelsMatchBoundary), "{lines:?}");
-    let ids: BTreeSet<i64> = face.iter().map(|&v| i64::from(bar.pieces[5].vertices[v as usize])).collect();
-    let named = &less.check().line(Line::LabelsMatchBoundary).unwrap().offenders[0].ids.clone();
-    assert_eq!(named.iter().copied().collect::<BTreeSet<_>>(), ids);
-    // Turned the wrong way.
-    let (_, lines) = planted(&bar, |c| c.pieces[5].joints[0].iter_mut().for_each(|f| f.swap(0, 1)));
-    assert!(lines.contains(&Line::LabelsMatchBoundary), "{lines:?}");
-    // Two ids exchanged in one of its parts.
-    let (_, lines) = planted(&bar, |c| {
-        let w = c.pieces[5].joints[0][0][1];
-        c.pieces[5].vertices.swap(v as usize, w as usize);
-    });
-    assert!(lines.contains(&Line::NoDuplicatePoints), "{lines:?}");
-    // A joint that is no face of the part.
-    let inner = tet_adjacency(&bar.pieces[5].mesh.tets, bar.pieces[5].mesh.points.len()).neighbors;
-    let handle = inner.as_flattened().iter().position(|&n| n != u32::MAX).unwrap() as u32;
-    let face = face_vertices(&bar.pieces[5].mesh.tets, handle);
-    let (_, lines) = planted(&bar, |c| c.pieces[5].joints[0][0] = face);
-    assert!(lines.contains(&Line::LabelsMatchBoundary), "{lines:?}");
-    let mut piece = bar.pieces[5].clone();
-    piece.joints[0][0] = [1_000_000, 0, 1];
-    assert_eq!(piece.certificate().faults()[0].line, Line::LabelsMatchBoundary);
-    // Joints that do not exist are no mesh at all.
-    let mut wrong = bar.clone();
-    wrong.joined.push([(3, 9), (4, 0)]);
-    assert!(check_parts(&wrong, &wrong.patches, None, 0).is_err());
-}
-
-#[test]
-fn faults_of_ids() {
-    // A point of an arm's tip is called as one of another arm's.
-    let star = star();
-    let ids: Vec<u32> = star.pieces[1].vertices.clone();
-    let free = ids.iter().copied().find(|id| !star.pieces[0].vertices.contains(id)).unwrap();
-    let tip = star.pieces[4].vertices.iter().position(|id| !star.pieces[0].vertices.contains(id)).unwrap();
-    let own = star.pieces[4].vertices[tip];
-    let (twice, lines) = planted(&star, |c| c.pieces[4].vertices[tip] = free);
-    assert_eq!(lines, [Line::NoUnusedPoints, Line::BoundaryFans]);
-    assert_eq!(twice.check().line(Line::BoundaryFans).unwrap().offenders[0].ids, [i64::from(free)]);
-    assert_eq!(twice.check().line(Line::NoUnusedPoints).unwrap().offenders[0].ids, [i64::from(own)]);
-    let (_, lines) = planted(&star, |c| c.pieces[4].vertices[tip] = 1_000_000);
-    assert_eq!(lines, [Line::IndicesInRange, Line::NoUnusedPoints]);
-}
-
-/// Adds a part that is joined to nothing, and expects a component more.
-fn with_part(cut: &Cut, mesh: TetMesh) -> (Cut, Vec<Line>) {
-    planted(cut, |c| {
-        let first = c.pieces.iter().flat_map(|p| &p.vertices).max().unwrap() + 1;
-        let tets = c.pieces.iter().flat_map(|p| &p.tets).max().unwrap() + 1;
-        let vertices = (0..mesh.points.len() as u32).map(|v| v + first).collect();
-        let tets = (0..mesh.tets.len() as u64).map(|t| t + tets).collect();
-        c.pieces.push(Piece { mesh, vertices, tets, ..Piece::default() });
-        c.expectation.loops.push(0);
-    })
-}
-
-fn cube_at(corner: [f64; 3], size: f64) -> TetMesh {
-    let mut mesh = cube_lattice(2);
-    mesh.points.iter_mut().for_each(|p| *p = Point3::from(p.coords * size + Vec3::from(corner)));
-    mesh
-}
-
-#[test]
-fn parts_that_meet_are_found() {
-    let star = star();
-    assert_same(&with_part(&star, cube_at([2.0, 0.0, 0.0], 0.1)).0);
-    let seventh = 1.0 / 7.0;
-    let cases = [
-        // Through a wall; on a wall with a corner; with an edge on an edge; corner to corner; face to face.
-        [0.7, 0.45, 0.43],
-        [5.0 * seventh, 0.45, 0.69],
-        [5.0 * seventh, 5.0 * seventh, 0.5],
-        [5.0 * seventh, 5.0 * seventh, 5.0 * seventh],
-        [5.0 * seventh, 0.31, 0.31],
-    ];
-    for corner in cases {
-        let (cut, lines) = with_part(&star, cube_at(corner, 0.09));
-        assert!(lines.contains(&Line::NoSelfIntersection), "{lines:?}");
-        let (parts, whole) = (cut.check(), cut.whole());
-        same_offenders_or_more(&parts, &whole);
-        let set = |r: &CheckReport| r.intersections.iter().map(|i| (faces(i), i.kind)).collect::<BTreeSet<_>>();
-        assert_eq!(set(&parts), set(&whole));
-    }
-}
-
-fn faces(i: &Intersection) -> BTreeSet<[u32; 3]> {
-    i.faces.iter().map(|&f| sorted(f)).collect()
-}
-
-/// The same lines fail; where parts overlap, equal points need not be known.
-fn same_offenders_or_more(parts: &CheckReport, whole: &CheckReport) {
-    for (p, w) in parts.lines.iter().zip(&whole.lines) {
-        let unknown = Outcome::NotChecked(Skipped::Because(Line::NoSelfIntersection));
-        assert!(p.outcome == w.outcome || (p.line == Line::NoDuplicatePoints && p.outcome == unknown), "{p:?} {w:?}");
-        if p.outcome == Outcome::Fail {
-            assert_eq!(p.count, w.count, "{:?}", p.line);
-        }
-    }
-}
-
-#[test]
-fn a_part_within_another_is_found_and_one_in_a_cavity_is_not() {
-    let (nested, lines) = with_part(&star(), cube_at([0.45, 0.45, 0.45], 0.05));
-    assert_eq!(lines, [Line::NoSelfIntersection]);
-    let (parts, whole) = (nested.check(), nested.whole());
-    same_offenders(&parts, &whole, Line::NoSelfIntersection);
-    same_offenders_or_more(&parts, &whole);
-    // A hollow block in two halves would have a joint that is no disc; in one part with a stem it is legal.
-    let hollow = voxels(5, vec![0, 0], |c| {
-        if c.iter().all(|&x| x == 1) {
-            return None;
-        }
-        c.iter().all(|&x| x < 3).then_some(0).or_else(|| (c[0] >= 3 && c[1] == 1 && c[2] == 1).then_some(1))
-    });
-    assert_eq!(hollow.check().counts.boundary_components, 2);
-    assert_eq!(hollow.failing(), [Line::Components]);
-    assert_same(&hollow);
-    let (inside, lines) = with_part(&hollow, cube_at([0.25, 0.25, 0.25], 0.1));
-    assert!(!lines.contains(&Line::NoSelfIntersection));
-    assert_same(&inside);
-    let (inside, lines) = with_part(&hollow, cube_at([0.05, 0.05, 0.05], 0.1));
-    assert!(lines.contains(&Line::NoSelfIntersection));
-    same_offenders(&inside.check(), &inside.whole(), Line::NoSelfIntersection);
-}
-
-#[test]
-fn faults_of_caps() {
-    let bar = bar();
-    let (missing, lines) = planted(&bar, |c| c.pieces[0].caps.clear());
-    assert_eq!(lines, [Line::CapDisc, Line::CapFlat, Line::CapCentred, Line::CapArea, Line::CapNormal]);
-    assert_same(&missing);
-    let (_, lines) = planted(&bar, |c| drop(c.patches.remove(1)));
-    assert_eq!(lines, [Line::WallOrCap, Line::CapPerTerminal]);
-    let (hole, lines) = planted(&bar, |c| {
-        c.pieces[0].caps[0].1.remove(0);
-    });
-    assert!(lines.contains(&Line::CapDisc));
-    assert_same(&hole);
-    let (_, lines) = planted(&bar, |c| {
-        let face = c.pieces[0].joints[0][0];
-        c.pieces[0].caps[0].1.push(face);
-    });
-    assert!(lines.contains(&Line::LabelsMatchBoundary) && lines.contains(&Line::CapDisc), "{lines:?}");
-    let (tilted, lines) = planted(&bar, |c| {
-        let tilt = Vec3::new(1e-8, 0.0, -1.0).normalize();
-        c.pieces[0].caps[0].0.normal = tilt;
-        c.patches[1].cap.as_mut().unwrap().normal = tilt;
-    });
-    assert_eq!(lines, [Line::CapFlat]);
-    assert_same(&tilted);
-}
-
-/// Walls that were changed after they were certified.
-#[test]
-fn what_was_not_certified_is_refused() {
-    let mut cut = bar();
-    cut.pieces[4].mesh.points.iter_mut().for_each(|p| p.x *= 1.5);
-    assert_eq!(check_parts(&cut, &cut.patches, None, 0).unwrap_err().kind(), io::ErrorKind::InvalidData);
-}
-
-#[test]
-fn the_result_depends_neither_on_memory_nor_on_threads() {
-    let (cut, _) = with_part(&star(), cube_at([0.7, 0.45, 0.43], 0.09));
-    let expected = cut.check();
-    for memory in [0, 20_000, usize::MAX] {
-        let report = check_parts(&cut, &cut.patches, Some(&cut.expectation), memory).unwrap();
-        assert_eq!((&report, &report.intersections), (&expected, &expected.intersections));
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    assert_eq!(pool.install(|| cut.check()), expected);
 }

@@ -1,0 +1,94 @@
+//! Random cuts and random faults.
+
+use super::*;
+use proptest::prelude::*;
+
+/// The parts of a bar of random length, cut anywhere.
+fn any_cut() -> impl Strategy<Value = Cut> {
+    (2_u32..4, 4_u32..12, prop::collection::vec(any::<bool>(), 12), 0..1000_u64).prop_map(
+        |(rings, layers, cuts, seed)| {
+            let mut mesh = tube_lattice(rings, layers, 0.4);
+            let mut inner = vec![true; mesh.points.len()];
+            boundary_faces(&mesh).as_flattened().iter().for_each(|&v| inner[v as usize] = false);
+            perturb(&mut mesh.points, &inner, 0.03, seed);
+            // Layer by layer, with a cut below some.
+            let per_layer = mesh.tets.len() / layers as usize;
+            let parts: Vec<u32> = (0..layers as usize)
+                .map(|layer| cuts[1..=layer].iter().map(|&cut| u32::from(cut)).sum())
+                .flat_map(|part| std::iter::repeat_n(part, per_layer))
+                .collect();
+            Cut::with_parts(&mesh, &parts, &[], vec![0])
+        },
+    )
+}
+
+/// Anything that can happen to a part.
+#[derive(Clone, Copy, Debug)]
+enum Harm {
+    MovePoint(f64),
+    FlipTet,
+    DropTet,
+    CopyTet,
+    ExchangeVertex,
+}
+
+fn any_harm() -> impl Strategy<Value = Harm> {
+    prop_oneof![
+        (0.0..1.0_f64).prop_map(Harm::MovePoint),
+        Just(Harm::FlipTet),
+        Just(Harm::DropTet),
+        Just(Harm::CopyTet),
+        Just(Harm::ExchangeVertex),
+    ]
+}
+
+/// Harms a tetrahedron that has no vertex in a joint; false when nothing was done.
+fn harm(cut: &mut Cut, harm: Harm, part: usize, at: usize) -> bool {
+    let next = cut.pieces.iter().flat_map(|p| &p.tets).max().unwrap() + 1;
+    let part = part % cut.pieces.len();
+    let piece = &mut cut.pieces[part];
+    let on_joint = |v: u32| piece.joints.iter().flatten().flatten().any(|&w| w == v);
+    let tet = at % piece.mesh.tets.len();
+    if piece.mesh.tets[tet].iter().any(|&v| on_joint(v)) {
+        return false;
+    }
+    match harm {
+        Harm::MovePoint(by) => piece.mesh.points[piece.mesh.tets[tet][0] as usize] += Vec3::new(by, 0.3 * by, 0.1 * by),
+        Harm::FlipTet => piece.mesh.tets[tet].swap(0, 1),
+        Harm::DropTet => {
+            piece.mesh.tets.remove(tet);
+            piece.tets.remove(tet);
+        }
+        Harm::CopyTet => {
+            piece.mesh.tets.push(piece.mesh.tets[tet]);
+            piece.tets.push(next);
+        }
+        Harm::ExchangeVertex => piece.mesh.tets[tet][0] = (at / 7 % piece.mesh.points.len()) as u32,
+    }
+    cut.certify();
+    true
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn cuts_say_what_the_whole_says(cut in any_cut()) {
+        assert_same(&cut);
+        prop_assert_eq!(cut.failing(), []);
+    }
+
+    /// Whatever happens inside of a part: the same lines fail.
+    #[test]
+    fn harmed_parts_fail_as_the_whole_does(cut in any_cut(), how in any_harm(), part in 0..12_usize, at in 0..10_000_usize) {
+        let mut cut = cut;
+        if harm(&mut cut, how, part, at) {
+            let (parts, whole) = (cut.check(), cut.whole());
+            for (p, w) in parts.lines.iter().zip(&whole.lines) {
+                let unknown = matches!(p.outcome, Outcome::NotChecked(Skipped::Because(_)));
+                prop_assert!(unknown || p.outcome == w.outcome, "{:?}: {:?} {:?}", how, p, w);
+            }
+            prop_assert_eq!(parts.verdict, whole.verdict);
+        }
+    }
+}
