@@ -48,6 +48,7 @@ impl Aabb {
 
     /// Whether the two boxes have a point in common.
     #[inline]
+    #[allow(clippy::needless_bitwise_bool)]
     pub fn overlaps(&self, other: &Self) -> bool {
         // All six: branches that are taken as often as not cost more.
         (self.min.x <= other.max.x)

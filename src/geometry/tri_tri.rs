@@ -333,6 +333,7 @@ pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32
 
 /// Whether two triangles have a number in common that is not the largest; without branches, which could not be foretold.
 #[inline]
+#[allow(clippy::needless_bitwise_bool)]
 fn have_common(a: [u32; 3], b: [u32; 3]) -> bool {
     let is_in = |v: u32| ((v == b[0]) | (v == b[1]) | (v == b[2])) & (v != u32::MAX);
     is_in(a[0]) | is_in(a[1]) | is_in(a[2])
