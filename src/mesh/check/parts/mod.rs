@@ -28,8 +28,8 @@
 //!   boundary winds round it, for they are all positive; it winds 0 times or once, as no surface lies within the mesh.
 //!   So no two tetrahedra overlap. The faces round a vertex inside the mesh pair up, so its tetrahedra fill at least the
 //!   full solid angle; no other tetrahedron, and so no other point, is there. Two points on the boundary in one place
-//!   would be an intersection. Where something else fails in a part, its points are compared; where walls meet, the
-//!   points of the faces that do.
+//!   would be an intersection. Where something fails in a part, its points are compared with each other; where walls meet,
+//!   those of the faces that do. If no equal points are found so, the line counts as not checked.
 //! - *Components*: those of the parts, joined by joints. *Loops*: the boundary surfaces of parts, joined by joints; a joint
 //!   takes a disc (Euler number 1) off both sides, so Euler numbers add up less 2 for every joint.
 //! - *Labels and caps*: what is in no cap is wall by construction, and every cap lies in one part.

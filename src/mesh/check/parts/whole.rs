@@ -20,6 +20,18 @@ use std::io;
 /// More offenders than that are not held at a time.
 const MOST_HELD: usize = 4096;
 
+/// The lines from which it follows that no two points are equal.
+const EXCLUDE_EQUAL_POINTS: [Line; 8] = [
+    Line::NoRepeatedVertex,
+    Line::NoDuplicateTets,
+    Line::PositiveTets,
+    Line::FacesSharedByTwo,
+    Line::OppositeSides,
+    Line::BoundaryEdges,
+    Line::BoundaryFans,
+    Line::NoSelfIntersection,
+];
+
 /// Offenders of lines, in numbers of the whole.
 #[derive(Debug, Default)]
 pub(super) struct Tallies(BTreeMap<Line, (u64, Vec<Offender>)>);
@@ -130,15 +142,12 @@ impl Whole<'_> {
         drop(boxes);
         let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.flags };
         let meetings = walls::meetings(reader, &tree, memory)?;
-        let meets = !meetings.intersections.is_empty();
         let intersections = self.take_meetings(meetings);
         let roots: Vec<u32> = glued.surfaces().collect();
-        let mut nested = false;
         let needed = [Line::PositiveTets, Line::BoundaryEdges, Line::NoSelfIntersection];
         if sound && roots.len() > 1 && self.tallies.first_of(&needed).is_none() {
             let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.flags };
             for offender in nests::within(reader, &glued, &tree)? {
-                nested = true;
                 self.tallies.add(Line::NoSelfIntersection, offender);
             }
         }
@@ -150,9 +159,11 @@ impl Whole<'_> {
             (0..self.held.count()).map(|part| self.held.faces_of(part, &self.joined.flags) as usize).sum();
         counts.caps = self.patches.iter().filter(|patch| patch.cap.is_some()).count();
         let mut lines = vec![self.components(glued.components), self.loops(&glued, &roots)];
-        // Points of parts that lie over each other are not all known.
-        if (meets || nested) && !self.tallies.fails(Line::NoDuplicatePoints) {
-            lines.push(LineResult::skipped(Line::NoDuplicatePoints, Skipped::Because(Line::NoSelfIntersection)));
+        // That no points are equal follows from the other lines: when one of them fails, it has not been shown.
+        if let Some(line) = self.joined.broken.or(self.tallies.first_of(&EXCLUDE_EQUAL_POINTS))
+            && !self.tallies.fails(Line::NoDuplicatePoints)
+        {
+            lines.push(LineResult::skipped(Line::NoDuplicatePoints, Skipped::Because(line)));
         }
         lines.extend(self.labels());
         for line in Line::ALL {

@@ -85,8 +85,8 @@ proptest! {
         if harm(&mut cut, how, part, at) {
             let (parts, whole) = (cut.check(), cut.whole());
             for (p, w) in parts.lines.iter().zip(&whole.lines) {
-                let unknown = matches!(p.outcome, Outcome::NotChecked(Skipped::Because(_)));
-                prop_assert!(unknown || p.outcome == w.outcome, "{:?}: {:?} {:?}", how, p, w);
+                let open = p.line == Line::Loops && matches!(p.outcome, Outcome::NotChecked(Skipped::Because(_)));
+                prop_assert!(open || is_unknown(p) || p.outcome == w.outcome, "{:?}: {:?} {:?}", how, p, w);
             }
             prop_assert_eq!(parts.verdict, whole.verdict);
         }
