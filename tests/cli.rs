@@ -133,7 +133,15 @@ fn reports_are_json_on_request() {
     assert_eq!(checked["verdict"], "valid");
     assert_eq!(checked["lines"].as_array().map(Vec::len), Some(anastomesh::mesh::check::Line::ALL.len()));
     assert_eq!(checked["counts"]["tets"], run_report["mesh"]["tets"]);
-    assert_eq!(checked, made["check"], "what was checked in memory is what is in the file");
+    // What was checked block by block is what is in the file; sums of floats depend on their order, and blocks keep a
+    // histogram from which the percentile is read.
+    let (mut whole, mut by_blocks) = (checked, made["check"].clone());
+    for (path, tolerance) in [("/counts/volume", 1e-9), ("/quality/mean", 1e-9), ("/quality/percentile_1", 2e-3)] {
+        let take = |report: &mut Value| report.pointer_mut(path).map(Value::take).and_then(|v| v.as_f64());
+        let (a, b) = (take(&mut whole).expect("a number"), take(&mut by_blocks).expect("a number"));
+        assert!((a - b).abs() <= tolerance * a.abs(), "{path}: {a} and {b}");
+    }
+    assert_eq!(whole, by_blocks);
 }
 
 #[test]
@@ -371,11 +379,11 @@ fn an_output_that_cannot_be_written_is_refused_first() {
 fn options_that_make_no_sense() {
     let folder = folder();
     let out = folder.path().join("out.vtu");
-    for bad in ["0", "-1", "nan", "inf", "1000"] {
+    for bad in ["0", "-1", "nan", "inf"] {
         let refused = mesh(&fixture("tree_30.vtp"), &out, &["--rho", bad]);
         assert_code(&refused, USAGE);
         let said = stderr(&refused).to_lowercase();
-        assert!(said.contains(&format!("rho = {bad} ")) && said.contains("between"), "{said}");
+        assert!(said.contains(&format!("rho = {bad} ")) && said.contains("at least"), "{said}");
     }
     for bad in [&["--rho", "fine"][..], &["--threads", "0"], &["--root", "first"], &["--finer"], &["--radius-array"]] {
         let refused = mesh(&fixture("tree_30.vtp"), &out, bad);

@@ -7,7 +7,6 @@ use anastomesh::mesh::adjacency::boundary_faces;
 use anastomesh::mesh::quality::TetQuality;
 use anastomesh::mesh::{TetMesh, TriMesh};
 use anastomesh::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
-use anastomesh::stitch::merge::{Merged, Part, SharedVertex, merge};
 use anastomesh::tet::optimize::{OptimizeOptions, optimize};
 use anastomesh::tet::{Complex, TetOptions, tetrahedralize};
 
@@ -59,22 +58,33 @@ fn tube(z0: f64) -> TriMesh {
     TriMesh { points, triangles }
 }
 
+/// Two blocks in one mesh.
+#[derive(Debug, PartialEq)]
+struct Merged {
+    mesh: TetMesh,
+    tet_block: Vec<i32>,
+}
+
 fn two_blocks() -> (Merged, Vec<Joint>, Vec<bool>) {
     let length = f64::from(LAYERS) * STEP;
     let [lower, upper] = [-length, 0.0].map(|z0| tetrahedralize(&tube(z0), &TetOptions::default()).expect("a tube"));
     let key = |p: &Point3| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()];
     let surface = tube(0.0).points.len();
     let below: HashMap<_, u32> = lower.points.iter().zip(0..).take(surface).map(|(p, v)| (key(p), v)).collect();
-    let shared: Vec<SharedVertex> = (0..surface as u32)
-        .filter_map(|local| {
-            let vertex = *below.get(&key(&upper.points[local as usize]))?;
-            Some(SharedVertex { local, part: 0, vertex })
-        })
-        .collect();
-    assert_eq!(shared.len() as u32, SIDES + SIDES / 2 + 1);
-    let joint = Joint { vertices: shared.iter().map(|s| s.vertex).collect() };
-    let parts = vec![Part { mesh: lower, shared: Vec::new() }, Part { mesh: upper, shared }];
-    let merged = merge(parts).expect("they share an end surface");
+    let mut merged = Merged { tet_block: vec![0; lower.tets.len()], mesh: lower };
+    let mut joint = Joint::default();
+    let mut number = Vec::with_capacity(upper.points.len());
+    for (local, p) in upper.points.iter().enumerate() {
+        let common = below.get(&key(p)).filter(|_| local < surface);
+        joint.vertices.extend(common);
+        number.push(common.copied().unwrap_or(merged.mesh.points.len() as u32));
+        if common.is_none() {
+            merged.mesh.points.push(*p);
+        }
+    }
+    assert_eq!(joint.vertices.len() as u32, SIDES + SIDES / 2 + 1);
+    merged.mesh.tets.extend(upper.tets.iter().map(|t| t.map(|v| number[v as usize])));
+    merged.tet_block.resize(merged.mesh.tets.len(), 1);
     let frozen = merged.mesh.points.iter().map(|p| p.z.abs() > length - 1e-9).collect();
     (merged, vec![joint], frozen)
 }

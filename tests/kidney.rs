@@ -3,7 +3,7 @@
 mod common;
 
 use anastomesh::mesh::check::{CheckReport, Line, Outcome};
-use anastomesh::pipeline::{MeshPlan, Meshed, RunReport};
+use anastomesh::pipeline::{JointStyle, MeshPlan, Meshed, RunReport};
 use anastomesh::report::check::text;
 use common::{mesh, mesh_by, network, shared};
 
@@ -19,7 +19,9 @@ fn kidney(name: &str, rho: f64) -> Option<Meshed> {
 
 fn assert_few_retries(report: &RunReport) {
     let blocks = report.blocks.clusters + report.blocks.connectors;
-    assert!(report.retries.len() * 100 <= blocks, "{blocks} blocks\n{:#?}", report.retries);
+    // Vessels that overlap are kept apart where that can be: trying it is not a failure.
+    let retries: Vec<_> = report.retries.iter().filter(|retry| !retry.remedy.contains("taken as one")).collect();
+    assert!(retries.len() * 100 <= blocks, "{blocks} blocks\n{retries:#?}");
 }
 
 fn assert_quality(check: &CheckReport) {
@@ -73,6 +75,8 @@ fn subtree_289_clear_is_as_fine_everywhere_on_request() {
     let Some(shared) = shared() else { return };
     let mut plan = MeshPlan::default();
     plan.follow = 0.0;
+    // A disc that the vessel alone gives cannot be as fine as a cluster that it does not know.
+    plan.joint = JointStyle::Woven;
     let meshed = mesh_by(&network(&shared.join("data/kidney/subtree_289_clear.vtp")), &plan);
     assert_clear(&meshed);
     let walls = meshed.report.mesh.wall_triangles;

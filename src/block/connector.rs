@@ -98,6 +98,11 @@ pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result
     mesh_connector(id, cut, ends.both(), params)
 }
 
+/// The end surfaces between which [`mesh_free_connector`] makes its connector; none where the vessel gives no disc.
+pub fn shared_ends(id: CutId, cut: &Cut, params: &BlockParams) -> Option<[EndSurface; 2]> {
+    FreeEnds::new(id, cut, params).ok().map(|ends| ends.surfaces)
+}
+
 /// The discs at the two ends of a connector, which the vessel alone gives.
 pub(super) struct FreeEnds {
     discs: [SharedDisc; 2],

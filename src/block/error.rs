@@ -2,6 +2,7 @@
 
 use super::cap::CapError;
 use super::connector::ConnectorAttempt;
+use super::finished::NotOnBoundary;
 use crate::partition::{ClusterId, CutId};
 use crate::surface::SurfaceError;
 use crate::tet::TetError;
@@ -90,6 +91,14 @@ pub enum BlockError {
         /// What failed.
         failure: FlattenFailure,
     },
+    /// An end or a cap is not on the boundary of the block: a fault of the program.
+    #[error("{block}: {source}")]
+    Faces {
+        /// `cluster 12` or `connector 7`.
+        block: String,
+        /// Which face.
+        source: NotOnBoundary,
+    },
     /// No way of building a connector works.
     #[error("connector of cut {} near {at:?}: {}", cut.0, attempts.last().map_or_else(String::new, |a| a.failure.to_string()))]
     Connector {
@@ -100,14 +109,4 @@ pub enum BlockError {
         /// What was tried, in order, and why it failed.
         attempts: Vec<ConnectorAttempt>,
     },
-}
-
-impl BlockError {
-    /// The cut at which it failed, if it was at one.
-    pub fn cut(&self) -> Option<CutId> {
-        match self {
-            Self::End { cut, .. } | Self::Connector { cut, .. } => Some(*cut),
-            _ => None,
-        }
-    }
 }

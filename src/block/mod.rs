@@ -11,9 +11,11 @@ mod connector_surface;
 mod dump;
 mod end_surface;
 mod error;
+mod finished;
 mod flatten;
 mod params;
 mod path;
+mod record;
 mod region;
 mod relax;
 mod rings;
@@ -26,15 +28,19 @@ mod weave;
 
 pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
-pub use connector::{ConnectorAttempt, ConnectorFailure, ConnectorMesh, mesh_connector, mesh_free_connector};
+pub use connector::{
+    ConnectorAttempt, ConnectorFailure, ConnectorMesh, mesh_connector, mesh_free_connector, shared_ends,
+};
 pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
 pub use dump::{
     BlockDump, BlockOutcome, ClusterDump, ConnectorDump, dump_cluster, dump_connector, dump_free_connector,
 };
 pub use end_surface::{EndFault, EndSurface};
 pub use error::{BlockError, FlattenFailure};
+pub use finished::{About, Finished, FinishedCap, FinishedJoint, NotOnBoundary};
 pub use params::{BlockParams, EndStyle};
 pub use path::AxisPath;
+pub use record::{Bytes, Record, Sizes, encode};
 pub use shared_disc::SharedDisc;
 pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
 pub use weave::{WeaveCost, weave};

@@ -8,11 +8,13 @@ use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
+use super::room::{self, BlockPlace, size};
 use crate::io::mesh_file::{MeshNotes, ensure_writable, write_mesh};
 use crate::io::network::ensure_network_writable;
-use crate::mesh::check::CheckReport;
+use crate::mesh::check::{CheckReport, Expectation};
+use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
-use crate::pipeline::{self, Clock, JointStyle, MeshPlan, Observer, RunError, Stage};
+use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, Observer, RunError, Stage, TooLarge};
 use crate::refine::{RefineReport, Refined};
 use crate::skeleton::Skeleton;
 
@@ -31,13 +33,23 @@ pub struct Args {
     /// so that all of a cluster is as fine as its thinnest vessel
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     follow: f64,
-    /// How blocks meet where vessels are cut: woven, each connector between the ends of its two clusters; or disc, in one
-    /// pass, every block ending in discs that the vessel alone gives
-    #[arg(long, value_enum, default_value_t = Joint::Woven)]
+    /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
+    /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
+    /// vessel is cut
+    #[arg(long, value_enum, default_value_t = Joint::Disc)]
     joint: Joint,
-    /// Leave joints as the blocks have them instead of smoothing across them
+    /// Leave woven joints as the blocks have them instead of smoothing across them
     #[arg(long)]
     frozen_joints: bool,
+    /// Memory that may be used, such as 2GiB or 500MB, however large the network
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
+    memory: u64,
+    /// Folder that keeps finished blocks: a run that was stopped goes on there when it is started again
+    #[arg(long, value_name = "DIR")]
+    work_dir: Option<PathBuf>,
+    /// Throw away what the work directory holds if it is of another network, other options or another version
+    #[arg(long, requires = "work_dir")]
+    restart: bool,
     /// Refine the network first, in at most N iterations, so that its vessels do not overlap and can be cut
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
     refine: Option<usize>,
@@ -69,8 +81,20 @@ pub struct Args {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Joint {
-    Woven,
     Disc,
+    Woven,
+    None,
+}
+
+/// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
+const HELD_PER_TET: f64 = 150.0;
+
+/// A mesh that is there, and what is known of it.
+struct Done<'a> {
+    mesh: &'a dyn MeshSource,
+    expectation: Expectation,
+    check: &'a CheckReport,
+    report: RunReport,
 }
 
 /// What `--json` prints.
@@ -101,29 +125,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let refined = pool.install(|| args.refined(&network.skeleton))?;
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
     let refinement = refined.as_ref().map(|r| &r.report);
-    let mut clock = Clock::default();
-    let mut result = match pool.install(|| pipeline::mesh_network(skeleton, &plan, &bars, &mut clock)) {
-        Ok(result) => result,
-        Err(RunError::BlocksFailed(report)) => {
-            args.print(&plan, refinement, &report, None)?;
-            return Err(Failure::stage(format!(
-                "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
-                report.failed.len()
-            )));
+    pool.install(|| {
+        if plan.smooths_joints() {
+            args.run_in_memory(skeleton, &plan, refinement, &bars)
+        } else {
+            args.run_in_store(&network.skeleton, skeleton, &plan, refinement, &bars)
         }
-        Err(error @ RunError::Root(_)) => return Err(Failure::usage(error.to_string())),
-        Err(error) => return Err(Failure::stage(error.to_string())),
-    };
-    let notes = args.notes(&result);
-    let written =
-        clock.time(&bars, Stage::Write, 0, || pool.install(|| write_mesh(&args.output, &result.mesh, &notes)));
-    written.map_err(|e| Failure::input(e.to_string()))?;
-    result.report.stages = clock.stages();
-    args.print(&plan, refinement, &result.report, Some(&result.check))?;
-    Ok(match () {
-        () if !result.report.failed.is_empty() => Exit::StageFailed,
-        () if !result.check.is_valid() => Exit::GateNotMet,
-        () => Exit::Fine,
     })
 }
 
@@ -137,8 +144,10 @@ impl Args {
             joint: match self.joint {
                 Joint::Woven => JointStyle::Woven,
                 Joint::Disc => JointStyle::Disc,
+                Joint::None => JointStyle::None,
             },
             frozen_joints: self.frozen_joints,
+            memory: self.memory,
             roots: self.root.clone(),
             fuse: self.refine.is_some() && self.how.fuses(),
             keep_going: self.keep_going,
@@ -146,9 +155,95 @@ impl Args {
         }
     }
 
-    fn notes(&self, result: &pipeline::Meshed) -> MeshNotes {
+    /// Joints are to be smoothed: the mesh is held.
+    fn run_in_memory(
+        &self,
+        network: &Skeleton,
+        plan: &MeshPlan,
+        refinement: Option<&RefineReport>,
+        bars: &Bars,
+    ) -> Result<Exit, Failure> {
+        let estimate = Estimate::rough(network, plan);
+        let bytes = (estimate.tets * HELD_PER_TET) as u64;
+        if bytes > plan.memory {
+            return Err(Failure::input(TooLarge::Whole { estimate, bytes, memory: plan.memory }.to_string()));
+        }
+        let mut clock = Clock::default();
+        let result = pipeline::mesh_network(network, plan, bars, &mut clock);
+        let result = result.map_err(|e| self.explain(e, plan, refinement))?;
+        let done =
+            Done { mesh: &result.mesh, expectation: result.expectation, check: &result.check, report: result.report };
+        self.finish(done, plan, refinement, bars, clock)
+    }
+
+    /// Blocks go to where they are kept, and the mesh from there to its file.
+    fn run_in_store(
+        &self,
+        read: &Skeleton,
+        network: &Skeleton,
+        plan: &MeshPlan,
+        refinement: Option<&RefineReport>,
+        bars: &Bars,
+    ) -> Result<Exit, Failure> {
+        let rough = Estimate::rough(network, plan);
+        let place = BlockPlace::choose(self.work_dir.as_deref(), self.restart, &self.output, &rough, plan.memory);
+        let store = place.open(read, || self.options(plan))?;
+        let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, &self.output);
+        let mut clock = Clock::default();
+        let result = pipeline::mesh_into(&store, network, plan, &fits, bars, &mut clock);
+        let result = result.map_err(|e| self.explain(e, plan, refinement))?;
+        let done =
+            Done { mesh: &result.whole, expectation: result.expectation, check: &result.check, report: result.report };
+        self.finish(done, plan, refinement, bars, clock)
+    }
+
+    /// Everything that the mesh depends on, beside the network.
+    fn options(&self, plan: &MeshPlan) -> serde_json::Value {
+        let refine = self.refine.map(|iterations| format!("{:?}", self.how.params(iterations)));
+        serde_json::json!({ "mesh": plan, "refine": refine })
+    }
+
+    /// Writes the mesh and says what was done.
+    fn finish(
+        &self,
+        done: Done,
+        plan: &MeshPlan,
+        refinement: Option<&RefineReport>,
+        bars: &Bars,
+        mut clock: Clock,
+    ) -> Result<Exit, Failure> {
+        let Done { mesh, expectation, check, mut report } = done;
+        let notes = self.notes(expectation);
+        let written = clock.time(bars, Stage::Write, 0, || write_mesh(&self.output, mesh, &notes));
+        written.map_err(|e| Failure::input(e.to_string()))?;
+        report.stages = clock.stages();
+        self.print(plan, refinement, &report, Some(check))?;
+        Ok(match () {
+            () if !report.failed.is_empty() => Exit::StageFailed,
+            () if !check.is_valid() => Exit::GateNotMet,
+            () => Exit::Fine,
+        })
+    }
+
+    /// What went wrong, for people.
+    fn explain(&self, error: RunError, plan: &MeshPlan, refinement: Option<&RefineReport>) -> Failure {
+        match error {
+            RunError::BlocksFailed(report) => match self.print(plan, refinement, &report, None) {
+                Err(failure) => failure,
+                Ok(()) => Failure::stage(format!(
+                    "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
+                    report.failed.len()
+                )),
+            },
+            RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
+            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),
+            _ => Failure::stage(error.to_string()),
+        }
+    }
+
+    fn notes(&self, expectation: Expectation) -> MeshNotes {
         MeshNotes {
-            expectation: Some(result.expectation.clone()),
+            expectation: Some(expectation),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
             options: match self.refine {
                 Some(n) => format!("mesh --rho {} --follow {} --refine {n}", self.rho, self.follow),

@@ -10,6 +10,7 @@ mod network;
 mod progress;
 mod refine;
 mod refine_report;
+mod room;
 mod tetrahedralize;
 
 use std::process::ExitCode;

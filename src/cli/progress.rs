@@ -16,7 +16,7 @@ pub fn shows_bars(quiet: bool) -> bool {
 pub fn stage_bar(stage: &'static str, steps: u64) -> ProgressBar {
     let (length, template) = match steps {
         0 => (None, "{prefix:>10} {spinner} {elapsed}"),
-        n => (Some(n), "{prefix:>10} {wide_bar} {pos}/{len} {per_sec} {eta}"),
+        n => (Some(n), "{prefix:>10} {wide_bar} {percent} % {human_pos}/{human_len} {per_sec} {eta}"),
     };
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr_with_hz(10));
@@ -45,19 +45,19 @@ impl Bars {
 }
 
 impl Observer for Bars {
-    fn begin(&self, stage: Stage, steps: u64) {
+    fn begin(&self, stage: Stage, total: u64) {
         if !self.shown {
             return;
         }
-        let bar = stage_bar(stage.name(), steps);
+        let bar = stage_bar(stage.name(), total);
         if let Ok(mut current) = self.current.lock() {
             *current = Some(bar);
         }
     }
 
-    fn step(&self) {
+    fn advance(&self, amount: u64) {
         if let Some(bar) = self.current() {
-            bar.inc(1);
+            bar.inc(amount);
         }
     }
 

@@ -1,7 +1,5 @@
 //! The parameters with which a block is tried, one after the other, before its cuts are touched.
 
-use std::sync::Arc;
-
 use super::plan::{JointStyle, MeshPlan};
 use crate::block::{
     BlockDump, BlockError, BlockParams, ClusterMesh, ConnectorEnd, ConnectorMesh, EndStyle, dump_cluster,
@@ -12,8 +10,8 @@ use crate::partition::{Cluster, ClusterId, Cut, CutId};
 /// Result of a block, and the failures before it.
 #[derive(Debug)]
 pub struct Tried<T> {
-    /// The mesh, or the failure of the first attempt.
-    pub result: Result<Arc<T>, BlockError>,
+    /// The block, or the failure of the first attempt.
+    pub result: Result<T, BlockError>,
     /// Failures of the other attempts.
     pub failures: Vec<BlockError>,
 }
@@ -44,7 +42,7 @@ fn variants(plan: &MeshPlan) -> [BlockParams; CHANGES.len()] {
     let narrower = BlockParams { kappa: 0.3, ..usual };
     let other = match plan.joint {
         JointStyle::Woven => BlockParams { ends: EndStyle::Trimmed, ..usual },
-        JointStyle::Disc => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.35, ..usual },
+        JointStyle::Disc | JointStyle::None => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.35, ..usual },
     };
     let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
     let finest = BlockParams { kappa: 0.22, voxel_factor: 0.5, ..shifted };
@@ -69,7 +67,7 @@ pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan, overlapping: b
     let mut failures = Vec::new();
     for params in ways(plan, overlapping) {
         match mesh_cluster(id, cluster, &params) {
-            Ok(mesh) => return Tried { result: Ok(Arc::new(mesh)), failures },
+            Ok(mesh) => return Tried { result: Ok(mesh), failures },
             Err(error) => failures.push(error),
         }
     }
@@ -78,13 +76,13 @@ pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan, overlapping: b
 
 /// Meshes a connector; it varies the division of its tube by itself.
 pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> Tried<ConnectorMesh> {
-    let result = mesh_connector(id, cut, ends, &plan.block_params()).map(Arc::new);
+    let result = mesh_connector(id, cut, ends, &plan.block_params());
     Tried { result, failures: Vec::new() }
 }
 
 /// The same for a connector that is made without its clusters.
 pub fn free_connector(id: CutId, cut: &Cut, plan: &MeshPlan) -> Tried<ConnectorMesh> {
-    let result = mesh_free_connector(id, cut, &plan.block_params()).map(Arc::new);
+    let result = mesh_free_connector(id, cut, &plan.block_params());
     Tried { result, failures: Vec::new() }
 }
 

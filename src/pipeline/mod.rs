@@ -2,20 +2,27 @@
 
 mod assemble;
 mod attempts;
+mod cures;
+mod estimate;
+mod make;
 mod observer;
 mod plan;
 mod report;
 mod rounds;
 mod run;
+mod schedule;
+pub mod store;
 mod terminals;
 #[cfg(test)]
 mod tests;
 mod timing;
+mod whole;
 
-pub use assemble::AssembleError;
+pub use estimate::{Estimate, TooLarge};
 pub use observer::{Observer, Silent, Stage};
 pub use plan::{JointStyle, MeshPlan, PlanError};
 pub use report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, Retry, RunReport, StageTime};
-pub use run::{Meshed, RunError, mesh_network};
+pub use run::{Meshed, RunError, Stored, mesh_into, mesh_network};
 pub use terminals::{NotATerminal, TerminalPatches, assign as assign_patches};
-pub use timing::Clock;
+pub use timing::{BlockTimes, Clock};
+pub use whole::Whole;

@@ -43,10 +43,10 @@ impl Stage {
 
 /// Listens to a run. Called from several threads.
 pub trait Observer: Sync {
-    /// A stage begins; `steps` is the number of `step` calls to come, 0 when there are none.
-    fn begin(&self, _stage: Stage, _steps: u64) {}
-    /// One step of the current stage is done.
-    fn step(&self) {}
+    /// A stage begins; `total` is the sum of what `advance` will say, 0 when it will say nothing.
+    fn begin(&self, _stage: Stage, _total: u64) {}
+    /// So much more of the current stage is done.
+    fn advance(&self, _amount: u64) {}
     /// A stage is over.
     fn end(&self, _stage: Stage) {}
     /// Something that a person should read.

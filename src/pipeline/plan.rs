@@ -6,11 +6,16 @@ use crate::block::{BlockParams, EndStyle};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointStyle {
-    /// In two passes: clusters end as suits their walls, then a connector is woven between the ends of its two clusters.
+    /// In one pass: each plane has the disc that the vessel alone gives, and blocks are meshed in any order. Joints stay
+    /// as the blocks have them, which is better than what smoothing makes of them.
     #[default]
-    Woven,
-    /// In one pass: each plane has the disc that the vessel alone gives, and blocks are meshed in any order.
     Disc,
+    /// In two passes: clusters end as suits their walls, then a connector is woven between the ends of its two clusters
+    /// (3.2.3), and joints are smoothed (3.2.4). The whole mesh is held in memory.
+    Woven,
+    /// No vessel is cut: every component is one cluster, meshed as fine as its thinnest vessel asks for where edges do not
+    /// follow the radius. For comparison.
+    None,
 }
 
 /// Parameters of a run of the mesher.
@@ -24,8 +29,12 @@ pub struct MeshPlan {
     pub follow: f64,
     /// How blocks meet at a cut.
     pub joint: JointStyle,
-    /// Leave joints as the blocks have them instead of smoothing across them.
+    /// Leave woven joints as the blocks have them instead of smoothing across them.
     pub frozen_joints: bool,
+    /// Bytes of memory that blocks may take while they are made, and walls while they are checked. Says how many blocks
+    /// are made at a time, nothing about the mesh.
+    #[serde(skip)]
+    pub memory: u64,
     /// Terminals that are inlets, as indices of nodes in the file that was read. Components without one take the
     /// terminal of largest radius.
     pub roots: Vec<u32>,
@@ -35,6 +44,7 @@ pub struct MeshPlan {
     /// Leave out blocks that fail instead of stopping.
     pub keep_going: bool,
     /// Folder for the inputs of blocks that fail; none writes no dumps.
+    #[serde(skip)]
     pub dump_dir: Option<std::path::PathBuf>,
 }
 
@@ -45,6 +55,7 @@ impl Default for MeshPlan {
             follow: 1.0,
             joint: JointStyle::default(),
             frozen_joints: false,
+            memory: 2 << 30,
             roots: Vec::new(),
             fuse: false,
             keep_going: false,
@@ -58,7 +69,7 @@ impl Default for MeshPlan {
 #[non_exhaustive]
 pub enum PlanError {
     /// ρ outside of what makes sense.
-    #[error("rho = {0} is not usable: it must lie between 2.5 and 64 (3 to 5 are usual; larger is finer)")]
+    #[error("rho = {0} is not usable: it must be a number of at least 2.5 (3 to 5 are usual; larger is finer)")]
     Rho(f64),
     /// The power outside of what makes sense.
     #[error("follow = {0} is not usable: it must lie between 0 (edges as short everywhere) and 1 (in proportion)")]
@@ -66,10 +77,15 @@ pub enum PlanError {
 }
 
 impl MeshPlan {
+    /// Whether joints are smoothed once the blocks are together.
+    pub fn smooths_joints(&self) -> bool {
+        self.joint == JointStyle::Woven && !self.frozen_joints
+    }
+
     /// Parameters of a block as it is first tried. The partition has to know the kernel's width, too.
     pub fn block_params(&self) -> BlockParams {
         let ends = match self.joint {
-            JointStyle::Woven => EndStyle::Disc,
+            JointStyle::Woven | JointStyle::None => EndStyle::Disc,
             JointStyle::Disc => EndStyle::Shared,
         };
         BlockParams { follow: self.follow, ends, ..BlockParams::with_rho(self.rho) }
@@ -78,8 +94,8 @@ impl MeshPlan {
     /// # Errors
     /// When a parameter is out of its range.
     pub fn validate(&self) -> Result<(), PlanError> {
-        // Below 2.5 voxels across, a vessel is no tube any more. Written so that NaN fails too.
-        if !(2.5..=64.0).contains(&self.rho) {
+        // Below 2.5 voxels across, a vessel is no tube any more; how fine is too fine, memory tells. NaN fails too.
+        if !(2.5..f64::INFINITY).contains(&self.rho) {
             return Err(PlanError::Rho(self.rho));
         }
         if (0.0..=1.0).contains(&self.follow) { Ok(()) } else { Err(PlanError::Follow(self.follow)) }

@@ -115,8 +115,12 @@ pub struct RunReport {
     pub failed: Vec<FailedBlock>,
     /// Size of the mesh.
     pub mesh: MeshSize,
+    /// What the run was expected to take.
+    pub estimate: super::Estimate,
     /// Wall time.
     pub stages: Vec<StageTime>,
+    /// How long blocks took.
+    pub block_times: super::timing::BlockTimes,
 }
 
 impl RunReport {

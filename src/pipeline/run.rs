@@ -1,27 +1,49 @@
 //! The whole way from a skeleton to a checked, labelled mesh.
 
-use super::assemble::{self, AssembleError};
+use std::collections::BTreeMap;
+use std::io;
+
+use super::assemble::Assembly;
 use super::attempts;
+use super::estimate::{Estimate, TooLarge};
+use super::make::{Made, Workshop};
 use super::observer::{Observer, Stage};
 use super::plan::{JointStyle, MeshPlan, PlanError};
 use super::report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, RunReport};
-use super::rounds::{self, Blocks, connector_ends, original_nodes};
+use super::rounds::{self, Blocks, RoundsError, Run, original_nodes};
+use super::store::{Store, StoreError};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
-use crate::block::BlockDump;
+use super::whole::Whole;
+use crate::block::{About, BlockDump, ConnectorEnd};
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
+use crate::mesh::source::{MeshSource, SourceCounts, collect};
 use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::{ClusterId, CutId, PartitionError};
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
-use std::collections::BTreeMap;
+use crate::stitch::label::LabelError;
 
-/// A mesh, what it has to be, what was found, what was done.
+/// A mesh in memory, what it has to be, what was found, what was done.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Meshed {
     /// The mesh.
     pub mesh: VolumeMesh,
+    /// What the network asks of it.
+    pub expectation: Expectation,
+    /// The result of the check.
+    pub check: CheckReport,
+    /// What was done.
+    pub report: RunReport,
+}
+
+/// A mesh whose blocks are in a store, what it has to be, what was found, what was done.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Stored<'a> {
+    /// The mesh, to be read in passes.
+    pub whole: Whole<'a>,
     /// What the network asks of it.
     pub expectation: Expectation,
     /// The result of the check.
@@ -43,15 +65,37 @@ pub enum RunError {
     /// The network could not be partitioned.
     #[error(transparent)]
     Partition(#[from] PartitionError),
+    /// The machine is too small for it.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
+    /// Finished blocks cannot be kept or read.
+    #[error(transparent)]
+    Store(#[from] StoreError),
     /// Blocks failed to the end; the report lists them.
     #[error("{} block(s) could not be meshed", .0.failed.len())]
     BlocksFailed(Box<RunReport>),
-    /// Blocks do not fit together: a fault of the program.
+    /// Caps are not where they should be: a fault of the program.
     #[error("{0}; this is a fault of the program")]
-    Assemble(#[from] AssembleError),
+    Label(#[from] LabelError),
 }
 
-/// Meshes a cleaned network. Uses the current rayon pool; the result does not depend on its size.
+impl From<RoundsError> for RunError {
+    fn from(error: RoundsError) -> Self {
+        match error {
+            RoundsError::Partition(error) => error.into(),
+            RoundsError::Store(error) => error.into(),
+            RoundsError::TooLarge(error) => error.into(),
+        }
+    }
+}
+
+impl From<io::Error> for RunError {
+    fn from(error: io::Error) -> Self {
+        StoreError::from(error).into()
+    }
+}
+
+/// Meshes a cleaned network in memory. Uses the current rayon pool; the result does not depend on its size.
 ///
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
@@ -61,13 +105,59 @@ pub fn mesh_network(
     observer: &dyn Observer,
     clock: &mut Clock,
 ) -> Result<Meshed, RunError> {
+    let store = Store::in_memory();
+    let joined = join_blocks(network, plan, &store, &|_| Ok(()), observer, clock)?;
+    if plan.smooths_joints() {
+        return joined.smoothed(observer, clock);
+    }
+    let Stored { whole, expectation, check, mut report } = joined.checked(plan, observer, clock)?;
+    let mesh = clock.time(observer, Stage::Merge, 0, || collect(&whole))?;
+    report.stages = clock.stages();
+    Ok(Meshed { mesh, expectation, check, report })
+}
+
+/// Meshes a cleaned network into a store; the mesh is never in memory as a whole. Joints are not smoothed. Uses the
+/// current rayon pool; the result does not depend on its size. `fits` hears what the run will take before anything is
+/// meshed, and may refuse.
+///
+/// # Errors
+/// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
+pub fn mesh_into<'a>(
+    store: &'a Store,
+    network: &Skeleton,
+    plan: &MeshPlan,
+    fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
+    observer: &dyn Observer,
+    clock: &mut Clock,
+) -> Result<Stored<'a>, RunError> {
+    join_blocks(network, plan, store, fits, observer, clock)?.checked(plan, observer, clock)
+}
+
+/// Blocks that are done and numbered, before anybody has looked at the whole.
+struct Joined<'a> {
+    whole: Whole<'a>,
+    expectation: Expectation,
+    report: RunReport,
+}
+
+fn join_blocks<'a>(
+    network: &Skeleton,
+    plan: &MeshPlan,
+    store: &'a Store,
+    fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
+    observer: &dyn Observer,
+    clock: &mut Clock,
+) -> Result<Joined<'a>, RunError> {
     plan.validate()?;
     let mut report = RunReport::default();
     let (skeleton, overlaps) = clock.time(observer, Stage::Prepare, 0, || prepare(network, &mut report));
     let terminals = terminals::assign(&skeleton, &plan.roots)?;
     announce(&report, observer);
-    let blocks = rounds::build(&skeleton, &overlaps, plan, observer, clock)?;
-    describe_blocks(&skeleton, plan, &blocks, &mut report);
+    let shop = Workshop { skeleton: &skeleton, plan, store };
+    let mut run = Run { overlaps: &overlaps, shop, observer, clock };
+    let blocks = run.build(fits)?;
+    let clusters = Clusters::of(&shop, &blocks)?;
+    describe_blocks(&skeleton, &shop, &blocks, &clusters, &mut report)?;
     let nothing_left = blocks.clusters.iter().all(Result::is_err);
     if !report.failed.is_empty() && (nothing_left || !plan.keep_going) {
         report.stages = clock.stages();
@@ -75,17 +165,45 @@ pub fn mesh_network(
     }
     let mut expectation = expectation(&skeleton);
     if plan.fuse {
-        expectation.loops = fused_loops(&blocks);
+        expectation.loops = fused_loops(&blocks, &clusters);
     }
-    let mut assembly = clock.time(observer, Stage::Merge, 0, || assemble::join(&skeleton, blocks, &terminals))?;
-    if !plan.frozen_joints {
+    let number = || Whole::new(store, &skeleton, &blocks, &terminals);
+    let whole = clock.time(observer, Stage::Merge, 0, number)?;
+    Ok(Joined { whole, expectation, report })
+}
+
+impl<'a> Joined<'a> {
+    fn checked(self, plan: &MeshPlan, observer: &dyn Observer, clock: &mut Clock) -> Result<Stored<'a>, RunError> {
+        let Self { whole, expectation, mut report } = self;
+        let check = || whole.check(&expectation, plan.memory);
+        let check = clock.time(observer, Stage::Check, 0, check)?;
+        report.mesh = whole.size();
+        report.stages = clock.stages();
+        Ok(Stored { whole, expectation, check, report })
+    }
+
+    fn smoothed(self, observer: &dyn Observer, clock: &mut Clock) -> Result<Meshed, RunError> {
+        let Self { whole, expectation, mut report } = self;
+        let mut assembly = clock.time(observer, Stage::Merge, 0, || Assembly::new(&whole))?;
         report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
+        let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
+        let check = || check_volume_with(&mesh, neighbors, Some(&expectation));
+        let check = clock.time(observer, Stage::Check, 0, check);
+        report.mesh = mesh_size(&mesh)?;
+        report.stages = clock.stages();
+        Ok(Meshed { mesh, expectation, check, report })
     }
-    let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
-    let check = clock.time(observer, Stage::Check, 0, || check_volume_with(&mesh, neighbors, Some(&expectation)));
-    report.mesh = size(&mesh);
-    report.stages = clock.stages();
-    Ok(Meshed { mesh, expectation, check, report })
+}
+
+/// Counts a mesh, in one pass over its boundary.
+fn mesh_size(mesh: &dyn MeshSource) -> io::Result<MeshSize> {
+    let SourceCounts { points, tets, boundary } = mesh.counts();
+    let mut wall_triangles = 0;
+    mesh.boundary(&mut |piece| {
+        wall_triangles += piece.patches.iter().filter(|&&patch| patch == WALL).count();
+        Ok(())
+    })?;
+    Ok(MeshSize { tets, points, wall_triangles, cap_triangles: boundary - wall_triangles })
 }
 
 /// Splits nodes of high valence and looks for vessels that overlap.
@@ -133,7 +251,23 @@ fn announce(report: &RunReport, observer: &dyn Observer) {
     }
 }
 
-fn describe_blocks(skeleton: &Skeleton, plan: &MeshPlan, blocks: &Blocks, report: &mut RunReport) {
+/// What reports say of the clusters, none for those that failed.
+struct Clusters(Vec<Option<About>>);
+
+impl Clusters {
+    fn of(shop: &Workshop, blocks: &Blocks) -> io::Result<Self> {
+        let about = |made: &Made| made.as_ref().ok().map(|kept| shop.about(kept)).transpose();
+        Ok(Self(blocks.clusters.iter().map(about).collect::<Result<_, _>>()?))
+    }
+}
+
+fn describe_blocks(
+    skeleton: &Skeleton,
+    shop: &Workshop,
+    blocks: &Blocks,
+    clusters: &Clusters,
+    report: &mut RunReport,
+) -> io::Result<()> {
     let partition = &blocks.partition;
     report.blocks = BlockCounts {
         clusters: partition.clusters.len(),
@@ -141,48 +275,50 @@ fn describe_blocks(skeleton: &Skeleton, plan: &MeshPlan, blocks: &Blocks, report
         largest_cluster_nodes: partition.clusters.iter().map(|c| c.nodes.len()).max().unwrap_or(0),
     };
     report.partition = Some(partition.summary());
+    report.estimate = Estimate::of(partition, shop.plan);
+    report.block_times.clone_from(&blocks.times);
     report.retries.clone_from(&blocks.retries);
-    for (i, (cluster, mesh)) in partition.clusters.iter().zip(&blocks.clusters).enumerate() {
+    for (i, (cluster, about)) in partition.clusters.iter().zip(&clusters.0).enumerate() {
         let nodes = || original_nodes(skeleton, cluster.nodes.iter().copied());
-        if let Ok(mesh) = mesh
-            && (mesh.handles != mesh.loops || !mesh.uncapped.is_empty())
+        if let Some(about) = about
+            && (about.handles != about.loops || !about.uncapped.is_empty())
         {
             report.fused.push(FusedBlock {
                 block: format!("cluster {i}"),
                 nodes: nodes(),
-                handles: mesh.handles,
-                loops: mesh.loops,
-                uncapped: original_nodes(skeleton, mesh.uncapped.iter().copied()),
+                handles: about.handles,
+                loops: about.loops,
+                uncapped: original_nodes(skeleton, about.uncapped.iter().map(|&n| NodeId(n))),
             });
         }
-        if let Err(error) = mesh {
+        if let Err(error) = &blocks.clusters[i] {
+            let input = attempts::cluster_input(ClusterId(i as u32), cluster, shop.plan);
             report.failed.push(FailedBlock {
                 block: format!("cluster {i}"),
-                nodes: original_nodes(skeleton, cluster.nodes.iter().copied()),
+                nodes: nodes(),
                 reason: error.to_string(),
-                dump: write_dump(
-                    plan,
-                    &format!("cluster_{i}"),
-                    &attempts::cluster_input(ClusterId(i as u32), cluster, plan),
-                ),
+                dump: write_dump(shop.plan, &format!("cluster_{i}"), &input),
             });
         }
     }
-    for (i, (cut, mesh)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
-        let Some(Err(error)) = mesh else { continue };
+    for (i, (cut, made)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
+        let Some(Err(error)) = made else { continue };
         let id = CutId(i as u32);
-        let input = match plan.joint {
-            JointStyle::Woven => connector_ends(partition, cut, &blocks.clusters)
-                .map(|ends| attempts::connector_input(id, cut, ends, plan)),
-            JointStyle::Disc => attempts::free_connector_input(id, cut, plan),
+        let input = match shop.plan.joint {
+            JointStyle::Woven => shop.stored_ends(partition, id, cut, &blocks.clusters)?.map(|ends| {
+                let end = |side: usize| ConnectorEnd { surface: &ends[side].surface, points: &ends[side].points };
+                attempts::connector_input(id, cut, [end(0), end(1)], shop.plan)
+            }),
+            JointStyle::Disc | JointStyle::None => attempts::free_connector_input(id, cut, shop.plan),
         };
         report.failed.push(FailedBlock {
             block: format!("connector {i}"),
             nodes: rounds::cut_nodes(skeleton, partition, cut),
             reason: error.to_string(),
-            dump: input.and_then(|input| write_dump(plan, &format!("connector_{i}"), &input)),
+            dump: input.and_then(|input| write_dump(shop.plan, &format!("connector_{i}"), &input)),
         });
     }
+    Ok(())
 }
 
 /// Writes the input of a failed block; none when there is no folder for it or it cannot be written.
@@ -206,7 +342,7 @@ fn expectation(skeleton: &Skeleton) -> Expectation {
 
 /// Loops of each connected piece when vessels are meshed together on purpose: the handles of its clusters, and the loops
 /// of the graph in which clusters are nodes and connectors are edges. Sorted, as pieces have no other name.
-fn fused_loops(blocks: &Blocks) -> Vec<u32> {
+fn fused_loops(blocks: &Blocks, about: &Clusters) -> Vec<u32> {
     let clusters = &blocks.partition.clusters;
     let mut piece: Vec<usize> = (0..clusters.len()).collect();
     let root = |piece: &mut [usize], mut i: usize| {
@@ -221,8 +357,8 @@ fn fused_loops(blocks: &Blocks) -> Vec<u32> {
         piece[a.max(b)] = a.min(b);
     }
     let mut loops: BTreeMap<usize, i64> = BTreeMap::new();
-    for (i, cluster) in blocks.clusters.iter().enumerate() {
-        let handles = cluster.as_ref().map_or(0, |mesh| mesh.handles);
+    for (i, about) in about.0.iter().enumerate() {
+        let handles = about.as_ref().map_or(0, |about| about.handles);
         *loops.entry(root(&mut piece, i)).or_insert(1) += handles - 1;
     }
     for cut in &blocks.partition.cuts {
@@ -231,14 +367,4 @@ fn fused_loops(blocks: &Blocks) -> Vec<u32> {
     let mut loops: Vec<u32> = loops.into_values().map(|n| u32::try_from(n).unwrap_or(0)).collect();
     loops.sort_unstable();
     loops
-}
-
-fn size(mesh: &VolumeMesh) -> MeshSize {
-    let wall = mesh.boundary_patch.iter().filter(|&&p| p == WALL).count();
-    MeshSize {
-        tets: mesh.mesh.tets.len(),
-        points: mesh.mesh.points.len(),
-        wall_triangles: wall,
-        cap_triangles: mesh.boundary.len() - wall,
-    }
 }

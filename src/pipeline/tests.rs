@@ -1,9 +1,12 @@
 //! The way through all stages, and what happens when a block fails.
 
 use super::*;
+use crate::block::{Finished, Record, encode, shared_ends};
 use crate::geometry::Point3;
 use crate::mesh::WALL;
-use crate::partition::{Cluster, ClusterId, CutId, EndKind, PartitionParams, partition};
+use crate::mesh::adjacency::tet_adjacency;
+use crate::mesh::source::collect;
+use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 
 /// A skeleton of nodes `[x, y, z, radius]` and edges between them.
@@ -55,25 +58,118 @@ fn the_threads_do_not_show_in_the_mesh() {
     assert_eq!(one, mesh(7));
 }
 
+/// Two junctions, thin vessels at one side only: where edges do not follow radii, the clusters' walls are of different
+/// fineness.
+fn uneven() -> Skeleton {
+    let mut network = h(16.0);
+    for edge in &mut network.edges[3..] {
+        edge.radii = [0.5; 2];
+    }
+    network
+}
+
 #[test]
-fn disc_joints_make_one_valid_mesh_in_one_pass() {
-    for (frozen_joints, follow) in [(false, 1.0), (true, 1.0), (false, 0.0)] {
-        let plan = MeshPlan { joint: JointStyle::Disc, frozen_joints, follow, ..MeshPlan::default() };
-        let mut network = h(16.0);
-        // Thin vessels at one side only: where edges do not follow radii, the clusters' walls are of different fineness.
-        for edge in &mut network.edges[3..] {
-            edge.radii = [0.5; 2];
+fn every_kind_of_joint_makes_one_valid_mesh() {
+    let plans = [(JointStyle::Disc, 1.0), (JointStyle::Disc, 0.0), (JointStyle::Woven, 1.0), (JointStyle::None, 1.0)];
+    for (joint, follow) in plans {
+        for frozen_joints in [false, true] {
+            let plan = MeshPlan { follow, joint, frozen_joints, ..MeshPlan::default() };
+            let mesh = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+                pool.install(|| run(&uneven(), &plan)).expect("meshed")
+            };
+            let meshed = mesh(2);
+            let blocks = if joint == JointStyle::None { (1, 0) } else { (2, 1) };
+            assert_eq!((meshed.report.blocks.clusters, meshed.report.blocks.connectors), blocks);
+            assert!(meshed.check.is_valid(), "{:?}", meshed.check.failed().collect::<Vec<_>>());
+            assert!(meshed.report.retries.is_empty() && meshed.report.failed.is_empty(), "{:?}", meshed.report.retries);
+            assert_eq!(meshed.report.joints.is_some(), plan.smooths_joints());
+            assert_eq!(meshed.mesh, mesh(1).mesh);
         }
-        let mesh = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            pool.install(|| run(&network, &plan)).expect("meshed")
-        };
-        let meshed = mesh(2);
-        assert_eq!((meshed.report.blocks.clusters, meshed.report.blocks.connectors), (2, 1));
-        assert!(meshed.check.is_valid(), "{:?}", meshed.check.failed().collect::<Vec<_>>());
-        assert!(meshed.report.retries.is_empty() && meshed.report.failed.is_empty(), "{:?}", meshed.report.retries);
-        assert_eq!(meshed.report.joints.is_none(), frozen_joints);
-        assert_eq!(meshed.mesh, mesh(1).mesh);
+    }
+}
+
+/// Blocks, finished, with their sizes in the whole.
+fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
+    let params = PartitionParams { rho: plan.rho, ..PartitionParams::default() };
+    let partition = partition(network, &params).expect("partitioned");
+    let cluster = |(i, cluster): (usize, &Cluster)| {
+        let mesh = attempts::cluster(ClusterId(i as u32), cluster, plan, false).result.expect("meshed");
+        Finished::of_cluster(mesh).expect("faces on the boundary")
+    };
+    let mut blocks: Vec<Finished> = partition.clusters.iter().enumerate().map(cluster).collect();
+    for (i, cut) in partition.cuts.iter().enumerate() {
+        let id = CutId(i as u32);
+        let mesh = attempts::free_connector(id, cut, plan).result.expect("meshed");
+        let ends = shared_ends(id, cut, &plan.block_params()).expect("discs");
+        blocks.push(Finished::of_connector(mesh, ends.each_ref()).expect("faces on the boundary"));
+    }
+    blocks
+}
+
+#[test]
+fn finished_blocks_come_back_from_their_bytes() {
+    let blocks = finished(&uneven(), &MeshPlan::default());
+    for block in &blocks {
+        let bytes = encode(block).expect("encoded");
+        let record = Record::open(&bytes[..]).expect("a record");
+        assert_eq!(record.sizes().bytes(), bytes.len() as u64);
+        assert_eq!(record.block().expect("decoded"), *block);
+        // Every boundary face has one place.
+        let mut faces = block.wall.clone();
+        faces.extend(block.joints.iter().flat_map(|joint| &joint.faces));
+        faces.extend(block.caps.iter().flat_map(|cap| &cap.faces));
+        faces.sort_unstable();
+        let boundary = tet_adjacency(&block.mesh.tets, block.mesh.points.len());
+        assert_eq!(faces, boundary.boundary().collect::<Vec<_>>());
+        // Cut short anywhere it is an error, never a panic.
+        for length in (0..bytes.len()).step_by(997) {
+            assert!(Record::open(&bytes[..length]).and_then(|record| record.block()).is_err());
+        }
+    }
+    let [left, _, connector] = &blocks[..] else { panic!("two clusters and a connector") };
+    assert_eq!(connector.shared as usize, connector.joints.iter().map(|joint| joint.vertices.len()).sum::<usize>());
+    let position =
+        |block: &Finished, joint: usize, k: usize| block.mesh.points[block.joints[joint].vertices[k] as usize];
+    for k in 0..left.joints[0].vertices.len() {
+        assert_eq!(position(left, 0, k), position(connector, 0, k));
+    }
+}
+
+#[test]
+fn blocks_on_disk_make_the_same_mesh_and_are_found_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plan = MeshPlan::default();
+    let manifest = store::Manifest::new(store::KeyMaker::new("test").finish(), serde_json::Value::Null);
+    let in_memory = run(&uneven(), &plan).expect("meshed");
+    for again in [false, true] {
+        let store = store::Store::in_folder(folder.path(), &manifest, false).expect("a work directory");
+        let stored = mesh_into(&store, &uneven(), &plan, &|_| Ok(()), &Silent, &mut Clock::default()).expect("meshed");
+        assert_eq!(collect(&stored.whole).expect("read"), in_memory.mesh);
+        assert_eq!(stored.check, in_memory.check);
+        assert_eq!(stored.report.mesh, in_memory.report.mesh);
+        assert!(!again || stored.report.block_times.longest_seconds < 0.05, "found, not made");
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_before_anything_is_meshed() {
+    let plan = MeshPlan { rho: 1000.0, ..MeshPlan::default() };
+    let store = store::Store::in_memory();
+    let fits = |estimate: &Estimate| {
+        assert!(estimate.largest_block_tets > 1e9 && estimate.largest_block_tets < estimate.tets);
+        Err(TooLarge::Block { estimate: *estimate, memory: 1 << 31 })
+    };
+    let refused = mesh_into(&store, &uneven(), &plan, &fits, &Silent, &mut Clock::default()).expect_err("too large");
+    assert!(matches!(refused, RunError::TooLarge(_)), "{refused}");
+}
+
+#[test]
+fn estimates_come_near_to_what_is_made() {
+    for rho in [3.0, 4.0, 5.0] {
+        let report = run(&uneven(), &MeshPlan { rho, ..MeshPlan::default() }).expect("meshed").report;
+        let ratio = report.estimate.tets / report.mesh.tets as f64;
+        assert!((0.6..1.6).contains(&ratio), "rho = {rho}: {ratio}");
     }
 }
 
@@ -148,27 +244,4 @@ fn what_can_be_meshed_is_kept_on_request() {
     assert_eq!(meshed.report.failed.len(), 1);
     assert!(!meshed.check.is_valid(), "a component is missing");
     assert!(meshed.mesh.tet_block.contains(&1) && !meshed.mesh.tet_block.contains(&0));
-}
-
-#[test]
-fn end_surfaces_are_found_when_the_cuts_are_numbered_anew() {
-    let plan = MeshPlan::default();
-    let partition = partition(&h(12.0), &PartitionParams::default()).expect("partitioned");
-    let [cut] = &partition.cuts[..] else { panic!("one cut") };
-    let mesh = |(i, cluster): (usize, &Cluster)| {
-        let mut renumbered = cluster.clone();
-        for end in &mut renumbered.ends {
-            if let EndKind::Cut { cut, .. } = &mut end.kind {
-                cut.0 += 5;
-            }
-        }
-        attempts::cluster(ClusterId(i as u32), &renumbered, &plan, false).result
-    };
-    let clusters: Vec<_> = partition.clusters.iter().enumerate().map(mesh).collect();
-    let ends = rounds::connector_ends(&partition, cut, &clusters).expect("both clusters are there");
-    for (side, end) in ends.iter().enumerate() {
-        let (cluster, index) = cut.sides[side];
-        assert_eq!(end.surface.section, partition.clusters[cluster.0 as usize].ends[index as usize].section);
-    }
-    assert!(attempts::connector(CutId(0), cut, ends, &plan).result.is_ok());
 }

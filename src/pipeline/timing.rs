@@ -1,9 +1,10 @@
-//! Wall time per stage.
+//! Wall time per stage and per block.
 
 use std::time::Instant;
 
 use super::observer::{Observer, Stage};
 use super::report::StageTime;
+use serde::Serialize;
 
 /// Sums up the time that each stage takes.
 #[derive(Debug, Default)]
@@ -29,5 +30,51 @@ impl Clock {
     /// The stages in the order in which they began.
     pub fn stages(&self) -> Vec<StageTime> {
         self.spent.iter().map(|&(stage, seconds)| StageTime { stage: stage.name(), seconds }).collect()
+    }
+}
+
+/// How long blocks took: in a histogram, as nobody reads a hundred thousand figures.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct BlockTimes {
+    /// Seconds of all clusters together.
+    pub clusters: f64,
+    /// Seconds of all connectors together.
+    pub connectors: f64,
+    /// The longest one: `cluster 12` or `connector 7`.
+    pub longest: String,
+    /// Its seconds.
+    pub longest_seconds: f64,
+    /// Number of blocks per bin: the first holds those below 2^-10 s, each further one those below twice as much.
+    pub histogram: Vec<u64>,
+}
+
+impl BlockTimes {
+    /// Adds the seconds of so many clusters, and of the connectors behind them.
+    pub fn add(&mut self, seconds: &[f64], clusters: usize) {
+        for (i, &s) in seconds.iter().enumerate() {
+            let connector = i.checked_sub(clusters);
+            *(if connector.is_some() { &mut self.connectors } else { &mut self.clusters }) += s;
+            if s > self.longest_seconds {
+                self.longest_seconds = s;
+                self.longest = connector.map_or_else(|| format!("cluster {i}"), |k| format!("connector {k}"));
+            }
+            let bin = (s.log2() + 11.0).clamp(0.0, 63.0) as usize;
+            self.histogram.resize(self.histogram.len().max(bin + 1), 0);
+            self.histogram[bin] += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_counted_by_powers_of_two() {
+        let mut times = BlockTimes::default();
+        times.add(&[0.0, 0.0015, 0.3, 0.001], 2);
+        assert_eq!(times.histogram, [1, 2, 0, 0, 0, 0, 0, 0, 0, 1]);
+        assert_eq!((times.longest.as_str(), times.longest_seconds), ("connector 0", 0.3));
+        assert!((times.clusters - 0.0015).abs() < 1e-12 && (times.connectors - 0.301).abs() < 1e-12);
     }
 }

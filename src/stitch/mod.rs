@@ -1,5 +1,4 @@
-//! Floor 3: block meshes → one mesh. Merging by identity of vertices, smoothing of the joints, labels on the boundary.
+//! Floor 3: block meshes → one mesh. Smoothing of the joints, labels on the boundary.
 
 pub mod joints;
 pub mod label;
-pub mod merge;

@@ -1,0 +1,190 @@
+//! A block when it is done: what the whole needs of it, whichever kind it is, and nothing else.
+
+use rustc_hash::FxHashMap;
+
+use super::cluster::ClusterMesh;
+use super::connector::ConnectorMesh;
+use super::end_surface::{EndSurface, disc_rim};
+use crate::geometry::{Point3, Section};
+use crate::mesh::adjacency::{face_vertices, tet_adjacency};
+use crate::mesh::check::parts::{Certificate, PartView, certify};
+use crate::mesh::{Cap, TetMesh};
+use crate::partition::CutId;
+use crate::skeleton::NodeId;
+
+/// A finished block. Faces are handles, `4 · tet + i` for the face opposite vertex `i`, ascending.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Finished {
+    /// Points and tetrahedra.
+    pub mesh: TetMesh,
+    /// The first so many points are those of the joints, in their order: other blocks have them, too, and name them.
+    pub shared: u32,
+    /// Boundary faces that belong to no joint and no cap.
+    pub wall: Vec<u32>,
+    /// Where other blocks follow: a cluster's cut ends in the order of `Cluster::ends`, a connector's side 0 and side 1.
+    pub joints: Vec<FinishedJoint>,
+    /// Caps, in the order of `Cluster::ends`.
+    pub caps: Vec<FinishedCap>,
+    /// What is known of it once it has been checked alone.
+    pub certificate: Certificate,
+    /// What a report says of it.
+    pub about: About,
+}
+
+/// The disc in which two blocks meet, as one of them has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FinishedJoint {
+    /// Its vertices, ascending; the other block has them in the same order.
+    pub vertices: Vec<u32>,
+    /// Its faces.
+    pub faces: Vec<u32>,
+}
+
+/// The flat disc that closes a terminal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FinishedCap {
+    /// The terminal.
+    pub node: NodeId,
+    /// The plane; its axis points out of the mesh.
+    pub section: Section,
+    /// Its faces.
+    pub faces: Vec<u32>,
+}
+
+impl FinishedCap {
+    /// The disc, with the terminal's number in the network as it was read.
+    pub fn disc(&self, original: u32) -> Cap {
+        let Section { origin: center, axis: normal, radius } = self.section;
+        Cap { node: original, center, normal, radius }
+    }
+}
+
+/// What a report says of a block.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct About {
+    /// Terminals without a cap: their tips lie in another vessel.
+    pub uncapped: Vec<u32>,
+    /// Genus of a cluster's wall.
+    pub handles: i64,
+    /// Independent loops of its skeleton.
+    pub loops: i64,
+    /// How often it failed before, and the first reason.
+    pub failures: u32,
+    /// The first of these failures.
+    pub first_failure: String,
+}
+
+/// A face that was said to close a block and does not: a fault of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("face {face:?} does not lie on the block's boundary, or belongs to two of its ends")]
+pub struct NotOnBoundary {
+    /// Its vertices in the block.
+    pub face: [u32; 3],
+}
+
+impl Finished {
+    /// A cluster.
+    ///
+    /// # Errors
+    /// When an end or a cap is not on the boundary.
+    pub fn of_cluster(cluster: ClusterMesh) -> Result<Self, NotOnBoundary> {
+        let ClusterMesh { mesh, ends, caps, uncapped, handles, loops, .. } = cluster;
+        let mut faces = Faces::new(&mesh);
+        let joints = ends.iter().map(|end| faces.joint(&end.triangles)).collect::<Result<_, _>>()?;
+        let cap = |cap: &super::CapFaces| {
+            Ok(FinishedCap { node: cap.node, section: cap.section, faces: faces.take(&cap.triangles)? })
+        };
+        let caps = caps.iter().map(cap).collect::<Result<_, _>>()?;
+        let wall = faces.rest();
+        let about = About { uncapped: uncapped.iter().map(|n| n.0).collect(), handles, loops, ..About::default() };
+        Ok(Self { mesh, wall, joints, caps, about, ..Self::default() })
+    }
+
+    /// A connector between two end surfaces.
+    ///
+    /// # Errors
+    /// When an end is not on the boundary.
+    pub fn of_connector(connector: ConnectorMesh, ends: [&EndSurface; 2]) -> Result<Self, NotOnBoundary> {
+        let ConnectorMesh { mesh, shared, .. } = connector;
+        let mut faces = Faces::new(&mesh);
+        let mut joints = Vec::with_capacity(2);
+        let mut base = 0;
+        for end in ends {
+            let vertices = end.vertices();
+            // The connector has the ends' vertices in ascending order, and their triangles turned round.
+            let local = |v: u32| base + vertices.partition_point(|&x| x < v) as u32;
+            let triangles: Vec<_> = end.triangles.iter().map(|t| [local(t[0]), local(t[2]), local(t[1])]).collect();
+            joints.push(faces.joint(&triangles)?);
+            base += vertices.len() as u32;
+        }
+        let wall = faces.rest();
+        Ok(Self { mesh, shared: shared.len() as u32, wall, joints, ..Self::default() })
+    }
+
+    /// Checks it alone. `original`: the number of a terminal in the network as it was read.
+    pub fn certify(&mut self, original: impl Fn(NodeId) -> u32) {
+        let joints: Vec<_> = self.joints.iter().map(|joint| self.triangles(&joint.faces)).collect();
+        let caps: Vec<_> =
+            self.caps.iter().map(|cap| (cap.disc(original(cap.node)), self.triangles(&cap.faces))).collect();
+        self.certificate = certify(&PartView { mesh: &self.mesh, joints: &joints, caps: &caps });
+    }
+
+    /// The vertices of faces.
+    pub fn triangles(&self, faces: &[u32]) -> Vec<[u32; 3]> {
+        faces.iter().map(|&face| face_vertices(&self.mesh.tets, face)).collect()
+    }
+
+    /// A joint as an end surface over its own points alone; none if it is no disc.
+    pub fn end_surface(
+        &self,
+        joint: usize,
+        cut: CutId,
+        side: u8,
+        section: Section,
+    ) -> Option<(EndSurface, Vec<Point3>)> {
+        let FinishedJoint { vertices, faces } = self.joints.get(joint)?;
+        let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
+        let triangles: Vec<[u32; 3]> = self.triangles(faces).into_iter().map(|t| t.map(local)).collect();
+        let rim = disc_rim(&triangles)?;
+        let points = vertices.iter().map(|&v| self.mesh.points[v as usize]).collect();
+        Some((EndSurface { cut, side, section, triangles, rim }, points))
+    }
+}
+
+/// The boundary faces of a block that no end has taken yet.
+struct Faces {
+    left: FxHashMap<[u32; 3], u32>,
+}
+
+impl Faces {
+    fn new(mesh: &TetMesh) -> Self {
+        let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
+        let left = adjacency.boundary().map(|face| (sorted(face_vertices(&mesh.tets, face)), face)).collect();
+        Self { left }
+    }
+
+    fn take(&mut self, triangles: &[[u32; 3]]) -> Result<Vec<u32>, NotOnBoundary> {
+        let take = |&face: &[u32; 3]| self.left.remove(&sorted(face)).ok_or(NotOnBoundary { face });
+        let mut faces = triangles.iter().map(take).collect::<Result<Vec<u32>, _>>()?;
+        faces.sort_unstable();
+        Ok(faces)
+    }
+
+    fn joint(&mut self, triangles: &[[u32; 3]]) -> Result<FinishedJoint, NotOnBoundary> {
+        let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        Ok(FinishedJoint { vertices, faces: self.take(triangles)? })
+    }
+
+    fn rest(self) -> Vec<u32> {
+        let mut rest: Vec<u32> = self.left.into_values().collect();
+        rest.sort_unstable();
+        rest
+    }
+}
+
+fn sorted(mut face: [u32; 3]) -> [u32; 3] {
+    face.sort_unstable();
+    face
+}

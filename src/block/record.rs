@@ -1,0 +1,309 @@
+//! Finished blocks as bytes, and parts of them read without the rest.
+//!
+//! Little-endian. A head of [`HEAD`] counts, then, each as long as the counts say: certificate and
+//! what reports say (postcard), sizes of the
+//! joints, their vertices, their faces; the caps and their faces; the wall; points (3 × f64); tetrahedra (4 × u16 where
+//! the points are that few, else u32).
+
+use std::io;
+use std::ops::Range;
+
+use super::finished::{About, Finished, FinishedCap, FinishedJoint};
+use crate::geometry::{Point3, Section, Vec3};
+use crate::mesh::TetMesh;
+use crate::mesh::check::parts::Certificate;
+use crate::skeleton::NodeId;
+
+/// Number of counts in front.
+const HEAD: usize = 10;
+
+/// Bytes of a cap before its faces: node, number of faces, origin, axis, radius.
+const CAP: usize = 2 * 4 + 7 * 8;
+
+/// How much a finished block holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sizes {
+    /// Points, shared ones included.
+    pub points: u32,
+    /// Points that other blocks name.
+    pub shared: u32,
+    /// Tetrahedra.
+    pub tets: u32,
+    /// Faces of the wall.
+    pub wall: u32,
+    /// Joints.
+    pub joints: u32,
+    /// Vertices of all joints.
+    pub joint_vertices: u32,
+    /// Faces of all joints.
+    pub joint_faces: u32,
+    /// Caps.
+    pub caps: u32,
+    /// Faces of all caps.
+    pub cap_faces: u32,
+    notes: u32,
+}
+
+impl Sizes {
+    fn of(block: &Finished, notes: usize) -> Self {
+        let sum = |lengths: &mut dyn Iterator<Item = usize>| lengths.sum::<usize>() as u32;
+        Self {
+            points: block.mesh.points.len() as u32,
+            shared: block.shared,
+            tets: block.mesh.tets.len() as u32,
+            wall: block.wall.len() as u32,
+            joints: block.joints.len() as u32,
+            joint_vertices: sum(&mut block.joints.iter().map(|j| j.vertices.len())),
+            joint_faces: sum(&mut block.joints.iter().map(|j| j.faces.len())),
+            caps: block.caps.len() as u32,
+            cap_faces: sum(&mut block.caps.iter().map(|c| c.faces.len())),
+            notes: notes as u32,
+        }
+    }
+
+    fn counts(&self) -> [u32; HEAD] {
+        let Self { points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, notes } = *self;
+        [points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, notes]
+    }
+
+    fn from_counts(counts: [u32; HEAD]) -> Self {
+        let [points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, notes] = counts;
+        Self { points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, notes }
+    }
+
+    fn narrow(&self) -> bool {
+        self.points <= 1 << 16
+    }
+
+    /// Where each section begins and ends: notes, joints' sizes, their vertices, their faces, caps, their faces, wall,
+    /// points, tetrahedra.
+    fn sections(&self) -> [Range<u64>; 9] {
+        let per_tet = if self.narrow() { 8 } else { 16 };
+        let lengths: [(u32, u64); 9] = [
+            (self.notes, 1),
+            (self.joints, 8),
+            (self.joint_vertices, 4),
+            (self.joint_faces, 4),
+            (self.caps, CAP as u64),
+            (self.cap_faces, 4),
+            (self.wall, 4),
+            (self.points, 24),
+            (self.tets, per_tet),
+        ];
+        let mut end = 4 * HEAD as u64;
+        lengths.map(|(count, width)| {
+            let start = end;
+            end += u64::from(count) * width;
+            start..end
+        })
+    }
+
+    /// Bytes of the whole record.
+    pub fn bytes(&self) -> u64 {
+        self.sections()[8].end
+    }
+
+    /// Boundary faces of the block that belong to no joint.
+    pub fn outer_faces(&self) -> u32 {
+        self.wall + self.cap_faces
+    }
+}
+
+/// Where the bytes of a record are.
+pub trait Bytes {
+    /// Some of them.
+    ///
+    /// # Errors
+    /// When they cannot be read or are not there.
+    fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>>;
+}
+
+impl Bytes for [u8] {
+    fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>> {
+        <[u8]>::get(self, range.start as usize..range.end as usize).map(<[u8]>::to_vec).ok_or_else(cut_short)
+    }
+}
+
+fn cut_short() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, "the record of a block is cut short")
+}
+
+fn damaged() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, "the record of a block does not fit together")
+}
+
+/// A block as bytes.
+///
+/// # Errors
+/// When what reports say cannot be serialised.
+pub fn encode(block: &Finished) -> io::Result<Vec<u8>> {
+    let notes = postcard::to_stdvec(&(&block.certificate, &block.about)).map_err(io::Error::other)?;
+    let sizes = Sizes::of(block, notes.len());
+    let mut out = Vec::with_capacity(sizes.bytes() as usize);
+    put(&mut out, &sizes.counts());
+    out.extend_from_slice(&notes);
+    for joint in &block.joints {
+        put(&mut out, &[joint.vertices.len() as u32, joint.faces.len() as u32]);
+    }
+    block.joints.iter().for_each(|joint| put(&mut out, &joint.vertices));
+    block.joints.iter().for_each(|joint| put(&mut out, &joint.faces));
+    for FinishedCap { node, section, faces } in &block.caps {
+        put(&mut out, &[node.0, faces.len() as u32]);
+        let Section { origin: o, axis: a, radius } = section;
+        for x in [o.x, o.y, o.z, a.x, a.y, a.z, *radius] {
+            out.extend_from_slice(&x.to_le_bytes());
+        }
+    }
+    block.caps.iter().for_each(|cap| put(&mut out, &cap.faces));
+    put(&mut out, &block.wall);
+    for p in &block.mesh.points {
+        for x in [p.x, p.y, p.z] {
+            out.extend_from_slice(&x.to_le_bytes());
+        }
+    }
+    if sizes.narrow() {
+        block.mesh.tets.as_flattened().iter().for_each(|&v| out.extend_from_slice(&(v as u16).to_le_bytes()));
+    } else {
+        put(&mut out, block.mesh.tets.as_flattened());
+    }
+    Ok(out)
+}
+
+fn put(out: &mut Vec<u8>, values: &[u32]) {
+    for v in values {
+        out.extend_from_slice(&v.to_le_bytes());
+    }
+}
+
+/// A record of which parts are read when they are asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Record<'a, B: ?Sized> {
+    bytes: &'a B,
+    sizes: Sizes,
+}
+
+impl<'a, B: Bytes + ?Sized> Record<'a, B> {
+    /// Reads how much there is.
+    ///
+    /// # Errors
+    /// When that cannot be read.
+    pub fn open(bytes: &'a B) -> io::Result<Self> {
+        let head = words(&bytes.get(0..4 * HEAD as u64)?);
+        let counts: [u32; HEAD] = head.try_into().map_err(|_| cut_short())?;
+        Ok(Self { bytes, sizes: Sizes::from_counts(counts) })
+    }
+
+    /// How much there is.
+    pub fn sizes(&self) -> Sizes {
+        self.sizes
+    }
+
+    fn section(&self, index: usize) -> io::Result<Vec<u8>> {
+        self.bytes.get(self.sizes.sections()[index].clone())
+    }
+
+    /// What is known of it, and what reports say.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn notes(&self) -> io::Result<(Certificate, About)> {
+        postcard::from_bytes(&self.section(0)?).map_err(io::Error::other)
+    }
+
+    /// The joints.
+    ///
+    /// # Errors
+    /// When they cannot be read.
+    pub fn joints(&self) -> io::Result<Vec<FinishedJoint>> {
+        let [_, sizes, vertices, faces, ..] = self.sizes.sections();
+        let bytes = self.bytes.get(sizes.start..faces.end)?;
+        let values = words(&bytes);
+        let (sizes, rest) = values.split_at(2 * self.sizes.joints as usize);
+        let (mut vertices, mut faces) = rest.split_at(((vertices.end - vertices.start) / 4) as usize);
+        sizes
+            .chunks_exact(2)
+            .map(|size| {
+                let own = vertices.split_off(..size[0] as usize).ok_or_else(damaged)?;
+                let own_faces = faces.split_off(..size[1] as usize).ok_or_else(damaged)?;
+                Ok(FinishedJoint { vertices: own.to_vec(), faces: own_faces.to_vec() })
+            })
+            .collect()
+    }
+
+    /// The caps.
+    ///
+    /// # Errors
+    /// When they cannot be read.
+    pub fn caps(&self) -> io::Result<Vec<FinishedCap>> {
+        let (heads, faces) = (self.section(4)?, words(&self.section(5)?));
+        let mut faces = &faces[..];
+        heads
+            .chunks_exact(CAP)
+            .map(|head| {
+                let (ids, floats) = (words(&head[..8]), doubles(&head[8..]));
+                let own = faces.split_off(..ids[1] as usize).ok_or_else(damaged)?;
+                let [ox, oy, oz, ax, ay, az, radius] = floats[..] else { return Err(damaged()) };
+                let section = Section { origin: Point3::new(ox, oy, oz), axis: Vec3::new(ax, ay, az), radius };
+                Ok(FinishedCap { node: NodeId(ids[0]), section, faces: own.to_vec() })
+            })
+            .collect()
+    }
+
+    /// The wall.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn wall(&self) -> io::Result<Vec<u32>> {
+        Ok(words(&self.section(6)?))
+    }
+
+    /// The points.
+    ///
+    /// # Errors
+    /// When they cannot be read.
+    pub fn points(&self) -> io::Result<Vec<Point3>> {
+        let bytes = self.section(7)?;
+        Ok(doubles(&bytes).chunks_exact(3).map(|p| Point3::new(p[0], p[1], p[2])).collect())
+    }
+
+    /// The tetrahedra.
+    ///
+    /// # Errors
+    /// When they cannot be read or name a point that is not there.
+    pub fn tets(&self) -> io::Result<Vec<[u32; 4]>> {
+        let bytes = self.section(8)?;
+        let tets: Vec<[u32; 4]> = if self.sizes.narrow() {
+            let short = |b: &[u8]| u32::from(u16::from_le_bytes([b[0], b[1]]));
+            bytes.chunks_exact(8).map(|t| [short(t), short(&t[2..]), short(&t[4..]), short(&t[6..])]).collect()
+        } else {
+            words(&bytes).chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect()
+        };
+        let all_there = tets.as_flattened().iter().all(|&v| v < self.sizes.points);
+        if all_there { Ok(tets) } else { Err(damaged()) }
+    }
+
+    /// All of it.
+    ///
+    /// # Errors
+    /// When a part cannot be read.
+    pub fn block(&self) -> io::Result<Finished> {
+        let (certificate, about) = self.notes()?;
+        Ok(Finished {
+            mesh: TetMesh { points: self.points()?, tets: self.tets()? },
+            shared: self.sizes.shared,
+            wall: self.wall()?,
+            joints: self.joints()?,
+            caps: self.caps()?,
+            certificate,
+            about,
+        })
+    }
+}
+
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.as_chunks().0.iter().map(|&b| u32::from_le_bytes(b)).collect()
+}
+
+fn doubles(bytes: &[u8]) -> Vec<f64> {
+    bytes.as_chunks().0.iter().map(|&b| f64::from_le_bytes(b)).collect()
+}

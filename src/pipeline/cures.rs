@@ -1,0 +1,113 @@
+//! What is done about blocks that fail whatever their parameters: their cuts are moved, then they are joined to their
+//! neighbours.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::plan::{JointStyle, MeshPlan};
+use super::report::Retry;
+use super::rounds::{Blocks, cut_nodes, original_nodes};
+use crate::block::BlockError;
+use crate::partition::{Cluster, ClusterEnd, EndKind, PartitionParams};
+use crate::skeleton::{BranchId, Overlaps, Skeleton};
+
+/// How far the cure of a branch whose cut gave trouble has gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cure {
+    /// The plane at the branch's start is moved towards its end.
+    Forward,
+    /// The plane at its end is moved towards its start.
+    Backward,
+    /// It is not cut: its clusters are joined.
+    NotCut,
+}
+
+/// Share of the room by which a plane is moved.
+const SHIFT: f64 = 0.5;
+
+/// The branches of vessels that overlap.
+pub(super) fn overlapping_branches(skeleton: &Skeleton, overlaps: &Overlaps) -> BTreeSet<[BranchId; 2]> {
+    let branches = skeleton.branches(&skeleton.adjacency());
+    overlaps.pairs.iter().map(|o| o.edges.map(|e| branches.of_edge[e.index()].0)).collect()
+}
+
+pub(super) fn partition_params(
+    skeleton: &Skeleton,
+    plan: &MeshPlan,
+    cures: &BTreeMap<BranchId, Cure>,
+    together: &BTreeSet<[BranchId; 2]>,
+) -> PartitionParams {
+    let mut params = PartitionParams {
+        rho: plan.rho,
+        kappa: plan.block_params().kappa,
+        together: together.clone(),
+        ..PartitionParams::default()
+    };
+    if plan.joint == JointStyle::None {
+        let branches = skeleton.branches(&skeleton.adjacency());
+        params.forbidden_cuts.extend((0..branches.list.len() as u32).map(BranchId));
+    }
+    for (&branch, &cure) in cures {
+        match cure {
+            Cure::Forward => drop(params.shifted_cuts.insert(branch, SHIFT)),
+            Cure::Backward => drop(params.shifted_cuts.insert(branch, -SHIFT)),
+            Cure::NotCut => drop(params.forbidden_cuts.insert(branch)),
+        }
+    }
+    params
+}
+
+/// Decides what to do about blocks that failed; says so. Nothing when all is well or nothing is left to try.
+pub(super) fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<BranchId, Cure>) -> Vec<Retry> {
+    let mut found = Vec::new();
+    for (i, (cluster, mesh)) in blocks.partition.clusters.iter().zip(&blocks.clusters).enumerate() {
+        let Err(error) = mesh else { continue };
+        let mut remedies = Vec::new();
+        for branch in troubled_branches(blocks, cluster, error) {
+            remedies.extend(advance(cures, branch));
+        }
+        if !remedies.is_empty() {
+            found.push(Retry {
+                block: format!("cluster {i}"),
+                nodes: original_nodes(skeleton, cluster.nodes.iter().copied()),
+                reason: error.to_string(),
+                remedy: remedies.join(", "),
+            });
+        }
+    }
+    for (i, (cut, mesh)) in blocks.partition.cuts.iter().zip(&blocks.connectors).enumerate() {
+        let Some(Err(error)) = mesh else { continue };
+        if let Some(remedy) = advance(cures, cut.branch) {
+            found.push(Retry {
+                block: format!("connector {i}"),
+                nodes: cut_nodes(skeleton, &blocks.partition, cut),
+                reason: error.to_string(),
+                remedy,
+            });
+        }
+    }
+    found
+}
+
+/// The branches whose cuts may be the cause of a cluster's failure: the one at which it failed, else all.
+fn troubled_branches(blocks: &Blocks, cluster: &Cluster, error: &BlockError) -> Vec<BranchId> {
+    let of_end = |end: &ClusterEnd| match end.kind {
+        EndKind::Cut { cut, .. } => Some(blocks.partition.cuts[cut.0 as usize].branch),
+        EndKind::Terminal(_) => None,
+    };
+    if let BlockError::End { end, .. } = error {
+        return cluster.ends.get(*end as usize).and_then(of_end).into_iter().collect();
+    }
+    cluster.ends.iter().filter_map(of_end).collect()
+}
+
+/// The next cure of a branch, and what it is called; none when all have been tried.
+fn advance(cures: &mut BTreeMap<BranchId, Cure>, branch: BranchId) -> Option<String> {
+    let (next, words) = match cures.get(&branch) {
+        None => (Cure::Forward, "cut moved"),
+        Some(Cure::Forward) => (Cure::Backward, "cut moved the other way"),
+        Some(Cure::Backward) => (Cure::NotCut, "joined to its neighbour"),
+        Some(Cure::NotCut) => return None,
+    };
+    cures.insert(branch, next);
+    Some(format!("{words} (branch {})", branch.0))
+}

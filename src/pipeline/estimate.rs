@@ -1,0 +1,149 @@
+//! What a network will take, before anything is meshed: tetrahedra, memory, disk.
+
+use serde::Serialize;
+
+use super::plan::{JointStyle, MeshPlan};
+use super::schedule::Cost;
+use crate::geometry::Tube;
+use crate::partition::{Cluster, Cut, Partition};
+use crate::skeleton::Skeleton;
+
+/// Tetrahedra per unit of length over radius, at ρ = 1, and how they grow with ρ: fitted to meshes of the kidney's
+/// subtrees at ρ = 3, 4 and 5.
+const TETS: f64 = 3.9;
+const POWER: f64 = 2.85;
+
+/// Bytes that a block takes per tetrahedron while it is made, and whatever its size.
+const BYTES_PER_TET: f64 = 420.0;
+const BYTES_PER_BLOCK: f64 = 4e6;
+
+/// Bytes of a tetrahedron in the store and in a VTU, its share of points and boundary faces included.
+const STORED_PER_TET: f64 = 17.0;
+const WRITTEN_PER_TET: f64 = 35.0;
+
+/// What a run is expected to take.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Tetrahedra of the whole.
+    pub tets: f64,
+    /// Tetrahedra of the largest block.
+    pub largest_block_tets: f64,
+    /// Bytes of memory for the largest block while it is made.
+    pub largest_block_bytes: u64,
+    /// Bytes of the finished blocks.
+    pub stored_bytes: u64,
+    /// Bytes of the mesh as a VTU.
+    pub written_bytes: u64,
+}
+
+impl Estimate {
+    /// Of all blocks of a network.
+    pub fn of(partition: &Partition, plan: &MeshPlan) -> Self {
+        let clusters = partition.clusters.iter().map(|cluster| cluster_cost(cluster, plan));
+        let connectors = partition.cuts.iter().map(|cut| connector_cost(cut, plan));
+        Self::sum(clusters.chain(connectors))
+    }
+
+    /// Of a network that is not cut yet; each edge counts as a block.
+    pub fn rough(skeleton: &Skeleton, plan: &MeshPlan) -> Self {
+        Self::sum(skeleton.edges.iter().map(|edge| {
+            let [a, b] = edge.nodes.map(|n| skeleton.node(n).position);
+            let radius = 0.5 * (edge.radii[0] + edge.radii[1]);
+            cost(std::iter::once(((b - a).norm(), radius, radius)), plan)
+        }))
+    }
+
+    fn sum(costs: impl Iterator<Item = Cost>) -> Self {
+        let mut all = Self::default();
+        for cost in costs {
+            all.tets += cost.tets;
+            all.largest_block_tets = all.largest_block_tets.max(cost.tets);
+            all.largest_block_bytes = all.largest_block_bytes.max(cost.bytes);
+        }
+        all.stored_bytes = (all.tets * STORED_PER_TET) as u64;
+        all.written_bytes = (all.tets * WRITTEN_PER_TET) as u64;
+        all
+    }
+}
+
+/// A machine that is too small for a run.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TooLarge {
+    /// The largest block does not fit into the memory that is allowed.
+    #[error(
+        "the largest block would have about {:.3e} tetrahedra and need {} of memory, {} are allowed; \
+         give --memory more, or a smaller --rho (the whole mesh would have about {:.3e} tetrahedra)",
+        estimate.largest_block_tets, gibibytes(estimate.largest_block_bytes), gibibytes(*memory), estimate.tets
+    )]
+    Block {
+        /// What the run would take.
+        estimate: Estimate,
+        /// Bytes of memory that are allowed.
+        memory: u64,
+    },
+    /// The whole mesh, which has to be held, does not fit.
+    #[error(
+        "the mesh would have about {:.3e} tetrahedra and need {} of memory, as woven joints hold it whole; {} are allowed; \
+         give --memory more, or --joint disc",
+        estimate.tets, gibibytes(*bytes), gibibytes(*memory)
+    )]
+    Whole {
+        /// What the run would take.
+        estimate: Estimate,
+        /// Bytes that the whole mesh needs.
+        bytes: u64,
+        /// Bytes of memory that are allowed.
+        memory: u64,
+    },
+    /// The disk is too small.
+    #[error(
+        "the mesh would have about {:.3e} tetrahedra; blocks and mesh would need {} on {place}, where {} are free; \
+         make room, name another place, or a smaller --rho",
+        estimate.tets, gibibytes(*bytes), gibibytes(*free)
+    )]
+    Disk {
+        /// What the run would take.
+        estimate: Estimate,
+        /// Bytes that are needed there.
+        bytes: u64,
+        /// Bytes that are free there.
+        free: u64,
+        /// Which disk.
+        place: &'static str,
+    },
+}
+
+/// Bytes for people.
+fn gibibytes(bytes: u64) -> String {
+    match bytes as f64 / f64::from(1 << 30) {
+        small if small < 0.1 => format!("{:.1} MiB", small * 1024.0),
+        large if large > 2048.0 => format!("{:.1} TiB", large / 1024.0),
+        usual => format!("{usual:.1} GiB"),
+    }
+}
+
+/// Of one cluster.
+pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
+    let thin = cluster.tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
+    cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan)
+}
+
+/// Of one connector.
+pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
+    let pieces = cut.path.windows(2).map(|pair| {
+        let radius = 0.5 * (pair[0].radius + pair[1].radius);
+        ((pair[1].origin - pair[0].origin).norm(), radius, radius)
+    });
+    cost(pieces, plan)
+}
+
+/// Of pieces of vessel: length, radius, thinnest radius of their block.
+fn cost(pieces: impl Iterator<Item = (f64, f64, f64)>, plan: &MeshPlan) -> Cost {
+    // Without following the radius, a wide vessel has the short edges of the thinnest one.
+    let finer = 3.0 * (1.0 - if plan.joint == JointStyle::None { 0.0 } else { plan.follow });
+    let one = |(length, radius, thin): (f64, f64, f64)| length / radius * (radius / thin).powf(finer);
+    let tets = TETS * plan.rho.powf(POWER) * pieces.map(one).sum::<f64>();
+    // Casts of what is too large, or no number, end at the largest integer.
+    Cost { tets, bytes: (BYTES_PER_BLOCK + BYTES_PER_TET * tets) as u64 }
+}

@@ -1,0 +1,228 @@
+//! One block made, or found among those that are done.
+
+use std::io;
+
+use super::attempts::{self, Tried};
+use super::plan::{JointStyle, MeshPlan};
+use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
+use crate::block::{
+    About, BlockError, ConnectorEnd, ConnectorMesh, EndSurface, Finished, Record, Sizes, encode, shared_ends,
+};
+use crate::geometry::Point3;
+use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Partition};
+use crate::skeleton::Skeleton;
+
+/// A finished block in the store.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// Where it is.
+    pub record: RecordId,
+    /// How much it holds.
+    pub sizes: Sizes,
+}
+
+/// A block, or why there is none.
+pub type Made = Result<Kept, BlockError>;
+
+/// Makes blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct Workshop<'a> {
+    /// The network.
+    pub skeleton: &'a Skeleton,
+    /// How.
+    pub plan: &'a MeshPlan,
+    /// Where they go.
+    pub store: &'a Store,
+}
+
+impl Workshop<'_> {
+    /// A cluster. `overlapping`: vessels of the network overlap in it.
+    ///
+    /// # Errors
+    /// When the store fails; a block that fails is no error here.
+    pub fn cluster(&self, id: ClusterId, cluster: &Cluster, overlapping: bool) -> Result<Made, StoreError> {
+        let key = cluster_key(cluster, self.plan, overlapping);
+        if let Some(kept) = self.found(key)? {
+            return Ok(Ok(kept));
+        }
+        let Tried { result, failures } = attempts::cluster(id, cluster, self.plan, overlapping);
+        let finished = result.and_then(|mesh| {
+            Finished::of_cluster(mesh)
+                .map_err(|source| BlockError::Faces { block: format!("cluster {}", id.0), source })
+        });
+        self.keep(key, finished, failures.iter().map(ToString::to_string).collect())
+    }
+
+    /// A connector between the discs that the vessel alone gives.
+    ///
+    /// # Errors
+    /// When the store fails; a block that fails is no error here.
+    pub fn free_connector(&self, id: CutId, cut: &Cut) -> Result<Made, StoreError> {
+        let key = connector_key(cut, self.plan, &[]);
+        if let Some(kept) = self.found(key)? {
+            return Ok(Ok(kept));
+        }
+        let made = attempts::free_connector(id, cut, self.plan).result;
+        let ends = shared_ends(id, cut, &self.plan.block_params());
+        let no_disc = || BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: Vec::new() };
+        self.keep_connector(id, key, made.and_then(|mesh| Ok((mesh, ends.ok_or_else(no_disc)?))))
+    }
+
+    /// A connector between the ends of its two clusters, which are done.
+    ///
+    /// # Errors
+    /// When the store fails; a block that fails is no error here.
+    pub fn woven_connector(&self, id: CutId, cut: &Cut, ends: &[StoredEnd; 2]) -> Result<Made, StoreError> {
+        let key = connector_key(cut, self.plan, ends);
+        if let Some(kept) = self.found(key)? {
+            return Ok(Ok(kept));
+        }
+        let both = [0, 1].map(|side: usize| ConnectorEnd { surface: &ends[side].surface, points: &ends[side].points });
+        let made = attempts::connector(id, cut, both, self.plan).result;
+        self.keep_connector(id, key, made.map(|mesh| (mesh, [0, 1].map(|side: usize| ends[side].surface.clone()))))
+    }
+
+    fn keep_connector(
+        &self,
+        id: CutId,
+        key: Key,
+        made: Result<(ConnectorMesh, [EndSurface; 2]), BlockError>,
+    ) -> Result<Made, StoreError> {
+        let mut failures = Vec::new();
+        let finished = made.and_then(|(mesh, ends)| {
+            failures.extend(mesh.failed.iter().map(|attempt| attempt.failure.to_string()));
+            let failed = |source| BlockError::Faces { block: format!("connector {}", id.0), source };
+            Finished::of_connector(mesh, ends.each_ref()).map_err(failed)
+        });
+        self.keep(key, finished, failures)
+    }
+
+    fn keep(&self, key: Key, made: Result<Finished, BlockError>, failures: Vec<String>) -> Result<Made, StoreError> {
+        let mut finished = match made {
+            Ok(finished) => finished,
+            Err(error) => return Ok(Err(error)),
+        };
+        finished.about.failures = failures.len() as u32;
+        finished.about.first_failure = failures.into_iter().next().unwrap_or_default();
+        finished.certify(|node| self.skeleton.node(node).original);
+        let record = self.store.keep(key, encode(&finished)?)?;
+        Ok(Ok(self.kept(record)?))
+    }
+
+    fn found(&self, key: Key) -> io::Result<Option<Kept>> {
+        self.store.find(key).map(|record| self.kept(record)).transpose()
+    }
+
+    fn kept(&self, record: RecordId) -> io::Result<Kept> {
+        Ok(Kept { record, sizes: Record::open(&self.store.bytes(record))?.sizes() })
+    }
+
+    /// What reports say of a block.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn about(&self, kept: &Kept) -> io::Result<About> {
+        Ok(Record::open(&self.store.bytes(kept.record))?.notes()?.1)
+    }
+
+    /// The two ends that a connector is woven between; none beside a failed cluster.
+    ///
+    /// # Errors
+    /// When they cannot be read.
+    pub fn stored_ends(
+        &self,
+        partition: &Partition,
+        id: CutId,
+        cut: &Cut,
+        clusters: &[Made],
+    ) -> io::Result<Option<[StoredEnd; 2]>> {
+        let mut ends = Vec::with_capacity(2);
+        for (side, place) in joints_of_cut(partition, cut).into_iter().enumerate() {
+            let Ok(kept) = &clusters[place.part as usize] else { return Ok(None) };
+            let block = Record::open(&self.store.bytes(kept.record))?.block()?;
+            let section = partition.clusters[place.part as usize].ends[cut.sides[side].1 as usize].section;
+            let end = block.end_surface(place.joint as usize, id, side as u8, section);
+            let (surface, points) = end.ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?;
+            ends.push(StoredEnd { surface, points });
+        }
+        Ok(ends.try_into().ok())
+    }
+}
+
+/// An end surface over its own points.
+#[derive(Clone, Debug)]
+pub struct StoredEnd {
+    /// The surface.
+    pub surface: EndSurface,
+    /// Its points.
+    pub points: Vec<Point3>,
+}
+
+/// A joint of a part of the whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct JointPlace {
+    /// The part: clusters by their ids, then connectors.
+    pub part: u32,
+    /// Which of its joints.
+    pub joint: u32,
+}
+
+/// The joints of the two clusters at a cut, side 0 first.
+pub fn joints_of_cut(partition: &Partition, cut: &Cut) -> [JointPlace; 2] {
+    cut.sides.map(|(cluster, end)| {
+        let before = &partition.clusters[cluster.0 as usize].ends[..end as usize];
+        let joint = before.iter().filter(|e| matches!(e.kind, EndKind::Cut { .. })).count() as u32;
+        JointPlace { part: cluster.0, joint }
+    })
+}
+
+fn options(key: &mut KeyMaker, plan: &MeshPlan) {
+    key.float(plan.rho);
+    key.float(plan.follow);
+    key.id(match plan.joint {
+        JointStyle::Disc => 0,
+        JointStyle::Woven => 1,
+        JointStyle::None => 2,
+    });
+}
+
+fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool) -> Key {
+    let mut key = KeyMaker::new("cluster");
+    options(&mut key, plan);
+    key.id(u32::from(overlapping));
+    key.count(cluster.tubes.len());
+    for tube in &cluster.tubes {
+        key.point(&tube.a);
+        key.point(&tube.b);
+        key.float(tube.ra);
+        key.float(tube.rb);
+    }
+    key.count(cluster.ends.len());
+    for end in &cluster.ends {
+        key.section(&end.section);
+        match end.kind {
+            EndKind::Cut { side, .. } => key.id(u32::from(side)),
+            EndKind::Terminal(node) => {
+                key.id(2);
+                key.id(node.0);
+            }
+        }
+        key.count(end.overrun.len());
+        end.overrun.iter().for_each(|&tube| key.id(tube));
+    }
+    key.finish()
+}
+
+fn connector_key(cut: &Cut, plan: &MeshPlan, ends: &[StoredEnd]) -> Key {
+    let mut key = KeyMaker::new("connector");
+    options(&mut key, plan);
+    key.count(cut.path.len());
+    cut.path.iter().for_each(|section| key.section(section));
+    key.count(ends.len());
+    for end in ends {
+        key.count(end.points.len());
+        end.points.iter().for_each(|p| key.point(p));
+        end.surface.triangles.as_flattened().iter().for_each(|&v| key.id(v));
+    }
+    key.finish()
+}

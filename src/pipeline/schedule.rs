@@ -1,0 +1,116 @@
+//! Blocks on all threads: the costliest first, and no more at a time than memory allows.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::Instant;
+
+/// What a block is expected to take.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// Tetrahedra.
+    pub tets: f64,
+    /// Bytes of memory while it is made.
+    pub bytes: u64,
+}
+
+/// Lets blocks in as long as their memory fits; one alone always comes in.
+struct Gate {
+    limit: u64,
+    used: Mutex<u64>,
+    left: Condvar,
+}
+
+impl Gate {
+    fn enter(&self, bytes: u64) {
+        let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
+        while *used > 0 && *used + bytes > self.limit {
+            used = self.left.wait(used).unwrap_or_else(PoisonError::into_inner);
+        }
+        *used += bytes;
+    }
+
+    fn leave(&self, bytes: u64) {
+        *self.used.lock().unwrap_or_else(PoisonError::into_inner) -= bytes;
+        self.left.notify_all();
+    }
+}
+
+/// What became of a piece of work, and the seconds that it took.
+pub type Timed<T> = (T, f64);
+
+/// Does `work` for every cost's index on all threads of the current pool; results in the order of the indices. The first
+/// error ends it.
+///
+/// # Errors
+/// The error of the smallest index that failed before the others stopped.
+pub fn costliest_first<T: Send, E: Send>(
+    costs: &[Cost],
+    limit: u64,
+    work: impl Fn(usize) -> Result<T, E> + Sync,
+) -> Result<Vec<Timed<T>>, E> {
+    let mut order: Vec<usize> = (0..costs.len()).collect();
+    order.sort_by(|&a, &b| costs[b].tets.total_cmp(&costs[a].tets).then(a.cmp(&b)));
+    let next = AtomicUsize::new(0);
+    let gate = Gate { limit, used: Mutex::new(0), left: Condvar::new() };
+    // One loop per thread rather than a parallel iterator: a thread that waits inside a block for others' help must not
+    // begin another block, which would have to wait at the gate for the first.
+    let one_thread = |_: rayon::BroadcastContext| {
+        let mut done = Vec::new();
+        while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+            gate.enter(costs[i].bytes);
+            let start = Instant::now();
+            let result = work(i);
+            gate.leave(costs[i].bytes);
+            if result.is_err() {
+                next.store(order.len(), Ordering::Relaxed);
+            }
+            done.push((i, (result, start.elapsed().as_secs_f64())));
+        }
+        done
+    };
+    let mut done: Vec<(usize, Timed<Result<T, E>>)> = rayon::broadcast(one_thread).into_iter().flatten().collect();
+    done.sort_unstable_by_key(|(i, _)| *i);
+    done.into_iter().map(|(_, (result, seconds))| result.map(|value| (value, seconds))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn costs(bytes: &[u64]) -> Vec<Cost> {
+        bytes.iter().map(|&bytes| Cost { tets: bytes as f64, bytes }).collect()
+    }
+
+    #[test]
+    fn results_stand_in_the_order_of_the_indices() {
+        let done = costliest_first::<_, ()>(&costs(&[3, 1, 2]), 100, |i| Ok(10 * i)).expect("nothing fails");
+        assert_eq!(done.iter().map(|d| d.0).collect::<Vec<_>>(), [0, 10, 20]);
+    }
+
+    #[test]
+    fn memory_in_use_stays_within_its_limit() {
+        let bytes: Vec<u64> = (0..200).map(|i| 1 + i * 37 % 50).collect();
+        let (now, most) = (Mutex::new(0), Mutex::new(0));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().expect("threads");
+        let work = |i: usize| {
+            *now.lock().expect("held by nobody that failed") += bytes[i];
+            let used = *now.lock().expect("likewise");
+            let mut most = most.lock().expect("likewise");
+            *most = used.max(*most);
+            drop(most);
+            std::thread::yield_now();
+            *now.lock().expect("likewise") -= bytes[i];
+            Ok::<_, ()>(())
+        };
+        pool.install(|| costliest_first(&costs(&bytes), 60, work)).expect("nothing fails");
+        assert!(*most.lock().expect("likewise") <= 60);
+        // A block that does not fit at all is made alone rather than never.
+        pool.install(|| costliest_first(&costs(&[5, 1]), 2, |_| Ok::<_, ()>(()))).expect("nothing fails");
+    }
+
+    #[test]
+    fn an_error_ends_it() {
+        let failed = costliest_first(&costs(&[9; 50]), 100, |i| if i >= 3 { Err(i) } else { Ok(()) });
+        assert!(failed.is_err());
+    }
+}

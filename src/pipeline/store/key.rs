@@ -1,0 +1,69 @@
+//! Keys: a fingerprint of all that a block depends on.
+
+use xxhash_rust::xxh3::Xxh3;
+
+use crate::geometry::{Point3, Section, Vec3};
+
+/// 128 bits made of everything that a record depends on. Two of 2^40 different inputs have the same key with a
+/// probability of less than 2^-48.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Key(pub u128);
+
+/// Makes a key out of values, in their order.
+pub struct KeyMaker(Xxh3);
+
+impl KeyMaker {
+    /// `what` keeps keys of different kinds apart.
+    pub fn new(what: &str) -> Self {
+        let mut maker = Self(Xxh3::new());
+        maker.text(what);
+        maker
+    }
+
+    /// Bytes, with their number, so that neighbours do not flow into each other.
+    pub fn text(&mut self, text: &str) {
+        self.count(text.len());
+        self.0.update(text.as_bytes());
+    }
+
+    /// A number of things that follow.
+    pub fn count(&mut self, count: usize) {
+        self.0.update(&(count as u64).to_le_bytes());
+    }
+
+    /// An integer.
+    pub fn id(&mut self, id: u32) {
+        self.0.update(&id.to_le_bytes());
+    }
+
+    /// A float, bit for bit.
+    pub fn float(&mut self, x: f64) {
+        self.0.update(&x.to_bits().to_le_bytes());
+    }
+
+    /// A point.
+    pub fn point(&mut self, p: &Point3) {
+        p.iter().for_each(|&x| self.float(x));
+    }
+
+    fn vector(&mut self, v: &Vec3) {
+        v.iter().for_each(|&x| self.float(x));
+    }
+
+    /// A section.
+    pub fn section(&mut self, s: &Section) {
+        self.point(&s.origin);
+        self.vector(&s.axis);
+        self.float(s.radius);
+    }
+
+    /// Another key.
+    pub fn key(&mut self, key: Key) {
+        self.0.update(&key.0.to_le_bytes());
+    }
+
+    /// The key.
+    pub fn finish(&self) -> Key {
+        Key(self.0.digest128())
+    }
+}

@@ -1,0 +1,154 @@
+//! Records in a file, one behind the other. A record that was not written to its end is found by its checksum and cut
+//! off when the file is opened again, so the program may be killed at any moment.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError, RwLock};
+
+use xxhash_rust::xxh3::xxh3_64_with_seed;
+
+use super::key::Key;
+
+/// Before every record: a mark, the length of what follows, its key, its checksum.
+const HEAD: usize = 4 + 8 + 16 + 8;
+const MARK: [u8; 4] = *b"blk1";
+
+/// A file of records.
+#[derive(Debug)]
+pub(super) struct LogFile {
+    name: String,
+    writer: Mutex<Writer>,
+    reader: File,
+    extents: RwLock<Vec<Range<u64>>>,
+    /// Held as long as the file is in use.
+    _lock: Option<File>,
+}
+
+#[derive(Debug)]
+struct Writer {
+    file: File,
+    end: u64,
+}
+
+impl LogFile {
+    /// A file without a name.
+    pub(super) fn in_passing(folder: &Path) -> io::Result<Self> {
+        let file = tempfile::tempfile_in(folder)?;
+        Self::new(format!("{} (a file without a name)", folder.display()), file, 0, Vec::new(), None)
+    }
+
+    /// Opens a file with what it holds; the keys of the records, in their order. `lock` is held for as long.
+    pub(super) fn open(path: &Path, lock: File) -> io::Result<(Self, Vec<Key>)> {
+        let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
+        let length = file.metadata()?.len();
+        let (records, end) = scan(&file, length)?;
+        if end < length {
+            file.set_len(end)?;
+        }
+        let (keys, extents) = records.into_iter().unzip();
+        Ok((Self::new(path.display().to_string(), file, end, extents, Some(lock))?, keys))
+    }
+
+    fn new(name: String, file: File, end: u64, extents: Vec<Range<u64>>, lock: Option<File>) -> io::Result<Self> {
+        let reader = file.try_clone()?;
+        Ok(Self { name, writer: Mutex::new(Writer { file, end }), reader, extents: RwLock::new(extents), _lock: lock })
+    }
+
+    /// Where it is, for people.
+    pub(super) fn place(&self) -> String {
+        self.name.clone()
+    }
+
+    /// Appends a record; its number. When that fails, the file is as it was.
+    pub(super) fn append(&self, key: Key, bytes: &[u8]) -> io::Result<usize> {
+        let head = head_of(key, bytes);
+        let mut writer = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
+        let start = writer.end;
+        let written = write_at(&mut writer.file, start, &[&head, bytes]);
+        if let Err(error) = written {
+            // What is left of the record would be cut off by the next run as well.
+            let _ = writer.file.set_len(start);
+            return Err(error);
+        }
+        let first = start + HEAD as u64;
+        writer.end = first + bytes.len() as u64;
+        let mut extents = self.extents.write().unwrap_or_else(PoisonError::into_inner);
+        extents.push(first..writer.end);
+        Ok(extents.len() - 1)
+    }
+
+    /// Some bytes of a record.
+    pub(super) fn read(&self, record: usize, range: Range<u64>) -> io::Result<Vec<u8>> {
+        let extent = self.extents.read().unwrap_or_else(PoisonError::into_inner).get(record).cloned();
+        let extent = extent.filter(|e| range.start <= range.end && range.end <= e.end - e.start);
+        let extent = extent.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof))?;
+        let mut bytes = vec![0; (range.end - range.start) as usize];
+        self.read_at(&mut bytes, extent.start + range.start)?;
+        Ok(bytes)
+    }
+
+    #[cfg(unix)]
+    fn read_at(&self, bytes: &mut [u8], offset: u64) -> io::Result<()> {
+        std::os::unix::fs::FileExt::read_exact_at(&self.reader, bytes, offset)
+    }
+
+    /// Without reads at a place, readers take turns with the writer, whose position they share.
+    #[cfg(not(unix))]
+    fn read_at(&self, bytes: &mut [u8], offset: u64) -> io::Result<()> {
+        let _turn = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut reader = &self.reader;
+        reader.seek(SeekFrom::Start(offset))?;
+        reader.read_exact(bytes)
+    }
+}
+
+fn write_at(file: &mut File, start: u64, pieces: &[&[u8]]) -> io::Result<()> {
+    file.seek(SeekFrom::Start(start))?;
+    pieces.iter().try_for_each(|piece| file.write_all(piece))
+}
+
+fn checksum(key: Key, bytes: &[u8]) -> u64 {
+    // Length and both halves of the key count too.
+    let seed = key.0 as u64 ^ ((key.0 >> 64) as u64).rotate_left(32) ^ bytes.len() as u64;
+    xxh3_64_with_seed(bytes, seed)
+}
+
+fn head_of(key: Key, bytes: &[u8]) -> [u8; HEAD] {
+    let mut head = [0; HEAD];
+    head[..4].copy_from_slice(&MARK);
+    head[4..12].copy_from_slice(&(bytes.len() as u64).to_le_bytes());
+    head[12..28].copy_from_slice(&key.0.to_le_bytes());
+    head[28..].copy_from_slice(&checksum(key, bytes).to_le_bytes());
+    head
+}
+
+type Found = Vec<(Key, Range<u64>)>;
+
+/// The sound records at the beginning of a file, and where they end.
+fn scan(file: &File, length: u64) -> io::Result<(Found, u64)> {
+    let mut input = BufReader::with_capacity(1 << 20, file);
+    input.seek(SeekFrom::Start(0))?;
+    let (mut found, mut end, mut bytes) = (Vec::new(), 0, Vec::new());
+    while length - end >= HEAD as u64 {
+        let mut head = [0; HEAD];
+        input.read_exact(&mut head)?;
+        let (mark, rest) = head.split_at(4);
+        let [size, low, high, sum] =
+            [0, 8, 16, 24].map(|i| u64::from_le_bytes(rest[i..i + 8].try_into().unwrap_or_default()));
+        if mark != MARK || size > length - end - HEAD as u64 {
+            break;
+        }
+        bytes.resize(size as usize, 0);
+        input.read_exact(&mut bytes)?;
+        let key = Key(u128::from(high) << 64 | u128::from(low));
+        if checksum(key, &bytes) != sum {
+            break;
+        }
+        let first = end + HEAD as u64;
+        end = first + size;
+        found.push((key, first..end));
+    }
+    Ok((found, end))
+}

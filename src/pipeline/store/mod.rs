@@ -1,0 +1,173 @@
+//! Finished blocks, out of memory: kept under a key that is made of all that they depend on.
+//!
+//! Whoever asks for a block looks for its key first. So a block that does not change when others are cut anew is not
+//! meshed again, and a run that was killed goes on where it was: it does everything again and finds nearly all of it done.
+
+mod key;
+mod log;
+mod manifest;
+#[cfg(test)]
+mod tests;
+
+use std::collections::hash_map::Entry;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
+
+use rustc_hash::FxHashMap;
+
+pub use key::{Key, KeyMaker};
+use log::LogFile;
+pub use manifest::{Difference, Manifest};
+
+use crate::block::Bytes;
+
+/// A record of the store.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct RecordId(u32);
+
+/// Why blocks cannot be kept.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StoreError {
+    /// The folder cannot be used.
+    #[error("{}: cannot be used as work directory: {source}; name a folder that can be written to", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Another run uses the folder.
+    #[error("{}: another run is using this work directory; wait for it, or name another one", path.display())]
+    Locked {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder holds the blocks of another version of the program, another network or other options.
+    #[error(
+        "{}: this work directory was begun with {difference}; name another one, or give --restart to throw its blocks away",
+        path.display()
+    )]
+    Other {
+        /// The folder.
+        path: PathBuf,
+        /// What is not as it was.
+        difference: Difference,
+    },
+    /// A block cannot be written.
+    #[error("a finished block cannot be written to {place}: {source}; {}", advice(source))]
+    Write {
+        /// Where blocks are kept.
+        place: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// A block cannot be read back.
+    #[error("a finished block cannot be read back: {0}")]
+    Read(#[from] io::Error),
+}
+
+fn advice(source: &io::Error) -> &'static str {
+    match source.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "make room or name a --work-dir on a larger disk; blocks in a --work-dir are kept, so the next run goes on there"
+        }
+        _ => "check the disk; blocks in a --work-dir are kept, so the next run goes on there",
+    }
+}
+
+/// Keeps finished blocks, in memory or in a file.
+#[derive(Debug)]
+pub struct Store {
+    place: Place,
+    known: Mutex<FxHashMap<Key, RecordId>>,
+}
+
+#[derive(Debug)]
+enum Place {
+    Memory(RwLock<Vec<Arc<[u8]>>>),
+    File(LogFile),
+}
+
+impl Store {
+    /// In memory.
+    pub fn in_memory() -> Self {
+        Self { place: Place::Memory(RwLock::default()), known: Mutex::default() }
+    }
+
+    /// In a file of `folder` that has no name and is gone when the store is dropped, however the program ends.
+    ///
+    /// # Errors
+    /// When there can be no file.
+    pub fn in_passing(folder: &Path) -> Result<Self, StoreError> {
+        let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
+        let log = LogFile::in_passing(folder).map_err(failed)?;
+        Ok(Self { place: Place::File(log), known: Mutex::default() })
+    }
+
+    /// In a work directory, with the blocks that are there. `restart` throws away those of another network, other options
+    /// or another version instead of refusing them.
+    ///
+    /// # Errors
+    /// When the folder cannot be used, is in use, or belongs to something else.
+    pub fn in_folder(folder: &Path, manifest: &Manifest, restart: bool) -> Result<Self, StoreError> {
+        let (log, found) = manifest::claim(folder, manifest, restart)?;
+        let known = found.into_iter().zip(0..).map(|(key, i)| (key, RecordId(i))).collect();
+        Ok(Self { place: Place::File(log), known: Mutex::new(known) })
+    }
+
+    /// The record under a key.
+    pub fn find(&self, key: Key) -> Option<RecordId> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&key).copied()
+    }
+
+    /// Keeps a record; one that is there already stays.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn keep(&self, key: Key, bytes: Vec<u8>) -> Result<RecordId, StoreError> {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let Entry::Vacant(slot) = known.entry(key) else {
+            drop(known);
+            return self.find(key).ok_or_else(|| io::Error::from(io::ErrorKind::NotFound).into());
+        };
+        let id = match &self.place {
+            Place::Memory(records) => {
+                let mut records = records.write().unwrap_or_else(PoisonError::into_inner);
+                records.push(bytes.into());
+                records.len() - 1
+            }
+            Place::File(log) => {
+                log.append(key, &bytes).map_err(|source| StoreError::Write { place: log.place(), source })?
+            }
+        };
+        Ok(*slot.insert(RecordId(id as u32)))
+    }
+
+    /// The bytes of a record.
+    pub fn bytes(&self, id: RecordId) -> StoredBytes<'_> {
+        StoredBytes { store: self, id }
+    }
+}
+
+/// The bytes of a record in a store.
+#[derive(Clone, Copy, Debug)]
+pub struct StoredBytes<'a> {
+    store: &'a Store,
+    id: RecordId,
+}
+
+impl Bytes for StoredBytes<'_> {
+    fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>> {
+        match &self.store.place {
+            Place::Memory(records) => {
+                let records = records.read().unwrap_or_else(PoisonError::into_inner);
+                let record: &[u8] = records.get(self.id.0 as usize).ok_or(io::ErrorKind::NotFound)?;
+                Bytes::get(record, range)
+            }
+            Place::File(log) => log.read(self.id.0 as usize, range),
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! The whole mesh as a plan over stored blocks: which number each vertex and tetrahedron gets, and passes over them in
+//! that order. Nothing but the plan is held; blocks are read when their turn comes.
+
+use std::collections::BTreeSet;
+use std::io;
+
+use super::make::{JointPlace, Kept, joints_of_cut};
+use super::report::MeshSize;
+use super::rounds::Blocks;
+use super::store::{Store, StoredBytes};
+use super::terminals::TerminalPatches;
+use crate::block::{FinishedJoint, Record};
+use crate::mesh::adjacency::face_vertices;
+use crate::mesh::check::parts::{Certificate, JointFaces, Parts, WallPiece, check_parts};
+use crate::mesh::check::{CheckReport, Expectation};
+use crate::mesh::source::{EachFaces, EachPoints, EachTets, FacePiece, MeshSource, SourceCounts, TetPiece};
+use crate::mesh::{Patch, WALL};
+use crate::skeleton::Skeleton;
+
+/// The whole mesh: parts in order, clusters by their ids, then connectors. A vertex that two parts have is numbered by the
+/// cluster.
+#[derive(Debug)]
+pub struct Whole<'a> {
+    store: &'a Store,
+    parts: Vec<PartPlan>,
+    patches: Vec<Patch>,
+    /// Patch of each terminal's cap, ascending by node.
+    patch_of: Vec<(u32, i32)>,
+    /// Joints that nothing is joined to, because a block is missing: their faces are wall.
+    open: BTreeSet<JointPlace>,
+    joined: Vec<[(u32, u32); 2]>,
+    counts: SourceCounts,
+}
+
+/// One part's place in the whole.
+#[derive(Clone, Copy, Debug)]
+struct PartPlan {
+    kept: Kept,
+    /// Its number among all blocks, those that are missing included.
+    block: i32,
+    /// Number of the first vertex that is this part's own.
+    first_point: u32,
+    /// Number of its first tetrahedron.
+    first_tet: u64,
+    /// The joints of other parts that hold the vertices it shares, in order.
+    joined_to: Option<[JointPlace; 2]>,
+}
+
+/// More vertices than 32 bits can count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the whole mesh has {0} points, more than 32 bits can count; mesh its parts, or give a smaller --rho")]
+pub struct TooManyPoints(pub u64);
+
+impl<'a> Whole<'a> {
+    /// Numbers everything.
+    ///
+    /// # Errors
+    /// When there are too many vertices or a block cannot be read.
+    pub fn new(
+        store: &'a Store,
+        skeleton: &Skeleton,
+        blocks: &Blocks,
+        terminals: &TerminalPatches,
+    ) -> io::Result<Self> {
+        let mut whole = Self {
+            store,
+            parts: Vec::with_capacity(blocks.clusters.len() + blocks.connectors.len()),
+            patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
+            patch_of: Vec::new(),
+            open: BTreeSet::new(),
+            joined: Vec::new(),
+            counts: SourceCounts::default(),
+        };
+        // Clusters that failed have no part.
+        let mut part_of = Vec::with_capacity(blocks.clusters.len());
+        for (block, made) in (0..).zip(&blocks.clusters) {
+            part_of.push(made.as_ref().ok().map(|kept| whole.add(*kept, block, None)).transpose()?);
+        }
+        let connectors = blocks.partition.cuts.iter().zip(&blocks.connectors);
+        for (block, (cut, made)) in (blocks.clusters.len() as i32..).zip(connectors) {
+            let sides = joints_of_cut(&blocks.partition, cut);
+            let sides = sides.map(|place| part_of[place.part as usize].map(|part| JointPlace { part, ..place }));
+            match (made, sides) {
+                (Some(Ok(kept)), [Some(a), Some(b)]) => {
+                    let part = whole.add(*kept, block, Some([a, b]))?;
+                    let join = |side, place: JointPlace| [(place.part, place.joint), (part, side)];
+                    whole.joined.extend([join(0, a), join(1, b)]);
+                }
+                _ => whole.open.extend(sides.into_iter().flatten()),
+            }
+        }
+        whole.add_open_faces()?;
+        whole.add_patches(skeleton, terminals)?;
+        Ok(whole)
+    }
+
+    fn add(&mut self, kept: Kept, block: i32, joined_to: Option<[JointPlace; 2]>) -> io::Result<u32> {
+        let SourceCounts { points, tets, boundary } = &mut self.counts;
+        let Ok(first_point) = u32::try_from(*points) else {
+            return Err(io::Error::other(TooManyPoints(*points as u64)));
+        };
+        self.parts.push(PartPlan { kept, block, first_point, first_tet: *tets as u64, joined_to });
+        *points += (kept.sizes.points - kept.sizes.shared) as usize;
+        *tets += kept.sizes.tets as usize;
+        *boundary += kept.sizes.outer_faces() as usize;
+        Ok(self.parts.len() as u32 - 1)
+    }
+
+    fn add_open_faces(&mut self) -> io::Result<()> {
+        for place in &self.open {
+            let joints = Record::open(&self.record(self.parts[place.part as usize]))?.joints()?;
+            self.counts.boundary += joints.get(place.joint as usize).map_or(0, |joint| joint.faces.len());
+        }
+        Ok(())
+    }
+
+    fn add_patches(&mut self, skeleton: &Skeleton, terminals: &TerminalPatches) -> io::Result<()> {
+        for &part in self.parts.iter().filter(|part| part.kept.sizes.caps > 0) {
+            for cap in Record::open(&self.store.bytes(part.kept.record))?.caps()? {
+                let Some((id, name)) = terminals.of.get(&cap.node) else { continue };
+                let disc = cap.disc(skeleton.node(cap.node).original);
+                self.patches.push(Patch { id: *id, name: name.clone(), cap: Some(disc) });
+                self.patch_of.push((cap.node.0, *id));
+            }
+        }
+        self.patches.sort_by_key(|patch| patch.id);
+        self.patch_of.sort_unstable();
+        Ok(())
+    }
+
+    fn record(&self, part: PartPlan) -> StoredBytes<'a> {
+        self.store.bytes(part.kept.record)
+    }
+
+    /// Numbers of the vertices that a part shares with earlier ones.
+    fn shared(&self, part: PartPlan) -> io::Result<Vec<u32>> {
+        let mut shared = Vec::with_capacity(part.kept.sizes.shared as usize);
+        for place in part.joined_to.iter().flatten() {
+            let cluster = self.parts[place.part as usize];
+            let joints = Record::open(&self.record(cluster))?.joints()?;
+            // Clusters share nothing, so all of their vertices are their own.
+            let vertices = joints.get(place.joint as usize).map_or(&[][..], |joint| &joint.vertices);
+            shared.extend(vertices.iter().map(|v| cluster.first_point + v));
+        }
+        Ok(shared)
+    }
+
+    /// Number in the whole of each vertex of a part.
+    fn numbers(&self, part: PartPlan) -> io::Result<Vec<u32>> {
+        let mut numbers = self.shared(part)?;
+        let own = part.kept.sizes.points - part.kept.sizes.shared;
+        if numbers.len() != part.kept.sizes.shared as usize {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "two blocks have different discs at their joint"));
+        }
+        numbers.extend(part.first_point..part.first_point + own);
+        Ok(numbers)
+    }
+
+    /// Boundary faces of the whole that a part has, ascending, each with its patch.
+    fn outer_faces(&self, index: usize, record: &Record<StoredBytes>) -> io::Result<Vec<(u32, i32)>> {
+        let mut faces: Vec<(u32, i32)> = record.wall()?.into_iter().map(|face| (face, WALL)).collect();
+        if record.sizes().caps > 0 {
+            for cap in record.caps()? {
+                let found = self.patch_of.binary_search_by_key(&cap.node.0, |(node, _)| *node);
+                let patch = found.map_or(WALL, |i| self.patch_of[i].1);
+                faces.extend(cap.faces.into_iter().map(|face| (face, patch)));
+            }
+        }
+        let first = JointPlace { part: index as u32, joint: 0 };
+        let last = JointPlace { part: index as u32, joint: u32::MAX };
+        if self.open.range(first..=last).next().is_some() {
+            let joints = record.joints()?;
+            for place in self.open.range(first..=last) {
+                faces.extend(joints.get(place.joint as usize).into_iter().flat_map(|j| &j.faces).map(|&f| (f, WALL)));
+            }
+        }
+        faces.sort_unstable();
+        Ok(faces)
+    }
+
+    /// Counts it.
+    pub fn size(&self) -> MeshSize {
+        let cap_triangles = self.parts.iter().map(|part| part.kept.sizes.cap_faces as usize).sum();
+        let SourceCounts { points, tets, boundary } = self.counts;
+        MeshSize { tets, points, wall_triangles: boundary - cap_triangles, cap_triangles }
+    }
+
+    /// Checks it, with walls of so many bytes in memory at a time.
+    ///
+    /// # Errors
+    /// When a block cannot be read.
+    pub fn check(&self, expectation: &Expectation, memory: u64) -> io::Result<CheckReport> {
+        check_parts(self, &self.patches, Some(expectation), memory as usize)
+    }
+
+    /// The vertices of every joint, by their numbers in the whole.
+    ///
+    /// # Errors
+    /// When a block cannot be read.
+    pub fn joint_vertices(&self) -> io::Result<Vec<Vec<u32>>> {
+        let mut all = Vec::with_capacity(self.joined.len());
+        for &part in self.parts.iter().filter(|part| part.joined_to.is_some()) {
+            let joints = Record::open(&self.record(part))?.joints()?;
+            let numbers = self.numbers(part)?;
+            all.extend(joints.iter().map(|joint| joint.vertices.iter().map(|&v| numbers[v as usize]).collect()));
+        }
+        Ok(all)
+    }
+}
+
+impl MeshSource for Whole<'_> {
+    fn counts(&self) -> SourceCounts {
+        self.counts
+    }
+
+    fn patches(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    fn points(&self, each: EachPoints) -> io::Result<()> {
+        for &part in &self.parts {
+            let points = Record::open(&self.record(part))?.points()?;
+            each(&points[part.kept.sizes.shared as usize..])?;
+        }
+        Ok(())
+    }
+
+    fn tets(&self, each: EachTets) -> io::Result<()> {
+        for &part in &self.parts {
+            let numbers = self.numbers(part)?;
+            let mut tets = Record::open(&self.record(part))?.tets()?;
+            tets.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
+            each(TetPiece { tets: &tets, blocks: &vec![part.block; tets.len()] })?;
+        }
+        Ok(())
+    }
+
+    fn boundary(&self, each: EachFaces) -> io::Result<()> {
+        for (i, &part) in self.parts.iter().enumerate() {
+            let numbers = self.numbers(part)?;
+            let bytes = self.record(part);
+            let record = Record::open(&bytes)?;
+            let tets = record.tets()?;
+            let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(i, &record)?.into_iter().unzip();
+            let triangle = |&face: &u32| face_vertices(&tets, face).map(|v| numbers[v as usize]);
+            let faces: Vec<[u32; 3]> = faces.iter().map(triangle).collect();
+            each(FacePiece { faces: &faces, patches: &patches, blocks: &vec![part.block; faces.len()] })?;
+        }
+        Ok(())
+    }
+}
+
+impl Parts for Whole<'_> {
+    fn count(&self) -> usize {
+        self.parts.len()
+    }
+
+    fn certificate(&self, part: u32) -> io::Result<Certificate> {
+        Ok(Record::open(&self.record(self.parts[part as usize]))?.notes()?.0)
+    }
+
+    fn wall(&self, part: u32) -> io::Result<WallPiece> {
+        let plan = self.parts[part as usize];
+        let bytes = self.record(plan);
+        let record = Record::open(&bytes)?;
+        let faces: Vec<u32> = self.outer_faces(part as usize, &record)?.into_iter().map(|(face, _)| face).collect();
+        let (points, tets, numbers) = (record.points()?, record.tets()?, self.numbers(plan)?);
+        let faces = faces.iter().map(|&face| face_vertices(&tets, face)).collect();
+        let (faces, vertices) = compact(faces, points.len());
+        let at = |&v: &u32| points[v as usize];
+        let number = |&v: &u32| numbers[v as usize];
+        Ok(WallPiece {
+            points: vertices.iter().map(at).collect(),
+            vertices: vertices.iter().map(number).collect(),
+            faces,
+        })
+    }
+
+    fn joined(&self) -> &[[(u32, u32); 2]] {
+        &self.joined
+    }
+
+    fn joint(&self, part: u32, joint: u32) -> io::Result<JointFaces> {
+        let plan = self.parts[part as usize];
+        let bytes = self.record(plan);
+        let record = Record::open(&bytes)?;
+        let FinishedJoint { vertices, faces } = record
+            .joints()?
+            .into_iter()
+            .nth(joint as usize)
+            .ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?;
+        let (points, tets, numbers) = (record.points()?, record.tets()?, self.numbers(plan)?);
+        let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
+        Ok(JointFaces {
+            points: vertices.iter().map(|&v| points[v as usize]).collect(),
+            vertices: vertices.iter().map(|&v| numbers[v as usize]).collect(),
+            faces: faces.iter().map(|&face| face_vertices(&tets, face).map(local)).collect(),
+        })
+    }
+
+    fn vertex(&self, part: u32, local: u32) -> u32 {
+        // Asked for offenders alone.
+        let numbers = self.numbers(self.parts[part as usize]).unwrap_or_default();
+        numbers.get(local as usize).copied().unwrap_or(u32::MAX)
+    }
+
+    fn tet(&self, part: u32, local: u32) -> u64 {
+        self.parts[part as usize].first_tet + u64::from(local)
+    }
+
+    fn vertices(&self, part: u32, _: u32) -> io::Result<Vec<u32>> {
+        self.numbers(self.parts[part as usize])
+    }
+}
+
+/// Faces that name only the vertices that they use, and these vertices, ascending.
+fn compact(mut faces: Vec<[u32; 3]>, points: usize) -> (Vec<[u32; 3]>, Vec<u32>) {
+    let mut place = vec![u32::MAX; points];
+    for &v in faces.as_flattened() {
+        place[v as usize] = 0;
+    }
+    let used: Vec<u32> = (0..points as u32).filter(|&v| place[v as usize] == 0).collect();
+    for (new, &old) in (0..).zip(&used) {
+        place[old as usize] = new;
+    }
+    faces.as_flattened_mut().iter_mut().for_each(|v| *v = place[*v as usize]);
+    (faces, used)
+}

@@ -1,0 +1,183 @@
+//! Networks larger than memory: blocks on disk, runs that are stopped and go on, and what is refused beforehand.
+
+mod common;
+
+use common::{fixture, shared};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+const FINE: i32 = 0;
+const USAGE: i32 = 2;
+const BAD_INPUT: i32 = 3;
+
+fn command(network: &Path, out: &Path, options: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_anastomesh"));
+    command.arg("mesh").arg(network).arg("-o").arg(out).arg("-q").args(options);
+    command
+}
+
+fn run(network: &Path, out: &Path, options: &[&str]) -> Output {
+    command(network, out, options).output().expect("the program runs")
+}
+
+#[track_caller]
+fn assert_code(output: &Output, expected: i32) {
+    assert_eq!(output.status.code(), Some(expected), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[track_caller]
+fn assert_says(output: &Output, code: i32, words: &[&str]) {
+    assert_code(output, code);
+    let text = String::from_utf8_lossy(&output.stderr);
+    for word in words {
+        assert!(text.contains(word), "'{word}' in: {text}");
+    }
+}
+
+/// The fixture, or a larger network where it is there.
+fn network() -> PathBuf {
+    shared().map_or_else(|| fixture("tree_30.vtp"), |shared| shared.join("data/kidney/subtree_289_clear.vtp"))
+}
+
+/// Bytes that a file has now.
+fn length(path: &Path) -> u64 {
+    fs::metadata(path).map_or(0, |m| m.len())
+}
+
+#[test]
+fn bytes_do_not_depend_on_memory_threads_or_where_blocks_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    assert_code(&run(&network(), &path("a.vtu"), &[]), FINE);
+    let whole = fs::read(path("a.vtu")).expect("a mesh");
+    let work = path("work").display().to_string();
+    for options in [&["--memory", "48MiB"][..], &["--work-dir", &work, "-j", "1"], &["--work-dir", &work, "-j", "3"]] {
+        assert_code(&run(&network(), &path("b.vtu"), options), FINE);
+        assert!(fs::read(path("b.vtu")).expect("a mesh") == whole, "{options:?}");
+    }
+    let mut names: Vec<_> =
+        fs::read_dir(folder.path()).expect("a folder").map(|e| e.expect("an entry").file_name()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["a.vtu", "b.vtu", "work"]);
+}
+
+/// Kills a run once its blocks have grown to `bytes`; false if it ended before.
+fn kill_at(mut child: Child, blocks: &Path, bytes: u64) -> bool {
+    loop {
+        if child.try_wait().expect("a child").is_some() {
+            return false;
+        }
+        if length(blocks) >= bytes {
+            child.kill().expect("killed");
+            child.wait().expect("gone");
+            return true;
+        }
+        std::thread::sleep(Duration::from_micros(300));
+    }
+}
+
+#[test]
+fn killed_at_any_moment_it_goes_on_and_ends_with_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let (work, blocks) = (path("work").display().to_string(), path("work").join("anastomesh.blocks"));
+    assert_code(&run(&network(), &path("a.vtu"), &["--work-dir", &work]), FINE);
+    let (whole, all) = (fs::read(path("a.vtu")).expect("a mesh"), length(&blocks));
+    fs::remove_dir_all(path("work")).expect("removed");
+    let mut killed = 0;
+    for step in 0..20 {
+        let child = command(&network(), &path("b.vtu"), &["--work-dir", &work, "-j", "2"])
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program runs");
+        // Now and then before the first block, while it is checked, or while it is written.
+        killed += u32::from(kill_at(child, &blocks, all * step / 18));
+        assert!(!path("b.vtu").exists() || fs::read(path("b.vtu")).expect("a mesh") == whole);
+    }
+    assert!(killed >= 15, "{killed} kills");
+    assert_code(&run(&network(), &path("b.vtu"), &["--work-dir", &work]), FINE);
+    assert!(fs::read(path("b.vtu")).expect("a mesh") == whole);
+}
+
+#[test]
+fn a_work_directory_belongs_to_one_network_and_its_options() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let work = path("work").display().to_string();
+    let tree = fixture("tree_30.vtp");
+    assert_code(&run(&tree, &path("a.vtu"), &["--work-dir", &work]), FINE);
+    let before = fs::read(path("a.vtu")).expect("a mesh");
+    let other = run(&tree, &path("a.vtu"), &["--work-dir", &work, "--rho", "4"]);
+    assert_says(&other, BAD_INPUT, &["mesh.rho was 3.0 and is now 4.0", "--restart"]);
+    assert_says(
+        &run(&fixture("tree_30.swc"), &path("b.vtu"), &["--work-dir", &work, "--root", "5"]),
+        BAD_INPUT,
+        &["another"],
+    );
+    assert!(fs::read(path("a.vtu")).expect("a mesh") == before && !path("b.vtu").exists());
+    assert_code(&run(&tree, &path("a.vtu"), &["--work-dir", &work, "--rho", "4", "--restart"]), FINE);
+    fs::write(path("work").join("anastomesh.json"), "{\"format\": 0}").expect("written");
+    assert_says(&run(&tree, &path("a.vtu"), &["--work-dir", &work]), BAD_INPUT, &["another version"]);
+    assert_says(&run(&tree, &path("a.vtu"), &["--restart"]), USAGE, &["--work-dir"]);
+}
+
+#[test]
+fn two_runs_do_not_share_a_work_directory() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let work = folder.path().join("work");
+    let tree = fixture("tree_30.vtp");
+    let options = ["--work-dir", work.to_str().expect("text")];
+    assert_code(&run(&tree, &folder.path().join("a.vtu"), &options), FINE);
+    let lock = fs::File::options().write(true).open(work.join("anastomesh.lock")).expect("a lock");
+    lock.lock().expect("locked");
+    assert_says(&run(&tree, &folder.path().join("b.vtu"), &options), BAD_INPUT, &["another run"]);
+    drop(lock);
+    assert_code(&run(&tree, &folder.path().join("b.vtu"), &options), FINE);
+}
+
+#[test]
+fn what_cannot_fit_is_refused_with_an_estimate_and_touches_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("a.vtu");
+    fs::write(&out, "an earlier mesh").expect("written");
+    let tree = fixture("tree_30.vtp");
+    let small = run(&tree, &out, &["--memory", "1MiB"]);
+    assert_says(&small, BAD_INPUT, &["the largest block", "1.0 MiB are allowed", "--memory"]);
+    assert_says(&run(&tree, &out, &["--rho", "1000"]), BAD_INPUT, &["tetrahedra", "TiB", "--rho"]);
+    assert_says(&run(&tree, &out, &["--rho", "1000", "--memory", "1000TiB"]), BAD_INPUT, &["are free"]);
+    assert_says(
+        &run(&tree, &out, &["--joint", "woven", "--memory", "1MiB"]),
+        BAD_INPUT,
+        &["hold it whole", "--joint disc"],
+    );
+    for rho in ["0", "-3", "nan", "inf"] {
+        assert_says(&run(&tree, &out, &["--rho", rho]), USAGE, &["rho"]);
+    }
+    for memory in ["0GiB", "2", "much"] {
+        assert_code(&run(&tree, &out, &["--memory", memory]), USAGE);
+    }
+    assert_eq!(fs::read(&out).expect("there"), b"an earlier mesh");
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
+}
+
+/// A device on which every write fails as on a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error_that_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let work = folder.path().join("work");
+    let tree = fixture("tree_30.vtp");
+    let options = ["--work-dir", work.to_str().expect("text")];
+    fs::create_dir(&work).expect("a folder");
+    std::os::unix::fs::symlink("/dev/full", work.join("anastomesh.blocks")).expect("a link");
+    fs::write(folder.path().join("a.vtu"), "an earlier mesh").expect("written");
+    // What is found there without a manifest is removed, so the manifest has to be there first.
+    let first = folder.path().join("first");
+    assert_code(&run(&tree, &folder.path().join("b.vtu"), &["--work-dir", first.to_str().expect("text")]), FINE);
+    fs::copy(first.join("anastomesh.json"), work.join("anastomesh.json")).expect("copied");
+    let full = run(&tree, &folder.path().join("a.vtu"), &options);
+    assert_says(&full, BAD_INPUT, &["cannot be written", "make room", "--work-dir"]);
+    assert_eq!(fs::read(folder.path().join("a.vtu")).expect("there"), b"an earlier mesh");
+}
