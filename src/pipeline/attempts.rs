@@ -49,25 +49,33 @@ fn variants(plan: &MeshPlan) -> [BlockParams; CHANGES.len()] {
     [usual, shifted, narrower, other, finer(shifted), finer(narrower), finest]
 }
 
-/// The ways in which a cluster is tried. `overlapping`: vessels of the network overlap in it, or come so close to each
-/// other that they may; only when no way keeps them apart are they taken as one, unless that is what is wanted.
-fn ways(plan: &MeshPlan, overlapping: bool) -> Vec<BlockParams> {
+/// The ways in which a cluster is tried, each with its place in the list of all. `overlapping`: vessels of the network
+/// overlap in it, or come so close to each other that they may. If neither another grid nor a finer one with a narrower
+/// kernel keeps them apart they are taken as one, at once if that is what is wanted.
+fn ways(plan: &MeshPlan, overlapping: bool) -> Vec<(usize, BlockParams)> {
     let apart = variants(plan);
     let fused = apart.map(|params| BlockParams { allow_fused: true, ..params });
-    match (overlapping, plan.fuse) {
-        (false, _) => apart.to_vec(),
-        (true, true) => fused.to_vec(),
-        (true, false) => [apart, fused].concat(),
-    }
+    let places = (0..).zip([apart, fused].concat());
+    let is_tried = |place: usize| match (overlapping, plan.fuse) {
+        (false, _) => place < CHANGES.len(),
+        (true, true) => place >= CHANGES.len(),
+        (true, false) => [0, 1, 5].contains(&place) || place >= CHANGES.len(),
+    };
+    places.filter(|(place, _)| is_tried(*place)).collect()
 }
 
 /// Meshes a cluster, with other parameters after each failure. When none helps, the failure of the usual way counts: it
-/// is what the dump of the input reproduces.
+/// is what the dump of the input reproduces. What was not tried in between counts as failed like the attempt before.
 pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan, overlapping: bool) -> Tried<ClusterMesh> {
-    let mut failures = Vec::new();
-    for params in ways(plan, overlapping) {
+    let mut failures: Vec<BlockError> = Vec::new();
+    for (place, params) in ways(plan, overlapping) {
         match mesh_cluster(id, cluster, &params) {
-            Ok(mesh) => return Tried { result: Ok(mesh), failures },
+            Ok(mesh) => {
+                if let Some(last) = failures.last().cloned() {
+                    failures.resize(place, last);
+                }
+                return Tried { result: Ok(mesh), failures };
+            }
             Err(error) => failures.push(error),
         }
     }
@@ -99,4 +107,23 @@ pub fn connector_input(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &Mes
 /// The input of a connector that is made without its clusters; none when it has no path or its discs cannot be made.
 pub fn free_connector_input(id: CutId, cut: &Cut, plan: &MeshPlan) -> Option<BlockDump> {
     dump_free_connector(id, cut, &plan.block_params())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vessels_that_may_overlap_are_kept_apart_if_they_can_be() {
+        let fused = |plan: &MeshPlan, overlapping| -> Vec<bool> {
+            ways(plan, overlapping).iter().map(|(_, params)| params.allow_fused).collect()
+        };
+        let plan = MeshPlan::default();
+        assert_eq!(fused(&plan, false), [false; CHANGES.len()]);
+        assert_eq!(fused(&plan, true), [[false; 3].as_slice(), &[true; CHANGES.len()]].concat());
+        assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; CHANGES.len()]);
+        let words: Vec<String> = ways(&plan, true).iter().map(|(place, _)| remedy(*place)).collect();
+        assert_eq!(words[2], "finer voxel, narrower kernel");
+        assert_eq!(words[3], "vessels that overlap taken as one, as usual");
+    }
 }
