@@ -1,5 +1,7 @@
-//! Terminals that are too close to each other for two caps: listed, and moved apart or merged on request.
+//! Terminals that are too close to each other for two caps, or for the loop through two that two trees share: listed,
+//! moved apart, or merged on request.
 
+use super::frame::find_folds;
 use super::params::{Crowded, RefineParams};
 use crate::skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
 use serde::Serialize;
@@ -32,13 +34,18 @@ pub(super) fn treat(
     params: &RefineParams,
 ) -> Vec<CrowdedPair> {
     let adjacency = skeleton.adjacency();
-    let found = skeleton.crowded_terminals(&adjacency);
+    let folds = find_folds(skeleton, &adjacency);
+    let is_end = |n: &NodeId| adjacency.valence(*n) == 1 || folds[n.index()];
+    let ends: Vec<NodeId> = skeleton.node_ids().filter(is_end).collect();
+    let found = skeleton.crowded_among(&ends);
+    let is_free = |pair: &CrowdedTerminals| pair.nodes.iter().all(|n| adjacency.valence(*n) == 1);
     let place = |s: &Skeleton, pair: &CrowdedTerminals| pair.nodes.map(|n| s.node(n).position);
     let before: Vec<_> = found.iter().map(|pair| place(skeleton, pair)).collect();
     let resolved = match params.crowded {
         Crowded::Keep => vec![false; found.len()],
-        Crowded::Part => part(skeleton, &found),
-        Crowded::Merge => vec![true; found.len()],
+        Crowded::Part => part(skeleton, &found, &ends),
+        // Those that two trees share stay what they are.
+        Crowded::Merge => found.iter().map(is_free).collect(),
     };
     let original = |n: NodeId| skeleton.node(n).original;
     let pairs = found.iter().zip(resolved).zip(before).map(|((pair, resolved), before)| {
@@ -53,13 +60,14 @@ pub(super) fn treat(
     });
     let pairs = pairs.collect();
     if params.crowded == Crowded::Merge {
-        merge(skeleton, origin, &found);
+        let free: Vec<CrowdedTerminals> = found.into_iter().filter(is_free).collect();
+        merge(skeleton, origin, &free);
     }
     pairs
 }
 
-/// Moves the terminals of each pair apart, half the way each, until all are apart; says which are.
-fn part(skeleton: &mut Skeleton, found: &[CrowdedTerminals]) -> Vec<bool> {
+/// Moves the terminals of each pair apart, half the way each, until all `ends` are apart; says which are.
+fn part(skeleton: &mut Skeleton, found: &[CrowdedTerminals], ends: &[NodeId]) -> Vec<bool> {
     let mut close = found.to_vec();
     for _ in 0..SWEEPS {
         for pair in &close {
@@ -71,7 +79,7 @@ fn part(skeleton: &mut Skeleton, found: &[CrowdedTerminals]) -> Vec<bool> {
                 skeleton.nodes[pair.nodes[1].index()].position += way;
             }
         }
-        close = skeleton.crowded_terminals(&skeleton.adjacency());
+        close = skeleton.crowded_among(ends);
         if close.is_empty() {
             break;
         }
@@ -173,6 +181,26 @@ mod tests {
         assert!((parted.report.crowded[0].moved[0] - moved).abs() < 1e-9);
         assert_eq!(parted.origin[2], crowd().nodes[2].position);
         assert_eq!(parted.skeleton.nodes[0].position, crowd().nodes[0].position);
+    }
+
+    #[test]
+    fn terminals_that_two_trees_share_are_parted() {
+        // The loop through both would have no hole.
+        let points = [
+            [-20.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0],
+            [30.0, 0.1, 0.0],
+            [30.0, -0.1, 0.0],
+            [0.0, 2.0, 9.0],
+            [-20.0, 9.0, 9.0],
+        ];
+        let s = network(&points, 1.0, &[(0, 1), (1, 2), (1, 3), (2, 4), (3, 4), (4, 5)]);
+        let refined = run(&s, &RefineParams::default());
+        assert_eq!(refined.report.crowded.iter().map(|p| (p.nodes, p.resolved)).collect::<Vec<_>>(), [([2, 3], true)]);
+        let apart = (refined.skeleton.nodes[2].position - refined.skeleton.nodes[3].position).norm();
+        assert!((apart - 2.4).abs() < 1e-9, "{apart}");
+        let merged = run(&s, &RefineParams { crowded: Crowded::Merge, ..RefineParams::default() });
+        assert!(merged.report.crowded.iter().all(|p| !p.resolved));
     }
 
     #[test]

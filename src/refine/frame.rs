@@ -188,7 +188,7 @@ fn readiness(radius: f64, unit: f64) -> f64 {
 }
 
 /// Nodes of valence 2 at which the vessel turns back.
-fn find_folds(skeleton: &Skeleton, adjacency: &Adjacency) -> Vec<bool> {
+pub(super) fn find_folds(skeleton: &Skeleton, adjacency: &Adjacency) -> Vec<bool> {
     let folds = skeleton.node_ids().map(|n| match adjacency.edges(n) {
         &[e, f] => skeleton.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
         _ => false,
