@@ -166,7 +166,9 @@ impl Args {
         let estimate = Estimate::rough(network, plan);
         let bytes = (estimate.tets * HELD_PER_TET) as u64;
         if bytes > plan.memory {
-            return Err(Failure::input(TooLarge::Whole { estimate, bytes, memory: plan.memory }.to_string()));
+            let (why, instead) = ("woven joints", "--joint disc");
+            let refused = TooLarge::Whole { estimate, why, instead, bytes, memory: plan.memory };
+            return Err(Failure::input(refused.to_string()));
         }
         let mut clock = Clock::default();
         let result = pipeline::mesh_network(network, plan, bars, &mut clock);

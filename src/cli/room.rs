@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::exit::Failure;
+use crate::io::mesh_file::MeshFormat;
 use crate::pipeline::store::{KeyMaker, Manifest, Store};
 use crate::pipeline::{Estimate, MeshPlan, TooLarge};
 use crate::skeleton::Skeleton;
@@ -54,6 +55,9 @@ pub enum BlockPlace {
         restart: bool,
     },
 }
+
+/// Bytes of memory per tetrahedron of a mesh that is gathered to be written.
+const GATHERED_PER_TET: f64 = 60.0;
 
 /// Finished blocks stay in memory when they take less than this share of what is allowed.
 const KEPT_IN_MEMORY: u64 = 8;
@@ -118,6 +122,13 @@ pub fn fits(estimate: &Estimate, plan: &MeshPlan, place: &BlockPlace, output: &P
     let (estimate, memory) = (*estimate, plan.memory);
     if estimate.largest_block_bytes > memory {
         return Err(TooLarge::Block { estimate, memory });
+    }
+    if MeshFormat::of(output).is_ok_and(|format| !format.is_written_in_passes()) {
+        let bytes = (estimate.tets * GATHERED_PER_TET) as u64;
+        if bytes > memory {
+            let (why, instead) = ("TetGen's files", "another format");
+            return Err(TooLarge::Whole { estimate, why, instead, bytes, memory });
+        }
     }
     let target = folder_of(output);
     let mut stored = estimate.stored_bytes;

@@ -133,36 +133,8 @@ impl MeshSource for VolumeMesh {
     fn boundary(&self, each: EachFaces) -> io::Result<()> {
         each(FacePiece { faces: &self.boundary, patches: &self.boundary_patch, blocks: &self.boundary_block })
     }
+
     fn whole(&self) -> Option<&VolumeMesh> {
         Some(self)
     }
-}
-
-/// The mesh in memory.
-///
-/// # Errors
-/// What reading the mesh fails with.
-pub fn collect(source: &dyn MeshSource) -> io::Result<VolumeMesh> {
-    let SourceCounts { points, tets, boundary } = source.counts();
-    let mut out = VolumeMesh { patches: source.patches().to_vec(), ..VolumeMesh::default() };
-    out.mesh.points.reserve_exact(points);
-    out.mesh.tets.reserve_exact(tets);
-    out.tet_block.reserve_exact(tets);
-    out.boundary.reserve_exact(boundary);
-    source.points(&mut |points| {
-        out.mesh.points.extend_from_slice(points);
-        Ok(())
-    })?;
-    source.tets(&mut |piece| {
-        out.mesh.tets.extend_from_slice(piece.tets);
-        out.tet_block.extend_from_slice(piece.blocks);
-        Ok(())
-    })?;
-    source.boundary(&mut |piece| {
-        out.boundary.extend_from_slice(piece.faces);
-        out.boundary_patch.extend_from_slice(piece.patches);
-        out.boundary_block.extend_from_slice(piece.blocks);
-        Ok(())
-    })?;
-    Ok(out)
 }

@@ -4,7 +4,7 @@ use std::io;
 
 use super::whole::Whole;
 use crate::mesh::adjacency::TetAdjacency;
-use crate::mesh::source::collect;
+use crate::mesh::source::gather;
 use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL};
 use crate::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
 use crate::stitch::label::{LabelError, PatchFaces, label};
@@ -24,7 +24,7 @@ impl Assembly {
     /// When a block cannot be read.
     pub fn new(whole: &Whole) -> io::Result<Self> {
         let joints = whole.joint_vertices()?.into_iter().map(|vertices| Joint { vertices }).collect();
-        Ok(Self { volume: collect(whole)?, joints })
+        Ok(Self { volume: gather(whole)?, joints })
     }
 
     /// Smooths the joints.

@@ -84,13 +84,17 @@ pub enum TooLarge {
     },
     /// The whole mesh, which has to be held, does not fit.
     #[error(
-        "the mesh would have about {:.3e} tetrahedra and need {} of memory, as woven joints hold it whole; {} are allowed; \
-         give --memory more, or --joint disc",
+        "the mesh would have about {:.3e} tetrahedra and need {} of memory, as {why} hold it whole; {} are allowed; \
+         give --memory more, or {instead}",
         estimate.tets, gibibytes(*bytes), gibibytes(*memory)
     )]
     Whole {
         /// What the run would take.
         estimate: Estimate,
+        /// What holds it whole.
+        why: &'static str,
+        /// What does not.
+        instead: &'static str,
         /// Bytes that the whole mesh needs.
         bytes: u64,
         /// Bytes of memory that are allowed.

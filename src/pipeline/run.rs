@@ -17,7 +17,7 @@ use super::timing::Clock;
 use super::whole::Whole;
 use crate::block::{About, BlockDump, ConnectorEnd};
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
-use crate::mesh::source::{MeshSource, SourceCounts, collect};
+use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::{ClusterId, CutId, PartitionError};
 use crate::refine::split;
@@ -111,7 +111,7 @@ pub fn mesh_network(
         return joined.smoothed(observer, clock);
     }
     let Stored { whole, expectation, check, mut report } = joined.checked(plan, observer, clock)?;
-    let mesh = clock.time(observer, Stage::Merge, 0, || collect(&whole))?;
+    let mesh = clock.time(observer, Stage::Merge, 0, || gather(&whole))?;
     report.stages = clock.stages();
     Ok(Meshed { mesh, expectation, check, report })
 }

@@ -5,7 +5,7 @@ use crate::block::{Finished, Record, encode, shared_ends};
 use crate::geometry::Point3;
 use crate::mesh::WALL;
 use crate::mesh::adjacency::tet_adjacency;
-use crate::mesh::source::collect;
+use crate::mesh::source::gather;
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 
@@ -145,7 +145,7 @@ fn blocks_on_disk_make_the_same_mesh_and_are_found_again() {
     for again in [false, true] {
         let store = store::Store::in_folder(folder.path(), &manifest, false).expect("a work directory");
         let stored = mesh_into(&store, &uneven(), &plan, &|_| Ok(()), &Silent, &mut Clock::default()).expect("meshed");
-        assert_eq!(collect(&stored.whole).expect("read"), in_memory.mesh);
+        assert_eq!(gather(&stored.whole).expect("read"), in_memory.mesh);
         assert_eq!(stored.check, in_memory.check);
         assert_eq!(stored.report.mesh, in_memory.report.mesh);
         assert!(!again || stored.report.block_times.longest_seconds < 0.05, "found, not made");
