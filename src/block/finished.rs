@@ -6,8 +6,8 @@ use super::cluster::ClusterMesh;
 use super::connector::ConnectorMesh;
 use super::end_surface::{EndSurface, disc_rim};
 use crate::geometry::{Point3, Section};
-use crate::mesh::adjacency::{face_vertices, tet_adjacency};
-use crate::mesh::check::parts::{Certificate, PartView, certify};
+use crate::mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
+use crate::mesh::check::parts::{Certificate, PartView, certify_with};
 use crate::mesh::{Cap, TetMesh};
 use crate::partition::CutId;
 use crate::skeleton::NodeId;
@@ -83,11 +83,11 @@ pub struct NotOnBoundary {
 }
 
 impl Finished {
-    /// A cluster.
+    /// A cluster. `original`: the number of a terminal in the network as it was read.
     ///
     /// # Errors
     /// When an end or a cap is not on the boundary.
-    pub fn of_cluster(cluster: ClusterMesh) -> Result<Self, NotOnBoundary> {
+    pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
         let ClusterMesh { mesh, ends, caps, uncapped, handles, loops, .. } = cluster;
         let mut faces = Faces::new(&mesh);
         let joints = ends.iter().map(|end| faces.joint(&end.triangles)).collect::<Result<_, _>>()?;
@@ -95,9 +95,9 @@ impl Finished {
             Ok(FinishedCap { node: cap.node, section: cap.section, faces: faces.take(&cap.triangles)? })
         };
         let caps = caps.iter().map(cap).collect::<Result<_, _>>()?;
-        let wall = faces.rest();
         let about = About { uncapped: uncapped.iter().map(|n| n.0).collect(), handles, loops, ..About::default() };
-        Ok(Self { mesh, wall, joints, caps, about, ..Self::default() })
+        let (wall, adjacency) = faces.rest();
+        Ok(Self { mesh, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
     }
 
     /// A connector between two end surfaces.
@@ -117,16 +117,19 @@ impl Finished {
             joints.push(faces.joint(&triangles)?);
             base += vertices.len() as u32;
         }
-        let wall = faces.rest();
-        Ok(Self { mesh, shared: shared.len() as u32, wall, joints, ..Self::default() })
+        let (wall, adjacency) = faces.rest();
+        let connector = Self { mesh, shared: shared.len() as u32, wall, joints, ..Self::default() };
+        Ok(connector.certified(adjacency, |node| node.0))
     }
 
-    /// Checks it alone. `original`: the number of a terminal in the network as it was read.
-    pub fn certify(&mut self, original: impl Fn(NodeId) -> u32) {
+    /// Checks it alone.
+    fn certified(mut self, adjacency: TetAdjacency, original: impl Fn(NodeId) -> u32) -> Self {
         let joints: Vec<_> = self.joints.iter().map(|joint| self.triangles(&joint.faces)).collect();
-        let caps: Vec<_> =
-            self.caps.iter().map(|cap| (cap.disc(original(cap.node)), self.triangles(&cap.faces))).collect();
-        self.certificate = certify(&PartView { mesh: &self.mesh, joints: &joints, caps: &caps });
+        let cap = |cap: &FinishedCap| (cap.disc(original(cap.node)), self.triangles(&cap.faces));
+        let caps: Vec<_> = self.caps.iter().map(cap).collect();
+        let view = PartView { mesh: &self.mesh, joints: &joints, caps: &caps };
+        self.certificate = certify_with(&view, || adjacency);
+        self
     }
 
     /// The vertices of faces.
@@ -154,13 +157,14 @@ impl Finished {
 /// The boundary faces of a block that no end has taken yet.
 struct Faces {
     left: FxHashMap<[u32; 3], u32>,
+    adjacency: TetAdjacency,
 }
 
 impl Faces {
     fn new(mesh: &TetMesh) -> Self {
         let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
         let left = adjacency.boundary().map(|face| (sorted(face_vertices(&mesh.tets, face)), face)).collect();
-        Self { left }
+        Self { left, adjacency }
     }
 
     fn take(&mut self, triangles: &[[u32; 3]]) -> Result<Vec<u32>, NotOnBoundary> {
@@ -177,10 +181,11 @@ impl Faces {
         Ok(FinishedJoint { vertices, faces: self.take(triangles)? })
     }
 
-    fn rest(self) -> Vec<u32> {
+    /// The faces that nothing took, and what all were found with.
+    fn rest(self) -> (Vec<u32>, TetAdjacency) {
         let mut rest: Vec<u32> = self.left.into_values().collect();
         rest.sort_unstable();
-        rest
+        (rest, self.adjacency)
     }
 }
 

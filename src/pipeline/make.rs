@@ -47,7 +47,7 @@ impl Workshop<'_> {
         }
         let Tried { result, failures } = attempts::cluster(id, cluster, self.plan, overlapping);
         let finished = result.and_then(|mesh| {
-            Finished::of_cluster(mesh)
+            Finished::of_cluster(mesh, |node| self.skeleton.node(node).original)
                 .map_err(|source| BlockError::Faces { block: format!("cluster {}", id.0), source })
         });
         self.keep(key, finished, failures.iter().map(ToString::to_string).collect())
@@ -104,7 +104,6 @@ impl Workshop<'_> {
         };
         finished.about.failures = failures.len() as u32;
         finished.about.first_failure = failures.into_iter().next().unwrap_or_default();
-        finished.certify(|node| self.skeleton.node(node).original);
         let record = self.store.keep(key, encode(&finished)?)?;
         Ok(Ok(self.kept(record)?))
     }

@@ -95,7 +95,7 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
     let partition = partition(network, &params).expect("partitioned");
     let cluster = |(i, cluster): (usize, &Cluster)| {
         let mesh = attempts::cluster(ClusterId(i as u32), cluster, plan, false).result.expect("meshed");
-        Finished::of_cluster(mesh).expect("faces on the boundary")
+        Finished::of_cluster(mesh, |node| node.0).expect("faces on the boundary")
     };
     let mut blocks: Vec<Finished> = partition.clusters.iter().enumerate().map(cluster).collect();
     for (i, cut) in partition.cuts.iter().enumerate() {

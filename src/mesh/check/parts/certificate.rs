@@ -28,6 +28,11 @@ enum Owner {
 /// Checks a part alone; see the [module](super) for what that says of the whole. Sequential: the thread that made a part
 /// certifies it.
 pub fn certify(part: &PartView) -> Certificate {
+    certify_with(part, || tet_adjacency(&part.mesh.tets, part.mesh.points.len()))
+}
+
+/// As [`certify`], for callers who have called [`tet_adjacency`] on the part's mesh already.
+pub fn certify_with(part: &PartView, adjacency: impl FnOnce() -> TetAdjacency) -> Certificate {
     let mesh = part.mesh;
     let mut certificate = Certificate {
         points: mesh.points.len() as u32,
@@ -40,7 +45,7 @@ pub fn certify(part: &PartView) -> Certificate {
         certificate.unsound = true;
         return certificate;
     }
-    let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
+    let adjacency = adjacency();
     if !certificate.measure_cells(mesh, &adjacency) {
         certificate.take([
             cells::no_repeated_vertex(mesh),

@@ -51,7 +51,7 @@ mod whole;
 #[cfg(test)]
 mod tests;
 
-pub use certificate::certify;
+pub use certificate::{certify, certify_with};
 pub use whole::check_parts;
 
 use super::nested::Enclosed;
