@@ -9,7 +9,7 @@ use super::network::NetworkArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::room::{self, BlockPlace, size};
-use crate::io::mesh_file::{MeshNotes, ensure_writable, write_mesh};
+use crate::io::mesh_file::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::io::network::ensure_network_writable;
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
@@ -216,7 +216,9 @@ impl Args {
     ) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
         let notes = self.notes(expectation);
-        let written = clock.time(bars, Stage::Write, 0, || write_mesh(&self.output, mesh, &notes));
+        let memory = (self.memory / 4) as usize;
+        let write = || write_mesh_within(memory, &self.output, mesh, &notes);
+        let written = clock.time(bars, Stage::Write, 0, write);
         written.map_err(|e| Failure::input(e.to_string()))?;
         report.stages = clock.stages();
         self.print(plan, refinement, &report, Some(check))?;

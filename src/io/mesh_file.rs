@@ -275,13 +275,26 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Result<(), MeshFileError> {
+    write_mesh_within(Pieces::default().memory, path, mesh, notes)
+}
+
+/// As [`write_mesh`], holding about so many bytes of a mesh in pieces at a time; the other formats take less.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn write_mesh_within(
+    memory: usize,
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+) -> Result<(), MeshFileError> {
     let format = MeshFormat::of(path)?;
     if format == MeshFormat::Tetgen {
         return write_family(path, mesh);
     }
     let write = || {
         if format == MeshFormat::Pvtu {
-            return pvtu::write_pvtu(path, mesh, notes, Pieces::default());
+            return pvtu::write_pvtu(path, mesh, notes, Pieces { memory, ..Pieces::default() });
         }
         let mut file = AtomicFile::create(path)?;
         write_format(&mut file, format, mesh, notes)?;
