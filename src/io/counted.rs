@@ -1,6 +1,6 @@
 //! A source that is taken at its word: a pass that gives more or less than was announced fails.
 
-use crate::mesh::source::{EachFaces, EachPoints, EachTets, MeshSource, SourceCounts};
+use crate::mesh::source::{EachFaces, EachLabels, EachPoints, EachTets, MeshSource, SourceCounts};
 use crate::mesh::{Patch, VolumeMesh};
 use std::io;
 
@@ -64,6 +64,24 @@ impl MeshSource for Counted<'_> {
         let mut tally = Tally::of(self.counts().boundary);
         self.0.boundary(&mut |piece| {
             tally.add(piece.faces.len())?;
+            each(piece)
+        })?;
+        tally.finish()
+    }
+
+    fn tet_labels(&self, each: EachLabels) -> io::Result<()> {
+        let mut tally = Tally::of(self.counts().tets);
+        self.0.tet_labels(&mut |piece| {
+            tally.add(piece.count)?;
+            each(piece)
+        })?;
+        tally.finish()
+    }
+
+    fn face_labels(&self, each: EachLabels) -> io::Result<()> {
+        let mut tally = Tally::of(self.counts().boundary);
+        self.0.face_labels(&mut |piece| {
+            tally.add(piece.count)?;
             each(piece)
         })?;
         tally.finish()

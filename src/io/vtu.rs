@@ -63,7 +63,7 @@ struct Array<'a> {
 }
 
 /// Writes a mesh as VTU. The bytes depend on the mesh and the notes alone, not on the number of threads, nor on the
-/// pieces in which the mesh is read. Points and boundary faces are read in one and three passes, tetrahedra in two;
+/// pieces in which the mesh is read. Points, tetrahedra and boundary faces are read in one pass each, their labels in others;
 /// memory does not grow with the mesh: some blocks for each thread are all that is held.
 ///
 /// # Errors
@@ -348,15 +348,15 @@ fn patch_array(mesh: &dyn MeshSource) -> Array<'_> {
     let counts = mesh.counts();
     let fill: Fill = Box::new(move |out| {
         out.push(counts.tets, |_| [0; 4])?;
-        mesh.boundary(&mut |piece| push_known(out, piece.patches, piece.faces.len()))
+        mesh.face_labels(&mut |piece| push_known(out, piece.patches, piece.count))
     });
     cell_data("patch", counts, fill)
 }
 
 fn block_array(mesh: &dyn MeshSource) -> Array<'_> {
     let fill: Fill = Box::new(move |out| {
-        mesh.tets(&mut |piece| push_known(out, piece.blocks, piece.tets.len()))?;
-        mesh.boundary(&mut |piece| push_known(out, piece.blocks, piece.faces.len()))
+        mesh.tet_labels(&mut |piece| push_known(out, piece.blocks, piece.count))?;
+        mesh.face_labels(&mut |piece| push_known(out, piece.blocks, piece.count))
     });
     cell_data("block", mesh.counts(), fill)
 }

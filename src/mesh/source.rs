@@ -46,6 +46,20 @@ pub type EachTets<'a> = &'a mut dyn FnMut(TetPiece) -> io::Result<()>;
 /// Takes consecutive boundary faces; what it fails with ends the pass.
 pub type EachFaces<'a> = &'a mut dyn FnMut(FacePiece) -> io::Result<()>;
 
+/// The blocks, or patches and blocks, of consecutive tetrahedra or boundary faces.
+#[derive(Clone, Copy, Debug)]
+pub struct LabelPiece<'a> {
+    /// How many tetrahedra or faces.
+    pub count: usize,
+    /// As in [`FacePiece`]; empty for tetrahedra.
+    pub patches: &'a [i32],
+    /// As in [`TetPiece`] and [`FacePiece`].
+    pub blocks: &'a [i32],
+}
+
+/// Takes consecutive labels; what it fails with ends the pass.
+pub type EachLabels<'a> = &'a mut dyn FnMut(LabelPiece) -> io::Result<()>;
+
 /// A labelled mesh, read in passes. Every pass gives the same things in the same order; how they are cut into pieces says
 /// nothing. A pass may be made inside another one: no lock may be held while `each` runs.
 pub trait MeshSource: Sync {
@@ -72,6 +86,24 @@ pub trait MeshSource: Sync {
     /// # Errors
     /// What reading the mesh or `each` fails with.
     fn boundary(&self, each: EachFaces) -> io::Result<()>;
+
+    /// Gives what [`tets`](Self::tets) says of blocks, without the tetrahedra.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    fn tet_labels(&self, each: EachLabels) -> io::Result<()> {
+        self.tets(&mut |TetPiece { tets, blocks }| each(LabelPiece { count: tets.len(), patches: &[], blocks }))
+    }
+
+    /// Gives what [`boundary`](Self::boundary) says of patches and blocks, without the faces.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    fn face_labels(&self, each: EachLabels) -> io::Result<()> {
+        self.boundary(&mut |FacePiece { faces, patches, blocks }| {
+            each(LabelPiece { count: faces.len(), patches, blocks })
+        })
+    }
 
     /// The whole mesh, when it stands in memory: for formats that cannot be written in passes.
     fn whole(&self) -> Option<&VolumeMesh> {

@@ -4,6 +4,8 @@
 use std::collections::BTreeSet;
 use std::io;
 
+use rayon::prelude::*;
+
 use super::make::{JointPlace, Kept, joints_of_cut};
 use super::report::MeshSize;
 use super::rounds::Blocks;
@@ -13,7 +15,9 @@ use crate::block::{FinishedJoint, Record};
 use crate::mesh::adjacency::face_vertices;
 use crate::mesh::check::parts::{Certificate, JointFaces, Parts, WallPiece, check_parts};
 use crate::mesh::check::{CheckReport, Expectation};
-use crate::mesh::source::{EachFaces, EachPoints, EachTets, FacePiece, MeshSource, SourceCounts, TetPiece};
+use crate::mesh::source::{
+    EachFaces, EachLabels, EachPoints, EachTets, FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece,
+};
 use crate::mesh::{Patch, WALL};
 use crate::skeleton::Skeleton;
 
@@ -31,6 +35,9 @@ pub struct Whole<'a> {
     joined: Vec<[(u32, u32); 2]>,
     counts: SourceCounts,
 }
+
+/// Parts that are read at a time, where they are read on all threads.
+const AT_A_TIME: usize = 64;
 
 /// One part's place in the whole.
 #[derive(Clone, Copy, Debug)]
@@ -132,6 +139,22 @@ impl<'a> Whole<'a> {
         self.store.bytes(part.kept.record)
     }
 
+    /// Makes something of every part, some at a time on all threads, and takes it in the parts' order.
+    fn in_order<T: Send>(
+        &self,
+        make: impl Fn(usize, PartPlan) -> io::Result<T> + Sync,
+        mut take: impl FnMut(PartPlan, T) -> io::Result<()>,
+    ) -> io::Result<()> {
+        for (chunk, parts) in self.parts.chunks(AT_A_TIME).enumerate() {
+            let one = |(i, &part): (usize, &PartPlan)| make(chunk * AT_A_TIME + i, part);
+            let made: Vec<io::Result<T>> = parts.par_iter().enumerate().map(one).collect();
+            for (&part, made) in parts.iter().zip(made) {
+                take(part, made?)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Numbers of the vertices that a part shares with earlier ones.
     fn shared(&self, part: PartPlan) -> io::Result<Vec<u32>> {
         let mut shared = Vec::with_capacity(part.kept.sizes.shared as usize);
@@ -218,35 +241,54 @@ impl MeshSource for Whole<'_> {
     }
 
     fn points(&self, each: EachPoints) -> io::Result<()> {
-        for &part in &self.parts {
-            let points = Record::open(&self.record(part))?.points()?;
-            each(&points[part.kept.sizes.shared as usize..])?;
-        }
-        Ok(())
+        let own = |_, part: PartPlan| {
+            Ok(Record::open(&self.record(part))?.points()?.split_off(part.kept.sizes.shared as usize))
+        };
+        self.in_order(own, |_, points| each(&points))
     }
 
     fn tets(&self, each: EachTets) -> io::Result<()> {
-        for &part in &self.parts {
+        let numbered = |_, part| {
             let numbers = self.numbers(part)?;
             let mut tets = Record::open(&self.record(part))?.tets()?;
             tets.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
-            each(TetPiece { tets: &tets, blocks: &vec![part.block; tets.len()] })?;
-        }
-        Ok(())
+            Ok(tets)
+        };
+        self.in_order(numbered, |part, tets| each(TetPiece { tets: &tets, blocks: &vec![part.block; tets.len()] }))
     }
 
     fn boundary(&self, each: EachFaces) -> io::Result<()> {
-        for (i, &part) in self.parts.iter().enumerate() {
+        let numbered = |index, part| {
             let numbers = self.numbers(part)?;
             let bytes = self.record(part);
             let record = Record::open(&bytes)?;
             let tets = record.tets()?;
-            let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(i, &record)?.into_iter().unzip();
+            let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(index, &record)?.into_iter().unzip();
             let triangle = |&face: &u32| face_vertices(&tets, face).map(|v| numbers[v as usize]);
-            let faces: Vec<[u32; 3]> = faces.iter().map(triangle).collect();
-            each(FacePiece { faces: &faces, patches: &patches, blocks: &vec![part.block; faces.len()] })?;
+            Ok((faces.iter().map(triangle).collect(), patches))
+        };
+        self.in_order(numbered, |part, (faces, patches): (Vec<[u32; 3]>, Vec<i32>)| {
+            each(FacePiece { faces: &faces, patches: &patches, blocks: &vec![part.block; faces.len()] })
+        })
+    }
+
+    fn tet_labels(&self, each: EachLabels) -> io::Result<()> {
+        for part in &self.parts {
+            let count = part.kept.sizes.tets as usize;
+            each(LabelPiece { count, patches: &[], blocks: &vec![part.block; count] })?;
         }
         Ok(())
+    }
+
+    fn face_labels(&self, each: EachLabels) -> io::Result<()> {
+        let patches = |index, part| {
+            let faces = self.outer_faces(index, &Record::open(&self.record(part))?)?;
+            Ok(faces.into_iter().map(|(_, patch)| patch).collect())
+        };
+        self.in_order(patches, |part, patches: Vec<i32>| {
+            let count = patches.len();
+            each(LabelPiece { count, patches: &patches, blocks: &vec![part.block; count] })
+        })
     }
 }
 
