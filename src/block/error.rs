@@ -99,6 +99,14 @@ pub enum BlockError {
         /// Which face.
         source: NotOnBoundary,
     },
+    /// The cluster came out, but with a tetrahedron so flat that another try is worth its time.
+    #[error("cluster {}: a tetrahedron is all but flat (radius ratio {ratio:.2e})", cluster.0)]
+    Flat {
+        /// The cluster.
+        cluster: ClusterId,
+        /// The smallest radius ratio.
+        ratio: f64,
+    },
     /// No way of building a connector works.
     #[error("connector of cut {} near {at:?}: {}", cut.0, attempts.last().map_or_else(String::new, |a| a.failure.to_string()))]
     Connector {

@@ -293,6 +293,13 @@ pub struct QualityPiece {
     counts: Vec<u8>,
 }
 
+impl QualityPiece {
+    /// The smallest radius ratio.
+    pub fn min(&self) -> f64 {
+        self.min
+    }
+}
+
 impl QualitySum {
     /// The sum in its small form.
     pub fn piece(&self) -> QualityPiece {

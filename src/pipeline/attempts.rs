@@ -2,10 +2,11 @@
 
 use super::plan::{JointStyle, MeshPlan};
 use crate::block::{
-    BlockDump, BlockError, BlockParams, ClusterMesh, ConnectorEnd, ConnectorMesh, EndStyle, dump_cluster,
-    dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
+    BlockDump, BlockError, BlockParams, ConnectorEnd, ConnectorMesh, EndStyle, Finished, dump_cluster, dump_connector,
+    dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
+use crate::skeleton::NodeId;
 
 /// Result of a block, and the failures before it.
 #[derive(Debug)]
@@ -64,22 +65,56 @@ fn ways(plan: &MeshPlan, overlapping: bool) -> Vec<(usize, BlockParams)> {
     places.filter(|(place, _)| is_tried(*place)).collect()
 }
 
-/// Meshes a cluster, with other parameters after each failure. When none helps, the failure of the usual way counts: it
-/// is what the dump of the input reproduces. What was not tried in between counts as failed like the attempt before.
-pub fn cluster(id: ClusterId, cluster: &Cluster, plan: &MeshPlan, overlapping: bool) -> Tried<ClusterMesh> {
+/// A cluster with a smaller radius ratio is tried in other ways, too.
+const FLAT: f64 = 0.1;
+
+/// Meshes a cluster and finishes it, with other parameters after each failure, and as long as a tetrahedron is all but
+/// flat or the block's own check finds a fault; of such ones the best is taken. When nothing helps, the failure of the usual
+/// way counts: it is what the dump of the input reproduces. What was not tried in between counts as failed like the attempt
+/// before.
+pub fn cluster(
+    id: ClusterId,
+    cluster: &Cluster,
+    plan: &MeshPlan,
+    overlapping: bool,
+    original: impl Fn(NodeId) -> u32,
+) -> Tried<Finished> {
     let mut failures: Vec<BlockError> = Vec::new();
+    let mut best: Option<(usize, Finished)> = None;
     for (place, params) in ways(plan, overlapping) {
-        match mesh_cluster(id, cluster, &params) {
-            Ok(mesh) => {
-                if let Some(last) = failures.last().cloned() {
-                    failures.resize(place, last);
+        // Vessels that can be kept apart are not taken as one for the sake of a tetrahedron.
+        if params.allow_fused && !plan.fuse && best.as_ref().is_some_and(|(before, _)| *before < CHANGES.len()) {
+            break;
+        }
+        let block = || format!("cluster {}", id.0);
+        let finish =
+            |mesh| Finished::of_cluster(mesh, &original).map_err(|source| BlockError::Faces { block: block(), source });
+        if let Some(last) = failures.last().cloned() {
+            failures.resize(place, last);
+        }
+        match mesh_cluster(id, cluster, &params).and_then(finish) {
+            Ok(block) if goodness(&block) >= (true, FLAT) => return Tried { result: Ok(block), failures },
+            Ok(block) => {
+                failures.push(BlockError::Flat { cluster: id, ratio: block.certificate.worst_ratio() });
+                if best.as_ref().is_none_or(|(_, best)| goodness(&block) > goodness(best)) {
+                    best = Some((place, block));
                 }
-                return Tried { result: Ok(mesh), failures };
             }
             Err(error) => failures.push(error),
         }
     }
-    Tried { result: Err(failures.swap_remove(0)), failures }
+    match best {
+        Some((place, block)) => {
+            failures.truncate(place);
+            Tried { result: Ok(block), failures }
+        }
+        None => Tried { result: Err(failures.swap_remove(0)), failures },
+    }
+}
+
+/// A block is better if it is sound, and of sound ones the one whose flattest tetrahedron is rounder.
+fn goodness(block: &Finished) -> (bool, f64) {
+    (block.certificate.is_sound(), block.certificate.worst_ratio())
 }
 
 /// Meshes a connector; it varies the division of its tube by itself.

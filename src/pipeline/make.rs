@@ -45,12 +45,9 @@ impl Workshop<'_> {
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
-        let Tried { result, failures } = attempts::cluster(id, cluster, self.plan, overlapping);
-        let finished = result.and_then(|mesh| {
-            Finished::of_cluster(mesh, |node| self.skeleton.node(node).original)
-                .map_err(|source| BlockError::Faces { block: format!("cluster {}", id.0), source })
-        });
-        self.keep(key, finished, failures.iter().map(ToString::to_string).collect())
+        let original = |node| self.skeleton.node(node).original;
+        let Tried { result, failures } = attempts::cluster(id, cluster, self.plan, overlapping, original);
+        self.keep(key, result, failures.iter().map(ToString::to_string).collect())
     }
 
     /// A connector between the discs that the vessel alone gives.

@@ -94,8 +94,7 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
     let params = PartitionParams { rho: plan.rho, ..PartitionParams::default() };
     let partition = partition(network, &params).expect("partitioned");
     let cluster = |(i, cluster): (usize, &Cluster)| {
-        let mesh = attempts::cluster(ClusterId(i as u32), cluster, plan, false).result.expect("meshed");
-        Finished::of_cluster(mesh, |node| node.0).expect("faces on the boundary")
+        attempts::cluster(ClusterId(i as u32), cluster, plan, false, |node| node.0).result.expect("meshed")
     };
     let mut blocks: Vec<Finished> = partition.clusters.iter().enumerate().map(cluster).collect();
     for (i, cut) in partition.cuts.iter().enumerate() {

@@ -113,6 +113,11 @@ impl Certificate {
         self.faults.is_empty()
     }
 
+    /// The smallest radius ratio of the tetrahedra.
+    pub fn worst_ratio(&self) -> f64 {
+        self.quality.min()
+    }
+
     /// The lines that do not hold, in the part's own numbers.
     pub fn faults(&self) -> &[Fault] {
         &self.faults
