@@ -3,6 +3,8 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread::JoinHandle;
 
 /// A file under a temporary name in the folder of its target; `commit` moves it there, dropping it removes it.
 #[derive(Debug)]
@@ -10,6 +12,34 @@ pub(super) struct AtomicFile {
     file: Option<BufWriter<File>>,
     temporary: PathBuf,
     target: PathBuf,
+    /// Bytes since the disk was last told to begin.
+    waiting: usize,
+    flusher: Option<Flusher>,
+}
+
+/// After so many bytes the disk begins to write, while the program goes on: else all of it waits for the end.
+const BEGIN_AFTER: usize = 256 << 20;
+
+/// Makes a file's bytes reach the disk while more are written.
+#[derive(Debug)]
+struct Flusher {
+    begin: SyncSender<()>,
+    thread: JoinHandle<io::Result<()>>,
+}
+
+impl Flusher {
+    fn new(file: &File) -> io::Result<Self> {
+        let file = file.try_clone()?;
+        let (begin, asked) = sync_channel::<()>(1);
+        let thread = std::thread::Builder::new().spawn(move || asked.iter().try_for_each(|()| file.sync_data()))?;
+        Ok(Self { begin, thread })
+    }
+
+    /// Waits for the disk. What it reports here it will not report again.
+    fn finish(self) -> io::Result<()> {
+        drop(self.begin);
+        self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the thread that waits for the disk failed")))
+    }
 }
 
 impl AtomicFile {
@@ -20,13 +50,20 @@ impl AtomicFile {
         }
         let make = |path: &Path| OpenOptions::new().write(true).create_new(true).open(path);
         let (temporary, file) = make_hidden(target, "part", make)?;
-        Ok(Self { file: Some(BufWriter::with_capacity(1 << 18, file)), temporary, target: target.to_path_buf() })
+        Ok(Self {
+            file: Some(BufWriter::with_capacity(1 << 18, file)),
+            temporary,
+            target: target.to_path_buf(),
+            waiting: 0,
+            flusher: None,
+        })
     }
 
     /// Writes out what is buffered: afterwards no full disk can be in the way of `commit`.
     pub(super) fn complete(&mut self) -> io::Result<()> {
         if let Some(file) = self.file.take() {
             let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+            self.flusher.take().map_or(Ok(()), Flusher::finish)?;
             // Without this a crash of the machine could leave the new name on an empty file.
             file.sync_data()?;
         }
@@ -38,6 +75,17 @@ impl AtomicFile {
         self.complete()?;
         fs::rename(&self.temporary, &self.target)?;
         self.temporary = PathBuf::new();
+        Ok(())
+    }
+
+    /// Makes the disk begin; it may be busy with what it was told before.
+    fn begin(&mut self) -> io::Result<()> {
+        if self.flusher.is_none() {
+            self.flusher = Some(Flusher::new(self.open()?.get_ref())?);
+        }
+        if let Some(flusher) = &self.flusher {
+            let _ = flusher.begin.try_send(());
+        }
         Ok(())
     }
 
@@ -69,7 +117,13 @@ pub(super) fn make_hidden<T>(
 
 impl Write for AtomicFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.open()?.write(bytes)
+        let written = self.open()?.write(bytes)?;
+        self.waiting += written;
+        if self.waiting >= BEGIN_AFTER {
+            self.waiting = 0;
+            self.begin()?;
+        }
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
