@@ -3,6 +3,7 @@
 mod assemble;
 mod attempts;
 mod cures;
+mod describe;
 mod estimate;
 mod make;
 mod observer;

@@ -4,22 +4,21 @@ use std::collections::BTreeMap;
 use std::io;
 
 use super::assemble::Assembly;
-use super::attempts;
+use super::describe::{Clusters, announce, describe_blocks};
 use super::estimate::{Estimate, TooLarge};
-use super::make::{Made, Workshop};
+use super::make::Workshop;
 use super::observer::{Observer, Stage};
-use super::plan::{JointStyle, MeshPlan, PlanError};
-use super::report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, RunReport};
-use super::rounds::{self, Blocks, RoundsError, Run, original_nodes};
+use super::plan::{MeshPlan, PlanError};
+use super::report::{Meeting, MeshSize, RunReport};
+use super::rounds::{Blocks, RoundsError, Run};
 use super::store::{Store, StoreError};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
 use super::whole::Whole;
-use crate::block::{About, BlockDump, ConnectorEnd};
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
-use crate::partition::{ClusterId, CutId, PartitionError};
+use crate::partition::PartitionError;
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 use crate::stitch::label::LabelError;
@@ -221,113 +220,6 @@ fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
     report.overlaps = overlaps.pairs.iter().map(meeting).collect();
     report.unconnected = overlaps.unconnected.iter().map(|e| e.map(|e| skeleton.edge(e).nodes.map(original))).collect();
     (skeleton, overlaps)
-}
-
-/// How many overlapping pairs are spelt out for people.
-const LISTED: usize = 50;
-
-fn announce(report: &RunReport, observer: &dyn Observer) {
-    let more = |n: usize| {
-        if n > LISTED {
-            observer.note(&format!("  and {} more (--json lists all)", n - LISTED));
-        }
-    };
-    let n = report.overlaps.len();
-    if n > 0 {
-        observer.note(&format!("{n} pairs of vessels overlap; the wall may meet itself there (edges by their nodes):"));
-        for o in report.overlaps.iter().take(LISTED) {
-            let [[a, b], [c, d]] = o.edges;
-            observer.note(&format!("  {a}-{b} and {c}-{d}: distance {:.4}, radii {:.4}", o.distance, o.radii));
-        }
-        more(n);
-    }
-    let n = report.unconnected.len();
-    if n > 0 {
-        observer.note(&format!("{n} pairs of edges that share no node meet (neighbours along a vessel included):"));
-        for [[a, b], [c, d]] in report.unconnected.iter().take(LISTED) {
-            observer.note(&format!("  {a}-{b} and {c}-{d}"));
-        }
-        more(n);
-    }
-}
-
-/// What reports say of the clusters, none for those that failed.
-struct Clusters(Vec<Option<About>>);
-
-impl Clusters {
-    fn of(shop: &Workshop, blocks: &Blocks) -> io::Result<Self> {
-        let about = |made: &Made| made.as_ref().ok().map(|kept| shop.about(kept)).transpose();
-        Ok(Self(blocks.clusters.iter().map(about).collect::<Result<_, _>>()?))
-    }
-}
-
-fn describe_blocks(
-    skeleton: &Skeleton,
-    shop: &Workshop,
-    blocks: &Blocks,
-    clusters: &Clusters,
-    report: &mut RunReport,
-) -> io::Result<()> {
-    let partition = &blocks.partition;
-    report.blocks = BlockCounts {
-        clusters: partition.clusters.len(),
-        connectors: partition.cuts.len(),
-        largest_cluster_nodes: partition.clusters.iter().map(|c| c.nodes.len()).max().unwrap_or(0),
-    };
-    report.partition = Some(partition.summary());
-    report.estimate = Estimate::of(partition, shop.plan);
-    report.block_times.clone_from(&blocks.times);
-    report.retries.clone_from(&blocks.retries);
-    for (i, (cluster, about)) in partition.clusters.iter().zip(&clusters.0).enumerate() {
-        let nodes = || original_nodes(skeleton, cluster.nodes.iter().copied());
-        if let Some(about) = about
-            && (about.handles != about.loops || !about.uncapped.is_empty())
-        {
-            report.fused.push(FusedBlock {
-                block: format!("cluster {i}"),
-                nodes: nodes(),
-                handles: about.handles,
-                loops: about.loops,
-                uncapped: original_nodes(skeleton, about.uncapped.iter().map(|&n| NodeId(n))),
-            });
-        }
-        if let Err(error) = &blocks.clusters[i] {
-            let input = attempts::cluster_input(ClusterId(i as u32), cluster, shop.plan);
-            report.failed.push(FailedBlock {
-                block: format!("cluster {i}"),
-                nodes: nodes(),
-                reason: error.to_string(),
-                dump: write_dump(shop.plan, &format!("cluster_{i}"), &input),
-            });
-        }
-    }
-    for (i, (cut, made)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
-        let Some(Err(error)) = made else { continue };
-        let id = CutId(i as u32);
-        let input = match shop.plan.joint {
-            JointStyle::Woven => shop.stored_ends(partition, id, cut, &blocks.clusters)?.map(|ends| {
-                let end = |side: usize| ConnectorEnd { surface: &ends[side].surface, points: &ends[side].points };
-                attempts::connector_input(id, cut, [end(0), end(1)], shop.plan)
-            }),
-            JointStyle::Disc | JointStyle::None => attempts::free_connector_input(id, cut, shop.plan),
-        };
-        report.failed.push(FailedBlock {
-            block: format!("connector {i}"),
-            nodes: rounds::cut_nodes(skeleton, partition, cut),
-            reason: error.to_string(),
-            dump: input.and_then(|input| write_dump(shop.plan, &format!("connector_{i}"), &input)),
-        });
-    }
-    Ok(())
-}
-
-/// Writes the input of a failed block; none when there is no folder for it or it cannot be written.
-fn write_dump(plan: &MeshPlan, name: &str, input: &BlockDump) -> Option<String> {
-    let dir = plan.dump_dir.as_ref()?;
-    std::fs::create_dir_all(dir).ok()?;
-    let path = dir.join(format!("{name}.json"));
-    std::fs::write(&path, input.to_json().ok()?).ok()?;
-    Some(path.display().to_string())
 }
 
 /// What the network asks of its mesh.
