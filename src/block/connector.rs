@@ -46,8 +46,11 @@ pub enum ConnectorFailure {
     Tetrahedra(TetError),
 }
 
+/// Number of ways in which a connector's tube is divided.
+pub const DIVISIONS: usize = 5;
+
 /// Divisions in the order in which they are tried.
-const DIVISIONS: [Division; 5] =
+const IN_ORDER: [Division; DIVISIONS] =
     [Division::Rings(1.0), Division::Rings(0.75), Division::Rings(1.35), Division::Rings(0.5), Division::Direct];
 
 /// Meshes one connector from side 0's end surface to side 1's.
@@ -63,7 +66,7 @@ pub fn mesh_connector(
     params.check()?;
     let mut failed = Vec::new();
     let mut tried: Vec<u32> = Vec::new();
-    for division in DIVISIONS {
+    for division in IN_ORDER.into_iter().skip(params.first_division) {
         let failure = match connector_surface(&cut.path, ends, division) {
             // Where there is little room, several divisions come down to the same rings.
             Ok(surface) if tried.contains(&surface.rings) => continue,
@@ -92,7 +95,7 @@ pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result
     let failed = |fault| BlockError::Connector {
         cut: id,
         at: cut.path.first().map_or([f64::NAN; 3], |s| s.origin.coords.into()),
-        attempts: vec![ConnectorAttempt { division: DIVISIONS[0], failure: ConnectorFailure::Surface(fault) }],
+        attempts: vec![ConnectorAttempt { division: IN_ORDER[0], failure: ConnectorFailure::Surface(fault) }],
     };
     let ends = FreeEnds::new(id, cut, params).map_err(failed)?;
     mesh_connector(id, cut, ends.both(), params)

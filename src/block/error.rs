@@ -99,11 +99,11 @@ pub enum BlockError {
         /// Which face.
         source: NotOnBoundary,
     },
-    /// The cluster came out, but with a tetrahedron so flat that another try is worth its time.
-    #[error("cluster {}: a tetrahedron is all but flat (radius ratio {ratio:.2e})", cluster.0)]
+    /// The block came out, but with a tetrahedron so flat that another try is worth its time.
+    #[error("{block}: a tetrahedron is all but flat (radius ratio {ratio:.2e})")]
     Flat {
-        /// The cluster.
-        cluster: ClusterId,
+        /// `cluster 12` or `connector 7`.
+        block: String,
         /// The smallest radius ratio.
         ratio: f64,
     },

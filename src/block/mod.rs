@@ -29,7 +29,7 @@ mod weave;
 pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
 pub use connector::{
-    ConnectorAttempt, ConnectorFailure, ConnectorMesh, mesh_connector, mesh_free_connector, shared_ends,
+    ConnectorAttempt, ConnectorFailure, ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends,
 };
 pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
 pub use dump::{

@@ -33,6 +33,9 @@ pub struct BlockParams {
     pub shift: [f64; 3],
     /// Kernel width σ / r of the convolution. For retries: thinner kernels fuse less.
     pub kappa: f64,
+    /// Which division of a connector's tube is tried first, 0 to [`DIVISIONS`](super::DIVISIONS) − 1. For retries.
+    #[serde(default)]
+    pub first_division: usize,
     /// How clusters end at cuts.
     pub ends: EndStyle,
     /// Whether end surfaces are relaxed after flattening.
@@ -53,6 +56,7 @@ impl Default for BlockParams {
             voxel_factor: 1.0,
             shift: [0.0; 3],
             kappa: 0.4,
+            first_division: 0,
             ends: EndStyle::Disc,
             relax_ends: true,
             allow_fused: false,

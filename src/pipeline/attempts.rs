@@ -2,17 +2,18 @@
 
 use super::plan::{JointStyle, MeshPlan};
 use crate::block::{
-    BlockDump, BlockError, BlockParams, ConnectorEnd, ConnectorMesh, EndStyle, Finished, dump_cluster, dump_connector,
-    dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
+    BlockDump, BlockError, BlockParams, ConnectorAttempt, ConnectorEnd, ConnectorMesh, DIVISIONS, EndStyle, EndSurface,
+    Finished, dump_cluster, dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
+    shared_ends,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
 use crate::skeleton::NodeId;
 
 /// Result of a block, and the failures before it.
 #[derive(Debug)]
-pub struct Tried<T> {
+pub struct Tried {
     /// The block, or the failure of the first attempt.
-    pub result: Result<T, BlockError>,
+    pub result: Result<Finished, BlockError>,
     /// Failures of the other attempts.
     pub failures: Vec<BlockError>,
 }
@@ -65,46 +66,40 @@ fn ways(plan: &MeshPlan, overlapping: bool) -> Vec<(usize, BlockParams)> {
     places.filter(|(place, _)| is_tried(*place)).collect()
 }
 
-/// A cluster with a smaller radius ratio is tried in other ways, too.
+/// A block with a smaller radius ratio is tried in other ways, too.
 const FLAT: f64 = 0.1;
 
-/// Meshes a cluster and finishes it, with other parameters after each failure, and as long as a tetrahedron is all but
-/// flat or the block's own check finds a fault; of such ones the best is taken. When nothing helps, the failure of the usual
-/// way counts: it is what the dump of the input reproduces. What was not tried in between counts as failed like the attempt
-/// before.
-pub fn cluster(
-    id: ClusterId,
-    cluster: &Cluster,
-    plan: &MeshPlan,
-    overlapping: bool,
-    original: impl Fn(NodeId) -> u32,
-) -> Tried<Finished> {
+/// Makes a block in the first way that does it well: nothing fails, no tetrahedron is all but flat, and the block's own check
+/// finds no fault. Else the best of those that came out is taken. When nothing helps, the failure of the first way counts: it
+/// is what the dump of the input reproduces. What was not tried in between counts as failed like the attempt before.
+fn first_good(
+    name: &str,
+    ways: Vec<(usize, BlockParams)>,
+    mut make: impl FnMut(&BlockParams) -> Result<Finished, BlockError>,
+) -> Tried {
     let mut failures: Vec<BlockError> = Vec::new();
-    let mut best: Option<(usize, Finished)> = None;
-    for (place, params) in ways(plan, overlapping) {
+    let mut best: Option<(usize, bool, Finished)> = None;
+    for (place, params) in ways {
         // Vessels that can be kept apart are not taken as one for the sake of a tetrahedron.
-        if params.allow_fused && !plan.fuse && best.as_ref().is_some_and(|(before, _)| *before < CHANGES.len()) {
+        if best.as_ref().is_some_and(|(_, fused, _)| *fused != params.allow_fused) {
             break;
         }
-        let block = || format!("cluster {}", id.0);
-        let finish =
-            |mesh| Finished::of_cluster(mesh, &original).map_err(|source| BlockError::Faces { block: block(), source });
         if let Some(last) = failures.last().cloned() {
             failures.resize(place, last);
         }
-        match mesh_cluster(id, cluster, &params).and_then(finish) {
+        match make(&params) {
             Ok(block) if goodness(&block) >= (true, FLAT) => return Tried { result: Ok(block), failures },
             Ok(block) => {
-                failures.push(BlockError::Flat { cluster: id, ratio: block.certificate.worst_ratio() });
-                if best.as_ref().is_none_or(|(_, best)| goodness(&block) > goodness(best)) {
-                    best = Some((place, block));
+                failures.push(BlockError::Flat { block: name.to_owned(), ratio: block.certificate.worst_ratio() });
+                if best.as_ref().is_none_or(|(_, _, best)| goodness(&block) > goodness(best)) {
+                    best = Some((place, params.allow_fused, block));
                 }
             }
             Err(error) => failures.push(error),
         }
     }
     match best {
-        Some((place, block)) => {
+        Some((place, _, block)) => {
             failures.truncate(place);
             Tried { result: Ok(block), failures }
         }
@@ -117,16 +112,59 @@ fn goodness(block: &Finished) -> (bool, f64) {
     (block.certificate.is_sound(), block.certificate.worst_ratio())
 }
 
-/// Meshes a connector; it varies the division of its tube by itself.
-pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> Tried<ConnectorMesh> {
-    let result = mesh_connector(id, cut, ends, &plan.block_params());
-    Tried { result, failures: Vec::new() }
+/// Meshes a cluster. `overlapping`: vessels of the network overlap in it; `original`: the number of a terminal in the network
+/// as it was read.
+pub fn cluster(
+    id: ClusterId,
+    cluster: &Cluster,
+    plan: &MeshPlan,
+    overlapping: bool,
+    original: impl Fn(NodeId) -> u32,
+) -> Tried {
+    let name = format!("cluster {}", id.0);
+    first_good(&name, ways(plan, overlapping), |params| {
+        let mesh = mesh_cluster(id, cluster, params)?;
+        Finished::of_cluster(mesh, &original).map_err(|source| BlockError::Faces { block: name.clone(), source })
+    })
+}
+
+/// Meshes a connector between the ends of its two clusters.
+pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> Tried {
+    divided(id, plan, |params| Ok((mesh_connector(id, cut, ends, params)?, ends.map(|end| end.surface.clone()))))
 }
 
 /// The same for a connector that is made without its clusters.
-pub fn free_connector(id: CutId, cut: &Cut, plan: &MeshPlan) -> Tried<ConnectorMesh> {
-    let result = mesh_free_connector(id, cut, &plan.block_params());
-    Tried { result, failures: Vec::new() }
+pub fn free_connector(id: CutId, cut: &Cut, plan: &MeshPlan) -> Tried {
+    let no_disc = || BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: Vec::new() };
+    divided(id, plan, |params| {
+        let mesh = mesh_free_connector(id, cut, params)?;
+        Ok((mesh, shared_ends(id, cut, params).ok_or_else(no_disc)?))
+    })
+}
+
+/// A connector, its tube divided in one way after the other.
+fn divided(
+    id: CutId,
+    plan: &MeshPlan,
+    mut make: impl FnMut(&BlockParams) -> Result<(ConnectorMesh, [EndSurface; 2]), BlockError>,
+) -> Tried {
+    let name = format!("connector {}", id.0);
+    let way = |first_division| (first_division, BlockParams { first_division, ..plan.block_params() });
+    let mut before: Vec<BlockError> = Vec::new();
+    let mut tried = first_good(&name, (0..DIVISIONS).map(way).collect(), |params| {
+        let (mesh, ends) = make(params)?;
+        // A division that fails gives way to the next one at once.
+        let failed = |attempt: &ConnectorAttempt| BlockError::Connector {
+            cut: id,
+            at: [f64::NAN; 3],
+            attempts: vec![attempt.clone()],
+        };
+        before.extend(mesh.failed.iter().map(failed));
+        let faces = |source| BlockError::Faces { block: name.clone(), source };
+        Finished::of_connector(mesh, ends.each_ref()).map_err(faces)
+    });
+    tried.failures.extend(before);
+    tried
 }
 
 /// The input of a cluster as it is first tried.
@@ -147,6 +185,38 @@ pub fn free_connector_input(id: CutId, cut: &Cut, plan: &MeshPlan) -> Option<Blo
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A block of one tetrahedron of this height over an equilateral triangle.
+    fn block(height: f64) -> Finished {
+        let p = |x, y, z| crate::geometry::Point3::new(x, y, z);
+        let points =
+            vec![p(0., 0., 0.), p(1., 0., 0.), p(0.5, 0.8660254037844386, 0.), p(0.5, 0.2886751345948129, height)];
+        let mesh = crate::mesh::TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+        let cluster = crate::block::ClusterMesh { mesh, ..Default::default() };
+        Finished::of_cluster(cluster, |node| node.0).expect("a wall of four faces")
+    }
+
+    #[test]
+    fn flat_blocks_are_kept_only_when_nothing_better_comes() {
+        let usual = MeshPlan::default().block_params();
+        let failed = || BlockError::Parameter { name: "none", value: 0.0 };
+        let try_all = |results: &[Option<f64>]| {
+            let ways =
+                (0..results.len()).map(|place| (place, BlockParams { first_division: place, ..usual })).collect();
+            first_good("block", ways, |params| results[params.first_division].map(block).ok_or_else(failed))
+        };
+        let of = |results: &[Option<f64>]| {
+            let Tried { result, failures } = try_all(results);
+            (result.ok(), failures.len())
+        };
+        assert_eq!(of(&[Some(0.8), Some(0.9)]), (Some(block(0.8)), 0));
+        assert_eq!(of(&[None, Some(1e-3), Some(0.8)]), (Some(block(0.8)), 2));
+        assert_eq!(of(&[Some(1e-3), Some(2e-3), None]), (Some(block(2e-3)), 1));
+        assert_eq!(of(&[Some(2e-3), Some(1e-3), None]), (Some(block(2e-3)), 0));
+        assert_eq!(of(&[None, None]), (None, 1));
+        let Tried { failures, .. } = try_all(&[Some(1e-3), Some(0.8)]);
+        assert!(failures[0].to_string().contains("all but flat"), "{}", failures[0]);
+    }
 
     #[test]
     fn vessels_that_may_overlap_are_kept_apart_if_they_can_be() {

@@ -5,9 +5,7 @@ use std::io;
 use super::attempts::{self, Tried};
 use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
-use crate::block::{
-    About, BlockError, ConnectorEnd, ConnectorMesh, EndSurface, Finished, Record, Sizes, encode, shared_ends,
-};
+use crate::block::{About, BlockError, ConnectorEnd, EndSurface, Record, Sizes, encode};
 use crate::geometry::Point3;
 use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Partition};
 use crate::skeleton::Skeleton;
@@ -46,8 +44,7 @@ impl Workshop<'_> {
             return Ok(Ok(kept));
         }
         let original = |node| self.skeleton.node(node).original;
-        let Tried { result, failures } = attempts::cluster(id, cluster, self.plan, overlapping, original);
-        self.keep(key, result, failures.iter().map(ToString::to_string).collect())
+        self.keep(key, attempts::cluster(id, cluster, self.plan, overlapping, original))
     }
 
     /// A connector between the discs that the vessel alone gives.
@@ -59,10 +56,7 @@ impl Workshop<'_> {
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
-        let made = attempts::free_connector(id, cut, self.plan).result;
-        let ends = shared_ends(id, cut, &self.plan.block_params());
-        let no_disc = || BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: Vec::new() };
-        self.keep_connector(id, key, made.and_then(|mesh| Ok((mesh, ends.ok_or_else(no_disc)?))))
+        self.keep(key, attempts::free_connector(id, cut, self.plan))
     }
 
     /// A connector between the ends of its two clusters, which are done.
@@ -75,32 +69,16 @@ impl Workshop<'_> {
             return Ok(Ok(kept));
         }
         let both = [0, 1].map(|side: usize| ConnectorEnd { surface: &ends[side].surface, points: &ends[side].points });
-        let made = attempts::connector(id, cut, both, self.plan).result;
-        self.keep_connector(id, key, made.map(|mesh| (mesh, [0, 1].map(|side: usize| ends[side].surface.clone()))))
+        self.keep(key, attempts::connector(id, cut, both, self.plan))
     }
 
-    fn keep_connector(
-        &self,
-        id: CutId,
-        key: Key,
-        made: Result<(ConnectorMesh, [EndSurface; 2]), BlockError>,
-    ) -> Result<Made, StoreError> {
-        let mut failures = Vec::new();
-        let finished = made.and_then(|(mesh, ends)| {
-            failures.extend(mesh.failed.iter().map(|attempt| attempt.failure.to_string()));
-            let failed = |source| BlockError::Faces { block: format!("connector {}", id.0), source };
-            Finished::of_connector(mesh, ends.each_ref()).map_err(failed)
-        });
-        self.keep(key, finished, failures)
-    }
-
-    fn keep(&self, key: Key, made: Result<Finished, BlockError>, failures: Vec<String>) -> Result<Made, StoreError> {
-        let mut finished = match made {
+    fn keep(&self, key: Key, Tried { result, failures }: Tried) -> Result<Made, StoreError> {
+        let mut finished = match result {
             Ok(finished) => finished,
             Err(error) => return Ok(Err(error)),
         };
         finished.about.failures = failures.len() as u32;
-        finished.about.first_failure = failures.into_iter().next().unwrap_or_default();
+        finished.about.first_failure = failures.first().map(ToString::to_string).unwrap_or_default();
         let record = self.store.keep(key, encode(&finished)?)?;
         Ok(Ok(self.kept(record)?))
     }

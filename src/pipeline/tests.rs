@@ -1,7 +1,7 @@
 //! The way through all stages, and what happens when a block fails.
 
 use super::*;
-use crate::block::{Finished, Record, encode, shared_ends};
+use crate::block::{Finished, Record, encode};
 use crate::geometry::Point3;
 use crate::mesh::WALL;
 use crate::mesh::adjacency::tet_adjacency;
@@ -99,9 +99,7 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
     let mut blocks: Vec<Finished> = partition.clusters.iter().enumerate().map(cluster).collect();
     for (i, cut) in partition.cuts.iter().enumerate() {
         let id = CutId(i as u32);
-        let mesh = attempts::free_connector(id, cut, plan).result.expect("meshed");
-        let ends = shared_ends(id, cut, &plan.block_params()).expect("discs");
-        blocks.push(Finished::of_connector(mesh, ends.each_ref()).expect("faces on the boundary"));
+        blocks.push(attempts::free_connector(id, cut, plan).result.expect("meshed"));
     }
     blocks
 }
