@@ -288,7 +288,12 @@ impl<'a, L: Level> Relaxation<'a, L> {
         }
     }
 
-    /// No triangle turns over and no edge becomes too long when both ends of `h` meet in `target`.
+    fn is_on_disc(&self, v: u32) -> bool {
+        self.hold(v) == Hold::Disc
+    }
+
+    /// No triangle turns over or comes to lie on a disc, and no edge becomes too long when both ends of `h` meet in
+    /// `target`.
     fn collapse_is_sound(&self, h: u32, target: Point3) -> bool {
         let (a, b) = (self.surface.from(h), self.surface.to(h));
         let limit = SPLIT_ABOVE * self.aim(a, b);
@@ -297,6 +302,9 @@ impl<'a, L: Level> Relaxation<'a, L> {
                 let (x, y) = (self.surface.to(e), self.surface.apex(e));
                 if x == other || y == other {
                     return true;
+                }
+                if v == a && [b, x, y].into_iter().all(|w| self.is_on_disc(w)) {
+                    return false;
                 }
                 let (px, py) = (self.surface.points[x as usize], self.surface.points[y as usize]);
                 let old = self.surface.area_vector(e);
@@ -316,7 +324,9 @@ impl<'a, L: Level> Relaxation<'a, L> {
                 let quad = [s.from(h), s.to(h), s.apex(h), s.apex(s.twin(h))].map(|v| v as usize);
                 let wanted =
                     if by_valence { flip_evens_valence(quad.map(|v| valence[v])) } else { self.flip_opens_angle(h) };
-                if wanted && self.surface.can_flip(h) && self.flip_is_sound(h) {
+                // A new edge between two vertices of a disc would lie in its plane, and so would a triangle beside it.
+                let chord = self.is_on_disc(quad[2] as u32) && self.is_on_disc(quad[3] as u32);
+                if wanted && !chord && self.surface.can_flip(h) && self.flip_is_sound(h) {
                     self.surface.flip(h);
                     if by_valence {
                         for (v, change) in quad.into_iter().zip([-1, -1, 1, 1]) {

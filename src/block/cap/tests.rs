@@ -54,6 +54,8 @@ fn check(surface: &CappedSurface, ends: &[ClusterEnd], smallest_angle: f64) {
         }
         assert!((area / (std::f64::consts::PI * s.radius * s.radius) - 1.0).abs() < 1e-6, "area {area}");
         assert!((center / area - s.origin.coords).norm() < 1e-3 * s.radius);
+        let lies_flat = |t: &[u32; 3]| t.iter().all(|v| vertices.contains(v));
+        assert!(mesh.triangles.iter().zip(&surface.cap).all(|(t, c)| c.is_some() || !lies_flat(t)), "a wall on a disc");
         // One disc: V − E + F = 1, with 3 F = 2 E − (boundary edges).
         let on_wall =
             |v: &u32| mesh.triangles.iter().zip(&surface.cap).any(|(t, c)| *c != Some(i as u32) && t.contains(v));
