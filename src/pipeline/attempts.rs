@@ -186,11 +186,10 @@ pub fn free_connector_input(id: CutId, cut: &Cut, plan: &MeshPlan) -> Option<Blo
 mod tests {
     use super::*;
 
-    /// A block of one tetrahedron of this height over an equilateral triangle.
+    /// A block of one tetrahedron of this height over an equilateral triangle, nearly above its centre.
     fn block(height: f64) -> Finished {
         let p = |x, y, z| crate::geometry::Point3::new(x, y, z);
-        let points =
-            vec![p(0., 0., 0.), p(1., 0., 0.), p(0.5, 0.8660254037844386, 0.), p(0.5, 0.2886751345948129, height)];
+        let points = vec![p(0., 0., 0.), p(1., 0., 0.), p(0.5, 0.75_f64.sqrt(), 0.), p(0.5, 0.3, height)];
         let mesh = crate::mesh::TetMesh { points, tets: vec![[0, 1, 2, 3]] };
         let cluster = crate::block::ClusterMesh { mesh, ..Default::default() };
         Finished::of_cluster(cluster, |node| node.0).expect("a wall of four faces")
