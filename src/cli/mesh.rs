@@ -112,6 +112,11 @@ struct Output<'a> {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let plan = args.plan();
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
+    if plan.smooths_joints() && args.work_dir.is_some() {
+        return Err(Failure::usage(
+            "--work-dir cannot keep joints that are smoothed: give --joint disc or --frozen-joints",
+        ));
+    }
     ensure_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     if let Some(path) = &args.refined {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
@@ -202,6 +207,8 @@ impl Args {
     /// Everything that the mesh depends on, beside the network.
     fn options(&self, plan: &MeshPlan) -> serde_json::Value {
         let refine = self.refine.map(|iterations| format!("{:?}", self.how.params(iterations)));
+        // Whether failed blocks are left out says nothing about those that are done.
+        let plan = MeshPlan { keep_going: false, ..plan.clone() };
         serde_json::json!({ "mesh": plan, "refine": refine })
     }
 

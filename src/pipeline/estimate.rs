@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::plan::{JointStyle, MeshPlan};
+use super::plan::MeshPlan;
 use super::schedule::Cost;
 use crate::geometry::Tube;
 use crate::partition::{Cluster, Cut, Partition};
@@ -145,7 +145,7 @@ pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
 /// Of pieces of vessel: length, radius, thinnest radius of their block.
 fn cost(pieces: impl Iterator<Item = (f64, f64, f64)>, plan: &MeshPlan) -> Cost {
     // Without following the radius, a wide vessel has the short edges of the thinnest one.
-    let finer = 3.0 * (1.0 - if plan.joint == JointStyle::None { 0.0 } else { plan.follow });
+    let finer = 3.0 * (1.0 - plan.follow);
     let one = |(length, radius, thin): (f64, f64, f64)| length / radius * (radius / thin).powf(finer);
     let tets = TETS * plan.rho.powf(POWER) * pieces.map(one).sum::<f64>();
     // Casts of what is too large, or no number, end at the largest integer.
