@@ -20,18 +20,27 @@ struct Gate {
     left: Condvar,
 }
 
+/// A block that was let in; it leaves when this is dropped, even by a panic, so that nobody waits for it in vain.
+struct Inside<'a> {
+    gate: &'a Gate,
+    bytes: u64,
+}
+
 impl Gate {
-    fn enter(&self, bytes: u64) {
+    fn enter(&self, bytes: u64) -> Inside<'_> {
         let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         while *used > 0 && *used + bytes > self.limit {
             used = self.left.wait(used).unwrap_or_else(PoisonError::into_inner);
         }
         *used += bytes;
+        Inside { gate: self, bytes }
     }
+}
 
-    fn leave(&self, bytes: u64) {
-        *self.used.lock().unwrap_or_else(PoisonError::into_inner) -= bytes;
-        self.left.notify_all();
+impl Drop for Inside<'_> {
+    fn drop(&mut self) {
+        *self.gate.used.lock().unwrap_or_else(PoisonError::into_inner) -= self.bytes;
+        self.gate.left.notify_all();
     }
 }
 
@@ -57,10 +66,10 @@ pub fn costliest_first<T: Send, E: Send>(
     let one_thread = |_: rayon::BroadcastContext| {
         let mut done = Vec::new();
         while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-            gate.enter(costs[i].bytes);
+            let inside = gate.enter(costs[i].bytes);
             let start = Instant::now();
             let result = work(i);
-            gate.leave(costs[i].bytes);
+            drop(inside);
             if result.is_err() {
                 next.store(order.len(), Ordering::Relaxed);
             }
@@ -106,6 +115,15 @@ mod tests {
         assert!(*most.lock().expect("likewise") <= 60);
         // A block that does not fit at all is made alone rather than never.
         pool.install(|| costliest_first(&costs(&[5, 1]), 2, |_| Ok::<_, ()>(()))).expect("nothing fails");
+    }
+
+    #[test]
+    fn a_panic_is_passed_on_and_nobody_waits_for_its_block() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+        let work = |i: usize| if i == 3 { panic!("planted") } else { Ok::<_, ()>(()) };
+        // One block at a time: whoever waits at the gate is let in afterwards.
+        let run = || pool.install(|| costliest_first(&costs(&[9; 50]), 9, work));
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err());
     }
 
     #[test]
