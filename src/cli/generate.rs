@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::common::Common;
 use super::exit::{Exit, Failure};
 use crate::io::network::{ensure_tree_writable, write_tree};
 use crate::skeleton::generate::{GenerateParams, Morphometry, Organ, RAT_KIDNEY, generate};
@@ -32,15 +33,8 @@ pub struct Args {
     /// Where the network goes, in um: .vtp, or .swc (node radii only)
     #[arg(short, long, value_name = "NETWORK")]
     output: PathBuf,
-    /// Number of threads (default: all cores); the output does not depend on it
-    #[arg(short = 'j', long, value_name = "N")]
-    threads: Option<std::num::NonZeroUsize>,
-    /// Print the parameters and the vessels of each order as JSON on standard output
-    #[arg(long)]
-    json: bool,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    common: Common,
 }
 
 /// What can be filled.
@@ -86,10 +80,10 @@ impl Args {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_tree_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     let params = args.params();
-    let pool = super::thread_pool(args.threads)?;
+    let pool = super::thread_pool(args.common.threads)?;
     let network = pool.install(|| generate(&params)).map_err(|e| Failure::usage(e.to_string()))?;
     write_tree(&args.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;
-    if args.quiet && !args.json {
+    if args.common.quiet && !args.common.json {
         return Ok(Exit::Fine);
     }
     let morphometry = Morphometry::of(&network);
@@ -102,7 +96,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         root_radius: network.nodes.first().map_or(0.0, |root| root.radius),
         morphometry: &morphometry,
     };
-    if args.json {
+    if args.common.json {
         super::print(true, &grown, String::new)?;
     } else {
         eprint!("{}", text(&grown));

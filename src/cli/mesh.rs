@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::Bars;
@@ -63,18 +64,11 @@ pub struct Args {
     /// Leave out blocks that fail, say so, and exit 4 all the same
     #[arg(long)]
     keep_going: bool,
-    /// Number of threads (default: all cores); the output does not depend on it
-    #[arg(short = 'j', long, value_name = "N")]
-    threads: Option<std::num::NonZeroUsize>,
     /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
-    /// Print the report as JSON on standard output
-    #[arg(long)]
-    json: bool,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    common: Common,
     #[command(flatten)]
     how: RefineArgs,
 }
@@ -122,11 +116,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
     let network = args.network.read()?;
-    let bars = Bars::new(args.quiet);
+    let bars = Bars::new(args.common.quiet);
     for remark in network.remarks() {
         bars.note(&remark);
     }
-    let pool = super::thread_pool(args.threads)?;
+    let pool = super::thread_pool(args.common.threads)?;
     let refined = pool.install(|| args.refined(&network.skeleton))?;
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
     let refinement = refined.as_ref().map(|r| &r.report);
@@ -267,11 +261,11 @@ impl Args {
     /// The network refined, if that was asked for.
     fn refined(&self, skeleton: &Skeleton) -> Result<Option<Refined>, Failure> {
         let Some(iterations) = self.refine else { return Ok(None) };
-        let refined = super::refine::moved(skeleton, &self.how.params(iterations), self.quiet)?;
+        let refined = super::refine::moved(skeleton, &self.how.params(iterations), self.common.quiet)?;
         if let Some(path) = &self.refined {
             super::refine::write(path, &refined)?;
         }
-        if !self.quiet && !self.json {
+        if !self.common.quiet && !self.common.json {
             eprint!("{}", super::refine_report::text(&refined.report));
         }
         Ok(Some(refined))
@@ -284,12 +278,12 @@ impl Args {
         run: &RunReport,
         check: Option<&CheckReport>,
     ) -> Result<(), Failure> {
-        if self.json {
+        if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
             return super::print(true, &Output { program, plan, refine, run, check }, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
-        if !self.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
+        if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
             eprint!("{}", run.text());
             if let Some(check) = check {
                 eprint!("{}", crate::report::check::text(check));

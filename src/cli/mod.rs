@@ -1,6 +1,7 @@
 //! Floor 6: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
 mod check;
+mod common;
 mod dual;
 mod exit;
 mod generate;

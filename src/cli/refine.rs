@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
+use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::{shows_bars, stage_bar};
@@ -38,15 +39,8 @@ pub struct Args {
     /// Draw them: displacement, barrier potential, lengths and angles over the iterations
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
-    /// Number of threads (default: all cores); the output does not depend on it
-    #[arg(short = 'j', long, value_name = "N")]
-    threads: Option<std::num::NonZeroUsize>,
-    /// Print the report as JSON on standard output
-    #[arg(long)]
-    json: bool,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    common: Common,
 }
 
 /// How to refine: arguments of every verb that does.
@@ -183,14 +177,14 @@ pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool) -> 
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     let network = args.network.read()?;
-    if !args.quiet {
+    if !args.common.quiet {
         for remark in network.remarks() {
             eprintln!("{remark}");
         }
     }
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
-    let pool = super::thread_pool(args.threads)?;
-    let refined = pool.install(|| moved(&network.skeleton, &params, args.quiet))?;
+    let pool = super::thread_pool(args.common.threads)?;
+    let refined = pool.install(|| moved(&network.skeleton, &params, args.common.quiet))?;
     write(&args.output, &refined)?;
     let report = &refined.report;
     for (path, text) in [(&args.metrics, csv as fn(&RefineReport) -> String), (&args.plot, |r| svg(&panels(r)))] {
@@ -198,10 +192,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             write_text(path, &text(report)).map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
         }
     }
-    if args.json {
+    if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
         super::print(true, &Output { program, parameters: &params, report }, String::new)?;
-    } else if !args.quiet {
+    } else if !args.common.quiet {
         eprint!("{}", text(report));
     }
     let gate = params.residual == Residual::Shrink && report.residual.left > 0;

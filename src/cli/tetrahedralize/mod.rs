@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::common::Common;
 use super::exit::{Exit, Failure};
 use crate::mesh::quality::TetQuality;
 use crate::report::tetrahedralize::{Bounds, InputSize, OutputSize, Recovery, TetReport, region_sizes, volume_of};
@@ -68,15 +69,8 @@ pub struct Args {
     /// TetGen's switches instead of these options, such as pYq1.4a0.1
     #[arg(long, value_name = "SWITCHES", allow_hyphen_values = true)]
     tetgen: Option<String>,
-    /// Number of threads (default: all cores); the output does not depend on it
-    #[arg(short = 'j', long, value_name = "N")]
-    threads: Option<std::num::NonZeroUsize>,
-    /// Print the report as JSON on standard output
-    #[arg(long)]
-    json: bool,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    common: Common,
 }
 
 /// What `--json` prints.
@@ -101,7 +95,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             eprintln!("{note}");
         }
     }
-    let pool = super::thread_pool(args.threads)?;
+    let pool = super::thread_pool(args.common.threads)?;
     let watch = Arc::new(Watch::new(plan.quiet));
     let mut input = watch.time("read", || Input::read(&args.input, format, &plan))?;
     target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
@@ -177,7 +171,7 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
 }
 
 fn print(args: &Args, plan: &TetPlan, report: &TetReport) -> Result<(), Failure> {
-    if args.json {
+    if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
         return super::print(true, &Output { program, plan, report }, String::new);
     }

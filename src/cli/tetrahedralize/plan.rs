@@ -81,7 +81,7 @@ impl TetPlan {
             }
             None => Self::of_flags(args, format),
         };
-        plan.quiet |= args.quiet;
+        plan.quiet |= args.common.quiet;
         plan.check_only |= args.check_only;
         plan.repair = args.repair;
         Self::validate(args)?;
@@ -184,7 +184,7 @@ pub fn ensure_fits(plan: &TetPlan, args: &Args, target: Option<&Target>) -> Resu
         None if !plan.check_only => Err(Failure::usage(
             "there is no output: name one with -o MESH (.vtu, .pvtu, .msh, .mesh or .ele), or give --check-only",
         )),
-        Some(Target::Stream(_)) if args.json && !plan.check_only => {
+        Some(Target::Stream(_)) if args.common.json && !plan.check_only => {
             Err(Failure::usage("--json and -o - both write to standard output: name a file with -o"))
         }
         _ => Ok(()),
