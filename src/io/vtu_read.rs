@@ -230,7 +230,7 @@ fn label_values(
 
 /// The field data of a file.
 #[derive(Default)]
-struct Fields {
+pub(super) struct Fields {
     ints: FxHashMap<String, Vec<i64>>,
     floats: FxHashMap<String, Vec<f64>>,
     strings: FxHashMap<String, Vec<String>>,
@@ -241,7 +241,7 @@ impl Fields {
         self.ints.is_empty() && self.floats.is_empty() && self.strings.is_empty()
     }
 
-    fn read(xml: &VtkXml, grid: ElementId) -> Result<Self, ContentFault> {
+    pub(super) fn read(xml: &VtkXml, grid: ElementId) -> Result<Self, ContentFault> {
         let mut fields = Self::default();
         for data in xml.children(grid, "FieldData") {
             for (name, array) in xml.arrays(data) {
@@ -267,7 +267,7 @@ impl Fields {
         self.ints.get(name).map(|values| values.iter().map(|&v| u32::try_from(v).unwrap_or(u32::MAX)).collect())
     }
 
-    fn notes(&self) -> MeshNotes {
+    pub(super) fn notes(&self) -> MeshNotes {
         // An empty list is not written: a mesh of loops alone has no terminals.
         let expectation = self
             .counts(field::LOOPS)
@@ -280,18 +280,29 @@ impl Fields {
         }
     }
 
-    /// The patches: those with a name, or else those that occur, under their usual names.
+    /// The patches: those with a name or a cap (names end at some id); when none has a name, those that occur, under
+    /// their usual names.
     fn patches(&self, label_array: &str, used: &[i32]) -> Vec<Patch> {
-        let caps = self.caps();
-        let patch = |id: i32, name: String| Patch { id, name, cap: caps.get(&id).copied() };
-        if let Some(names) = self.strings.get(&format!("{label_array}_names")) {
-            let named = names.iter().enumerate().skip(1).filter(|(_, name)| !name.is_empty());
-            return named.map(|(id, name)| patch(id as i32, name.clone())).collect();
-        }
-        let mut ids = used.to_vec();
-        ids.sort_unstable();
-        ids.dedup();
-        ids.into_iter().map(|id| patch(id, usual_name(id))).collect()
+        self.named_patches(label_array).unwrap_or_else(|| {
+            let mut ids = used.to_vec();
+            ids.sort_unstable();
+            ids.dedup();
+            let caps = self.caps();
+            ids.into_iter().map(|id| Patch { id, name: usual_name(id), cap: caps.get(&id).copied() }).collect()
+        })
+    }
+
+    /// The patches with a name or a cap; none when the file names none.
+    pub(super) fn named_patches(&self, label_array: &str) -> Option<Vec<Patch>> {
+        let names = self.strings.get(&format!("{label_array}_names"))?;
+        let mut caps = self.caps();
+        let named = names.iter().enumerate().skip(1).filter(|(_, name)| !name.is_empty());
+        let mut patches: Vec<Patch> = named
+            .map(|(id, name)| Patch { id: id as i32, name: name.clone(), cap: caps.remove(&(id as i32)) })
+            .collect();
+        patches.extend(caps.into_iter().map(|(id, cap)| Patch { id, name: usual_name(id), cap: Some(cap) }));
+        patches.sort_by_key(|patch| patch.id);
+        Some(patches)
     }
 
     /// Caps by patch; none when the arrays about them do not fit each other.

@@ -61,6 +61,16 @@ fn an_empty_mesh_and_one_without_caps() {
 }
 
 #[test]
+fn caps_beyond_the_list_of_names_are_kept() {
+    let (mut volume, notes) = labelled_tube(2);
+    let far = LARGEST_NAMED + 5;
+    volume.patches[1] = Patch { id: far, name: format!("outlet_{}", far - 3), ..volume.patches[1].clone() };
+    volume.boundary_patch.iter_mut().filter(|id| **id == 3).for_each(|id| *id = far);
+    let file = read_vtu(&bytes_of(&volume, &notes)).unwrap();
+    assert_eq!(file, MeshFile { volume, labelled: true, notes });
+}
+
+#[test]
 fn a_mesh_of_loops_alone_expects_no_terminals() {
     let (volume, mut notes) = labelled_tube(1);
     notes.expectation = Some(Expectation { loops: vec![1], terminals: Vec::new() });
