@@ -49,7 +49,9 @@ fn harm(cut: &mut Cut, harm: Harm, part: usize, at: usize) -> bool {
     let piece = &mut cut.pieces[part];
     let on_joint = |v: u32| piece.joints.iter().flatten().flatten().any(|&w| w == v);
     let tet = at % piece.mesh.tets.len();
-    if piece.mesh.tets[tet].iter().any(|&v| on_joint(v)) {
+    let other = (at / 7 % piece.mesh.points.len()) as u32;
+    // At a vertex of a joint parts are judged more strictly than the whole.
+    if piece.mesh.tets[tet].iter().any(|&v| on_joint(v)) || on_joint(other) {
         return false;
     }
     match harm {
@@ -63,7 +65,7 @@ fn harm(cut: &mut Cut, harm: Harm, part: usize, at: usize) -> bool {
             piece.mesh.tets.push(piece.mesh.tets[tet]);
             piece.tets.push(next);
         }
-        Harm::ExchangeVertex => piece.mesh.tets[tet][0] = (at / 7 % piece.mesh.points.len()) as u32,
+        Harm::ExchangeVertex => piece.mesh.tets[tet][0] = other,
     }
     cut.certify();
     true
