@@ -181,3 +181,24 @@ fn a_full_disk_is_an_error_that_says_so() {
     assert_says(&full, BAD_INPUT, &["cannot be written", "make room", "--work-dir"]);
     assert_eq!(fs::read(folder.path().join("a.vtu")).expect("there"), b"an earlier mesh");
 }
+
+/// The report of the verb check, without its figures of quality (percentiles of blocks are known to a bin).
+fn checked(mesh: &Path, options: &[&str]) -> (i32, serde_json::Value) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_anastomesh"));
+    let output = command.arg("check").arg(mesh).arg("--json").args(options).output().expect("the program runs");
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+    let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    report["quality"] = serde_json::Value::Null;
+    report["counts"]["volume"] = serde_json::Value::Null;
+    (output.status.code().expect("an exit code"), report)
+}
+
+#[test]
+fn a_file_is_checked_block_by_block_as_in_memory() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mesh = folder.path().join("a.vtu");
+    assert_code(&run(&network(), &mesh, &[]), FINE);
+    let (code, whole) = checked(&mesh, &[]);
+    assert_eq!((code, whole["verdict"].as_str()), (FINE, Some("valid")));
+    assert_eq!(checked(&mesh, &["--memory", "1MiB"]), (code, whole));
+}

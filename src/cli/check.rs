@@ -3,16 +3,26 @@
 use std::path::PathBuf;
 
 use super::exit::{Exit, Failure};
-use crate::io::mesh_file::read_mesh;
-use crate::mesh::check::{Verdict, check_tets, check_volume};
+use super::room;
+use crate::io::mesh_file::{MeshFormat, read_mesh};
+use crate::io::vtu::{VtuPieces, VtuPiecesError};
+use crate::mesh::check::parts::{PiecesError, check_pieces};
+use crate::mesh::check::{CheckReport, Verdict, check_tets, check_volume};
 use crate::mesh::{TET_FACES, VolumeMesh};
 use rustc_hash::FxHashMap;
+
+/// Bytes of memory that the check of a whole takes for each byte of its file.
+const MEMORY_PER_BYTE: u64 = 8;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The mesh: VTU, PVTU, MSH 4.1, Medit .mesh, or TetGen's .ele
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
+    /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is checked block by block. All other
+    /// files are held as a whole
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
+    memory: u64,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -20,18 +30,52 @@ pub struct Args {
 
 /// Checks a mesh file and prints the result of every line.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let report = match by_blocks(args)? {
+        Some(report) => report,
+        None => as_a_whole(args)?,
+    };
+    super::print(args.json, &report, || crate::report::check::text(&report))?;
+    Ok(if report.verdict == Verdict::Invalid { Exit::GateNotMet } else { Exit::Fine })
+}
+
+fn as_a_whole(args: &Args) -> Result<CheckReport, Failure> {
     let mut file = read_mesh(&args.mesh).map_err(|e| Failure::input(e.to_string()))?;
     if file.notes.expectation.is_none() {
         drop_interior_faces(&mut file.volume);
     }
     let expectation = file.notes.expectation.as_ref();
-    let report = if file.labelled {
-        check_volume(&file.volume, expectation)
-    } else {
-        check_tets(&file.volume.mesh, expectation)
+    Ok(if file.labelled { check_volume(&file.volume, expectation) } else { check_tets(&file.volume.mesh, expectation) })
+}
+
+/// Checks a large file without holding the mesh; none when it is not large, or has to be held.
+fn by_blocks(args: &Args) -> Result<Option<CheckReport>, Failure> {
+    let length = std::fs::metadata(&args.mesh).map_or(0, |data| data.len());
+    if length.saturating_mul(MEMORY_PER_BYTE) <= args.memory || MeshFormat::of(&args.mesh).ok() != Some(MeshFormat::Vtu)
+    {
+        return Ok(None);
+    }
+    let path = args.mesh.display();
+    let held = |why: &dyn std::fmt::Display| {
+        eprintln!("anastomesh: {path} is held as a whole, which may need more than --memory: {why}");
+        Ok(None)
     };
-    super::print(args.json, &report, || crate::report::check::text(&report))?;
-    Ok(if report.verdict == Verdict::Invalid { Exit::GateNotMet } else { Exit::Fine })
+    let refused = |source| Failure::input(format!("{path}: cannot be read: {source}; write or copy it again"));
+    // A share for blocks of the file, one for walls; what is known of each block takes the rest.
+    let share = (args.memory / 4) as usize;
+    let pieces = match VtuPieces::open(&args.mesh, share) {
+        Ok(pieces) => pieces,
+        Err(VtuPiecesError::Read(source)) => return Err(refused(source)),
+        Err(why) => return held(&why),
+    };
+    let expectation = pieces.notes().expectation.as_ref();
+    if expectation.is_none() {
+        return held(&"it does not say what is expected of it");
+    }
+    match check_pieces(&pieces, expectation, share) {
+        Ok(report) => Ok(Some(report)),
+        Err(PiecesError::Read(source)) => Err(refused(source)),
+        Err(why) => held(&why),
+    }
 }
 
 /// Leaves out the labelled faces that lie between two tetrahedra: meshes of others, and of complexes of facets, label

@@ -14,6 +14,7 @@ pub mod msh;
 mod msh_read;
 mod msh_surfaces;
 pub mod network;
+mod packed;
 pub mod pvtu;
 mod pvtu_folder;
 mod pvtu_plan;
@@ -28,6 +29,7 @@ mod text;
 pub mod vtk_xml;
 pub mod vtu;
 mod vtu_blocks;
+mod vtu_pieces;
 mod vtu_read;
 
 pub use file_error::FileError;

@@ -13,6 +13,7 @@ use flate2::Compression;
 use std::fmt::Write as _;
 use std::io::{self, Seek, SeekFrom, Write};
 
+pub use super::vtu_pieces::{VtuPieces, VtuPiecesError};
 pub use super::vtu_read::read_vtu;
 
 /// VTK's cell types.
@@ -324,7 +325,8 @@ fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
         shrinks,
     };
     [
-        array("connectivity", kind, width.bytes(), 4 * tets + 3 * boundary, corners, false),
+        // Half of a wide number is zeros.
+        array("connectivity", kind, width.bytes(), 4 * tets + 3 * boundary, corners, width == Width::Int64),
         array("offsets", kind, width.bytes(), tets + boundary, offsets, true),
         array("types", "UInt8", 1, tets + boundary, types, true),
     ]

@@ -76,7 +76,7 @@ pub(super) fn read(document: &VtkXml, element: ElementId) -> Result<DataArray, V
 fn appended_source<'a>(document: &'a VtkXml<'a>, element: ElementId, array: &'a str) -> Result<Source<'a>, VtkError> {
     let bad = || VtkError::BadOffset { array: array.to_owned() };
     let offset: usize = document.attribute(element, "offset").and_then(|o| o.trim().parse().ok()).ok_or_else(bad)?;
-    let Appended { bytes, base64 } = document.appended.ok_or_else(bad)?;
+    let Appended { bytes, base64, .. } = document.appended.ok_or_else(bad)?;
     let bytes = bytes.get(offset..).ok_or_else(bad)?;
     Ok(Source { array, layout: document.layout, bytes, base64 })
 }

@@ -43,6 +43,8 @@ struct Layout {
 #[derive(Clone, Copy, Debug)]
 struct Appended<'a> {
     bytes: &'a [u8],
+    /// Where they begin in the file.
+    start: usize,
     base64: bool,
 }
 
@@ -68,7 +70,7 @@ impl<'a> VtkXml<'a> {
         document.check_root(file_type)?;
         document.layout = document.read_layout()?;
         if let Some(tail) = tail {
-            document.appended = Some(parse_appended(tail)?);
+            document.appended = Some(parse_appended(tail, head.len())?);
         }
         Ok(document)
     }
@@ -109,6 +111,13 @@ impl<'a> VtkXml<'a> {
                 _ => return Err(unknown("compressor")),
             },
         })
+    }
+
+    /// Where the appended data begin in the file, if they are raw, compressed with zlib, little-endian and with lengths of
+    /// 8 bytes: such arrays can be read a block at a time.
+    pub fn packed_data(&self) -> Option<usize> {
+        let packed = Layout { big_endian: false, wide_header: true, zlib: true };
+        self.appended.filter(|appended| !appended.base64 && self.layout == packed).map(|appended| appended.start)
     }
 
     /// The element `VTKFile`.
@@ -176,8 +185,8 @@ fn split_appended(bytes: &[u8]) -> (&[u8], Option<&[u8]>) {
     }
 }
 
-/// `tail` starts with `<AppendedData`; the data starts after the underscore that follows the tag.
-fn parse_appended(tail: &[u8]) -> Result<Appended<'_>, VtkError> {
+/// `tail` starts with `<AppendedData`, at byte `at` of the file; the data starts after the underscore that follows the tag.
+fn parse_appended(tail: &[u8], at: usize) -> Result<Appended<'_>, VtkError> {
     let end = tail.iter().position(|&b| b == b'>').ok_or(VtkError::CutShort)?;
     let tag = std::str::from_utf8(&tail[..end]).map_err(|_| VtkError::BadAppendedData)?;
     let base64 = tag.contains("base64");
@@ -186,9 +195,9 @@ fn parse_appended(tail: &[u8]) -> Result<Appended<'_>, VtkError> {
     }
     let after = tail[end + 1..].trim_ascii_start();
     match after.first() {
-        Some(b'_') => Ok(Appended { bytes: &after[1..], base64 }),
+        Some(b'_') => Ok(Appended { bytes: &after[1..], start: at + tail.len() - after.len() + 1, base64 }),
         // No underscore and no data: legal when no array refers to it.
-        _ => Ok(Appended { bytes: &[], base64 }),
+        _ => Ok(Appended { bytes: &[], start: at + tail.len(), base64 }),
     }
 }
 

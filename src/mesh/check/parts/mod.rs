@@ -44,6 +44,7 @@ mod glue;
 mod ids;
 mod joints;
 mod nests;
+mod pieces;
 mod sums;
 mod walls;
 mod whole;
@@ -52,6 +53,7 @@ mod whole;
 mod tests;
 
 pub use certificate::{certify, certify_with};
+pub use pieces::{LabelledFaces, Pieces, PiecesError, Unfit, check_pieces};
 pub use whole::check_parts;
 
 use super::nested::Enclosed;

@@ -21,3 +21,8 @@ fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)
 }
+
+/// A number for a triangle of sorted vertices.
+pub(super) fn id_sum(vertices: [u32; 3]) -> u64 {
+    vertices.into_iter().fold(0x2545_f491_4f6c_dd1d, |sum, v| mix(sum ^ u64::from(v)))
+}

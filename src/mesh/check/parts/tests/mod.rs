@@ -1,6 +1,7 @@
 //! Meshes cut into parts: the check of the parts says what the check of the whole says, and planted faults are found.
 
 mod faults;
+mod pieces;
 mod random;
 
 use super::*;
