@@ -7,6 +7,8 @@
   organ.py threads NETWORK [--pairs 7]                  one thread against two, interleaved
   organ.py kills NETWORK [--kills 20]                   killed at random moments, then the same bytes
 
+With --read-back meshes are read from their files again and verified by `check` (one row more for each).
+
 Meshes go into --folder (default: a temporary one) and are removed at once. Times are of the whole process, with CPU time of
 user and system; "blocks" and "check" are wall clock.
 """
@@ -42,9 +44,17 @@ def mesh(network, *options):
     out = os.path.join(OPTIONS.folder, "mesh.vtu")
     result = run(["mesh", network, "-o", out, "--json", "-q", "--keep-going", *options])
     size = os.path.getsize(out) if os.path.exists(out) else 0
+    if OPTIONS.read_back and size > 0:
+        read_back(out)
     if os.path.exists(out):
         os.remove(out)
     return result, size
+
+
+def read_back(path):
+    report, code, wall, user, system, peak = run(["check", path, "--json"])
+    verdict = report["verdict"] if report else f"exit {code}"
+    row("read back", verdict, f"{user + system:.0f} s CPU", f"{wall:.0f} s", f"{peak / 2**20:.0f} MiB")
 
 
 def row(*cells):
@@ -164,6 +174,7 @@ def main():
     parser.add_argument("--terminals", type=int, default=30000)
     parser.add_argument("--organ", default="kidney")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--read-back", action="store_true")
     parser.add_argument("--pairs", type=int, default=7)
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--folder")

@@ -103,8 +103,12 @@ impl BlockFile {
         let sizes = self.bytes(table..end.ok_or(io::ErrorKind::UnexpectedEof)?)?;
         let (sizes, _) = sizes.as_chunks::<8>();
         let mut starts = vec![table + 8 * count];
-        for &size in sizes {
-            let start = starts[starts.len() - 1].checked_add(u64::from_le_bytes(size));
+        for size in sizes.iter().map(|size| u64::from_le_bytes(*size)) {
+            // What cannot be compressed grows by less than that.
+            if size > 2 * block + 1024 {
+                return Err(damaged("a block of an array is larger than its values"));
+            }
+            let start = starts[starts.len() - 1].checked_add(size);
             starts.push(start.filter(|&end| end <= self.length).ok_or(io::ErrorKind::UnexpectedEof)?);
         }
         Ok(PackedArray { starts, block, bytes, width })
