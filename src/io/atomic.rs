@@ -1,15 +1,19 @@
 //! Files that appear at their path whole or not at all.
 
+use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 /// A file under a temporary name in the folder of its target; `commit` moves it there, dropping it removes it.
 #[derive(Debug)]
 pub(super) struct AtomicFile {
     file: Option<BufWriter<File>>,
+    /// Says that the temporary file is in use.
+    lock: Option<File>,
     temporary: PathBuf,
     target: PathBuf,
     /// Bytes since the disk was last told to begin.
@@ -48,9 +52,11 @@ impl AtomicFile {
         if target.is_dir() {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
         }
+        remove_left(target, "part", |left| drop(fs::remove_file(left)));
         let make = |path: &Path| OpenOptions::new().write(true).create_new(true).open(path);
         let (temporary, file) = make_hidden(target, "part", make)?;
         Ok(Self {
+            lock: locked(file.try_clone()),
             file: Some(BufWriter::with_capacity(1 << 18, file)),
             temporary,
             target: target.to_path_buf(),
@@ -73,6 +79,8 @@ impl AtomicFile {
     /// Writes out what is buffered and moves the file to its target, replacing what was there.
     pub(super) fn commit(mut self) -> io::Result<()> {
         self.complete()?;
+        // Windows moves no file that is open.
+        drop(self.lock.take());
         fs::rename(&self.temporary, &self.target)?;
         self.temporary = PathBuf::new();
         Ok(())
@@ -115,6 +123,42 @@ pub(super) fn make_hidden<T>(
     }
 }
 
+/// Locks a file or folder as long as it is in use. Where that is not possible nobody can take it for left over, either.
+pub(super) fn locked(opened: io::Result<File>) -> Option<File> {
+    opened.ok().filter(|file| file.try_lock().is_ok())
+}
+
+/// What is younger is never taken for left over: its run may not have locked it yet.
+const SETTLED: Duration = Duration::from_secs(10);
+
+/// Removes what runs that were killed have left under hidden names beside `target`: nobody holds its lock.
+pub(super) fn remove_left(target: &Path, kind: &str, remove: impl Fn(&Path)) {
+    let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_hidden_name(&entry.file_name(), name, kind) && is_left(&entry.path()) {
+            remove(&entry.path());
+        }
+    }
+}
+
+/// Whether a name is one that [`make_hidden`] gives.
+pub(super) fn is_hidden_name(hidden: &OsStr, name: &str, kind: &str) -> bool {
+    let rest = |hidden: &str| -> Option<bool> {
+        let numbers = hidden.strip_prefix('.')?.strip_prefix(name)?.strip_prefix('.')?.strip_suffix(kind)?;
+        let (process, attempt) = numbers.strip_suffix('.')?.split_once('-')?;
+        Some([process, attempt].iter().all(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())))
+    };
+    hidden.to_str().and_then(rest).unwrap_or(false)
+}
+
+fn is_left(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let changed = file.metadata().and_then(|data| data.modified()).ok();
+    let is_settled = changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= SETTLED);
+    is_settled && file.try_lock().is_ok()
+}
+
 impl Write for AtomicFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.open()?.write(bytes)?;
@@ -140,7 +184,7 @@ impl Seek for AtomicFile {
 impl Drop for AtomicFile {
     fn drop(&mut self) {
         if !self.temporary.as_os_str().is_empty() {
-            drop(self.file.take());
+            drop((self.file.take(), self.lock.take()));
             // Nothing can be done about a failure here, and the target is untouched.
             let _ = fs::remove_file(&self.temporary);
         }
@@ -165,6 +209,35 @@ mod tests {
         file.commit().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"whole");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_killed_runs_left_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let long_ago = std::time::SystemTime::now() - Duration::from_secs(3600);
+        let names = [
+            ".out.vtu.123-0.part",
+            ".out.vtu.99-17.part",
+            ".other.vtu.123-0.part",
+            ".out.vtu.123.part",
+            ".out.vtu.1-x.part",
+        ];
+        for name in names.into_iter().chain([".out.vtu.7-0.part"]) {
+            File::create(path(name)).unwrap().set_modified(long_ago).unwrap();
+        }
+        // One is young, one is held.
+        let young = path(".out.vtu.8-0.part");
+        File::create(&young).unwrap();
+        let held = locked(File::open(path(".out.vtu.7-0.part"))).unwrap();
+        let other = AtomicFile::create(&path("out.vtu")).unwrap();
+        File::open(&other.temporary).unwrap().set_modified(long_ago).unwrap();
+        AtomicFile::create(&path("out.vtu")).unwrap().commit().unwrap();
+        other.commit().unwrap();
+        let left: Vec<bool> = names.iter().map(|name| path(name).exists()).collect();
+        assert_eq!(left, [false, false, true, true, true]);
+        assert!(young.exists() && path(".out.vtu.7-0.part").exists());
+        drop(held);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A folder of pieces that appears whole, together with the file that names them, or not at all.
 
-use super::atomic::{AtomicFile, make_hidden};
-use std::fs;
+use super::atomic::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(super) struct PieceFolder {
     temporary: PathBuf,
+    /// Says that the temporary folder is in use.
+    lock: Option<File>,
     target: PathBuf,
     /// What the names of its files begin with.
     stem: String,
@@ -47,8 +49,9 @@ impl PieceFolder {
     pub(super) fn create(index: &Path) -> io::Result<Self> {
         Self::ensure_replaceable(index)?;
         let (target, stem) = Self::target_of(index)?;
+        remove_left(&target, "part", |left| remove_pieces(left, &stem));
         let (temporary, ()) = make_hidden(&target, "part", |path| fs::create_dir(path))?;
-        Ok(Self { temporary, target, stem })
+        Ok(Self { lock: locked(File::open(&temporary)), temporary, target, stem })
     }
 
     /// Path of a piece, as long as the folder is temporary.
@@ -77,6 +80,7 @@ impl PieceFolder {
             let _ = fs::remove_dir(old);
             return Err(error);
         }
+        drop(self.lock.take());
         let moved = fs::rename(&self.temporary, &self.target);
         let done = moved.and_then(|()| {
             index.commit().inspect_err(|_| {
@@ -114,11 +118,17 @@ fn is_piece(name: &std::ffi::OsStr, stem: &str) -> bool {
     number.is_some_and(|digits| digits.len() >= 4 && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
+/// Whether a file is a piece that was not written to its end.
+fn is_part(name: &std::ffi::OsStr, stem: &str) -> bool {
+    let piece = name.to_str().and_then(|name| name.strip_prefix('.')?.find(".vtu.").map(|end| &name[1..end + 5]));
+    piece.is_some_and(|piece| is_piece(piece.as_ref(), stem) && is_hidden_name(name, piece, "part"))
+}
+
 /// Removes a folder of pieces, and nothing else: a folder in which there is more stays.
 fn remove_pieces(folder: &Path, stem: &str) {
     // Nothing can be done about a failure here, and no target is touched.
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if is_piece(&entry.file_name(), stem) {
+        if is_piece(&entry.file_name(), stem) || is_part(&entry.file_name(), stem) {
             let _ = fs::remove_file(entry.path());
         }
     }
@@ -172,6 +182,26 @@ mod tests {
         assert!(folder.commit(file, &index).is_err());
         assert_eq!(names(parent.path()), ["out", "out.pvtu"]);
         assert_eq!(fs::read_to_string(parent.path().join("out/out_0000.vtu")).unwrap(), "first");
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_removed() {
+        let parent = tempfile::tempdir().unwrap();
+        let long_ago = std::time::SystemTime::now() - std::time::Duration::from_secs(3600);
+        for name in [".out.12-0.part", ".out.12-1.part"] {
+            let left = parent.path().join(name);
+            fs::create_dir(&left).unwrap();
+            fs::write(left.join("out_0000.vtu"), "whole").unwrap();
+            fs::write(left.join(".out_0001.vtu.12-0.part"), "half").unwrap();
+            File::open(&left).unwrap().set_modified(long_ago).unwrap();
+        }
+        // Something that nobody here has made.
+        let theirs = parent.path().join(".out.12-1.part/notes.txt");
+        fs::write(&theirs, "mine").unwrap();
+        File::open(theirs.parent().unwrap()).unwrap().set_modified(long_ago).unwrap();
+        drop(PieceFolder::create(&parent.path().join("out.pvtu")).unwrap());
+        assert_eq!(names(parent.path()), [".out.12-1.part"]);
+        assert_eq!(names(theirs.parent().unwrap()), ["notes.txt"]);
     }
 
     #[test]
