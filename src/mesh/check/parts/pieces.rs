@@ -115,7 +115,7 @@ struct Cut<'a> {
 
 /// What is held of a piece.
 struct Known {
-    /// In postcard's form, a fifth of its size in memory.
+    /// In postcard's form, which is smaller.
     certificate: Vec<u8>,
     points: u32,
     joints: Vec<KnownJoint>,
@@ -139,9 +139,7 @@ struct Ids {
 
 impl Ids {
     fn of(tets: &[[u32; 4]]) -> Self {
-        let mut all = tets.as_flattened().to_vec();
-        all.sort_unstable();
-        all.dedup();
+        let all = distinct(tets.as_flattened());
         let (mut run, mut start) = (0..0, 0);
         for part in all.chunk_by(|a, b| a + 1 == *b) {
             let end = start + part.len() as u32;
@@ -160,6 +158,14 @@ impl Ids {
         }
         self.all.binary_search(&id).ok().map(|i| i as u32)
     }
+}
+
+/// Numbers, ascending, each once.
+fn distinct(ids: &[u32]) -> Vec<u32> {
+    let mut all = ids.to_vec();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// A piece in its own numbers.
@@ -195,6 +201,16 @@ impl Local {
         labelled.sort_unstable_by_key(|(face, _)| sorted(*face));
         Ok(labelled)
     }
+
+    fn faces(&self, handles: &[u32]) -> Vec<[u32; 3]> {
+        handles.iter().map(|&handle| face_vertices(&self.mesh.tets, handle)).collect()
+    }
+
+    /// A number for some faces, in the numbers of the whole, whatever their order and orientation.
+    fn sum(&self, faces: &[[u32; 3]]) -> u64 {
+        let id = |v: u32| self.ids.all[v as usize];
+        faces.iter().fold(0, |sum, face| sum.wrapping_add(sums::id_sum(sorted(face.map(id)))))
+    }
 }
 
 impl Known {
@@ -219,33 +235,11 @@ impl Known {
         let certificate = postcard::to_stdvec(&certify_with(&view, || adjacency)).map_err(io::Error::other)?;
         let known = |(faces, handles): (&Vec<[u32; 3]>, Vec<u32>)| KnownJoint {
             sum: local.sum(faces),
-            vertices: Ids::of_faces(faces).len() as u32,
+            vertices: distinct(faces.as_flattened()).len() as u32,
             faces: handles.into(),
         };
         let joints = joints.iter().zip(handles).map(known).collect();
         Ok(Self { certificate, points: local.mesh.points.len() as u32, joints })
-    }
-}
-
-impl Ids {
-    /// The vertices of faces, ascending.
-    fn of_faces(faces: &[[u32; 3]]) -> Vec<u32> {
-        let mut all = faces.as_flattened().to_vec();
-        all.sort_unstable();
-        all.dedup();
-        all
-    }
-}
-
-impl Local {
-    fn faces(&self, handles: &[u32]) -> Vec<[u32; 3]> {
-        handles.iter().map(|&handle| face_vertices(&self.mesh.tets, handle)).collect()
-    }
-
-    /// A number for some faces, in the numbers of the whole, whatever their order and orientation.
-    fn sum(&self, faces: &[[u32; 3]]) -> u64 {
-        let id = |v: u32| self.ids.all[v as usize];
-        faces.iter().fold(0, |sum, face| sum.wrapping_add(sums::id_sum(sorted(face.map(id)))))
     }
 }
 
@@ -357,7 +351,7 @@ impl Parts for Cut<'_> {
 
 /// Faces in the numbers of the whole with points of their own: these, their numbers in the whole, the faces over them.
 fn apart(pieces: &dyn Pieces, faces: &[[u32; 3]]) -> io::Result<(Vec<Point3>, Vec<u32>, Vec<[u32; 3]>)> {
-    let vertices = Ids::of_faces(faces);
+    let vertices = distinct(faces.as_flattened());
     let points = pieces.points_of(&vertices)?;
     let place = |v: u32| vertices.partition_point(|&x| x < v) as u32;
     let faces = faces.iter().map(|face| face.map(place)).collect();
