@@ -17,9 +17,14 @@ const POWER: f64 = 2.85;
 const BYTES_PER_TET: f64 = 420.0;
 const BYTES_PER_BLOCK: f64 = 4e6;
 
-/// Bytes of a tetrahedron in the store and in a VTU, its share of points and boundary faces included.
+/// Bytes of a tetrahedron in the store and in a VTU, its share of points and boundary faces included; of a VTU whose vertex
+/// numbers take 64 bits, and are compressed.
 const STORED_PER_TET: f64 = 17.0;
 const WRITTEN_PER_TET: f64 = 35.0;
+const WRITTEN_WIDE_PER_TET: f64 = 23.0;
+
+/// Vertex numbers of a tetrahedron. Those of boundary faces come on top: what is written is rather less than estimated.
+const NUMBERS_PER_TET: f64 = 4.0;
 
 /// What a run is expected to take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -61,7 +66,9 @@ impl Estimate {
             all.largest_block_bytes = all.largest_block_bytes.max(cost.bytes);
         }
         all.stored_bytes = (all.tets * STORED_PER_TET) as u64;
-        all.written_bytes = (all.tets * WRITTEN_PER_TET) as u64;
+        let is_wide = all.tets * NUMBERS_PER_TET > f64::from(i32::MAX);
+        let written = if is_wide { WRITTEN_WIDE_PER_TET } else { WRITTEN_PER_TET };
+        all.written_bytes = (all.tets * written) as u64;
         all
     }
 }
