@@ -103,14 +103,12 @@ fn damaged_files_are_errors() {
 #[test]
 fn vertex_numbers_of_64_bits() {
     let mut body = Cursor::new(Vec::new());
-    let mut text = String::new();
     let mut array = |name: &str, kind: &str, width: usize, bytes: Vec<u8>| {
         let offset = body.stream_position().unwrap();
         let values = bytes.len() / width;
         write_blocks(&mut body, values, width, Compression::fast(), |out| out.push(bytes.len(), |i| [bytes[i]]))
             .unwrap();
-        text += &format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"appended\" offset=\"{offset}\"/>");
-        std::mem::take(&mut text)
+        format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"appended\" offset=\"{offset}\"/>")
     };
     let wide = |values: &[u64]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
     let narrow = |values: &[i32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();

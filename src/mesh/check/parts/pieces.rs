@@ -319,8 +319,7 @@ impl Parts for Cut<'_> {
 
     fn wall(&self, part: u32) -> io::Result<WallPiece> {
         let (faces, _) = self.pieces.labelled(part)?;
-        let (points, vertices, faces) = apart(self.pieces, &faces)?;
-        Ok(WallPiece { points, vertices, faces })
+        apart(self.pieces, &faces)
     }
 
     fn joined(&self) -> &[[(u32, u32); 2]] {
@@ -331,7 +330,7 @@ impl Parts for Cut<'_> {
         let tets = self.pieces.tets(part)?;
         let handles = &self.known[part as usize].joints[joint as usize].faces;
         let faces: Vec<[u32; 3]> = handles.iter().map(|&handle| face_vertices(&tets, handle)).collect();
-        let (points, vertices, faces) = apart(self.pieces, &faces)?;
+        let WallPiece { points, vertices, faces } = apart(self.pieces, &faces)?;
         Ok(JointFaces { points, vertices, faces })
     }
 
@@ -349,11 +348,11 @@ impl Parts for Cut<'_> {
     }
 }
 
-/// Faces in the numbers of the whole with points of their own: these, their numbers in the whole, the faces over them.
-fn apart(pieces: &dyn Pieces, faces: &[[u32; 3]]) -> io::Result<(Vec<Point3>, Vec<u32>, Vec<[u32; 3]>)> {
+/// Faces in the numbers of the whole with points of their own.
+fn apart(pieces: &dyn Pieces, faces: &[[u32; 3]]) -> io::Result<WallPiece> {
     let vertices = distinct(faces.as_flattened());
     let points = pieces.points_of(&vertices)?;
     let place = |v: u32| vertices.partition_point(|&x| x < v) as u32;
     let faces = faces.iter().map(|face| face.map(place)).collect();
-    Ok((points, vertices, faces))
+    Ok(WallPiece { points, vertices, faces })
 }
