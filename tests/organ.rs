@@ -202,3 +202,12 @@ fn a_file_is_checked_block_by_block_as_in_memory() {
     assert_eq!((code, whole["verdict"].as_str()), (FINE, Some("valid")));
     assert_eq!(checked(&mesh, &["--memory", "1MiB"]), (code, whole));
 }
+
+#[test]
+#[ignore = "a known fault: the web in the crotch of a thick fork meets a thin vessel that runs through it, although it is \
+            0.2 sums of radii from either branch; refinement does not know of webs, and blocks not of each other"]
+fn a_thin_vessel_runs_through_the_crotch_of_a_thick_fork() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // Twelve vessels of a grown kidney (250,000 terminals, seed 0), refined.
+    assert_code(&run(&fixture("crotch.vtp"), &folder.path().join("a.vtu"), &[]), FINE);
+}
