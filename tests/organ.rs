@@ -203,11 +203,24 @@ fn a_file_is_checked_block_by_block_as_in_memory() {
     assert_eq!(checked(&mesh, &["--memory", "1MiB"]), (code, whole));
 }
 
+/// Twelve vessels of a grown kidney (250,000 terminals, seed 0), refined: the web in the crotch of a thick fork meets a thin
+/// vessel that runs through it, though that is 0.2 sums of radii from either branch. No block knows of the vessels of
+/// another one, so this is seen in the whole, and the fork is made again, finer.
 #[test]
-#[ignore = "a known fault: the web in the crotch of a thick fork meets a thin vessel that runs through it, although it is \
-            0.2 sums of radii from either branch; refinement does not know of webs, and blocks not of each other"]
 fn a_thin_vessel_runs_through_the_crotch_of_a_thick_fork() {
     let folder = tempfile::tempdir().expect("a folder");
-    // Twelve vessels of a grown kidney (250,000 terminals, seed 0), refined.
-    assert_code(&run(&fixture("crotch.vtp"), &folder.path().join("a.vtu"), &[]), FINE);
+    let path = |name: &str| folder.path().join(name);
+    let work = path("work").display().to_string();
+    let output = run(&fixture("crotch.vtp"), &path("a.vtu"), &["--json"]);
+    assert_code(&output, FINE);
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let retries = report["run"]["retries"].as_array().expect("a list");
+    let reasons: Vec<_> = retries.iter().filter_map(|retry| retry["reason"].as_str()).collect();
+    assert!(matches!(reasons[..], [reason] if reason.starts_with("its wall meets that of")), "{retries:#?}");
+    let expected = fs::read(path("a.vtu")).expect("a mesh");
+    // A run that finds its blocks done finds those that were made again, too.
+    for options in [["--work-dir", &work, "-j", "1"], ["--work-dir", &work, "-j", "3"]] {
+        assert_code(&run(&fixture("crotch.vtp"), &path("b.vtu"), &options), FINE);
+        assert!(fs::read(path("b.vtu")).expect("a mesh") == expected, "{options:?}");
+    }
 }

@@ -29,6 +29,9 @@ const CHANGES: [&str; 7] = [
     "much finer voxel, thin kernel",
 ];
 
+/// The ways in which clusters are tried whose walls meet those of others.
+pub const APART: [usize; 2] = [5, 6];
+
 /// What helped after so many failures.
 pub fn remedy(failures: usize) -> String {
     match CHANGES.get(failures) {
@@ -53,8 +56,9 @@ fn variants(plan: &MeshPlan) -> [BlockParams; CHANGES.len()] {
 
 /// The ways in which a cluster is tried, each with its place in the list of all. `overlapping`: vessels of the network
 /// overlap in it, or come so close to each other that they may. If neither another grid nor a finer one with a narrower
-/// kernel keeps them apart they are taken as one, at once if that is what is wanted.
-fn ways(plan: &MeshPlan, overlapping: bool) -> Vec<(usize, BlockParams)> {
+/// kernel keeps them apart they are taken as one, at once if that is what is wanted. `first`: the first of `CHANGES` that is
+/// tried.
+fn ways(plan: &MeshPlan, overlapping: bool, first: usize) -> Vec<(usize, BlockParams)> {
     let apart = variants(plan);
     let fused = apart.map(|params| BlockParams { allow_fused: true, ..params });
     let places = (0..).zip([apart, fused].concat());
@@ -63,7 +67,7 @@ fn ways(plan: &MeshPlan, overlapping: bool) -> Vec<(usize, BlockParams)> {
         (true, true) => place >= CHANGES.len(),
         (true, false) => [0, 1, 5].contains(&place) || place >= CHANGES.len(),
     };
-    places.filter(|(place, _)| is_tried(*place)).collect()
+    places.filter(|(place, _)| is_tried(*place) && place % CHANGES.len() >= first).collect()
 }
 
 /// A block with a smaller radius ratio is tried in other ways, too.
@@ -112,17 +116,18 @@ fn goodness(block: &Finished) -> (bool, f64) {
     (block.certificate.is_sound(), block.certificate.worst_ratio())
 }
 
-/// Meshes a cluster. `overlapping`: vessels of the network overlap in it; `original`: the number of a terminal in the network
-/// as it was read.
+/// Meshes a cluster. `overlapping`: vessels of the network overlap in it; `first`: the way that is tried first; `original`:
+/// the number of a terminal in the network as it was read.
 pub fn cluster(
     id: ClusterId,
     cluster: &Cluster,
     plan: &MeshPlan,
     overlapping: bool,
+    first: usize,
     original: impl Fn(NodeId) -> u32,
 ) -> Tried {
     let name = format!("cluster {}", id.0);
-    first_good(&name, ways(plan, overlapping), |params| {
+    first_good(&name, ways(plan, overlapping, first), |params| {
         let mesh = mesh_cluster(id, cluster, params)?;
         Finished::of_cluster(mesh, &original).map_err(|source| BlockError::Faces { block: name.clone(), source })
     })
@@ -220,14 +225,18 @@ mod tests {
     #[test]
     fn vessels_that_may_overlap_are_kept_apart_if_they_can_be() {
         let fused = |plan: &MeshPlan, overlapping| -> Vec<bool> {
-            ways(plan, overlapping).iter().map(|(_, params)| params.allow_fused).collect()
+            ways(plan, overlapping, 0).iter().map(|(_, params)| params.allow_fused).collect()
         };
         let plan = MeshPlan::default();
         assert_eq!(fused(&plan, false), [false; CHANGES.len()]);
         assert_eq!(fused(&plan, true), [[false; 3].as_slice(), &[true; CHANGES.len()]].concat());
         assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; CHANGES.len()]);
-        let words: Vec<String> = ways(&plan, true).iter().map(|(place, _)| remedy(*place)).collect();
+        let words: Vec<String> = ways(&plan, true, 0).iter().map(|(place, _)| remedy(*place)).collect();
         assert_eq!(words[2], "finer voxel, narrower kernel");
         assert_eq!(words[3], "vessels that overlap taken as one, as usual");
+        for first in APART {
+            assert_eq!(ways(&plan, false, first)[0].0, first);
+            assert!(ways(&plan, true, first).iter().any(|(_, params)| !params.allow_fused) == (first == 5));
+        }
     }
 }

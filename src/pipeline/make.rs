@@ -34,17 +34,23 @@ pub struct Workshop<'a> {
 }
 
 impl Workshop<'_> {
-    /// A cluster. `overlapping`: vessels of the network overlap in it.
+    /// A cluster. `overlapping`: vessels of the network overlap in it; `first`: the way in which it is tried first.
     ///
     /// # Errors
     /// When the store fails; a block that fails is no error here.
-    pub fn cluster(&self, id: ClusterId, cluster: &Cluster, overlapping: bool) -> Result<Made, StoreError> {
-        let key = cluster_key(cluster, self.plan, overlapping);
+    pub fn cluster(
+        &self,
+        id: ClusterId,
+        cluster: &Cluster,
+        overlapping: bool,
+        first: usize,
+    ) -> Result<Made, StoreError> {
+        let key = cluster_key(cluster, self.plan, overlapping, first);
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
         let original = |node| self.skeleton.node(node).original;
-        self.keep(key, attempts::cluster(id, cluster, self.plan, overlapping, original))
+        self.keep(key, attempts::cluster(id, cluster, self.plan, overlapping, first, original))
     }
 
     /// A connector between the discs that the vessel alone gives.
@@ -160,10 +166,11 @@ fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     });
 }
 
-fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool) -> Key {
+fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: usize) -> Key {
     let mut key = KeyMaker::new("cluster");
     options(&mut key, plan);
     key.id(u32::from(overlapping));
+    key.count(first);
     key.count(cluster.tubes.len());
     for tube in &cluster.tubes {
         key.point(&tube.a);

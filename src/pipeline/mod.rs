@@ -1,5 +1,6 @@
 //! Floor 5: the plan run over all blocks.
 
+mod apart;
 mod assemble;
 mod attempts;
 mod cures;

@@ -38,6 +38,16 @@ pub struct Blocks {
     pub times: BlockTimes,
 }
 
+impl Blocks {
+    /// What a block is called, by its number: clusters by their ids, then connectors.
+    pub fn name(&self, block: u32) -> String {
+        match (block as usize).checked_sub(self.clusters.len()) {
+            None => format!("cluster {block}"),
+            Some(connector) => format!("connector {connector}"),
+        }
+    }
+}
+
 /// What a run works with.
 pub struct Run<'a> {
     /// Vessels of the network that overlap.
@@ -107,7 +117,7 @@ impl Run<'_> {
         let count = partition.clusters.len();
         let mut costs: Vec<Cost> = partition.clusters.iter().map(|c| cluster_cost(c, plan)).collect();
         costs.extend(partition.cuts.iter().map(|cut| connector_cost(cut, plan)));
-        let cluster = |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i]);
+        let cluster = |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], 0);
         if plan.joint != JointStyle::Woven {
             let connector = |i: usize| shop.free_connector(CutId(i as u32), &partition.cuts[i]);
             let one = |i: usize| if i < count { cluster(i) } else { connector(i - count) };
@@ -132,7 +142,7 @@ impl Run<'_> {
     }
 
     /// One stage over blocks: what became of them, and their seconds.
-    fn timed<T: Send>(
+    pub(super) fn timed<T: Send>(
         &mut self,
         stage: Stage,
         costs: &[Cost],
@@ -147,7 +157,7 @@ impl Run<'_> {
 }
 
 /// For each cluster, whether two vessels overlap that both run through it.
-fn tangled_clusters(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Vec<bool> {
+pub(super) fn tangled_clusters(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Vec<bool> {
     let branches = skeleton.branches(&skeleton.adjacency());
     let mut clusters_of: BTreeMap<BranchId, BTreeSet<ClusterId>> = BTreeMap::new();
     for piece in &partition.pieces {

@@ -3,18 +3,21 @@
 use std::collections::BTreeMap;
 use std::io;
 
+use super::apart::{Hopeless, Meetings};
 use super::assemble::Assembly;
+use super::attempts::APART;
 use super::describe::{Clusters, announce, describe_blocks};
 use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
 use super::observer::{Observer, Stage};
-use super::plan::{MeshPlan, PlanError};
+use super::plan::{JointStyle, MeshPlan, PlanError};
 use super::report::{Meeting, MeshSize, RunReport};
 use super::rounds::{Blocks, RoundsError, Run};
 use super::store::{Store, StoreError};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
 use super::whole::Whole;
+use crate::mesh::check::parts::PartsCheck;
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
@@ -105,11 +108,11 @@ pub fn mesh_network(
     clock: &mut Clock,
 ) -> Result<Meshed, RunError> {
     let store = Store::in_memory();
-    let joined = join_blocks(network, plan, &store, &|_| Ok(()), observer, clock)?;
     if plan.smooths_joints() {
-        return joined.smoothed(observer, clock);
+        return join_blocks(network, plan, &store, &[], &|_| Ok(()), observer, clock)?.smoothed(observer, clock);
     }
-    let Stored { whole, expectation, check, mut report } = joined.checked(plan, observer, clock)?;
+    let Stored { whole, expectation, check, mut report } =
+        mesh_into(&store, network, plan, &|_| Ok(()), observer, clock)?;
     let mesh = clock.time(observer, Stage::Merge, 0, || gather(&whole))?;
     report.stages = clock.stages();
     Ok(Meshed { mesh, expectation, check, report })
@@ -129,20 +132,34 @@ pub fn mesh_into<'a>(
     observer: &dyn Observer,
     clock: &mut Clock,
 ) -> Result<Stored<'a>, RunError> {
-    join_blocks(network, plan, store, fits, observer, clock)?.checked(plan, observer, clock)
+    // What is in memory for the blocks is not while the whole is checked. In the rare case that blocks meet everything is
+    // done again, which finds all blocks but these in the store. Woven connectors belong to the clusters as they are.
+    let tries = if plan.joint == JointStyle::Woven { 0 } else { APART.len() };
+    let mut met = Vec::new();
+    loop {
+        let joined = join_blocks(network, plan, store, &met, fits, observer, clock)?;
+        let (stored, meetings) = joined.checked(plan, observer, clock)?;
+        if meetings.is_empty() || met.len() == tries {
+            return Ok(stored);
+        }
+        met.push(meetings);
+    }
 }
 
 /// Blocks that are done and numbered, before anybody has looked at the whole.
 struct Joined<'a> {
     whole: Whole<'a>,
     expectation: Expectation,
+    hopeless: Hopeless,
     report: RunReport,
 }
 
+/// `met`: which blocks met when this was done before, as often as it was.
 fn join_blocks<'a>(
     network: &Skeleton,
     plan: &MeshPlan,
     store: &'a Store,
+    met: &[Meetings],
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     observer: &dyn Observer,
     clock: &mut Clock,
@@ -151,10 +168,16 @@ fn join_blocks<'a>(
     let mut report = RunReport::default();
     let (skeleton, overlaps) = clock.time(observer, Stage::Prepare, 0, || prepare(network, &mut report));
     let terminals = terminals::assign(&skeleton, &plan.roots)?;
-    announce(&report, observer);
+    if met.is_empty() {
+        announce(&report, observer);
+    }
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let mut run = Run { overlaps: &overlaps, shop, observer, clock };
-    let blocks = run.build(fits)?;
+    let mut blocks = run.build(if met.is_empty() { fits } else { &|_| Ok(()) })?;
+    for (way, meetings) in met.iter().enumerate() {
+        run.part(&mut blocks, meetings, way)?;
+    }
+    let hopeless = Hopeless::of(&skeleton, &blocks.partition, &overlaps);
     let clusters = Clusters::of(&shop, &blocks)?;
     describe_blocks(&skeleton, &shop, &blocks, &clusters, &mut report)?;
     let nothing_left = blocks.clusters.iter().all(Result::is_err);
@@ -168,21 +191,27 @@ fn join_blocks<'a>(
     }
     let number = || Whole::new(store, &skeleton, &blocks, &terminals);
     let whole = clock.time(observer, Stage::Merge, 0, number)?;
-    Ok(Joined { whole, expectation, report })
+    Ok(Joined { whole, expectation, hopeless, report })
 }
 
 impl<'a> Joined<'a> {
-    fn checked(self, plan: &MeshPlan, observer: &dyn Observer, clock: &mut Clock) -> Result<Stored<'a>, RunError> {
-        let Self { whole, expectation, mut report } = self;
+    /// With the mesh comes which of its blocks meet.
+    fn checked(
+        self,
+        plan: &MeshPlan,
+        observer: &dyn Observer,
+        clock: &mut Clock,
+    ) -> io::Result<(Stored<'a>, Meetings)> {
+        let Self { whole, expectation, hopeless, mut report } = self;
         let check = || whole.check(&expectation, plan.memory);
-        let check = clock.time(observer, Stage::Check, 0, check)?;
+        let PartsCheck { report: check, meeting } = clock.time(observer, Stage::Check, 0, check)?;
         report.mesh = whole.size();
         report.stages = clock.stages();
-        Ok(Stored { whole, expectation, check, report })
+        Ok((Stored { whole, expectation, check, report }, hopeless.leave(meeting)))
     }
 
     fn smoothed(self, observer: &dyn Observer, clock: &mut Clock) -> Result<Meshed, RunError> {
-        let Self { whole, expectation, mut report } = self;
+        let Self { whole, expectation, mut report, .. } = self;
         let mut assembly = clock.time(observer, Stage::Merge, 0, || Assembly::new(&whole))?;
         report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
         let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;

@@ -94,7 +94,7 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
     let params = PartitionParams { rho: plan.rho, ..PartitionParams::default() };
     let partition = partition(network, &params).expect("partitioned");
     let cluster = |(i, cluster): (usize, &Cluster)| {
-        attempts::cluster(ClusterId(i as u32), cluster, plan, false, |node| node.0).result.expect("meshed")
+        attempts::cluster(ClusterId(i as u32), cluster, plan, false, 0, |node| node.0).result.expect("meshed")
     };
     let mut blocks: Vec<Finished> = partition.clusters.iter().enumerate().map(cluster).collect();
     for (i, cut) in partition.cuts.iter().enumerate() {
@@ -181,6 +181,31 @@ fn vessels_that_overlap_are_meshed_and_named() {
     assert!(!meshed.check.is_valid());
     let positive = meshed.check.line(crate::mesh::check::Line::PositiveTets).expect("a line");
     assert_eq!(positive.outcome, crate::mesh::check::Outcome::Pass);
+}
+
+/// A fork, and a thin straight vessel across it through its crotch, so far from the node.
+fn through_the_crotch(way: f64) -> Skeleton {
+    let nodes = [
+        [-12.0, 0.0, 0.0, 1.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [12.0, 3.0, 0.0, 0.9],
+        [12.0, -3.0, 0.0, 0.9],
+        [way, 0.0, -6.0, 0.1],
+        [way, 0.0, 6.0, 0.1],
+    ];
+    skeleton(&nodes, &[[0, 1], [1, 2], [1, 3], [4, 5]])
+}
+
+#[test]
+fn blocks_that_meet_are_made_again_unless_their_vessels_overlap() {
+    let finer = ["finer voxel, narrower kernel", "much finer voxel, thin kernel"];
+    // Vessels that overlap, where no other wall can help; vessels that do not, whose walls meet all the same; apart.
+    for (way, remedies, valid) in [(4.0, &finer[..0], false), (4.5, &finer[..], false), (5.0, &[], true)] {
+        let meshed = run(&through_the_crotch(way), &MeshPlan::default()).expect("meshed");
+        let tried: Vec<&str> = meshed.report.retries.iter().map(|retry| retry.remedy.as_str()).collect();
+        assert!(meshed.report.retries.iter().all(|retry| retry.reason == "its wall meets that of connector 0"));
+        assert_eq!((&tried[..], meshed.check.is_valid()), (remedies, valid), "{way}");
+    }
 }
 
 #[test]

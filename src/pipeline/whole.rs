@@ -13,8 +13,8 @@ use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
 use crate::block::{FinishedJoint, Record};
 use crate::mesh::adjacency::face_vertices;
-use crate::mesh::check::parts::{Certificate, JointFaces, Parts, WallPiece, check_parts};
-use crate::mesh::check::{CheckReport, Expectation};
+use crate::mesh::check::parts::{Certificate, JointFaces, Parts, PartsCheck, WallPiece, check_parts};
+use crate::mesh::check::Expectation;
 use crate::mesh::source::{
     EachFaces, EachLabels, EachPoints, EachTets, FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece,
 };
@@ -208,12 +208,14 @@ impl<'a> Whole<'a> {
         MeshSize { tets, points, wall_triangles: boundary - cap_triangles, cap_triangles }
     }
 
-    /// Checks it, with walls of so many bytes in memory at a time.
+    /// Checks it, with walls of so many bytes in memory at a time. What meets is named by the blocks' numbers.
     ///
     /// # Errors
     /// When a block cannot be read.
-    pub fn check(&self, expectation: &Expectation, memory: u64) -> io::Result<CheckReport> {
-        check_parts(self, &self.patches, Some(expectation), memory as usize)
+    pub fn check(&self, expectation: &Expectation, memory: u64) -> io::Result<PartsCheck> {
+        let PartsCheck { report, mut meeting } = check_parts(self, &self.patches, Some(expectation), memory as usize)?;
+        meeting.as_flattened_mut().iter_mut().for_each(|part| *part = self.parts[*part as usize].block as u32);
+        Ok(PartsCheck { report, meeting })
     }
 
     /// The vertices of every joint, by their numbers in the whole.

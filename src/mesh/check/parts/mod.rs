@@ -57,7 +57,7 @@ pub use pieces::{LabelledFaces, Pieces, PiecesError, Unfit, check_pieces};
 pub use whole::check_parts;
 
 use super::nested::Enclosed;
-use super::result::{Intersection, Line, Offender};
+use super::result::{CheckReport, Intersection, Line, Offender};
 use crate::geometry::Point3;
 use crate::mesh::quality::QualityPiece;
 use crate::mesh::{Cap, TetMesh};
@@ -198,6 +198,15 @@ pub struct JointFaces {
     pub vertices: Vec<u32>,
     /// Faces, oriented out of the part, as indices into `points`.
     pub faces: Vec<[u32; 3]>,
+}
+
+/// What was found in a mesh that is made of parts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartsCheck {
+    /// The lines.
+    pub report: CheckReport,
+    /// Pairs of parts whose walls meet elsewhere than at the rims of their joints, ascending.
+    pub meeting: Vec<[u32; 2]>,
 }
 
 /// Where the parts are, in memory or on disk.

@@ -103,7 +103,7 @@ pub fn check_pieces(
     if cut.points() != pieces.points() as u64 {
         return Err(Unfit::Shared.into());
     }
-    Ok(check_parts(&cut, pieces.patches(), expectation, memory)?)
+    Ok(check_parts(&cut, pieces.patches(), expectation, memory)?.report)
 }
 
 /// The pieces as parts.

@@ -65,6 +65,8 @@ pub(super) struct Meetings {
     pub edges: Vec<([u32; 2], Point3)>,
     /// Points with different ids in one place.
     pub twins: Vec<([u32; 2], Point3)>,
+    /// Pairs of parts of whose walls any of this is true.
+    pub parts: Vec<[u32; 2]>,
 }
 
 impl Meetings {
@@ -76,6 +78,7 @@ impl Meetings {
         self.intersections.append(&mut other.intersections);
         self.edges.append(&mut other.edges);
         self.twins.append(&mut other.twins);
+        self.parts.append(&mut other.parts);
     }
 }
 
@@ -160,10 +163,10 @@ fn load(reader: &Reader, pairs: &[[u32; 2]], walls: &mut FxHashMap<u32, Arc<Wall
 fn test(pairs: &[[u32; 2]], walls: &FxHashMap<u32, Arc<Wall>>) -> Meetings {
     let test = |pair: &[u32; 2]| {
         // The same whichever comes first along the curve.
-        let [a, b] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
-        let (Some(a), Some(b)) = (walls.get(&a), walls.get(&b)) else { return None };
+        let parts = [pair[0].min(pair[1]), pair[0].max(pair[1])];
+        let [Some(a), Some(b)] = parts.map(|part| walls.get(&part)) else { return None };
         let meetings = test_pair(a, b);
-        (!meetings.is_empty()).then_some(meetings)
+        (!meetings.is_empty()).then(|| Meetings { parts: vec![parts], ..meetings })
     };
     let found: Vec<Meetings> = pairs.par_iter().with_min_len(8).filter_map(test).collect();
     let mut all = Meetings::default();

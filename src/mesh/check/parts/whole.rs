@@ -4,7 +4,7 @@ use super::glue::{Glued, Held, needs_sound_arrays};
 use super::joints::Joined;
 use super::nests;
 use super::walls::{self, Meetings, Reader};
-use super::{Fault, HeldCap, Parts, ids, joints};
+use super::{Fault, HeldCap, Parts, PartsCheck, ids, joints};
 use crate::geometry::Bvh;
 use crate::mesh::Patch;
 use crate::mesh::check::labels;
@@ -100,7 +100,7 @@ pub fn check_parts(
     patches: &[Patch],
     expectation: Option<&Expectation>,
     memory: usize,
-) -> io::Result<CheckReport> {
+) -> io::Result<PartsCheck> {
     let mut tallies = Tallies::default();
     let held = Held::read(parts, &mut tallies)?;
     let counts = Counts { points: held.points as usize, tets: held.tets as usize, ..Counts::default() };
@@ -112,7 +112,7 @@ pub fn check_parts(
         let result =
             |l| if needs_sound_arrays(l) { LineResult::skipped(l, Skipped::Because(line)) } else { tallies.take(l) };
         let lines = Line::ALL.into_iter().map(result).collect();
-        return Ok(CheckReport::new(counts, lines, None, Vec::new()));
+        return Ok(PartsCheck { report: CheckReport::new(counts, lines, None, Vec::new()), meeting: Vec::new() });
     }
     let mut whole = Whole { parts, patches, expectation, held, tallies, joined: Joined::default() };
     whole.joined = joints::check(parts, &whole.held, &mut whole.tallies)?;
@@ -129,7 +129,7 @@ struct Whole<'a> {
 }
 
 impl Whole<'_> {
-    fn check(mut self, mut counts: Counts, memory: usize) -> io::Result<CheckReport> {
+    fn check(mut self, mut counts: Counts, memory: usize) -> io::Result<PartsCheck> {
         // What follows from joints is only looked at where they are sound.
         let sound = self.joined.broken.is_none()
             && self.tallies.first_of(&[Line::BoundaryFans, Line::LabelsMatchBoundary]).is_none();
@@ -141,7 +141,9 @@ impl Whole<'_> {
         let tree = Bvh::new(&boxes);
         drop(boxes);
         let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.flags };
-        let meetings = walls::meetings(reader, &tree, memory)?;
+        let mut meetings = walls::meetings(reader, &tree, memory)?;
+        let mut meeting = std::mem::take(&mut meetings.parts);
+        meeting.sort_unstable();
         let intersections = self.take_meetings(meetings);
         let roots: Vec<u32> = glued.surfaces().collect();
         let needed = [Line::PositiveTets, Line::BoundaryEdges, Line::NoSelfIntersection];
@@ -171,7 +173,8 @@ impl Whole<'_> {
                 lines.push(self.tallies.take(line));
             }
         }
-        Ok(CheckReport::new(counts, lines, Some(self.held.quality.quality()), intersections))
+        let report = CheckReport::new(counts, lines, Some(self.held.quality.quality()), intersections);
+        Ok(PartsCheck { report, meeting })
     }
 
     /// All pairs of faces that meet, ascending.

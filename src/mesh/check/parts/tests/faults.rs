@@ -183,7 +183,7 @@ fn parts_that_meet_are_found() {
     assert_same(&with_part(&star, cube_at([2.0, 0.0, 0.0], 0.1)).0);
     let seventh = 1.0 / 7.0;
     let cases = [
-        // Through a wall; on a wall with a corner; with an edge on an edge; corner to corner; face to face.
+        // Within two parts, through their joint; on a wall with a corner; with an edge on an edge; corner to corner; face to face.
         [0.7, 0.45, 0.43],
         [5.0 * seventh, 0.45, 0.69],
         [5.0 * seventh, 5.0 * seventh, 0.5],
@@ -197,7 +197,12 @@ fn parts_that_meet_are_found() {
         fails_alike(&parts, &whole);
         let set = |r: &CheckReport| r.intersections.iter().map(|i| (faces(i), i.kind)).collect::<BTreeSet<_>>();
         assert_eq!(set(&parts), set(&whole));
+        let meeting = check_parts(&cut, &cut.patches, None, 0).unwrap().meeting;
+        let added = cut.pieces.len() as u32 - 1;
+        assert!(meeting.iter().all(|pair| pair[1] == added), "{meeting:?}");
+        assert_eq!(meeting.is_empty(), parts.intersections.is_empty());
     }
+    assert_eq!(check_parts(&star, &star.patches, None, 0).unwrap().meeting, [[0; 2]; 0]);
 }
 
 fn faces(i: &Intersection) -> BTreeSet<[u32; 3]> {
@@ -279,7 +284,7 @@ fn the_result_depends_neither_on_memory_nor_on_threads() {
     let (cut, _) = with_part(&star(), cube_at([0.7, 0.45, 0.43], 0.09));
     let expected = cut.check();
     for memory in [0, 20_000, usize::MAX] {
-        let report = check_parts(&cut, &cut.patches, Some(&cut.expectation), memory).unwrap();
+        let report = check_parts(&cut, &cut.patches, Some(&cut.expectation), memory).unwrap().report;
         assert_eq!((&report, &report.intersections), (&expected, &expected.intersections));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

@@ -207,7 +207,7 @@ impl Cut {
     }
 
     fn check(&self) -> CheckReport {
-        check_parts(self, &self.patches, Some(&self.expectation), 1 << 20).unwrap()
+        check_parts(self, &self.patches, Some(&self.expectation), 1 << 20).unwrap().report
     }
 
     fn whole(&self) -> CheckReport {

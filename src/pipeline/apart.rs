@@ -1,0 +1,96 @@
+//! Blocks that meet. No block knows of the vessels of another one; when a web in the crotch of a fork, or the facets of a
+//! thick vessel, reach a vessel that runs close by, that is seen in the whole. The clusters are then made again, finer.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::attempts::{APART, remedy};
+use super::estimate::cluster_cost;
+use super::observer::Stage;
+use super::report::Retry;
+use super::rounds::{Blocks, Run, original_nodes, tangled_clusters};
+use super::store::StoreError;
+use crate::partition::{ClusterId, Partition};
+use crate::skeleton::{BranchId, Overlaps, Skeleton};
+
+/// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
+pub type Meetings = Vec<[u32; 2]>;
+
+/// Blocks that meet where finer walls would not help.
+#[derive(Debug, Default)]
+pub struct Hopeless {
+    clusters: u32,
+    pairs: BTreeSet<[u32; 2]>,
+}
+
+impl Hopeless {
+    /// Vessels overlap that run through the two blocks.
+    pub fn of(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Self {
+        let mut found = Self { clusters: partition.clusters.len() as u32, pairs: BTreeSet::new() };
+        if overlaps.pairs.is_empty() {
+            return found;
+        }
+        let branches = skeleton.branches(&skeleton.adjacency());
+        let mut blocks_of: BTreeMap<BranchId, BTreeSet<u32>> = BTreeMap::new();
+        for piece in &partition.pieces {
+            blocks_of.entry(piece.branch).or_default().insert(piece.cluster.0);
+        }
+        for (connector, cut) in (found.clusters..).zip(&partition.cuts) {
+            blocks_of.entry(cut.branch).or_default().insert(connector);
+        }
+        for overlap in &overlaps.pairs {
+            let [a, b] = overlap.edges.map(|e| blocks_of.get(&branches.of_edge[e.index()].0).into_iter().flatten());
+            for (&x, &y) in a.flat_map(|x| b.clone().map(move |y| (x, y))) {
+                found.pairs.insert([x.min(y), x.max(y)]);
+            }
+        }
+        found
+    }
+
+    /// Leaves what is worth another try: a cluster is in it, and it may help.
+    pub fn leave(&self, mut meetings: Meetings) -> Meetings {
+        meetings.retain(|pair| pair[0] < self.clusters && !self.pairs.contains(pair));
+        meetings
+    }
+}
+
+impl Run<'_> {
+    /// Makes the clusters again whose walls meet others, in the given one of the ways that are for that. A cluster that does
+    /// not come out so is left as it is.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub fn part(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: usize) -> Result<(), StoreError> {
+        let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
+        let mut again: BTreeMap<u32, u32> = BTreeMap::new();
+        for &[a, b] in meetings {
+            again.entry(a).or_insert(b);
+            again.entry(b).or_insert(a);
+        }
+        let again: Vec<(usize, u32)> = again.into_iter().map(|(block, other)| (block as usize, other)).collect();
+        let clusters = again.partition_point(|(block, _)| *block < partition.clusters.len());
+        let again = &again[..clusters];
+        let tangled = tangled_clusters(shop.skeleton, partition, self.overlaps);
+        let costs: Vec<_> = again.iter().map(|(i, _)| cluster_cost(&partition.clusters[*i], plan)).collect();
+        let make = |k: usize| {
+            let i = again[k].0;
+            shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], APART[way])
+        };
+        let (made, _) = self.timed(Stage::Blocks, &costs, make)?;
+        for (&(i, other), made) in again.iter().zip(made) {
+            let remedy = match &made {
+                Ok(_) => remedy(APART[way]),
+                Err(error) => format!("left as it is, for finer it fails: {error}"),
+            };
+            blocks.retries.push(Retry {
+                block: blocks.name(i as u32),
+                nodes: original_nodes(shop.skeleton, blocks.partition.clusters[i].nodes.iter().copied()),
+                reason: format!("its wall meets that of {}", blocks.name(other)),
+                remedy,
+            });
+            if made.is_ok() {
+                blocks.clusters[i] = made;
+            }
+        }
+        Ok(())
+    }
+}
