@@ -13,8 +13,8 @@ use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
 use crate::block::{FinishedJoint, Record};
 use crate::mesh::adjacency::face_vertices;
-use crate::mesh::check::parts::{Certificate, JointFaces, Parts, PartsCheck, WallPiece, check_parts};
 use crate::mesh::check::Expectation;
+use crate::mesh::check::parts::{Certificate, JointFaces, Parts, PartsCheck, WallPiece, check_parts};
 use crate::mesh::source::{
     EachFaces, EachLabels, EachPoints, EachTets, FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece,
 };
