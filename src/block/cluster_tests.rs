@@ -21,7 +21,7 @@ fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
         let origin = center + axis * 4.0;
         cluster.tubes.push(Tube { a: center, b: origin, ra: radius, rb: radius });
         cluster.tubes.push(Tube { a: origin, b: origin + axis * (1.7 * radius), ra: radius, rb: radius });
-        let overrun = vec![cluster.tubes.len() as u32 - 1];
+        let overrun = cluster.tubes.len() as u32 - 1;
         cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius }, kind, overrun });
     }
     cluster
@@ -162,7 +162,7 @@ fn ends_beside_each_other_leave_a_wall_between() {
             let axis = origin.coords.normalize();
             cluster.tubes.push(Tube { a: Point3::origin(), b: origin, ra: 1.0, rb: 1.0 });
             cluster.tubes.push(Tube { a: origin, b: origin + axis, ra: 1.0, rb: 1.0 });
-            let overrun = vec![cluster.tubes.len() as u32 - 1];
+            let overrun = cluster.tubes.len() as u32 - 1;
             let kind = cut(i as u32, (i % 2) as u8);
             cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius: 1.0 }, kind, overrun });
         }
@@ -186,7 +186,7 @@ fn ends_that_take_each_others_wall_take_less() {
             let axis = origin.coords.normalize();
             cluster.tubes.push(Tube { a: origin, b: Point3::origin(), ra: radius, rb: 1.0 });
             cluster.tubes.push(Tube { a: origin, b: origin + axis, ra: radius, rb: radius });
-            let overrun = vec![cluster.tubes.len() as u32 - 1];
+            let overrun = cluster.tubes.len() as u32 - 1;
             cluster.ends.push(ClusterEnd {
                 section: Section { origin, axis, radius },
                 kind: cut(i as u32, 0),

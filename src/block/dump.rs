@@ -64,7 +64,7 @@ struct ClusterEndDump {
     /// Cut and side, or neither.
     cut: Option<(u32, u8)>,
     node: Option<u32>,
-    overrun: Vec<u32>,
+    overrun: u32,
 }
 
 /// An end surface over its own points only.
@@ -91,7 +91,7 @@ pub fn dump_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> B
         section: e.section.into(),
         cut: if let EndKind::Cut { cut, side } = e.kind { Some((cut.0, side)) } else { None },
         node: if let EndKind::Terminal(node) = e.kind { Some(node.0) } else { None },
-        overrun: e.overrun.clone(),
+        overrun: e.overrun,
     };
     BlockDump::Cluster(ClusterDump {
         cluster: id.0,
@@ -185,7 +185,7 @@ impl ClusterEndDump {
             Some((cut, side)) => EndKind::Cut { cut: CutId(cut), side },
             None => EndKind::Terminal(NodeId(self.node.unwrap_or(u32::MAX))),
         };
-        ClusterEnd { section: self.section.into(), kind, overrun: self.overrun.clone() }
+        ClusterEnd { section: self.section.into(), kind, overrun: self.overrun }
     }
 }
 

@@ -1,5 +1,7 @@
 //! From settled cuts to the blocks' tubes, ends and paths.
 
+use std::collections::BTreeMap;
+
 use super::course::Way;
 use super::path::path;
 use super::settle::{Run, Settler};
@@ -9,18 +11,20 @@ use crate::skeleton::{BranchId, NodeId};
 
 const NONE: u32 = u32::MAX;
 
-pub(super) fn assemble(settler: &Settler, mut uncut: Vec<(BranchId, UncutReason)>) -> Partition {
-    let (clusters, of_root) = clusters(settler);
+pub(super) fn assemble(mut settler: Settler, mut uncut: Vec<(BranchId, UncutReason)>) -> Partition {
+    let (clusters, of_root) = clusters(&settler);
+    let Shortened { overruns, warnings } = Shortened::of(&settler, &of_root);
+    // Large networks ask for the room.
+    settler.forget_obstacles();
     let mut assembly = Assembly {
-        settler,
+        settler: &settler,
         of_root,
+        overruns,
         cut_of_slot: vec![NONE; settler.slots.len()],
-        partition: Partition { clusters, ..Partition::default() },
+        partition: Partition { clusters, warnings, ..Partition::default() },
     };
     assembly.cuts();
-    for run in 0..settler.runs.len() {
-        assembly.run(run);
-    }
+    assembly.runs();
     // A branch of several cuts may have lost only some of them.
     let is_cut = |branch: u32| {
         let slots = settler.first_slot[branch as usize] as usize..settler.first_slot[branch as usize + 1] as usize;
@@ -77,15 +81,63 @@ fn clusters(settler: &Settler) -> (Vec<Cluster>, Vec<u32>) {
     (list, of_root)
 }
 
+/// Terminals with another vessel in their way.
+#[derive(Default)]
+struct Shortened {
+    /// Length of the overrun beyond an end (0 or 1) of a run, if it is not the usual one.
+    overruns: BTreeMap<(u32, usize), f64>,
+    warnings: Vec<PartitionWarning>,
+}
+
+impl Shortened {
+    fn of(settler: &Settler, of_root: &[u32]) -> Self {
+        let mut found = Self::default();
+        for (index, run) in (0..).zip(&settler.runs) {
+            let terminals = settler.terminals[run.branch as usize];
+            for end in (0..2).filter(|&end| run.slots[end].is_none() && terminals[end]) {
+                found.terminal(settler, index, end, ClusterId(of_root[run.root as usize]));
+            }
+        }
+        found
+    }
+
+    fn terminal(&mut self, settler: &Settler, index: u32, end: usize, cluster: ClusterId) {
+        let run = settler.runs[index as usize];
+        let course = &settler.courses[run.branch as usize];
+        let (way, s) = (Way::BOTH[end], settler.range(&run)[end]);
+        let section = course.section(s, way);
+        let r = section.radius;
+        let full = settler.overrun(r, run.root);
+        let Err(near) = settler.tip_clear(index as usize, way, s, &section, full) else { return };
+        let node = course.branch.ends()[end];
+        let least = (settler.params.shortest_overrun * r).min(full);
+        let mut length = full;
+        while length > least {
+            length = (0.9 * length).max(least);
+            if settler.tip_clear(index as usize, way, s, &section, length).is_ok() {
+                self.overruns.insert((index, end), length);
+                self.warnings.push(PartitionWarning::ShortOverrun { cluster, node, near, radii: length / r });
+                return;
+            }
+        }
+        self.overruns.insert((index, end), least);
+        self.warnings.push(PartitionWarning::CapNotClear { cluster, node, near });
+    }
+}
+
 struct Assembly<'a> {
     settler: &'a Settler<'a>,
     of_root: Vec<u32>,
+    overruns: BTreeMap<(u32, usize), f64>,
     cut_of_slot: Vec<u32>,
     partition: Partition,
 }
 
 impl Assembly<'_> {
     fn cuts(&mut self) {
+        let count = self.settler.slots.iter().filter(|s| s.alive).count();
+        self.partition.cuts.reserve_exact(count);
+        self.partition.cut_arcs.reserve_exact(count);
         for (i, slot) in self.settler.slots.iter().enumerate().filter(|(_, s)| s.alive) {
             self.cut_of_slot[i] = self.partition.cuts.len() as u32;
             self.partition.cuts.push(Cut {
@@ -97,9 +149,29 @@ impl Assembly<'_> {
         }
     }
 
+    /// Takes the runs cluster by cluster, so that no list keeps room for longer than it grows.
+    fn runs(&mut self) {
+        let cluster_of = |&run: &u32| self.of_root[self.settler.runs[run as usize].root as usize];
+        let mut order: Vec<u32> = (0..self.settler.runs.len() as u32).collect();
+        order.sort_by_key(cluster_of);
+        let clusters: Vec<&[u32]> = order.chunk_by(|a, b| cluster_of(a) == cluster_of(b)).collect();
+        self.partition.pieces.reserve_exact(order.len());
+        for runs in clusters {
+            for &run in runs {
+                self.run(run);
+            }
+            let Some(piece) = self.partition.pieces.last() else { continue };
+            let Cluster { nodes, tubes, ends } = &mut self.partition.clusters[piece.cluster.0 as usize];
+            nodes.shrink_to_fit();
+            tubes.shrink_to_fit();
+            ends.shrink_to_fit();
+        }
+        self.partition.pieces.sort_unstable_by(|a, b| a.branch.cmp(&b.branch).then(a.arc[0].total_cmp(&b.arc[0])));
+    }
+
     /// Gives a run's tubes and ends to its cluster.
-    fn run(&mut self, index: usize) {
-        let run = self.settler.runs[index];
+    fn run(&mut self, index: u32) {
+        let run = self.settler.runs[index as usize];
         let course = &self.settler.courses[run.branch as usize];
         let arc = self.settler.range(&run);
         let terminals = self.settler.terminals[run.branch as usize];
@@ -110,14 +182,14 @@ impl Assembly<'_> {
         cluster.tubes.extend(course.tubes(arc[0], arc[1], flat));
         let tubes = first..cluster.tubes.len() as u32;
         self.partition.pieces.push(Piece { cluster: id, branch: BranchId(run.branch), arc, tubes });
-        for (end, way) in [Way::Back, Way::Onward].into_iter().enumerate() {
+        for (end, way) in Way::BOTH.into_iter().enumerate() {
             let section = course.section(arc[end], way);
             if let Some(slot) = run.slots[end] {
                 self.cut_end(id, run, slot, way, section);
             } else if terminals[end] {
-                let node = course.branch.ends()[end];
-                let overrun = self.terminal_overrun(id, index, way, arc[end], node, &section);
-                self.end(id, section, overrun, EndKind::Terminal(node));
+                let usual = self.settler.overrun(section.radius, run.root);
+                let overrun = self.overruns.get(&(index, end)).copied().unwrap_or(usual);
+                self.end(id, section, overrun, EndKind::Terminal(course.branch.ends()[end]));
             }
         }
     }
@@ -135,34 +207,7 @@ impl Assembly<'_> {
         let tube = cluster.tubes.len() as u32;
         let Section { origin, axis, radius } = section;
         cluster.tubes.push(Tube { a: origin, b: origin + axis * overrun, ra: radius, rb: radius });
-        cluster.ends.push(ClusterEnd { section, kind, overrun: vec![tube] });
+        cluster.ends.push(ClusterEnd { section, kind, overrun: tube });
         cluster.ends.len() as u32 - 1
-    }
-
-    /// Length of the overrun beyond a terminal, shortened where another vessel is in its way.
-    fn terminal_overrun(
-        &mut self,
-        cluster: ClusterId,
-        run: usize,
-        way: Way,
-        s: f64,
-        node: NodeId,
-        section: &Section,
-    ) -> f64 {
-        let r = section.radius;
-        let full = self.settler.overrun(r, self.settler.runs[run].root);
-        let Err(near) = self.settler.tip_clear(run, way, s, section, full) else { return full };
-        let least = (self.settler.params.shortest_overrun * r).min(full);
-        let mut length = full;
-        while length > least {
-            length = (0.9 * length).max(least);
-            if self.settler.tip_clear(run, way, s, section, length).is_ok() {
-                let radii = length / r;
-                self.partition.warnings.push(PartitionWarning::ShortOverrun { cluster, node, near, radii });
-                return length;
-            }
-        }
-        self.partition.warnings.push(PartitionWarning::CapNotClear { cluster, node, near });
-        least
     }
 }

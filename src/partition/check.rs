@@ -231,7 +231,7 @@ fn check_end(skeleton: &Skeleton, partition: &Partition, id: ClusterId, index: u
             at == Some(end.section.origin) && cluster.nodes.contains(&node)
         }
     };
-    if !named || end.overrun.iter().any(|&i| i as usize >= cluster.tubes.len()) {
+    if !named || end.overrun as usize >= cluster.tubes.len() {
         return Err(PartitionFlaw::End { cluster: id, end: index });
     }
     let section = &end.section;
@@ -241,9 +241,9 @@ fn check_end(skeleton: &Skeleton, partition: &Partition, id: ClusterId, index: u
         d.dot(&section.axis) > 0.0 && d.cross(&section.axis).norm() <= tolerance * d.norm()
     };
     // The overrun leaves the plane, and some tube of a piece runs into it, both along its axis.
-    let overrun: Vec<&Tube> = end.overrun.iter().map(|&i| &cluster.tubes[i as usize]).collect();
-    let leaves = overrun.first().is_some_and(|t| t.a == section.origin && t.ra == section.radius);
-    let mut tubes = cluster.tubes.iter().enumerate().filter(|(i, _)| !end.overrun.contains(&(*i as u32)));
+    let overrun = &cluster.tubes[end.overrun as usize];
+    let leaves = overrun.a == section.origin && overrun.ra == section.radius && along(overrun);
+    let mut tubes = cluster.tubes.iter().enumerate().filter(|(i, _)| *i != end.overrun as usize);
     let close = |p: &Point3| (p - section.origin).norm() <= tolerance * section.radius;
     let arrives = tubes.any(|(_, t)| {
         let back = Tube { a: t.b, b: t.a, ra: t.rb, rb: t.ra };
@@ -251,7 +251,7 @@ fn check_end(skeleton: &Skeleton, partition: &Partition, id: ClusterId, index: u
             || (close(&back.b) && along(&back) && close_to(back.rb, section.radius))
     });
     let unit = close_to(section.axis.norm(), 1.0);
-    if unit && leaves && arrives && overrun.iter().all(|t| along(t)) {
+    if unit && leaves && arrives {
         return Ok(());
     }
     Err(PartitionFlaw::Direction { cluster: id, end: index })

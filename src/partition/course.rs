@@ -13,6 +13,9 @@ pub(super) enum Way {
 }
 
 impl Way {
+    /// The ways out of a piece of a branch, at its start and at its end.
+    pub const BOTH: [Self; 2] = [Self::Back, Self::Onward];
+
     /// +1 or −1.
     pub fn sign(self) -> f64 {
         match self {

@@ -127,8 +127,8 @@ pub struct ClusterEnd {
     pub section: Section,
     /// What is there.
     pub kind: EndKind,
-    /// Indices into `Cluster::tubes` of the overrun: the pieces that lie beyond the plane.
-    pub overrun: Vec<u32>,
+    /// Index into `Cluster::tubes` of the overrun: the piece that lies beyond the plane.
+    pub overrun: u32,
 }
 
 /// What a cluster ends in.
@@ -183,7 +183,9 @@ pub fn partition(skeleton: &Skeleton, params: &PartitionParams) -> Result<Partit
     }
     let terminal = |node| cutter.end_kind(node) == window::BranchEnd::Terminal;
     let terminals = courses.iter().map(|c| c.branch.ends().map(terminal)).collect();
+    // Large networks ask for the room.
+    drop(cutter);
     let mut settler = settle::Settler::new(skeleton.nodes.len(), &courses, params, slots, terminals);
     uncut.extend(settler.settle());
-    Ok(assemble::assemble(&settler, uncut))
+    Ok(assemble::assemble(settler, uncut))
 }

@@ -17,7 +17,8 @@ pub(super) fn path(course: &Course, planes: [f64; 2]) -> Vec<Section> {
     let first = course.section(planes[0], Way::Onward);
     let mut last = course.section(planes[1], Way::Back);
     last.axis = -last.axis;
-    let mut sections = vec![first];
+    let mut sections = Vec::with_capacity(2);
+    sections.push(first);
     if course.has_node_between(planes[0], planes[1]) {
         sections.extend(stations(course, planes).into_iter().map(|s| Section {
             origin: course.point(s),
@@ -64,6 +65,7 @@ fn simplified(sections: &[Section]) -> Vec<Section> {
         kept.push(sections[next]);
         i = next;
     }
+    kept.shrink_to_fit();
     kept
 }
 

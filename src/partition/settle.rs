@@ -228,6 +228,12 @@ impl<'a> Settler<'a> {
         None
     }
 
+    /// Lets go of what `tip_clear` needs.
+    pub fn forget_obstacles(&mut self) {
+        self.obstacles = Vec::new();
+        self.tree = Bvh::new(&[]);
+    }
+
     /// Whether a run that ended at `s` would be clear of the other vessels of its cluster there; if not, one of these.
     fn clear_at(&self, run: usize, way: Way, s: f64) -> Result<(), BranchId> {
         let Run { branch, root, .. } = self.runs[run];

@@ -69,7 +69,7 @@ fn a_y_is_one_cluster_with_three_caps() {
     assert!(p.uncut.iter().all(|(_, r)| *r == UncutReason::Terminal));
     // Overrun: one radius, or 1.6 voxels of 2 · 0.8 / 3.
     for end in &p.clusters[0].ends {
-        let t = p.clusters[0].tubes[end.overrun[0] as usize];
+        let t = p.clusters[0].tubes[end.overrun as usize];
         let expected = end.section.radius.max(1.6 * 2.0 * 0.8 / 3.0);
         assert!((t.length() - expected).abs() < 1e-12);
     }
@@ -130,7 +130,7 @@ fn least_clearance(p: &Partition) -> f64 {
     let mut least = f64::INFINITY;
     for (i, cluster) in p.clusters.iter().enumerate() {
         for end in &cluster.ends {
-            let tip = cluster.tubes[end.overrun[0] as usize];
+            let tip = cluster.tubes[end.overrun as usize];
             let own = p.pieces.iter().find(|x| {
                 let near = |t: &Tube| [t.a, t.b].iter().any(|q| (q - end.section.origin).norm() < 1e-9);
                 x.cluster.0 as usize == i
@@ -138,7 +138,7 @@ fn least_clearance(p: &Partition) -> f64 {
             });
             let own = own.map_or(0..0, |x| x.tubes.clone());
             for (j, t) in cluster.tubes.iter().enumerate() {
-                if own.contains(&(j as u32)) || end.overrun.contains(&(j as u32)) {
+                if own.contains(&(j as u32)) || end.overrun == j as u32 {
                     continue;
                 }
                 let d = segment_segment([&tip.a, &tip.b], [&t.a, &t.b]).distance;
@@ -435,9 +435,9 @@ fn any_network() -> impl Strategy<Value = Skeleton> {
 /// Smallest distance of the rim of an end's tip from the axes of all vessels but its own, in radii of these.
 fn rim_clearance(cluster: &Cluster, end: &ClusterEnd, own: &Range<u32>) -> f64 {
     let (u, w) = end.section.frame();
-    let (r, length) = (end.section.radius, cluster.tubes[end.overrun[0] as usize].length());
+    let (r, length) = (end.section.radius, cluster.tubes[end.overrun as usize].length());
     let mut least = f64::INFINITY;
-    for i in (0..cluster.tubes.len() as u32).filter(|i| !own.contains(i) && !end.overrun.contains(i)) {
+    for i in (0..cluster.tubes.len() as u32).filter(|i| !own.contains(i) && end.overrun != *i) {
         let tube = &cluster.tubes[i as usize];
         for height in [-0.4 * r, 0.0, 0.5 * length, length] {
             for k in 0..12 {
@@ -478,7 +478,7 @@ proptest! {
             let cluster = &p.clusters[piece.cluster.0 as usize];
             let own = piece.tubes.start..piece.tubes.end;
             let ends = cluster.ends.iter().filter(|e| matches!(e.kind, EndKind::Cut { .. }));
-            for end in ends.filter(|e| own.contains(&e.overrun[0].wrapping_sub(1)) || own.end == e.overrun[0] || own.end + 1 == e.overrun[0]) {
+            for end in ends.filter(|e| own.contains(&e.overrun.wrapping_sub(1)) || own.end == e.overrun || own.end + 1 == e.overrun) {
                 let EndKind::Cut { cut, .. } = end.kind else { continue };
                 if p.cuts[cut.0 as usize].branch != piece.branch {
                     continue;

@@ -8,9 +8,10 @@ use super::estimate::cluster_cost;
 use super::observer::Stage;
 use super::report::Retry;
 use super::rounds::{Blocks, Run, original_nodes, tangled_clusters};
+use super::routes::Routes;
 use super::store::StoreError;
 use crate::partition::{ClusterId, Partition};
-use crate::skeleton::{BranchId, Overlaps, Skeleton};
+use crate::skeleton::{Overlaps, Skeleton};
 
 /// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
 pub type Meetings = Vec<[u32; 2]>;
@@ -29,19 +30,10 @@ impl Hopeless {
         if overlaps.pairs.is_empty() {
             return found;
         }
-        let branches = skeleton.branches(&skeleton.adjacency());
-        let mut blocks_of: BTreeMap<BranchId, BTreeSet<u32>> = BTreeMap::new();
-        for piece in &partition.pieces {
-            blocks_of.entry(piece.branch).or_default().insert(piece.cluster.0);
-        }
-        for (connector, cut) in (found.clusters..).zip(&partition.cuts) {
-            blocks_of.entry(cut.branch).or_default().insert(connector);
-        }
+        let routes = Routes::of(skeleton, partition);
         for overlap in &overlaps.pairs {
-            let [a, b] = overlap.edges.map(|e| blocks_of.get(&branches.of_edge[e.index()].0).into_iter().flatten());
-            for (&x, &y) in a.flat_map(|x| b.clone().map(move |y| (x, y))) {
-                found.pairs.insert([x.min(y), x.max(y)]);
-            }
+            let [a, b] = overlap.edges.map(|e| routes.blocks(e));
+            found.pairs.extend(a.flat_map(|x| b.clone().map(move |y| [x.min(y), x.max(y)])));
         }
         found
     }

@@ -188,8 +188,7 @@ fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: usi
                 key.id(node.0);
             }
         }
-        key.count(end.overrun.len());
-        end.overrun.iter().for_each(|&tube| key.id(tube));
+        key.id(end.overrun);
     }
     key.finish()
 }

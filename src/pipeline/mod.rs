@@ -11,6 +11,7 @@ mod observer;
 mod plan;
 mod report;
 mod rounds;
+mod routes;
 mod run;
 mod schedule;
 pub mod store;

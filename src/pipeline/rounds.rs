@@ -11,6 +11,7 @@ use super::make::{Kept, Made, Workshop};
 use super::observer::{Observer, Stage};
 use super::plan::JointStyle;
 use super::report::Retry;
+use super::routes::Routes;
 use super::schedule::{Cost, costliest_first};
 use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
@@ -158,16 +159,17 @@ impl Run<'_> {
 
 /// For each cluster, whether two vessels overlap that both run through it.
 pub(super) fn tangled_clusters(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Vec<bool> {
-    let branches = skeleton.branches(&skeleton.adjacency());
-    let mut clusters_of: BTreeMap<BranchId, BTreeSet<ClusterId>> = BTreeMap::new();
-    for piece in &partition.pieces {
-        clusters_of.entry(piece.branch).or_default().insert(piece.cluster);
-    }
     let mut tangled = vec![false; partition.clusters.len()];
-    for pair in overlaps.pairs.iter().map(|o| &o.edges).chain(&overlaps.unconnected) {
-        let [a, b] = pair.map(|e| clusters_of.get(&branches.of_edge[e.index()].0));
-        for cluster in a.into_iter().flatten().filter(|c| b.is_some_and(|b| b.contains(c))) {
-            tangled[cluster.0 as usize] = true;
+    if overlaps.pairs.is_empty() && overlaps.unconnected.is_empty() {
+        return tangled;
+    }
+    let routes = Routes::of(skeleton, partition);
+    for pair in overlaps.pairs.iter().map(|o| o.edges).chain(overlaps.unconnected.iter().copied()) {
+        let [a, b] = pair.map(|e| routes.blocks(e));
+        for block in a.filter(|block| b.clone().any(|other| other == *block)) {
+            if let Some(tangled) = tangled.get_mut(block as usize) {
+                *tangled = true;
+            }
         }
     }
     tangled

@@ -125,7 +125,10 @@ impl Skeleton {
     /// The branches.
     pub fn branches(&self, adjacency: &Adjacency) -> Branches {
         const NONE: (BranchId, u32) = (BranchId(u32::MAX), 0);
-        let mut walk = Walk { skeleton: self, adjacency, list: Vec::new(), of_edge: vec![NONE; self.edges.len()] };
+        // Rings come on top; of the others each has two ends.
+        let ends: usize = self.node_ids().map(|node| adjacency.valence(node)).filter(|&valence| valence != 2).sum();
+        let list = Vec::with_capacity(ends.div_ceil(2));
+        let mut walk = Walk { skeleton: self, adjacency, list, of_edge: vec![NONE; self.edges.len()] };
         for node in self.node_ids() {
             if adjacency.valence(node) != 2 {
                 for &edge in adjacency.edges(node) {

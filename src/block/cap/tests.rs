@@ -14,7 +14,7 @@ fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<ClusterEnd>) {
         tubes.push(Tube { a: b, b: b + axis * (1.25 * rb), ra: rb, rb });
         let section = Section { origin: b, axis, radius: rb };
         let kind = EndKind::Terminal(NodeId(i as u32));
-        ends.push(ClusterEnd { section, kind, overrun: vec![tubes.len() as u32 - 1] });
+        ends.push(ClusterEnd { section, kind, overrun: tubes.len() as u32 - 1 });
     }
     (tubes, ends)
 }
