@@ -1,48 +1,24 @@
 //! Blocks that meet. No block knows of the vessels of another one; when a web in the crotch of a fork, or the facets of a
 //! thick vessel, reach a vessel that runs close by, that is seen in the whole. The clusters are then made again, finer.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::attempts::{APART, remedy};
 use super::estimate::cluster_cost;
 use super::observer::Stage;
 use super::report::Retry;
-use super::rounds::{Blocks, Run, original_nodes, tangled_clusters};
-use super::routes::Routes;
+use super::rounds::{Blocks, Run, original_nodes};
+use super::routes::{Overlapping, tangled_clusters};
 use super::store::StoreError;
-use crate::partition::{ClusterId, Partition};
-use crate::skeleton::{Overlaps, Skeleton};
+use crate::partition::ClusterId;
 
 /// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
 pub type Meetings = Vec<[u32; 2]>;
 
-/// Blocks that meet where finer walls would not help.
-#[derive(Debug, Default)]
-pub struct Hopeless {
-    clusters: u32,
-    pairs: BTreeSet<[u32; 2]>,
-}
-
-impl Hopeless {
-    /// Vessels overlap that run through the two blocks.
-    pub fn of(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Self {
-        let mut found = Self { clusters: partition.clusters.len() as u32, pairs: BTreeSet::new() };
-        if overlaps.pairs.is_empty() {
-            return found;
-        }
-        let routes = Routes::of(skeleton, partition);
-        for overlap in &overlaps.pairs {
-            let [a, b] = overlap.edges.map(|e| routes.blocks(e));
-            found.pairs.extend(a.flat_map(|x| b.clone().map(move |y| [x.min(y), x.max(y)])));
-        }
-        found
-    }
-
-    /// Leaves what is worth another try: a cluster is in it, and it may help.
-    pub fn leave(&self, mut meetings: Meetings) -> Meetings {
-        meetings.retain(|pair| pair[0] < self.clusters && !self.pairs.contains(pair));
-        meetings
-    }
+/// Leaves the meetings at which finer walls may help: a cluster takes part, and it is not vessels that overlap.
+pub fn hopeful(mut meetings: Meetings, clusters: usize, overlapping: &Overlapping) -> Meetings {
+    meetings.retain(|pair| (pair[0] as usize) < clusters && !overlapping.do_overlap(*pair));
+    meetings
 }
 
 impl Run<'_> {

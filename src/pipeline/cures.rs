@@ -8,7 +8,7 @@ use super::report::Retry;
 use super::rounds::{Blocks, cut_nodes, original_nodes};
 use crate::block::BlockError;
 use crate::partition::{Cluster, ClusterEnd, EndKind, PartitionParams};
-use crate::skeleton::{BranchId, Overlaps, Skeleton};
+use crate::skeleton::{BranchId, Skeleton};
 
 /// How far the cure of a branch whose cut gave trouble has gone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,12 +23,6 @@ pub(super) enum Cure {
 
 /// Share of the room by which a plane is moved.
 const SHIFT: f64 = 0.5;
-
-/// The branches of vessels that overlap.
-pub(super) fn overlapping_branches(skeleton: &Skeleton, overlaps: &Overlaps) -> BTreeSet<[BranchId; 2]> {
-    let branches = skeleton.branches(&skeleton.adjacency());
-    overlaps.pairs.iter().map(|o| o.edges.map(|e| branches.of_edge[e.index()].0)).collect()
-}
 
 pub(super) fn partition_params(
     skeleton: &Skeleton,

@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use super::attempts;
-use super::cures::{Cure, cure, overlapping_branches, partition_params};
+use super::cures::{Cure, cure, partition_params};
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::{Kept, Made, Workshop};
 use super::observer::{Observer, Stage};
 use super::plan::JointStyle;
 use super::report::Retry;
-use super::routes::Routes;
+use super::routes::{branch_pairs, tangled_clusters};
 use super::schedule::{Cost, costliest_first};
 use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
@@ -87,8 +87,8 @@ impl Run<'_> {
     pub fn build(&mut self, fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>) -> Result<Blocks, RoundsError> {
         let plan = self.shop.plan;
         let mut cures: BTreeMap<BranchId, Cure> = BTreeMap::new();
-        let together =
-            if plan.fuse { overlapping_branches(self.shop.skeleton, self.overlaps) } else { BTreeSet::new() };
+        let overlapping = self.overlaps.pairs.iter().filter(|_| plan.fuse).map(|o| o.edges);
+        let together: BTreeSet<_> = branch_pairs(self.shop.skeleton, overlapping).into_iter().collect();
         let mut notes = Notes::default();
         let mut times = BlockTimes::default();
         let mut round = 0;
@@ -155,24 +155,6 @@ impl Run<'_> {
         let run = || costliest_first(costs, memory, step);
         Ok(self.clock.time(observer, stage, costs.iter().map(weight).sum(), run)?.into_iter().unzip())
     }
-}
-
-/// For each cluster, whether two vessels overlap that both run through it.
-pub(super) fn tangled_clusters(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Vec<bool> {
-    let mut tangled = vec![false; partition.clusters.len()];
-    if overlaps.pairs.is_empty() && overlaps.unconnected.is_empty() {
-        return tangled;
-    }
-    let routes = Routes::of(skeleton, partition);
-    for pair in overlaps.pairs.iter().map(|o| o.edges).chain(overlaps.unconnected.iter().copied()) {
-        let [a, b] = pair.map(|e| routes.blocks(e));
-        for block in a.filter(|block| b.clone().any(|other| other == *block)) {
-            if let Some(tangled) = tangled.get_mut(block as usize) {
-                *tangled = true;
-            }
-        }
-    }
-    tangled
 }
 
 /// Names of the nodes at the ends of a block's branches, as in the file that was read.

@@ -1,31 +1,84 @@
-//! Which blocks the vessels run through.
+//! Which blocks the branches run through.
 
 use crate::partition::Partition;
-use crate::skeleton::{BranchId, EdgeId, Skeleton};
+use crate::skeleton::{BranchId, EdgeId, Overlaps, Skeleton};
 
-/// The blocks through which each branch runs.
-pub struct Routes {
-    branch_of: Vec<(BranchId, u32)>,
-    /// Ascending; blocks by their numbers: clusters by their ids, then connectors.
-    through: Vec<(BranchId, u32)>,
+/// The branches of pairs of edges: each pair once, the lower branch first, ascending.
+pub fn branch_pairs(skeleton: &Skeleton, edges: impl Iterator<Item = [EdgeId; 2]>) -> Vec<[BranchId; 2]> {
+    let mut edges = edges.peekable();
+    if edges.peek().is_none() {
+        return Vec::new();
+    }
+    let branch_of = skeleton.branches(&skeleton.adjacency()).of_edge;
+    let mut pairs: Vec<[BranchId; 2]> = Vec::new();
+    for edges in edges {
+        let [a, b] = edges.map(|e| branch_of[e.index()].0);
+        pairs.push([a.min(b), a.max(b)]);
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
-impl Routes {
-    /// Of the skeleton's edges in the partition's blocks.
-    pub fn of(skeleton: &Skeleton, partition: &Partition) -> Self {
-        let connectors = (partition.clusters.len() as u32..).zip(&partition.cuts);
-        let mut through: Vec<(BranchId, u32)> =
-            partition.pieces.iter().map(|piece| (piece.branch, piece.cluster.0)).collect();
-        through.extend(connectors.map(|(block, cut)| (cut.branch, block)));
-        through.sort_unstable();
-        through.dedup();
-        Self { branch_of: skeleton.branches(&skeleton.adjacency()).of_edge, through }
+/// Each branch with each block that it runs through, ascending; blocks by their numbers: clusters by their ids, then
+/// connectors.
+fn routes(partition: &Partition) -> Vec<(BranchId, u32)> {
+    let connectors = (partition.clusters.len() as u32..).zip(&partition.cuts);
+    let mut routes: Vec<(BranchId, u32)> = partition.pieces.iter().map(|p| (p.branch, p.cluster.0)).collect();
+    routes.extend(connectors.map(|(block, cut)| (cut.branch, block)));
+    routes.sort_unstable();
+    routes.dedup();
+    routes
+}
+
+/// For each cluster, whether two vessels overlap, or meet at all, whose branches both run through it.
+pub fn tangled_clusters(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Vec<bool> {
+    let mut tangled = vec![false; partition.clusters.len()];
+    let edges = overlaps.pairs.iter().map(|o| o.edges).chain(overlaps.unconnected.iter().copied());
+    let pairs = branch_pairs(skeleton, edges);
+    if pairs.is_empty() {
+        return tangled;
+    }
+    let routes = routes(partition);
+    for [a, b] in pairs {
+        let first = routes.partition_point(|(branch, _)| *branch < a);
+        for &(_, block) in routes[first..].iter().take_while(|(branch, _)| *branch == a) {
+            if routes.binary_search(&(b, block)).is_ok()
+                && let Some(tangled) = tangled.get_mut(block as usize)
+            {
+                *tangled = true;
+            }
+        }
+    }
+    tangled
+}
+
+/// Whether two blocks hold branches of vessels that overlap.
+#[derive(Debug, Default)]
+pub struct Overlapping {
+    pairs: Vec<[BranchId; 2]>,
+    /// Each block with each of its branches, ascending; empty when nothing overlaps.
+    branches: Vec<(u32, BranchId)>,
+}
+
+impl Overlapping {
+    /// Of all blocks of a partition.
+    pub fn of(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Self {
+        if overlaps.pairs.is_empty() {
+            return Self::default();
+        }
+        let pairs = branch_pairs(skeleton, overlaps.pairs.iter().map(|o| o.edges));
+        let mut branches: Vec<(u32, BranchId)> = routes(partition).into_iter().map(|(b, block)| (block, b)).collect();
+        branches.sort_unstable();
+        Self { pairs, branches }
     }
 
-    /// The blocks of the branch of an edge, ascending.
-    pub fn blocks(&self, edge: EdgeId) -> impl Iterator<Item = u32> + Clone + '_ {
-        let branch = self.branch_of[edge.index()].0;
-        let first = self.through.partition_point(|(b, _)| *b < branch);
-        self.through[first..].iter().take_while(move |(b, _)| *b == branch).map(|(_, block)| *block)
+    /// Whether these two do.
+    pub fn do_overlap(&self, [x, y]: [u32; 2]) -> bool {
+        let of = |block: u32| {
+            let first = self.branches.partition_point(|(b, _)| *b < block);
+            self.branches[first..].iter().take_while(move |(b, _)| *b == block).map(|(_, branch)| *branch)
+        };
+        of(x).any(|a| of(y).any(|b| self.pairs.binary_search(&[a.min(b), a.max(b)]).is_ok()))
     }
 }

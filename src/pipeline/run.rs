@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io;
 
-use super::apart::{Hopeless, Meetings};
+use super::apart::{Meetings, hopeful};
 use super::assemble::Assembly;
 use super::attempts::APART;
 use super::describe::{Clusters, announce, describe_blocks};
@@ -13,6 +13,7 @@ use super::observer::{Observer, Stage};
 use super::plan::{JointStyle, MeshPlan, PlanError};
 use super::report::{Meeting, MeshSize, RunReport};
 use super::rounds::{Blocks, RoundsError, Run};
+use super::routes::Overlapping;
 use super::store::{Store, StoreError};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
@@ -150,7 +151,7 @@ pub fn mesh_into<'a>(
 struct Joined<'a> {
     whole: Whole<'a>,
     expectation: Expectation,
-    hopeless: Hopeless,
+    overlapping: Overlapping,
     report: RunReport,
 }
 
@@ -177,7 +178,7 @@ fn join_blocks<'a>(
     for (way, meetings) in met.iter().enumerate() {
         run.part(&mut blocks, meetings, way)?;
     }
-    let hopeless = Hopeless::of(&skeleton, &blocks.partition, &overlaps);
+    let overlapping = Overlapping::of(&skeleton, &blocks.partition, &overlaps);
     let clusters = Clusters::of(&shop, &blocks)?;
     describe_blocks(&skeleton, &shop, &blocks, &clusters, &mut report)?;
     let nothing_left = blocks.clusters.iter().all(Result::is_err);
@@ -191,7 +192,7 @@ fn join_blocks<'a>(
     }
     let number = || Whole::new(store, &skeleton, &blocks, &terminals);
     let whole = clock.time(observer, Stage::Merge, 0, number)?;
-    Ok(Joined { whole, expectation, hopeless, report })
+    Ok(Joined { whole, expectation, overlapping, report })
 }
 
 impl<'a> Joined<'a> {
@@ -202,12 +203,13 @@ impl<'a> Joined<'a> {
         observer: &dyn Observer,
         clock: &mut Clock,
     ) -> io::Result<(Stored<'a>, Meetings)> {
-        let Self { whole, expectation, hopeless, mut report } = self;
+        let Self { whole, expectation, overlapping, mut report } = self;
         let check = || whole.check(&expectation, plan.memory);
         let PartsCheck { report: check, meeting } = clock.time(observer, Stage::Check, 0, check)?;
         report.mesh = whole.size();
         report.stages = clock.stages();
-        Ok((Stored { whole, expectation, check, report }, hopeless.leave(meeting)))
+        let meetings = hopeful(meeting, report.blocks.clusters, &overlapping);
+        Ok((Stored { whole, expectation, check, report }, meetings))
     }
 
     fn smoothed(self, observer: &dyn Observer, clock: &mut Clock) -> Result<Meshed, RunError> {
