@@ -339,7 +339,7 @@ fn obstacles(
             let tube = Tube { a: course.points[i], b: course.points[i + 1], ra: *ra, rb: *rb };
             add(Kind::Edge(i as u32), &tube);
         }
-        for (end, terminal) in [Way::Back, Way::Onward].into_iter().zip(terminals[branch]) {
+        for (end, terminal) in Way::BOTH.into_iter().zip(terminals[branch]) {
             if terminal {
                 add(Kind::Overrun(end), &terminal_overrun(course, end, params));
             }

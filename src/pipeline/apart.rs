@@ -27,7 +27,7 @@ impl Run<'_> {
     ///
     /// # Errors
     /// When the store fails.
-    pub fn part(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: usize) -> Result<(), StoreError> {
+    pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: usize) -> Result<(), StoreError> {
         let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
         let mut again: BTreeMap<u32, u32> = BTreeMap::new();
         for &[a, b] in meetings {

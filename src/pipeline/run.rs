@@ -176,7 +176,7 @@ fn join_blocks<'a>(
     let mut run = Run { overlaps: &overlaps, shop, observer, clock };
     let mut blocks = run.build(if met.is_empty() { fits } else { &|_| Ok(()) })?;
     for (way, meetings) in met.iter().enumerate() {
-        run.part(&mut blocks, meetings, way)?;
+        run.set_apart(&mut blocks, meetings, way)?;
     }
     let overlapping = Overlapping::of(&skeleton, &blocks.partition, &overlaps);
     let clusters = Clusters::of(&shop, &blocks)?;

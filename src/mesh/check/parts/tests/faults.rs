@@ -183,7 +183,8 @@ fn parts_that_meet_are_found() {
     assert_same(&with_part(&star, cube_at([2.0, 0.0, 0.0], 0.1)).0);
     let seventh = 1.0 / 7.0;
     let cases = [
-        // Within two parts, through their joint; on a wall with a corner; with an edge on an edge; corner to corner; face to face.
+        // Within two parts, through their joint; on a wall with a corner; with an edge on an edge; corner to corner; face to
+        // face.
         [0.7, 0.45, 0.43],
         [5.0 * seventh, 0.45, 0.69],
         [5.0 * seventh, 5.0 * seventh, 0.5],
