@@ -189,7 +189,8 @@ impl Args {
         let rough = Estimate::rough(network, plan);
         let place = BlockPlace::choose(self.work_dir.as_deref(), self.restart, &self.output, &rough, plan.memory);
         let store = place.open(read, || self.options(plan))?;
-        let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, &self.output);
+        let kept = store.bytes_on_disk();
+        let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, &self.output);
         let mut clock = Clock::default();
         let result = pipeline::mesh_into(&store, network, plan, &fits, bars, &mut clock);
         let result = result.map_err(|e| self.explain(e, plan, refinement))?;

@@ -117,8 +117,15 @@ fn fingerprint(network: &Skeleton) -> crate::pipeline::store::Key {
     key.finish()
 }
 
-/// Refuses what the memory that is allowed, or the room on the disks, cannot hold.
-pub fn fits(estimate: &Estimate, plan: &MeshPlan, place: &BlockPlace, output: &Path) -> Result<(), TooLarge> {
+/// Refuses what the memory that is allowed, or the room on the disks, cannot hold. `kept`: bytes of blocks that an earlier run
+/// left at their place.
+pub fn fits(
+    estimate: &Estimate,
+    plan: &MeshPlan,
+    place: &BlockPlace,
+    kept: u64,
+    output: &Path,
+) -> Result<(), TooLarge> {
     let (estimate, memory) = (*estimate, plan.memory);
     if estimate.largest_block_bytes > memory {
         return Err(TooLarge::Block { estimate, memory });
@@ -131,7 +138,7 @@ pub fn fits(estimate: &Estimate, plan: &MeshPlan, place: &BlockPlace, output: &P
         }
     }
     let target = folder_of(output);
-    let mut stored = estimate.stored_bytes;
+    let mut stored = estimate.stored_bytes.saturating_sub(kept);
     let mut written = estimate.written_bytes;
     match place.folder() {
         None => stored = 0,

@@ -61,6 +61,11 @@ impl LogFile {
         self.name.clone()
     }
 
+    /// Bytes of it that are in use.
+    pub(super) fn length(&self) -> u64 {
+        self.writer.lock().unwrap_or_else(PoisonError::into_inner).end
+    }
+
     /// Appends a record; its number. When that fails, the file is as it was.
     pub(super) fn append(&self, key: Key, bytes: &[u8]) -> io::Result<usize> {
         let head = head_of(key, bytes);

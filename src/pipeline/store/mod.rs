@@ -146,6 +146,14 @@ impl Store {
         Ok(*slot.insert(RecordId(id as u32)))
     }
 
+    /// Bytes that the records take on a disk.
+    pub fn bytes_on_disk(&self) -> u64 {
+        match &self.place {
+            Place::Memory(_) => 0,
+            Place::File(log) => log.length(),
+        }
+    }
+
     /// The bytes of a record.
     pub fn bytes(&self, id: RecordId) -> StoredBytes<'_> {
         StoredBytes { store: self, id }

@@ -66,9 +66,12 @@ fn a_work_directory_cut_off_anywhere_keeps_what_was_whole() {
         let kept = (0..6).take_while(|&i| store.find(key(i)).is_some()).count() as u32;
         assert_holds(&store, kept);
         fill(&store, kept..6);
+        assert_eq!(store.bytes_on_disk(), whole.len() as u64);
         drop(store);
         assert_eq!(fs::read(&path).expect("blocks"), whole);
+        assert_eq!(open(folder.path()).bytes_on_disk(), whole.len() as u64);
     }
+    assert_eq!(Store::in_memory().bytes_on_disk(), 0);
 }
 
 #[test]
