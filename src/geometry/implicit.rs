@@ -85,7 +85,32 @@ pub fn orient3d(p: [Site; 4]) -> i32 {
     let bound = 1e-14 * m.x * m.y * m.z
         + 7.0 * (e[0] * m.y * m.z + m.x * e[1] * m.z + m.x * m.y * e[2])
         + 14.0 * (e[0] * e[1] * m.z + e[0] * m.y * e[2] + m.x * e[1] * e[2] + e[0] * e[1] * e[2]);
-    if det.abs() > bound { sign(det) } else { orient3d_exact(&p) }
+    if det.abs() > bound {
+        sign(det)
+    } else if in_one_plane(&p) {
+        0
+    } else {
+        orient3d_exact(&p)
+    }
+}
+
+/// Whether all points lie on the plane of three corners, because of what they are.
+fn in_one_plane(sites: &[Site; 4]) -> bool {
+    let mut corners = [Point3::origin(); 3];
+    let mut count = 0;
+    for site in sites {
+        let of_site = site.on.map_or(std::slice::from_ref(site.at), |on| &on.corners);
+        for p in of_site {
+            if !corners[..count].contains(p) {
+                if count == 3 {
+                    return false;
+                }
+                corners[count] = *p;
+                count += 1;
+            }
+        }
+    }
+    true
 }
 
 /// Lexicographic order of the coordinates. Exact.
@@ -108,18 +133,24 @@ pub fn compare(p: Site, q: Site) -> Ordering {
 /// Coordinates fit in this many limbs: `predicates::in_exact_range` allows 386 bits, weights add 122.
 const WIDE: usize = 8;
 
-/// Scale of a set of points: `2^exponent` divides their ends' coordinates, `2^-fraction` their weights.
+/// Scale of a set of points: `2^exponent` divides their ends' coordinates, which are less than `2^top`, and `2^-fraction`
+/// their weights.
 struct Scale {
     exponent: i32,
+    top: i32,
     fraction: u32,
 }
 
 impl Scale {
     fn of(sites: &[Site]) -> Self {
-        let mut s = Self { exponent: i32::MAX, fraction: 0 };
+        let mut s = Self { exponent: i32::MAX, top: i32::MIN, fraction: 0 };
         let mut lower = |p: &Point3| {
             for x in p.iter() {
-                s.exponent = s.exponent.min(decompose(*x).1);
+                let (m, e) = decompose(*x);
+                s.exponent = s.exponent.min(e);
+                if m != 0 {
+                    s.top = s.top.max(e + (64 - m.unsigned_abs().leading_zeros()).cast_signed());
+                }
             }
         };
         for site in sites {
@@ -134,6 +165,27 @@ impl Scale {
             }
         }
         s
+    }
+
+    /// Whether coordinates and differences of them fit in 128 bits.
+    fn is_small(&self) -> bool {
+        i64::from(self.top) - i64::from(self.exponent) + i64::from(self.fraction) < 124
+    }
+
+    /// As [`Scale::coordinate`], where that is small.
+    fn small_coordinate(&self, site: &Site, axis: usize) -> i128 {
+        let integer = |x: f64| {
+            let (m, e) = decompose(x);
+            if m == 0 { 0 } else { i128::from(m) << (e - self.exponent).unsigned_abs() }
+        };
+        let Some(on) = site.on else { return integer(site.at[axis]) << self.fraction };
+        let [a, b, c] = on.corners.map(|p| integer(p[axis]));
+        let mut x = a << self.fraction;
+        for (end, weight) in [b, c].into_iter().zip(on.weights) {
+            // As a multiple of the largest unit that all weights have.
+            x += (end - a) * (weight >> (OnTriangle::BITS - self.fraction)).cast_signed();
+        }
+        x
     }
 
     fn integer(&self, x: f64) -> Int<WIDE> {
@@ -168,6 +220,9 @@ type Row = [Int<WIDE>; 3];
 /// The differences of all points from the last, and the bits of the largest.
 fn differences<const K: usize>(sites: &[Site], from: usize) -> ([Row; K], u32) {
     let scale = Scale::of(sites);
+    if scale.is_small() {
+        return small_differences(&scale, sites, from);
+    }
     let origin: Row = std::array::from_fn(|k| scale.coordinate(&sites[from], k));
     let mut rows = [[Int::ZERO; 3]; K];
     let others = sites.iter().enumerate().filter(|&(i, _)| i != from);
@@ -181,12 +236,29 @@ fn differences<const K: usize>(sites: &[Site], from: usize) -> ([Row; K], u32) {
     (rows, bits)
 }
 
+/// As [`differences`], where they fit in 128 bits.
+fn small_differences<const K: usize>(scale: &Scale, sites: &[Site], from: usize) -> ([Row; K], u32) {
+    let origin: [i128; 3] = std::array::from_fn(|k| scale.small_coordinate(&sites[from], k));
+    let mut rows = [[Int::ZERO; 3]; K];
+    let others = sites.iter().enumerate().filter(|&(i, _)| i != from);
+    let mut bits = 0;
+    for (row, (_, site)) in rows.iter_mut().zip(others) {
+        for k in 0..3 {
+            let x = scale.small_coordinate(site, k) - origin[k];
+            row[k] = Int::signed(x);
+            bits = bits.max(128 - x.unsigned_abs().leading_zeros());
+        }
+    }
+    (rows, bits)
+}
+
 #[cold]
 fn orient3d_exact(p: &[Site; 4]) -> i32 {
     let (rows, bits) = differences::<3>(p, 0);
     // Six products of three.
     match 3 * bits + 4 {
-        0..256 => det3::<4>(&rows).sign(),
+        0..192 => det3::<3>(&rows).sign(),
+        192..256 => det3::<4>(&rows).sign(),
         256..384 => det3::<6>(&rows).sign(),
         384..640 => det3::<10>(&rows).sign(),
         _ => det3::<28>(&rows).sign(),

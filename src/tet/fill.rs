@@ -9,7 +9,7 @@ use super::options::{Interior, Refinement, Sizing};
 use super::plc::{InputKind, Region};
 use super::progress::{Stage, Watch};
 use super::recover::exact::{Missing, recover_exact};
-use super::recover::{self, RecoverySummary};
+use super::recover::{self, RecoverySummary, Rule};
 use super::refine::RefineReport;
 use super::regions::Regions;
 use super::{carve, contacts, delaunay, input, lattice, sized};
@@ -124,7 +124,7 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
     points.extend(if tight { box_around(&surface.points, 0.2) } else { box_corners(&surface.points) });
     let mut complex = delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), inner))?;
     r.watch.report(Stage::Delaunay, 1, 1)?;
-    let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, r.watch) {
+    let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, Rule::Positive, r.watch) {
         Ok(summary) => return Ok((complex, summary)),
         Err(TetError::NotRecovered { edges, triangles }) => (edges, triangles),
         Err(TetError::Cancelled) => return Err(TetError::Cancelled),
@@ -133,6 +133,17 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
     // Exact recovery takes for granted that the surface does not meet itself.
     contacts::no_contacts(surface, r.watch)?;
     contacts::no_points_in_triangles(surface)?;
+    drop(complex);
+    let mut complex = delaunay::delaunay(&points)?;
+    let rule = Rule::thick(&surface.points);
+    eprintln!("DBG first tier lost {} {}", edges.len(), triangles.len());
+    let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, rule, r.watch) {
+        Ok(summary) => return Ok((complex, summary)),
+        Err(TetError::NotRecovered { edges, triangles }) => (edges, triangles),
+        Err(error) => return Err(error),
+    };
+    let flats = complex.real_tets().filter(|&t| !rule.allows(&complex, &complex.verts(t))).count();
+    eprintln!("DBG thick tier lost {} {}, flats {}", edges.len(), triangles.len(), flats);
     let before = complex.points.len() - points.len();
     let missing = Missing { edges: &edges, triangles: &triangles };
     let (complex, exact) = recover_exact(&complex, surface, r.edges, missing, r.watch)?;

@@ -1,10 +1,9 @@
 //! Flips that clear their own way: an edge that cannot be removed has its ring made smaller first.
 
 use super::{Recovery, blocked};
-use crate::geometry::predicates::orient3d;
-use crate::tet::complex::Complex;
+use crate::tet::complex::{Complex, GHOST};
 use crate::tet::delaunay::hash;
-use crate::tet::flips::{MAX_RING, Refusal, valid};
+use crate::tet::flips::{MAX_RING, Refusal};
 use crate::tet::star::EdgeRing;
 
 /// Largest ring that is worked on.
@@ -16,16 +15,13 @@ impl Recovery<'_> {
         if self.c.is_frozen(half) {
             return false;
         }
-        match self.flipper.flip_face(self.c, half) {
+        match self.flip_face(half) {
             Ok(()) => true,
             Err(refusal) if blocked(refusal) => {
                 let f = self.c.face(half);
                 let (a, d) = (self.c.apex(half), self.c.apex(self.c.mate(half)));
                 // Reflex edges first; flat ones are in the way as well.
-                let reflex = |i: usize| {
-                    let [p, q, r, s] = [a, d, f[i], f[(i + 1) % 3]].map(|v| &self.c.points[v as usize]);
-                    orient3d(p, q, r, s) <= 0.0
-                };
+                let reflex = |i: usize| !self.rule.allows(self.c, &[a, d, f[i], f[(i + 1) % 3]]);
                 let sides: [bool; 3] = std::array::from_fn(reflex);
                 let turn = self.round as usize;
                 (turn..turn + 3).map(|i| i % 3).any(|i| {
@@ -72,11 +68,19 @@ impl Recovery<'_> {
     /// one may come loose in the next.
     fn remove_edge(&mut self, t: u32, p: u32, q: u32) -> Result<(), Refusal> {
         let (round, salt) = (self.round, Self::salt(self.round));
+        let rule = self.rule;
         let score = |c: &Complex, v: &[u32; 4]| {
             let coin = v.iter().fold(salt, |h, &x| hash(h ^ u64::from(x)));
-            valid(c, v).map(|s| if round == 0 { s } else { s + (coin >> 32) as f64 })
+            rule.allows(c, v).then(|| if round == 0 { 1.0 } else { 1.0 + (coin >> 32) as f64 })
         };
         self.flipper.plan_edge(self.c, t, p, q, MAX_RING, score)?;
+        self.flipper.commit(self.c)
+    }
+
+    /// Exchanges a face for the edge between the two apices.
+    pub(super) fn flip_face(&mut self, half: u32) -> Result<(), Refusal> {
+        let rule = self.rule;
+        self.flipper.plan_face(self.c, half, |c, v| rule.allows(c, v).then_some(1.0))?;
         self.flipper.commit(self.c)
     }
 
@@ -90,7 +94,7 @@ impl Recovery<'_> {
                 && !self.c.is_frozen(half)
             {
                 self.budget -= 1;
-                if self.flipper.flip_face(self.c, half).is_ok() {
+                if self.flip_face(half).is_ok() {
                     return true;
                 }
             }
@@ -100,11 +104,11 @@ impl Recovery<'_> {
                 // The spoke's own edge at which its two tetrahedra are not convex keeps it from being flipped.
                 let (r, before) = (ring.rim[i], ring.rim[(i + ring.len() - 1) % ring.len()]);
                 let after = ring.rim[(i + 1) % ring.len()];
-                let sign = if end == ring.a { -1.0 } else { 1.0 };
-                let [x, y, z, w] = [before, after, end, r].map(|v| self.c.points.get(v as usize));
-                let (Some(x), Some(y), Some(z), Some(w)) = (x, y, z, w) else { return false };
-                let reflex = sign * orient3d(x, y, z, w) <= 0.0;
-                if reflex && self.clear_edge(ring.tets[i], end, r, depth - 1) {
+                if [before, after, r].contains(&GHOST) {
+                    return false;
+                }
+                let convex = if end == ring.a { [after, before, end, r] } else { [before, after, end, r] };
+                if !self.rule.allows(self.c, &convex) && self.clear_edge(ring.tets[i], end, r, depth - 1) {
                     return true;
                 }
             }

@@ -7,7 +7,9 @@
 mod blocked;
 mod cavity;
 pub(super) mod exact;
+mod flat;
 mod march;
+mod rule;
 
 use super::complex::Complex;
 use super::error::{Obstacle, TetError};
@@ -19,6 +21,7 @@ use super::survey::survey;
 use crate::mesh::TriMesh;
 use cavity::Cavity;
 use march::{Crossing, crossings, piercing_edges};
+pub(super) use rule::Rule;
 
 /// Depth to which a flip that is blocked may clear its way by others.
 const DEPTH: u32 = 3;
@@ -52,15 +55,17 @@ pub struct RecoverySummary {
     pub steiner_points: usize,
 }
 
-/// Recovers all of the surface in `c`, whose first vertices are the surface's points; freezes its faces.
+/// Recovers all of the surface in `c`, whose first vertices are the surface's points, by flips that make such tetrahedra
+/// as `rule` allows; freezes its faces.
 pub(super) fn recover(
     c: &mut Complex,
     surface: &TriMesh,
     edges: &SurfaceEdges,
+    rule: Rule,
     watch: &Watch,
 ) -> Result<RecoverySummary, TetError> {
     let (mut lost_edges, mut lost_faces) = survey(c, surface, edges);
-    let mut r = Recovery::new(c, surface, edges);
+    let mut r = Recovery::new(c, surface, edges, rule);
     let mut summary = RecoverySummary {
         missing_edges: lost_edges.len(),
         missing_triangles: lost_faces.len(),
@@ -69,6 +74,7 @@ pub(super) fn recover(
     let mut before = usize::MAX;
     for round in 0..=ROUNDS {
         r.round = round;
+        r.dissolve();
         let total = summary.missing_edges + summary.missing_triangles;
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
         lost_edges.retain(|&e| r.met.is_some() || !r.recover_edge(e));
@@ -98,6 +104,7 @@ struct Recovery<'a> {
     c: &'a mut Complex,
     surface: &'a TriMesh,
     edges: &'a SurfaceEdges,
+    rule: Rule,
     star: Star,
     flipper: Flipper,
     ring: EdgeRing,
@@ -111,11 +118,12 @@ struct Recovery<'a> {
 }
 
 impl<'a> Recovery<'a> {
-    fn new(c: &'a mut Complex, surface: &'a TriMesh, edges: &'a SurfaceEdges) -> Self {
+    fn new(c: &'a mut Complex, surface: &'a TriMesh, edges: &'a SurfaceEdges, rule: Rule) -> Self {
         Self {
             c,
             surface,
             edges,
+            rule,
             star: Star::default(),
             flipper: Flipper::default(),
             ring: EdgeRing::default(),

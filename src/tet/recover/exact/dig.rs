@@ -1,8 +1,9 @@
 //! Cavities for vertices on a segment: what it crosses first, made wider where the part of the segment that sees all
 //! walls is too short, and then longer along the segment as far as one vertex can see.
 
+use super::course::{Course, Deepest};
 use super::space::Space;
-use crate::geometry::implicit::{self, OnTriangle};
+use crate::geometry::implicit::{self, OnTriangle, Site};
 use crate::tet::star::EdgeRing;
 use rustc_hash::FxHashMap;
 
@@ -11,6 +12,13 @@ const BITS: u32 = 4;
 
 /// Steps by which a cavity grows at most.
 const STEPS: usize = 32;
+
+/// Steps by which it grows at most, where it is to be deep.
+const DEEP_STEPS: usize = 64;
+
+/// Distance of a vertex from the walls, over their size, that is deep enough. What is flatter than that counts as flat:
+/// far above what rounding of coordinates leaves of flat parts, even to single precision.
+const DEEP: f64 = 1e-5;
 
 /// Part of the segment that should see the walls.
 const WIDE: i128 = (OnTriangle::ONE >> 24).cast_signed();
@@ -32,6 +40,7 @@ pub(super) struct Dig<'a> {
     /// Where the segment comes from.
     at: u32,
     ends: [u32; 2],
+    course: Course,
     known: FxHashMap<u32, Sight>,
 }
 
@@ -113,10 +122,90 @@ impl<'a> Dig<'a> {
         at: u32,
         ends: [u32; 2],
     ) -> Self {
-        Self { s, points, keep, at, ends, known: FxHashMap::default() }
+        Self { s, points, keep, at, ends, course: Course::new(s, at, ends), known: FxHashMap::default() }
     }
 
+    /// The cavity for the next vertex of the segment behind what it crosses first.
     pub(super) fn dig(&mut self, first: Vec<u32>) -> Option<Dug> {
+        self.deep(first.clone()).or_else(|| self.seen(first))
+    }
+
+    /// A cavity in which the vertex lies well off all walls: what is nearly flat is taken as well, on both sides.
+    fn deep(&self, mut tets: Vec<u32>) -> Option<Dug> {
+        let mut best: Option<(f64, Dug)> = None;
+        for _ in 0..DEEP_STEPS {
+            let walls = self.s.outer(&tets);
+            let deepest = self.course.deepest(self.s, &walls);
+            let so_far = best.as_ref().map_or(0.0, |b| b.0);
+            let joined = self.depth_of_join(&walls).filter(|&depth| depth > so_far);
+            let better = deepest.depth > so_far || deepest.depth >= DEEP;
+            if (joined.is_some() || better) && self.keeps(&tets, &walls) {
+                if let Some(depth) = joined.filter(|_| self.joins(&walls)) {
+                    if depth >= DEEP {
+                        return Some(Dug::Joins(tets));
+                    }
+                    best = Some((depth, Dug::Joins(tets.clone())));
+                }
+                let so_far = best.as_ref().map_or(0.0, |b| b.0);
+                if (deepest.depth > so_far || deepest.depth >= DEEP)
+                    && let Some(weight) = self.place(&walls, &deepest)
+                {
+                    best = Some((deepest.depth.min(DEEP), Dug::Place(tets.clone(), weight)));
+                }
+            } else if so_far >= DEEP {
+                break;
+            }
+            let further =
+                if deepest.depth < DEEP { self.deepen(&mut tets, &deepest) } else { self.lengthen(&mut tets) };
+            if !further {
+                break;
+            }
+        }
+        best.map(|b| b.1)
+    }
+
+    /// Least distance of the vertex from which the segment comes from the walls that it is no corner of, over their
+    /// size, if one of them has the segment's end.
+    fn depth_of_join(&self, walls: &[u32]) -> Option<f64> {
+        let s = self.s;
+        let leads = walls.iter().any(|&half| s.c.face(half).contains(&self.ends[1]));
+        leads.then(|| self.course.depth_from(s, self.at, walls)).filter(|&depth| depth > 0.0)
+    }
+
+    /// The weight of a place near the deepest one that sees all walls.
+    fn place(&self, walls: &[u32], deepest: &Deepest) -> Option<u128> {
+        let weight = self.course.weight(deepest);
+        let on = OnTriangle::on_segment(self.ends.map(|v| *self.s.point(v)), weight);
+        let at = on.rounded();
+        let site = Site { at: &at, on: Some(&on) };
+        let sees = |&half: &u32| {
+            let [a, b, c] = self.s.wall(half).map(|v| self.s.site(v));
+            implicit::orient3d([a, b, c, site]) > 0
+        };
+        walls.iter().all(sees).then_some(weight)
+    }
+
+    /// Adds what lies behind one of the walls nearest to the deepest place, the one that gains more.
+    fn deepen(&self, tets: &mut Vec<u32>, deepest: &Deepest) -> bool {
+        let mut best: Option<(f64, u32)> = None;
+        for half in deepest.tight.into_iter().flatten() {
+            let next = self.s.c.mate(half) >> 2;
+            if self.s.c.is_frozen(half) || self.s.c.is_ghost(next) {
+                continue;
+            }
+            tets.push(next);
+            let depth = self.course.deepest(self.s, &self.s.outer(tets)).depth;
+            tets.pop();
+            if best.is_none_or(|(d, _)| depth > d) {
+                best = Some((depth, next));
+            }
+        }
+        tets.extend(best.map(|b| b.1));
+        best.is_some()
+    }
+
+    /// A cavity whose walls are all seen from somewhere on the segment, however near they are.
+    fn seen(&mut self, first: Vec<u32>) -> Option<Dug> {
         let mut tets = first;
         let mut best: Option<(Vec<u32>, View)> = None;
         for step in 0..STEPS {

@@ -8,6 +8,9 @@ use crate::geometry::implicit::{self, OnTriangle};
 use crate::tet::error::{Obstacle, Stuck, TetError};
 use rustc_hash::FxHashSet;
 
+/// Bits of a weight that are left out if that leaves a vertex inside of its cavity.
+const SHORT: u32 = 80;
+
 /// A facet that was missing.
 pub(super) struct Cover {
     /// The faces that it consists of, counter-clockwise as the facet is.
@@ -108,9 +111,15 @@ impl Front<'_> {
             return Err(stuck(triangle, Stuck::Intersection));
         }
         let weights = implicit::crossing(triangle.map(|x| self.s.site(x)), [self.s.site(u), self.s.site(v)]);
+        let weights = weights.ok_or(stuck(triangle, Stuck::Precision))?;
         let corners = triangle.map(|x| *self.s.point(x));
         let walls = self.s.walls(&ring.tets);
-        let made = weights.and_then(|weights| self.s.insert(&ring.tets, &walls, OnTriangle { corners, weights }));
+        // Fewer bits make exact arithmetic short; the place need only be near the crossing.
+        let made = [SHORT, 0].into_iter().find_map(|bits| {
+            let weights = weights.map(|w| (w >> bits) << bits);
+            let inside = weights.iter().all(|&w| w > 0);
+            inside.then(|| self.s.insert(&ring.tets, &walls, OnTriangle { corners, weights })).flatten()
+        });
         made.ok_or(stuck(triangle, Stuck::Precision))
     }
 }

@@ -7,6 +7,7 @@
 //! 3. [`push`]: each of these vertices gives way to copies inside the sectors between the facets around it ([`sectors`],
 //!    [`room`]); where a sector is too narrow, what lies beside it is taken as well ([`wider`]).
 
+mod course;
 mod dig;
 mod facets;
 mod helpers;
@@ -26,6 +27,7 @@ use crate::tet::delaunay::hash;
 use crate::tet::error::{Obstacle, Stuck, TetError};
 use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
+use crate::tet::recover::rule::flat_height;
 use helpers::add_helpers;
 use parts::{Part, parts};
 use push::Push;
@@ -104,7 +106,7 @@ fn recover_parts(
 ) -> Result<(Complex, ExactSummary), Failed> {
     let budget = VERTICES.0 * missing.edges.len() + VERTICES.1;
     let segments = Segments::new(edges, surface.points.len());
-    let mut push = Push::new(Space::new(c), segments, surface.triangles.clone());
+    let mut push = Push::new(Space::new(c, flat_height(&surface.points)), segments, surface.triangles.clone());
     let mut summary = ExactSummary::default();
     for part in parts(&surface.triangles, missing) {
         // Large parts take most of the time, and are tried again alone; a copy for each of the others would take longer.

@@ -2,7 +2,7 @@
 //! floating point, and a proposal; exact predicates decide.
 
 use super::space::Space;
-use crate::geometry::{Point3, Vec3};
+use crate::geometry::{Point3, Vec3, unit_normal};
 use nalgebra::{Matrix4, Vector4};
 
 /// Shares of the way from the segment to the deepest point of the room at which a position is looked for.
@@ -42,7 +42,7 @@ impl<'a> Room<'a> {
         for f in faces {
             let [a, b, c] = f.map(|x| s.point(x) - origin);
             size = size.max(a.norm()).max(b.norm()).max(c.norm());
-            let n = normal(a, b, c);
+            let n = unit_normal(a, b, c);
             planes.push((n, -n.dot(&a)));
         }
         Self { origin, faces, planes, size }
@@ -116,20 +116,6 @@ impl<'a> Room<'a> {
         let sees = |p: &Point3| self.faces.iter().all(|f| s.orient_to(*f, p) > 0);
         SHARES.iter().map(|share| self.origin + aim * *share).find(sees).ok_or(f64::NEG_INFINITY)
     }
-}
-
-fn normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
-    // Of the two shorter sides: less roundoff where the triangle is a needle.
-    let (ab, bc, ca) = (b - a, c - b, a - c);
-    let [x, y, z] = [ab, bc, ca].map(|v| v.norm_squared());
-    let n = if x >= y && x >= z {
-        bc.cross(&ca)
-    } else if y >= z {
-        ca.cross(&ab)
-    } else {
-        ab.cross(&bc)
-    };
-    n.try_normalize(0.0).unwrap_or(Vec3::zeros())
 }
 
 /// `a · x ≤ b`.

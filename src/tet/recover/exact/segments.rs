@@ -103,6 +103,21 @@ impl<'a> Segments<'a> {
         Ok(id)
     }
 
+    /// The edge of a face that a segment passes nearer than what counts as flat, the nearest one; it may not be one that
+    /// has to stay.
+    fn grazed(&self, s: &Space, half: u32, ends: [u32; 2]) -> Option<[u32; 2]> {
+        let [p, q] = ends.map(|v| s.point(v).coords);
+        let f = s.c.face(half);
+        let distance = |[u, v]: [u32; 2]| {
+            let (a, b) = (s.point(u).coords, s.point(v).coords);
+            let across = (q - p).cross(&(b - a));
+            across.dot(&(a - p)).abs() / across.norm().max(f64::MIN_POSITIVE)
+        };
+        let sides = (0..3).map(|i| [f[i], f[(i + 1) % 3]]);
+        let (near, edge) = sides.map(|e| (distance(e), e)).min_by(|x, y| x.0.total_cmp(&y.0))?;
+        (near < s.flat && self.of_piece(edge[0], edge[1]).is_none()).then_some(edge)
+    }
+
     /// Goes from vertex `at` of a segment to the next one on it, which is made where there is none; nothing when an edge
     /// leads to its end.
     fn step(&self, s: &mut Space, at: u32, ends: [u32; 2]) -> Result<Option<u32>, TetError> {
@@ -113,14 +128,15 @@ impl<'a> Segments<'a> {
             Crossing::Vertex(v) => return Ok(Some(v)),
             Crossing::Nothing => return Err(stuck(ends, Stuck::Intersection)),
             Crossing::Face(half) if s.c.is_frozen(half) => return Err(meets(Obstacle::Triangle(s.c.face(half)))),
-            Crossing::Face(half) => vec![half >> 2, s.c.mate(half) >> 2],
+            Crossing::Face(half) => match self.grazed(s, half, ends) {
+                Some([p, q]) => ring(s, half >> 2, [p, q]),
+                None => vec![half >> 2, s.c.mate(half) >> 2],
+            },
             Crossing::Edge(t, [p, q]) => {
                 if let Some(other) = self.of_piece(p, q) {
                     return Err(meets(Obstacle::Edge(other)));
                 }
-                let mut ring = EdgeRing::default();
-                ring.collect(&s.c, t, p, q, usize::MAX);
-                ring.tets
+                ring(s, t, [p, q])
             }
         };
         if first.iter().any(|&t| s.c.is_ghost(t)) {
@@ -141,6 +157,13 @@ impl<'a> Segments<'a> {
         let made = s.insert(&cavity, &walls, OnTriangle::on_segment(corners, weight));
         made.map(Some).ok_or(stuck(ends, Stuck::Precision))
     }
+}
+
+/// The tetrahedra around an edge of one.
+fn ring(s: &Space, t: u32, [p, q]: [u32; 2]) -> Vec<u32> {
+    let mut ring = EdgeRing::default();
+    ring.collect(&s.c, t, p, q, usize::MAX);
+    ring.tets
 }
 
 pub(super) fn stuck(edge: [u32; 2], reason: Stuck) -> TetError {

@@ -11,6 +11,8 @@ use std::cmp::Ordering;
 #[derive(Clone)]
 pub(super) struct Space {
     pub c: Complex,
+    /// What is thinner than that is flat.
+    pub flat: f64,
     /// What the implicit points are.
     on: Vec<OnTriangle>,
     /// For each vertex its place in `on`, or [`NONE`].
@@ -20,9 +22,9 @@ pub(super) struct Space {
 }
 
 impl Space {
-    pub(super) fn new(c: Complex) -> Self {
+    pub(super) fn new(c: Complex, flat: f64) -> Self {
         let place = vec![NONE; c.points.len()];
-        Self { c, on: Vec::new(), place, created: Vec::new(), star: Star::default() }
+        Self { c, flat, on: Vec::new(), place, created: Vec::new(), star: Star::default() }
     }
 
     /// The tetrahedra at a vertex.
