@@ -130,6 +130,8 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
         Err(TetError::Cancelled) => return Err(TetError::Cancelled),
         Err(error) => return Err(diagnosis(r, error)),
     };
+    let flats = complex.real_tets().filter(|&t| !Rule::thick(&surface.points).allows(&complex, &complex.verts(t))).count();
+    eprintln!("DBG after first tier: flats {flats}");
     // Exact recovery takes for granted that the surface does not meet itself.
     contacts::no_contacts(surface, r.watch)?;
     contacts::no_points_in_triangles(surface)?;

@@ -46,7 +46,7 @@ pub(super) fn flat_height(points: &[Point3]) -> f64 {
 }
 
 /// The least height of a tetrahedron: six times its volume over twice the area of its largest face.
-fn least_height(corners: [&Point3; 4]) -> f64 {
+pub(super) fn least_height(corners: [&Point3; 4]) -> f64 {
     let [a, b, c] = [1, 2, 3].map(|i| corners[i] - corners[0]);
     let faces: [Vec3; 4] = [a.cross(&b), b.cross(&c), c.cross(&a), (b - a).cross(&(c - a))];
     let largest = faces.iter().map(Vec3::norm_squared).fold(f64::MIN_POSITIVE, f64::max).sqrt();

@@ -11,8 +11,10 @@ mod course;
 mod dig;
 mod facets;
 mod helpers;
+mod level;
 mod looks;
 mod parts;
+mod plane;
 mod polygon;
 mod push;
 mod room;
@@ -29,8 +31,10 @@ use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
 use crate::tet::recover::rule::flat_height;
 use helpers::add_helpers;
-use parts::{Part, parts};
+use parts::{Part, parts, sides, sorted};
+use level::Level;
 use push::Push;
+use rustc_hash::FxHashMap;
 use segments::Segments;
 use space::Space;
 
@@ -39,6 +43,10 @@ const ATTEMPTS: u64 = 4;
 
 /// Edges of a part that is worth a copy of all, to be tried again alone.
 const LARGE: usize = 100;
+
+/// Least distances of a new vertex from the planes around, over the size of its room, that are asked for one after the
+/// other.
+const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
 
 /// Implicit vertices allowed: for each missing edge, and in any case.
 const VERTICES: (usize, usize) = (256, 1_000_000);
@@ -108,6 +116,10 @@ fn recover_parts(
     let segments = Segments::new(edges, surface.points.len());
     let mut push = Push::new(Space::new(c, flat_height(&surface.points)), segments, surface.triangles.clone());
     let mut summary = ExactSummary::default();
+    let tl = std::time::Instant::now();
+    let (lost_edges, lost_triangles) = level_out(&mut push, edges, missing, watch)?;
+    eprintln!("DBG level left {} {}, points {} time {:.2}", lost_edges.len(), lost_triangles.len(), push.s.c.points.len(), tl.elapsed().as_secs_f64());
+    let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
     for part in parts(&surface.triangles, missing) {
         // Large parts take most of the time, and are tried again alone; a copy for each of the others would take longer.
         let saved = (part.edges.len() >= LARGE).then(|| (push.clone(), summary));
@@ -123,6 +135,37 @@ fn recover_parts(
         }
     }
     Ok((push.s.c, summary))
+}
+
+/// Recovers what lies in planes of faces but for rounding. Returns what is still missing.
+fn level_out(
+    push: &mut Push,
+    edges: &SurfaceEdges,
+    missing: Missing,
+    watch: &Watch,
+) -> Result<(Vec<[u32; 2]>, Vec<u32>), TetError> {
+    let mut facets: FxHashMap<[u32; 2], Vec<[u32; 3]>> = FxHashMap::default();
+    for &t in missing.triangles {
+        let triangle = push.triangles[t as usize];
+        sides(triangle).into_iter().for_each(|side| facets.entry(side).or_default().push(triangle));
+    }
+    let mut level = Level { s: &mut push.s, keep: edges, made: Vec::new(), inside: Vec::new() };
+    for &[a, b] in missing.edges {
+        watch.ask()?;
+        level.insert([a, b], facets.get(&sorted(a, b)).map_or(&[][..], |f| f));
+    }
+    level.leave();
+    let made = level.made;
+    push.adopt(made);
+    let lost_edges = missing.edges.iter().copied().filter(|&[a, b]| !push.s.has_edge(a, b)).collect();
+    let mut lost_triangles = Vec::new();
+    for &t in missing.triangles {
+        match push.s.find_face(push.triangles[t as usize]) {
+            Some(half) => push.s.c.freeze(half),
+            None => lost_triangles.push(t),
+        }
+    }
+    Ok((lost_edges, lost_triangles))
 }
 
 /// What happens to helpers is told of the edge that they were to help.
@@ -155,6 +198,7 @@ fn recover_part(
         let over = push.s.implicit_vertices() > budget;
         if over { Err(TetError::Stuck { part: on, reason: Stuck::Budget }) } else { Ok(()) }
     };
+    let t0 = std::time::Instant::now();
     let helpers = add_helpers(push, part, salt);
     // At random: fans of long thin triangles come in halves of halves then, where one after the other each next chain
     // would have to fit between the one before and what lies beyond.
@@ -184,7 +228,10 @@ fn recover_part(
     }
     #[cfg(test)]
     push.s.check();
-    push.settle()?;
+    let t1 = std::time::Instant::now();
+    let r = push.settle();
+    eprintln!("DBGS part edges {} tris {} segs {} facets {} cut {:.2} settle {:.2} {:?}", part.edges.len(), part.triangles.len(), summary.on_segments, summary.on_facets, (t1-t0).as_secs_f64(), t1.elapsed().as_secs_f64(), r);
+    r?;
     if !helpers.triangles.is_empty() {
         push.drop_helpers(&helpers.triangles, beside..push.segments.list.len() as u32, inner);
         push.settle()?;

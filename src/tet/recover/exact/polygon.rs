@@ -4,6 +4,8 @@ use super::space::Space;
 use crate::geometry::implicit::{self, Site};
 use crate::geometry::{Point3, Vec3};
 use crate::tet::error::{Obstacle, Stuck, TetError};
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
 
 /// A point off the plane of a triangle, from which it runs counter-clockwise.
 pub(super) fn point_above(s: &Space, triangle: [u32; 3]) -> Result<Point3, TetError> {
@@ -23,26 +25,87 @@ pub(super) fn point_above(s: &Space, triangle: [u32; 3]) -> Result<Point3, TetEr
 /// may be flat: ears are cut off, the best-shaped first. False when it is not simple.
 pub(super) fn triangulate(s: &Space, polygon: &[u32], above: &Point3, out: &mut Vec<[u32; 3]>) -> bool {
     out.clear();
-    let site = Site { at: above, on: None };
-    let turn = |[p, q, r]: [u32; 3]| implicit::orient3d([s.site(p), s.site(q), s.site(r), site]);
-    let mut rest = polygon.to_vec();
-    while rest.len() > 3 {
-        let n = rest.len();
-        let corner = |k: usize| [rest[(k + n - 1) % n], rest[k], rest[(k + 1) % n]];
-        let is_ear = |k: usize| {
-            let [p, q, r] = corner(k);
-            let outside = |w: u32| turn([p, q, w]) < 0 || turn([q, r, w]) < 0 || turn([r, p, w]) < 0;
-            turn([p, q, r]) > 0 && rest.iter().all(|&w| [p, q, r].contains(&w) || outside(w))
-        };
-        let mut order: Vec<(f64, usize)> = (0..n).map(|k| (shape(s, corner(k)), k)).collect();
-        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let Some(&(_, k)) = order.iter().find(|&&(_, k)| is_ear(k)) else { return false };
-        out.push(corner(k));
-        rest.remove(k);
+    if polygon.len() < 3 {
+        return false;
     }
-    let &[p, q, r] = rest.as_slice() else { return false };
-    out.push([p, q, r]);
-    turn([p, q, r]) > 0
+    let mut rest = Ears::new(s, polygon, above);
+    for _ in 3..polygon.len() {
+        let Some(k) = rest.next_ear() else { return false };
+        out.push(rest.corner(k));
+        rest.cut(k);
+    }
+    let Some(k) = (0..polygon.len()).find(|&k| rest.turn[k].is_some()) else { return false };
+    out.push(rest.corner(k));
+    rest.turn[k] == Some(1)
+}
+
+/// What is left of a polygon.
+struct Ears<'a> {
+    s: &'a Space,
+    polygon: &'a [u32],
+    above: Site<'a>,
+    before: Vec<usize>,
+    after: Vec<usize>,
+    /// How the polygon turns at each corner that is left.
+    turn: Vec<Option<i32>>,
+    /// Corners where it turns inwards, the best-shaped first.
+    convex: BTreeSet<(Reverse<u64>, usize)>,
+}
+
+impl<'a> Ears<'a> {
+    fn new(s: &'a Space, polygon: &'a [u32], above: &'a Point3) -> Self {
+        let n = polygon.len();
+        let (before, after) = ((0..n).map(|k| (k + n - 1) % n).collect(), (0..n).map(|k| (k + 1) % n).collect());
+        let above = Site { at: above, on: None };
+        let mut ears = Self { s, polygon, above, before, after, turn: vec![None; n], convex: BTreeSet::new() };
+        (0..n).for_each(|k| ears.look(k));
+        ears
+    }
+
+    fn corner(&self, k: usize) -> [u32; 3] {
+        [self.before[k], k, self.after[k]].map(|k| self.polygon[k])
+    }
+
+    fn turn_of(&self, [p, q, r]: [u32; 3]) -> i32 {
+        implicit::orient3d([self.s.site(p), self.s.site(q), self.s.site(r), self.above])
+    }
+
+    /// Shapes are not negative, so their bits have their order.
+    fn key(&self, k: usize) -> (Reverse<u64>, usize) {
+        (Reverse(shape(self.s, self.corner(k)).to_bits()), k)
+    }
+
+    fn look(&mut self, k: usize) {
+        let turn = self.turn_of(self.corner(k));
+        self.turn[k] = Some(turn);
+        if turn > 0 {
+            self.convex.insert(self.key(k));
+        }
+    }
+
+    /// The best-shaped corner whose triangle has no other corner in it. Where one lies in it, one at which the polygon
+    /// does not turn inwards does.
+    fn next_ear(&self) -> Option<usize> {
+        let blunt: Vec<u32> =
+            (0..self.polygon.len()).filter(|&k| self.turn[k].is_some_and(|t| t <= 0)).map(|k| self.polygon[k]).collect();
+        let is_ear = |k: usize| {
+            let [p, q, r] = self.corner(k);
+            let outside = |w: u32| [[r, p, w], [p, q, w], [q, r, w]].into_iter().any(|turn| self.turn_of(turn) < 0);
+            blunt.iter().all(|&w| [p, q, r].contains(&w) || outside(w))
+        };
+        self.convex.iter().map(|&(_, k)| k).find(|&k| is_ear(k))
+    }
+
+    fn cut(&mut self, k: usize) {
+        let (before, after) = (self.before[k], self.after[k]);
+        for k in [before, k, after] {
+            self.convex.remove(&self.key(k));
+        }
+        self.turn[k] = None;
+        (self.after[before], self.before[after]) = (after, before);
+        self.look(before);
+        self.look(after);
+    }
 }
 
 /// Area over the square of the longest side; a heuristic.

@@ -2,6 +2,7 @@
 //! (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary polyhedron', 2003). Positions are floating
 //! point and proved by exact predicates.
 
+use super::LEVELS;
 use super::dig;
 use super::facets::Cover;
 use super::looks::{Looks, Way};
@@ -17,9 +18,6 @@ use crate::tet::complex::face_key;
 use crate::tet::error::{Obstacle, Stuck, TetError};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Range;
-
-/// Least distances from the planes around, over the size of the room, that are asked for one after the other.
-const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
 
 /// Place in [`LEVELS`] of the room that wider cavities have to have: they cost most, and are for what is left.
 const WIDER_FROM: usize = 3;
@@ -71,6 +69,11 @@ impl<'a> Push<'a> {
     pub(super) fn new(s: Space, segments: Segments<'a>, triangles: Vec<[u32; 3]>) -> Self {
         let (pieces, around, looks) = (FxHashMap::default(), FxHashMap::default(), Looks::default());
         Self { s, segments, triangles, left: Vec::new(), pieces, around, free: Vec::new(), looks }
+    }
+
+    /// Takes vertices that lie on nothing; those that are not needed go.
+    pub(super) fn adopt(&mut self, free: Vec<u32>) {
+        self.free.extend(free);
     }
 
     /// Takes a facet that has been covered; the vertices inside of it have to go. Returns their number.
@@ -238,7 +241,7 @@ impl<'a> Push<'a> {
                     faces.push([a, c, b]);
                 }
             }
-            let room = Room::new(&self.s, v, &faces);
+            let room = Room::new(&self.s, *self.s.point(v), &faces);
             if let Ok(w) = room.neighbor(&self.s, least) {
                 let others = faces.iter().filter(|f| !f.contains(&w));
                 let new: Vec<[u32; 4]> = others.map(|&[a, b, c]| [a, b, c, w]).collect();
@@ -278,7 +281,7 @@ impl<'a> Push<'a> {
         let mut wider = Wider::new(&self.s, &self.segments, v);
         let mut filled = Vec::with_capacity(sectors.len());
         for mut sector in sectors {
-            let room = Room::new(&self.s, v, &sector.faces);
+            let room = Room::new(&self.s, *self.s.point(v), &sector.faces);
             let apex = match way {
                 Way::Corners => room.neighbor(&self.s, least).map(Apex::Vertex),
                 Way::Points => room.apex(&self.s, least),

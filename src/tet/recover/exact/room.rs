@@ -24,7 +24,7 @@ pub(super) enum Apex {
 }
 
 /// The room that some faces leave for a vertex that has to see all of them counter-clockwise, in coordinates relative
-/// to where it was.
+/// to a place nearby.
 pub(super) struct Room<'a> {
     origin: Point3,
     faces: &'a [[u32; 3]],
@@ -35,8 +35,7 @@ pub(super) struct Room<'a> {
 }
 
 impl<'a> Room<'a> {
-    pub(super) fn new(s: &Space, v: u32, faces: &'a [[u32; 3]]) -> Self {
-        let origin = *s.point(v);
+    pub(super) fn new(s: &Space, origin: Point3, faces: &'a [[u32; 3]]) -> Self {
         let mut planes = Vec::with_capacity(faces.len());
         let mut size = 0.0_f64;
         for f in faces {

@@ -39,7 +39,7 @@ impl Fan {
 }
 
 /// The vertices around one, in order: from one of `ends` to the other, or all around.
-fn outline(next: &FxHashMap<u32, u32>, ends: Option<[u32; 2]>) -> Option<Vec<u32>> {
+pub(super) fn outline(next: &FxHashMap<u32, u32>, ends: Option<[u32; 2]>) -> Option<Vec<u32>> {
     let (start, last) = match ends {
         Some([p, q]) if next.contains_key(&p) => (p, q),
         Some([p, q]) => (q, p),

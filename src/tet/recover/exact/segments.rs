@@ -150,7 +150,7 @@ impl<'a> Segments<'a> {
                 return if s.join(&cavity, &walls, at) { Ok(None) } else { Err(stuck(ends, Stuck::Intersection)) };
             }
             Some(Dug::Place(cavity, weight)) => (cavity, weight),
-            None => return Err(stuck(ends, Stuck::Precision)),
+            None => { return Err(stuck(ends, Stuck::Precision)) },
         };
         let walls = s.walls(&cavity);
         let corners = ends.map(|v| *s.point(v));

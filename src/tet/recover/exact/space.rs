@@ -158,6 +158,12 @@ impl Space {
         implicit::orient3d([self.site(a), self.site(b), self.site(c), Site { at: p, on: None }])
     }
 
+    /// The same for points that are no vertices.
+    pub(super) fn orient_points(p: [&Point3; 4]) -> i32 {
+        let o = predicates::orient3d(p[0], p[1], p[2], p[3]);
+        i32::from(o > 0.0) - i32::from(o < 0.0)
+    }
+
     /// Lexicographic order of two vertices. Exact.
     pub(super) fn compare(&self, v: u32, w: u32) -> Ordering {
         implicit::compare(self.site(v), self.site(w))

@@ -27,7 +27,7 @@ impl<'a> Wider<'a> {
     /// room.
     pub(super) fn apex(&mut self, sector: &mut Sector, least: f64) -> Option<Apex> {
         for _ in 0..STEPS {
-            if let Ok(apex) = Room::new(self.s, self.v, &sector.faces).apex(self.s, least) {
+            if let Ok(apex) = Room::new(self.s, *self.s.point(self.v), &sector.faces).apex(self.s, least) {
                 return Some(apex);
             }
             if !self.step(sector) {
@@ -40,13 +40,13 @@ impl<'a> Wider<'a> {
     /// Adds to a sector the tetrahedron behind one of the walls that bound its room, the one that gains most. False when
     /// there is none.
     fn step(&mut self, sector: &mut Sector) -> bool {
-        let Some((walls, _)) = Room::new(self.s, self.v, &sector.faces).bounds() else { return false };
+        let Some((walls, _)) = Room::new(self.s, *self.s.point(self.v), &sector.faces).bounds() else { return false };
         let mut best: Option<(f64, u32, Sector)> = None;
         for wall in walls {
             let Some(half) = sector.halves.get(wall) else { continue };
             let next = self.s.c.mate(*half) >> 2;
             let Some(wider) = self.add(sector, next) else { continue };
-            let Some((_, depth)) = Room::new(self.s, self.v, &wider.faces).bounds() else { continue };
+            let Some((_, depth)) = Room::new(self.s, *self.s.point(self.v), &wider.faces).bounds() else { continue };
             if best.as_ref().is_none_or(|b| depth > b.0) {
                 best = Some((depth, next, wider));
             }
