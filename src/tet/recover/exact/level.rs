@@ -5,17 +5,28 @@
 //! between points that lie in the plane, where there is no room.
 
 use super::LEVELS;
-use super::plane::{Plane, breadth};
+use super::parts::{sides, sorted};
+use super::plane::{Plane, area};
 use super::room::{Apex, Room};
+use super::sectors::Sector;
 use super::space::Space;
+use super::wider::Wider;
 use crate::geometry::Point3;
+use crate::tet::complex::face_key;
 use crate::tet::input::SurfaceEdges;
 use crate::tet::recover::rule::least_height;
 use crate::tet::star::EdgeRing;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 
 /// Edges in the way of one, at most.
 const FAR: usize = 4096;
+
+/// So many of the levels are tried before a wider cavity is.
+const AMPLE: usize = 3;
+
+/// Facets that are looked at for the plane of one.
+const AROUND: usize = 200;
 
 /// Exchanges for one edge, over the number of edges in its way and on top of it.
 const WORK: (usize, usize) = (16, 64);
@@ -31,6 +42,8 @@ struct Diagonal {
 pub(super) struct Level<'a> {
     pub s: &'a mut Space,
     pub keep: &'a SurfaceEdges,
+    /// Missing facets at each of their sides.
+    pub facets: FxHashMap<[u32; 2], Vec<[u32; 3]>>,
     /// New vertices that lie on nothing.
     pub made: Vec<u32>,
     /// New vertices in planes.
@@ -40,15 +53,42 @@ pub(super) struct Level<'a> {
 impl Level<'_> {
     /// Makes an edge if it lies in the plane of one of its facets and that is one of faces. What has changed when this
     /// does not succeed is as good as before.
-    pub(super) fn insert(&mut self, [a, b]: [u32; 2], facets: &[[u32; 3]]) -> bool {
-        let mut facets: Vec<(f64, [u32; 3])> = facets.iter().map(|&f| (breadth(self.s, f), f)).collect();
-        facets.sort_by(|x, y| y.0.total_cmp(&x.0));
-        self.s.has_edge(a, b)
-            || facets.into_iter().any(|(_, facet)| {
-                let plane = Plane::of(self.s, facet);
-                let course = self.course([a, b], &plane).or_else(|| self.course([b, a], &plane));
-                course.is_some_and(|course| self.turn([a, b], course, &plane))
-            })
+    pub(super) fn insert(&mut self, [a, b]: [u32; 2]) -> bool {
+        if self.s.has_edge(a, b) {
+            return true;
+        }
+        let facets = self.facets.get(&sorted(a, b)).cloned().unwrap_or_default();
+        let mut planes: Vec<(f64, Plane)> = facets.into_iter().map(|facet| self.plane(facet)).collect();
+        planes.sort_by(|x, y| y.0.total_cmp(&x.0));
+        planes.into_iter().any(|(_, plane)| {
+            let course = self.course([a, b], &plane).or_else(|| self.course([b, a], &plane));
+            course.is_some_and(|course| self.turn([a, b], course, &plane))
+        })
+    }
+
+    /// The plane of a facet, told by the largest of the facets around that lie in it, and the area of that.
+    fn plane(&self, facet: [u32; 3]) -> (f64, Plane) {
+        let mut best = (area(self.s, facet), Plane::of(self.s, facet));
+        let mut near = vec![facet];
+        let mut head = 0;
+        while let Some(&triangle) = near.get(head).filter(|_| near.len() < AROUND) {
+            head += 1;
+            for other in sides(triangle).iter().filter_map(|side| self.facets.get(side)).flatten() {
+                if near.contains(other) {
+                    continue;
+                }
+                let plane = Plane::of(self.s, *other);
+                let tells = facet.iter().all(|&v| plane.has(self.s, v));
+                if tells || other.iter().all(|&v| best.1.has(self.s, v)) {
+                    near.push(*other);
+                    let area = area(self.s, *other);
+                    if tells && area > best.0 {
+                        best = (area, plane);
+                    }
+                }
+            }
+        }
+        best
     }
 
     /// Exchanges the edges that cross one, as far as they come loose.
@@ -164,55 +204,89 @@ impl Level<'_> {
         if (0..ring.len()).any(|i| ring.spoke(&self.s.c, i).is_none_or(|half| self.s.c.is_frozen(half))) {
             return false;
         }
-        let Some(halves) = halves(&ring, [x, y]) else { return false };
+        let Some(mut halves) = halves(self.s, &ring, [x, y]) else { return false };
         let middle = Point3::from((self.s.point(p).coords + self.s.point(q).coords) * 0.5);
-        let [Some(first), Some(second)] = [&halves[0], &halves[1]].map(|faces| self.apex(middle, faces)) else {
-            return false;
-        };
-        self.fill(&ring.tets, halves.iter().map(|half| &half[..]).zip([first, second]))
+        let stays = |a: u32, b: u32| self.keep.contains(a, b);
+        let mut wider = Wider::new(self.s, &stays, None, middle, ring.tets.clone());
+        let apices: Option<Vec<Apex>> = halves.iter_mut().map(|half| self.apex(&mut wider, half)).collect();
+        let old = wider.cavity;
+        apices.is_some_and(|apices| self.fill(&old, &halves, &apices))
     }
 
-    /// Fills the room of some tetrahedra: parts of it by their faces, each joined to an apex.
-    pub(super) fn fill<'f>(&mut self, old: &[u32], parts: impl Iterator<Item = (&'f [[u32; 3]], Apex)>) -> bool {
+    /// Fills the room of some tetrahedra, sector by sector, each joined to an apex.
+    pub(super) fn fill(&mut self, old: &[u32], sectors: &[Sector], apices: &[Apex]) -> bool {
         let before = self.s.c.points.len() as u32;
+        let c = &self.s.c;
+        let frozen = sectors.iter().flat_map(|s| &s.halves).filter(|&&half| c.is_frozen(half));
+        let frozen: FxHashSet<[u32; 3]> = frozen.map(|&half| face_key(c.face(half))).collect();
         let mut new = Vec::new();
-        for (faces, apex) in parts {
+        for (sector, &apex) in sectors.iter().zip(apices) {
             let apex = match apex {
                 Apex::Vertex(w) => w,
                 Apex::Point(at) => self.s.add_point(at),
             };
-            new.extend(faces.iter().filter(|f| !f.contains(&apex)).map(|&[a, b, c]| [a, b, c, apex]));
+            let others = sector.faces.iter().filter(|f| !f.contains(&apex));
+            new.extend(others.map(|&[a, b, c]| [a, b, c, apex]));
         }
-        let fits = self.s.c.replace(old, &new, &mut Vec::new());
         self.made.extend(before..self.s.c.points.len() as u32);
+        let mut created = Vec::new();
+        let fits = self.s.c.replace(old, &new, &mut created);
+        // Walls between two sectors were on the boundary of neither.
+        for half in created.into_iter().flat_map(|t| 4 * t..4 * t + 4) {
+            if !frozen.is_empty() && frozen.contains(&face_key(self.s.c.face(half))) {
+                self.s.c.freeze(half);
+            }
+        }
         fits
     }
 
-    /// A vertex that sees some faces from well above; a corner of theirs if there is one.
-    pub(super) fn apex(&self, middle: Point3, faces: &[[u32; 3]]) -> Option<Apex> {
-        let room = Room::new(self.s, middle, faces);
-        let levels = LEVELS.iter().filter(|&&least| least * room.size > self.s.flat);
-        levels.into_iter().find_map(|&least| room.apex(self.s, least).ok())
+    /// A vertex that sees the faces of a sector from well above, a corner of theirs if there is one; where there is none,
+    /// of a wider sector.
+    pub(super) fn apex(&self, wider: &mut Wider, sector: &mut Sector) -> Option<Apex> {
+        let origin = wider.origin;
+        let direct = |sector: &Sector, levels: &[f64]| {
+            let room = Room::new(self.s, origin, &sector.faces);
+            let least = self.least(&room);
+            levels.iter().find_map(|level| room.apex(self.s, level.max(least)).ok())
+        };
+        let (ample, scant) = LEVELS.split_at(AMPLE);
+        if let Some(apex) = direct(sector, ample) {
+            return Some(apex);
+        }
+        let (mut wide, narrow) = (sector.clone(), wider.cavity.len());
+        let least = self.least(&Room::new(self.s, origin, &sector.faces));
+        if let Some(apex) = wider.apex(&mut wide, LEVELS[AMPLE].max(least)) {
+            *sector = wide;
+            return Some(apex);
+        }
+        wider.cavity.truncate(narrow);
+        direct(sector, scant)
+    }
+
+    /// Least distance over the size of a room that is more than flat.
+    fn least(&self, room: &Room) -> f64 {
+        2.0 * self.s.flat / room.size
     }
 }
 
-/// The faces around the two halves of a ring, without its edge, with the two triangles that have the edge from `x` to
-/// `y`; counter-clockwise seen from inside.
-fn halves(ring: &EdgeRing, [x, y]: [u32; 2]) -> Option<[Vec<[u32; 3]>; 2]> {
+/// The two halves of a ring as sectors, without its edge, with the two triangles that have the edge from `x` to `y`.
+fn halves(s: &Space, ring: &EdgeRing, [x, y]: [u32; 2]) -> Option<[Sector; 2]> {
     let n = ring.len();
     let at = |v: u32| ring.rim.iter().position(|&w| w == v);
     let (i, j) = (at(x)?, at(y)?);
     let half = |from: usize, to: usize| {
         let (p, q) = (ring.a, ring.b);
         let (x, y) = (ring.rim[from], ring.rim[to]);
-        let mut faces = vec![[x, p, y], [q, x, y]];
+        let mut halves = Vec::new();
         let mut k = from;
         while k != to {
-            let (u, v) = (ring.rim[k], ring.rim[(k + 1) % n]);
-            faces.extend([[p, u, v], [q, v, u]]);
+            let t = ring.tets[k];
+            halves.extend([p, q].iter().filter_map(|&end| s.c.slot_of(t, end)).map(|i| 4 * t + i as u32));
             k = (k + 1) % n;
         }
-        faces
+        let mut faces: Vec<[u32; 3]> = halves.iter().map(|&half| s.wall(half)).collect();
+        faces.extend([[x, p, y], [q, x, y]]);
+        Sector { faces, halves }
     };
     Some([half(i, j), half(j, i)])
 }

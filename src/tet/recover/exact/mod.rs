@@ -31,7 +31,7 @@ use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
 use crate::tet::recover::rule::flat_height;
 use helpers::add_helpers;
-use parts::{Part, parts, sides, sorted};
+use parts::{Part, parts, sides};
 use level::Level;
 use push::Push;
 use rustc_hash::FxHashMap;
@@ -149,10 +149,10 @@ fn level_out(
         let triangle = push.triangles[t as usize];
         sides(triangle).into_iter().for_each(|side| facets.entry(side).or_default().push(triangle));
     }
-    let mut level = Level { s: &mut push.s, keep: edges, made: Vec::new(), inside: Vec::new() };
-    for &[a, b] in missing.edges {
+    let mut level = Level { s: &mut push.s, keep: edges, facets, made: Vec::new(), inside: Vec::new() };
+    for &edge in missing.edges {
         watch.ask()?;
-        level.insert([a, b], facets.get(&sorted(a, b)).map_or(&[][..], |f| f));
+        level.insert(edge);
     }
     level.leave();
     let made = level.made;

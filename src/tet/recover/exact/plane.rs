@@ -7,6 +7,7 @@ use super::polygon::triangulate;
 use super::room::Apex;
 use super::sectors::{Fan, outline, sectors};
 use super::space::Space;
+use super::wider::Wider;
 use crate::geometry::{Point3, Vec3, unit_normal};
 use rustc_hash::FxHashMap;
 
@@ -37,11 +38,10 @@ impl Plane {
     }
 }
 
-/// Height over longest side: how well a triangle tells its plane.
-pub(super) fn breadth(s: &Space, triangle: [u32; 3]) -> f64 {
+/// The area of a triangle.
+pub(super) fn area(s: &Space, triangle: [u32; 3]) -> f64 {
     let [a, b, c] = triangle.map(|v| s.point(v));
-    let longest = (b - a).norm_squared().max((c - a).norm_squared()).max((c - b).norm_squared());
-    (b - a).cross(&(c - a)).norm() / longest.max(f64::MIN_POSITIVE)
+    0.5 * (b - a).cross(&(c - a)).norm()
 }
 
 impl Level<'_> {
@@ -135,9 +135,11 @@ impl Level<'_> {
             return false;
         }
         let fans = [Fan { facet: 0, old, new }];
-        let Some(sectors) = sectors(self.s, w, &star, &fans).filter(|sectors| sectors.len() == 2) else { return false };
-        let middle = *self.s.point(w);
-        let apices: Option<Vec<Apex>> = sectors.iter().map(|sector| self.apex(middle, &sector.faces)).collect();
-        apices.is_some_and(|apices| self.fill(&star, sectors.iter().map(|s| &s.faces[..]).zip(apices)))
+        let Some(mut sectors) = sectors(self.s, w, &star, &fans).filter(|sectors| sectors.len() == 2) else { return false };
+        let stays = |a: u32, b: u32| self.keep.contains(a, b);
+        let mut wider = Wider::new(self.s, &stays, Some(w), *self.s.point(w), star);
+        let apices: Option<Vec<Apex>> = sectors.iter_mut().map(|sector| self.apex(&mut wider, sector)).collect();
+        let old = wider.cavity;
+        apices.is_some_and(|apices| self.fill(&old, &sectors, &apices))
     }
 }

@@ -278,7 +278,8 @@ impl<'a> Push<'a> {
         let Some(sectors) = sectors(&self.s, v, &star, &fans) else {
             return Err(self.stuck(host, Stuck::Intersection));
         };
-        let mut wider = Wider::new(&self.s, &self.segments, v);
+        let stays = |a: u32, b: u32| self.segments.of_piece(a, b).is_some();
+        let mut wider = Wider::new(&self.s, &stays, Some(v), *self.s.point(v), star);
         let mut filled = Vec::with_capacity(sectors.len());
         for mut sector in sectors {
             let room = Room::new(&self.s, *self.s.point(v), &sector.faces);
@@ -292,7 +293,7 @@ impl<'a> Push<'a> {
                 Err(room) => return Ok(Pushed::Not { room }),
             }
         }
-        let cavity: Vec<u32> = star.iter().chain(&wider.taken).copied().collect();
+        let cavity = wider.cavity;
         if !self.commit(v, &cavity, &fans, &filled) {
             return Err(self.stuck(host, Stuck::Intersection));
         }

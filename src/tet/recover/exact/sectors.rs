@@ -62,6 +62,7 @@ pub(super) fn outline(next: &FxHashMap<u32, u32>, ends: Option<[u32; 2]>) -> Opt
 }
 
 /// The faces that the vertex that takes the place of another has to see in one sector, counter-clockwise from there.
+#[derive(Clone)]
 pub(super) struct Sector {
     pub faces: Vec<[u32; 3]>,
     /// What the first of these are as half-faces of the sector's tetrahedra; the others are new faces of facets.

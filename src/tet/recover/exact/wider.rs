@@ -3,31 +3,40 @@
 
 use super::room::{Apex, Room};
 use super::sectors::Sector;
-use super::segments::Segments;
 use super::space::Space;
+use crate::geometry::Point3;
 
 /// Tetrahedra that are added to one sector at most.
 const STEPS: usize = 24;
 
-/// Makes sectors around one vertex wider.
+/// Makes sectors around one vertex, or place, wider.
 pub(super) struct Wider<'a> {
     s: &'a Space,
-    segments: &'a Segments<'a>,
-    v: u32,
-    /// What has been added to sectors.
-    pub taken: Vec<u32>,
+    /// Edges that have to stay.
+    stays: &'a dyn Fn(u32, u32) -> bool,
+    /// The vertex that goes.
+    v: Option<u32>,
+    pub origin: Point3,
+    /// All tetrahedra that go.
+    pub cavity: Vec<u32>,
 }
 
 impl<'a> Wider<'a> {
-    pub(super) fn new(s: &'a Space, segments: &'a Segments<'a>, v: u32) -> Self {
-        Self { s, segments, v, taken: Vec::new() }
+    pub(super) fn new(
+        s: &'a Space,
+        stays: &'a dyn Fn(u32, u32) -> bool,
+        v: Option<u32>,
+        origin: Point3,
+        cavity: Vec<u32>,
+    ) -> Self {
+        Self { s, stays, v, origin, cavity }
     }
 
     /// What takes the place of the vertex in a sector that is made wider until it has at least `least` times its size of
     /// room.
     pub(super) fn apex(&mut self, sector: &mut Sector, least: f64) -> Option<Apex> {
         for _ in 0..STEPS {
-            if let Ok(apex) = Room::new(self.s, *self.s.point(self.v), &sector.faces).apex(self.s, least) {
+            if let Ok(apex) = Room::new(self.s, self.origin, &sector.faces).apex(self.s, least) {
                 return Some(apex);
             }
             if !self.step(sector) {
@@ -40,19 +49,19 @@ impl<'a> Wider<'a> {
     /// Adds to a sector the tetrahedron behind one of the walls that bound its room, the one that gains most. False when
     /// there is none.
     fn step(&mut self, sector: &mut Sector) -> bool {
-        let Some((walls, _)) = Room::new(self.s, *self.s.point(self.v), &sector.faces).bounds() else { return false };
+        let Some((walls, _)) = Room::new(self.s, self.origin, &sector.faces).bounds() else { return false };
         let mut best: Option<(f64, u32, Sector)> = None;
         for wall in walls {
             let Some(half) = sector.halves.get(wall) else { continue };
             let next = self.s.c.mate(*half) >> 2;
             let Some(wider) = self.add(sector, next) else { continue };
-            let Some((_, depth)) = Room::new(self.s, *self.s.point(self.v), &wider.faces).bounds() else { continue };
+            let Some((_, depth)) = Room::new(self.s, self.origin, &wider.faces).bounds() else { continue };
             if best.as_ref().is_none_or(|b| depth > b.0) {
                 best = Some((depth, next, wider));
             }
         }
         let Some((_, next, wider)) = best else { return false };
-        self.taken.push(next);
+        self.cavity.push(next);
         *sector = wider;
         true
     }
@@ -61,7 +70,7 @@ impl<'a> Wider<'a> {
     fn add(&self, sector: &Sector, next: u32) -> Option<Sector> {
         let c = &self.s.c;
         let corners = c.verts(next);
-        if c.is_ghost(next) || corners.contains(&self.v) || self.taken.contains(&next) {
+        if c.is_ghost(next) || self.v.is_some_and(|v| corners.contains(&v)) || self.cavity.contains(&next) {
             return None;
         }
         let mut halves = sector.halves.clone();
@@ -78,9 +87,8 @@ impl<'a> Wider<'a> {
         let facets = &sector.faces[sector.halves.len()..];
         let faces: Vec<[u32; 3]> = halves.iter().map(|&half| self.s.wall(half)).chain(facets.iter().copied()).collect();
         let has = |part: &[u32]| faces.iter().any(|f| part.iter().all(|x| f.contains(x)));
-        let stays = |a: u32, b: u32| self.segments.of_piece(a, b).is_some();
         let keeps = corners.iter().all(|&x| has(&[x]))
-            && (0..4).all(|i| (0..i).all(|j| !stays(corners[i], corners[j]) || has(&[corners[i], corners[j]])));
+            && (0..4).all(|i| (0..i).all(|j| !(self.stays)(corners[i], corners[j]) || has(&[corners[i], corners[j]])));
         keeps.then_some(Sector { faces, halves })
     }
 }
