@@ -130,26 +130,48 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
         Err(TetError::Cancelled) => return Err(TetError::Cancelled),
         Err(error) => return Err(diagnosis(r, error)),
     };
-    let flats = complex.real_tets().filter(|&t| !Rule::thick(&surface.points).allows(&complex, &complex.verts(t))).count();
-    eprintln!("DBG after first tier: flats {flats}");
     // Exact recovery takes for granted that the surface does not meet itself.
     contacts::no_contacts(surface, r.watch)?;
     contacts::no_points_in_triangles(surface)?;
-    drop(complex);
-    let mut complex = delaunay::delaunay(&points)?;
-    let rule = Rule::thick(&surface.points);
-    eprintln!("DBG first tier lost {} {}", edges.len(), triangles.len());
-    let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, rule, r.watch) {
-        Ok(summary) => return Ok((complex, summary)),
-        Err(TetError::NotRecovered { edges, triangles }) => (edges, triangles),
-        Err(error) => return Err(error),
-    };
-    let flats = complex.real_tets().filter(|&t| !rule.allows(&complex, &complex.verts(t))).count();
-    eprintln!("DBG thick tier lost {} {}, flats {}", edges.len(), triangles.len(), flats);
-    let before = complex.points.len() - points.len();
     let missing = Missing { edges: &edges, triangles: &triangles };
-    let (complex, exact) = recover_exact(&complex, surface, r.edges, missing, r.watch)?;
-    let (missing_edges, missing_triangles) = (edges.len(), triangles.len());
+    let thick = Rule::thick(&surface.points);
+    let turned = complex.real_tets().any(|t| !thick.allows(&complex, &complex.verts(t)));
+    let first = if turned { Err(None) } else { exactly(r, &complex, missing, points.len()).map_err(Some) };
+    drop(complex);
+    first.or_else(|error| match error {
+        None => by_rule(r, &points, thick).or_else(|error| again(error, || by_rule(r, &points, Rule::Positive))),
+        Some(error) => again(error, || by_rule(r, &points, thick)),
+    })
+}
+
+/// Tries another way after an error that may be owed to the way.
+fn again<T>(error: TetError, other: impl FnOnce() -> Result<T, TetError>) -> Result<T, TetError> {
+    if matches!(error, TetError::Stuck { .. }) { other() } else { Err(error) }
+}
+
+/// A complex that has all of the surface, from the beginning by flips that a rule allows.
+fn by_rule(r: &Request, points: &[Point3], rule: Rule) -> Result<(Complex, RecoverySummary), TetError> {
+    let mut complex = delaunay::delaunay(points)?;
+    match recover::recover(&mut complex, r.surface, r.edges, rule, r.watch) {
+        Ok(summary) => Ok((complex, summary)),
+        Err(TetError::NotRecovered { edges, triangles }) => {
+            let missing = Missing { edges: &edges, triangles: &triangles };
+            exactly(r, &complex, missing, points.len())
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// Recovers exactly what is missing.
+fn exactly(
+    r: &Request,
+    complex: &Complex,
+    missing: Missing,
+    points: usize,
+) -> Result<(Complex, RecoverySummary), TetError> {
+    let before = complex.points.len() - points;
+    let (complex, exact) = recover_exact(complex, r.surface, r.edges, missing, r.watch)?;
+    let (missing_edges, missing_triangles) = (missing.edges.len(), missing.triangles.len());
     Ok((complex, RecoverySummary { missing_edges, missing_triangles, steiner_points: before + exact.steiner_points }))
 }
 

@@ -126,8 +126,9 @@ impl<'a> Dig<'a> {
     }
 
     /// The cavity for the next vertex of the segment behind what it crosses first.
-    pub(super) fn dig(&mut self, first: Vec<u32>) -> Option<Dug> {
-        self.deep(first.clone()).or_else(|| self.seen(first))
+    pub(super) fn dig(&mut self, first: Vec<u32>, deep: bool) -> Option<Dug> {
+        let dug = if deep { self.deep(first.clone()) } else { None };
+        dug.or_else(|| self.seen(first))
     }
 
     /// A cavity in which the vertex lies well off all walls: what is nearly flat is taken as well, on both sides.

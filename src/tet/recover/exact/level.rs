@@ -20,7 +20,13 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 
 /// Edges in the way of one, at most.
-const FAR: usize = 4096;
+const FAR: usize = 1024;
+
+/// Vertices put into a plane for one edge at most.
+const PIERCED: usize = 16;
+
+/// What an exchange that is refused costs, in exchanges.
+const REFUSED: usize = 8;
 
 /// So many of the levels are tried before a wider cavity is.
 const AMPLE: usize = 3;
@@ -44,6 +50,8 @@ pub(super) struct Level<'a> {
     pub keep: &'a SurfaceEdges,
     /// Missing facets at each of their sides.
     pub facets: FxHashMap<[u32; 2], Vec<[u32; 3]>>,
+    /// Vertices that may be put into planes for the edge at hand.
+    pub spare: usize,
     /// New vertices that lie on nothing.
     pub made: Vec<u32>,
     /// New vertices in planes.
@@ -57,6 +65,7 @@ impl Level<'_> {
         if self.s.has_edge(a, b) {
             return true;
         }
+        self.spare = PIERCED;
         let facets = self.facets.get(&sorted(a, b)).cloned().unwrap_or_default();
         let mut planes: Vec<(f64, Plane)> = facets.into_iter().map(|facet| self.plane(facet)).collect();
         planes.sort_by(|x, y| y.0.total_cmp(&x.0));
@@ -101,8 +110,9 @@ impl Level<'_> {
             }
             work -= 1;
             let flat = self.quadrilateral(edge, plane);
-            let flipped = flat.filter(|q| self.convex(q, plane)).filter(|q| self.exchange(q));
-            let Some(Diagonal { across: [x, y], .. }) = flipped else {
+            let convex = flat.filter(|q| self.convex(q, plane));
+            let Some(Diagonal { across: [x, y], .. }) = convex.filter(|q| self.exchange(q)) else {
+                work = if convex.is_some() { work.saturating_sub(REFUSED) } else { work };
                 refused += 1;
                 waiting.push_back(edge);
                 continue;

@@ -116,10 +116,9 @@ fn recover_parts(
     let segments = Segments::new(edges, surface.points.len());
     let mut push = Push::new(Space::new(c, flat_height(&surface.points)), segments, surface.triangles.clone());
     let mut summary = ExactSummary::default();
-    let tl = std::time::Instant::now();
-    let (lost_edges, lost_triangles) = level_out(&mut push, edges, missing, watch)?;
-    eprintln!("DBG level left {} {}, points {} time {:.2}", lost_edges.len(), lost_triangles.len(), push.s.c.points.len(), tl.elapsed().as_secs_f64());
-    let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
+    let left = if Way::of(salt).level { Some(level_out(&mut push, edges, missing, watch)?) } else { None };
+    let missing = left.as_ref().map_or(missing, |(edges, triangles)| Missing { edges, triangles });
+    push.segments.deep = Way::of(salt).deep;
     for part in parts(&surface.triangles, missing) {
         // Large parts take most of the time, and are tried again alone; a copy for each of the others would take longer.
         let saved = (part.edges.len() >= LARGE).then(|| (push.clone(), summary));
@@ -137,6 +136,20 @@ fn recover_parts(
     Ok((push.s.c, summary))
 }
 
+/// How it is tried: what fails in one way comes loose in another.
+struct Way {
+    /// Whether edges in planes of faces are turned first.
+    level: bool,
+    /// Whether cavities are to be deep, not only seen.
+    deep: bool,
+}
+
+impl Way {
+    fn of(salt: u64) -> Self {
+        Self { level: salt.is_multiple_of(2), deep: salt < ATTEMPTS / 2 }
+    }
+}
+
 /// Recovers what lies in planes of faces but for rounding. Returns what is still missing.
 fn level_out(
     push: &mut Push,
@@ -149,7 +162,7 @@ fn level_out(
         let triangle = push.triangles[t as usize];
         sides(triangle).into_iter().for_each(|side| facets.entry(side).or_default().push(triangle));
     }
-    let mut level = Level { s: &mut push.s, keep: edges, facets, made: Vec::new(), inside: Vec::new() };
+    let mut level = Level { s: &mut push.s, keep: edges, facets, spare: 0, made: Vec::new(), inside: Vec::new() };
     for &edge in missing.edges {
         watch.ask()?;
         level.insert(edge);
@@ -198,7 +211,6 @@ fn recover_part(
         let over = push.s.implicit_vertices() > budget;
         if over { Err(TetError::Stuck { part: on, reason: Stuck::Budget }) } else { Ok(()) }
     };
-    let t0 = std::time::Instant::now();
     let helpers = add_helpers(push, part, salt);
     // At random: fans of long thin triangles come in halves of halves then, where one after the other each next chain
     // would have to fit between the one before and what lies beyond.
@@ -228,10 +240,7 @@ fn recover_part(
     }
     #[cfg(test)]
     push.s.check();
-    let t1 = std::time::Instant::now();
-    let r = push.settle();
-    eprintln!("DBGS part edges {} tris {} segs {} facets {} cut {:.2} settle {:.2} {:?}", part.edges.len(), part.triangles.len(), summary.on_segments, summary.on_facets, (t1-t0).as_secs_f64(), t1.elapsed().as_secs_f64(), r);
-    r?;
+    push.settle()?;
     if !helpers.triangles.is_empty() {
         push.drop_helpers(&helpers.triangles, beside..push.segments.list.len() as u32, inner);
         push.settle()?;

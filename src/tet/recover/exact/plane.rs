@@ -74,7 +74,7 @@ impl Level<'_> {
         let (p, q) = (*s.point(u), *s.point(v));
         let (x, y) = (plane.height(&p), plane.height(&q));
         let pierces = x.min(y) < -s.flat && x.max(y) > s.flat;
-        if !pierces || self.keep.contains(u, v) {
+        if !pierces || self.spare == 0 || self.keep.contains(u, v) {
             return None;
         }
         let at = p + (q - p) * (x / (x - y));
@@ -91,6 +91,7 @@ impl Level<'_> {
         if !self.s.c.replace(&ring.tets, &new, &mut Vec::new()) {
             return None;
         }
+        self.spare -= 1;
         self.inside.push((w, *plane));
         Some(w)
     }

@@ -25,6 +25,8 @@ pub(super) struct Segments<'a> {
     /// Points of the input.
     points: usize,
     pub list: Vec<Segment>,
+    /// Whether vertices are put well off all walls, where that can be.
+    pub deep: bool,
     /// Segment of each pair of ends, smaller vertex first.
     by_ends: FxHashMap<[u32; 2], u32>,
     /// Segment of each piece, smaller vertex first.
@@ -42,7 +44,7 @@ enum Crossing {
 
 impl<'a> Segments<'a> {
     pub(super) fn new(input: &'a SurfaceEdges, points: usize) -> Self {
-        Self { input, points, list: Vec::new(), by_ends: FxHashMap::default(), pieces: FxHashMap::default() }
+        Self { input, points, deep: true, list: Vec::new(), by_ends: FxHashMap::default(), pieces: FxHashMap::default() }
     }
 
     /// The segment between two points of the input, if it was missing.
@@ -128,7 +130,7 @@ impl<'a> Segments<'a> {
             Crossing::Vertex(v) => return Ok(Some(v)),
             Crossing::Nothing => return Err(stuck(ends, Stuck::Intersection)),
             Crossing::Face(half) if s.c.is_frozen(half) => return Err(meets(Obstacle::Triangle(s.c.face(half)))),
-            Crossing::Face(half) => match self.grazed(s, half, ends) {
+            Crossing::Face(half) => match self.grazed(s, half, ends).filter(|_| self.deep) {
                 Some([p, q]) => ring(s, half >> 2, [p, q]),
                 None => vec![half >> 2, s.c.mate(half) >> 2],
             },
@@ -144,7 +146,7 @@ impl<'a> Segments<'a> {
         }
         let keep = |a, b| self.of_piece(a, b).is_some();
         let mut dig = Dig::new(s, self.points, &keep, at, ends);
-        let (cavity, weight) = match dig.dig(first) {
+        let (cavity, weight) = match dig.dig(first, self.deep) {
             Some(Dug::Joins(cavity)) => {
                 let walls = s.walls(&cavity);
                 return if s.join(&cavity, &walls, at) { Ok(None) } else { Err(stuck(ends, Stuck::Intersection)) };
