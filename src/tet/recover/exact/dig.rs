@@ -16,6 +16,9 @@ const STEPS: usize = 32;
 /// Steps by which it grows at most, where it is to be deep.
 const DEEP_STEPS: usize = 64;
 
+/// Steps without a gain after which it is as deep as it gets.
+const PATIENCE: usize = 6;
+
 /// Distance of a vertex from the walls, over their size, that is deep enough. What is flatter than that counts as flat:
 /// far above what rounding of coordinates leaves of flat parts, even to single precision.
 const DEEP: f64 = 1e-5;
@@ -134,9 +137,15 @@ impl<'a> Dig<'a> {
     /// A cavity in which the vertex lies well off all walls: what is nearly flat is taken as well, on both sides.
     fn deep(&self, mut tets: Vec<u32>) -> Option<Dug> {
         let mut best: Option<(f64, Dug)> = None;
-        for _ in 0..DEEP_STEPS {
+        let mut deepest_yet = (f64::NEG_INFINITY, 0);
+        for step in 0..DEEP_STEPS {
             let walls = self.s.outer(&tets);
             let deepest = self.course.deepest(self.s, &walls);
+            if deepest.depth > deepest_yet.0 {
+                deepest_yet = (deepest.depth, step);
+            } else if step > deepest_yet.1 + PATIENCE && deepest_yet.0 < DEEP {
+                break;
+            }
             let so_far = best.as_ref().map_or(0.0, |b| b.0);
             let joined = self.depth_of_join(&walls).filter(|&depth| depth > so_far);
             let better = deepest.depth > so_far || deepest.depth >= DEEP;

@@ -25,17 +25,20 @@ const FAR: usize = 1024;
 /// Vertices put into a plane for one edge at most.
 const PIERCED: usize = 16;
 
+/// Tetrahedra that are added to one half of a ring at most.
+const STEPS: usize = 6;
+
 /// What an exchange that is refused costs, in exchanges.
 const REFUSED: usize = 8;
 
 /// So many of the levels are tried before a wider cavity is.
-const AMPLE: usize = 3;
+const AMPLE: usize = 4;
 
 /// Facets that are looked at for the plane of one.
 const AROUND: usize = 200;
 
 /// Exchanges for one edge, over the number of edges in its way and on top of it.
-const WORK: (usize, usize) = (16, 64);
+const WORK: (usize, usize) = (8, 32);
 
 /// An edge that is in the way, and the vertices across from it on both sides in the plane.
 #[derive(Clone, Copy)]
@@ -265,7 +268,7 @@ impl Level<'_> {
         }
         let (mut wide, narrow) = (sector.clone(), wider.cavity.len());
         let least = self.least(&Room::new(self.s, origin, &sector.faces));
-        if let Some(apex) = wider.apex(&mut wide, LEVELS[AMPLE].max(least)) {
+        if let Some(apex) = wider.apex(&mut wide, LEVELS[AMPLE].max(least), STEPS) {
             *sector = wide;
             return Some(apex);
         }

@@ -19,6 +19,9 @@ use crate::tet::error::{Obstacle, Stuck, TetError};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Range;
 
+/// Tetrahedra that are added to one sector at most.
+const STEPS: usize = 24;
+
 /// Place in [`LEVELS`] of the room that wider cavities have to have: they cost most, and are for what is left.
 const WIDER_FROM: usize = 3;
 
@@ -286,7 +289,7 @@ impl<'a> Push<'a> {
             let apex = match way {
                 Way::Corners => room.neighbor(&self.s, least).map(Apex::Vertex),
                 Way::Points => room.apex(&self.s, least),
-                Way::Wider => wider.apex(&mut sector, least).ok_or(least.next_down()),
+                Way::Wider => wider.apex(&mut sector, least, STEPS).ok_or(least.next_down()),
             };
             match apex {
                 Ok(apex) => filled.push((sector, apex)),

@@ -6,9 +6,6 @@ use super::sectors::Sector;
 use super::space::Space;
 use crate::geometry::Point3;
 
-/// Tetrahedra that are added to one sector at most.
-const STEPS: usize = 24;
-
 /// Makes sectors around one vertex, or place, wider.
 pub(super) struct Wider<'a> {
     s: &'a Space,
@@ -32,10 +29,10 @@ impl<'a> Wider<'a> {
         Self { s, stays, v, origin, cavity }
     }
 
-    /// What takes the place of the vertex in a sector that is made wider until it has at least `least` times its size of
+    /// What takes the place of the vertex in a sector that is made wider, by so many tetrahedra at most, until it has at least `least` times its size of
     /// room.
-    pub(super) fn apex(&mut self, sector: &mut Sector, least: f64) -> Option<Apex> {
-        for _ in 0..STEPS {
+    pub(super) fn apex(&mut self, sector: &mut Sector, least: f64, steps: usize) -> Option<Apex> {
+        for _ in 0..steps {
             if let Ok(apex) = Room::new(self.s, self.origin, &sector.faces).apex(self.s, least) {
                 return Some(apex);
             }
