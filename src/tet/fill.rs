@@ -135,8 +135,13 @@ fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
     contacts::no_points_in_triangles(surface)?;
     let missing = Missing { edges: &edges, triangles: &triangles };
     let thick = Rule::thick(&surface.points);
-    let turned = complex.real_tets().any(|t| !thick.allows(&complex, &complex.verts(t)));
-    let first = if turned { Err(None) } else { exactly(r, &complex, missing, points.len()).map_err(Some) };
+    // Where flips have met with flat parts they have left flat tetrahedra, more than one for each edge.
+    let flat = complex.real_tets().filter(|&t| !thick.allows(&complex, &complex.verts(t)));
+    let first = if flat.take(edges.len() + 1).count() > edges.len() {
+        Err(None)
+    } else {
+        exactly(r, &complex, missing, points.len(), false).map_err(Some)
+    };
     drop(complex);
     first.or_else(|error| match error {
         None => by_rule(r, &points, thick).or_else(|error| again(error, || by_rule(r, &points, Rule::Positive))),
@@ -156,21 +161,22 @@ fn by_rule(r: &Request, points: &[Point3], rule: Rule) -> Result<(Complex, Recov
         Ok(summary) => Ok((complex, summary)),
         Err(TetError::NotRecovered { edges, triangles }) => {
             let missing = Missing { edges: &edges, triangles: &triangles };
-            exactly(r, &complex, missing, points.len())
+            exactly(r, &complex, missing, points.len(), rule != Rule::Positive)
         }
         Err(error) => Err(error),
     }
 }
 
-/// Recovers exactly what is missing.
+/// Recovers exactly what is missing; `turned` where parts are flat but for rounding.
 fn exactly(
     r: &Request,
     complex: &Complex,
     missing: Missing,
     points: usize,
+    turned: bool,
 ) -> Result<(Complex, RecoverySummary), TetError> {
     let before = complex.points.len() - points;
-    let (complex, exact) = recover_exact(complex, r.surface, r.edges, missing, r.watch)?;
+    let (complex, exact) = recover_exact(complex, r.surface, r.edges, missing, turned, r.watch)?;
     let (missing_edges, missing_triangles) = (missing.edges.len(), missing.triangles.len());
     Ok((complex, RecoverySummary { missing_edges, missing_triangles, steiner_points: before + exact.steiner_points }))
 }

@@ -16,7 +16,8 @@ impl Recovery<'_> {
         if self.rule == Rule::Positive {
             return;
         }
-        let flat: Vec<[u32; 4]> = self.c.real_tets().map(|t| self.c.verts(t)).filter(|v| !self.rule.allows(self.c, v)).collect();
+        let flat: Vec<[u32; 4]> =
+            self.c.real_tets().map(|t| self.c.verts(t)).filter(|v| !self.rule.allows(self.c, v)).collect();
         for v in flat {
             self.budget = BUDGET;
             self.dissolve_one(v);

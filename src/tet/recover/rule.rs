@@ -1,7 +1,7 @@
 //! Which tetrahedra flips may make.
 
-use crate::geometry::{Point3, Vec3};
 use crate::geometry::predicates::orient3d;
+use crate::geometry::{Point3, Vec3};
 use crate::tet::complex::Complex;
 
 /// Flat parts of a surface that were turned are flat to this many units in the last place of the largest coordinate.

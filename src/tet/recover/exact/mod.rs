@@ -31,8 +31,8 @@ use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
 use crate::tet::recover::rule::flat_height;
 use helpers::add_helpers;
-use parts::{Part, parts, sides};
 use level::Level;
+use parts::{Part, parts, sides};
 use push::Push;
 use rustc_hash::FxHashMap;
 use segments::Segments;
@@ -80,11 +80,13 @@ pub(in crate::tet) fn recover_exact(
     surface: &TriMesh,
     edges: &SurfaceEdges,
     missing: Missing,
+    turned: bool,
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
+    let ways = Way::all(turned);
     let mut salt = 0;
     loop {
-        match recover_parts(c.clone(), surface, edges, missing, salt, watch) {
+        match recover_parts(c.clone(), surface, edges, missing, (salt, ways[salt as usize]), watch) {
             Ok(recovered) => return Ok(recovered),
             Err(Failed { error, again }) if !again || salt + 1 == ATTEMPTS => return Err(error),
             Err(_) => salt += 1,
@@ -109,16 +111,16 @@ fn recover_parts(
     surface: &TriMesh,
     edges: &SurfaceEdges,
     missing: Missing,
-    salt: u64,
+    (salt, way): (u64, Way),
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), Failed> {
     let budget = VERTICES.0 * missing.edges.len() + VERTICES.1;
     let segments = Segments::new(edges, surface.points.len());
     let mut push = Push::new(Space::new(c, flat_height(&surface.points)), segments, surface.triangles.clone());
     let mut summary = ExactSummary::default();
-    let left = if Way::of(salt).level { Some(level_out(&mut push, edges, missing, watch)?) } else { None };
+    let left = if way.level { Some(level_out(&mut push, edges, missing, watch)?) } else { None };
     let missing = left.as_ref().map_or(missing, |(edges, triangles)| Missing { edges, triangles });
-    push.segments.deep = Way::of(salt).deep;
+    push.segments.deep = way.deep;
     for part in parts(&surface.triangles, missing) {
         // Large parts take most of the time, and are tried again alone; a copy for each of the others would take longer.
         let saved = (part.edges.len() >= LARGE).then(|| (push.clone(), summary));
@@ -137,6 +139,7 @@ fn recover_parts(
 }
 
 /// How it is tried: what fails in one way comes loose in another.
+#[derive(Clone, Copy)]
 struct Way {
     /// Whether edges in planes of faces are turned first.
     level: bool,
@@ -145,8 +148,15 @@ struct Way {
 }
 
 impl Way {
-    fn of(salt: u64) -> Self {
-        Self { level: salt.is_multiple_of(2), deep: salt < ATTEMPTS / 2 }
+    /// The ways for parts that are flat but for rounding, and for others, one for each attempt.
+    fn all(turned: bool) -> [Self; ATTEMPTS as usize] {
+        let way = |level, deep| Self { level, deep };
+        let seen = way(false, false);
+        if turned {
+            [way(true, true), way(false, true), way(true, false), seen]
+        } else {
+            [seen, seen, way(true, true), way(false, true)]
+        }
     }
 }
 

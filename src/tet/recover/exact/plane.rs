@@ -50,9 +50,11 @@ impl Level<'_> {
         let ring = self.s.ring(edge[0], edge[1])?;
         let n = ring.len();
         let wanted = if right { -1 } else { 1 };
-        (0..n).find_map(|i| self.pierce([ring.rim[i], ring.rim[(i + 1) % n]], plane, |s, p| {
-            Space::orient_points([s.point(edge[0]), s.point(edge[1]), p, &plane.above]) == wanted
-        }))
+        (0..n).find_map(|i| {
+            self.pierce([ring.rim[i], ring.rim[(i + 1) % n]], plane, |s, p| {
+                Space::orient_points([s.point(edge[0]), s.point(edge[1]), p, &plane.above]) == wanted
+            })
+        })
     }
 
     /// Splits the edges that pierce a plane in front of a vertex in it, towards another. Whether there were any.
@@ -136,7 +138,9 @@ impl Level<'_> {
             return false;
         }
         let fans = [Fan { facet: 0, old, new }];
-        let Some(mut sectors) = sectors(self.s, w, &star, &fans).filter(|sectors| sectors.len() == 2) else { return false };
+        let Some(mut sectors) = sectors(self.s, w, &star, &fans).filter(|sectors| sectors.len() == 2) else {
+            return false;
+        };
         let stays = |a: u32, b: u32| self.keep.contains(a, b);
         let mut wider = Wider::new(self.s, &stays, Some(w), *self.s.point(w), star);
         let apices: Option<Vec<Apex>> = sectors.iter_mut().map(|sector| self.apex(&mut wider, sector)).collect();

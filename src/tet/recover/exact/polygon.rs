@@ -86,8 +86,10 @@ impl<'a> Ears<'a> {
     /// The best-shaped corner whose triangle has no other corner in it. Where one lies in it, one at which the polygon
     /// does not turn inwards does.
     fn next_ear(&self) -> Option<usize> {
-        let blunt: Vec<u32> =
-            (0..self.polygon.len()).filter(|&k| self.turn[k].is_some_and(|t| t <= 0)).map(|k| self.polygon[k]).collect();
+        let blunt: Vec<u32> = (0..self.polygon.len())
+            .filter(|&k| self.turn[k].is_some_and(|t| t <= 0))
+            .map(|k| self.polygon[k])
+            .collect();
         let is_ear = |k: usize| {
             let [p, q, r] = self.corner(k);
             let outside = |w: u32| [[r, p, w], [p, q, w], [q, r, w]].into_iter().any(|turn| self.turn_of(turn) < 0);

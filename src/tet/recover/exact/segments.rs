@@ -44,7 +44,14 @@ enum Crossing {
 
 impl<'a> Segments<'a> {
     pub(super) fn new(input: &'a SurfaceEdges, points: usize) -> Self {
-        Self { input, points, deep: true, list: Vec::new(), by_ends: FxHashMap::default(), pieces: FxHashMap::default() }
+        Self {
+            input,
+            points,
+            deep: true,
+            list: Vec::new(),
+            by_ends: FxHashMap::default(),
+            pieces: FxHashMap::default(),
+        }
     }
 
     /// The segment between two points of the input, if it was missing.
@@ -152,7 +159,7 @@ impl<'a> Segments<'a> {
                 return if s.join(&cavity, &walls, at) { Ok(None) } else { Err(stuck(ends, Stuck::Intersection)) };
             }
             Some(Dug::Place(cavity, weight)) => (cavity, weight),
-            None => { return Err(stuck(ends, Stuck::Precision)) },
+            None => return Err(stuck(ends, Stuck::Precision)),
         };
         let walls = s.walls(&cavity);
         let corners = ends.map(|v| *s.point(v));
