@@ -9,6 +9,7 @@ use super::builder::{Tetrahedralization, Tetrahedralizer};
 use super::complex::face_key;
 use super::error::TetError;
 use super::options::{Boundary, Sizing};
+use super::outside::without;
 use super::plc::Plc;
 use super::sized;
 use crate::geometry::Point3;
@@ -30,6 +31,8 @@ struct Pieces {
     plc: Plc,
     /// The triangle of the input that each triangle is a piece of.
     origin: Vec<u32>,
+    /// The segment of the input that each segment is a piece of.
+    segment_origin: Vec<u32>,
     /// The triangles at each edge; those that have been replaced since may be among them.
     at_edge: FxHashMap<[u32; 2], Vec<u32>>,
     segments: FxHashMap<[u32; 2], u32>,
@@ -52,7 +55,9 @@ impl Pieces {
             }
         }
         let segments = plc.edges.iter().zip(0..).map(|(e, i)| (edge(e[0], e[1]), i)).collect();
-        Self { plc: plc.clone(), origin: (0..plc.triangles.len() as u32).collect(), at_edge, segments }
+        let origin = (0..plc.triangles.len() as u32).collect();
+        let segment_origin = (0..plc.edges.len() as u32).collect();
+        Self { plc: plc.clone(), origin, segment_origin, at_edge, segments }
     }
 
     fn length(&self, [a, b]: [u32; 2]) -> f64 {
@@ -81,6 +86,7 @@ impl Pieces {
             self.segments.insert(edge(a, m), s);
             self.segments.insert(edge(m, b), self.plc.edges.len() as u32);
             self.plc.edges.push([m, b]);
+            self.segment_origin.push(self.segment_origin[s as usize]);
         }
         for i in triangles {
             let t = self.plc.triangles[i as usize];
@@ -131,6 +137,17 @@ impl Pieces {
         }
     }
 
+    /// Names what a run with the pieces names by the triangles and segments of the input.
+    fn name_origins(&self, done: &mut Tetrahedralization) {
+        let left_out = &mut done.summary.left_out;
+        done.origins = without(&self.origin, &left_out.triangles);
+        for (ids, origin) in [(&mut left_out.triangles, &self.origin), (&mut left_out.segments, &self.segment_origin)] {
+            ids.iter_mut().for_each(|id| *id = origin[*id as usize]);
+            ids.sort_unstable();
+            ids.dedup();
+        }
+    }
+
     fn longest(&self, triangle: u32) -> [u32; 2] {
         let mut edges = edges_of(self.plc.triangles[triangle as usize]);
         edges.sort_unstable_by(|x, y| self.length(*y).total_cmp(&self.length(*x)).then(x.cmp(y)));
@@ -168,7 +185,7 @@ impl Tetrahedralizer {
             let split = if round < ROUNDS { to_split(&done.mesh, &pieces, &shape) } else { Vec::new() };
             let changed = split.into_iter().filter(|&e| pieces.halve(e)).count();
             if changed == 0 {
-                done.origins = pieces.origin;
+                pieces.name_origins(&mut done);
                 return Ok(done);
             }
         }

@@ -249,7 +249,8 @@ fn a_carved_complex_is_sane_with_its_ghosts() {
     c.sanity_check().unwrap();
     recover::recover(&mut c, &s, &edges, &Watch::NOBODY).unwrap();
     c.sanity_check().unwrap();
-    let carved = carve::carve(&c, &s, InputKind::Closed, &[]).unwrap();
+    let sides = carve::Sides::find(&c, &s, InputKind::Closed, &[]).unwrap();
+    let carved = carve::carve(&c, &s, &sides);
     carved.sanity_check().unwrap();
     let rebuilt = Complex::from_mesh(carved.points.clone(), &carved.clone().into_mesh().tets).unwrap();
     rebuilt.sanity_check().unwrap();
