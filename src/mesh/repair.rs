@@ -397,6 +397,28 @@ mod tests {
     }
 
     #[test]
+    fn sheets_go_where_they_enclose_nothing() {
+        let mut s = sphere_surface(1);
+        let n = s.triangles.len();
+        let [a, b, c] = s.triangles[7];
+        let twice = |s: &mut TriMesh, t: [u32; 3]| s.triangles.extend([t, [t[1], t[0], t[2]]]);
+        // One triangle of the surface with its back, and a fin that is there three times.
+        s.points.push(Point3::new(3.0, 3.0, 3.0));
+        let tip = s.points.len() as u32 - 1;
+        s.triangles.push([b, a, c]);
+        twice(&mut s, [a, b, tip]);
+        s.triangles.push([tip, a, b]);
+        let r = repair(&s);
+        assert_eq!(r.surface.triangles, s.triangles[..n]);
+        assert_eq!((r.report.duplicate_triangles, r.report.sheet_triangles), (1, 3));
+        assert!(r.source.iter().zip(0..).all(|(&a, b)| a == b));
+        // Among facets one of each stays.
+        let r = repair_facets(&s);
+        assert_eq!((r.surface.triangles.len(), r.report.duplicate_triangles), (n + 1, 3));
+        assert_eq!(r.source.last(), Some(&(n as u32 + 1)));
+    }
+
+    #[test]
     fn nested_shells_are_turned_by_turns() {
         let s = sphere_surface(1);
         let mut all = s.clone();

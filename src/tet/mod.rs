@@ -112,6 +112,10 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
 }
 
 #[cfg(test)]
+mod input_tests;
+#[cfg(test)]
+mod outside_tests;
+#[cfg(test)]
 mod refined_tests;
 #[cfg(test)]
 mod tests;

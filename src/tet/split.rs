@@ -8,8 +8,8 @@
 use super::builder::{Tetrahedralization, Tetrahedralizer};
 use super::complex::face_key;
 use super::error::TetError;
-use super::options::{Boundary, Sizing};
-use super::outside::without;
+use super::options::{Boundary, Interior, Sizing};
+use super::outside::{LeftOut, without};
 use super::plc::Plc;
 use super::sized;
 use crate::geometry::Point3;
@@ -142,7 +142,9 @@ impl Pieces {
         let left_out = &mut done.summary.left_out;
         done.origins = without(&self.origin, &left_out.triangles);
         for (ids, origin) in [(&mut left_out.triangles, &self.origin), (&mut left_out.segments, &self.segment_origin)] {
-            ids.iter_mut().for_each(|id| *id = origin[*id as usize]);
+            for id in ids.iter_mut() {
+                *id = origin[*id as usize];
+            }
             ids.sort_unstable();
             ids.dedup();
         }
@@ -156,11 +158,44 @@ impl Pieces {
 }
 
 impl Tetrahedralizer {
-    /// A mesh of a checked complex whose triangles may be split.
+    /// A mesh of a checked complex whose triangles may be split. Where some cannot be recovered it is tried without
+    /// those outside of what is filled, of which nobody needs the pieces.
     ///
     /// # Errors
     /// As [`Tetrahedralizer::run`].
     pub(super) fn run_split(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
+        let error = match self.run_pieces(plc) {
+            Err(error @ (TetError::Stuck { .. } | TetError::NotRecovered { .. })) => error,
+            other => return other,
+        };
+        let bare = self.clone().boundary(Boundary::Keep).interior(Interior::None).refine(None).optimize(false);
+        match bare.sizing(Sizing::Surface).run(plc) {
+            Ok(Tetrahedralization { summary, .. }) if !summary.left_out.is_empty() => {
+                self.run_without(plc, summary.left_out)
+            }
+            Err(TetError::Cancelled) => Err(TetError::Cancelled),
+            _ => Err(error),
+        }
+    }
+
+    /// A mesh of the complex without what lies outside.
+    fn run_without(&self, plc: &Plc, left_out: LeftOut) -> Result<Tetrahedralization, TetError> {
+        let kept: Vec<u32> = without(&(0..plc.triangles.len() as u32).collect::<Vec<_>>(), &left_out.triangles);
+        let inner = Plc {
+            triangles: without(&plc.triangles, &left_out.triangles),
+            markers: without(&plc.markers, &left_out.triangles),
+            edges: without(&plc.edges, &left_out.segments),
+            ..plc.clone()
+        };
+        let mut done = self.run_pieces(&inner)?;
+        for id in &mut done.origins {
+            *id = kept[*id as usize];
+        }
+        done.summary.left_out = left_out;
+        Ok(done)
+    }
+
+    fn run_pieces(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
         let (refinement, sizing) = self.wishes();
         let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
         let volume = refinement.and_then(|r| r.max_volume);

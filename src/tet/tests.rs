@@ -169,7 +169,7 @@ fn wrong_surfaces_are_typed_errors() {
     twisted.triangles[0].swap(0, 1);
     assert!(matches!(error(&twisted), TetError::NotOriented { edges: 3, .. }));
     let mut crowded = s.clone();
-    crowded.triangles.push(s.triangles[0]);
+    crowded.triangles.push([s.triangles[0][0], s.triangles[0][1], s.triangles[9][0]]);
     assert!(matches!(error(&crowded), TetError::NotManifold { .. }));
     let mut bad = s.clone();
     bad.triangles[3][1] = 10_000;
