@@ -621,13 +621,14 @@ fn cube_with_things_outside() -> String {
     points.extend([(3., 0.), (3., 1.)].iter().flat_map(|&(x, y)| [0., 1.].map(|z| Point3::new(x, y, z))));
     points.extend([Point3::new(-1.0, 0.0, 0.0), Point3::new(-1.0, 0.0, 1.0)]);
     points.extend([(0.25, 0.25), (0.75, 0.25), (0.75, 0.75)].map(|(x, y)| Point3::new(x, y, 0.5)));
+    points.extend([Point3::new(5.0, 0.0, 0.0), Point3::new(5.0, 1.0, 1.0)]);
     let mut out = node_list(&points, 1) + "10 1\n";
     let squares = [[8, 9, 11, 10], [0, 12, 13, 4]];
     for (i, side) in SIDES.iter().chain(&squares).enumerate() {
         let [a, b, c, d] = side.map(|v| v + 1);
         let _ = writeln!(out, "1 0 {}\n4 {a} {b} {c} {d}", 10 + i);
     }
-    out + "1 0 20\n3 15 16 17\n1 0 21\n2 9 14\n0\n0\n"
+    out + "1 0 20\n3 15 16 17\n1 0 21\n2 18 19\n0\n0\n"
 }
 
 #[test]
@@ -640,8 +641,8 @@ fn facets_outside_are_left_out_with_a_note() {
         let left_out = &made["left_out"];
         assert_eq!(left_out["triangles"], 4);
         assert_eq!(left_out["faces"], serde_json::json!([7, 8]));
-        assert_eq!(left_out["segments"], serde_json::json!([[9, 14]]));
-        assert_eq!((&left_out["counted_from"], &left_out["unused_points"]), (&1.into(), &6.into()));
+        assert_eq!(left_out["segments"], serde_json::json!([[18, 19]]));
+        assert_eq!((&left_out["counted_from"], &left_out["unused_points"]), (&1.into(), &8.into()));
         assert!((made["mesh"]["volume"].as_f64().expect("a number") - 1.0).abs() < 1e-9);
         assert!(made["mesh"]["interior_faces"].as_u64() >= Some(1));
         let mesh = read_mesh(&out).expect("a mesh").volume;
@@ -650,16 +651,16 @@ fn facets_outside_are_left_out_with_a_note() {
         // Points keep their numbers; what was left out is no edge.
         assert_eq!(mesh.mesh.points[8], Point3::new(3.0, 0.0, 0.0));
         let edges = fs::read_to_string(out.with_extension("edge")).expect("text");
-        assert!(!edges.lines().any(|line| line.contains(" 9 14 ")), "{edges}");
+        assert!(!edges.lines().any(|line| line.contains(" 18 19 ")), "{edges}");
     }
     let made = fill(&input, &out, &["--no-refine"]);
     assert_code(&made, FINE);
     let said = stderr(&made);
     assert!(
-        said.contains("4 triangles of the facets 7, 8 (counted from 1)") && said.contains("1 segments 9-14"),
+        said.contains("4 triangles of the facets 7, 8 (counted from 1)") && said.contains("1 segments 18-19"),
         "{said}"
     );
-    assert!(said.contains("no tetrahedron has: 6"), "{said}");
+    assert!(said.contains("no tetrahedron has: 8"), "{said}");
     let quiet = fill(&input, &out, &["--quiet"]);
     assert!(quiet.stderr.is_empty());
 }
@@ -670,9 +671,15 @@ fn strict_refuses_what_would_be_left_out() {
     let parts = ["4 triangles lie outside", "filled: 7, 8 (", "their facets", "count from 1", "--strict"];
     refuse("a.poly", &all, &["--strict"], &parts);
     refuse("a.poly", &all, &["--tetgen", "pY", "--strict"], &parts);
-    let segment_only = all.replace("4 9 10 12 11", "3 15 16 17").replace("1 0 17\n4 1 13 14 5", "1 0 17\n3 1 2 3");
+    let segment_only = all.replace("4 9 10 12 11", "2 18 19").replace("4 1 13 14 5", "2 18 19");
+    refuse("a.poly", segment_only, &["--strict"], &["1 segments", "points 18-19 (points count from 1"]);
     // Facets that repeat others are named, by their numbers.
-    refuse("a.poly", &segment_only, &["--strict"], &["there twice", "7 (also as 9)", "--repair"]);
+    refuse(
+        "a.poly",
+        all.replace("4 9 10 12 11", "3 15 16 17"),
+        &["--strict"],
+        &["there twice", "7 (also as 9)", "--repair"],
+    );
 }
 
 /// The triangles as a binary STL file.
@@ -774,8 +781,6 @@ fn numbers_are_those_of_the_file() {
         *t = t.map(|v| v + 1);
     }
     holed.triangles[1] = [0, 8, 0];
-    let said = "3 triangles have an edge of their own: 2, 7, 12; one is [0, 6] from {1, 1, 1} to {1, 0, 1}";
-    let parts = ["count from 0, as in the file"];
-    refuse("a.off", off(&holed), &["--repair"], &parts);
-    let _ = said;
+    let said = "3 triangles have an edge of their own: 4, 6, 12; one is [0, 2] from {1, 1, 1} to {1, 0, 0}";
+    refuse("a.off", off(&holed), &["--repair"], &[said, "count from 0, as in the file"]);
 }
