@@ -678,7 +678,7 @@ fn strict_refuses_what_would_be_left_out() {
         "a.poly",
         all.replace("4 9 10 12 11", "3 15 16 17"),
         &["--strict"],
-        &["there twice", "7 (also as 9)", "--repair"],
+        &["triangle 7 is there twice (also as 9)", "--repair"],
     );
 }
 

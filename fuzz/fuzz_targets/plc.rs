@@ -35,7 +35,7 @@ fuzz_target!(|bytes: &[u8]| {
         Ok(made) => {
             let outside = made.summary.left_out.triangles.len();
             let inside = plc.triangles.len() - outside;
-            assert!(made.faces.len() == inside || splits && made.faces.len() > inside);
+            assert!(made.faces.len() == inside || (splits && made.faces.len() > inside));
             assert!(mode & 32 == 0 || outside == 0);
         }
         Err(TetError::Flat | TetError::Empty { .. } | TetError::NothingEnclosed) => {

@@ -97,6 +97,19 @@ fn pieces_are_left_out_under_the_number_of_the_whole() {
 }
 
 #[test]
+fn what_cannot_be_recovered_in_pieces_is_none_of_the_mesh_outside() {
+    let mut plc = with_things_outside();
+    // A diagonal of the hole: fine as it is, but not to be recovered once the walls of the hole are split.
+    plc.edges = vec![[11, 18]];
+    let wanted = Refinement::default().max_radius_edge(1.4).max_volume(0.2);
+    let made = tetrahedralizer().boundary(Boundary::Split).refine(Some(wanted)).run(&plc).unwrap();
+    let left_out = &made.summary.left_out;
+    assert_eq!((left_out.triangles.as_slice(), left_out.segments.as_slice()), (&[0, 25, 26][..], &[0][..]));
+    assert!(made.origins.iter().zip(&made.face_markers).all(|(&o, &m)| m == 100 + o as i32));
+    assert!((volume(&made.mesh) - 63.0).abs() < 1e-9);
+}
+
+#[test]
 fn the_certificate_finds_what_was_left_out_and_is_there() {
     let plc = with_things_outside();
     let made = tetrahedralizer().run(&plc).unwrap();

@@ -84,9 +84,7 @@ fn remedy(error: &TetError) -> Option<&'static str> {
             "join them, or give --repair, which joins points that are equal bit for bit"
         }
         TetError::BadTriangle { .. } => "remove them, or give --repair",
-        TetError::DuplicateTriangles { .. } => {
-            "--repair keeps one of them, or none where two lie back to back and enclose nothing"
-        }
+        TetError::DuplicateTriangles { .. } => "--repair mends that",
         TetError::NotShared { .. } => "--repair joins those at the same place",
         TetError::FlatTriangle { .. } => {
             "remove them (collapse an edge, or swap the longest one) in the program that made the surface"
