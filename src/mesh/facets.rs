@@ -61,6 +61,20 @@ pub enum FacetError {
     },
 }
 
+impl FacetError {
+    /// The same error, its points named as elsewhere.
+    #[must_use]
+    pub fn renamed(self, name: impl Fn(u32) -> u32) -> Self {
+        match self {
+            Self::Crossing { first, second } => Self::Crossing { first: first.map(&name), second: second.map(&name) },
+            Self::Coincident { points } => Self::Coincident { points: points.map(&name) },
+            Self::NoArea => Self::NoArea,
+            Self::OutOfRange { point } => Self::OutOfRange { point: name(point) },
+            Self::NoSuchPoint { point } => Self::NoSuchPoint { point: name(point) },
+        }
+    }
+}
+
 /// A point of the facet in projection.
 #[derive(Clone, Copy, Debug)]
 struct Vertex {

@@ -3,6 +3,8 @@
 //!
 //! All of it is decided exactly. Holes are not filled and parts that meet are not parted.
 
+mod sheets;
+
 use super::TriMesh;
 use super::adjacency::{NONE, tri_adjacency};
 use crate::geometry::predicates::{collinear, orient2d, orient3d};
@@ -19,8 +21,10 @@ pub struct RepairReport {
     pub merged_points: usize,
     /// Triangles that had a vertex twice, perhaps after merging, or one that does not exist.
     pub collapsed_triangles: usize,
-    /// Triangles with the vertices of an earlier one.
+    /// Triangles with the vertices of an earlier one, which stays.
     pub duplicate_triangles: usize,
+    /// Triangles that lay back to back with another and went with it, because they enclosed nothing.
+    pub sheet_triangles: usize,
     /// Triangles without area whose longest edge was exchanged for the other diagonal.
     pub flat_triangles: usize,
     /// Triangles that were turned over.
@@ -34,8 +38,8 @@ pub struct RepairReport {
 impl RepairReport {
     /// Whether anything was changed.
     pub fn changed(&self) -> bool {
-        self.merged_points + self.collapsed_triangles + self.duplicate_triangles + self.flat_triangles > 0
-            || self.turned_triangles > 0
+        let removed = self.collapsed_triangles + self.duplicate_triangles + self.sheet_triangles;
+        self.merged_points + removed + self.flat_triangles + self.turned_triangles > 0
     }
 }
 
@@ -52,10 +56,21 @@ pub struct Repaired {
     pub report: RepairReport,
 }
 
-/// Repairs a surface. Coordinates that are not finite are left alone.
+/// Repairs a surface that is to bound a volume. Of triangles that are there twice one stays; where two lie back to back
+/// neither, unless the surface needs it to be closed. Coordinates that are not finite are left alone.
 pub fn repair(surface: &TriMesh) -> Repaired {
+    repaired(surface, true)
+}
+
+/// Repairs facets, which may lie anywhere: as [`repair`], but one stays of all triangles that are there twice, whatever
+/// way they are turned.
+pub fn repair_facets(surface: &TriMesh) -> Repaired {
+    repaired(surface, false)
+}
+
+fn repaired(surface: &TriMesh, bounds: bool) -> Repaired {
     let mut r = merge_points(surface);
-    drop_triangles(&mut r);
+    drop_triangles(&mut r, bounds);
     flip_flat(&mut r);
     orient(&mut r);
     r
@@ -93,23 +108,31 @@ fn sorted([a, b, c]: [u32; 3]) -> [u32; 3] {
     t
 }
 
-/// Drops triangles that have a vertex twice, or the vertices of an earlier one.
-fn drop_triangles(r: &mut Repaired) {
+/// Drops triangles that have a vertex twice, or the vertices of an earlier one; of those that bound a volume also sheets.
+fn drop_triangles(r: &mut Repaired, bounds: bool) {
     let triangles = std::mem::take(&mut r.surface.triangles);
+    let broken = |t: &[u32; 3]| t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || t.contains(&NONE);
     let mut order: Vec<([u32; 3], u32)> = triangles.iter().map(|&t| sorted(t)).zip(0..).collect();
+    order.retain(|(t, _)| !broken(t));
+    r.report.collapsed_triangles = triangles.len() - order.len();
     order.sort_unstable();
-    let mut again = vec![false; triangles.len()];
-    for pair in order.windows(2).filter(|w| w[0].0 == w[1].0) {
-        again[pair[1].1 as usize] = true;
+    // The first of each, and how many more there are where some of them is turned over.
+    let mut first: Vec<(u32, usize)> = Vec::with_capacity(order.len());
+    for run in order.chunk_by(|x, y| x.0 == y.0) {
+        let turned = |&(_, i): &([u32; 3], u32)| turned_over(&triangles[i as usize], &triangles[run[0].1 as usize]);
+        first.push((run[0].1, if run.iter().any(turned) { run.len() } else { 0 }));
     }
-    for ((t, i), again) in triangles.into_iter().zip(0..).zip(again) {
-        if t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || t.contains(&NONE) {
-            r.report.collapsed_triangles += 1;
-        } else if again {
-            r.report.duplicate_triangles += 1;
+    first.sort_unstable();
+    r.report.duplicate_triangles = order.len() - first.len();
+    let distinct: Vec<[u32; 3]> = first.iter().map(|&(i, _)| triangles[i as usize]).collect();
+    let sheets: Vec<u32> = first.iter().zip(0..).filter(|((_, n), _)| bounds && *n > 0).map(|(_, k)| k).collect();
+    for ((t, (source, copies)), stays) in distinct.iter().zip(first).zip(sheets::kept(&distinct, &sheets)) {
+        if stays {
+            r.surface.triangles.push(*t);
+            r.source.push(source);
         } else {
-            r.surface.triangles.push(t);
-            r.source.push(i);
+            r.report.duplicate_triangles -= copies - 1;
+            r.report.sheet_triangles += copies;
         }
     }
 }
@@ -371,6 +394,28 @@ mod tests {
         assert_eq!(r.report.turned_triangles, s.triangles.len().div_ceil(3));
         assert!((volume(&r.surface) - volume(&s)).abs() < 1e-12);
         assert!(r.point.iter().zip(&soup.points).all(|(&n, p)| r.surface.points[n as usize] == *p));
+    }
+
+    #[test]
+    fn sheets_go_where_they_enclose_nothing() {
+        let mut s = sphere_surface(1);
+        let n = s.triangles.len();
+        let [a, b, c] = s.triangles[7];
+        let twice = |s: &mut TriMesh, t: [u32; 3]| s.triangles.extend([t, [t[1], t[0], t[2]]]);
+        // One triangle of the surface with its back, and a fin that is there three times.
+        s.points.push(Point3::new(3.0, 3.0, 3.0));
+        let tip = s.points.len() as u32 - 1;
+        s.triangles.push([b, a, c]);
+        twice(&mut s, [a, b, tip]);
+        s.triangles.push([tip, a, b]);
+        let r = repair(&s);
+        assert_eq!(r.surface.triangles, s.triangles[..n]);
+        assert_eq!((r.report.duplicate_triangles, r.report.sheet_triangles), (1, 3));
+        assert!(r.source.iter().zip(0..).all(|(&a, b)| a == b));
+        // Among facets one of each stays.
+        let r = repair_facets(&s);
+        assert_eq!((r.surface.triangles.len(), r.report.duplicate_triangles), (n + 1, 3));
+        assert_eq!(r.source.last(), Some(&(n as u32 + 1)));
     }
 
     #[test]

@@ -37,6 +37,57 @@ pub struct OutputSize {
     pub volume: f64,
 }
 
+/// What the mesh does not have of the input: it lies outside of what is filled, or in a hole. Numbers are those of the
+/// file.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct LeftOut {
+    /// Number of triangles.
+    pub triangles: usize,
+    /// What their numbers count: triangles, or what these are pieces of.
+    #[serde(skip)]
+    pub triangles_of: &'static str,
+    /// The faces or facets of the file that they are, or are pieces of.
+    pub faces: Vec<u32>,
+    /// Ends of each segment.
+    pub segments: Vec<[u32; 2]>,
+    /// Number of the first face and of the first point.
+    pub counted_from: u32,
+    /// Points of the input that no tetrahedron has; they are points of the mesh all the same.
+    pub unused_points: usize,
+}
+
+impl LeftOut {
+    /// Numbers that are named to people.
+    const NAMED: usize = 10;
+
+    /// A line for people for each kind; empty when nothing is left out.
+    pub fn text(&self) -> String {
+        const WHY: &str = "outside of what is filled, or in a hole (--strict refuses that)";
+        let from = self.counted_from;
+        let mut lines = String::new();
+        if self.triangles > 0 {
+            let faces: Vec<String> = self.faces.iter().map(ToString::to_string).collect();
+            let (n, of, named) = (self.triangles, self.triangles_of, Self::named(&faces));
+            let _ = writeln!(lines, "left out: {WHY}: {n} {of} {named} (counted from {from})");
+        }
+        if !self.segments.is_empty() {
+            let ends: Vec<String> = self.segments.iter().map(|[a, b]| format!("{a}-{b}")).collect();
+            let (n, named) = (ends.len(), Self::named(&ends));
+            let _ = writeln!(lines, "left out: {WHY}: {n} segments {named} (points counted from {from})");
+        }
+        if self.unused_points > 0 {
+            let n = self.unused_points;
+            let _ = writeln!(lines, "points of the input that no tetrahedron has: {n}; they keep their numbers");
+        }
+        lines
+    }
+
+    fn named(all: &[String]) -> String {
+        let first = all[..all.len().min(Self::NAMED)].join(", ");
+        if all.len() > Self::NAMED { format!("{first} and {} more", all.len() - Self::NAMED) } else { first }
+    }
+}
+
 /// A region of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RegionSize {
@@ -84,10 +135,14 @@ pub struct StageSeconds {
 pub struct TetReport {
     /// Size of the input.
     pub input: InputSize,
+    /// What is odd about the file, as a list of sentences.
+    pub notes: Vec<String>,
     /// What was mended in it, as a list of sentences.
     pub repaired: Vec<String>,
     /// Size of the mesh.
     pub mesh: OutputSize,
+    /// What it does not have of the input.
+    pub left_out: LeftOut,
     /// Shape of the tetrahedra.
     pub quality: Option<TetQuality>,
     /// The bounds asked for.
@@ -188,6 +243,7 @@ impl TetReport {
         for line in &self.repaired {
             let _ = writeln!(out, "  repaired: {line}");
         }
+        out.push_str(&self.left_out.text());
         let _ = writeln!(
             out,
             "mesh: {} tetrahedra, {} points ({} added), volume {:.9e}",

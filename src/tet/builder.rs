@@ -7,6 +7,7 @@ use super::error::TetError;
 use super::fill::{Request, fill};
 use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
+use super::outside::{LeftOut, without};
 use super::plc::{InputKind, Plc};
 use super::progress::{Cancel, OnProgress, Progress, Stage, Watch};
 use super::recover::RecoverySummary;
@@ -29,6 +30,7 @@ pub struct Tetrahedralizer {
     boundary: Boundary,
     optimize: bool,
     effort: Effort,
+    strict: bool,
     on_progress: Option<Arc<OnProgress>>,
     cancel: Option<Arc<Cancel>>,
 }
@@ -37,16 +39,17 @@ pub struct Tetrahedralizer {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Tetrahedralization {
-    /// The mesh; its points begin with the input's, in their order and bit for bit.
+    /// The mesh; its points begin with the input's, in their order and bit for bit, also those that no tetrahedron has.
     pub mesh: TetMesh,
     /// Region of each tetrahedron; empty when there is only one and no seed has given it an id.
     pub regions: Vec<i32>,
-    /// The triangles of the input, in their order, or their pieces where they were split. Those on the boundary are
-    /// oriented outwards; those inside as they came.
+    /// The triangles of the input, in their order, or their pieces where they were split, without those that are left
+    /// out ([`Summary::left_out`]). Those on the boundary are oriented outwards; those inside as they came.
     pub faces: Vec<[u32; 3]>,
     /// Marker of each of `faces`; empty when the input has none.
     pub face_markers: Vec<i32>,
-    /// The triangle of the input that each of `faces` is a piece of; empty when none may be split.
+    /// The triangle of the input that each of `faces` is, or is a piece of; empty when each is the one of the same
+    /// number, as it is where none may be split and none is left out.
     pub origins: Vec<u32>,
     /// What it took.
     pub summary: Summary,
@@ -68,6 +71,9 @@ pub struct Summary {
     pub reversed: usize,
     /// Triangles of the input between two tetrahedra.
     pub interior_faces: usize,
+    /// Triangles and segments of the input that lie outside of what is filled, or in a hole: the mesh does not have
+    /// them. There are none in a strict run.
+    pub left_out: LeftOut,
 }
 
 impl Default for Tetrahedralizer {
@@ -81,6 +87,7 @@ impl Default for Tetrahedralizer {
             boundary: Boundary::default(),
             optimize,
             effort: Effort::Full,
+            strict: false,
             on_progress: None,
             cancel: None,
         }
@@ -143,6 +150,14 @@ impl Tetrahedralizer {
         self
     }
 
+    /// Whether triangles and segments with the outside, or holes, on all their sides are an error,
+    /// [`TetError::Outside`]. Otherwise they are left out, and the summary lists them; their points stay, unused.
+    #[must_use]
+    pub fn strict(mut self, strict: bool) -> Self {
+        self.strict = strict;
+        self
+    }
+
     /// What is told about the progress, on the thread that does the work.
     #[must_use]
     pub fn on_progress(mut self, tell: impl Fn(Progress) + Send + Sync + 'static) -> Self {
@@ -167,7 +182,8 @@ impl Tetrahedralizer {
     }
 
     /// Makes a mesh of a complex. Success means that it has passed the certificate
-    /// ([`super::certify::certify_facets`]): each triangle of the input is a face of it.
+    /// ([`super::certify::certify_facets`]): each triangle of the input that bounds or lies in what is filled is a face
+    /// of it.
     ///
     /// # Errors
     /// [`TetError`]: what is wrong with the input, or what could not be recovered.
@@ -195,6 +211,7 @@ impl Tetrahedralizer {
             optimize: self.optimize,
             certify: true,
             effort: self.effort,
+            strict: self.strict,
             label: true,
             watch: &watch,
         })?;
@@ -203,10 +220,13 @@ impl Tetrahedralizer {
             Place::Boundary | Place::Inside => *t,
         };
         let count = |wanted: Place| filled.places.iter().filter(|&&p| p == wanted).count();
+        let outside = &filled.left_out.triangles;
+        let kept = filled.left_out.kept_surface(&surface);
+        let origins = if outside.is_empty() { Vec::new() } else { without(&triangle_ids(&surface), outside) };
         Ok(Tetrahedralization {
-            faces: surface.triangles.iter().zip(&filled.places).map(outward).collect(),
-            face_markers: plc.markers.clone(),
-            origins: Vec::new(),
+            faces: kept.triangles.iter().zip(&filled.places).map(outward).collect(),
+            face_markers: without(&plc.markers, outside),
+            origins,
             summary: Summary {
                 recovery: filled.recovery,
                 optimize: filled.optimize,
@@ -214,6 +234,7 @@ impl Tetrahedralizer {
                 regions: filled.region_count,
                 reversed: count(Place::Reversed),
                 interior_faces: count(Place::Inside),
+                left_out: filled.left_out,
             },
             mesh: filled.mesh,
             regions: filled.regions,
@@ -258,6 +279,10 @@ impl Tetrahedralizer {
     }
 }
 
+fn triangle_ids(surface: &TriMesh) -> Vec<u32> {
+    (0..surface.triangles.len() as u32).collect()
+}
+
 /// The faces under the ghosts, oriented outwards.
 fn hull(c: &Complex) -> Vec<[u32; 3]> {
     let halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
@@ -274,6 +299,7 @@ impl std::fmt::Debug for Tetrahedralizer {
             .field("boundary", &self.boundary)
             .field("optimize", &self.optimize)
             .field("effort", &self.effort)
+            .field("strict", &self.strict)
             .field("watch", &self.watch())
             .finish_non_exhaustive()
     }

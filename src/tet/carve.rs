@@ -2,7 +2,6 @@
 
 use super::complex::{Complex, NONE};
 use super::error::TetError;
-use super::input::Offenders;
 use super::plc::InputKind;
 use super::regions::tets_of_seeds;
 use super::star::Star;
@@ -13,23 +12,48 @@ const UNSEEN: u8 = 2;
 const OUTSIDE: u8 = 0;
 const INSIDE: u8 = 1;
 
-/// Keeps the tetrahedra inside the surface, whose triangles are the frozen faces of `c`, and drops the points that are
-/// neither the surface's nor in use.
-///
-/// # Errors
-/// [`TetError::NotSeparating`] when a triangle of a closed surface has the same side on both sides;
-/// [`TetError::NothingEnclosed`], [`TetError::Outside`] and [`TetError::BadSeed`] for other complexes.
-pub(super) fn carve(c: &Complex, surface: &TriMesh, kind: InputKind, holes: &[Point3]) -> Result<Complex, TetError> {
-    let side = match kind {
-        InputKind::Closed => sides_by_parity(c, surface)?,
-        InputKind::Plc => sides_by_reach(c, surface, holes)?,
-    };
+/// The side of each tetrahedron of a complex.
+pub(super) struct Sides(Vec<u8>);
+
+impl Sides {
+    /// Finds them for a surface whose triangles are the frozen faces of `c`.
+    ///
+    /// # Errors
+    /// [`TetError::NotSeparating`] when a triangle of a closed surface has the same side on both sides;
+    /// [`TetError::NothingEnclosed`] and [`TetError::BadSeed`] for other complexes.
+    pub(super) fn find(c: &Complex, surface: &TriMesh, kind: InputKind, holes: &[Point3]) -> Result<Self, TetError> {
+        match kind {
+            InputKind::Closed => sides_by_parity(c, surface),
+            InputKind::Plc => sides_by_reach(c, holes),
+        }
+        .map(Self)
+    }
+
+    /// Whether a tetrahedron is kept.
+    pub(super) fn is_inside(&self, t: u32) -> bool {
+        self.0[t as usize] == INSIDE
+    }
+
+    /// Whether neither of the tetrahedra at a half-face is kept.
+    pub(super) fn outside_of_both(&self, c: &Complex, half: u32) -> bool {
+        !self.is_inside(half >> 2) && !self.is_inside(c.mate(half) >> 2)
+    }
+
+    /// Whether there are triangles of the surface between two tetrahedra that are not kept.
+    pub(super) fn has_faces_outside(&self, c: &Complex) -> bool {
+        let mut halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
+        halves.any(|h| c.is_frozen(h) && self.outside_of_both(c, h))
+    }
+}
+
+/// Keeps the tetrahedra inside the surface and drops the points that are neither the surface's nor in use.
+pub(super) fn carve(c: &Complex, surface: &TriMesh, sides: &Sides) -> Complex {
     let n = surface.points.len();
     let mut id = vec![NONE; c.points.len()];
     for (v, slot) in id.iter_mut().enumerate().take(n) {
         *slot = v as u32;
     }
-    for t in c.real_tets().filter(|&t| side[t as usize] == INSIDE) {
+    for t in c.real_tets().filter(|&t| sides.is_inside(t)) {
         for v in c.verts(t) {
             if v as usize >= n {
                 id[v as usize] = 0;
@@ -43,7 +67,7 @@ pub(super) fn carve(c: &Complex, surface: &TriMesh, kind: InputKind, holes: &[Po
             points.push(*p);
         }
     }
-    Ok(c.part(points, &id, |t| side[t as usize] == INSIDE))
+    c.part(points, &id, |t| sides.is_inside(t))
 }
 
 /// Some ghost: it is outside.
@@ -87,7 +111,7 @@ fn triangle_at(c: &Complex, surface: &TriMesh, half: u32) -> u32 {
 }
 
 /// For every tetrahedron whether it can be reached from infinity or from a hole without crossing a frozen face.
-fn sides_by_reach(c: &Complex, surface: &TriMesh, holes: &[Point3]) -> Result<Vec<u8>, TetError> {
+fn sides_by_reach(c: &Complex, holes: &[Point3]) -> Result<Vec<u8>, TetError> {
     let mut side = vec![INSIDE; c.slots()];
     let mut stack: Vec<u32> = infinity(c).into_iter().collect();
     for (index, (t, &position)) in tets_of_seeds(c, holes).into_iter().zip(holes).enumerate() {
@@ -109,31 +133,7 @@ fn sides_by_reach(c: &Complex, surface: &TriMesh, holes: &[Point3]) -> Result<Ve
     if !c.real_tets().any(|t| side[t as usize] == INSIDE) {
         return Err(TetError::NothingEnclosed);
     }
-    let mut halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
-    let lost = |h: u32| c.is_frozen(h) && side[(h >> 2) as usize] + side[(c.mate(h) >> 2) as usize] == 2 * OUTSIDE;
-    if halves.any(lost) {
-        let (mut star, mut found) = (Star::default(), Offenders::default());
-        for (&triangle, i) in surface.triangles.iter().zip(0..) {
-            if star.find_face(c, triangle).is_none_or(lost) {
-                found.add(i);
-            }
-        }
-        return Err(TetError::Outside { what: "triangles", ids: found.named, count: found.count });
-    }
     Ok(side)
-}
-
-/// Checks that the segments of a complex are edges of what is left after carving.
-pub(super) fn check_segments(carved: &Complex, segments: &[[u32; 2]]) -> Result<(), TetError> {
-    let mut star = Star::default();
-    let mut found = Offenders::default();
-    for (&[a, b], i) in segments.iter().zip(0..) {
-        if star.find_edge(carved, a, b).is_none() {
-            found.add(i);
-        }
-    }
-    let Offenders { named: ids, count } = found;
-    if count == 0 { Ok(()) } else { Err(TetError::Outside { what: "segments", ids, count }) }
 }
 
 /// Freezes the faces around the segments of a complex that are no edges of triangles, so that no improvement of the

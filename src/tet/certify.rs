@@ -1,5 +1,7 @@
 //! The certificate: what has to hold before a mesh may be called the tetrahedralization of a surface.
 
+use super::complex::{face_key, face_of};
+use super::outside::LeftOut;
 use super::plc::InputKind;
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
@@ -57,6 +59,14 @@ pub enum CertifyError {
     SegmentLost {
         /// The segment.
         segment: u32,
+    },
+    /// What was left out of the mesh as lying outside is a face or an edge of it.
+    #[error("{what} {id} of the input was left out, and the mesh has it")]
+    NotOutside {
+        /// `"triangle"` or `"segment"`.
+        what: &'static str,
+        /// Its id.
+        id: u32,
     },
     /// Two regions that meet in a face which is no triangle of the complex.
     #[error("face {face:?} lies between two regions and is no triangle of the input")]
@@ -146,6 +156,36 @@ pub fn certify_segments(mesh: &TetMesh, segments: &[[u32; 2]]) -> Result<(), Cer
         Some(i) => Err(CertifyError::SegmentLost { segment: i as u32 }),
         None => Ok(()),
     }
+}
+
+/// Proves that no triangle that is left out is a face of the mesh, and no segment an edge of it.
+///
+/// # Errors
+/// The first that is.
+pub fn certify_left_out(
+    mesh: &TetMesh,
+    facets: &TriMesh,
+    segments: &[[u32; 2]],
+    left_out: &LeftOut,
+) -> Result<(), CertifyError> {
+    if left_out.is_empty() {
+        return Ok(());
+    }
+    let edge = |a: u32, b: u32| [a.min(b), a.max(b)];
+    let triangles: FxHashMap<[u32; 3], u32> =
+        left_out.triangles.iter().map(|&i| (face_key(facets.triangles[i as usize]), i)).collect();
+    let edges: FxHashMap<[u32; 2], u32> =
+        left_out.segments.iter().map(|&i| (edge(segments[i as usize][0], segments[i as usize][1]), i)).collect();
+    for t in &mesh.tets {
+        if let Some(&id) = (0..4).find_map(|i| triangles.get(&face_key(face_of(t, i)))) {
+            return Err(CertifyError::NotOutside { what: "triangle", id });
+        }
+        let pairs = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));
+        if let Some(&id) = pairs.into_iter().find_map(|(i, j)| edges.get(&edge(t[i], t[j]))) {
+            return Err(CertifyError::NotOutside { what: "segment", id });
+        }
+    }
+    Ok(())
 }
 
 /// Proves that a mesh is one of positive tetrahedra that meet face to face.

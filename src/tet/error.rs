@@ -28,11 +28,27 @@ impl std::fmt::Display for Obstacle {
 /// Offenders that an error names; it counts all of them.
 pub(super) const NAMED: usize = 10;
 
-/// The ids of the first offenders, as a sentence has them.
-fn list<T: std::fmt::Debug>(ids: &[T], count: usize) -> String {
-    let named: Vec<String> = ids.iter().map(|id| format!("{id:?}")).collect();
+/// The ids of the first offenders, as a sentence has them. What follows itself is named once: pieces of one polygon have
+/// its number.
+fn list<T: std::fmt::Debug + PartialEq>(ids: &[T], count: usize) -> String {
+    list_as(ids, count, |id| format!("{id:?}"))
+}
+
+fn list_as<T: PartialEq>(ids: &[T], count: usize, shown: impl Fn(&T) -> String) -> String {
+    let named: Vec<String> = ids.chunk_by(|a, b| a == b).map(|same| shown(&same[0])).collect();
     let more = if count > ids.len() { format!(" and {} more", count - ids.len()) } else { String::new() };
     named.join(", ") + &more
+}
+
+/// Which triangles are there twice.
+fn twice(pairs: &[[u32; 2]], count: usize) -> String {
+    match pairs {
+        [[first, again]] if count == 1 => format!("triangle {first} is there twice (also as {again})"),
+        _ => {
+            let named = list_as(pairs, count, |[first, again]| format!("{first} (also as {again})"));
+            format!("{count} triangles are there twice: {named}")
+        }
+    }
 }
 
 /// Why the exact tier of recovery has to leave a part of the surface.
@@ -139,12 +155,12 @@ pub enum TetError {
         /// Vertices of the first.
         vertices: [u32; 3],
     },
-    /// Triangles with the vertices of an earlier one.
-    #[error("{count} triangles have the vertices of an earlier one: {}", list(triangles, *count))]
+    /// Triangles with the vertices of an earlier one, turned one way or the other.
+    #[error("{}", twice(pairs, *count))]
     DuplicateTriangles {
-        /// The triangles.
-        triangles: Vec<u32>,
-        /// Number of triangles.
+        /// A triangle, and one after it with the same vertices.
+        pairs: Vec<[u32; 2]>,
+        /// Number of triangles that repeat an earlier one.
         count: usize,
     },
     /// An array that has to have a value for each of something else has not.
@@ -160,6 +176,22 @@ pub enum TetError {
     /// Edges that only one triangle has.
     #[error("the surface is open: {count} triangles have an edge of their own: {}; one is {edge:?}", list(triangles, *count))]
     Open {
+        /// Triangles with such an edge.
+        triangles: Vec<u32>,
+        /// Number of such triangles.
+        count: usize,
+        /// Ends of one such edge.
+        edge: [u32; 2],
+        /// Number of such edges.
+        edges: usize,
+    },
+    /// Edges that only one triangle has each, at the place of one another: each triangle, or each part of the surface,
+    /// has corners of its own.
+    #[error(
+        "corners are not shared: {count} triangles have an edge at the place of another's: {}; one is {edge:?}",
+        list(triangles, *count)
+    )]
+    NotShared {
         /// Triangles with such an edge.
         triangles: Vec<u32>,
         /// Number of such triangles.

@@ -1,18 +1,20 @@
 //! From a checked input to a certified mesh: Delaunay, recovery, carving, improvement, certificate.
 
-use super::certify::{Place, certify_facets, certify_segments};
+use super::carve::{self, Sides};
+use super::certify::{Place, certify_facets, certify_left_out, certify_segments};
 use super::complex::Complex;
 use super::error::TetError;
 use super::input::SurfaceEdges;
 use super::optimize::{Effort, OptimizeOptions, OptimizeReport, optimize_complex};
 use super::options::{Interior, Refinement, Sizing};
+use super::outside::{LeftOut, without};
 use super::plc::{InputKind, Region};
 use super::progress::{Stage, Watch};
 use super::recover::exact::{Missing, recover_exact};
 use super::recover::{self, RecoverySummary, Rule};
 use super::refine::RefineReport;
 use super::regions::Regions;
-use super::{carve, contacts, delaunay, input, lattice, sized};
+use super::{contacts, delaunay, input, lattice, sized};
 use crate::geometry::Point3;
 use crate::geometry::predicates::MIN_MAGNITUDE;
 use crate::mesh::{TetMesh, TriMesh};
@@ -41,6 +43,8 @@ pub(super) struct Request<'a> {
     /// Whether the mesh is proved to fill the surface.
     pub certify: bool,
     pub effort: Effort,
+    /// Whether triangles and segments outside are an error.
+    pub strict: bool,
     /// Whether tetrahedra are told apart by regions.
     pub label: bool,
     pub watch: &'a Watch<'a>,
@@ -49,8 +53,10 @@ pub(super) struct Request<'a> {
 /// A certified mesh.
 pub(super) struct Filled {
     pub mesh: TetMesh,
-    /// Where each triangle of the input lies in it; empty without the certificate.
+    /// Where each triangle of the input that is not left out lies in it; empty without the certificate.
     pub places: Vec<Place>,
+    /// What of the input lies outside.
+    pub left_out: LeftOut,
     /// Region of each tetrahedron, where there is something to say.
     pub regions: Vec<i32>,
     pub region_count: usize,
@@ -64,12 +70,11 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     sized::check(r.refinement, r.sizing, r.surface.points.len())?;
     let (complex, recovery) = conforming(r)?;
     r.watch.report(Stage::Carve, 0, 1)?;
-    let carved = carve::carve(&complex, r.surface, r.kind, r.holes);
-    let mut carved = carved.map_err(|error| diagnosis(r, error))?;
+    let (mut carved, left_out) = carved(r, &complex).map_err(|error| diagnosis(r, error))?;
     drop(complex);
-    carve::check_segments(&carved, r.segments)?;
+    let segments = without(r.segments, &left_out.segments);
     r.watch.report(Stage::Carve, 1, 1)?;
-    let held = carve::hold_segments(&mut carved, r.segments);
+    let held = carve::hold_segments(&mut carved, &segments);
     let refine = sized::refine(r, &mut carved)?;
     let optimize = if r.optimize { Some(improve(r, &mut carved)?) } else { None };
     carve::release_segments(&mut carved, &held);
@@ -78,11 +83,22 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     let mesh = carved.into_compact_mesh(r.surface.points.len());
     let mut places = Vec::new();
     if r.certify {
-        places = certify_facets(&mesh, r.surface, r.kind, &regions)?;
-        certify_segments(&mesh, r.segments)?;
+        places = certify_facets(&mesh, &left_out.kept_surface(r.surface), r.kind, &regions)?;
+        certify_segments(&mesh, &segments)?;
+        certify_left_out(&mesh, r.surface, r.segments, &left_out)?;
     }
     r.watch.report(Stage::Certify, 1, 1)?;
-    Ok(Filled { mesh, places, regions, region_count, recovery, optimize, refine })
+    Ok(Filled { mesh, places, left_out, regions, region_count, recovery, optimize, refine })
+}
+
+/// What of a complex is filled, and what of the input lies outside of that.
+fn carved(r: &Request, complex: &Complex) -> Result<(Complex, LeftOut), TetError> {
+    let sides = Sides::find(complex, r.surface, r.kind, r.holes)?;
+    let left_out = LeftOut::find(complex, &sides, r.surface, r.segments)?;
+    match left_out.as_error() {
+        Some(error) if r.strict => Err(error),
+        _ => Ok((carve::carve(complex, r.surface, &sides), left_out)),
+    }
 }
 
 /// Region of each tetrahedron, where there is something to say, and the number of regions.

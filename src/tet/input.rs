@@ -78,13 +78,17 @@ impl<T> FromIterator<T> for Offenders<T> {
 }
 
 /// Checks the arrays of a surface and lists its edges, those of `segments` among them. Whether it meets itself is not
-/// looked at, nor whether points coincide.
+/// looked at, nor whether points coincide; no triangle of a complex is there twice, and in a surface two at most, back
+/// to back.
 pub(super) fn validate(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<SurfaceEdges, TetError> {
     check_arrays(surface)?;
     check_segments(segments, surface.points.len())?;
     match kind {
         InputKind::Closed => list_closed_edges(surface, segments),
-        InputKind::Plc => Ok(list_edges(surface, segments)),
+        InputKind::Plc => {
+            no_duplicate_triangles(&surface.triangles)?;
+            Ok(list_edges(surface, segments))
+        }
     }
 }
 
@@ -216,9 +220,15 @@ fn list_closed_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> Result<Surface
         }
     }
     drop(sides);
+    if !(open.is_empty() && crowded.is_empty() && twisted.is_empty()) {
+        no_duplicate_triangles(&surface.triangles)?;
+    }
     let named = |edges: &[[u32; 2]]| edges.first().map(|&e| (triangles_at(surface, edges), e, edges.len()));
     if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&crowded) {
         return Err(TetError::NotManifold { triangles, count, edge, edges });
+    }
+    if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&twins(&surface.points, &open)) {
+        return Err(TetError::NotShared { triangles, count, edge, edges });
     }
     if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&open) {
         return Err(TetError::Open { triangles, count, edge, edges });
@@ -234,6 +244,26 @@ fn list_closed_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> Result<Surface
     Ok(SurfaceEdges::new(edges, surface.points.len()))
 }
 
+/// Those of some edges that lie where another of them does, in ascending order.
+fn twins(points: &[Point3], edges: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let placed = |&edge: &[u32; 2]| {
+        let mut ends = edge.map(|v| place_key(&points[v as usize]));
+        ends.sort_unstable();
+        (ends, edge)
+    };
+    let mut placed: Vec<_> = edges.iter().map(placed).collect();
+    placed.sort_unstable();
+    let runs = placed.chunk_by(|x, y| x.0 == y.0).filter(|run| run.len() > 1);
+    let mut found: Vec<[u32; 2]> = runs.flatten().map(|&(_, edge)| edge).collect();
+    found.sort_unstable();
+    found
+}
+
+/// Equal for points at the same place only; −0 is 0.
+fn place_key(p: &Point3) -> [u64; 3] {
+    [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits())
+}
+
 /// The triangles that have one of some edges, which are in ascending order.
 fn triangles_at(surface: &TriMesh, edges: &[[u32; 2]]) -> Offenders {
     let has = |t: &[u32; 3]| (0..3).any(|i| edges.binary_search(&edge_of(t, i).0).is_ok());
@@ -243,8 +273,7 @@ fn triangles_at(surface: &TriMesh, edges: &[[u32; 2]]) -> Offenders {
 /// Checks that no point repeats another one, bit for bit but for the sign of zero.
 pub(super) fn no_duplicate_points(points: &[Point3]) -> Result<(), TetError> {
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    let key = |i: u32| points[i as usize].coords.map(|x| (x + 0.0).to_bits());
-    order.sort_unstable_by_key(|&i| (key(i).x, key(i).y, key(i).z, i));
+    order.sort_unstable_by_key(|&i| (place_key(&points[i as usize]), i));
     let mut twins: Vec<[u32; 2]> = Vec::new();
     for run in order.chunk_by(|&i, &j| points[i as usize] == points[j as usize]) {
         twins.extend(run.iter().skip(1).map(|&i| [run[0], i]));
@@ -261,11 +290,14 @@ pub(super) fn no_duplicate_points(points: &[Point3]) -> Result<(), TetError> {
 pub(super) fn no_duplicate_triangles(triangles: &[[u32; 3]]) -> Result<(), TetError> {
     let mut order: Vec<([u32; 3], u32)> = triangles.iter().map(|&t| super::complex::face_key(t)).zip(0..).collect();
     order.sort_unstable();
-    let mut again: Vec<u32> = order.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
-    again.sort_unstable();
-    if again.is_empty() {
-        return Ok(());
+    let mut twice: Vec<[u32; 2]> = Vec::new();
+    for run in order.chunk_by(|x, y| x.0 == y.0) {
+        twice.extend(run.iter().skip(1).map(|&(_, again)| [run[0].1, again]));
     }
-    let found: Offenders = again.into_iter().collect();
-    Err(TetError::DuplicateTriangles { triangles: found.named, count: found.count })
+    twice.sort_unstable();
+    let found: Offenders<[u32; 2]> = twice.into_iter().collect();
+    match found.count {
+        0 => Ok(()),
+        count => Err(TetError::DuplicateTriangles { pairs: found.named, count }),
+    }
 }

@@ -51,8 +51,10 @@ mod fill;
 pub mod flips;
 mod input;
 pub mod lattice;
+mod names;
 pub mod optimize;
 mod options;
+mod outside;
 mod plc;
 mod progress;
 mod recover;
@@ -66,7 +68,9 @@ mod survey;
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use complex::Complex;
 pub use error::{Obstacle, Stuck, TetError};
+pub use names::Names;
 pub use options::{Boundary, Interior, Refinement, Sizing, TetOptions};
+pub use outside::LeftOut;
 pub use plc::{InputKind, Plc, Region};
 pub use progress::{Progress, Stage, Watch};
 pub use recover::RecoverySummary;
@@ -97,6 +101,7 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
         optimize: options.optimize,
         certify: options.certify,
         effort: options.effort,
+        strict: true,
         label: false,
         watch: &Watch::NOBODY,
     })?;
@@ -106,6 +111,10 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
     }
 }
 
+#[cfg(test)]
+mod input_tests;
+#[cfg(test)]
+mod outside_tests;
 #[cfg(test)]
 mod refined_tests;
 #[cfg(test)]

@@ -8,7 +8,8 @@
 use super::builder::{Tetrahedralization, Tetrahedralizer};
 use super::complex::face_key;
 use super::error::TetError;
-use super::options::{Boundary, Sizing};
+use super::options::{Boundary, Interior, Sizing};
+use super::outside::{LeftOut, without};
 use super::plc::Plc;
 use super::sized;
 use crate::geometry::Point3;
@@ -30,6 +31,8 @@ struct Pieces {
     plc: Plc,
     /// The triangle of the input that each triangle is a piece of.
     origin: Vec<u32>,
+    /// The segment of the input that each segment is a piece of.
+    segment_origin: Vec<u32>,
     /// The triangles at each edge; those that have been replaced since may be among them.
     at_edge: FxHashMap<[u32; 2], Vec<u32>>,
     segments: FxHashMap<[u32; 2], u32>,
@@ -52,7 +55,9 @@ impl Pieces {
             }
         }
         let segments = plc.edges.iter().zip(0..).map(|(e, i)| (edge(e[0], e[1]), i)).collect();
-        Self { plc: plc.clone(), origin: (0..plc.triangles.len() as u32).collect(), at_edge, segments }
+        let origin = (0..plc.triangles.len() as u32).collect();
+        let segment_origin = (0..plc.edges.len() as u32).collect();
+        Self { plc: plc.clone(), origin, segment_origin, at_edge, segments }
     }
 
     fn length(&self, [a, b]: [u32; 2]) -> f64 {
@@ -81,6 +86,7 @@ impl Pieces {
             self.segments.insert(edge(a, m), s);
             self.segments.insert(edge(m, b), self.plc.edges.len() as u32);
             self.plc.edges.push([m, b]);
+            self.segment_origin.push(self.segment_origin[s as usize]);
         }
         for i in triangles {
             let t = self.plc.triangles[i as usize];
@@ -131,6 +137,19 @@ impl Pieces {
         }
     }
 
+    /// Names what a run with the pieces names by the triangles and segments of the input.
+    fn name_origins(&self, done: &mut Tetrahedralization) {
+        let left_out = &mut done.summary.left_out;
+        done.origins = without(&self.origin, &left_out.triangles);
+        for (ids, origin) in [(&mut left_out.triangles, &self.origin), (&mut left_out.segments, &self.segment_origin)] {
+            for id in ids.iter_mut() {
+                *id = origin[*id as usize];
+            }
+            ids.sort_unstable();
+            ids.dedup();
+        }
+    }
+
     fn longest(&self, triangle: u32) -> [u32; 2] {
         let mut edges = edges_of(self.plc.triangles[triangle as usize]);
         edges.sort_unstable_by(|x, y| self.length(*y).total_cmp(&self.length(*x)).then(x.cmp(y)));
@@ -139,11 +158,44 @@ impl Pieces {
 }
 
 impl Tetrahedralizer {
-    /// A mesh of a checked complex whose triangles may be split.
+    /// A mesh of a checked complex whose triangles may be split. Where some cannot be recovered it is tried without
+    /// those outside of what is filled, of which nobody needs the pieces.
     ///
     /// # Errors
     /// As [`Tetrahedralizer::run`].
     pub(super) fn run_split(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
+        let error = match self.run_pieces(plc) {
+            Err(error @ (TetError::Stuck { .. } | TetError::NotRecovered { .. })) => error,
+            other => return other,
+        };
+        let bare = self.clone().boundary(Boundary::Keep).interior(Interior::None).refine(None).optimize(false);
+        match bare.sizing(Sizing::Surface).run(plc) {
+            Ok(Tetrahedralization { summary, .. }) if !summary.left_out.is_empty() => {
+                self.run_without(plc, summary.left_out)
+            }
+            Err(TetError::Cancelled) => Err(TetError::Cancelled),
+            _ => Err(error),
+        }
+    }
+
+    /// A mesh of the complex without what lies outside.
+    fn run_without(&self, plc: &Plc, left_out: LeftOut) -> Result<Tetrahedralization, TetError> {
+        let kept: Vec<u32> = without(&(0..plc.triangles.len() as u32).collect::<Vec<_>>(), &left_out.triangles);
+        let inner = Plc {
+            triangles: without(&plc.triangles, &left_out.triangles),
+            markers: without(&plc.markers, &left_out.triangles),
+            edges: without(&plc.edges, &left_out.segments),
+            ..plc.clone()
+        };
+        let mut done = self.run_pieces(&inner)?;
+        for id in &mut done.origins {
+            *id = kept[*id as usize];
+        }
+        done.summary.left_out = left_out;
+        Ok(done)
+    }
+
+    fn run_pieces(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
         let (refinement, sizing) = self.wishes();
         let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
         let volume = refinement.and_then(|r| r.max_volume);
@@ -168,7 +220,7 @@ impl Tetrahedralizer {
             let split = if round < ROUNDS { to_split(&done.mesh, &pieces, &shape) } else { Vec::new() };
             let changed = split.into_iter().filter(|&e| pieces.halve(e)).count();
             if changed == 0 {
-                done.origins = pieces.origin;
+                pieces.name_origins(&mut done);
                 return Ok(done);
             }
         }

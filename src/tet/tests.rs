@@ -169,7 +169,7 @@ fn wrong_surfaces_are_typed_errors() {
     twisted.triangles[0].swap(0, 1);
     assert!(matches!(error(&twisted), TetError::NotOriented { edges: 3, .. }));
     let mut crowded = s.clone();
-    crowded.triangles.push(s.triangles[0]);
+    crowded.triangles.push([s.triangles[0][0], s.triangles[0][1], s.triangles[9][0]]);
     assert!(matches!(error(&crowded), TetError::NotManifold { .. }));
     let mut bad = s.clone();
     bad.triangles[3][1] = 10_000;
@@ -249,7 +249,8 @@ fn a_carved_complex_is_sane_with_its_ghosts() {
     c.sanity_check().unwrap();
     recover::recover(&mut c, &s, &edges, &Watch::NOBODY).unwrap();
     c.sanity_check().unwrap();
-    let carved = carve::carve(&c, &s, InputKind::Closed, &[]).unwrap();
+    let sides = carve::Sides::find(&c, &s, InputKind::Closed, &[]).unwrap();
+    let carved = carve::carve(&c, &s, &sides);
     carved.sanity_check().unwrap();
     let rebuilt = Complex::from_mesh(carved.points.clone(), &carved.clone().into_mesh().tets).unwrap();
     rebuilt.sanity_check().unwrap();

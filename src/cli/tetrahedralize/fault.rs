@@ -1,22 +1,65 @@
 //! Errors of the tetrahedralizer for people: what, where, why, and what to do.
 
+use std::cell::Cell;
 use std::fmt::Write as _;
 
 use super::input::Input;
+use super::numbers::FileNumbers;
 use crate::cli::exit::{Exit, Failure};
-use crate::tet::TetError;
-
-/// Facets that are named.
-const NAMED: usize = 10;
+use crate::tet::{Names, TetError};
 
 /// The message and exit code for an error; `from` names the input.
 pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
-    let mut message = format!("{from}: {error}");
-    message.push_str(&facets(error, input));
+    let asked = Asked { numbers: &input.numbers, triangles: Cell::new(false), points: Cell::new(false) };
+    let mut message = format!("{from}: {}", error.clone().renamed(&asked));
+    message.push_str(&place(error, input));
+    message.push_str(&input.numbers.legend(asked.triangles.get(), asked.points.get()));
     if let Some(remedy) = remedy(error) {
         let _ = write!(message, "; {remedy}");
     }
     Failure { exit: exit(error), message }
+}
+
+/// The numbers of the file, and which of them a message has.
+struct Asked<'a> {
+    numbers: &'a FileNumbers,
+    triangles: Cell<bool>,
+    points: Cell<bool>,
+}
+
+impl Names for Asked<'_> {
+    fn point(&self, id: u32) -> u32 {
+        self.points.set(true);
+        self.numbers.point(id)
+    }
+
+    fn triangle(&self, id: u32) -> u32 {
+        self.triangles.set(true);
+        self.numbers.triangle(id)
+    }
+
+    fn seed(&self, index: u32) -> u32 {
+        self.numbers.seed(index)
+    }
+}
+
+/// Where the edge is that a message ends with, or which segments it means.
+fn place(error: &TetError, input: &Input) -> String {
+    match error {
+        TetError::Open { edge, .. }
+        | TetError::NotShared { edge, .. }
+        | TetError::NotManifold { edge, .. }
+        | TetError::NotOriented { edge, .. } => match edge.map(|v| input.plc.points.get(v as usize)) {
+            [Some(a), Some(b)] => format!(" from {a} to {b}"),
+            _ => String::new(),
+        },
+        TetError::Outside { what: "segments", ids, .. } | TetError::BadSegment { segments: ids, .. } => {
+            let ends = ids.iter().filter_map(|&i| input.plc.edges.get(i as usize));
+            let ends = ends.map(|[a, b]| format!("{}-{}", input.numbers.point(*a), input.numbers.point(*b)));
+            format!(", between the points {}{}", ends.collect::<Vec<_>>().join(", "), input.numbers.legend(false, true))
+        }
+        _ => String::new(),
+    }
 }
 
 /// Whose fault it is.
@@ -32,35 +75,6 @@ fn exit(error: &TetError) -> Exit {
     }
 }
 
-/// The facets that the triangles of a message are part of.
-fn facets(error: &TetError, input: &Input) -> String {
-    let mut ids: Vec<u32> = triangles(error).iter().filter_map(|&t| input.facet_of.get(t as usize).copied()).collect();
-    ids.sort_unstable();
-    ids.dedup();
-    if ids.is_empty() {
-        return String::new();
-    }
-    let more = if ids.len() > NAMED { ", …" } else { "" };
-    let listed: Vec<String> = ids.iter().take(NAMED).map(ToString::to_string).collect();
-    format!(" (triangles are numbered as cut from the facets; these are of the facets {}{more})", listed.join(", "))
-}
-
-/// The triangles that an error names.
-fn triangles(error: &TetError) -> Vec<u32> {
-    match error {
-        TetError::BadTriangle { triangles, .. }
-        | TetError::FlatTriangle { triangles, .. }
-        | TetError::DuplicateTriangles { triangles, .. }
-        | TetError::Open { triangles, .. }
-        | TetError::NotManifold { triangles, .. }
-        | TetError::NotOriented { triangles, .. }
-        | TetError::NotRecovered { triangles, .. } => triangles.clone(),
-        TetError::SelfIntersection { pairs, .. } => pairs.as_flattened().to_vec(),
-        TetError::Outside { what: "triangles", ids, .. } => ids.clone(),
-        _ => Vec::new(),
-    }
-}
-
 /// What to do.
 fn remedy(error: &TetError) -> Option<&'static str> {
     Some(match error {
@@ -69,7 +83,9 @@ fn remedy(error: &TetError) -> Option<&'static str> {
         TetError::DuplicatePoints { .. } => {
             "join them, or give --repair, which joins points that are equal bit for bit"
         }
-        TetError::BadTriangle { .. } | TetError::DuplicateTriangles { .. } => "remove them, or give --repair",
+        TetError::BadTriangle { .. } => "remove them, or give --repair",
+        TetError::DuplicateTriangles { .. } => "--repair mends that",
+        TetError::NotShared { .. } => "--repair joins those at the same place",
         TetError::FlatTriangle { .. } => {
             "remove them (collapse an edge, or swap the longest one) in the program that made the surface"
         }
@@ -83,7 +99,9 @@ fn remedy(error: &TetError) -> Option<&'static str> {
         }
         TetError::BadSeed { .. } => "move it into the part of space that it stands for",
         TetError::NothingEnclosed => "close the outer surface, or remove the hole that empties it",
-        TetError::Outside { .. } => "remove them, or the hole that they lie in",
+        TetError::Outside { .. } => {
+            "remove them, or the hole that they lie in, or leave --strict out: then the mesh goes without them"
+        }
         TetError::NotSeparating { .. } => "give --repair, which orients shells",
         TetError::NotRecovered { .. } => {
             "the surface is valid as far as was checked: give --split if it may be split, and please report it"

@@ -4,14 +4,15 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::format::{InputFormat, is_stream};
+use super::numbers::{Counted, FileNumbers};
 use super::plan::TetPlan;
 use crate::cli::exit::Failure;
 use crate::geometry::Point3;
-use crate::io::surface::{read_surface_as, read_surface_from};
+use crate::io::surface::{SurfaceContent, read_content_as, read_content_from};
 use crate::io::tetgen::{self, Nodes};
 use crate::mesh::TriMesh;
 use crate::mesh::facets::{self, FacetTriangles};
-use crate::mesh::repair::{RepairReport, Repaired, repair};
+use crate::mesh::repair::{RepairReport, Repaired, repair, repair_facets};
 use crate::tet::{Plc, Region};
 use rustc_hash::FxHashMap;
 
@@ -28,9 +29,11 @@ pub struct Input {
     pub marked: bool,
     /// How many facets the file has; none where it has triangles.
     pub facets: Option<usize>,
-    /// The facet that each triangle is part of, where the file has facets.
-    pub facet_of: Vec<u32>,
-    /// Number of the first item in the file.
+    /// How the file numbers triangles and points.
+    pub numbers: FileNumbers,
+    /// What a person should know about the file.
+    pub notes: Vec<String>,
+    /// Number of the first item in the files that are written, where nothing else is asked for.
     pub first: u32,
     /// Marker of each point; may be empty.
     pub point_markers: Vec<i32>,
@@ -47,7 +50,7 @@ impl Input {
         let source = if is_stream(path) { Self::of_stream(format)? } else { Self::of_file(path, format)? };
         let mut files = vec![path.to_path_buf()];
         let input = match source {
-            Source::Surface(plc) => Self { plc, ..Self::default() },
+            Source::Surface(content) => Self::of_surface(content),
             Source::Points(nodes) => Self::of_points(nodes),
             Source::Complex(plc) => {
                 if plc.points_beside {
@@ -56,17 +59,29 @@ impl Input {
                 Self::of_complex(plc, plan).map_err(|e| Failure::input(format!("{from}: {e}")))?
             }
         };
-        Ok(Self { files, ..input })
+        match input.notes.first() {
+            Some(note) if plan.strict => {
+                Err(Failure::input(format!("{from}: {note}; correct the file, or leave --strict out")))
+            }
+            _ => Ok(Self { files, ..input }),
+        }
+    }
+
+    fn of_surface(content: SurfaceContent) -> Self {
+        let SurfaceContent { mesh, first, face_of, corner_of, notes, .. } = content;
+        let counted = if corner_of.is_empty() { Counted::Faces } else { Counted::Corners };
+        let numbers = FileNumbers { counted, first, cut: !face_of.is_empty(), face_of, point_of: corner_of };
+        Self { plc: mesh.into(), numbers, notes: notes.iter().map(ToString::to_string).collect(), ..Self::default() }
     }
 
     /// Orients the triangles and joins what is there twice; says what it did.
-    pub fn repair(&mut self) -> Vec<String> {
+    pub fn repair(&mut self, is_complex: bool) -> Vec<String> {
         let plc = &mut self.plc;
         let surface =
             TriMesh { points: std::mem::take(&mut plc.points), triangles: std::mem::take(&mut plc.triangles) };
+        let repair = if is_complex { repair_facets } else { repair };
         let Repaired { surface, source, point, report, .. } = repair(&surface);
         plc.markers = source.iter().filter_map(|&i| plc.markers.get(i as usize).copied()).collect();
-        self.facet_of = source.iter().filter_map(|&i| self.facet_of.get(i as usize).copied()).collect();
         let named = |v: u32| point.get(v as usize).copied().unwrap_or(u32::MAX);
         plc.edges = plc.edges.iter().map(|edge| edge.map(named)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
         plc.edges.retain(|[a, b]| a != b);
@@ -79,6 +94,7 @@ impl Input {
                 *slot = old as u32;
             }
         }
+        self.numbers.select(&source, &kept);
         let each = self.attribute_count;
         self.point_markers = kept.iter().filter_map(|&i| self.point_markers.get(i as usize).copied()).collect();
         let attributes =
@@ -88,10 +104,20 @@ impl Input {
         said(&report)
     }
 
+    /// Forgets segments that the mesh does not have; `ids` are ascending.
+    pub fn leave_out(&mut self, ids: &[u32]) {
+        let mut ids = ids.iter().peekable();
+        let mut i = 0;
+        self.plc.edges.retain(|_| {
+            i += 1;
+            ids.next_if_eq(&&(i - 1)).is_none()
+        });
+    }
+
     fn of_file(path: &Path, format: InputFormat) -> Result<Source, Failure> {
         let failed = |e: &dyn std::error::Error| Failure::input(e.to_string());
         if let Some(surface) = format.surface() {
-            return Ok(Source::Surface(read_surface_as(path, surface).map_err(|e| failed(&e))?.into()));
+            return Ok(Source::Surface(read_content_as(path, surface).map_err(|e| failed(&e))?));
         }
         match format.complex() {
             Some(format) => Ok(Source::Complex(tetgen::read_plc_as(path, format).map_err(|e| failed(&e))?)),
@@ -107,7 +133,7 @@ impl Input {
             return Err(failed(&"there is nothing in it"));
         }
         if let Some(surface) = format.surface() {
-            return Ok(Source::Surface(read_surface_from(&bytes, surface).map_err(|e| failed(&e))?.into()));
+            return Ok(Source::Surface(read_content_from(&bytes, surface).map_err(|e| failed(&e))?));
         }
         match format.complex() {
             Some(format) => Ok(Source::Complex(tetgen::Plc::parse(&bytes, format).map_err(|e| failed(&e))?)),
@@ -120,6 +146,7 @@ impl Input {
             plc: Plc { points: nodes.points, ..Plc::default() },
             only_points: true,
             first: nodes.first,
+            numbers: FileNumbers { first: nodes.first, ..FileNumbers::default() },
             point_markers: nodes.markers,
             point_attributes: nodes.attributes,
             attribute_count: nodes.attribute_count,
@@ -135,6 +162,7 @@ impl Input {
             marked: file.facets.iter().any(|facet| facet.marker != 0),
             facets: Some(file.facets.len()),
             first: file.first,
+            numbers: FileNumbers { counted: Counted::Facets, first: file.first, cut: true, ..FileNumbers::default() },
             point_markers: file.point_markers,
             point_attributes: file.point_attributes,
             attribute_count: file.attribute_count,
@@ -142,8 +170,12 @@ impl Input {
         };
         for (facet, piece) in file.facets.iter().enumerate() {
             let cut = facets::triangulate(&file.points, &piece.polygons, &piece.holes);
-            let FacetTriangles { triangles, segments } = cut.map_err(|fault| ComplexError::Facet { facet, fault })?;
-            input.facet_of.resize(input.facet_of.len() + triangles.len(), facet as u32);
+            let FacetTriangles { triangles, segments } = cut.map_err(|fault| {
+                let (facet, first) = (facet + file.first as usize, file.first);
+                ComplexError::Facet { facet, first, fault: fault.renamed(|point| point + first) }
+            })?;
+            let face_of = &mut input.numbers.face_of;
+            face_of.resize(face_of.len() + triangles.len(), facet as u32);
             input.plc.markers.resize(input.plc.markers.len() + triangles.len(), piece.marker);
             input.plc.triangles.extend(triangles);
             input.plc.edges.extend(segments);
@@ -160,16 +192,16 @@ impl Input {
 
 /// What a file holds.
 enum Source {
-    Surface(Plc),
+    Surface(SurfaceContent),
     Points(Nodes),
     Complex(tetgen::Plc),
 }
 
-/// Why a complex of facets cannot be used. Facets, regions and points are counted from 0.
+/// Why a complex of facets cannot be used. Facets and points count as in the file, regions from 0.
 #[derive(Debug, thiserror::Error)]
 enum ComplexError {
-    #[error("facet {facet} (counted from 0, as are points here) cannot be cut into triangles: {fault}")]
-    Facet { facet: usize, fault: facets::FacetError },
+    #[error("facet {facet} (facets and points count from {first}) cannot be cut into triangles: {fault}")]
+    Facet { facet: usize, first: u32, fault: facets::FacetError },
     #[error(
         "region {region} (counted from 0) has the attribute {attribute}; regions are labelled by integers: change it"
     )]
@@ -204,6 +236,7 @@ fn said(report: &RepairReport) -> Vec<String> {
         (report.merged_points, "points joined with an earlier one at the same place"),
         (report.collapsed_triangles, "triangles removed that had a corner twice"),
         (report.duplicate_triangles, "triangles removed that were there before"),
+        (report.sheet_triangles, "triangles removed that lay back to back with another and enclosed nothing"),
         (report.flat_triangles, "triangles without area merged into a neighbour"),
         (report.turned_triangles, "triangles turned over"),
         (report.not_orientable, "parts cannot be oriented"),

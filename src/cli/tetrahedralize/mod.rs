@@ -3,6 +3,7 @@
 mod fault;
 mod format;
 mod input;
+mod numbers;
 mod output;
 mod plan;
 mod switches;
@@ -16,8 +17,10 @@ use serde::Serialize;
 use super::common::Common;
 use super::exit::{Exit, Failure};
 use crate::mesh::quality::TetQuality;
-use crate::report::tetrahedralize::{Bounds, InputSize, OutputSize, Recovery, TetReport, region_sizes, volume_of};
-use crate::tet::{TetError, Tetrahedralization};
+use crate::report::tetrahedralize::{
+    Bounds, InputSize, LeftOut, OutputSize, Recovery, TetReport, region_sizes, volume_of,
+};
+use crate::tet::{LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
 use format::{InputFormat, StreamFormat, Target, is_stream};
 use input::Input;
 use plan::TetPlan;
@@ -63,6 +66,10 @@ pub struct Args {
     /// First orient the triangles and join what is there twice, bit for bit
     #[arg(long)]
     repair: bool,
+    /// Refuse what is otherwise left out with a note: facets and segments outside of what is filled or in a hole, bytes
+    /// behind the last triangle of a binary STL
+    #[arg(long)]
+    strict: bool,
     /// Check the input and stop
     #[arg(long)]
     check_only: bool,
@@ -99,16 +106,20 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let watch = Arc::new(Watch::new(plan.quiet));
     let mut input = watch.time("read", || Input::read(&args.input, format, &plan))?;
     target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
-    let mut report = TetReport { input: size_of(&input), ..TetReport::default() };
+    let from = if is_stream(&args.input) { "standard input".into() } else { args.input.display().to_string() };
+    for note in input.notes.iter().filter(|_| !plan.quiet) {
+        eprintln!("warning: {from}: {note}");
+    }
+    let mut report = TetReport { input: size_of(&input), notes: input.notes.clone(), ..TetReport::default() };
     if plan.repair {
-        report.repaired = watch.time("repair", || input.repair());
+        report.repaired = watch.time("repair", || input.repair(plan.plc));
     }
     let made = pool.install(|| make(&plan, &input, &watch));
     watch.leave();
-    let from = if is_stream(&args.input) { "standard input".into() } else { args.input.display().to_string() };
     let made = made.map_err(|e| fault::failure(&e, &from, &input))?;
     if let (Some(made), Some(target)) = (made, target) {
         fill_report(&mut report, &made, &input, &plan);
+        input.leave_out(&made.summary.left_out.segments);
         let volume = output::volume(made, &input);
         let written = watch.time("write", || pool.install(|| output::write(&target, &volume, &input, &plan)))?;
         report.files = written.iter().map(|path| path.display().to_string()).collect();
@@ -157,6 +168,7 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
         interior_faces: made.summary.interior_faces,
         volume: mesh.tets.iter().map(|t| volume_of(mesh, t)).sum(),
     };
+    report.left_out = left_out(made, input);
     report.quality = Some(TetQuality::of(mesh));
     let bounds =
         Bounds { max_radius_edge: plan.max_radius_edge, min_dihedral: plan.min_dihedral, max_volume: plan.max_volume };
@@ -168,6 +180,28 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
         missing_triangles: recovery.missing_triangles,
         steiner_points: recovery.steiner_points,
     };
+}
+
+/// What the mesh does not have of the input, numbered as in the file.
+fn left_out(made: &Tetrahedralization, input: &Input) -> LeftOut {
+    let LeftOutIds { triangles, segments, .. } = &made.summary.left_out;
+    let mut faces: Vec<u32> = triangles.iter().map(|&t| input.numbers.triangle(t)).collect();
+    faces.dedup();
+    let ends = segments.iter().filter_map(|&s| input.plc.edges.get(s as usize));
+    let mut used = vec![false; input.plc.points.len()];
+    for &v in made.mesh.tets.iter().flatten() {
+        if let Some(used) = used.get_mut(v as usize) {
+            *used = true;
+        }
+    }
+    LeftOut {
+        triangles: triangles.len(),
+        triangles_of: input.numbers.triangles_of(),
+        faces,
+        segments: ends.map(|edge| edge.map(|v| input.numbers.point(v))).collect(),
+        counted_from: input.numbers.first,
+        unused_points: used.iter().filter(|used| !**used).count(),
+    }
 }
 
 fn print(args: &Args, plan: &TetPlan, report: &TetReport) -> Result<(), Failure> {

@@ -31,6 +31,8 @@ pub struct TetPlan {
     pub optimize: bool,
     /// Whether the orientation is mended and exact duplicates are joined first.
     pub repair: bool,
+    /// Whether a part of the input that would be left out, or passed over, is an error.
+    pub strict: bool,
     /// Whether regions are told apart.
     pub regions: bool,
     /// Whether the bounds on volume that regions have are kept.
@@ -84,6 +86,7 @@ impl TetPlan {
         plan.quiet |= args.common.quiet;
         plan.check_only |= args.check_only;
         plan.repair = args.repair;
+        plan.strict = args.strict;
         Self::validate(args)?;
         Ok((plan, notes))
     }
@@ -100,6 +103,7 @@ impl TetPlan {
             split: args.split,
             optimize: refine,
             repair: false,
+            strict: false,
             regions: true,
             region_volumes: refine,
             check_only: false,
@@ -126,6 +130,7 @@ impl TetPlan {
             split: !s.keep_boundary,
             optimize: refine && !s.no_optimization,
             repair: false,
+            strict: false,
             regions: s.regions,
             region_volumes: s.region_volumes,
             check_only: s.check_only,
@@ -175,6 +180,7 @@ impl TetPlan {
             .sizing(self.size.filter(|_| bounded || self.split).map_or(Sizing::Surface, Sizing::Constant))
             .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
             .optimize(self.optimize)
+            .strict(self.strict)
     }
 }
 

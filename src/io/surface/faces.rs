@@ -1,8 +1,7 @@
 //! Faces on their way from a file to triangles.
 
-use super::{Place, SurfaceFault};
+use super::{Place, SurfaceContent, SurfaceFault};
 use crate::geometry::Point3;
-use crate::mesh::TriMesh;
 use crate::mesh::facets;
 
 /// The faces that were read so far, and the corners of the one that is being read.
@@ -10,7 +9,7 @@ use crate::mesh::facets;
 pub(super) struct Faces {
     /// How many points there will be.
     points: usize,
-    /// The number of the first point in the file.
+    /// The number of the first point, and of the first face, in the file.
     first: u32,
     triangles: Vec<[u32; 3]>,
     polygons: Vec<Polygon>,
@@ -35,8 +34,13 @@ impl Faces {
     }
 
     /// How many faces are complete.
-    pub(super) fn count(&self) -> usize {
+    fn count(&self) -> usize {
         self.triangles.len() + self.polygons.len()
+    }
+
+    /// The number in the file of the face that is being read.
+    pub(super) fn number(&self) -> usize {
+        self.count() + self.first as usize
     }
 
     /// A corner of the face that is being read, as numbered in the file.
@@ -45,21 +49,21 @@ impl Faces {
         let from_zero = named.checked_sub(first.into()).and_then(|i| usize::try_from(i).ok());
         match from_zero {
             Some(i) if i < points => self.open.push(i as u32),
-            _ => return Err(SurfaceFault::BadIndex { face: self.count(), index: named, points, first, place }),
+            _ => return Err(SurfaceFault::BadIndex { face: self.number(), index: named, points, first, place }),
         }
         Ok(())
     }
 
     /// The face that is being read is complete.
     pub(super) fn end_face(&mut self, place: Place) -> Result<(), SurfaceFault> {
-        let face = self.count();
+        let (face, number) = (self.count(), self.number());
         match *self.open.as_slice() {
             [a, b, c] => {
                 self.triangles.push([a, b, c]);
                 self.open.clear();
             }
             ref few if few.len() < 3 => {
-                return Err(SurfaceFault::NotATriangle { face, corners: few.len() as i64, place });
+                return Err(SurfaceFault::NotATriangle { face: number, corners: few.len() as i64, place });
             }
             _ => {
                 let corners = std::mem::take(&mut self.open);
@@ -70,19 +74,42 @@ impl Faces {
     }
 
     /// The triangles, those of polygons in their place.
-    pub(super) fn into_surface(self, points: Vec<Point3>) -> Result<TriMesh, SurfaceFault> {
+    pub(super) fn into_surface(self, points: Vec<Point3>) -> Result<SurfaceContent, SurfaceFault> {
+        let first = self.first;
+        let mut content = SurfaceContent { first, ..SurfaceContent::default() };
+        content.mesh.points = points;
         if self.polygons.is_empty() {
-            return Ok(TriMesh { points, triangles: self.triangles });
+            content.mesh.triangles = self.triangles;
+            return Ok(content);
         }
-        let mut triangles = Vec::with_capacity(self.triangles.len() + 2 * self.polygons.len());
+        let mut pieces = Pieces { content, face: 0 };
+        pieces.content.mesh.triangles.reserve(self.triangles.len() + 2 * self.polygons.len());
         let mut taken = 0;
         for Polygon { before, face, corners, place } in self.polygons {
-            triangles.extend_from_slice(&self.triangles[taken..before]);
+            self.triangles[taken..before].iter().for_each(|&t| pieces.add_face(&[t]));
             taken = before;
-            let pieces = facets::triangulate(&points, &[corners], &[]);
-            triangles.extend(pieces.map_err(|fault| SurfaceFault::Polygon { face, place, fault })?.triangles);
+            let cut = facets::triangulate(&pieces.content.mesh.points, &[corners], &[]);
+            let cut = cut.map_err(|fault| {
+                let fault = fault.renamed(|point| point + first);
+                SurfaceFault::Polygon { face: face + first as usize, place, fault }
+            })?;
+            pieces.add_face(&cut.triangles);
         }
-        triangles.extend_from_slice(&self.triangles[taken..]);
-        Ok(TriMesh { points, triangles })
+        self.triangles[taken..].iter().for_each(|&t| pieces.add_face(&[t]));
+        Ok(pieces.content)
+    }
+}
+
+/// Triangles with the faces that they are pieces of.
+struct Pieces {
+    content: SurfaceContent,
+    face: u32,
+}
+
+impl Pieces {
+    fn add_face(&mut self, triangles: &[[u32; 3]]) {
+        self.content.mesh.triangles.extend_from_slice(triangles);
+        self.content.face_of.resize(self.content.mesh.triangles.len(), self.face);
+        self.face += 1;
     }
 }

@@ -1,5 +1,6 @@
 //! Triangle surfaces in files: OFF, PLY, STL and OBJ.
 
+mod content;
 mod faces;
 mod obj;
 mod off;
@@ -8,6 +9,8 @@ mod ply_head;
 mod stl;
 #[cfg(test)]
 mod tests;
+
+pub use content::{SurfaceContent, SurfaceNote};
 
 use super::file_error::{FileError, ensure_sound, extension, read_bytes, write_whole};
 use super::text::TextFault;
@@ -69,7 +72,8 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why the content of a file is no triangle surface. Faces are numbered from 0.
+/// Why the content of a file is no triangle surface. Faces are numbered as the format numbers points: from 1 in OBJ, else
+/// from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceFault {
@@ -179,8 +183,16 @@ pub fn read_surface(path: &Path) -> Result<TriMesh, SurfaceFileError> {
 /// # Errors
 /// As [`read_surface`].
 pub fn read_surface_as(path: &Path, format: SurfaceFormat) -> Result<TriMesh, SurfaceFileError> {
+    Ok(read_content_as(path, format)?.mesh)
+}
+
+/// As [`read_surface_as`], with what the file says beside the surface.
+///
+/// # Errors
+/// As [`read_surface`].
+pub fn read_content_as(path: &Path, format: SurfaceFormat) -> Result<SurfaceContent, SurfaceFileError> {
     let bytes = read_bytes(path)?;
-    read_surface_from(&bytes, format).map_err(|fault| FileError::Content { path: path.to_path_buf(), fault })
+    read_content_from(&bytes, format).map_err(|fault| FileError::Content { path: path.to_path_buf(), fault })
 }
 
 /// Reads a surface from the bytes of a file.
@@ -188,16 +200,24 @@ pub fn read_surface_as(path: &Path, format: SurfaceFormat) -> Result<TriMesh, Su
 /// # Errors
 /// When the bytes are no such file, or it is incomplete.
 pub fn read_surface_from(bytes: &[u8], format: SurfaceFormat) -> Result<TriMesh, SurfaceFault> {
-    let mesh = match format {
+    Ok(read_content_from(bytes, format)?.mesh)
+}
+
+/// As [`read_surface_from`], with what the file says beside the surface.
+///
+/// # Errors
+/// As [`read_surface_from`].
+pub fn read_content_from(bytes: &[u8], format: SurfaceFormat) -> Result<SurfaceContent, SurfaceFault> {
+    let content = match format {
         SurfaceFormat::Off => off::read(bytes)?,
         SurfaceFormat::Ply => ply::read(bytes)?,
         SurfaceFormat::Stl => stl::read(bytes)?,
         SurfaceFormat::Obj => obj::read(bytes)?,
     };
-    if mesh.triangles.is_empty() {
-        return Err(SurfaceFault::NoFaces { points: mesh.points.len() });
+    if content.mesh.triangles.is_empty() {
+        return Err(SurfaceFault::NoFaces { points: content.mesh.points.len() });
     }
-    Ok(mesh)
+    Ok(content)
 }
 
 /// Writes a surface to a file, in the format that its extension names; the file appears whole or not at all. Every

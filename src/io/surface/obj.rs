@@ -2,13 +2,13 @@
 
 use super::super::text::{TextFault, Words};
 use super::faces::Faces;
-use super::{Place, SurfaceFault};
+use super::{Place, SurfaceContent, SurfaceFault};
 use crate::geometry::Point3;
 use crate::mesh::TriMesh;
 use std::io::{self, Write};
 
 /// Parses a file.
-pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
+pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut words = Words::new(bytes, true);
     // Vertices may come after the faces that name them: corners are compared with their number in the end.
     let mut reader = Reader { points: Vec::new(), faces: Faces::new(u32::MAX as usize - 1, 1, 0), ahead: None };
@@ -65,10 +65,10 @@ impl Reader {
         let points = self.points.len() as i64;
         let index = if named < 0 { points.saturating_add(named).saturating_add(1) } else { named };
         if index < 1 || index >= i64::from(u32::MAX) {
-            return Err(self.bad_index(&Ahead { index: named, face: self.faces.count(), line }));
+            return Err(self.bad_index(&Ahead { index: named, face: self.faces.number(), line }));
         }
         if index > points && self.ahead.as_ref().is_none_or(|ahead| ahead.index < named) {
-            self.ahead = Some(Ahead { index: named, face: self.faces.count(), line });
+            self.ahead = Some(Ahead { index: named, face: self.faces.number(), line });
         }
         self.faces.corner(index, Place::Line(line))
     }
@@ -77,7 +77,7 @@ impl Reader {
         SurfaceFault::BadIndex { face, index, points: self.points.len(), first: 1, place: Place::Line(line) }
     }
 
-    fn finish(self) -> Result<TriMesh, SurfaceFault> {
+    fn finish(self) -> Result<SurfaceContent, SurfaceFault> {
         match &self.ahead {
             Some(ahead) if ahead.index > self.points.len() as i64 => Err(self.bad_index(ahead)),
             _ => self.faces.into_surface(self.points),

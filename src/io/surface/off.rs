@@ -2,13 +2,13 @@
 
 use super::super::text::{Words, shown};
 use super::faces::Faces;
-use super::{Place, SurfaceFault};
+use super::{Place, SurfaceContent, SurfaceFault};
 use crate::mesh::TriMesh;
 use std::io::{self, Write};
 
 /// Parses a file. The position stands first in a line of whatever variant, so colours, normals and texture coordinates
 /// behind it are passed over.
-pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
+pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut words = Words::new(bytes, true);
     read_keyword(&mut words)?;
     // "0 0 0\n"

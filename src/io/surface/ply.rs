@@ -4,13 +4,13 @@
 use super::super::text::{TextFault, Words};
 use super::faces::Faces;
 use super::ply_head::{Element, Encoding, Head, Scalar, parse};
-use super::{Place, SurfaceFault};
+use super::{Place, SurfaceContent, SurfaceFault};
 use crate::geometry::Point3;
 use crate::mesh::TriMesh;
 use std::io::{self, Write};
 
 /// Parses a file.
-pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
+pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let head = parse(bytes)?;
     let mut positions = Vec::new();
     let mut list = None;

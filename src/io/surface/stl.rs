@@ -1,7 +1,7 @@
 //! STL: triangles that each bring their own corners; corners at the same place become one point.
 
 use super::super::text::{TextFault, Words, shown};
-use super::{Place, SurfaceFault};
+use super::{Place, SurfaceContent, SurfaceFault, SurfaceNote};
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::TriMesh;
 use rustc_hash::FxHashMap;
@@ -13,7 +13,7 @@ const HEAD: usize = 84;
 const RECORD: usize = 50;
 
 /// Parses a file, text or binary.
-pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
+pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     // Binary files may begin with the word of text files: their length tells them, or a zero that text never has.
     let announced = announced_length(bytes);
     let begins_as_text = bytes.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
@@ -34,28 +34,41 @@ fn announced_length(bytes: &[u8]) -> Option<u64> {
 #[derive(Default)]
 struct Joiner {
     mesh: TriMesh,
+    /// The first corner at each point.
+    corner_of: Vec<u32>,
     known: FxHashMap<[u64; 3], u32>,
 }
 
 impl Joiner {
-    /// Index of the point at a place. Only equal coordinates are one place (−0 equals 0).
-    fn index(&mut self, p: Point3) -> u32 {
+    /// Index of the point at the place of a corner of the next triangle. Only equal coordinates are one place (−0
+    /// equals 0).
+    fn index(&mut self, p: Point3, corner: usize) -> u32 {
         let p = p.map(|x| x + 0.0);
-        let points = &mut self.mesh.points;
-        *self.known.entry([p.x.to_bits(), p.y.to_bits(), p.z.to_bits()]).or_insert_with(|| {
+        let Self { mesh: TriMesh { points, triangles }, corner_of, known } = self;
+        *known.entry([p.x.to_bits(), p.y.to_bits(), p.z.to_bits()]).or_insert_with(|| {
             points.push(p);
+            corner_of.push((3 * triangles.len() + corner) as u32);
             (points.len() - 1) as u32
         })
     }
 }
 
-fn read_binary(bytes: &[u8], announced: Option<u64>) -> Result<TriMesh, SurfaceFault> {
-    let announced = announced.unwrap_or(HEAD as u64);
-    // Three corners a triangle have to fit into u32 ids.
-    if announced != bytes.len() as u64 || announced / RECORD as u64 > u64::from(u32::MAX / 3) {
-        return Err(SurfaceFault::Length { announced, found: bytes.len() as u64 });
+impl Joiner {
+    fn into_content(self) -> SurfaceContent {
+        SurfaceContent { corner_of: self.corner_of, ..self.mesh.into() }
     }
-    let (records, _) = bytes[HEAD..].as_chunks::<RECORD>();
+}
+
+fn read_binary(bytes: &[u8], announced: Option<u64>) -> Result<SurfaceContent, SurfaceFault> {
+    let (announced, found) = (announced.unwrap_or(HEAD as u64), bytes.len() as u64);
+    let surplus = found.checked_sub(announced);
+    // No triangles, but something behind them: the count was never written. Three corners a triangle have to fit into
+    // u32 ids.
+    let none = announced == HEAD as u64 && surplus != Some(0);
+    let Some(surplus) = surplus.filter(|_| !none && announced / RECORD as u64 <= u64::from(u32::MAX / 3)) else {
+        return Err(SurfaceFault::Length { announced, found });
+    };
+    let (records, _) = bytes[HEAD..announced as usize].as_chunks::<RECORD>();
     let mut joiner = Joiner::default();
     joiner.mesh.triangles.reserve_exact(records.len());
     for (face, record) in records.iter().enumerate() {
@@ -67,16 +80,18 @@ fn read_binary(bytes: &[u8], announced: Option<u64>) -> Result<TriMesh, SurfaceF
             if !(x.is_finite() && y.is_finite() && z.is_finite()) {
                 return Err(SurfaceFault::NotFinite { point: 3 * face + i, byte: HEAD + RECORD * face + at });
             }
-            *corner = joiner.index(Point3::new(x, y, z));
+            *corner = joiner.index(Point3::new(x, y, z), i);
         }
         joiner.mesh.triangles.push(triangle);
     }
-    Ok(joiner.mesh)
+    let notes =
+        if surplus == 0 { Vec::new() } else { vec![SurfaceNote::Surplus { bytes: surplus, triangles: records.len() }] };
+    Ok(SurfaceContent { notes, ..joiner.into_content() })
 }
 
 /// Text: every line begins with a keyword. Normals are passed over: they say nothing that the corners do not, and some
 /// programs write `nan`.
-fn read_text(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
+fn read_text(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut words = Words::new(bytes, false);
     let mut joiner = Joiner::default();
     let mut triangle = [0; 3];
@@ -94,7 +109,7 @@ fn read_text(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
                 let count = corners.as_mut().ok_or_else(|| unexpected("'outer loop'"))?;
                 let point = words.point_here()?;
                 if let Some(corner) = triangle.get_mut(*count) {
-                    *corner = joiner.index(point);
+                    *corner = joiner.index(point, *count);
                 }
                 *count += 1;
             }
@@ -113,7 +128,7 @@ fn read_text(bytes: &[u8]) -> Result<TriMesh, SurfaceFault> {
     if open {
         return Err(TextFault::CutShort { line: words.line(), missing: "'endsolid'" }.into());
     }
-    Ok(joiner.mesh)
+    Ok(joiner.into_content())
 }
 
 /// Writes binary when no coordinate loses a bit by it, otherwise text.

@@ -73,6 +73,43 @@ fn stl_is_binary_when_nothing_is_lost() {
 }
 
 #[test]
+fn what_follows_the_last_triangle_of_binary_stl_is_counted() {
+    let whole = written(&corner(), SurfaceFormat::Stl);
+    let read = |bytes: &[u8]| read_content_from(bytes, SurfaceFormat::Stl);
+    assert_eq!(read(&whole).unwrap().notes, []);
+    for surplus in [1, 49, 50, 1000] {
+        let longer = [whole.as_slice(), &vec![b' '; surplus]].concat();
+        let content = read(&longer).unwrap();
+        assert_eq!(places(&content.mesh), places(&corner()));
+        assert_eq!(content.notes, [SurfaceNote::Surplus { bytes: surplus as u64, triangles: 4 }]);
+        assert_eq!(content.notes[0].to_string().contains("its count may be wrong"), surplus >= 50);
+        assert_eq!(read_surface_from(&longer, SurfaceFormat::Stl), Ok(content.mesh));
+    }
+    // A count that was never written is a fault.
+    let mut unwritten = whole;
+    unwritten[80..84].fill(0);
+    assert_eq!(read(&unwritten), Err(SurfaceFault::Length { announced: 84, found: 284 }));
+}
+
+#[test]
+fn triangles_know_their_faces_and_points_their_corners() {
+    let points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 0.25 1\n";
+    let off = format!("OFF\n5 5 0\n{points}3 0 1 4\n4 3 2 1 0\n3 1 2 4\n3 2 3 4\n3 3 0 4\n");
+    let content = read_content_from(off.as_bytes(), SurfaceFormat::Off).unwrap();
+    assert_eq!((content.first, content.face_of.as_slice()), (0, &[0, 1, 1, 2, 3, 4][..]));
+    let content = read_content_from(OBJ.as_bytes(), SurfaceFormat::Obj).unwrap();
+    assert_eq!((content.first, content.face_of, content.corner_of), (1, vec![], vec![]));
+    let content = read_content_from(STL.as_bytes(), SurfaceFormat::Stl).unwrap();
+    assert_eq!((content.first, content.corner_of.as_slice()), (0, &[0, 1, 2, 4][..]));
+    let crossed = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 2 4 3\n";
+    let fault = read(crossed, SurfaceFormat::Obj).unwrap_err();
+    let SurfaceFault::Polygon { face: 2, fault: FacetError::Crossing { first, second }, .. } = fault else { panic!() };
+    let mut named = [first, second].concat();
+    named.sort_unstable();
+    assert_eq!(named, [1, 2, 3, 4]);
+}
+
+#[test]
 fn off_and_its_variants() {
     let plain = "OFF\n# a comment\n\n4 4 6\n0 0 0\n1 0 0\n0 1 0 # here\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
     assert_eq!(read(plain, SurfaceFormat::Off), Ok(corner()));
@@ -243,10 +280,10 @@ fn obj_by_hand() {
     assert_eq!(read(OBJ, SurfaceFormat::Obj), Ok(corner()));
     let fault = |from: &str, to: &str| read(&OBJ.replacen(from, to, 1), SurfaceFormat::Obj).unwrap_err();
     let place = Place::Line(10);
-    assert_eq!(fault("f 1 2 4", "f 1 2 5"), SurfaceFault::BadIndex { face: 1, index: 5, points: 4, first: 1, place });
-    assert!(matches!(fault("f 1 2 4", "f 1 2 0"), SurfaceFault::BadIndex { face: 1, index: 0, .. }));
-    assert!(matches!(fault("f 1 2 4", "f 1 2 -9"), SurfaceFault::BadIndex { face: 1, index: -9, .. }));
-    assert_eq!(fault("f 1 2 4", "f 1 2"), SurfaceFault::NotATriangle { face: 1, corners: 2, place });
+    assert_eq!(fault("f 1 2 4", "f 1 2 5"), SurfaceFault::BadIndex { face: 2, index: 5, points: 4, first: 1, place });
+    assert!(matches!(fault("f 1 2 4", "f 1 2 0"), SurfaceFault::BadIndex { face: 2, index: 0, .. }));
+    assert!(matches!(fault("f 1 2 4", "f 1 2 -9"), SurfaceFault::BadIndex { face: 2, index: -9, .. }));
+    assert_eq!(fault("f 1 2 4", "f 1 2"), SurfaceFault::NotATriangle { face: 2, corners: 2, place });
     assert!(matches!(fault("f 1 2 4", "f 1 a 4"), SurfaceFault::Text(TextFault::NotANumber { line: 10, .. })));
     assert!(matches!(fault("v 1 0 0 1.0", "v 1 0"), SurfaceFault::Text(TextFault::LineTooShort { line: 5, .. })));
     assert!(matches!(read("hello\n", SurfaceFormat::Obj), Err(SurfaceFault::NoFaces { points: 0 })));

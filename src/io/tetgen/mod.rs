@@ -21,7 +21,8 @@ use std::path::Path;
 /// Why a file of `TetGen`'s could not be read or written.
 pub type TetgenFileError = FileError<TetgenFault>;
 
-/// Why the content of a file is not what `TetGen`'s format asks for. Facets are numbered from 0.
+/// Why the content of a file is not what `TetGen`'s format asks for. Facets are numbered as points are, from
+/// 0 or 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TetgenFault {

@@ -111,6 +111,11 @@ struct FacetReader<'w, 'a> {
 }
 
 impl FacetReader<'_, '_> {
+    /// The number of a facet in the file: they count as points do.
+    fn number(&self, facet: usize) -> usize {
+        facet + self.first as usize
+    }
+
     /// `<polygons> [holes] [marker]`, then the polygons, then the holes.
     fn poly_facet(&mut self, facet: usize) -> Result<Facet, TetgenFault> {
         let words = &mut *self.words;
@@ -124,7 +129,7 @@ impl FacetReader<'_, '_> {
         let marker = self.marker()?;
         self.words.skip_line();
         if polygons == 0 {
-            return Err(TetgenFault::EmptyFacet { line, facet });
+            return Err(TetgenFault::EmptyFacet { line, facet: self.number(facet) });
         }
         let mut read = Facet { polygons: Vec::with_capacity(polygons), holes: Vec::with_capacity(holes), marker };
         for _ in 0..polygons {
@@ -159,7 +164,7 @@ impl FacetReader<'_, '_> {
     fn polygon(&mut self, facet: usize) -> Result<Vec<u32>, TetgenFault> {
         let count = self.words.count("a polygon's count of corners", 2)?;
         if count == 0 {
-            return Err(TetgenFault::EmptyFacet { line: self.words.line(), facet });
+            return Err(TetgenFault::EmptyFacet { line: self.words.line(), facet: self.number(facet) });
         }
         let (points, first) = (self.points, self.first);
         let mut polygon = Vec::with_capacity(count);
@@ -168,7 +173,10 @@ impl FacetReader<'_, '_> {
             let from_zero = index.checked_sub(first.into()).and_then(|i| usize::try_from(i).ok());
             match from_zero {
                 Some(i) if i < points => polygon.push(i as u32),
-                _ => return Err(TetgenFault::BadIndex { line: self.words.line(), facet, index, points, first }),
+                _ => {
+                    let (line, facet) = (self.words.line(), self.number(facet));
+                    return Err(TetgenFault::BadIndex { line, facet, index, points, first });
+                }
             }
         }
         Ok(polygon)

@@ -56,10 +56,10 @@ fn a_complex_with_holes_segments_and_regions() {
         assert!(POLY.contains(from), "{from}");
         Plc::parse(POLY.replacen(from, to, 1).as_bytes(), PlcFormat::Poly).unwrap_err()
     };
-    let index = |index| TetgenFault::BadIndex { line: 16, facet: 1, index, points: 8, first: 1 };
+    let index = |index| TetgenFault::BadIndex { line: 16, facet: 2, index, points: 8, first: 1 };
     assert_eq!(fault("2 5 7", "2 5 9"), index(9));
     assert_eq!(fault("2 5 7", "2 5 0"), index(0));
-    assert_eq!(fault("1 6\n", "0\n"), TetgenFault::EmptyFacet { line: 17, facet: 1 });
+    assert_eq!(fault("1 6\n", "0\n"), TetgenFault::EmptyFacet { line: 17, facet: 2 });
     assert!(matches!(fault("0.6", "inf"), TetgenFault::Text(TextFault::NotFinite { line: 18, .. })));
     assert!(matches!(fault("3 1\n", "3000000 1\n"), TetgenFault::Text(TextFault::CountTooLarge { line: 10, .. })));
     let one_number = Plc::parse(POLY.replacen("10 0.25", "10", 1).as_bytes(), PlcFormat::Poly).unwrap();

@@ -23,7 +23,8 @@ fn fills(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<Ex
     let mut c = c;
     assert_eq!(survey(&mut c, surface, &edges), (Vec::new(), Vec::new()));
     if kind == InputKind::Closed {
-        let mesh = carve::carve(&c, surface, kind, &[])?.into_compact_mesh(surface.points.len());
+        let sides = carve::Sides::find(&c, surface, kind, &[])?;
+        let mesh = carve::carve(&c, surface, &sides).into_compact_mesh(surface.points.len());
         certify::certify(&mesh, surface)?;
     }
     Ok(summary)

@@ -1,0 +1,63 @@
+//! Errors told with the ids of their reader: those of a file, say, whose polygons were cut into triangles.
+
+use super::error::{Obstacle, TetError};
+
+/// What the items of an input are called elsewhere.
+pub trait Names {
+    /// The number of a point.
+    fn point(&self, id: u32) -> u32;
+
+    /// The number of a triangle, or of what it is a piece of.
+    fn triangle(&self, id: u32) -> u32;
+
+    /// The number of the seed of a hole or region.
+    fn seed(&self, index: u32) -> u32 {
+        index
+    }
+}
+
+impl TetError {
+    /// The same error, its points, triangles and seeds named as elsewhere; segments keep their ids.
+    #[must_use]
+    pub fn renamed(mut self, names: &impl Names) -> Self {
+        let points = |ids: &mut [u32]| ids.iter_mut().for_each(|id| *id = names.point(*id));
+        let faces = |ids: &mut [u32]| ids.iter_mut().for_each(|id| *id = names.triangle(*id));
+        let part = |obstacle: &mut Obstacle| match obstacle {
+            Obstacle::Triangle(corners) => points(corners),
+            Obstacle::Edge(ends) => points(ends),
+            Obstacle::Point(p) => *p = names.point(*p),
+        };
+        match &mut self {
+            Self::OutOfRange { points: ids, .. } => points(ids),
+            Self::DuplicatePoints { pairs, .. } => points(pairs.as_flattened_mut()),
+            Self::BadTriangle { triangles, vertices, .. } | Self::FlatTriangle { triangles, vertices, .. } => {
+                faces(triangles);
+                points(vertices);
+            }
+            Self::DuplicateTriangles { pairs, .. } | Self::SelfIntersection { pairs, .. } => {
+                faces(pairs.as_flattened_mut());
+            }
+            Self::Open { triangles, edge, .. }
+            | Self::NotShared { triangles, edge, .. }
+            | Self::NotManifold { triangles, edge, .. }
+            | Self::NotOriented { triangles, edge, .. } => {
+                faces(triangles);
+                points(edge);
+            }
+            Self::BadSeed { index, .. } => *index = names.seed(*index),
+            Self::EdgeMeets { edge, obstacle } => {
+                points(edge);
+                part(obstacle);
+            }
+            Self::NotRecovered { edges, triangles } => {
+                points(edges.as_flattened_mut());
+                faces(triangles);
+            }
+            Self::Stuck { part: met, .. } => part(met),
+            Self::NotSeparating { triangle } => *triangle = names.triangle(*triangle),
+            Self::Outside { what: "triangles", ids, .. } => faces(ids),
+            _ => {}
+        }
+        self
+    }
+}
