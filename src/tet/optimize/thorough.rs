@@ -20,9 +20,9 @@ const WORTHWHILE: usize = 100;
 /// Every mesh is worth one attempt for so many of its tetrahedra, whatever comes of it.
 const FREE: usize = 200;
 /// After these, a round that takes away less than this part of the strain of what is bad is the last.
-const EASES: f64 = 0.1;
+const EASES: f64 = 0.25;
 /// No mesh is worth more than one attempt for so many of its tetrahedra, or this many where it is small.
-const MOST: (usize, usize) = (2, 100);
+const MOST: (usize, usize) = (4, 100);
 
 /// What treating all that is bad may cost, counted in attempts (an attempt takes some 0.2 ms where it is in vain): those
 /// that are free, then as many as pay, and never more than the most.
