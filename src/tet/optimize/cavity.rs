@@ -183,6 +183,27 @@ impl Improver {
         done
     }
 
+    /// Tries a new vertex in ever more layers of tetrahedra around `t`: off a plane patch, where there is room, if `t` lies
+    /// within it.
+    pub(super) fn insert_beside(&mut self, t: u32, layers: usize) -> bool {
+        let mut k = std::mem::take(&mut self.cavity);
+        let mut done = false;
+        for layer in 1..=layers {
+            k.tets.clear();
+            k.tets.push(t);
+            for _ in 0..layer {
+                self.widen(&mut k.tets);
+            }
+            let start = self.middle(&k.tets);
+            done = self.insert_in_cavity(&mut k, start, t);
+            if done {
+                break;
+            }
+        }
+        self.cavity = k;
+        done
+    }
+
     /// Puts one vertex in the place of the two that `t` has off an edge of the boundary, if both may go: of the
     /// tetrahedra around the edge those on the boundary remain.
     pub(super) fn insert_for_both(&mut self, k: &mut Cavity, ends: impl Iterator<Item = u32>, t: u32) -> bool {

@@ -22,6 +22,10 @@ const HOPELESS: f64 = 0.15;
 /// Rounds of the direct search; its step halves in a round that finds nothing.
 const SEARCH_ROUNDS: usize = 12;
 
+/// The thorough improvement ends by moving vertices of what is worst: one for so many tetrahedra, or this many where the
+/// mesh is small. On good surfaces that is all there are.
+const MOST_EASED: (usize, usize) = (20, 200);
+
 /// Fall of the strain below which a move is not worth making.
 const LEAST_EASE: f64 = 0.002;
 /// Fall of the strain by a move from which it is worth trying again what was tried in vain around it.
@@ -314,13 +318,18 @@ impl Improver {
     pub(super) fn ease_worst(&mut self, below: f64) -> usize {
         let list = self.worst_first(below);
         let mut lifted = 0;
+        let mut purse = match self.options.effort {
+            Effort::Full => (self.c.real_tets().count() / MOST_EASED.0).max(MOST_EASED.1),
+            Effort::Quick | Effort::Fast => usize::MAX,
+        };
         for &(q, t) in &list {
             if !self.c.is_real(t) || self.quality[t as usize] >= below.min(q * 1.05) {
                 continue;
             }
             for v in self.c.verts(t) {
-                if self.movable[v as usize] && self.spend() && self.ease_vertex(v) {
-                    lifted += 1;
+                if self.movable[v as usize] && !self.eased[v as usize] && purse > 0 && self.spend() {
+                    purse -= 1;
+                    lifted += usize::from(self.ease_vertex(v));
                 }
             }
         }

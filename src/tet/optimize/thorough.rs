@@ -57,7 +57,7 @@ impl Improver {
     /// Treats all tetrahedra below the stubborn limit, the worst first, but for those on needles that are about as good
     /// as the needle allows.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
-        let mut purse = Purse::of(self.c.slots());
+        let mut purse = Purse::of(self.c.real_tets().count());
         for _ in 0..ROUNDS {
             let list = self.worst_first(self.options.stubborn_below);
             if !purse.goes_on(self.strain_of_list(&list)) {
@@ -109,7 +109,7 @@ impl Improver {
         }
         self.allowance = allowance;
         self.reconnection.forget();
-        let mut purse = Purse::of(self.c.slots());
+        let mut purse = Purse::of(self.c.real_tets().count());
         for _ in 0..LAST_ROUNDS {
             // What was in vain need not be now; small moves, which count for no news, can decide.
             self.tried.clear();
@@ -150,7 +150,7 @@ impl Improver {
         self.tried[t as usize] = self.epoch;
     }
 
-    fn treat_with_all(&mut self, t: u32) -> bool {
+    pub(super) fn treat_with_all(&mut self, t: u32) -> bool {
         if self.flip_tet(t) || CAVITIES.iter().any(|&(size, nodes)| self.reconnect(t, size, nodes)) {
             self.report.flips += 1;
             true
