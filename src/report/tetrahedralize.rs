@@ -342,7 +342,9 @@ mod tests {
         assert_eq!(of(0.5).unwrap().longer, 3);
         let report = TetReport { size_unmet: Some(unmet), to_split: Some("--split"), ..TetReport::default() };
         let text = report.text();
-        assert!(text.contains("edges of length 1: not met at the boundary, where 2 of 3 edges of the input are longer"));
+        assert!(
+            text.contains("edges of length 1: not met at the boundary, where 2 of 3 edges of the input are longer")
+        );
         assert!(text.contains("--split lets them be split"));
     }
 

@@ -11,7 +11,7 @@ pub(super) const FLAT: f64 = 1e-9;
 const THIN: f64 = 1e-3;
 const TO_BLAME: f64 = 0.1;
 /// Thin ones are tried once for so many tetrahedra of the mesh, or this many times where it is small.
-const MOST: (usize, usize) = (200, 50);
+const MOST: (usize, usize) = (50, 50);
 /// Rounds over those that are left; what is around them may have changed.
 const ROUNDS: usize = 4;
 /// Size of the cavities that are reconnected, and steps of the search.
@@ -89,8 +89,7 @@ mod tests {
     fn turned_lattice(n: u32, keep: impl Fn([u32; 3]) -> bool) -> Improver {
         let turn = Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(Vector3::new(1.0, 2.0, 3.0)), 0.7);
         let all = (0..=n).flat_map(|i| (0..=n).flat_map(move |j| (0..=n).map(move |k| [i, j, k])));
-        let points: Vec<Point3> =
-            all.filter(|&x| keep(x)).map(|x| turn * Point3::from(x.map(f64::from))).collect();
+        let points: Vec<Point3> = all.filter(|&x| keep(x)).map(|x| turn * Point3::from(x.map(f64::from))).collect();
         let c = delaunay(&points).unwrap();
         Improver::new(c, &OptimizeOptions { fixed_points: points.len(), ..OptimizeOptions::full() })
     }
