@@ -631,7 +631,7 @@ fn a_length_that_the_boundary_does_not_allow_is_told() {
         assert!(report(&input, &out, options)["report"]["size_unmet"].is_null());
     }
     // Bounds on tetrahedra say how many stand on what stays.
-    let output = fill(&input, &out, &["--tetgen", "pYq1.1/25"]);
+    let output = fill(&input, &out, &["--tetgen", "pYq1.4/46"]);
     let said = stderr(&output);
     assert!(said.contains("of them on triangles of the input") && said.contains("leaving out Y lets them"), "{said}");
 }

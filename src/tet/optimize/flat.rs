@@ -13,7 +13,7 @@ const TO_BLAME: f64 = 0.1;
 /// Thin ones are tried once for so many tetrahedra of the mesh, or this many times where it is small.
 const MOST: (usize, usize) = (50, 50);
 /// Rounds over those that are left; what is around them may have changed.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 12;
 /// Size of the cavities that are reconnected, and steps of the search.
 const CAVITY: (usize, usize) = (20, 5000);
 /// Layers of tetrahedra around a flat one in which a vertex is tried.
@@ -70,7 +70,7 @@ impl Improver {
             self.report.flips += 1;
             return true;
         }
-        let inserted = self.insert_beside(t, LAYERS);
+        let inserted = self.insert_beside(t, FLAT, LAYERS);
         self.report.inserted += usize::from(inserted);
         inserted
     }
@@ -84,12 +84,19 @@ mod tests {
     use crate::tet::optimize::OptimizeOptions;
     use nalgebra::{Rotation3, Vector3};
 
-    /// The Delaunay tetrahedralization of a turned lattice: its sides are plane but for rounding, and the eight corners of
-    /// each cube lie on a sphere.
-    fn turned_lattice(n: u32, keep: impl Fn([u32; 3]) -> bool) -> Improver {
+    /// The Delaunay tetrahedralization of a turned lattice, the eight corners of each cube of which lie on a sphere but for
+    /// rounding, and of points around it.
+    fn turned_lattice(n: u32) -> Improver {
         let turn = Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(Vector3::new(1.0, 2.0, 3.0)), 0.7);
-        let all = (0..=n).flat_map(|i| (0..=n).flat_map(move |j| (0..=n).map(move |k| [i, j, k])));
-        let points: Vec<Point3> = all.filter(|&x| keep(x)).map(|x| turn * Point3::from(x.map(f64::from))).collect();
+        let all = (0..n).flat_map(|i| (0..n).flat_map(move |j| (0..n).map(move |k| [i, j, k])));
+        let middle = Vector3::repeat(0.5 * f64::from(n - 1));
+        let mut points: Vec<Point3> = all.map(|x| turn * (Point3::from(x.map(f64::from)) - middle)).collect();
+        for i in 0..80 {
+            let z: f64 = (f64::from(i) + 0.5) / 40.0 - 1.0;
+            let (sin, cos) = (f64::from(i) * 2.399_963).sin_cos();
+            let flat = (1.0 - z * z).sqrt();
+            points.push(Point3::new(flat * cos, flat * sin, z) * (1.2 * f64::from(n)));
+        }
         let c = delaunay(&points).unwrap();
         Improver::new(c, &OptimizeOptions { fixed_points: points.len(), ..OptimizeOptions::full() })
     }
@@ -99,28 +106,34 @@ mod tests {
     }
 
     #[test]
-    fn flat_ones_within_sides_that_are_all_but_plane_go() {
-        for hollow in [false, true] {
-            let mut improver = turned_lattice(5, |x| !hollow || x.iter().any(|&i| i == 0 || i == 5));
-            let hull = |c: &crate::tet::complex::Complex| {
-                let mut faces: Vec<[u32; 3]> = c
-                    .real_tets()
-                    .flat_map(|t| 4 * t..4 * t + 4)
-                    .filter(|&h| c.is_ghost(c.mate(h) >> 2))
-                    .map(|h| crate::tet::complex::face_key(c.face(h)))
-                    .collect();
-                faces.sort_unstable();
-                faces
-            };
-            let (before, faces) = (flat(&improver), hull(&improver.c));
-            assert!(before > 10, "{before}");
-            assert_eq!(improver.dissolve_flat(), 0, "of {before}");
+    fn flat_ones_between_points_that_stay_go() {
+        let mut improver = turned_lattice(4);
+        let before = flat(&improver);
+        assert!(before > 10, "{before}");
+        assert_eq!(improver.dissolve_flat(), 0, "of {before}");
+        improver.c.sanity_check().unwrap();
+        assert_eq!(flat(&improver), 0);
+    }
+
+    #[test]
+    fn flat_ones_under_a_face_that_stays_go() {
+        // A square whose corners are plane but for rounding, and a triangle with a point in it; both under what is given.
+        let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+        let square = vec![p(0., 0., 0.), p(1., 0., 1e-15), p(1., 1., 0.), p(0., 1., 1e-15), p(0.5, 0.5, -1.)];
+        let triangle = vec![p(0., 0., 0.), p(3., 0., 0.), p(0., 3., 0.), p(1., 1., 1e-15), p(1., 1., -2.)];
+        let cases =
+            [(square, vec![[0, 1, 2, 3], [0, 2, 1, 4], [0, 3, 2, 4]]), (triangle, vec![[0, 2, 1, 3], [0, 1, 2, 4]])];
+        for (points, mut tets) in cases {
+            for t in &mut tets {
+                let [a, b, c, d] = t.map(|v: u32| &points[v as usize]);
+                if crate::geometry::predicates::orient3d(a, b, c, d) < 0.0 {
+                    t.swap(0, 1);
+                }
+            }
+            let c = crate::tet::Complex::from_mesh(points, &tets).unwrap();
+            let mut improver = Improver::new(c, &OptimizeOptions { fixed_points: 5, ..OptimizeOptions::full() });
+            assert_eq!((flat(&improver), improver.dissolve_flat(), flat(&improver)), (1, 0, 0));
             improver.c.sanity_check().unwrap();
-            assert_eq!(hull(&improver.c), faces);
-            let all_given = improver.c.real_tets().filter(|&t| {
-                improver.quality[t as usize] < FLAT && (0..4).all(|i| improver.c.is_ghost(improver.c.neighbor(t, i)))
-            });
-            assert_eq!(flat(&improver), all_given.count());
         }
     }
 }
