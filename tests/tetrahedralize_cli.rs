@@ -784,3 +784,29 @@ fn numbers_are_those_of_the_file() {
     let said = "3 triangles have an edge of their own: 4, 6, 12; one is [0, 2] from {1, 1, 1} to {1, 0, 0}";
     refuse("a.off", off(&holed), &["--repair"], &[said, "count from 0, as in the file"]);
 }
+
+#[test]
+fn a_length_that_the_boundary_does_not_allow_is_told() {
+    let dir = folder();
+    let input = save(&dir, "cube.off", &cube());
+    let out = dir.path().join("cube.vtu");
+    let output = fill(&input, &out, &["--size", "0.2"]);
+    assert_code(&output, FINE);
+    let said = stderr(&output);
+    assert!(said.contains("18 of 18 edges of the input are longer") && said.contains("--split lets them"), "{said}");
+    let told = report(&input, &out, &["--size", "0.2"]);
+    let unmet = &told["report"]["size_unmet"];
+    assert_eq!((&unmet["longer"], &unmet["edges"]), (&18.into(), &18.into()));
+    assert_eq!(told["report"]["to_split"], "--split");
+    // What can be met, and what may be split, is not told.
+    for options in [&["--size", "2"][..], &["--size", "0.3", "--split"]] {
+        let output = fill(&input, &out, options);
+        assert_code(&output, FINE);
+        assert!(!stderr(&output).contains("the input stay"), "{}", stderr(&output));
+        assert!(report(&input, &out, options)["report"]["size_unmet"].is_null());
+    }
+    // Bounds on tetrahedra say how many stand on what stays.
+    let output = fill(&input, &out, &["--tetgen", "pYq1.4/46"]);
+    let said = stderr(&output);
+    assert!(said.contains("of them on triangles of the input") && said.contains("leaving out Y lets them"), "{said}");
+}

@@ -1,7 +1,8 @@
 //! What a tetrahedralization has to say, for people and as JSON.
 
-use crate::mesh::TetMesh;
+use crate::geometry::Point3;
 use crate::mesh::quality::{TetQuality, dihedral_range, volume6};
+use crate::mesh::{TET_FACES, TetMesh};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -119,6 +120,38 @@ pub struct BoundResult {
     pub value: f64,
     /// Tetrahedra beyond it.
     pub beyond: usize,
+    /// Those of them on triangles of the input that stay.
+    pub on_input: usize,
+}
+
+/// A length of edges that was asked for, where edges of the input are longer and stay.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SizeUnmet {
+    /// The length asked for.
+    pub size: f64,
+    /// Edges of the input that are more than 1.5 times as long: those that would be split if they might.
+    pub longer: usize,
+    /// Edges of the input.
+    pub edges: usize,
+    /// The longest of them.
+    pub longest: f64,
+}
+
+impl SizeUnmet {
+    /// How much longer than wished an edge of a surface may be.
+    const LONGER: f64 = 1.5;
+
+    /// What edges of triangles and segments that stay do to a wished length; none when it can be met.
+    pub fn of(size: f64, points: &[Point3], triangles: &[[u32; 3]], segments: &[[u32; 2]]) -> Option<Self> {
+        let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).chain(segments.iter().copied());
+        let mut edges: Vec<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let length = |&[a, b]: &[u32; 2]| (points[a as usize] - points[b as usize]).norm();
+        let longer = edges.iter().filter(|e| length(e) > Self::LONGER * size).count();
+        let longest = edges.iter().map(length).fold(0.0, f64::max);
+        (longer > 0).then_some(Self { size, longer, edges: edges.len(), longest })
+    }
 }
 
 /// Seconds of wall time of a stage.
@@ -147,6 +180,10 @@ pub struct TetReport {
     pub quality: Option<TetQuality>,
     /// The bounds asked for.
     pub bounds: Vec<BoundResult>,
+    /// Where the input does not let the wished length of edges be met.
+    pub size_unmet: Option<SizeUnmet>,
+    /// What lets the triangles of the input be split, where they are not.
+    pub to_split: Option<&'static str>,
     /// The regions, ascending; empty when the mesh is one.
     pub regions: Vec<RegionSize>,
     /// What recovery did.
@@ -171,26 +208,31 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// How many tetrahedra are beyond each bound that is set.
-    pub fn results(&self, mesh: &TetMesh) -> Vec<BoundResult> {
+    /// How many tetrahedra are beyond each bound that is set, and how many of these have one of the faces that stay.
+    pub fn results(&self, mesh: &TetMesh, staying: &[[u32; 3]]) -> Vec<BoundResult> {
         // What was made to lie on the bound may be beyond it by rounding.
         const ROUNDING: f64 = 1e-9;
         let corners = |t: &[u32; 4]| t.map(|v| &mesh.points[v as usize]);
-        let count = |beyond: &dyn Fn([&crate::geometry::Point3; 4]) -> bool| {
-            mesh.tets.iter().filter(|t| beyond(corners(t))).count()
-        };
+        let mut staying: Vec<[u32; 3]> = staying.iter().map(|&f| sorted(f)).collect();
+        staying.sort_unstable();
+        let on_input = |t: &[u32; 4]| TET_FACES.iter().any(|f| staying.binary_search(&sorted(f.map(|i| t[i]))).is_ok());
         let mut results = Vec::new();
+        let mut count = |bound, value, beyond: &dyn Fn([&Point3; 4]) -> bool| {
+            let found: Vec<&[u32; 4]> = mesh.tets.iter().filter(|t| beyond(corners(t))).collect();
+            let on_input = found.iter().filter(|t| on_input(t)).count();
+            results.push(BoundResult { bound, value, beyond: found.len(), on_input });
+        };
         if let Some(value) = self.max_radius_edge {
-            let beyond = count(&|t| radius_edge(t) > value * (1.0 + ROUNDING));
-            results.push(BoundResult { bound: "circumradius over shortest edge at most", value, beyond });
+            let beyond = |t: [&Point3; 4]| radius_edge(t) > value * (1.0 + ROUNDING);
+            count("circumradius over shortest edge at most", value, &beyond);
         }
         if let Some(value) = self.min_dihedral {
-            let beyond = count(&|t| dihedral_range(t).0.to_degrees() < value * (1.0 - ROUNDING));
-            results.push(BoundResult { bound: "dihedral angles at least", value, beyond });
+            let beyond = |t: [&Point3; 4]| dihedral_range(t).0.to_degrees() < value * (1.0 - ROUNDING);
+            count("dihedral angles at least", value, &beyond);
         }
         if let Some(value) = self.max_volume {
-            let beyond = count(&|[a, b, c, d]| volume6(a, b, c, d) / 6.0 > value * (1.0 + ROUNDING));
-            results.push(BoundResult { bound: Self::VOLUME, value, beyond });
+            let beyond = |[a, b, c, d]: [&Point3; 4]| volume6(a, b, c, d) / 6.0 > value * (1.0 + ROUNDING);
+            count(Self::VOLUME, value, &beyond);
         }
         results
     }
@@ -200,7 +242,7 @@ impl Bounds {
 }
 
 /// Circumradius over shortest edge; infinite for a flat tetrahedron.
-fn radius_edge([a, b, c, d]: [&crate::geometry::Point3; 4]) -> f64 {
+fn radius_edge([a, b, c, d]: [&Point3; 4]) -> f64 {
     let (u, v, w) = (b - a, c - a, d - a);
     let center = v.cross(&w) * u.norm_squared() + w.cross(&u) * v.norm_squared() + u.cross(&v) * w.norm_squared();
     let radius = center.norm() / (2.0 * volume6(a, b, c, d).abs());
@@ -230,6 +272,34 @@ impl TetReport {
     /// Whether every bound that can always be met is.
     pub fn bounds_met(&self) -> bool {
         self.bounds.iter().all(|result| result.bound != Bounds::VOLUME || result.beyond == 0)
+    }
+
+    /// What became of the wishes, and what the input has to do with it.
+    fn write_bounds(&self, out: &mut String) {
+        let mut stays = false;
+        for b in &self.bounds {
+            let on = match (self.to_split, b.on_input) {
+                (Some(_), n) if n > 0 => format!(", {n} of them on triangles of the input"),
+                _ => String::new(),
+            };
+            stays |= !on.is_empty();
+            let _ = match b.beyond {
+                0 => writeln!(out, "  {} {}: met", b.bound, b.value),
+                n => writeln!(out, "  {} {}: not met by {n} tetrahedra{on}", b.bound, b.value),
+            };
+        }
+        if let Some(s) = self.size_unmet {
+            stays = true;
+            let SizeUnmet { size, longer, edges, longest } = s;
+            let _ = writeln!(
+                out,
+                "  edges of length {size}: not met at the boundary, where {longer} of {edges} edges of the input are longer, \
+                 up to {longest:.6}"
+            );
+        }
+        if let (true, Some(how)) = (stays, self.to_split) {
+            let _ = writeln!(out, "  note: the triangles of the input stay as they are; {how} lets them be split");
+        }
     }
 
     /// The report as lines for people.
@@ -270,17 +340,17 @@ impl TetReport {
                 q.mean, q.percentile_1, q.min, q.dihedral_min, q.dihedral_max
             );
         }
-        for b in &self.bounds {
-            let _ = match b.beyond {
-                0 => writeln!(out, "  {} {}: met", b.bound, b.value),
-                n => writeln!(out, "  {} {}: not met by {n} tetrahedra", b.bound, b.value),
-            };
-        }
+        self.write_bounds(&mut out);
         let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
         let peak = self.peak_memory.map_or_else(String::new, |b| format!("; peak memory {:.0} MB", b as f64 / 1e6));
         let _ = writeln!(out, "{}{peak}", times.join(", "));
         out
     }
+}
+
+fn sorted(mut f: [u32; 3]) -> [u32; 3] {
+    f.sort_unstable();
+    f
 }
 
 /// `, 3 holes`, or nothing when there are none.
@@ -291,7 +361,6 @@ fn counted(count: usize, what: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point3;
     use crate::mesh::shapes::cube_lattice;
 
     #[test]
@@ -306,11 +375,33 @@ mod tests {
         ];
         let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3], [0, 2, 1, 4]] };
         let bounds = Bounds { max_radius_edge: Some(0.613), min_dihedral: Some(70.5), max_volume: Some(0.1) };
-        let beyond: Vec<usize> = bounds.results(&mesh).iter().map(|r| r.beyond).collect();
-        assert_eq!(beyond, [1, 1, 1]);
-        let report = TetReport { bounds: bounds.results(&mesh), ..TetReport::default() };
+        let results = bounds.results(&mesh, &[[3, 0, 1]]);
+        assert_eq!(results.iter().map(|r| r.beyond).collect::<Vec<_>>(), [1, 1, 1]);
+        // The face is one of the first tetrahedron, which is too large; the flat one is the second.
+        assert_eq!(results.iter().map(|r| r.on_input).collect::<Vec<_>>(), [0, 0, 1]);
+        let report = TetReport { bounds: results, to_split: Some("--split"), ..TetReport::default() };
         assert!(!report.bounds_met());
-        assert!(report.text().contains("volume at most 0.1: not met by 1 tetrahedra"));
+        let text = report.text();
+        assert!(text.contains("volume at most 0.1: not met by 1 tetrahedra, 1 of them on triangles of the input\n"));
+        assert!(text.contains("--split lets them be split"));
+        let free = TetReport { to_split: None, ..report };
+        assert!(!free.text().contains("input\n  note") && !free.text().contains("split"));
+    }
+
+    #[test]
+    fn a_length_is_unmet_where_edges_that_stay_are_longer() {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]].map(Point3::from);
+        let of = |size| SizeUnmet::of(size, &points, &[[0, 1, 2], [0, 2, 1]], &[[1, 0]]);
+        assert_eq!(of(1.5), None);
+        let unmet = of(1.0).unwrap();
+        assert_eq!((unmet.longer, unmet.edges, unmet.longest), (2, 3, 5.0_f64.sqrt()));
+        assert_eq!(of(0.5).unwrap().longer, 3);
+        let report = TetReport { size_unmet: Some(unmet), to_split: Some("--split"), ..TetReport::default() };
+        let text = report.text();
+        assert!(
+            text.contains("edges of length 1: not met at the boundary, where 2 of 3 edges of the input are longer")
+        );
+        assert!(text.contains("--split lets them be split"));
     }
 
     #[test]

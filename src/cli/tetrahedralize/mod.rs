@@ -18,7 +18,7 @@ use super::common::Common;
 use super::exit::{Exit, Failure};
 use crate::mesh::quality::TetQuality;
 use crate::report::tetrahedralize::{
-    Bounds, InputSize, LeftOut, OutputSize, Recovery, TetReport, region_sizes, volume_of,
+    Bounds, InputSize, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
 use crate::tet::{LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
 use format::{InputFormat, StreamFormat, Target, is_stream};
@@ -118,7 +118,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     watch.leave();
     let made = made.map_err(|e| fault::failure(&e, &from, &input))?;
     if let (Some(made), Some(target)) = (made, target) {
-        fill_report(&mut report, &made, &input, &plan);
+        fill_report(&mut report, &made, &input, &plan, args);
         input.leave_out(&made.summary.left_out.segments);
         let volume = output::volume(made, &input);
         let written = watch.time("write", || pool.install(|| output::write(&target, &volume, &input, &plan)))?;
@@ -158,7 +158,7 @@ fn size_of(input: &Input) -> InputSize {
     }
 }
 
-fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input, plan: &TetPlan) {
+fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input, plan: &TetPlan, args: &Args) {
     let mesh = &made.mesh;
     report.mesh = OutputSize {
         points: mesh.points.len(),
@@ -172,7 +172,14 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     report.quality = Some(TetQuality::of(mesh));
     let bounds =
         Bounds { max_radius_edge: plan.max_radius_edge, min_dihedral: plan.min_dihedral, max_volume: plan.max_volume };
-    report.bounds = if input.only_points { Vec::new() } else { bounds.results(mesh) };
+    if !input.only_points {
+        report.bounds = bounds.results(mesh, &made.faces);
+        let plc = Some(&input.plc).filter(|_| !plan.split);
+        let unmet = |size| plc.and_then(|plc| SizeUnmet::of(size, &plc.points, &plc.triangles, &plc.edges));
+        report.size_unmet = plan.size.and_then(unmet);
+        let how = if args.tetgen.is_some() { "leaving out Y" } else { "--split" };
+        report.to_split = (!plan.split).then_some(how);
+    }
     report.regions = region_sizes(mesh, &made.regions);
     let recovery = &made.summary.recovery;
     report.recovery = Recovery {

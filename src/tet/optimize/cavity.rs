@@ -183,6 +183,28 @@ impl Improver {
         done
     }
 
+    /// Tries a new vertex in ever more layers of tetrahedra around `t` and those below a radius ratio that are connected
+    /// to it: off a plane patch, where there is room, if they lie within it.
+    pub(super) fn insert_beside(&mut self, t: u32, below: f64, layers: usize) -> bool {
+        let mut k = std::mem::take(&mut self.cavity);
+        let mut done = false;
+        for layer in 1..=layers {
+            k.tets.clear();
+            k.tets.push(t);
+            self.spread(&mut k.tets, below);
+            for _ in 0..layer {
+                self.widen(&mut k.tets);
+            }
+            let start = self.middle(&k.tets);
+            done = self.insert_in_cavity(&mut k, start, t);
+            if done {
+                break;
+            }
+        }
+        self.cavity = k;
+        done
+    }
+
     /// Puts one vertex in the place of the two that `t` has off an edge of the boundary, if both may go: of the
     /// tetrahedra around the edge those on the boundary remain.
     pub(super) fn insert_for_both(&mut self, k: &mut Cavity, ends: impl Iterator<Item = u32>, t: u32) -> bool {
@@ -210,6 +232,21 @@ impl Improver {
 
     fn center<const N: usize>(&self, v: [u32; N]) -> Point3 {
         Point3::from(v.iter().map(|&w| self.c.points[w as usize].coords).sum::<Vec3>() / N as f64)
+    }
+
+    /// Adds what is connected to tetrahedra and below a radius ratio.
+    fn spread(&self, tets: &mut Vec<u32>, below: f64) {
+        let mut head = 0;
+        while let Some(&t) = tets.get(head).filter(|_| tets.len() < MAX_CAVITY) {
+            head += 1;
+            for half in 4 * t..4 * t + 4 {
+                let n = self.c.mate(half) >> 2;
+                let crossed = !self.c.is_frozen(half) && !self.c.is_ghost(n) && self.quality[n as usize] < below;
+                if crossed && !tets.contains(&n) {
+                    tets.push(n);
+                }
+            }
+        }
     }
 
     /// Adds the neighbours of tetrahedra: those around a short edge alone leave no room between its ends.

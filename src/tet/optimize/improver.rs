@@ -99,6 +99,9 @@ impl Improver {
                 }
                 self.smooth_stars_below(self.options.smooth_below);
                 self.ease_worst(self.options.flip_below);
+                if self.options.effort == Effort::Full {
+                    self.report.flat_left = self.dissolve_flat();
+                }
             }
         }
         let worst = self.c.real_tets().map(|t| self.quality[t as usize]).fold(f64::INFINITY, f64::min);

@@ -7,6 +7,7 @@
 
 mod allowance;
 mod cavity;
+mod flat;
 mod flipping;
 mod improver;
 mod reconnect;
@@ -105,6 +106,9 @@ pub struct OptimizeReport {
     pub worst_before: f64,
     /// Smallest radius ratio after.
     pub worst_after: f64,
+    /// Tetrahedra of a radius ratio below 1e-9 that are left and have a face that is not the surface's; looked for where
+    /// the effort is full.
+    pub flat_left: usize,
     /// The limit of attempts was reached: more could have been improved.
     pub budget_spent: bool,
 }

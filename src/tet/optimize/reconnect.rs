@@ -12,6 +12,8 @@ use super::{Improver, ratio_of_strain, strain};
 use crate::geometry::predicates::orient3d;
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::Complex;
+use rustc_hash::{FxHashSet, FxHasher};
+use std::hash::{Hash, Hasher};
 
 /// Vertices of a cavity.
 const MAX_VERTICES: usize = 14;
@@ -35,12 +37,11 @@ const fn choose(n: usize, k: usize) -> usize {
 /// A tetrahedron of four local vertices in ascending order.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// Radius ratio, as a part of what is allowed, with the sign of the exact orientation; not a number where not yet
-    /// known.
+    /// Radius ratio, as a part of what is allowed; not a number where not yet known.
     ratio: f64,
-    /// Volume with sign, as far as rounding goes.
+    /// Volume: its sign is exact, its size is what rounding leaves of it. Not a number where not yet known.
     volume: f64,
-    /// Strain, if it is positive.
+    /// Strain, where the ratio is known.
     strain: f64,
     /// Vertices strictly inside; `UNKNOWN` until asked for.
     enclosed: u16,
@@ -49,16 +50,23 @@ struct Entry {
 /// Stands for a set of vertices that has not been found yet: no tetrahedron and no face goes with all vertices.
 const UNKNOWN: u16 = u16::MAX;
 
-const NO_ENTRY: Entry = Entry { ratio: f64::NAN, volume: 0.0, strain: 0.0, enclosed: UNKNOWN };
+const NO_ENTRY: Entry = Entry { ratio: f64::NAN, volume: f64::NAN, strain: 0.0, enclosed: UNKNOWN };
 
 /// A face of the front, turned inwards: (v, f₀, f₁, f₂) is positive for v inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct FrontFace {
     v: [u8; 3],
+    /// Where it is in the table of faces, and the same face turned outwards.
+    at: [u16; 2],
     /// Vertices with which it makes a tetrahedron above the floor.
     mates: u16,
     /// The strain of the best of these tetrahedra.
     least: f64,
+}
+
+impl FrontFace {
+    /// Not yet looked at.
+    const NONE: Self = Self { v: [0; 3], at: [0; 2], mates: UNKNOWN, least: 0.0 };
 }
 
 /// Where the search takes place.
@@ -78,10 +86,14 @@ pub(super) struct Reconnection {
     /// Faces of three local vertices, of either orientation.
     faces: Vec<FrontFace>,
     front: Vec<FrontFace>,
+    /// Place of each face of the table on the front, counted from 1; 0: not there.
+    place: Vec<u8>,
     stack: Vec<[u8; 4]>,
     best: Vec<[u8; 4]>,
     new: Vec<[u32; 4]>,
     created: Vec<u32>,
+    /// Prints of the cavities that were searched.
+    searched: FxHashSet<u64>,
     /// Radius ratio, as a part of what is allowed, that each new tetrahedron must exceed.
     floor: f64,
     /// Radius ratio that each new tetrahedron must have.
@@ -110,7 +122,7 @@ impl Improver {
 
     fn reconnect_with(&mut self, r: &mut Reconnection, t: u32, size: usize, nodes: usize) -> bool {
         r.choose_cavity(&self.c, t, size);
-        if r.tets.len() < 3 || !r.outline(&self.c) {
+        if r.tets.len() < 3 || !r.outline(&self.c) || r.is_known(&self.c) {
             return false;
         }
         r.limit = self.strain_of(&r.tets) - EASED;
@@ -177,6 +189,24 @@ impl Reconnection {
         }
     }
 
+    /// Whether the cavity, the very same tetrahedra, was searched before; what a search finds is gone afterwards, so it
+    /// was in vain. Many tetrahedra that are bad for the same reason grow the same cavity.
+    fn is_known(&mut self, c: &Complex) -> bool {
+        let print = |&t: &u32| {
+            let mut v = c.verts(t);
+            v.sort_unstable();
+            let mut hasher = FxHasher::default();
+            v.hash(&mut hasher);
+            hasher.finish()
+        };
+        !self.searched.insert(self.tets.iter().map(print).fold(0, u64::wrapping_add))
+    }
+
+    /// Forgets which cavities were searched: what is wanted has changed.
+    pub(super) fn forget(&mut self) {
+        self.searched.clear();
+    }
+
     /// Makes the cavity's boundary the front; false when a frozen face lies inside.
     fn outline(&mut self, c: &Complex) -> bool {
         self.halves.clear();
@@ -197,7 +227,7 @@ impl Reconnection {
     }
 
     /// Where the tetrahedron of four local vertices is in the table, and whether it is turned over there; none when a
-    /// vertex is there twice.
+    /// vertex is there twice. Its volume is known then.
     fn entry(&mut self, room: Room, v: [u8; 4]) -> Option<(usize, bool)> {
         let (sorted, odd) = sort4(v);
         let [i, j, k, l] = sorted.map(usize::from);
@@ -205,39 +235,52 @@ impl Reconnection {
             return None;
         }
         let at = choose(l, 4) + choose(k, 3) + choose(j, 2) + i;
-        if self.table[at].ratio.is_nan() {
-            let v = sorted.map(|x| self.vertices[x as usize]);
-            let [p, q, r, s] = v.map(|x| &room.c.points[x as usize]);
-            let exact = orient3d(p, q, r, s);
-            let ratio = match radius_ratio(p, q, r, s).abs() {
-                ratio if exact == 0.0 || ratio.is_nan() => 0.0,
-                // Only the sign counts where it is of no use.
-                ratio if ratio < self.least => f64::MIN_POSITIVE,
-                ratio => (ratio / room.allowance.of_tet(&v)).min(1.0),
-            };
-            let signed = if exact > 0.0 { ratio } else { -ratio };
-            self.table[at] = Entry { ratio: signed, volume: exact, strain: strain(ratio), ..NO_ENTRY };
+        if self.table[at].volume.is_nan() {
+            let [p, q, r, s] = sorted.map(|x| &room.c.points[self.vertices[usize::from(x)] as usize]);
+            self.table[at].volume = orient3d(p, q, r, s);
         }
         Some((at, odd))
     }
 
-    /// The tetrahedron of four local vertices: radius ratio and volume, both negative when it is inverted, and its
-    /// strain if it is not.
-    fn tet(&mut self, room: Room, v: [u8; 4]) -> (f64, f64, f64) {
-        match self.entry(room, v) {
-            Some((at, odd)) => {
-                let Entry { ratio, volume, strain, .. } = self.table[at];
-                if odd { (-ratio, -volume, strain) } else { (ratio, volume, strain) }
-            }
-            None => (f64::NEG_INFINITY, 0.0, 0.0),
+    /// Whether the tetrahedron of four local vertices is positive.
+    fn is_positive(&mut self, room: Room, v: [u8; 4]) -> bool {
+        self.entry(room, v).is_some_and(|(at, odd)| {
+            let volume = self.table[at].volume;
+            if odd { volume < 0.0 } else { volume > 0.0 }
+        })
+    }
+
+    /// The tetrahedron of four local vertices, if it is positive: radius ratio, as a part of what is allowed, volume and
+    /// strain. Most are asked for their sign alone, so the rest waits.
+    fn tet(&mut self, room: Room, v: [u8; 4]) -> Option<Entry> {
+        if !self.is_positive(room, v) {
+            return None;
         }
+        let (at, odd) = self.entry(room, v)?;
+        if self.table[at].ratio.is_nan() {
+            let w = sort4(v).0.map(|x| self.vertices[usize::from(x)]);
+            let [p, q, r, s] = w.map(|x| &room.c.points[x as usize]);
+            let ratio = match radius_ratio(p, q, r, s).abs() {
+                ratio if ratio.is_nan() => 0.0,
+                // Only the sign counts where it is of no use.
+                ratio if ratio < self.least => f64::MIN_POSITIVE,
+                ratio => (ratio / room.allowance.of_tet(&w)).min(1.0),
+            };
+            // Below the floor nobody asks how much it strains.
+            let strain = if ratio > self.floor { strain(ratio) } else { f64::INFINITY };
+            self.table[at] = Entry { ratio, strain, ..self.table[at] };
+        }
+        let entry = self.table[at];
+        Some(Entry { volume: if odd { -entry.volume } else { entry.volume }, ..entry })
     }
 
     fn search(&mut self, room: Room) {
         self.table.clear();
         self.table.resize(choose(self.vertices.len(), 4), NO_ENTRY);
         self.faces.clear();
-        self.faces.resize(2 * choose(self.vertices.len(), 3), FrontFace { v: [0; 3], mates: UNKNOWN, least: 0.0 });
+        self.faces.resize(2 * choose(self.vertices.len(), 3), FrontFace::NONE);
+        self.place.clear();
+        self.place.resize(self.faces.len(), 0);
         self.best.clear();
         self.stack.clear();
         self.front.clear();
@@ -253,29 +296,54 @@ impl Reconnection {
             if SHARE * least >= self.limit {
                 return;
             }
-            self.front.push(face);
+            self.push_front(face);
         }
         self.branch(room, 0.0, self.volume);
     }
 
     /// A face to be closed.
     fn front_face(&mut self, room: Room, f: [u8; 3]) -> FrontFace {
-        let ([i, j, k], odd) = sort3(f);
-        let at = 2 * (choose(k as usize, 3) + choose(j as usize, 2) + i as usize) + usize::from(odd);
+        let place = face_index(f);
+        let at = usize::from(place);
         if self.faces[at].mates == UNKNOWN {
             let (mut mates, mut least) = (0, f64::INFINITY);
             for v in 0..self.vertices.len() as u8 {
                 if !f.contains(&v) {
-                    let (ratio, _, strain) = self.tet(room, [v, f[0], f[1], f[2]]);
-                    if ratio > self.floor {
+                    let tet = self.tet(room, [v, f[0], f[1], f[2]]);
+                    if let Some(Entry { strain, .. }) = tet.filter(|t| t.ratio > self.floor) {
                         mates |= 1 << v;
                         least = least.min(strain);
                     }
                 }
             }
-            self.faces[at] = FrontFace { v: f, mates, least };
+            self.faces[at] = FrontFace { v: f, at: [place, place ^ 1], mates, least };
         }
         self.faces[at]
+    }
+
+    fn push_front(&mut self, face: FrontFace) {
+        self.front.push(face);
+        self.place[usize::from(face.at[0])] = self.front.len() as u8;
+    }
+
+    /// Takes the face at `i` out of the front; the last one goes to its place.
+    fn remove_front(&mut self, i: usize) -> FrontFace {
+        let face = self.front.swap_remove(i);
+        self.place[usize::from(face.at[0])] = 0;
+        if let Some(moved) = self.front.get(i) {
+            self.place[usize::from(moved.at[0])] = i as u8 + 1;
+        }
+        face
+    }
+
+    /// Undoes [`Self::remove_front`].
+    fn restore_front(&mut self, i: usize, face: FrontFace) {
+        self.push_front(face);
+        let last = self.front.len() - 1;
+        self.front.swap(i, last);
+        for k in [i, last] {
+            self.place[usize::from(self.front[k].at[0])] = k as u8 + 1;
+        }
     }
 
     /// Vertices that are on the front; others are buried.
@@ -317,12 +385,13 @@ impl Reconnection {
         let mut choices = [(0.0, 0u8); MAX_VERTICES];
         let mut count = 0;
         for v in 0..self.vertices.len() as u8 {
-            if face.mates & usable & (1 << v) != 0 {
-                let (_, size, strain) = self.tet(room, [v, face.v[0], face.v[1], face.v[2]]);
-                if sum + strain < self.limit && size <= volume + self.slack {
-                    choices[count] = (strain, v);
-                    count += 1;
-                }
+            if face.mates & usable & (1 << v) != 0
+                && let Some(tet) = self.tet(room, [v, face.v[0], face.v[1], face.v[2]])
+                && sum + tet.strain < self.limit
+                && tet.volume <= volume + self.slack
+            {
+                choices[count] = (tet.strain, v);
+                count += 1;
             }
         }
         choices[..count].sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
@@ -345,19 +414,22 @@ impl Reconnection {
         if self.encloses(room, [v, a, b, d]) {
             return;
         }
-        let size = self.tet(room, [v, a, b, d]).1;
+        let size = self.tet(room, [v, a, b, d]).map_or(0.0, |t| t.volume);
         // Where faces were taken out of the front, newest last, and how many were put in after them.
         let mut removed: [(usize, FrontFace); 4] = [(0, self.front[at]); 4];
         let mut order = [false; 4];
         let (mut steps, mut outs) = (1, 1);
-        removed[0] = (at, self.front.swap_remove(at));
+        removed[0] = (at, self.remove_front(at));
         // The other faces of the tetrahedron, turned inwards to what remains.
         let mut fits = true;
         for f in [[v, a, b], [v, b, d], [v, d, a]] {
-            if let Some(i) = self.front.iter().position(|g| same(g.v, [f[0], f[2], f[1]])) {
-                removed[outs] = (i, self.front.swap_remove(i));
+            let place = face_index(f);
+            let [there, back] = [place, place ^ 1].map(|p| self.place[usize::from(p)]);
+            if back > 0 {
+                let i = usize::from(back) - 1;
+                removed[outs] = (i, self.remove_front(i));
                 (outs, steps) = (outs + 1, steps + 1);
-            } else if self.front.len() >= MAX_FRONT || self.front.iter().any(|g| same(g.v, f)) {
+            } else if self.front.len() >= MAX_FRONT || there > 0 {
                 fits = false;
                 break;
             } else {
@@ -366,7 +438,7 @@ impl Reconnection {
                     fits = false;
                     break;
                 }
-                self.front.push(face);
+                self.push_front(face);
                 order[steps] = true;
                 steps += 1;
             }
@@ -378,13 +450,11 @@ impl Reconnection {
         }
         for step in (0..steps).rev() {
             if order[step] {
-                self.front.pop();
+                self.remove_front(self.front.len() - 1);
             } else {
                 outs -= 1;
                 let (i, face) = removed[outs];
-                self.front.push(face);
-                let last = self.front.len() - 1;
-                self.front.swap(i, last);
+                self.restore_front(i, face);
             }
         }
     }
@@ -399,7 +469,7 @@ impl Reconnection {
                 let inside = ![v, a, b, d].contains(&x)
                     && [[x, a, b, d], [v, x, b, d], [v, a, x, d], [v, a, b, x]]
                         .iter()
-                        .all(|&y| self.tet(room, y).0 > 0.0);
+                        .all(|&y| self.is_positive(room, y));
                 enclosed |= u16::from(inside) << x;
             }
             self.table[at].enclosed = enclosed;
@@ -408,8 +478,10 @@ impl Reconnection {
     }
 }
 
-fn same(f: [u8; 3], g: [u8; 3]) -> bool {
-    f == g || f == [g[1], g[2], g[0]] || f == [g[2], g[0], g[1]]
+/// Where a face of three local vertices is in the table of faces; the same face turned over is beside it.
+fn face_index(f: [u8; 3]) -> u16 {
+    let ([i, j, k], odd) = sort3(f);
+    (2 * (choose(k as usize, 3) + choose(j as usize, 2) + i as usize) + usize::from(odd)) as u16
 }
 
 /// Sorts three; says whether the permutation is odd.

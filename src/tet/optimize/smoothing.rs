@@ -7,6 +7,7 @@ use super::{Effort, score, strain};
 use crate::geometry::{Point3, Vec3, predicates::orient3d};
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::Complex;
+use std::cell::Cell;
 
 /// Newton steps per vertex and visit.
 const NEWTON_STEPS: usize = 2;
@@ -21,6 +22,10 @@ const HOPELESS: f64 = 0.15;
 /// Rounds of the direct search; its step halves in a round that finds nothing.
 const SEARCH_ROUNDS: usize = 12;
 
+/// The thorough improvement ends by moving vertices of what is worst: one for so many tetrahedra, or this many where the
+/// mesh is small. On good surfaces that is all there are.
+const MOST_EASED: (usize, usize) = (20, 200);
+
 /// Fall of the strain below which a move is not worth making.
 const LEAST_EASE: f64 = 0.002;
 /// Fall of the strain by a move from which it is worth trying again what was tried in vain around it.
@@ -31,7 +36,7 @@ const NEWS: f64 = 0.1;
 /// Both Q and V are cheap polynomials in x.
 #[derive(Clone, Debug, Default)]
 pub struct StarEnergy {
-    cells: Vec<Cell>,
+    cells: Vec<Summand>,
     /// The faces opposite the vertex, seen from it in such order that (vertex, f₀, f₁, f₂) is positive.
     faces: Vec<[Point3; 3]>,
     /// The radius ratio that each of these tetrahedra can be wished to have; empty where that is 1 for all.
@@ -41,6 +46,8 @@ pub struct StarEnergy {
     tets: Vec<u32>,
     /// What the direct search looks for.
     aim: Aim,
+    /// The face that turned the last place down: most places fail at the same one, which is asked first.
+    strict: Cell<usize>,
 }
 
 /// What a direct search makes as large as it can.
@@ -55,14 +62,14 @@ enum Aim {
 
 /// V(x) = height − normal·x, Q(x) = 3 |x − center|² + rest.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+struct Summand {
     normal: Vec3,
     height: f64,
     center: Vec3,
     rest: f64,
 }
 
-impl Cell {
+impl Summand {
     fn new(origin: &Point3, [p, q, r]: &[Point3; 3]) -> Self {
         let (a, b, c) = (p - origin, q - origin, r - origin);
         let normal = (b - a).cross(&(c - a));
@@ -100,7 +107,7 @@ impl StarEnergy {
         for &t in tets {
             let Some(i) = c.slot_of(t, v) else { continue };
             let face = c.face(4 * t + i as u32).map(|w| c.points[w as usize]);
-            self.cells.push(Cell::new(&origin, &face));
+            self.cells.push(Summand::new(&origin, &face));
             self.faces.push(face);
             self.tets.push(t);
         }
@@ -180,20 +187,33 @@ impl StarEnergy {
 
     fn worst(&self, p: &Point3, floor: f64) -> f64 {
         let mut worst = f64::INFINITY;
-        for i in 0..self.faces.len() {
+        for i in self.strictest_first() {
             worst = worst.min(self.ratio(p, i));
             if worst <= floor {
+                self.strict.set(i);
                 break;
             }
         }
         worst
     }
 
+    /// The faces, the strictest one before all others.
+    fn strictest_first(&self) -> impl Iterator<Item = usize> + use<> {
+        let strict = self.strict.get();
+        let known = (strict < self.faces.len()).then_some(strict);
+        known.into_iter().chain(0..self.faces.len())
+    }
+
     fn ease(&self, p: &Point3, least: f64, floor: f64) -> f64 {
         let mut ease = 0.0;
+        let strict = self.strict.get();
+        if strict < self.faces.len() && self.ratio(p, strict) < least {
+            return f64::NEG_INFINITY;
+        }
         for i in 0..self.faces.len() {
             let q = self.ratio(p, i);
             if q < least {
+                self.strict.set(i);
                 return f64::NEG_INFINITY;
             }
             ease -= strain(q);
@@ -298,13 +318,18 @@ impl Improver {
     pub(super) fn ease_worst(&mut self, below: f64) -> usize {
         let list = self.worst_first(below);
         let mut lifted = 0;
+        let mut purse = match self.options.effort {
+            Effort::Full => (self.c.real_tets().count() / MOST_EASED.0).max(MOST_EASED.1),
+            Effort::Quick | Effort::Fast => usize::MAX,
+        };
         for &(q, t) in &list {
             if !self.c.is_real(t) || self.quality[t as usize] >= below.min(q * 1.05) {
                 continue;
             }
             for v in self.c.verts(t) {
-                if self.movable[v as usize] && self.spend() && self.ease_vertex(v) {
-                    lifted += 1;
+                if self.movable[v as usize] && !self.eased[v as usize] && purse > 0 && self.spend() {
+                    purse -= 1;
+                    lifted += usize::from(self.ease_vertex(v));
                 }
             }
         }
@@ -463,7 +488,7 @@ mod tests {
             let ratio = radius_ratio(&p[0], &p[1], &p[2], &p[3]);
             prop_assume!(ratio.abs() > 1e-9);
             let face = if ratio > 0.0 { [p[1], p[2], p[3]] } else { [p[1], p[3], p[2]] };
-            let energy = Cell::new(&p[0], &face).energy(&Vec3::zeros());
+            let energy = Summand::new(&p[0], &face).energy(&Vec3::zeros());
             prop_assert!(ratio.abs() * energy >= 1.0 - 1e-9, "{ratio} {energy}");
         }
     }

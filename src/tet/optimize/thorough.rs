@@ -1,5 +1,6 @@
 //! The thorough improvement: after the quick passes, every tetrahedron that is still bad is treated with all there is,
-//! the worst first, until nothing improves or what is left does not change any more.
+//! the worst first, until nothing improves or what is left does not change any more, or is not worth it any more
+//! ([`Purse`]): what a surface of needles allows is never good, and could be tried for ever.
 
 use super::Improver;
 use super::allowance::Allowance;
@@ -16,14 +17,54 @@ const LAST_ROUNDS: usize = 3;
 const GAIN: f64 = 1.1;
 /// A round that mends fewer than one in so many is the last.
 const WORTHWHILE: usize = 100;
+/// Every mesh is worth one attempt for so many of its tetrahedra, whatever comes of it.
+const FREE: usize = 200;
+/// After these, a round that takes away less than this part of the strain of what is bad is the last.
+const EASES: f64 = 0.25;
+/// No mesh is worth more than one attempt for so many of its tetrahedra, or this many where it is small.
+const MOST: (usize, usize) = (4, 100);
+
+/// What treating all that is bad may cost, counted in attempts (an attempt takes some 0.2 ms where it is in vain): those
+/// that are free, then as many as pay, and never more than the most.
+#[derive(Debug)]
+struct Purse {
+    free: usize,
+    most: usize,
+    spent: usize,
+    /// Strain of all that was bad before the last round.
+    strain: f64,
+}
+
+impl Purse {
+    fn of(tets: usize) -> Self {
+        Self { free: tets / FREE, most: (tets / MOST.0).max(MOST.1), spent: 0, strain: f64::INFINITY }
+    }
+
+    /// Whether another round is worth making where what is bad has this strain now.
+    fn goes_on(&mut self, strain: f64) -> bool {
+        let pays = strain <= (1.0 - EASES) * self.strain;
+        self.strain = strain;
+        self.spent < self.most && (pays || self.spent < self.free)
+    }
+
+    fn spend(&mut self) -> bool {
+        self.spent += 1;
+        self.spent <= self.most
+    }
+}
 
 impl Improver {
     /// Treats all tetrahedra below the stubborn limit, the worst first, but for those on needles that are about as good
     /// as the needle allows.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
+        let mut purse = Purse::of(self.c.real_tets().count());
         for _ in 0..ROUNDS {
             let list = self.worst_first(self.options.stubborn_below);
-            let (tried, changes) = self.treat_each(&list, |s, t| {
+            if !purse.goes_on(self.strain_of_list(&list)) {
+                self.keep_list(list);
+                break;
+            }
+            let (tried, changes) = self.treat_each(&list, &mut purse, |s, t| {
                 let allowed = allowance.of_tet(&s.c.verts(t));
                 allowed >= 1.0 || s.quality[t as usize] < allowed
             });
@@ -37,13 +78,18 @@ impl Improver {
 
     /// Treats those of a list that are as they were, are wanted, and have changed since they were tried in vain. Returns
     /// how many were tried and how many improved.
-    fn treat_each(&mut self, list: &[(f64, u32)], wanted: impl Fn(&Self, u32) -> bool) -> (usize, usize) {
+    fn treat_each(
+        &mut self,
+        list: &[(f64, u32)],
+        purse: &mut Purse,
+        wanted: impl Fn(&Self, u32) -> bool,
+    ) -> (usize, usize) {
         let (mut tried, mut changes) = (0, 0);
         for &(q, t) in list {
             if !self.is_current((q, t)) || !self.has_news(t) || !wanted(self, t) {
                 continue;
             }
-            if !self.spend() {
+            if !self.spend() || !purse.spend() {
                 break;
             }
             tried += 1;
@@ -62,17 +108,27 @@ impl Improver {
             return;
         }
         self.allowance = allowance;
+        self.reconnection.forget();
+        let mut purse = Purse::of(self.c.real_tets().count());
         for _ in 0..LAST_ROUNDS {
             // What was in vain need not be now; small moves, which count for no news, can decide.
             self.tried.clear();
             let list = self.worst_first(self.options.stubborn_below);
-            let (tried, changes) = self.treat_each(&list, Self::is_spared);
+            if !purse.goes_on(self.strain_of_list(&list)) {
+                self.keep_list(list);
+                break;
+            }
+            let (tried, changes) = self.treat_each(&list, &mut purse, Self::is_spared);
             self.keep_list(list);
             if changes * WORTHWHILE <= tried {
                 break;
             }
         }
         self.allowance = Allowance::default();
+    }
+
+    fn strain_of_list(&self, list: &[(f64, u32)]) -> f64 {
+        list.iter().map(|&(_, t)| self.strain_of(&[t])).sum()
     }
 
     /// Whether a tetrahedron is very bad, or at least bad beside a needle, but does not stand on one.
@@ -94,7 +150,7 @@ impl Improver {
         self.tried[t as usize] = self.epoch;
     }
 
-    fn treat_with_all(&mut self, t: u32) -> bool {
+    pub(super) fn treat_with_all(&mut self, t: u32) -> bool {
         if self.flip_tet(t) || CAVITIES.iter().any(|&(size, nodes)| self.reconnect(t, size, nodes)) {
             self.report.flips += 1;
             true
