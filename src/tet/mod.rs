@@ -119,3 +119,5 @@ mod outside_tests;
 mod refined_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod turned_tests;

@@ -247,7 +247,7 @@ fn a_carved_complex_is_sane_with_its_ghosts() {
     points.extend(fill::box_corners(&s.points));
     let mut c = delaunay::delaunay(&points).unwrap();
     c.sanity_check().unwrap();
-    recover::recover(&mut c, &s, &edges, &Watch::NOBODY).unwrap();
+    recover::recover(&mut c, &s, &edges, recover::Rule::Positive, &Watch::NOBODY).unwrap();
     c.sanity_check().unwrap();
     let sides = carve::Sides::find(&c, &s, InputKind::Closed, &[]).unwrap();
     let carved = carve::carve(&c, &s, &sides);

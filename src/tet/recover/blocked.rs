@@ -71,7 +71,7 @@ impl Recovery<'_> {
         let rule = self.rule;
         let score = |c: &Complex, v: &[u32; 4]| {
             let coin = v.iter().fold(salt, |h, &x| hash(h ^ u64::from(x)));
-            rule.allows(c, v).then(|| if round == 0 { 1.0 } else { 1.0 + (coin >> 32) as f64 })
+            rule.allows(c, v).then_some(if round == 0 { 1.0 } else { 1.0 + (coin >> 32) as f64 })
         };
         self.flipper.plan_edge(self.c, t, p, q, MAX_RING, score)?;
         self.flipper.commit(self.c)

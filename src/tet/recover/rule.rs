@@ -4,8 +4,9 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::{Point3, Vec3};
 use crate::tet::complex::Complex;
 
-/// Flat parts of a surface that were turned are flat to this many units in the last place of the largest coordinate.
-const UNITS: f64 = 64.0;
+/// Flat parts of a surface that were turned are flat to this many units in the last place of the largest coordinate, in
+/// double precision and in single.
+const UNITS: (f64, f64) = (64.0, 4.0);
 
 /// Which tetrahedra flips may make.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,10 +40,11 @@ impl Rule {
     }
 }
 
-/// What is thinner than this is flat but for rounding.
+/// What is thinner than this is flat but for rounding: of numbers that all have single precision, to that.
 pub(super) fn flat_height(points: &[Point3]) -> f64 {
     let largest = points.iter().flat_map(|p| p.iter().map(|x| x.abs())).fold(0.0, f64::max);
-    UNITS * f64::EPSILON * largest
+    let single = points.iter().flat_map(|p| p.iter()).all(|&x| f64::from(x as f32) == x);
+    largest * if single { UNITS.1 * f64::from(f32::EPSILON) } else { UNITS.0 * f64::EPSILON }
 }
 
 /// The least height of a tetrahedron: six times its volume over twice the area of its largest face.

@@ -184,7 +184,7 @@ impl<'a> Dig<'a> {
 
     /// The weight of a place near the deepest one that sees all walls.
     fn place(&self, walls: &[u32], deepest: &Deepest) -> Option<u128> {
-        let weight = self.course.weight(deepest);
+        let weight = Course::weight(deepest);
         let on = OnTriangle::on_segment(self.ends.map(|v| *self.s.point(v)), weight);
         let at = on.rounded();
         let site = Site { at: &at, on: Some(&on) };

@@ -51,6 +51,9 @@ const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
 /// Implicit vertices allowed: for each missing edge, and in any case.
 const VERTICES: (usize, usize) = (256, 1_000_000);
 
+/// The same where cavities are deep, which takes longer for each.
+const VERTICES_DEEP: (usize, usize) = (64, 100_000);
+
 /// What the surface has and the complex lacks.
 #[derive(Clone, Copy)]
 pub(in crate::tet) struct Missing<'a> {
@@ -114,7 +117,8 @@ fn recover_parts(
     (salt, way): (u64, Way),
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), Failed> {
-    let budget = VERTICES.0 * missing.edges.len() + VERTICES.1;
+    let (each, all) = if way.deep { VERTICES_DEEP } else { VERTICES };
+    let budget = each * missing.edges.len() + all;
     let segments = Segments::new(edges, surface.points.len());
     let mut push = Push::new(Space::new(c, flat_height(&surface.points)), segments, surface.triangles.clone());
     let mut summary = ExactSummary::default();
@@ -128,7 +132,8 @@ fn recover_parts(
         while let Err(error) = recover_part(&mut push, &part, salt + tried, &mut summary, budget, watch) {
             tried += 1;
             let error = about_input(error, surface, &part);
-            let luck = matches!(error, TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling, .. });
+            let luck =
+                matches!(error, TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling | Stuck::Budget, .. });
             let Some(saved) = saved.as_ref().filter(|_| luck && tried < ATTEMPTS) else {
                 return Err(Failed { error, again: luck && saved.is_none() });
             };
@@ -170,7 +175,9 @@ fn level_out(
     let mut facets: FxHashMap<[u32; 2], Vec<[u32; 3]>> = FxHashMap::default();
     for &t in missing.triangles {
         let triangle = push.triangles[t as usize];
-        sides(triangle).into_iter().for_each(|side| facets.entry(side).or_default().push(triangle));
+        for side in sides(triangle) {
+            facets.entry(side).or_default().push(triangle);
+        }
     }
     let mut level = Level { s: &mut push.s, keep: edges, facets, spare: 0, made: Vec::new(), inside: Vec::new() };
     for &edge in missing.edges {
