@@ -2,7 +2,8 @@
 //!
 //! What the Delaunay tetrahedralization already has is frozen first. Missing edges are then recovered by flipping away
 //! what crosses them, missing triangles by removing the edges that pierce them; where flips are stuck, a Steiner point
-//! off the surface gives them room. Each tier has a work budget. What is left over goes to the caller's next tier.
+//! off the surface gives them room. A [`rule`] says which tetrahedra flips may make; where it forbids flat ones, those of the
+//! Delaunay tetrahedralization are dissolved first ([`flat`]). Each tier has a work budget. What is left over goes to the caller's next tier.
 
 mod blocked;
 mod cavity;

@@ -2,6 +2,8 @@
 //! on it, which are then moved off the surface (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary
 //! polyhedron', 2003). Only what is crossed changes.
 //!
+//! What lies in planes of faces but for rounding is recovered before, by turning edges there ([`level`], [`plane`]). Then:
+//!
 //! 1. [`segments`]: missing edges become chains of edges, with a vertex at each face or edge that they cross.
 //! 2. [`facets`]: missing triangles become unions of faces, with a vertex at each edge that pierces them.
 //! 3. [`push`]: each of these vertices gives way to copies inside the sectors between the facets around it ([`sectors`],
