@@ -43,6 +43,9 @@ use space::Space;
 /// Times that it is tried in another order, where a vertex has found no room.
 const ATTEMPTS: u64 = 4;
 
+/// The same for a large part alone, in each of the ways.
+const ATTEMPTS_ALONE: u64 = 2;
+
 /// Edges of a part that is worth a copy of all, to be tried again alone.
 const LARGE: usize = 100;
 
@@ -134,10 +137,10 @@ fn recover_parts(
         while let Err(error) = recover_part(&mut push, &part, salt + tried, &mut summary, budget, watch) {
             tried += 1;
             let error = about_input(error, surface, &part);
-            let luck =
-                matches!(error, TetError::Stuck { reason: Stuck::Precision | Stuck::Dangling | Stuck::Budget, .. });
-            let Some(saved) = saved.as_ref().filter(|_| luck && tried < ATTEMPTS) else {
-                return Err(Failed { error, again: luck && saved.is_none() });
+            // The surface does not meet itself, so whatever was in the way may not be there another way.
+            let again = matches!(error, TetError::Stuck { .. });
+            let Some(saved) = saved.as_ref().filter(|_| again && tried < ATTEMPTS_ALONE) else {
+                return Err(Failed { error, again });
             };
             (push, summary) = saved.clone();
         }
