@@ -14,13 +14,6 @@ impl<const N: usize> Int<N> {
         Self(limbs)
     }
 
-    pub(super) fn signed(x: i128) -> Self {
-        let mut limbs = [if x < 0 { u64::MAX } else { 0 }; N];
-        limbs[0] = x as u64;
-        limbs[1] = (x >> 64) as u64;
-        Self(limbs)
-    }
-
     pub(super) fn unsigned(x: u128) -> Self {
         let mut limbs = [0; N];
         limbs[0] = x as u64;

@@ -167,33 +167,17 @@ impl Scale {
         s
     }
 
-    /// Whether coordinates and differences of them fit in 128 bits.
+    /// Whether coordinates and differences of them fit in two limbs.
     fn is_small(&self) -> bool {
         i64::from(self.top) - i64::from(self.exponent) + i64::from(self.fraction) < 124
     }
 
-    /// As [`Scale::coordinate`], where that is small.
-    fn small_coordinate(&self, site: &Site, axis: usize) -> i128 {
-        let integer = |x: f64| {
-            let (m, e) = decompose(x);
-            if m == 0 { 0 } else { i128::from(m) << (e - self.exponent).unsigned_abs() }
-        };
-        let Some(on) = site.on else { return integer(site.at[axis]) << self.fraction };
-        let [a, b, c] = on.corners.map(|p| integer(p[axis]));
-        let mut x = a << self.fraction;
-        for (end, weight) in [b, c].into_iter().zip(on.weights) {
-            // As a multiple of the largest unit that all weights have.
-            x += (end - a) * (weight >> (OnTriangle::BITS - self.fraction)).cast_signed();
-        }
-        x
-    }
-
-    fn integer(&self, x: f64) -> Int<WIDE> {
+    fn integer<const N: usize>(&self, x: f64) -> Int<N> {
         let (m, e) = decompose(x);
         if m == 0 { Int::ZERO } else { Int::new(m).shl((e - self.exponent).unsigned_abs()) }
     }
 
-    fn coordinate(&self, site: &Site, axis: usize) -> Int<WIDE> {
+    fn coordinate<const N: usize>(&self, site: &Site, axis: usize) -> Int<N> {
         let up = self.fraction;
         let Some(on) = site.on else { return self.integer(site.at[axis]).shl(up) };
         let [a, b, c] = on.corners.map(|p| self.integer(p[axis]));
@@ -212,49 +196,15 @@ impl Scale {
 #[cold]
 fn compare_exact(sites: &[Site; 2], axis: usize) -> Ordering {
     let scale = Scale::of(sites);
-    scale.coordinate(&sites[0], axis).sub(&scale.coordinate(&sites[1], axis)).sign().cmp(&0)
+    scale.coordinate::<WIDE>(&sites[0], axis).sub(&scale.coordinate(&sites[1], axis)).sign().cmp(&0)
 }
 
 type Row = [Int<WIDE>; 3];
 
-/// The differences of all points from the last, and the bits of the largest.
-fn differences<const K: usize>(sites: &[Site], from: usize) -> ([Row; K], u32) {
-    let scale = Scale::of(sites);
-    if scale.is_small() {
-        return small_differences(&scale, sites, from);
-    }
-    let origin: Row = std::array::from_fn(|k| scale.coordinate(&sites[from], k));
-    let mut rows = [[Int::ZERO; 3]; K];
-    let others = sites.iter().enumerate().filter(|&(i, _)| i != from);
-    let mut bits = 0;
-    for (row, (_, site)) in rows.iter_mut().zip(others) {
-        for k in 0..3 {
-            row[k] = scale.coordinate(site, k).sub(&origin[k]);
-            bits = bits.max(row[k].bits());
-        }
-    }
-    (rows, bits)
-}
-
-/// As [`differences`], where they fit in 128 bits.
-fn small_differences<const K: usize>(scale: &Scale, sites: &[Site], from: usize) -> ([Row; K], u32) {
-    let origin: [i128; 3] = std::array::from_fn(|k| scale.small_coordinate(&sites[from], k));
-    let mut rows = [[Int::ZERO; 3]; K];
-    let others = sites.iter().enumerate().filter(|&(i, _)| i != from);
-    let mut bits = 0;
-    for (row, (_, site)) in rows.iter_mut().zip(others) {
-        for k in 0..3 {
-            let x = scale.small_coordinate(site, k) - origin[k];
-            row[k] = Int::signed(x);
-            bits = bits.max(128 - x.unsigned_abs().leading_zeros());
-        }
-    }
-    (rows, bits)
-}
-
 #[cold]
 fn orient3d_exact(p: &[Site; 4]) -> i32 {
-    let (rows, bits) = differences::<3>(p, 0);
+    let ([_, b, c, d], bits) = rows(p);
+    let rows = [b, c, d];
     // Six products of three.
     match 3 * bits + 4 {
         0..192 => det3::<3>(&rows).sign(),
@@ -277,10 +227,15 @@ fn det3<const N: usize>(rows: &[Row; 3]) -> Int<N> {
 /// The rows of all sites from the first one, and the bits of the largest.
 fn rows<const K: usize>(sites: &[Site; K]) -> ([Row; K], u32) {
     let scale = Scale::of(sites);
-    let at = sites.map(|s| -> Row { std::array::from_fn(|k| scale.coordinate(&s, k)) });
-    let rows = at.map(|p| -> Row { std::array::from_fn(|k| p[k].sub(&at[0][k])) });
+    if scale.is_small() { rows_in::<K, 2>(&scale, sites) } else { rows_in::<K, WIDE>(&scale, sites) }
+}
+
+/// The same, from coordinates of so many limbs.
+fn rows_in<const K: usize, const N: usize>(scale: &Scale, sites: &[Site; K]) -> ([Row; K], u32) {
+    let at = sites.map(|s| -> [Int<N>; 3] { std::array::from_fn(|k| scale.coordinate(&s, k)) });
+    let rows = at.map(|p| -> [Int<N>; 3] { std::array::from_fn(|k| p[k].sub(&at[0][k])) });
     let bits = rows.iter().flatten().map(Int::bits).max().unwrap_or(0);
-    (rows, bits)
+    (rows.map(|row| row.map(|x| x.resize())), bits)
 }
 
 /// The determinant of [`orient3d`] of four rows.
