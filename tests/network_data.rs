@@ -34,7 +34,7 @@ fn every_network_is_read_cleaned_and_split() {
             }
         }
     }
-    assert!(count >= 17, "{count} networks");
+    assert_eq!(count, 18);
 }
 
 /// The counts in the data's own README (edges that share no node) were made from the closest points of the axes; ours

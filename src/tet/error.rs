@@ -1,6 +1,6 @@
 //! What can go wrong in the tetrahedralizer.
 
-use super::complex::ComplexError;
+use super::complex::{ComplexError, face_key};
 use crate::geometry::Point3;
 
 /// A part of the surface that another part meets; ids are those of the surface's points.
@@ -13,6 +13,15 @@ pub enum Obstacle {
     Edge([u32; 2]),
     /// A point.
     Point(u32),
+}
+
+impl Obstacle {
+    /// The same, a triangle as the input has it: a face of a complex may begin with another of its corners.
+    pub(super) fn as_given(self, triangles: &[[u32; 3]]) -> Self {
+        let Self::Triangle(face) = self else { return self };
+        let key = face_key(face);
+        Self::Triangle(triangles.iter().copied().find(|&t| face_key(t) == key).unwrap_or(face))
+    }
 }
 
 impl std::fmt::Display for Obstacle {

@@ -44,6 +44,7 @@ mod builder;
 mod carve;
 pub mod certify;
 pub mod complex;
+mod conform;
 mod contacts;
 pub mod delaunay;
 pub mod error;
@@ -60,6 +61,7 @@ mod progress;
 mod recover;
 pub mod refine;
 mod regions;
+mod request;
 mod sized;
 mod split;
 pub mod star;
@@ -88,7 +90,7 @@ use certify::Place;
 pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh, TetError> {
     let edges = input::validate(surface, &[], InputKind::Closed)?;
     input::outward(surface)?;
-    let filled = fill::fill(&fill::Request {
+    let filled = fill::fill(&request::Request {
         surface,
         edges: &edges,
         segments: &[],

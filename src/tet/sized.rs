@@ -2,7 +2,6 @@
 
 use super::complex::Complex;
 use super::error::TetError;
-use super::fill::Request;
 use super::lattice::mean_edge;
 use super::options::{Interior, Refinement, Sizing};
 use super::progress::Stage;
@@ -10,6 +9,7 @@ use super::refine::{
     Goals, RefineReport, SizeLimit, SizeTree, TreeOptions, graded_points, refine_complex, vertex_sizes,
 };
 use super::regions::Regions;
+use super::request::Request;
 use crate::geometry::Point3;
 use crate::mesh::TriMesh;
 

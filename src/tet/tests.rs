@@ -244,7 +244,7 @@ fn a_carved_complex_is_sane_with_its_ghosts() {
     let s = tube(9, 6, 3.0, true, Vec3::new(1.0, 0.2, 0.3));
     let edges = input::validate(&s, &[], InputKind::Closed).unwrap();
     let mut points = s.points.clone();
-    points.extend(fill::box_corners(&s.points));
+    points.extend(conform::box_corners(&s.points));
     let mut c = delaunay::delaunay(&points).unwrap();
     c.sanity_check().unwrap();
     recover::recover(&mut c, &s, &edges, recover::Rule::Positive, &Watch::NOBODY).unwrap();

@@ -2,8 +2,9 @@
 //!
 //! What the Delaunay tetrahedralization already has is frozen first. Missing edges are then recovered by flipping away
 //! what crosses them, missing triangles by removing the edges that pierce them; where flips are stuck, a Steiner point
-//! off the surface gives them room. A [`rule`] says which tetrahedra flips may make; where it forbids flat ones, those of the
-//! Delaunay tetrahedralization are dissolved first ([`flat`]). Each tier has a work budget. What is left over goes to the caller's next tier.
+//! off the surface gives them room. A [`rule`] says which tetrahedra flips may make; where it forbids flat ones, those of
+//! the Delaunay tetrahedralization are dissolved first ([`flat`]). Each tier has a work budget. What is left over goes to
+//! the caller's next tier.
 
 mod blocked;
 mod cavity;
@@ -22,7 +23,7 @@ use super::survey::survey;
 use crate::mesh::TriMesh;
 use cavity::Cavity;
 use march::{Crossing, crossings, piercing_edges};
-pub(super) use rule::Rule;
+pub(super) use rule::{Rule, flat_height, flat_height_in_single};
 
 /// Depth to which a flip that is blocked may clear its way by others.
 const DEPTH: u32 = 3;
@@ -154,6 +155,7 @@ impl<'a> Recovery<'a> {
                 break true;
             }
             if let Some(obstacle) = way.iter().find_map(|&x| self.obstacle(x)) {
+                let obstacle = obstacle.as_given(&self.surface.triangles);
                 self.met = Some(TetError::EdgeMeets { edge: [a, b], obstacle });
                 break false;
             }

@@ -4,9 +4,11 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::{Point3, Vec3};
 use crate::tet::complex::Complex;
 
-/// Flat parts of a surface that were turned are flat to this many units in the last place of the largest coordinate, in
-/// double precision and in single.
-const UNITS: (f64, f64) = (64.0, 4.0);
+/// Flat parts of a surface that were turned are flat to this many units in the last place of the largest coordinate.
+const UNITS: f64 = 64.0;
+
+/// The same where coordinates were rounded to single precision: that is coarse enough to hurt parts that are thin.
+const SINGLE_UNITS: f64 = 4.0;
 
 /// Which tetrahedra flips may make.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,32 +21,27 @@ pub(in crate::tet) enum Rule {
 }
 
 impl Rule {
-    /// Tetrahedra that are thicker than what rounding leaves of flat parts.
-    pub(in crate::tet) fn thick(points: &[Point3]) -> Self {
-        Self::Thick(flat_height(points))
-    }
-
-    /// Whether `d` lies above the triangle `a, b, c`, from which it runs counter-clockwise, and far enough.
-    pub(in crate::tet) fn above(self, [a, b, c]: [&Point3; 3], d: &Point3) -> bool {
-        orient3d(a, b, c, d) > 0.0
-            && match self {
-                Self::Positive => true,
-                Self::Thick(least) => least_height([a, b, c, d]) > least,
-            }
-    }
-
     /// Whether a tetrahedron may be made.
     pub(in crate::tet) fn allows(self, c: &Complex, v: &[u32; 4]) -> bool {
-        let [p, q, r, s] = v.map(|v| &c.points[v as usize]);
-        self.above([p, q, r], s)
+        let corners @ [p, q, r, s] = v.map(|v| &c.points[v as usize]);
+        let thick = |least| least_height(corners) > least;
+        orient3d(p, q, r, s) > 0.0 && if let Self::Thick(least) = self { thick(least) } else { true }
     }
 }
 
-/// What is thinner than this is flat but for rounding: of numbers that all have single precision, to that.
-pub(super) fn flat_height(points: &[Point3]) -> f64 {
-    let largest = points.iter().flat_map(|p| p.iter().map(|x| x.abs())).fold(0.0, f64::max);
+/// What is thinner than this is flat but for rounding.
+pub(in crate::tet) fn flat_height(points: &[Point3]) -> f64 {
+    UNITS * f64::EPSILON * largest(points)
+}
+
+/// The same where all coordinates have single precision.
+pub(in crate::tet) fn flat_height_in_single(points: &[Point3]) -> Option<f64> {
     let single = points.iter().flat_map(|p| p.iter()).all(|&x| f64::from(x as f32) == x);
-    largest * if single { UNITS.1 * f64::from(f32::EPSILON) } else { UNITS.0 * f64::EPSILON }
+    single.then(|| SINGLE_UNITS * f64::from(f32::EPSILON) * largest(points))
+}
+
+fn largest(points: &[Point3]) -> f64 {
+    points.iter().flat_map(|p| p.iter().map(|x| x.abs())).fold(0.0, f64::max)
 }
 
 /// The least height of a tetrahedron: six times its volume over twice the area of its largest face.

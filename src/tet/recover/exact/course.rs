@@ -115,7 +115,7 @@ impl Course {
     pub(super) fn weight(place: &Deepest) -> u128 {
         // Sixteenths of the depth, at least ten bits, at most what a number has.
         let bits = (-(place.depth.max(1e-15) / 16.0).log2()).ceil().clamp(10.0, 52.0) as u32;
-        let steps = (place.share.clamp(0.0, 1.0) * f64::from(2.0_f32).powi(bits as i32)).round() as u128;
+        let steps = (place.share.clamp(0.0, 1.0) * (1_u64 << bits) as f64).round() as u128;
         steps * (OnTriangle::ONE >> bits)
     }
 }

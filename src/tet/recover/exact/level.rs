@@ -4,19 +4,20 @@
 //! joined each to a vertex that sees all of it, one of its corners or a new one well off the plane. Nothing is put
 //! between points that lie in the plane, where there is no room.
 
-use super::LEVELS;
-use super::parts::{sides, sorted};
+use super::parts::{Missing, sides, sorted};
 use super::plane::{Plane, area};
-use super::room::{Apex, Room};
-use super::sectors::Sector;
+use super::push::Push;
+use super::room::{Apex, LEVELS, Room};
+use super::sectors::{Sector, refill};
 use super::space::Space;
 use super::wider::Wider;
 use crate::geometry::Point3;
-use crate::tet::complex::face_key;
+use crate::tet::error::TetError;
 use crate::tet::input::SurfaceEdges;
+use crate::tet::progress::Watch;
 use crate::tet::recover::rule::least_height;
 use crate::tet::star::EdgeRing;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 
 /// Edges in the way of one, at most.
@@ -59,6 +60,39 @@ pub(super) struct Level<'a> {
     pub made: Vec<u32>,
     /// New vertices in planes.
     pub inside: Vec<(u32, Plane)>,
+}
+
+/// Recovers what lies in planes of faces but for rounding. Returns the edges and triangles that are still missing.
+pub(super) fn level_out(
+    push: &mut Push,
+    keep: &SurfaceEdges,
+    missing: Missing,
+    watch: &Watch,
+) -> Result<(Vec<[u32; 2]>, Vec<u32>), TetError> {
+    let mut facets: FxHashMap<[u32; 2], Vec<[u32; 3]>> = FxHashMap::default();
+    for &t in missing.triangles {
+        let triangle = push.triangles[t as usize];
+        for side in sides(triangle) {
+            facets.entry(side).or_default().push(triangle);
+        }
+    }
+    let mut level = Level { s: &mut push.s, keep, facets, spare: 0, made: Vec::new(), inside: Vec::new() };
+    for &edge in missing.edges {
+        watch.ask()?;
+        level.insert(edge);
+    }
+    level.leave();
+    let made = level.made;
+    push.adopt(made);
+    let lost_edges = missing.edges.iter().copied().filter(|&[a, b]| !push.s.has_edge(a, b)).collect();
+    let mut lost_triangles = Vec::new();
+    for &t in missing.triangles {
+        match push.s.find_face(push.triangles[t as usize]) {
+            Some(half) => push.s.c.freeze(half),
+            None => lost_triangles.push(t),
+        }
+    }
+    Ok((lost_edges, lost_triangles))
 }
 
 impl Level<'_> {
@@ -148,7 +182,7 @@ impl Level<'_> {
             let beyond = self.quadrilateral(edge, plane).map(|q| q.across[0]);
             let next = match beyond {
                 Some(next) => next,
-                None => self.pierce_beside(edge, true, plane)?,
+                None => self.pierce_beside(edge, plane)?,
             };
             if next == b {
                 return Some(course);
@@ -217,63 +251,43 @@ impl Level<'_> {
         if (0..ring.len()).any(|i| ring.spoke(&self.s.c, i).is_none_or(|half| self.s.c.is_frozen(half))) {
             return false;
         }
-        let Some(mut halves) = halves(self.s, &ring, [x, y]) else { return false };
+        let Some(halves) = halves(self.s, &ring, [x, y]) else { return false };
         let middle = Point3::from((self.s.point(p).coords + self.s.point(q).coords) * 0.5);
         let stays = |a: u32, b: u32| self.keep.contains(a, b);
         let mut wider = Wider::new(self.s, &stays, None, middle, ring.tets.clone());
-        let apices: Option<Vec<Apex>> = halves.iter_mut().map(|half| self.apex(&mut wider, half)).collect();
+        let filled: Option<Vec<_>> = halves.into_iter().map(|half| self.apex(&mut wider, half)).collect();
         let old = wider.cavity;
-        apices.is_some_and(|apices| self.fill(&old, &halves, &apices))
+        filled.is_some_and(|filled| self.fill(&old, &filled))
     }
 
-    /// Fills the room of some tetrahedra, sector by sector, each joined to an apex.
-    pub(super) fn fill(&mut self, old: &[u32], sectors: &[Sector], apices: &[Apex]) -> bool {
+    /// Fills the room of some tetrahedra, sector by sector, each joined to its apex.
+    pub(super) fn fill(&mut self, old: &[u32], sectors: &[(Sector, Apex)]) -> bool {
         let before = self.s.c.points.len() as u32;
-        let c = &self.s.c;
-        let frozen = sectors.iter().flat_map(|s| &s.halves).filter(|&&half| c.is_frozen(half));
-        let frozen: FxHashSet<[u32; 3]> = frozen.map(|&half| face_key(c.face(half))).collect();
-        let mut new = Vec::new();
-        for (sector, &apex) in sectors.iter().zip(apices) {
-            let apex = match apex {
-                Apex::Vertex(w) => w,
-                Apex::Point(at) => self.s.add_point(at),
-            };
-            let others = sector.faces.iter().filter(|f| !f.contains(&apex));
-            new.extend(others.map(|&[a, b, c]| [a, b, c, apex]));
-        }
+        let fits = refill(self.s, old, sectors, &[]).is_some();
         self.made.extend(before..self.s.c.points.len() as u32);
-        let mut created = Vec::new();
-        let fits = self.s.c.replace(old, &new, &mut created);
-        // Walls between two sectors were on the boundary of neither.
-        for half in created.into_iter().flat_map(|t| 4 * t..4 * t + 4) {
-            if !frozen.is_empty() && frozen.contains(&face_key(self.s.c.face(half))) {
-                self.s.c.freeze(half);
-            }
-        }
         fits
     }
 
-    /// A vertex that sees the faces of a sector from well above, a corner of theirs if there is one; where there is none,
-    /// of a wider sector.
-    pub(super) fn apex(&self, wider: &mut Wider, sector: &mut Sector) -> Option<Apex> {
+    /// A sector, with a vertex that sees its faces from well above, a corner of theirs if there is one; where there is
+    /// none, a wider sector.
+    pub(super) fn apex(&self, wider: &mut Wider, sector: Sector) -> Option<(Sector, Apex)> {
         let origin = wider.origin;
-        let direct = |sector: &Sector, levels: &[f64]| {
+        let least = self.least(&Room::new(self.s, origin, &sector.faces));
+        let direct = |levels: &[f64]| {
             let room = Room::new(self.s, origin, &sector.faces);
-            let least = self.least(&room);
             levels.iter().find_map(|level| room.apex(self.s, level.max(least)).ok())
         };
         let (ample, scant) = LEVELS.split_at(AMPLE);
-        if let Some(apex) = direct(sector, ample) {
-            return Some(apex);
+        if let Some(apex) = direct(ample) {
+            return Some((sector, apex));
         }
         let (mut wide, narrow) = (sector.clone(), wider.cavity.len());
-        let least = self.least(&Room::new(self.s, origin, &sector.faces));
         if let Some(apex) = wider.apex(&mut wide, LEVELS[AMPLE].max(least), STEPS) {
-            *sector = wide;
-            return Some(apex);
+            return Some((wide, apex));
         }
         wider.cavity.truncate(narrow);
-        direct(sector, scant)
+        let apex = direct(scant)?;
+        Some((sector, apex))
     }
 
     /// Least distance over the size of a room that is more than flat.

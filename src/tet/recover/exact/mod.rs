@@ -2,7 +2,7 @@
 //! on it, which are then moved off the surface (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary
 //! polyhedron', 2003). Only what is crossed changes.
 //!
-//! What lies in planes of faces but for rounding is recovered before, by turning edges there ([`level`], [`plane`]). Then:
+//! What lies in planes of faces but for rounding is recovered before, by turning edges there ([`level`], [`pierce`]). Then:
 //!
 //! 1. [`segments`]: missing edges become chains of edges, with a vertex at each face or edge that they cross.
 //! 2. [`facets`]: missing triangles become unions of faces, with a vertex at each edge that pierces them.
@@ -16,6 +16,7 @@ mod helpers;
 mod level;
 mod looks;
 mod parts;
+mod pierce;
 mod plane;
 mod polygon;
 mod push;
@@ -23,6 +24,7 @@ mod room;
 mod sectors;
 mod segments;
 mod space;
+mod ways;
 mod wider;
 
 use crate::mesh::TriMesh;
@@ -31,40 +33,20 @@ use crate::tet::delaunay::hash;
 use crate::tet::error::{Obstacle, Stuck, TetError};
 use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
-use crate::tet::recover::rule::flat_height;
 use helpers::add_helpers;
-use level::Level;
-use parts::{Part, parts, sides};
+use level::level_out;
+pub(in crate::tet) use parts::Missing;
+use parts::{Part, parts};
 use push::Push;
-use rustc_hash::FxHashMap;
 use segments::Segments;
 use space::Space;
+pub(in crate::tet) use ways::Way;
 
-/// Times that it is tried in another order, where a vertex has found no room.
-const ATTEMPTS: u64 = 4;
-
-/// The same for a large part alone, in each of the ways.
+/// Times that a large part is tried in another order, in each of the ways.
 const ATTEMPTS_ALONE: u64 = 2;
 
 /// Edges of a part that is worth a copy of all, to be tried again alone.
 const LARGE: usize = 100;
-
-/// Least distances of a new vertex from the planes around, over the size of its room, that are asked for one after the
-/// other.
-const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
-
-/// Implicit vertices allowed: for each missing edge, and in any case.
-const VERTICES: (usize, usize) = (256, 1_000_000);
-
-/// The same where cavities are deep, which takes longer for each.
-const VERTICES_DEEP: (usize, usize) = (64, 100_000);
-
-/// What the surface has and the complex lacks.
-#[derive(Clone, Copy)]
-pub(in crate::tet) struct Missing<'a> {
-    pub edges: &'a [[u32; 2]],
-    pub triangles: &'a [u32],
-}
 
 /// What the exact tier did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,8 +59,9 @@ pub(in crate::tet) struct ExactSummary {
     pub steiner_points: usize,
 }
 
-/// Recovers what is missing in a complex that has all the rest of the surface, its triangles frozen. The surface may not
-/// meet itself; its triangles may share whole edges and vertices in any way, well inside the complex.
+/// Recovers what is missing in a complex that has all the rest of the surface, its triangles frozen, in the first of the
+/// ways that succeeds. The surface may not meet itself; its triangles may share whole edges and vertices in any way, well
+/// inside the complex. What is thinner than `flat` counts as flat where that chooses between ways.
 ///
 /// # Errors
 /// [`TetError::EdgeMeets`]; [`TetError::Stuck`] where no floating-point position was found off the surface, or too many
@@ -88,18 +71,18 @@ pub(in crate::tet) fn recover_exact(
     surface: &TriMesh,
     edges: &SurfaceEdges,
     missing: Missing,
-    turned: bool,
+    (ways, flat): (&[Way], f64),
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
-    let ways = Way::all(turned);
-    let mut salt = 0;
-    loop {
-        match recover_parts(c.clone(), surface, edges, missing, (salt, ways[salt as usize]), watch) {
+    let mut last = TetError::NotRecovered { edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
+    for &way in ways {
+        match recover_parts(Space::new(c.clone(), flat), surface, edges, missing, way, watch) {
             Ok(recovered) => return Ok(recovered),
-            Err(Failed { error, again }) if !again || salt + 1 == ATTEMPTS => return Err(error),
-            Err(_) => salt += 1,
+            Err(Failed { error, again: false }) => return Err(error),
+            Err(Failed { error, .. }) => last = error,
         }
     }
+    Err(last)
 }
 
 /// Why parts could not be recovered, and whether all may be tried again.
@@ -115,17 +98,16 @@ impl From<TetError> for Failed {
 }
 
 fn recover_parts(
-    c: Complex,
+    s: Space,
     surface: &TriMesh,
     edges: &SurfaceEdges,
     missing: Missing,
-    (salt, way): (u64, Way),
+    way: Way,
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), Failed> {
-    let (each, all) = if way.deep { VERTICES_DEEP } else { VERTICES };
-    let budget = each * missing.edges.len() + all;
+    let budget = way.budget(missing.edges.len());
     let segments = Segments::new(edges, surface.points.len());
-    let mut push = Push::new(Space::new(c, flat_height(&surface.points)), segments, surface.triangles.clone());
+    let mut push = Push::new(s, segments, surface.triangles.clone());
     let mut summary = ExactSummary::default();
     let left = if way.level { Some(level_out(&mut push, edges, missing, watch)?) } else { None };
     let missing = left.as_ref().map_or(missing, |(edges, triangles)| Missing { edges, triangles });
@@ -134,73 +116,24 @@ fn recover_parts(
         // Large parts take most of the time, and are tried again alone; a copy for each of the others would take longer.
         let saved = (part.edges.len() >= LARGE).then(|| (push.clone(), summary));
         let mut tried = 0;
-        while let Err(error) = recover_part(&mut push, &part, salt + tried, &mut summary, budget, watch) {
+        while let Err(error) = recover_part(&mut push, &part, way.salt + tried, &mut summary, budget, watch) {
             tried += 1;
             let error = about_input(error, surface, &part);
             // The surface does not meet itself, so whatever was in the way may not be there another way.
             let again = matches!(error, TetError::Stuck { .. });
             let Some(saved) = saved.as_ref().filter(|_| again && tried < ATTEMPTS_ALONE) else {
+                eprintln!(
+                    "DBG {way:?} missing {} implicit {} {error:?}",
+                    missing.edges.len(),
+                    push.s.implicit_vertices()
+                );
                 return Err(Failed { error, again });
             };
             (push, summary) = saved.clone();
         }
     }
+    eprintln!("DBG {way:?} missing {} implicit {} ok", missing.edges.len(), push.s.implicit_vertices());
     Ok((push.s.c, summary))
-}
-
-/// How it is tried: what fails in one way comes loose in another.
-#[derive(Clone, Copy)]
-struct Way {
-    /// Whether edges in planes of faces are turned first.
-    level: bool,
-    /// Whether cavities are to be deep, not only seen.
-    deep: bool,
-}
-
-impl Way {
-    /// The ways for parts that are flat but for rounding, and for others, one for each attempt.
-    fn all(turned: bool) -> [Self; ATTEMPTS as usize] {
-        let way = |level, deep| Self { level, deep };
-        let seen = way(false, false);
-        if turned {
-            [way(true, true), way(false, true), way(true, false), seen]
-        } else {
-            [seen, seen, way(true, true), way(false, true)]
-        }
-    }
-}
-
-/// Recovers what lies in planes of faces but for rounding. Returns what is still missing.
-fn level_out(
-    push: &mut Push,
-    edges: &SurfaceEdges,
-    missing: Missing,
-    watch: &Watch,
-) -> Result<(Vec<[u32; 2]>, Vec<u32>), TetError> {
-    let mut facets: FxHashMap<[u32; 2], Vec<[u32; 3]>> = FxHashMap::default();
-    for &t in missing.triangles {
-        let triangle = push.triangles[t as usize];
-        for side in sides(triangle) {
-            facets.entry(side).or_default().push(triangle);
-        }
-    }
-    let mut level = Level { s: &mut push.s, keep: edges, facets, spare: 0, made: Vec::new(), inside: Vec::new() };
-    for &edge in missing.edges {
-        watch.ask()?;
-        level.insert(edge);
-    }
-    level.leave();
-    let made = level.made;
-    push.adopt(made);
-    let lost_edges = missing.edges.iter().copied().filter(|&[a, b]| !push.s.has_edge(a, b)).collect();
-    let mut lost_triangles = Vec::new();
-    for &t in missing.triangles {
-        match push.s.find_face(push.triangles[t as usize]) {
-            Some(half) => push.s.c.freeze(half),
-            None => lost_triangles.push(t),
-        }
-    }
-    Ok((lost_edges, lost_triangles))
 }
 
 /// What happens to helpers is told of the edge that they were to help.
@@ -210,6 +143,12 @@ fn about_input(error: TetError, surface: &TriMesh, part: &Part) -> TetError {
         Obstacle::Triangle(v) => v.iter().all(known),
         Obstacle::Edge(v) => v.iter().all(known),
         Obstacle::Point(v) => known(v),
+    };
+    let error = match error {
+        TetError::EdgeMeets { edge, obstacle } => {
+            TetError::EdgeMeets { edge, obstacle: obstacle.as_given(&surface.triangles) }
+        }
+        other => other,
     };
     let told = match &error {
         TetError::EdgeMeets { edge, obstacle } => edge.iter().all(known) && of_input(obstacle),

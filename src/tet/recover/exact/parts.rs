@@ -1,8 +1,14 @@
 //! What is missing, in parts that have no edge in common.
 
-use super::Missing;
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
+
+/// What the surface has and the complex lacks.
+#[derive(Clone, Copy)]
+pub(in crate::tet) struct Missing<'a> {
+    pub edges: &'a [[u32; 2]],
+    pub triangles: &'a [u32],
+}
 
 /// Missing edges and the missing triangles at them.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,21 +2,19 @@
 //! (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary polyhedron', 2003). Positions are floating
 //! point and proved by exact predicates.
 
-use super::LEVELS;
 use super::dig;
 use super::facets::Cover;
 use super::looks::{Looks, Way};
 use super::parts::sides;
-use super::room::{Apex, Room};
-use super::sectors::{Fan, Sector, sectors};
+use super::room::{Apex, LEVELS, Room};
+use super::sectors::{Fan, Sector, refill, sectors};
 use super::segments::Segments;
 use super::space::Space;
 use super::wider::Wider;
 use crate::geometry::Vec3;
 use crate::geometry::implicit::OnTriangle;
-use crate::tet::complex::face_key;
 use crate::tet::error::{Obstacle, Stuck, TetError};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::ops::Range;
 
 /// Tetrahedra that are added to one sector at most.
@@ -331,30 +329,9 @@ impl<'a> Push<'a> {
     /// Puts the new apices in the place of a vertex.
     fn commit(&mut self, v: u32, cavity: &[u32], fans: &[Fan], sectors: &[(Sector, Apex)]) -> bool {
         let before = self.s.c.points.len() as u32;
-        let mut new = Vec::new();
-        for (sector, apex) in sectors {
-            let apex = match apex {
-                Apex::Vertex(w) => *w,
-                Apex::Point(p) => self.s.add_point(*p),
-            };
-            let faces = sector.faces.iter().filter(|f| !f.contains(&apex));
-            new.extend(faces.map(|&[a, b, c]| [a, b, c, apex]));
-        }
-        // Facets have new faces, and frozen walls may lie between two of the sectors.
-        let c = &self.s.c;
-        let walls = sectors.iter().flat_map(|(sector, _)| &sector.halves).filter(|&&half| c.is_frozen(half));
-        let mut frozen: FxHashSet<[u32; 3]> = walls.map(|&half| face_key(c.face(half))).collect();
-        frozen.extend(fans.iter().flat_map(|fan| &fan.new).map(|&face| face_key(face)));
-        let mut created = Vec::new();
-        if !self.s.c.replace(cavity, &new, &mut created) {
-            return false;
-        }
-        self.looks.change(new.iter().flatten().copied());
-        for half in created.iter().flat_map(|&t| 4 * t..4 * t + 4) {
-            if frozen.contains(&face_key(self.s.c.face(half))) {
-                self.s.c.freeze(half);
-            }
-        }
+        let facets: Vec<[u32; 3]> = fans.iter().flat_map(|fan| &fan.new).copied().collect();
+        let Some(new) = refill(&mut self.s, cavity, sectors, &facets) else { return false };
+        self.looks.change(new.into_iter().flatten());
         for fan in fans {
             if let Some(pieces) = self.pieces.get_mut(&fan.facet) {
                 pieces.retain(|f| !f.contains(&v));

@@ -5,6 +5,10 @@ use super::space::Space;
 use crate::geometry::{Point3, Vec3, unit_normal};
 use nalgebra::{Matrix4, Vector4};
 
+/// Least distances of a new vertex from the planes around, over the size of its room, that are asked for one after the
+/// other.
+pub(super) const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
+
 /// Shares of the way from the segment to the deepest point of the room at which a position is looked for.
 const SHARES: [f64; 9] = [1.0, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4];
 

@@ -1,6 +1,7 @@
 //! The star of a vertex on the surface, cut into sectors by the facets around it, and these facets without the vertex.
 
 use super::polygon::{point_above, triangulate};
+use super::room::Apex;
 use super::space::Space;
 use crate::tet::complex::face_key;
 use crate::tet::error::TetError;
@@ -116,6 +117,40 @@ pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<V
         sectors.push(Sector { faces, halves });
     }
     Some(sectors)
+}
+
+/// Fills the room of some tetrahedra, sector by sector, each joined to its apex. The new faces of facets are frozen, and
+/// what was frozen between sectors. Returns the new tetrahedra; nothing happens when they do not fit.
+pub(super) fn refill(
+    s: &mut Space,
+    cavity: &[u32],
+    sectors: &[(Sector, Apex)],
+    facets: &[[u32; 3]],
+) -> Option<Vec<[u32; 4]>> {
+    let walls = sectors.iter().flat_map(|(sector, _)| &sector.halves).filter(|&&half| s.c.is_frozen(half));
+    let mut frozen: FxHashSet<[u32; 3]> = walls.map(|&half| face_key(s.c.face(half))).collect();
+    frozen.extend(facets.iter().map(|&face| face_key(face)));
+    let before = s.c.points.len();
+    let mut new = Vec::new();
+    for (sector, apex) in sectors {
+        let apex = match *apex {
+            Apex::Vertex(w) => w,
+            Apex::Point(p) => s.add_point(p),
+        };
+        let faces = sector.faces.iter().filter(|f| !f.contains(&apex));
+        new.extend(faces.map(|&[a, b, c]| [a, b, c, apex]));
+    }
+    let mut created = Vec::new();
+    if !s.c.replace(cavity, &new, &mut created) {
+        s.forget_points(before);
+        return None;
+    }
+    for half in created.into_iter().flat_map(|t| 4 * t..4 * t + 4) {
+        if frozen.contains(&face_key(s.c.face(half))) {
+            s.c.freeze(half);
+        }
+    }
+    Some(new)
 }
 
 /// Whether two orders of the same three vertices have the same orientation.

@@ -74,6 +74,26 @@ impl Space {
         self.c.add_point(p)
     }
 
+    /// Takes back the points added last, without tetrahedra, down to so many.
+    pub(super) fn forget_points(&mut self, count: usize) {
+        while self.c.points.len() > count {
+            self.c.pop_point();
+            self.place.pop();
+        }
+    }
+
+    /// Puts a vertex in the place of `cavity`, joined to all its walls, which are counter-clockwise seen from inside;
+    /// nothing happens when they do not fit.
+    pub(super) fn fill(&mut self, cavity: &[u32], walls: &[[u32; 3]], p: Point3) -> Option<u32> {
+        let v = self.add_point(p);
+        let new: Vec<[u32; 4]> = walls.iter().map(|&[a, b, c]| [a, b, c, v]).collect();
+        if self.c.replace(cavity, &new, &mut self.created) {
+            return Some(v);
+        }
+        self.forget_points(v as usize);
+        None
+    }
+
     /// Puts an implicit vertex in the place of `cavity`. It has to see all its walls; nothing happens when it does not.
     pub(super) fn insert(&mut self, cavity: &[u32], walls: &[[u32; 3]], on: OnTriangle) -> Option<u32> {
         let at = on.rounded();
@@ -95,9 +115,8 @@ impl Space {
     pub(super) fn insert_point(&mut self, p: Point3) -> Option<u32> {
         let inside = |t: u32| (4 * t..4 * t + 4).all(|half| self.orient_to(self.c.face(half), &p) < 0);
         let t = self.c.real_tets().find(|&t| inside(t))?;
-        let v = self.add_point(p);
-        let new: Vec<[u32; 4]> = self.walls(&[t]).iter().map(|&[a, b, c]| [a, c, b, v]).collect();
-        self.c.replace(&[t], &new, &mut self.created).then_some(v)
+        let walls: Vec<[u32; 3]> = self.outer(&[t]).into_iter().map(|half| self.wall(half)).collect();
+        self.fill(&[t], &walls, p)
     }
 
     /// Moves an implicit vertex, whose star has the walls, to where it sees them all; nothing happens when it does not.
@@ -156,12 +175,6 @@ impl Space {
     #[inline]
     pub(super) fn orient_to(&self, [a, b, c]: [u32; 3], p: &Point3) -> i32 {
         implicit::orient3d([self.site(a), self.site(b), self.site(c), Site { at: p, on: None }])
-    }
-
-    /// The same for points that are no vertices.
-    pub(super) fn orient_points(p: [&Point3; 4]) -> i32 {
-        let o = predicates::orient3d(p[0], p[1], p[2], p[3]);
-        i32::from(o > 0.0) - i32::from(o < 0.0)
     }
 
     /// Lexicographic order of two vertices. Exact.

@@ -29,8 +29,8 @@ impl<'a> Wider<'a> {
         Self { s, stays, v, origin, cavity }
     }
 
-    /// What takes the place of the vertex in a sector that is made wider, by so many tetrahedra at most, until it has at least `least` times its size of
-    /// room.
+    /// What takes the place of the vertex in a sector that is made wider, by so many tetrahedra at most, until it has at
+    /// least `least` times its size of room.
     pub(super) fn apex(&mut self, sector: &mut Sector, least: f64, steps: usize) -> Option<Apex> {
         for _ in 0..steps {
             if let Ok(apex) = Room::new(self.s, self.origin, &sector.faces).apex(self.s, least) {

@@ -1,0 +1,52 @@
+//! Ways to recover: what fails in one comes loose in another.
+
+/// Implicit vertices allowed: for each missing edge, and in any case.
+const VERTICES: (usize, usize) = (256, 1_000_000);
+
+/// The same where cavities are deep, which takes longer for each.
+const VERTICES_DEEP: (usize, usize) = (64, 100_000);
+
+/// The same where other ways are left that may need fewer.
+const VERTICES_FIRST: (usize, usize) = (32, 10_000);
+
+/// A way to recover what is missing.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::tet) struct Way {
+    /// Whether edges in planes of faces are turned first.
+    pub level: bool,
+    /// Whether cavities are to be deep, not only seen.
+    pub deep: bool,
+    /// Chooses the order in which edges are cut.
+    pub salt: u64,
+    /// Implicit vertices allowed: for each missing edge, and in any case.
+    vertices: (usize, usize),
+}
+
+impl Way {
+    /// What is quickest where it succeeds, given up early.
+    pub(in crate::tet) const FIRST: [Self; 1] = [Self { vertices: VERTICES_FIRST, ..Self::seen(0) }];
+
+    /// For parts that are flat but for rounding.
+    pub(in crate::tet) const TURNED: [Self; 3] = [Self::deep(true, 0), Self::deep(false, 1), Self::level(2)];
+
+    /// What is left to try.
+    pub(in crate::tet) const OTHERS: [Self; 4] =
+        [Self::seen(0), Self::seen(1), Self::deep(true, 2), Self::deep(false, 3)];
+
+    const fn seen(salt: u64) -> Self {
+        Self { level: false, deep: false, salt, vertices: VERTICES }
+    }
+
+    const fn level(salt: u64) -> Self {
+        Self { level: true, ..Self::seen(salt) }
+    }
+
+    const fn deep(level: bool, salt: u64) -> Self {
+        Self { level, deep: true, salt, vertices: VERTICES_DEEP }
+    }
+
+    /// Implicit vertices allowed for so many missing edges.
+    pub(super) const fn budget(self, edges: usize) -> usize {
+        self.vertices.0 * edges + self.vertices.1
+    }
+}
