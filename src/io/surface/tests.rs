@@ -1,7 +1,12 @@
 //! Every format: what is written comes back, files by other hands are read, and no file makes a panic.
 
+use super::write::write_format;
 use super::*;
 use crate::geometry::Point3;
+use crate::io::file::FileError;
+use crate::io::text::TextFault;
+use crate::mesh::TriMesh;
+use crate::mesh::facets::FacetError;
 use crate::mesh::shapes::sphere_surface;
 use proptest::prelude::*;
 

@@ -2,12 +2,15 @@
 
 use super::*;
 use crate::geometry::Point3;
-use crate::io::vtu::tests::labelled_tube;
+use crate::io::file::FileError;
+use crate::io::text::TextFault;
+use crate::io::volume::fixtures::labelled_tube;
 use crate::mesh::VolumeMesh;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::shapes::cube_lattice;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 const NODE: &str = "# four points\n4 3 2 1\n\n1 0 0 0  0.5 7  -1\n2 1 0 0  1.5 8  0\n3 0 1 0 2.5 9 3 # here\n\
     4 0 0 1 3.5 nan 4\n";
