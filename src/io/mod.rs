@@ -13,6 +13,8 @@
 //! A volume mesh is written from passes over a [`MeshSource`](crate::mesh::source::MeshSource), so that memory does not grow
 //! with it; where a format needs the whole, `volume::write` gathers it.
 
+#[cfg(test)]
+mod damage;
 mod file;
 pub mod network;
 mod patches;

@@ -15,18 +15,10 @@ use std::path::Path;
 /// # Errors
 /// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
 pub fn read_surface(path: &Path) -> Result<TriMesh, SurfaceFileError> {
-    read_surface_as(path, SurfaceFormat::of(path)?)
+    Ok(read_content_as(path, SurfaceFormat::of(path)?)?.mesh)
 }
 
-/// As [`read_surface`], in this format whatever the extension.
-///
-/// # Errors
-/// As [`read_surface`].
-pub fn read_surface_as(path: &Path, format: SurfaceFormat) -> Result<TriMesh, SurfaceFileError> {
-    Ok(read_content_as(path, format)?.mesh)
-}
-
-/// As [`read_surface_as`], with what the file says beside the surface.
+/// As [`read_surface`] in this format, whatever the extension, with what the file says beside the surface.
 ///
 /// # Errors
 /// As [`read_surface`].

@@ -48,6 +48,9 @@ pub(in crate::io) struct VtkXml<'a> {
 }
 
 impl<'a> VtkXml<'a> {
+    /// The element `VTKFile`.
+    pub(in crate::io) const ROOT: ElementId = ElementId(0);
+
     /// Parses a file of the given type (`PolyData`, `UnstructuredGrid`).
     ///
     /// # Errors
@@ -74,15 +77,14 @@ impl<'a> VtkXml<'a> {
         if root.name != "VTKFile" {
             return Err(VtkError::NotVtk { root: root.name.clone() });
         }
-        match self.attribute(ElementId(0), "type") {
+        match self.attribute(Self::ROOT, "type") {
             Some(found) if found == file_type => Ok(()),
             found => Err(VtkError::WrongFileType { found: found.unwrap_or_default().to_owned(), wanted: file_type }),
         }
     }
 
     fn read_layout(&self) -> Result<Layout, VtkError> {
-        let root = ElementId(0);
-        let value = |name: &'static str| self.attribute(root, name).unwrap_or_default();
+        let value = |name: &'static str| self.attribute(Self::ROOT, name).unwrap_or_default();
         let unknown =
             |attribute: &'static str| VtkError::UnknownLayout { attribute, value: value(attribute).to_owned() };
         Ok(Layout {
@@ -109,11 +111,6 @@ impl<'a> VtkXml<'a> {
     pub(in crate::io) fn packed_data(&self) -> Option<usize> {
         let packed = Layout { big_endian: false, wide_header: true, zlib: true };
         self.appended.filter(|appended| !appended.base64 && self.layout == packed).map(|appended| appended.start)
-    }
-
-    /// The element `VTKFile`.
-    pub(in crate::io) fn root(&self) -> ElementId {
-        ElementId(0)
     }
 
     /// An element's name.

@@ -93,7 +93,7 @@ fn style() -> impl Strategy<Value = Style> {
 
 fn named(bytes: &[u8]) -> Result<(String, DataArray), VtkError> {
     let document = VtkXml::parse(bytes, "PolyData")?;
-    let poly = document.child(document.root(), "PolyData").ok_or(VtkError::Empty)?;
+    let poly = document.child(VtkXml::ROOT, "PolyData").ok_or(VtkError::Empty)?;
     let (name, array) = document.arrays(poly).next().ok_or(VtkError::Empty)?;
     Ok((name.to_owned(), document.read(array)?))
 }

@@ -11,7 +11,7 @@ use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 /// Reads a file.
 pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtpError> {
     let document = VtkXml::parse(bytes, "PolyData")?;
-    let poly = document.child(document.root(), "PolyData").ok_or(VtpError::MissingElement { element: "PolyData" })?;
+    let poly = document.child(VtkXml::ROOT, "PolyData").ok_or(VtpError::MissingElement { element: "PolyData" })?;
     let pieces: Vec<ElementId> = document.children(poly, "Piece").collect();
     let &first = pieces.first().ok_or(VtpError::MissingElement { element: "Piece" })?;
     let choice = Choice::of(&document, first, options)?;

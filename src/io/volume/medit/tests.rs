@@ -3,6 +3,7 @@
 use super::error::MeditFault;
 use super::read::read;
 use super::write::write_medit;
+use crate::io::damage::damage;
 use crate::io::file::FileError;
 use crate::io::text::TextFault;
 use crate::io::volume::fixtures::labelled_tube;
@@ -51,23 +52,8 @@ proptest! {
 
     /// Whatever befalls a file, it is read or refused; what is read is sound.
     #[test]
-    fn damaged_files_make_no_panic(
-        cut in prop::option::of(any::<prop::sample::Index>()),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![
-            any::<u8>().prop_map(|b| vec![b]),
-            "[0-9a-z #/.\\-\n]{0,6}".prop_map(String::into_bytes),
-            Just(b" 99999999999 ".to_vec()),
-        ]), 0..4),
-    ) {
-        let mut bytes = MESH.as_bytes().to_vec();
-        for (at, replacement) in changes {
-            let at = at.index(bytes.len());
-            bytes.splice(at..=at, replacement);
-        }
-        if let Some(cut) = cut {
-            bytes.truncate(cut.index(bytes.len() + 1));
-        }
-        if let Ok(volume) = read(&bytes) {
+    fn damaged_files_make_no_panic(damage in damage()) {
+        if let Ok(volume) = read(&damage.done_to(MESH.as_bytes())) {
             let points = volume.mesh.points.len();
             prop_assert!(volume.mesh.tets.iter().flatten().all(|&v| (v as usize) < points));
             prop_assert!(volume.boundary.iter().flatten().all(|&v| (v as usize) < points));

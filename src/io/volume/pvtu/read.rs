@@ -58,7 +58,7 @@ fn unite(volume: &mut VolumeMesh, ids: &[i64]) -> Result<(), PvtuFault> {
 /// Paths of the pieces, from the folder of the index.
 fn sources(bytes: &[u8]) -> Result<Vec<PathBuf>, PvtuFault> {
     let xml = VtkXml::parse(bytes, "PUnstructuredGrid")?;
-    let grid = xml.child(xml.root(), "PUnstructuredGrid");
+    let grid = xml.child(VtkXml::ROOT, "PUnstructuredGrid");
     let grid = grid.ok_or(PvtuFault::Missing { what: "PUnstructuredGrid" })?;
     let source = |piece| xml.attribute(piece, "Source").ok_or(PvtuFault::Missing { what: "Source" });
     xml.children(grid, "Piece").map(|piece| source(piece).map(PathBuf::from)).collect()

@@ -7,6 +7,7 @@
 mod arrays;
 mod error;
 mod fields;
+mod layout;
 mod names;
 mod pieces;
 mod read;
@@ -15,7 +16,8 @@ mod tests;
 mod write;
 
 pub use error::VtuFault;
+pub use layout::VtuPiecesError;
 pub(super) use names::GLOBAL_IDS;
-pub use pieces::{VtuPieces, VtuPiecesError};
+pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
 pub(super) use write::{Grid, write};

@@ -1,5 +1,6 @@
 //! What is written can be read in pieces; what cannot is said, and damaged files are errors.
 
+use super::super::names::{VTK_TETRA, VTK_TRIANGLE};
 use super::*;
 use crate::io::volume::fixtures::labelled_tube;
 use crate::io::volume::vtu::write;

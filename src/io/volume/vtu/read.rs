@@ -48,7 +48,7 @@ impl GridReader {
     /// Reads a file.
     pub(in crate::io::volume) fn read(&mut self, bytes: &[u8]) -> Result<(), VtuFault> {
         let xml = VtkXml::parse(bytes, "UnstructuredGrid")?;
-        let grid = xml.child(xml.root(), "UnstructuredGrid").ok_or(VtuFault::Missing { what: "UnstructuredGrid" })?;
+        let grid = xml.child(VtkXml::ROOT, "UnstructuredGrid").ok_or(VtuFault::Missing { what: "UnstructuredGrid" })?;
         for piece in xml.children(grid, "Piece") {
             self.read_piece(&xml, piece)?;
         }
@@ -91,26 +91,31 @@ impl GridReader {
         };
         let array = |name| data.map_or(Ok(None), |data| int_array(xml, data, name, count));
         let (blocks, ghosts) = (array("block")?, array("vtkGhostType")?);
+        self.add_cells(&cells, first_point as i64, &CellData { labels, blocks, ghosts })
+    }
+
+    /// Takes the cells of a piece whose points begin at a number.
+    fn add_cells(&mut self, cells: &Cells, first_point: i64, data: &CellData) -> Result<(), VtuFault> {
         let volume = &mut self.volume;
         let at = |values: &Option<Vec<i64>>, cell: usize| values.as_ref().map_or(0, |v| v[cell] as i32);
+        let id = |v: i64| u32::try_from(v + first_point).unwrap_or(u32::MAX);
         let mut start = 0;
         for (cell, (&kind, &end)) in cells.types.iter().zip(&cells.offsets).enumerate() {
             let ids = usize::try_from(end).ok().and_then(|end| cells.connectivity.get(start..end));
             let ids = ids.ok_or(VtuFault::BadOffset { cell })?;
             start += ids.len();
-            let id = |v: i64| u32::try_from(v + first_point as i64).unwrap_or(u32::MAX);
-            if at(&ghosts, cell) & DUPLICATE != 0 {
+            if at(&data.ghosts, cell) & DUPLICATE != 0 {
                 continue;
             }
             match (kind as u8, ids) {
                 (VTK_TETRA, &[a, b, c, d]) => {
                     volume.mesh.tets.push([id(a), id(b), id(c), id(d)]);
-                    volume.tet_block.push(at(&blocks, cell));
+                    volume.tet_block.push(at(&data.blocks, cell));
                 }
                 (VTK_TRIANGLE, &[a, b, c]) => {
                     volume.boundary.push([id(a), id(b), id(c)]);
-                    volume.boundary_patch.push(at(&labels, cell));
-                    volume.boundary_block.push(at(&blocks, cell));
+                    volume.boundary_patch.push(at(&data.labels, cell));
+                    volume.boundary_block.push(at(&data.blocks, cell));
                 }
                 (VTK_TETRA | VTK_TRIANGLE, _) => return Err(VtuFault::BadOffset { cell }),
                 // Empty cells, points and lines bound no volume.
@@ -158,6 +163,13 @@ fn read_points(xml: &VtkXml, piece: ElementId, into: &mut Vec<Point3>) -> Result
     let (triples, _) = values.as_chunks::<3>();
     into.extend(triples.iter().map(|&p| Point3::from(p)));
     Ok(())
+}
+
+/// What the cells of a piece carry; none where the file has no such array.
+struct CellData {
+    labels: Option<Vec<i64>>,
+    blocks: Option<Vec<i64>>,
+    ghosts: Option<Vec<i64>>,
 }
 
 struct Cells {
