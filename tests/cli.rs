@@ -2,7 +2,7 @@
 
 mod common;
 
-use anastomesh::io::mesh_file::{read_mesh, write_mesh};
+use anastomesh::io::volume::{read_mesh, write_mesh};
 use common::{fixture, shared};
 use serde_json::Value;
 use std::fs;
@@ -78,7 +78,7 @@ fn the_fixture_becomes_a_valid_mesh_in_both_formats() {
     let [vtu, msh] = ["tree.vtu", "tree.msh"].map(|name| read_mesh(&folder.path().join(name)).expect("a mesh"));
     assert_eq!(vtu.volume.mesh, msh.volume.mesh);
     assert_eq!(vtu.volume.boundary_patch, msh.volume.boundary_patch);
-    let names = |file: &anastomesh::io::mesh_file::MeshFile| -> Vec<String> {
+    let names = |file: &anastomesh::io::volume::MeshFile| -> Vec<String> {
         file.volume.patches.iter().map(|p| p.name.clone()).collect()
     };
     assert_eq!(names(&vtu), names(&msh));

@@ -1,5 +1,6 @@
-//! A room imports only from floors below its own (ARCHITECTURE.md).
+//! A room imports only from floors below its own (ARCHITECTURE.md), and no file imports from one that imports from it.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Rooms by floor; a room may import from rooms with a smaller number, and from itself.
@@ -76,28 +77,34 @@ fn group_heads(group: &str) -> Vec<String> {
     heads
 }
 
-#[test]
-fn rooms_import_downwards_only() {
+/// The sources by their paths below `src`.
+fn sources() -> BTreeMap<String, String> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = Vec::new();
     rust_files(&src, &mut files);
     assert!(files.len() > 20, "the source was not found");
+    let read = |file: PathBuf| {
+        let inside = file.strip_prefix(&src).expect("below src").to_string_lossy().replace('\\', "/");
+        (inside, std::fs::read_to_string(&file).expect("readable source"))
+    };
+    files.into_iter().map(read).collect()
+}
+
+#[test]
+fn rooms_import_downwards_only() {
     let mut wrong = Vec::new();
-    for file in files {
-        let inside = file.strip_prefix(&src).expect("below src");
-        let first = inside.components().next().expect("a name").as_os_str().to_string_lossy().into_owned();
-        let room = first.trim_end_matches(".rs").to_owned();
+    for (inside, source) in sources() {
+        let room = inside.split('/').next().unwrap_or_default().trim_end_matches(".rs");
         if room == "lib" {
             continue;
         }
-        let own = floor(&room).unwrap_or_else(|| panic!("room `{room}` has no floor"));
-        let source = std::fs::read_to_string(&file).expect("readable source");
+        let own = floor(room).unwrap_or_else(|| panic!("room `{room}` has no floor"));
         for named in rooms_named(&source) {
             if let Some(other) = floor(&named)
                 && named != room
                 && other >= own
             {
-                wrong.push(format!("{} imports {named}", inside.display()));
+                wrong.push(format!("{inside} imports {named}"));
             }
         }
     }
@@ -108,4 +115,406 @@ fn rooms_import_downwards_only() {
 fn the_reader_of_imports_sees_groups() {
     let found = rooms_named("use crate::{mesh::{A, B}, tet::X};\nuse crate::io; // crate::cli\nanastomesh::cli::run()");
     assert_eq!(found, ["mesh", "tet", "io", "cli"]);
+}
+
+/// A file of each circle that is known and still there.
+const KNOWN_CIRCLES: [&str; 20] = [
+    "block/cap.rs",
+    "block/cluster.rs",
+    "cli/check.rs",
+    "mesh/check/nested.rs",
+    "mesh/check/parts/glue.rs",
+    "partition/assemble.rs",
+    "pipeline/cures.rs",
+    "pipeline/report.rs",
+    "pipeline/store/manifest.rs",
+    "refine/mod.rs",
+    "skeleton/clean.rs",
+    "skeleton/generate/mod.rs",
+    "stitch/joints.rs",
+    "surface/contour.rs",
+    "tet/carve.rs",
+    "tet/delaunay/merge.rs",
+    "tet/fill.rs",
+    "tet/optimize/cavity.rs",
+    "tet/recover/cavity.rs",
+    "tet/recover/exact/facets.rs",
+];
+
+#[test]
+fn no_file_imports_from_one_that_imports_from_it() {
+    let circles = circles(&sources());
+    let known = |circle: &&Vec<String>| !circle.iter().any(|file| KNOWN_CIRCLES.contains(&file.as_str()));
+    let new: Vec<String> = circles.iter().filter(known).map(|circle| circle.join(" ")).collect();
+    assert!(new.is_empty(), "files that import from each other:\n{}", new.join("\n"));
+}
+
+/// Files that import from each other, directly or through others. A file imports from that which defines what it names,
+/// whatever re-exports stand between; a module that only declares and re-exports others imports from none of them. Test
+/// modules are not looked at.
+fn circles(sources: &BTreeMap<String, String>) -> Vec<Vec<String>> {
+    let mut crate_of = Crate::default();
+    crate_of.add_file(sources, "lib.rs", &[]);
+    let imports = crate_of.imports();
+    let reached: BTreeMap<&str, BTreeSet<&str>> =
+        imports.keys().map(|file| (&**file, reached(&imports, file))).collect();
+    let mut circles: BTreeSet<Vec<String>> = BTreeSet::new();
+    for (file, others) in reached.iter().filter(|(file, others)| others.contains(*file)) {
+        let back = others.iter().filter(|other| reached.get(*other).is_some_and(|from| from.contains(file)));
+        circles.insert(back.map(|other| (*other).to_owned()).collect());
+    }
+    circles.into_iter().collect()
+}
+
+/// All files that a file imports from, directly or through others.
+fn reached<'a>(imports: &'a BTreeMap<String, BTreeSet<String>>, file: &str) -> BTreeSet<&'a str> {
+    let mut reached = BTreeSet::new();
+    let mut open: Vec<&str> = vec![file];
+    while let Some(file) = open.pop() {
+        for next in imports.get(file).into_iter().flatten() {
+            if reached.insert(&**next) {
+                open.push(next);
+            }
+        }
+    }
+    reached
+}
+
+/// A path of names.
+type Names = Vec<String>;
+
+/// One name that a `use` brings in.
+#[derive(Debug)]
+struct Use {
+    path: Names,
+    /// What it is called here; `*` for everything.
+    name: String,
+    /// Whether it is passed on.
+    public: bool,
+}
+
+/// What a module says.
+#[derive(Debug, Default)]
+struct Module {
+    file: String,
+    /// What it defines itself.
+    defines: BTreeSet<String>,
+    uses: Vec<Use>,
+    /// Paths in its code, and single names.
+    named: Vec<Names>,
+}
+
+/// All modules by their paths.
+#[derive(Debug, Default)]
+struct Crate(BTreeMap<Names, Module>);
+
+impl Crate {
+    /// Reads a file and those of the modules that it declares; modules of tests are not reached.
+    fn add_file(&mut self, sources: &BTreeMap<String, String>, file: &str, path: &[String]) {
+        let tokens = without_tests(&tokens(&sources[file]));
+        let mut declared = Vec::new();
+        self.add_module(&tokens, file, path, &mut declared);
+        let folder = match file.strip_suffix("mod.rs").or(file.strip_suffix("lib.rs")) {
+            Some(folder) => folder.to_owned(),
+            None => file.trim_end_matches(".rs").to_owned() + "/",
+        };
+        for child in declared {
+            let places = [format!("{folder}{child}.rs"), format!("{folder}{child}/mod.rs")];
+            let place = places.iter().find(|place| sources.contains_key(*place));
+            let place = place.unwrap_or_else(|| panic!("{file} declares {child}, of which there is no file"));
+            self.add_file(sources, place, &joined(path, &child));
+        }
+    }
+
+    /// Reads what a module says, and the modules in it.
+    fn add_module(&mut self, tokens: &[String], file: &str, path: &[String], declared: &mut Names) {
+        let mut module = Module { file: file.into(), ..Module::default() };
+        let (mut at, mut depth, mut public) = (0, 0, false);
+        while let Some(token) = tokens.get(at) {
+            let next = tokens.get(at + 1).map_or("", String::as_str);
+            match token.as_str() {
+                "use" => {
+                    let end = at + position(&tokens[at..], ";");
+                    add_uses(&tokens[at + 1..end], &[], public, &mut module.uses);
+                    at = end;
+                }
+                "mod" if depth == 0 && tokens.get(at + 2).is_some_and(|t| t == ";") => declared.push(next.into()),
+                "mod" if depth == 0 && is_name(next) => {
+                    let end = group_end(tokens, at + 2);
+                    self.add_module(&tokens[at + 3..end], file, &joined(path, next), declared);
+                    at = end;
+                }
+                "struct" | "enum" | "trait" | "type" | "fn" | "const" | "static" | "union" if depth == 0 => {
+                    module.defines.insert(next.into());
+                }
+                "{" => depth += 1,
+                "}" => depth -= 1,
+                name if is_name(name) => {
+                    let mut names = vec![name.to_owned()];
+                    while tokens.get(at + 1).is_some_and(|t| t == "::")
+                        && tokens.get(at + 2).is_some_and(|t| is_name(t))
+                    {
+                        names.push(tokens[at + 2].clone());
+                        at += 2;
+                    }
+                    module.named.push(names);
+                }
+                _ => {}
+            }
+            // `pub`, or the end of `pub(…)`: what follows is passed on.
+            public =
+                token == "pub" || (public && matches!(token.as_str(), "(" | "crate" | "super" | "in" | "::" | ")"));
+            at += 1;
+        }
+        self.0.insert(path.to_vec(), module);
+    }
+
+    /// From which files each file imports.
+    fn imports(&self) -> BTreeMap<String, BTreeSet<String>> {
+        let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (path, module) in &self.0 {
+            let from = imports.entry(module.file.clone()).or_default();
+            let heads: BTreeSet<&str> = module.named.iter().map(|names| &*names[0]).collect();
+            let used = module.uses.iter().filter(|u| !u.public || heads.contains(&*u.name)).map(|u| &u.path);
+            for names in used.chain(module.named.iter().filter(|names| names.len() > 1)) {
+                from.extend(self.place(path, names, 0).filter(|file| *file != module.file));
+            }
+        }
+        imports
+    }
+
+    /// The file that defines what a path names in a module; none for modules themselves and what is of other crates.
+    fn place(&self, module: &[String], names: &[String], depth: usize) -> Option<String> {
+        let (mut at, mut rest) = self.begin(module, names)?;
+        while let [next, more @ ..] = rest
+            && self.0.contains_key(&joined(&at, next))
+        {
+            at = joined(&at, next);
+            rest = more;
+        }
+        let (here, name) = (self.0.get(&at)?, rest.first()?);
+        if here.defines.contains(name) || name == "*" {
+            return Some(here.file.clone());
+        }
+        // Names that lead back to themselves lead nowhere.
+        let further = |u: &Use, rest: &[String]| {
+            let path = [u.path.strip_suffix(&["*".to_owned()]).unwrap_or(&u.path), rest].concat();
+            (depth < 20).then(|| self.place(&at, &path, depth + 1))?
+        };
+        match here.uses.iter().find(|u| u.name == *name) {
+            Some(u) => further(u, &rest[1..]),
+            None => here.uses.iter().filter(|u| u.name == "*").find_map(|u| further(u, rest)),
+        }
+    }
+
+    /// The module where a path begins, and the names behind.
+    fn begin<'a>(&self, module: &[String], names: &'a [String]) -> Option<(Names, &'a [String])> {
+        let (first, rest) = names.split_first()?;
+        match first.as_str() {
+            "crate" => Some((Names::new(), rest)),
+            "self" => Some((module.to_vec(), rest)),
+            "super" => {
+                let above = &module[..module.len().checked_sub(1)?];
+                if rest.first().is_some_and(|next| next == "super") {
+                    return self.begin(above, rest);
+                }
+                Some((above.to_vec(), rest))
+            }
+            name => {
+                let here = self.0.get(module)?;
+                let known = self.0.contains_key(&joined(module, name)) || here.uses.iter().any(|u| u.name == name);
+                known.then(|| (module.to_vec(), names))
+            }
+        }
+    }
+}
+
+/// The names of a tree of imports.
+fn add_uses(tokens: &[String], before: &[String], public: bool, uses: &mut Vec<Use>) {
+    let mut path = before.to_vec();
+    let mut at = 0;
+    while let Some(token) = tokens.get(at) {
+        match token.as_str() {
+            "{" => {
+                let end = group_end(tokens, at);
+                split_at_commas(&tokens[at + 1..end]).for_each(|tree| add_uses(tree, &path, public, uses));
+                return;
+            }
+            "::" => {}
+            "as" => {
+                let name = tokens[at + 1].clone();
+                uses.push(Use { path, name, public });
+                return;
+            }
+            name => path.push(name.into()),
+        }
+        at += 1;
+    }
+    // `self` at the end of a group stands for the module of the group.
+    if path.last().is_some_and(|last| last == "self") && path.len() > 1 {
+        path.pop();
+    }
+    if let Some(name) = path.last().cloned() {
+        uses.push(Use { path, name, public });
+    }
+}
+
+fn split_at_commas(tokens: &[String]) -> impl Iterator<Item = &[String]> {
+    let mut depth = 0;
+    let parts = tokens.split(move |token| {
+        depth += i32::from(token == "{") - i32::from(token == "}");
+        depth == 0 && token == ","
+    });
+    parts.filter(|part| !part.is_empty())
+}
+
+fn joined(path: &[String], name: &str) -> Names {
+    [path, &[name.to_owned()]].concat()
+}
+
+fn is_name(token: &str) -> bool {
+    token.starts_with(|c: char| c.is_alphabetic() || c == '_')
+}
+
+/// Where a token is next; the end when it is nowhere.
+fn position(tokens: &[String], wanted: &str) -> usize {
+    tokens.iter().position(|token| token == wanted).unwrap_or(tokens.len())
+}
+
+/// Where the group ends that begins here.
+fn group_end(tokens: &[String], start: usize) -> usize {
+    let mut depth = 0;
+    for (i, token) in tokens.iter().enumerate().skip(start) {
+        depth +=
+            i32::from(matches!(token.as_str(), "{" | "(" | "[")) - i32::from(matches!(token.as_str(), "}" | ")" | "]"));
+        if depth == 0 {
+            return i;
+        }
+    }
+    tokens.len()
+}
+
+/// Leaves out every item behind `#[cfg(test)]`, and all attributes.
+fn without_tests(tokens: &[String]) -> Vec<String> {
+    let (mut kept, mut at, mut test) = (Vec::new(), 0, false);
+    while let Some(token) = tokens.get(at) {
+        if token == "#" {
+            let open = at + position(&tokens[at..], "[");
+            let end = group_end(tokens, open);
+            test |= tokens[open..end].join("") == "[cfg(test)";
+            at = end + 1;
+            continue;
+        }
+        if test {
+            let end = at + position(&tokens[at..], ";");
+            let block = at + position(&tokens[at..], "{");
+            at = if block < end && token != "use" { group_end(tokens, block) } else { end };
+            test = false;
+        } else {
+            kept.push(token.clone());
+        }
+        at += 1;
+    }
+    kept
+}
+
+/// Names, `::` and single signs; comments are left out, and what is in quotes.
+fn tokens(source: &str) -> Names {
+    let mut tokens = Names::new();
+    let mut rest = source;
+    while let Some(c) = rest.chars().next() {
+        let length = if rest.starts_with("//") {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if rest.starts_with("/*") {
+            rest.find("*/").map_or(rest.len(), |end| end + 2)
+        } else if let Some(length) = quoted(rest) {
+            length
+        } else if c.is_alphanumeric() || c == '_' {
+            let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+            tokens.push(rest[..length].into());
+            length
+        } else {
+            let length = if rest.starts_with("::") { 2 } else { c.len_utf8() };
+            if !c.is_whitespace() {
+                tokens.push(rest[..length].into());
+            }
+            length
+        };
+        rest = &rest[length..];
+    }
+    tokens
+}
+
+/// How long the text or character in quotes is that begins here; none when there is none.
+fn quoted(rest: &str) -> Option<usize> {
+    let raw = rest.strip_prefix('b').unwrap_or(rest);
+    if let Some(hashes) = raw.strip_prefix('r') {
+        let body = hashes.trim_start_matches('#');
+        if let Some(text) = body.strip_prefix('"') {
+            let end = String::from("\"") + &"#".repeat(hashes.len() - body.len());
+            let length = text.find(&end).map_or(text.len(), |at| at + end.len());
+            return Some(rest.len() - text.len() + length);
+        }
+    }
+    let quote = raw.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+    let start = rest.len() - raw.len() + 1;
+    let mut escaped = false;
+    for (i, c) in rest[start..].char_indices() {
+        match c {
+            _ if escaped => escaped = false,
+            '\\' => escaped = true,
+            c if c == quote => return Some(start + i + 1),
+            // A lifetime is not closed.
+            _ if quote == '\'' && i > 0 && !rest[start..].starts_with('\\') => return None,
+            _ => {}
+        }
+    }
+    None
+}
+
+fn circles_of(files: &[(&str, &str)]) -> Vec<Vec<String>> {
+    circles(&files.iter().map(|&(file, source)| (file.to_owned(), source.to_owned())).collect())
+}
+
+#[test]
+fn circles_are_found_through_groups_and_re_exports() {
+    let lib = ("lib.rs", "pub mod a;\npub mod b;");
+    // Through a group with a new name, and through a path in the code.
+    let a = ("a.rs", "use crate::{b::{self as other, Y as Z}};\npub struct X;\nfn f(_: Z, _: other::Y) {}");
+    let b = ("b.rs", "pub struct Y;\nfn g(_: super::a::X) {}");
+    assert_eq!(circles_of(&[lib, a, b]), [["a.rs", "b.rs"]]);
+    assert!(
+        circles_of(&[lib, a, ("b.rs", "pub struct Y; // super::a::X\nconst S: &str = \"crate::a::X\";")]).is_empty()
+    );
+    // A module that is imported, but of which nothing is named.
+    assert!(circles_of(&[lib, ("a.rs", "use crate::b;\npub struct X;"), b]).is_empty());
+    // A function called through its module.
+    let called = ("a.rs", "use crate::b;\npub struct X;\nfn f() { let _ = 'b'; b::g('\\''); }");
+    assert_eq!(circles_of(&[lib, called, ("b.rs", "use crate::a::*;\npub fn g(_: char) {}")]), [["a.rs", "b.rs"]]);
+}
+
+#[test]
+fn a_module_that_only_declares_is_in_no_circle() {
+    let lib = ("lib.rs", "mod room;");
+    let only = ("room/mod.rs", "mod a;\nmod b;\npub use a::A;\npub(crate) use b::*;");
+    let a = ("room/a.rs", "use super::B;\npub struct A;");
+    let b = ("room/b.rs", "pub struct B;");
+    assert!(circles_of(&[lib, only, a, b]).is_empty());
+    // Siblings that name each other through it.
+    assert_eq!(circles_of(&[lib, only, a, ("room/b.rs", "pub struct B(super::A);")]), [["room/a.rs", "room/b.rs"]]);
+    // It defines something, and uses what it passes on.
+    let more = ("room/mod.rs", "mod a;\npub use a::A;\npub struct Own(A);");
+    let child = ("room/a.rs", "pub struct A;\nimpl A { fn own(&self) -> Option<super::Own> { None } }");
+    assert_eq!(circles_of(&[lib, more, child]), [["room/a.rs", "room/mod.rs"]]);
+}
+
+#[test]
+fn tests_are_in_no_circle() {
+    let lib = ("lib.rs", "mod a;\nmod b;");
+    let a = ("a.rs", "use crate::b::B;\npub struct A<'a>(&'a B);\n#[cfg(test)]\n#[path = \"a_tests.rs\"]\nmod tests;");
+    let b = ("b.rs", "pub struct B;\n#[cfg(test)]\nuse crate::a::{A};\n#[cfg(test)]\nmod tests { use crate::a::A; }");
+    assert!(circles_of(&[lib, a, b, ("a_tests.rs", "use super::A;")]).is_empty());
+    // A module within a file is of this file.
+    let inner = ("b.rs", "pub struct B;\nmod inner { use super::super::a::A; }");
+    assert_eq!(circles_of(&[lib, a, inner]), [["a.rs", "b.rs"]]);
 }

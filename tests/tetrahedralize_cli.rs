@@ -1,8 +1,8 @@
 //! `anastomesh tetrahedralize` as it is run: formats, switches, exit codes, messages, files.
 
 use anastomesh::geometry::Point3;
-use anastomesh::io::mesh_file::{MeshFormat, read_mesh, read_mesh_from};
 use anastomesh::io::surface::write_surface;
+use anastomesh::io::volume::{MeshFormat, read_mesh, read_mesh_from};
 use anastomesh::mesh::TriMesh;
 use serde_json::Value;
 use std::fmt::Write as _;

@@ -1,13 +1,12 @@
 //! Whatever the bytes: a network or an error; what is read is sound, or said not to be.
 #![no_main]
 
-use anastomesh::io::network::{NetworkFormat, NetworkOptions, parse_network};
+use anastomesh::io::network::{NetworkFormat, NetworkOptions, read_network_from};
 use anastomesh::skeleton::clean;
 use libfuzzer_sys::fuzz_target;
-use std::path::Path;
 
 fuzz_target!(|bytes: &[u8]| {
-    if let Ok(file) = parse_network(bytes, NetworkFormat::Swc, &NetworkOptions::default(), Path::new("fuzzed")) {
+    if let Ok(file) = read_network_from(bytes, NetworkFormat::Swc, &NetworkOptions::default()) {
         let _ = clean(&file.skeleton);
     }
 });

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use super::exit::{Exit, Failure};
 use super::room;
-use crate::io::mesh_file::{MeshFormat, read_mesh};
-use crate::io::vtu::{VtuPieces, VtuPiecesError};
+use crate::io::volume::{MeshFormat, read_mesh};
+use crate::io::volume::{VtuPieces, VtuPiecesError};
 use crate::mesh::check::parts::{PiecesError, check_pieces};
 use crate::mesh::check::{CheckReport, Verdict, check_tets, check_volume};
 use crate::mesh::{TET_FACES, VolumeMesh};

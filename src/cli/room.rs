@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::exit::Failure;
-use crate::io::mesh_file::MeshFormat;
+use crate::io::volume::MeshFormat;
 use crate::pipeline::store::{KeyMaker, Manifest, Store};
 use crate::pipeline::{Estimate, MeshPlan, TooLarge};
 use crate::skeleton::Skeleton;

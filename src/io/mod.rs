@@ -1,47 +1,29 @@
-//! Floor 3: readers and writers, one file per format.
+//! Floor 3: readers and writers.
+//!
+//! Three families of files, each with a folder per format: `volume` (tetrahedral meshes), `network` and `surface`. `tetgen`
+//! stands apart because its files are more than one of these. What formats share: `file` (paths, whole files), `text` (words
+//! and numbers with their lines), `vtk_xml`, `patches` (names).
+//!
+//! A new format of a family takes
+//! 1. a folder with `error` (an enum of what can be wrong with such a file), `read` and `write`: from bytes or a path to the
+//!    family's `content` and from there to a stream. It knows neither the other formats nor what paths there are;
+//! 2. a variant of the enum in the family's `format`, with its extensions, and one of the enum of faults in its `error`;
+//! 3. an arm in the family's `read` and in its `write`, which the compiler then asks for.
+//!
+//! A volume mesh is written from passes over a [`MeshSource`](crate::mesh::source::MeshSource), so that memory does not grow
+//! with it; where a format needs the whole, `volume::write` gathers it.
 
-mod atomic;
-mod bits;
-mod counted;
 #[cfg(test)]
-mod cut_source;
-mod file_error;
-pub mod medit;
-#[cfg(test)]
-mod medit_tests;
-pub mod mesh_file;
-pub mod msh;
-mod msh_read;
-mod msh_surfaces;
+mod damage;
+mod file;
 pub mod network;
-mod packed;
-pub mod pvtu;
-mod pvtu_folder;
-mod pvtu_plan;
-mod pvtu_read;
-#[cfg(test)]
-mod pvtu_tests;
-#[cfg(test)]
-mod source_tests;
+mod patches;
 pub mod surface;
 pub mod tetgen;
 mod text;
-pub mod vtk_xml;
-pub mod vtu;
-mod vtu_blocks;
-mod vtu_pieces;
-mod vtu_read;
+pub mod volume;
+mod vtk_xml;
 
-pub use file_error::FileError;
+pub use file::{FileError, write_text};
 pub use text::TextFault;
-
-/// Writes a text file: whole or not at all.
-///
-/// # Errors
-/// What the operating system reports.
-pub fn write_text(path: &std::path::Path, text: &str) -> std::io::Result<()> {
-    use std::io::Write as _;
-    let mut file = atomic::AtomicFile::create(path)?;
-    file.write_all(text.as_bytes())?;
-    file.commit()
-}
+pub use vtk_xml::VtkError;

@@ -219,6 +219,34 @@ impl<'a> Words<'a> {
         TextFault::NotANumber { line: self.line, what, text: shown(word) }
     }
 
+    /// The next number of this line.
+    pub(super) fn float_here(&mut self, what: &'static str) -> Result<f64, TextFault> {
+        let word = self.need_here(what)?;
+        self.as_float(word, what)
+    }
+
+    /// The next finite number of this line.
+    pub(super) fn finite_here(&mut self, what: &'static str) -> Result<f64, TextFault> {
+        let word = self.need_here(what)?;
+        self.as_finite(word, what)
+    }
+
+    /// The next word of this line as a marker or label.
+    pub(super) fn marker_here(&mut self, what: &'static str) -> Result<i32, TextFault> {
+        let word = self.need_here(what)?;
+        self.as_marker(word, what)
+    }
+
+    /// The next word of this line as a count, as in [`Self::count`]; 0 at the end of the line.
+    pub(super) fn count_here(&mut self, what: &'static str, least: usize) -> Result<usize, TextFault> {
+        self.word_here().map_or(Ok(0), |word| self.as_count(word, what, least))
+    }
+
+    /// The next word of this line as a number that says whether there is something; no at the end of the line.
+    pub(super) fn flag_here(&mut self, what: &'static str) -> Result<bool, TextFault> {
+        self.word_here().map_or(Ok(false), |word| Ok(self.as_integer(word, what)? != 0))
+    }
+
     /// The next number, in this line or below.
     pub(super) fn finite(&mut self, what: &'static str) -> Result<f64, TextFault> {
         let word = self.need(what)?;
@@ -234,8 +262,7 @@ impl<'a> Words<'a> {
     pub(super) fn point_here(&mut self) -> Result<Point3, TextFault> {
         let mut point = Point3::origin();
         for (axis, what) in ["coordinate x", "coordinate y", "coordinate z"].into_iter().enumerate() {
-            let word = self.need_here(what)?;
-            point[axis] = self.as_finite(word, what)?;
+            point[axis] = self.finite_here(what)?;
         }
         Ok(point)
     }
@@ -253,7 +280,7 @@ impl<'a> Words<'a> {
     }
 
     /// A word as a count of things that take at least `least` bytes each.
-    pub(super) fn as_count(&self, word: &[u8], what: &'static str, least: usize) -> Result<usize, TextFault> {
+    fn as_count(&self, word: &[u8], what: &'static str, least: usize) -> Result<usize, TextFault> {
         let count = self.as_integer(word, what)?;
         let line = self.line;
         if count < 0 {
@@ -266,6 +293,12 @@ impl<'a> Words<'a> {
         }
         Ok(count as usize)
     }
+}
+
+/// The index of what is numbered from `first` on, if there are so many.
+pub(super) fn from_first(number: i64, first: u32, count: usize) -> Option<u32> {
+    let index = number.checked_sub(first.into()).and_then(|index| usize::try_from(index).ok());
+    index.filter(|&index| index < count).map(|index| index as u32)
 }
 
 /// The beginning of a word, for a message.

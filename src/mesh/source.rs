@@ -1,7 +1,10 @@
-//! A labelled mesh that is read in passes, a piece at a time: what writers write, whether the mesh stands in memory or
-//! is put together from blocks on the way.
+//! A labelled mesh that is read a part at a time: what writers write and what is checked by its parts, whether the mesh
+//! stands in memory, in a file, or is put together from blocks on the way.
 
+use std::borrow::Cow;
 use std::io;
+
+use rayon::prelude::*;
 
 use super::{Patch, VolumeMesh};
 use crate::geometry::Point3;
@@ -18,97 +21,179 @@ pub struct SourceCounts {
 }
 
 /// Consecutive tetrahedra.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct TetPiece<'a> {
     /// Vertices, as indices into the whole mesh's points.
-    pub tets: &'a [[u32; 4]],
+    pub tets: Cow<'a, [[u32; 4]]>,
     /// Block of each tetrahedron; may be empty when blocks are not known, then all are 0.
-    pub blocks: &'a [i32],
+    pub blocks: Cow<'a, [i32]>,
 }
 
 /// Consecutive boundary faces.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct FacePiece<'a> {
     /// Vertices, oriented outwards, as indices into the whole mesh's points.
-    pub faces: &'a [[u32; 3]],
+    pub faces: Cow<'a, [[u32; 3]]>,
     /// Patch of each face; may be empty when the boundary is not labelled, then all are 0.
-    pub patches: &'a [i32],
+    pub patches: Cow<'a, [i32]>,
     /// Block of the tetrahedron under each face; may be empty when blocks are not known, then all are 0.
-    pub blocks: &'a [i32],
+    pub blocks: Cow<'a, [i32]>,
 }
 
-/// Takes consecutive points; what it fails with ends the pass.
-pub type EachPoints<'a> = &'a mut dyn FnMut(&[Point3]) -> io::Result<()>;
-
-/// Takes consecutive tetrahedra; what it fails with ends the pass.
-pub type EachTets<'a> = &'a mut dyn FnMut(TetPiece) -> io::Result<()>;
-
-/// Takes consecutive boundary faces; what it fails with ends the pass.
-pub type EachFaces<'a> = &'a mut dyn FnMut(FacePiece) -> io::Result<()>;
-
 /// The blocks, or patches and blocks, of consecutive tetrahedra or boundary faces.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct LabelPiece<'a> {
     /// How many tetrahedra or faces.
     pub count: usize,
     /// As in [`FacePiece`]; empty for tetrahedra.
-    pub patches: &'a [i32],
+    pub patches: Cow<'a, [i32]>,
     /// As in [`TetPiece`] and [`FacePiece`].
-    pub blocks: &'a [i32],
+    pub blocks: Cow<'a, [i32]>,
 }
 
-/// Takes consecutive labels; what it fails with ends the pass.
-pub type EachLabels<'a> = &'a mut dyn FnMut(LabelPiece) -> io::Result<()>;
-
-/// A labelled mesh, read in passes. Every pass gives the same things in the same order; how they are cut into pieces says
-/// nothing. A pass may be made inside another one: no lock may be held while `each` runs.
+/// A labelled mesh in parts. What of it is read part by part, in ascending order, is the mesh: its points, its tetrahedra
+/// and its boundary are numbered in this order. Parts may be read at the same time, and over and over again. A mesh that
+/// stands in memory is one part.
 pub trait MeshSource: Sync {
-    /// How much there is.
+    /// How much there is in all parts.
     fn counts(&self) -> SourceCounts;
 
     /// The patches, in ascending order of their id.
     fn patches(&self) -> &[Patch];
 
-    /// Gives all points, in order.
-    ///
-    /// # Errors
-    /// What reading the mesh or `each` fails with.
-    fn points(&self, each: EachPoints) -> io::Result<()>;
+    /// Number of parts.
+    fn parts(&self) -> u32;
 
-    /// Gives all tetrahedra, in order.
+    /// The points that a part adds to those of the parts before it; its tetrahedra may name others.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
-    fn tets(&self, each: EachTets) -> io::Result<()>;
+    /// What reading the mesh fails with.
+    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>>;
 
-    /// Gives all boundary faces, in order.
+    /// The tetrahedra of a part.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
-    fn boundary(&self, each: EachFaces) -> io::Result<()>;
+    /// What reading the mesh fails with.
+    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>>;
 
-    /// Gives what [`tets`](Self::tets) says of blocks, without the tetrahedra.
+    /// The boundary faces of a part.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
-    fn tet_labels(&self, each: EachLabels) -> io::Result<()> {
-        self.tets(&mut |TetPiece { tets, blocks }| each(LabelPiece { count: tets.len(), patches: &[], blocks }))
+    /// What reading the mesh fails with.
+    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>>;
+
+    /// What [`tets`](Self::tets) says of blocks, without the tetrahedra.
+    ///
+    /// # Errors
+    /// What reading the mesh fails with.
+    fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
+        let TetPiece { tets, blocks } = self.tets(part)?;
+        Ok(LabelPiece { count: tets.len(), blocks, ..LabelPiece::default() })
     }
 
-    /// Gives what [`boundary`](Self::boundary) says of patches and blocks, without the faces.
+    /// What [`boundary`](Self::boundary) says of patches and blocks, without the faces.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
-    fn face_labels(&self, each: EachLabels) -> io::Result<()> {
-        self.boundary(&mut |FacePiece { faces, patches, blocks }| {
-            each(LabelPiece { count: faces.len(), patches, blocks })
-        })
+    /// What reading the mesh fails with.
+    fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
+        let FacePiece { faces, patches, blocks } = self.boundary(part)?;
+        Ok(LabelPiece { count: faces.len(), patches, blocks })
+    }
+
+    /// The points of these numbers, which ascend and exist. Sources that can look into the middle of their points do not
+    /// read all of them for it.
+    ///
+    /// # Errors
+    /// What reading the mesh fails with.
+    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
+        let mut found = Vec::with_capacity(ids.len());
+        let mut before = 0;
+        for part in 0..self.parts() {
+            let points = self.points(part)?;
+            let here = ids[found.len()..].iter().map_while(|&id| points.get(id as usize - before));
+            found.extend(here.copied());
+            before += points.len();
+        }
+        Ok(found)
     }
 
     /// The whole mesh, when it stands in memory: for formats that cannot be written in passes.
     fn whole(&self) -> Option<&VolumeMesh> {
         None
     }
+}
+
+/// Passes over all parts in order. What `each` fails with ends the pass, and a mesh that does not hold as much as it says
+/// fails with `InvalidData`: writers write counts before they see what is counted. A pass may be made inside another one.
+impl dyn MeshSource + '_ {
+    /// Gives all points.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_points(&self, mut each: impl FnMut(&[Point3]) -> io::Result<()>) -> io::Result<()> {
+        let read = |part| self.points(part);
+        self.in_order(self.counts().points, read, |points| points.len(), |points| each(points))
+    }
+
+    /// Gives all tetrahedra.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_tets(&self, each: impl FnMut(&TetPiece) -> io::Result<()>) -> io::Result<()> {
+        self.in_order(self.counts().tets, |part| self.tets(part), |piece| piece.tets.len(), each)
+    }
+
+    /// Gives all boundary faces.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_faces(&self, each: impl FnMut(&FacePiece) -> io::Result<()>) -> io::Result<()> {
+        self.in_order(self.counts().boundary, |part| self.boundary(part), |piece| piece.faces.len(), each)
+    }
+
+    /// Gives the labels of all tetrahedra.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_tet_labels(&self, each: impl FnMut(&LabelPiece) -> io::Result<()>) -> io::Result<()> {
+        self.in_order(self.counts().tets, |part| self.tet_labels(part), |piece| piece.count, each)
+    }
+
+    /// Gives the labels of all boundary faces.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_face_labels(&self, each: impl FnMut(&LabelPiece) -> io::Result<()>) -> io::Result<()> {
+        self.in_order(self.counts().boundary, |part| self.face_labels(part), |piece| piece.count, each)
+    }
+
+    /// Reads some parts at a time on all threads, and gives what was read in the parts' order.
+    fn in_order<T: Send>(
+        &self,
+        expected: usize,
+        read: impl Fn(u32) -> io::Result<T> + Sync,
+        count: impl Fn(&T) -> usize,
+        mut each: impl FnMut(&T) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let mut left = expected;
+        for first in (0..self.parts()).step_by(AT_A_TIME as usize) {
+            let parts = first..self.parts().min(first + AT_A_TIME);
+            for piece in parts.into_par_iter().map(&read).collect::<Vec<_>>() {
+                let piece = piece?;
+                left = left.checked_sub(count(&piece)).ok_or_else(miscounted)?;
+                each(&piece)?;
+            }
+        }
+        if left == 0 { Ok(()) } else { Err(miscounted()) }
+    }
+}
+
+/// Parts that are held at a time.
+const AT_A_TIME: u32 = 64;
+
+/// A source gave something else than it had announced.
+pub(crate) fn miscounted() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, "the mesh does not hold as much as it says")
 }
 
 /// Puts a mesh together in memory.
@@ -120,19 +205,19 @@ pub fn gather(source: &dyn MeshSource) -> io::Result<VolumeMesh> {
     let mut volume = VolumeMesh { patches: source.patches().to_vec(), ..VolumeMesh::default() };
     volume.mesh.points.reserve_exact(counts.points);
     volume.mesh.tets.reserve_exact(counts.tets);
-    source.points(&mut |points| {
+    source.each_points(|points| {
         volume.mesh.points.extend_from_slice(points);
         Ok(())
     })?;
-    source.tets(&mut |piece| {
-        volume.mesh.tets.extend_from_slice(piece.tets);
-        extend_or_zero(&mut volume.tet_block, piece.blocks, piece.tets.len());
+    source.each_tets(|piece| {
+        volume.mesh.tets.extend_from_slice(&piece.tets);
+        extend_or_zero(&mut volume.tet_block, &piece.blocks, piece.tets.len());
         Ok(())
     })?;
-    source.boundary(&mut |piece| {
-        volume.boundary.extend_from_slice(piece.faces);
-        extend_or_zero(&mut volume.boundary_patch, piece.patches, piece.faces.len());
-        extend_or_zero(&mut volume.boundary_block, piece.blocks, piece.faces.len());
+    source.each_faces(|piece| {
+        volume.boundary.extend_from_slice(&piece.faces);
+        extend_or_zero(&mut volume.boundary_patch, &piece.patches, piece.faces.len());
+        extend_or_zero(&mut volume.boundary_block, &piece.blocks, piece.faces.len());
         Ok(())
     })?;
     Ok(volume)
@@ -154,16 +239,24 @@ impl MeshSource for VolumeMesh {
         &self.patches
     }
 
-    fn points(&self, each: EachPoints) -> io::Result<()> {
-        each(&self.mesh.points)
+    fn parts(&self) -> u32 {
+        1
     }
 
-    fn tets(&self, each: EachTets) -> io::Result<()> {
-        each(TetPiece { tets: &self.mesh.tets, blocks: &self.tet_block })
+    fn points(&self, _: u32) -> io::Result<Cow<'_, [Point3]>> {
+        Ok(Cow::Borrowed(&self.mesh.points))
     }
 
-    fn boundary(&self, each: EachFaces) -> io::Result<()> {
-        each(FacePiece { faces: &self.boundary, patches: &self.boundary_patch, blocks: &self.boundary_block })
+    fn tets(&self, _: u32) -> io::Result<TetPiece<'_>> {
+        Ok(TetPiece { tets: Cow::Borrowed(&self.mesh.tets), blocks: Cow::Borrowed(&self.tet_block) })
+    }
+
+    fn boundary(&self, _: u32) -> io::Result<FacePiece<'_>> {
+        Ok(FacePiece {
+            faces: Cow::Borrowed(&self.boundary),
+            patches: Cow::Borrowed(&self.boundary_patch),
+            blocks: Cow::Borrowed(&self.boundary_block),
+        })
     }
 
     fn whole(&self) -> Option<&VolumeMesh> {

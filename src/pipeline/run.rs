@@ -229,7 +229,7 @@ impl<'a> Joined<'a> {
 fn mesh_size(mesh: &dyn MeshSource) -> io::Result<MeshSize> {
     let SourceCounts { points, tets, boundary } = mesh.counts();
     let mut wall_triangles = 0;
-    mesh.boundary(&mut |piece| {
+    mesh.each_faces(|piece| {
         wall_triangles += piece.patches.iter().filter(|&&patch| patch == WALL).count();
         Ok(())
     })?;

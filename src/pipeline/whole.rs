@@ -1,10 +1,9 @@
 //! The whole mesh as a plan over stored blocks: which number each vertex and tetrahedron gets, and passes over them in
 //! that order. Nothing but the plan is held; blocks are read when their turn comes.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::io;
-
-use rayon::prelude::*;
 
 use super::make::{JointPlace, Kept, joints_of_cut};
 use super::report::MeshSize;
@@ -12,12 +11,11 @@ use super::rounds::Blocks;
 use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
 use crate::block::{FinishedJoint, Record};
+use crate::geometry::Point3;
 use crate::mesh::adjacency::face_vertices;
 use crate::mesh::check::Expectation;
 use crate::mesh::check::parts::{Certificate, JointFaces, Parts, PartsCheck, WallPiece, check_parts};
-use crate::mesh::source::{
-    EachFaces, EachLabels, EachPoints, EachTets, FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece,
-};
+use crate::mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
 use crate::mesh::{Patch, WALL};
 use crate::skeleton::Skeleton;
 
@@ -35,9 +33,6 @@ pub struct Whole<'a> {
     joined: Vec<[(u32, u32); 2]>,
     counts: SourceCounts,
 }
-
-/// Parts that are read at a time, where they are read on all threads.
-const AT_A_TIME: usize = 64;
 
 /// One part's place in the whole.
 #[derive(Clone, Copy, Debug)]
@@ -139,22 +134,6 @@ impl<'a> Whole<'a> {
         self.store.bytes(part.kept.record)
     }
 
-    /// Makes something of every part, some at a time on all threads, and takes it in the parts' order.
-    fn in_order<T: Send>(
-        &self,
-        make: impl Fn(usize, PartPlan) -> io::Result<T> + Sync,
-        mut take: impl FnMut(PartPlan, T) -> io::Result<()>,
-    ) -> io::Result<()> {
-        for (chunk, parts) in self.parts.chunks(AT_A_TIME).enumerate() {
-            let one = |(i, &part): (usize, &PartPlan)| make(chunk * AT_A_TIME + i, part);
-            let made: Vec<io::Result<T>> = parts.par_iter().enumerate().map(one).collect();
-            for (&part, made) in parts.iter().zip(made) {
-                take(part, made?)?;
-            }
-        }
-        Ok(())
-    }
-
     /// Numbers of the vertices that a part shares with earlier ones.
     fn shared(&self, part: PartPlan) -> io::Result<Vec<u32>> {
         let mut shared = Vec::with_capacity(part.kept.sizes.shared as usize);
@@ -180,7 +159,7 @@ impl<'a> Whole<'a> {
     }
 
     /// Boundary faces of the whole that a part has, ascending, each with its patch.
-    fn outer_faces(&self, index: usize, record: &Record<StoredBytes>) -> io::Result<Vec<(u32, i32)>> {
+    fn outer_faces(&self, part: u32, record: &Record<StoredBytes>) -> io::Result<Vec<(u32, i32)>> {
         let mut faces: Vec<(u32, i32)> = record.wall()?.into_iter().map(|face| (face, WALL)).collect();
         if record.sizes().caps > 0 {
             for cap in record.caps()? {
@@ -189,8 +168,8 @@ impl<'a> Whole<'a> {
                 faces.extend(cap.faces.into_iter().map(|face| (face, patch)));
             }
         }
-        let first = JointPlace { part: index as u32, joint: 0 };
-        let last = JointPlace { part: index as u32, joint: u32::MAX };
+        let first = JointPlace { part, joint: 0 };
+        let last = JointPlace { part, joint: u32::MAX };
         if self.open.range(first..=last).next().is_some() {
             let joints = record.joints()?;
             for place in self.open.range(first..=last) {
@@ -242,55 +221,48 @@ impl MeshSource for Whole<'_> {
         &self.patches
     }
 
-    fn points(&self, each: EachPoints) -> io::Result<()> {
-        let own = |_, part: PartPlan| {
-            Ok(Record::open(&self.record(part))?.points()?.split_off(part.kept.sizes.shared as usize))
-        };
-        self.in_order(own, |_, points| each(&points))
+    fn parts(&self) -> u32 {
+        self.parts.len() as u32
     }
 
-    fn tets(&self, each: EachTets) -> io::Result<()> {
-        let numbered = |_, part| {
-            let numbers = self.numbers(part)?;
-            let mut tets = Record::open(&self.record(part))?.tets()?;
-            tets.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
-            Ok(tets)
-        };
-        self.in_order(numbered, |part, tets| each(TetPiece { tets: &tets, blocks: &vec![part.block; tets.len()] }))
+    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
+        let part = self.parts[part as usize];
+        let points = Record::open(&self.record(part))?.points()?.split_off(part.kept.sizes.shared as usize);
+        Ok(points.into())
     }
 
-    fn boundary(&self, each: EachFaces) -> io::Result<()> {
-        let numbered = |index, part| {
-            let numbers = self.numbers(part)?;
-            let bytes = self.record(part);
-            let record = Record::open(&bytes)?;
-            let tets = record.tets()?;
-            let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(index, &record)?.into_iter().unzip();
-            let triangle = |&face: &u32| face_vertices(&tets, face).map(|v| numbers[v as usize]);
-            Ok((faces.iter().map(triangle).collect(), patches))
-        };
-        self.in_order(numbered, |part, (faces, patches): (Vec<[u32; 3]>, Vec<i32>)| {
-            each(FacePiece { faces: &faces, patches: &patches, blocks: &vec![part.block; faces.len()] })
-        })
+    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
+        let part = self.parts[part as usize];
+        let numbers = self.numbers(part)?;
+        let mut tets = Record::open(&self.record(part))?.tets()?;
+        tets.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
+        let blocks = vec![part.block; tets.len()].into();
+        Ok(TetPiece { tets: tets.into(), blocks })
     }
 
-    fn tet_labels(&self, each: EachLabels) -> io::Result<()> {
-        for part in &self.parts {
-            let count = part.kept.sizes.tets as usize;
-            each(LabelPiece { count, patches: &[], blocks: &vec![part.block; count] })?;
-        }
-        Ok(())
+    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
+        let plan = self.parts[part as usize];
+        let numbers = self.numbers(plan)?;
+        let bytes = self.record(plan);
+        let record = Record::open(&bytes)?;
+        let tets = record.tets()?;
+        let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(part, &record)?.into_iter().unzip();
+        let triangle = |&face: &u32| face_vertices(&tets, face).map(|v| numbers[v as usize]);
+        let blocks = vec![plan.block; faces.len()].into();
+        Ok(FacePiece { faces: faces.iter().map(triangle).collect(), patches: patches.into(), blocks })
     }
 
-    fn face_labels(&self, each: EachLabels) -> io::Result<()> {
-        let patches = |index, part| {
-            let faces = self.outer_faces(index, &Record::open(&self.record(part))?)?;
-            Ok(faces.into_iter().map(|(_, patch)| patch).collect())
-        };
-        self.in_order(patches, |part, patches: Vec<i32>| {
-            let count = patches.len();
-            each(LabelPiece { count, patches: &patches, blocks: &vec![part.block; count] })
-        })
+    fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
+        let part = self.parts[part as usize];
+        let count = part.kept.sizes.tets as usize;
+        Ok(LabelPiece { count, blocks: vec![part.block; count].into(), ..LabelPiece::default() })
+    }
+
+    fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
+        let plan = self.parts[part as usize];
+        let faces = self.outer_faces(part, &Record::open(&self.record(plan))?)?;
+        let patches = faces.iter().map(|(_, patch)| *patch).collect();
+        Ok(LabelPiece { count: faces.len(), patches, blocks: vec![plan.block; faces.len()].into() })
     }
 }
 
@@ -307,7 +279,7 @@ impl Parts for Whole<'_> {
         let plan = self.parts[part as usize];
         let bytes = self.record(plan);
         let record = Record::open(&bytes)?;
-        let faces: Vec<u32> = self.outer_faces(part as usize, &record)?.into_iter().map(|(face, _)| face).collect();
+        let faces: Vec<u32> = self.outer_faces(part, &record)?.into_iter().map(|(face, _)| face).collect();
         let (points, tets, numbers) = (record.points()?, record.tets()?, self.numbers(plan)?);
         let faces = faces.iter().map(|&face| face_vertices(&tets, face)).collect();
         let (faces, vertices) = compact(faces, points.len());

@@ -1,18 +1,20 @@
+use super::vtp;
 use super::*;
+use crate::io::file::FileError;
 use crate::io::vtk_xml::VtkError;
 use proptest::prelude::*;
 
 const TREE_VTP: &[u8] = include_bytes!("../../../fixtures/tree_30.vtp");
 const TREE_SWC: &[u8] = include_bytes!("../../../fixtures/tree_30.swc");
 
-fn read(bytes: &[u8], format: NetworkFormat) -> Result<NetworkFile, NetworkFileError> {
-    parse_network(bytes, format, &NetworkOptions::default(), Path::new("test"))
+fn read(bytes: &[u8], format: NetworkFormat) -> Result<NetworkFile, NetworkFault> {
+    read_network_from(bytes, format, &NetworkOptions::default())
 }
 
 fn swc(text: &str) -> Result<NetworkFile, SwcError> {
     match read(text.as_bytes(), NetworkFormat::Swc) {
         Ok(network) => Ok(network),
-        Err(NetworkFileError::Swc { source, .. }) => Err(source),
+        Err(NetworkFault::Swc(fault)) => Err(fault),
         Err(other) => panic!("{other}"),
     }
 }
@@ -102,7 +104,7 @@ impl Vtp {
     }
 
     fn read(&self, array: Option<&str>) -> Result<NetworkFile, VtpError> {
-        vtp::parse(self.text().as_bytes(), &NetworkOptions { radius_array: array.map(str::to_owned) })
+        vtp::read(self.text().as_bytes(), &NetworkOptions { radius_array: array.map(str::to_owned) })
     }
 }
 
@@ -156,12 +158,12 @@ fn vtp_errors_say_what_is_wrong() {
     let short = "<DataArray type=\"Float64\" Name=\"Radius\" format=\"ascii\">1 2</DataArray>";
     assert!(matches!(error(Vtp { point_data: short, ..SMALL }), VtpError::WrongLength { expected: 3, found: 2, .. }));
     let surface = SMALL.text().replace("NumberOfLines=\"1\"", "NumberOfPolys=\"1\"");
-    let surface = vtp::parse(surface.as_bytes(), &NetworkOptions::default());
+    let surface = vtp::read(surface.as_bytes(), &NetworkOptions::default());
     assert!(matches!(surface, Err(VtpError::NoLines { polygons: 1, vertices: 1 })));
     let negative = "<DataArray type=\"Float64\" Name=\"Radius\" format=\"ascii\">1 -2 1</DataArray>";
     let negative = Vtp { point_data: negative, ..SMALL }.text();
     let negative = read(negative.as_bytes(), NetworkFormat::Vtp);
-    assert!(matches!(negative, Err(NetworkFileError::Numbers { .. })));
+    assert!(matches!(negative, Err(NetworkFault::Numbers(_))));
 }
 
 #[test]
@@ -169,7 +171,7 @@ fn pieces_are_joined() {
     let text = SMALL.text();
     let piece = &text[text.find("<Piece").unwrap()..text.find("</PolyData>").unwrap()];
     let twice = text.replace(piece, &piece.repeat(2));
-    let s = vtp::parse(twice.as_bytes(), &NetworkOptions::default()).unwrap().skeleton;
+    let s = vtp::read(twice.as_bytes(), &NetworkOptions::default()).unwrap().skeleton;
     assert_eq!((s.nodes.len(), s.edges.len()), (6, 4));
     assert_eq!(s.edges[3].nodes.map(|n| n.0), [4, 5]);
 }
@@ -180,10 +182,10 @@ fn unreadable_paths_are_told_apart() {
     let at = |name: &str| read_network(&folder.path().join(name), &NetworkOptions::default()).unwrap_err();
     std::fs::write(folder.path().join("empty.swc"), "\n").unwrap();
     std::fs::create_dir(folder.path().join("folder.vtp")).unwrap();
-    assert!(matches!(at("missing.vtp"), NetworkFileError::Read { .. }));
-    assert!(matches!(at("empty.swc"), NetworkFileError::Empty { .. }));
+    assert!(matches!(at("missing.vtp"), NetworkFileError::File(FileError::Read { .. })));
+    assert!(matches!(at("empty.swc"), NetworkFileError::File(FileError::Empty { .. })));
     assert!(matches!(at("folder.vtp"), NetworkFileError::Directory { .. }));
-    assert!(matches!(at("network.docx"), NetworkFileError::UnknownFormat { .. }));
+    assert!(matches!(at("network.docx"), NetworkFileError::File(FileError::UnknownFormat { .. })));
 }
 
 fn damaged(bytes: &[u8], damage: &[(prop::sample::Index, u8)], cut: Option<prop::sample::Index>) -> Vec<u8> {

@@ -1,37 +1,13 @@
-//! Networks as VTP: lines with radii, and what refinement knows of each node.
+//! Writes a network in any format.
 
-use super::NetworkFileError;
-use crate::geometry::Point3;
-use crate::io::atomic::AtomicFile;
+use super::content::NetworkArray;
+use super::error::NetworkFileError;
+use super::format::NetworkFormat;
+use super::{swc, vtp};
+use crate::io::file::{AtomicFile, write_whole};
 use crate::skeleton::Skeleton;
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
-use flate2::{Compression, write::ZlibEncoder};
-use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
-
-/// Name of the cell array with the radii at both ends of each line.
-pub const END_RADII: &str = "EndRadii";
-
-/// Values that go with the nodes or the edges.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NetworkArray {
-    /// Integers, one per node.
-    NodeInts(&'static str, Vec<u32>),
-    /// Vectors, one per node.
-    NodeVectors(&'static str, Vec<[f64; 3]>),
-}
-
-/// The arrays that a refined network carries: `OriginalNode`, the node of the input that each node was, and
-/// `Displacement`, how it moved from `origin`.
-pub fn refinement_arrays(skeleton: &Skeleton, origin: &[Point3]) -> Vec<NetworkArray> {
-    let moved = skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).into());
-    vec![
-        NetworkArray::NodeInts("OriginalNode", skeleton.nodes.iter().map(|n| n.original).collect()),
-        NetworkArray::NodeVectors("Displacement", moved.collect()),
-    ]
-}
 
 /// Writes a network to a `.vtp` file: whole or not at all.
 ///
@@ -42,12 +18,21 @@ pub fn refinement_arrays(skeleton: &Skeleton, origin: &[Point3]) -> Vec<NetworkA
 /// When the name has another extension, or the file cannot be written.
 pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> Result<(), NetworkFileError> {
     ensure_vtp(path)?;
-    let write = || -> io::Result<()> {
-        let mut file = AtomicFile::create(path)?;
-        file.write_all(&vtp_bytes(skeleton, arrays)?)?;
-        file.commit()
-    };
-    write().map_err(|source| NetworkFileError::Write { path: path.to_path_buf(), source })
+    write(path, |file| file.write_all(&vtp::bytes_of(skeleton, arrays)?))
+}
+
+/// Writes a tree whose edges lead away from its root, by the extension of the name: `.vtp` (as `write_network`), or
+/// `.swc`, which keeps the radii of the nodes but not those of the edges. Whole or not at all.
+///
+/// # Errors
+/// When the name has another extension, the file cannot be written, or two edges of an SWC file lead to one node.
+pub fn write_tree(path: &Path, tree: &Skeleton, arrays: &[NetworkArray]) -> Result<(), NetworkFileError> {
+    if !is_swc(path) {
+        return write_network(path, tree, arrays);
+    }
+    let not_a_tree = |node| NetworkFileError::NotATree { path: path.to_path_buf(), node };
+    let parents = swc::parents(tree).map_err(not_a_tree)?;
+    write(path, |file| swc::write(file, tree, &parents))
 }
 
 /// Checks, before any work, that a network can be written to a path.
@@ -59,87 +44,35 @@ pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
     ensure_folder(path)
 }
 
+/// Checks, before any work, that a tree can be written to a path.
+///
+/// # Errors
+/// When the name has another extension than `.vtp` or `.swc`, or its folder does not exist.
+pub fn ensure_tree_writable(path: &Path) -> Result<(), NetworkFileError> {
+    if is_swc(path) { ensure_folder(path) } else { ensure_network_writable(path) }
+}
+
+fn write(path: &Path, write: impl FnOnce(&mut AtomicFile) -> io::Result<()>) -> Result<(), NetworkFileError> {
+    write_whole(path, write).map_err(|source| NetworkFileError::Write { path: path.to_path_buf(), source })
+}
+
+fn is_swc(path: &Path) -> bool {
+    matches!(NetworkFormat::of(path), Ok(NetworkFormat::Swc))
+}
+
+fn ensure_vtp(path: &Path) -> Result<(), NetworkFileError> {
+    match NetworkFormat::of(path) {
+        Ok(NetworkFormat::Vtp) => Ok(()),
+        _ => Err(NetworkFileError::NotWritten { path: path.to_path_buf() }),
+    }
+}
+
 /// Checks that a file can be made at a path.
-pub(super) fn ensure_folder(path: &Path) -> Result<(), NetworkFileError> {
+fn ensure_folder(path: &Path) -> Result<(), NetworkFileError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() || !folder.is_dir() {
         let kind = if path.is_dir() { io::ErrorKind::IsADirectory } else { io::ErrorKind::NotFound };
         return Err(NetworkFileError::Write { path: path.to_path_buf(), source: kind.into() });
     }
-    Ok(())
-}
-
-fn ensure_vtp(path: &Path) -> Result<(), NetworkFileError> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    if extension.eq_ignore_ascii_case("vtp") {
-        Ok(())
-    } else {
-        Err(NetworkFileError::NotWritten { path: path.to_path_buf() })
-    }
-}
-
-/// The bytes of the file.
-fn vtp_bytes(skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<Vec<u8>> {
-    let (nodes, edges) = (&skeleton.nodes, &skeleton.edges);
-    let mut text = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PolyData>\n",
-    );
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        text,
-        "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" \
-         NumberOfPolys=\"0\">",
-        nodes.len(),
-        edges.len()
-    );
-    text.push_str("<PointData Scalars=\"Radius\">\n");
-    floats(&mut text, "Radius", 1, nodes.iter().map(|n| n.radius))?;
-    for array in arrays {
-        match array {
-            NetworkArray::NodeInts(name, values) => {
-                let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-                data_array(&mut text, "UInt32", name, 1, &bytes)?;
-            }
-            NetworkArray::NodeVectors(name, values) => floats(&mut text, name, 3, values.iter().flatten().copied())?,
-        }
-    }
-    text.push_str("</PointData>\n<CellData>\n");
-    floats(&mut text, "EdgeRadius", 1, edges.iter().map(crate::skeleton::Edge::mean_radius))?;
-    floats(&mut text, END_RADII, 2, edges.iter().flat_map(|e| e.radii))?;
-    text.push_str("</CellData>\n<Points>\n");
-    floats(&mut text, "Points", 3, nodes.iter().flat_map(|n| <[f64; 3]>::from(n.position)))?;
-    text.push_str("</Points>\n<Lines>\n");
-    let ends: Vec<u8> = edges.iter().flat_map(|e| e.nodes).flat_map(|n| i64::from(n.0).to_le_bytes()).collect();
-    data_array(&mut text, "Int64", "connectivity", 1, &ends)?;
-    let offsets: Vec<u8> = (1..=edges.len() as i64).flat_map(|i| (2 * i).to_le_bytes()).collect();
-    data_array(&mut text, "Int64", "offsets", 1, &offsets)?;
-    text.push_str("</Lines>\n</Piece>\n</PolyData>\n</VTKFile>\n");
-    Ok(text.into_bytes())
-}
-
-fn floats(text: &mut String, name: &str, components: usize, values: impl Iterator<Item = f64>) -> io::Result<()> {
-    data_array(text, "Float64", name, components, &values.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
-}
-
-/// One array: base64 of the compressed bytes, in blocks of VTK's usual size.
-fn data_array(text: &mut String, kind: &str, name: &str, components: usize, bytes: &[u8]) -> io::Result<()> {
-    const BLOCK: usize = 1 << 20;
-    let blocks: Vec<Vec<u8>> = bytes
-        .chunks(BLOCK)
-        .map(|chunk| {
-            let mut encoder = ZlibEncoder::new(Vec::with_capacity(chunk.len() / 2), Compression::default());
-            encoder.write_all(chunk)?;
-            encoder.finish()
-        })
-        .collect::<io::Result<_>>()?;
-    let mut head = vec![blocks.len() as u64, BLOCK as u64, (bytes.len() % BLOCK) as u64];
-    head.extend(blocks.iter().map(|b| b.len() as u64));
-    let head: Vec<u8> = head.into_iter().flat_map(u64::to_le_bytes).collect();
-    let width = if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
-    let _ = writeln!(text, "<DataArray type=\"{kind}\" Name=\"{name}\"{width} format=\"binary\">");
-    BASE64_STANDARD.encode_string(head, text);
-    BASE64_STANDARD.encode_string(blocks.concat(), text);
-    text.push_str("\n</DataArray>\n");
     Ok(())
 }

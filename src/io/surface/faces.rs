@@ -1,7 +1,9 @@
 //! Faces on their way from a file to triangles.
 
-use super::{Place, SurfaceContent, SurfaceFault};
+use super::content::SurfaceContent;
+use super::error::{Place, SurfaceFault};
 use crate::geometry::Point3;
+use crate::io::text::from_first;
 use crate::mesh::facets;
 
 /// The faces that were read so far, and the corners of the one that is being read.
@@ -46,11 +48,9 @@ impl Faces {
     /// A corner of the face that is being read, as numbered in the file.
     pub(super) fn corner(&mut self, named: i64, place: Place) -> Result<(), SurfaceFault> {
         let (points, first) = (self.points, self.first);
-        let from_zero = named.checked_sub(first.into()).and_then(|i| usize::try_from(i).ok());
-        match from_zero {
-            Some(i) if i < points => self.open.push(i as u32),
-            _ => return Err(SurfaceFault::BadIndex { face: self.number(), index: named, points, first, place }),
-        }
+        let bad = || SurfaceFault::BadIndex { face: self.number(), index: named, points, first, place };
+        let corner = from_first(named, first, points).ok_or_else(bad)?;
+        self.open.push(corner);
         Ok(())
     }
 

@@ -1,8 +1,9 @@
 //! OFF: counts, then one point a line, then one face a line.
 
-use super::super::text::{Words, shown};
+use super::content::SurfaceContent;
+use super::error::{Place, SurfaceFault};
 use super::faces::Faces;
-use super::{Place, SurfaceContent, SurfaceFault};
+use crate::io::text::{Words, shown};
 use crate::mesh::TriMesh;
 use std::io::{self, Write};
 
@@ -47,7 +48,7 @@ fn read_keyword(words: &mut Words) -> Result<(), SurfaceFault> {
     // Case counts in the prefix: `N` announces normals, `n` another dimension.
     let kind = if keyword.eq_ignore_ascii_case(b"OFF") { Some(&b""[..]) } else { keyword.strip_suffix(b"OFF") };
     let Some(kind) = kind else {
-        return Err(SurfaceFault::Unexpected { found: shown(keyword), expected: "the keyword OFF", place });
+        return Err(SurfaceFault::unexpected(keyword, "the keyword OFF", place));
     };
     let binary = words.peek() == Some(b"BINARY");
     if binary || !kind.iter().all(|b| b"STCN".contains(b)) {

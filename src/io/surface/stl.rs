@@ -1,8 +1,9 @@
 //! STL: triangles that each bring their own corners; corners at the same place become one point.
 
-use super::super::text::{TextFault, Words, shown};
-use super::{Place, SurfaceContent, SurfaceFault, SurfaceNote};
+use super::content::{SurfaceContent, SurfaceNote};
+use super::error::{Place, SurfaceFault};
 use crate::geometry::{Point3, Vec3};
+use crate::io::text::{TextFault, Words};
 use crate::mesh::TriMesh;
 use rustc_hash::FxHashMap;
 use std::io::{self, Write};
@@ -51,9 +52,7 @@ impl Joiner {
             (points.len() - 1) as u32
         })
     }
-}
 
-impl Joiner {
     fn into_content(self) -> SurfaceContent {
         SurfaceContent { corner_of: self.corner_of, ..self.mesh.into() }
     }
@@ -100,7 +99,7 @@ fn read_text(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut open = false;
     while let Some(word) = words.word() {
         let place = Place::Line(words.line());
-        let unexpected = |expected| SurfaceFault::Unexpected { found: shown(word), expected, place };
+        let unexpected = |expected| SurfaceFault::unexpected(word, expected, place);
         match word.to_ascii_lowercase().as_slice() {
             b"solid" if corners.is_none() => open = true,
             b"endsolid" if corners.is_none() => open = false,

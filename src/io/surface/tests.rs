@@ -1,7 +1,13 @@
 //! Every format: what is written comes back, files by other hands are read, and no file makes a panic.
 
+use super::write::write_format;
 use super::*;
 use crate::geometry::Point3;
+use crate::io::damage::damage;
+use crate::io::file::FileError;
+use crate::io::text::TextFault;
+use crate::mesh::TriMesh;
+use crate::mesh::facets::FacetError;
 use crate::mesh::shapes::sphere_surface;
 use proptest::prelude::*;
 
@@ -322,26 +328,9 @@ proptest! {
 
     /// Whatever befalls a file, it is read or refused; what is read is sound.
     #[test]
-    fn damaged_files_make_no_panic(
-        which in 0..10_usize,
-        cut in prop::option::of(any::<prop::sample::Index>()),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![
-            any::<u8>().prop_map(|b| vec![b]),
-            "[0-9a-z #/.\\-\n]{0,6}".prop_map(String::into_bytes),
-            Just(b" 99999999999 ".to_vec()),
-        ]), 0..4),
-    ) {
-        let (format, mut bytes) = sound_files().swap_remove(which);
-        for (at, replacement) in changes {
-            let at = at.index(bytes.len());
-            bytes.splice(at..=at, replacement);
-            if bytes.is_empty() {
-                break;
-            }
-        }
-        if let Some(cut) = cut {
-            bytes.truncate(cut.index(bytes.len() + 1));
-        }
+    fn damaged_files_make_no_panic(which in 0..10_usize, damage in damage()) {
+        let (format, bytes) = sound_files().swap_remove(which);
+        let bytes = damage.done_to(&bytes);
         if let Ok(mesh) = read_surface_from(&bytes, format) {
             prop_assert!(mesh.points.iter().all(|p| p.iter().all(|x| x.is_finite())));
             prop_assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.points.len()));

@@ -2,12 +2,16 @@
 
 use super::*;
 use crate::geometry::Point3;
-use crate::io::vtu::tests::labelled_tube;
+use crate::io::damage::damage;
+use crate::io::file::FileError;
+use crate::io::text::TextFault;
+use crate::io::volume::fixtures::labelled_tube;
 use crate::mesh::VolumeMesh;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::shapes::cube_lattice;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 const NODE: &str = "# four points\n4 3 2 1\n\n1 0 0 0  0.5 7  -1\n2 1 0 0  1.5 8  0\n3 0 1 0 2.5 9 3 # here\n\
     4 0 0 1 3.5 nan 4\n";
@@ -226,23 +230,8 @@ proptest! {
 
     /// Whatever befalls a file, it is read or refused; what is read is sound.
     #[test]
-    fn damaged_files_make_no_panic(
-        which in 0..3_usize,
-        cut in prop::option::of(any::<prop::sample::Index>()),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![
-            any::<u8>().prop_map(|b| vec![b]),
-            "[0-9a-z #/.\\-\n]{0,6}".prop_map(String::into_bytes),
-            Just(b" 99999999999 ".to_vec()),
-        ]), 0..4),
-    ) {
-        let mut bytes = [NODE, POLY, SMESH][which].as_bytes().to_vec();
-        for (at, replacement) in changes {
-            let at = at.index(bytes.len());
-            bytes.splice(at..=at, replacement);
-        }
-        if let Some(cut) = cut {
-            bytes.truncate(cut.index(bytes.len() + 1));
-        }
+    fn damaged_files_make_no_panic(which in 0..3_usize, damage in damage()) {
+        let bytes = damage.done_to([NODE, POLY, SMESH][which].as_bytes());
         if which == 0 {
             if let Ok(nodes) = Nodes::parse(&bytes) {
                 prop_assert_eq!(nodes.attributes.len(), nodes.points.len() * nodes.attribute_count);

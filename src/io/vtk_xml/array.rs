@@ -2,7 +2,7 @@
 
 /// The values of an array.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Values {
+pub(in crate::io) enum Values {
     /// Of a floating-point array.
     Float(Vec<f64>),
     /// Of an integer array; a string array holds bytes, each string ended by 0.
@@ -11,9 +11,7 @@ pub enum Values {
 
 /// An array.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DataArray {
-    /// Name, empty when the file gives none.
-    pub name: String,
+pub(in crate::io) struct DataArray {
     /// Values per point or cell.
     pub components: usize,
     /// `components` values per point or cell.
@@ -22,20 +20,15 @@ pub struct DataArray {
 
 impl DataArray {
     /// Number of values.
-    pub fn len(&self) -> usize {
+    pub(in crate::io) fn len(&self) -> usize {
         match &self.values {
             Values::Float(v) => v.len(),
             Values::Int(v) => v.len(),
         }
     }
 
-    /// Whether there is no value.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// The values as floating-point numbers.
-    pub fn into_floats(self) -> Vec<f64> {
+    pub(in crate::io) fn into_floats(self) -> Vec<f64> {
         match self.values {
             Values::Float(v) => v,
             Values::Int(v) => v.into_iter().map(|x| x as f64).collect(),
@@ -43,7 +36,7 @@ impl DataArray {
     }
 
     /// The values as integers; none when the array is a floating-point one.
-    pub fn into_ints(self) -> Option<Vec<i64>> {
+    pub(in crate::io) fn into_ints(self) -> Option<Vec<i64>> {
         match self.values {
             Values::Float(_) => None,
             Values::Int(v) => Some(v),
@@ -51,7 +44,7 @@ impl DataArray {
     }
 
     /// The strings of a string array; none when the array is a floating-point one.
-    pub fn into_strings(self) -> Option<Vec<String>> {
+    pub(in crate::io) fn into_strings(self) -> Option<Vec<String>> {
         let bytes: Vec<u8> = self.into_ints()?.into_iter().map(|x| x as u8).collect();
         let mut strings: Vec<String> =
             bytes.split(|&b| b == 0).map(|s| String::from_utf8_lossy(s).into_owned()).collect();

@@ -1,6 +1,8 @@
 //! From the text or bytes of a `DataArray` to its values.
 
-use super::{Appended, DataArray, ElementId, Layout, Values, VtkError, VtkXml};
+use super::array::{DataArray, Values};
+use super::document::{Appended, ElementId, Layout, VtkXml};
+use super::error::VtkError;
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::borrow::Cow;
@@ -49,36 +51,38 @@ impl Kind {
     }
 }
 
-/// Reads the array in a `DataArray` element.
-pub(super) fn read(document: &VtkXml, element: ElementId) -> Result<DataArray, VtkError> {
-    let attribute = |name| document.attribute(element, name).unwrap_or_default();
-    let name = attribute("Name");
-    let array = || name.to_owned();
-    let kind = Kind::of(attribute("type"))
-        .ok_or_else(|| VtkError::UnknownType { array: array(), kind: attribute("type").to_owned() })?;
-    let text: &str = &document.elements[element.0].text;
-    let values = match attribute("format") {
-        "ascii" | "" => parse_ascii(name, kind, text)?,
-        "binary" => {
-            let source = Source { array: name, layout: document.layout, bytes: text.as_bytes(), base64: true };
-            values_of(name, kind, document.layout, &source.read()?)?
-        }
-        "appended" => {
-            let source = appended_source(document, element, name)?;
-            values_of(name, kind, document.layout, &source.read()?)?
-        }
-        format => return Err(VtkError::UnknownFormat { array: array(), format: format.to_owned() }),
-    };
-    let components = document.count(element, "NumberOfComponents")?.max(1);
-    Ok(DataArray { name: array(), components, values })
+impl VtkXml<'_> {
+    /// Reads the array in a `DataArray` element.
+    ///
+    /// # Errors
+    /// When its type, encoding or bytes are not what VTK's format says, or cut short.
+    pub(in crate::io) fn read(&self, element: ElementId) -> Result<DataArray, VtkError> {
+        let attribute = |name| self.attribute(element, name).unwrap_or_default();
+        let name = attribute("Name");
+        let array = || name.to_owned();
+        let kind = Kind::of(attribute("type"))
+            .ok_or_else(|| VtkError::UnknownType { array: array(), kind: attribute("type").to_owned() })?;
+        let (text, layout) = (self.text(element), self.layout());
+        let values = match attribute("format") {
+            "ascii" | "" => parse_ascii(name, kind, text)?,
+            "binary" => {
+                let source = Source { array: name, layout, bytes: text.as_bytes(), base64: true };
+                values_of(name, kind, layout, &source.read()?)?
+            }
+            "appended" => values_of(name, kind, layout, &appended_source(self, element, name)?.read()?)?,
+            format => return Err(VtkError::UnknownFormat { array: array(), format: format.to_owned() }),
+        };
+        let components = self.count(element, "NumberOfComponents")?.max(1);
+        Ok(DataArray { components, values })
+    }
 }
 
 fn appended_source<'a>(document: &'a VtkXml<'a>, element: ElementId, array: &'a str) -> Result<Source<'a>, VtkError> {
     let bad = || VtkError::BadOffset { array: array.to_owned() };
     let offset: usize = document.attribute(element, "offset").and_then(|o| o.trim().parse().ok()).ok_or_else(bad)?;
-    let Appended { bytes, base64, .. } = document.appended.ok_or_else(bad)?;
+    let Appended { bytes, base64, .. } = document.appended().ok_or_else(bad)?;
     let bytes = bytes.get(offset..).ok_or_else(bad)?;
-    Ok(Source { array, layout: document.layout, bytes, base64 })
+    Ok(Source { array, layout: document.layout(), bytes, base64 })
 }
 
 fn parse_ascii(array: &str, kind: Kind, text: &str) -> Result<Values, VtkError> {

@@ -1,4 +1,6 @@
-use super::*;
+use super::array::{DataArray, Values};
+use super::document::VtkXml;
+use super::error::VtkError;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, write::ZlibEncoder};
@@ -89,11 +91,15 @@ fn style() -> impl Strategy<Value = Style> {
     })
 }
 
-fn read(bytes: &[u8]) -> Result<DataArray, VtkError> {
+fn named(bytes: &[u8]) -> Result<(String, DataArray), VtkError> {
     let document = VtkXml::parse(bytes, "PolyData")?;
-    let poly = document.child(document.root(), "PolyData").ok_or(VtkError::Empty)?;
-    let array = document.arrays(poly).next().ok_or(VtkError::Empty)?.1;
-    document.read(array)
+    let poly = document.child(VtkXml::ROOT, "PolyData").ok_or(VtkError::Empty)?;
+    let (name, array) = document.arrays(poly).next().ok_or(VtkError::Empty)?;
+    Ok((name.to_owned(), document.read(array)?))
+}
+
+fn read(bytes: &[u8]) -> Result<DataArray, VtkError> {
+    Ok(named(bytes)?.1)
 }
 
 fn words<T: ToString>(values: &[T]) -> String {
@@ -110,8 +116,8 @@ proptest! {
         let big = style.big_endian;
         let doubles: Vec<u8> =
             floats.iter().flat_map(|x| if big { x.to_be_bytes() } else { x.to_le_bytes() }).collect();
-        let array = read(&style.file("Float64", &words(&floats), &doubles)).unwrap();
-        prop_assert_eq!(&array.name, "A & B");
+        let (name, array) = named(&style.file("Float64", &words(&floats), &doubles)).unwrap();
+        prop_assert_eq!(&name, "A & B");
         prop_assert_eq!(array.values, Values::Float(floats.clone()));
 
         let singles: Vec<u8> =

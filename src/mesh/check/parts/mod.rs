@@ -53,7 +53,7 @@ mod whole;
 mod tests;
 
 pub use certificate::{certify, certify_with};
-pub use pieces::{LabelledFaces, Pieces, PiecesError, Unfit, check_pieces};
+pub use pieces::{PiecesError, Unfit, check_pieces};
 pub use whole::check_parts;
 
 use super::nested::Enclosed;

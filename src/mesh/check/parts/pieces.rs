@@ -1,56 +1,20 @@
-//! A labelled mesh that is read in pieces, checked as parts: what no label covers of a piece's boundary are its joints to
+//! A labelled mesh that is read a part at a time, checked as such: what no label covers of a piece's boundary are its joints to
 //! other pieces, and these are found by their faces.
 //!
 //! Pieces that cannot be parts, because they touch elsewhere or labels are not what they should be, are [`Unfit`]: the
 //! mesh may be valid or not, and has to be checked as a whole.
 
 use super::{Certificate, JointFaces, PartView, Parts, WallPiece, certify_with, check_parts, sums};
-use crate::geometry::Point3;
 use crate::mesh::adjacency::{NONE, face_vertices, tet_adjacency};
 use crate::mesh::check::cells::{same_turn, sorted};
 use crate::mesh::check::disjoint_sets::DisjointSets;
 use crate::mesh::check::result::{CheckReport, Expectation};
-use crate::mesh::{Cap, Patch, TetMesh, WALL};
+use crate::mesh::source::{FacePiece, MeshSource};
+use crate::mesh::{Cap, TetMesh, WALL};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::io;
 use std::ops::Range;
-
-/// Labelled boundary faces in the numbers of the whole, and the patch of each.
-pub type LabelledFaces = (Vec<[u32; 3]>, Vec<i32>);
-
-/// A mesh that is read in pieces.
-pub trait Pieces: Sync {
-    /// Number of pieces.
-    fn count(&self) -> usize;
-
-    /// Number of points of the whole.
-    fn points(&self) -> usize;
-
-    /// The patches of the whole.
-    fn patches(&self) -> &[Patch];
-
-    /// Number of a piece's first tetrahedron in the whole.
-    fn first_tet(&self, piece: u32) -> u64;
-
-    /// The tetrahedra of a piece, in the numbers of the whole.
-    ///
-    /// # Errors
-    /// What reading fails with.
-    fn tets(&self, piece: u32) -> io::Result<Vec<[u32; 4]>>;
-
-    /// The faces of a piece that are labelled.
-    ///
-    /// # Errors
-    /// What reading fails with.
-    fn labelled(&self, piece: u32) -> io::Result<LabelledFaces>;
-
-    /// The points of these numbers, which ascend and exist.
-    ///
-    /// # Errors
-    /// What reading fails with.
-    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>>;
-}
 
 /// Why pieces cannot be checked as parts. Pieces are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -85,22 +49,21 @@ pub enum PiecesError {
     Unfit(#[from] Unfit),
 }
 
-/// Checks a mesh that is read in pieces. Of walls some `memory` bytes are held at a time, of every piece about a kilobyte.
+/// Checks a mesh whose parts are pieces that it can be cut into. Of walls some `memory` bytes are held at a time, of every piece about a kilobyte.
 ///
 /// # Errors
 /// When the pieces cannot be read, or are not parts that meet in joints alone.
 pub fn check_pieces(
-    pieces: &dyn Pieces,
+    pieces: &dyn MeshSource,
     expectation: Option<&Expectation>,
     memory: usize,
 ) -> Result<CheckReport, PiecesError> {
     let caps: FxHashMap<i32, Cap> = pieces.patches().iter().filter_map(|p| Some((p.id, p.cap?))).collect();
-    let count = pieces.count() as u32;
     let known: Vec<Known> =
-        (0..count).into_par_iter().map(|i| Known::new(pieces, &caps, i)).collect::<Result<_, _>>()?;
+        (0..pieces.parts()).into_par_iter().map(|i| Known::new(pieces, &caps, i)).collect::<Result<_, _>>()?;
     let joined = join(&known)?;
     let cut = Cut { pieces, known, joined };
-    if cut.points() != pieces.points() as u64 {
+    if cut.points() != pieces.counts().points as u64 {
         return Err(Unfit::Shared.into());
     }
     Ok(check_parts(&cut, pieces.patches(), expectation, memory)?.report)
@@ -108,7 +71,7 @@ pub fn check_pieces(
 
 /// The pieces as parts.
 struct Cut<'a> {
-    pieces: &'a dyn Pieces,
+    pieces: &'a dyn MeshSource,
     known: Vec<Known>,
     joined: Vec<[(u32, u32); 2]>,
 }
@@ -118,6 +81,7 @@ struct Known {
     /// In postcard's form, which is smaller.
     certificate: Vec<u8>,
     points: u32,
+    tets: u32,
     joints: Vec<KnownJoint>,
 }
 
@@ -175,10 +139,10 @@ struct Local {
 }
 
 impl Local {
-    fn read(pieces: &dyn Pieces, piece: u32) -> Result<Self, PiecesError> {
-        let mut tets = pieces.tets(piece)?;
+    fn read(pieces: &dyn MeshSource, piece: u32) -> Result<Self, PiecesError> {
+        let mut tets = pieces.tets(piece)?.tets.into_owned();
         let ids = Ids::of(&tets);
-        if ids.all.last().is_some_and(|&last| last as usize >= pieces.points()) {
+        if ids.all.last().is_some_and(|&last| last as usize >= pieces.counts().points) {
             return Err(Unfit::Points(piece).into());
         }
         let points = pieces.points_of(&ids.all)?;
@@ -189,10 +153,10 @@ impl Local {
     }
 
     /// Labelled faces in the piece's numbers, ascending by their sorted vertices, each with its patch.
-    fn labelled(&self, pieces: &dyn Pieces, piece: u32) -> Result<Vec<([u32; 3], i32)>, PiecesError> {
-        let (faces, patches) = pieces.labelled(piece)?;
+    fn labelled(&self, pieces: &dyn MeshSource, piece: u32) -> Result<Vec<([u32; 3], i32)>, PiecesError> {
+        let FacePiece { faces, patches, .. } = pieces.boundary(piece)?;
         let mut labelled = Vec::with_capacity(faces.len());
-        for (face, patch) in faces.into_iter().zip(patches) {
+        for (face, &patch) in faces.iter().zip(&*patches) {
             let [Some(a), Some(b), Some(c)] = face.map(|v| self.ids.local(v)) else {
                 return Err(Unfit::Points(piece).into());
             };
@@ -214,7 +178,7 @@ impl Local {
 }
 
 impl Known {
-    fn new(pieces: &dyn Pieces, caps: &FxHashMap<i32, Cap>, piece: u32) -> Result<Self, PiecesError> {
+    fn new(pieces: &dyn MeshSource, caps: &FxHashMap<i32, Cap>, piece: u32) -> Result<Self, PiecesError> {
         let local = Local::read(pieces, piece)?;
         let labelled = local.labelled(pieces, piece)?;
         let adjacency = tet_adjacency(&local.mesh.tets, local.mesh.points.len());
@@ -239,7 +203,8 @@ impl Known {
             faces: handles.into(),
         };
         let joints = joints.iter().zip(handles).map(known).collect();
-        Ok(Self { certificate, points: local.mesh.points.len() as u32, joints })
+        let TetMesh { points, tets } = &local.mesh;
+        Ok(Self { certificate, points: points.len() as u32, tets: tets.len() as u32, joints })
     }
 }
 
@@ -304,7 +269,7 @@ impl Cut<'_> {
     }
 
     fn ids(&self, part: u32) -> io::Result<Vec<u32>> {
-        Ok(Ids::of(&self.pieces.tets(part)?).all)
+        Ok(Ids::of(&self.pieces.tets(part)?.tets).all)
     }
 }
 
@@ -318,8 +283,7 @@ impl Parts for Cut<'_> {
     }
 
     fn wall(&self, part: u32) -> io::Result<WallPiece> {
-        let (faces, _) = self.pieces.labelled(part)?;
-        apart(self.pieces, &faces)
+        apart(self.pieces, &self.pieces.boundary(part)?.faces)
     }
 
     fn joined(&self) -> &[[(u32, u32); 2]] {
@@ -327,7 +291,7 @@ impl Parts for Cut<'_> {
     }
 
     fn joint(&self, part: u32, joint: u32) -> io::Result<JointFaces> {
-        let tets = self.pieces.tets(part)?;
+        let tets = self.pieces.tets(part)?.tets;
         let handles = &self.known[part as usize].joints[joint as usize].faces;
         let faces: Vec<[u32; 3]> = handles.iter().map(|&handle| face_vertices(&tets, handle)).collect();
         let WallPiece { points, vertices, faces } = apart(self.pieces, &faces)?;
@@ -340,7 +304,9 @@ impl Parts for Cut<'_> {
     }
 
     fn tet(&self, part: u32, local: u32) -> u64 {
-        self.pieces.first_tet(part) + u64::from(local)
+        // Asked for offenders alone, too.
+        let before: u64 = self.known[..part as usize].iter().map(|known| u64::from(known.tets)).sum();
+        before + u64::from(local)
     }
 
     fn vertices(&self, part: u32, _: u32) -> io::Result<Vec<u32>> {
@@ -349,7 +315,7 @@ impl Parts for Cut<'_> {
 }
 
 /// Faces in the numbers of the whole with points of their own.
-fn apart(pieces: &dyn Pieces, faces: &[[u32; 3]]) -> io::Result<WallPiece> {
+fn apart(pieces: &dyn MeshSource, faces: &[[u32; 3]]) -> io::Result<WallPiece> {
     let vertices = distinct(faces.as_flattened());
     let points = pieces.points_of(&vertices)?;
     let place = |v: u32| vertices.partition_point(|&x| x < v) as u32;

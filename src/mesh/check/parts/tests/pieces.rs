@@ -1,6 +1,8 @@
 //! Meshes that are read in pieces: joints are found, and what cannot be a part is refused.
 
 use super::*;
+use crate::mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece};
+use std::borrow::Cow;
 
 /// A mesh whose pieces stand one behind the other.
 #[derive(Clone)]
@@ -56,36 +58,34 @@ impl Stack {
     }
 }
 
-impl Pieces for Stack {
-    fn count(&self) -> usize {
-        self.sizes.len()
-    }
-
-    fn points(&self) -> usize {
-        self.whole.mesh.points.len()
+impl MeshSource for Stack {
+    fn counts(&self) -> SourceCounts {
+        self.whole.counts()
     }
 
     fn patches(&self) -> &[Patch] {
         &self.whole.patches
     }
 
-    fn first_tet(&self, piece: u32) -> u64 {
-        self.sizes[..piece as usize].iter().map(|size| size.0 as u64).sum()
+    fn parts(&self) -> u32 {
+        self.sizes.len() as u32
     }
 
-    fn tets(&self, piece: u32) -> io::Result<Vec<[u32; 4]>> {
-        let first = self.first_tet(piece) as usize;
-        Ok(self.whole.mesh.tets[first..first + self.sizes[piece as usize].0].to_vec())
+    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
+        Ok(if part == 0 { Cow::Borrowed(&self.whole.mesh.points) } else { Cow::default() })
     }
 
-    fn labelled(&self, piece: u32) -> io::Result<LabelledFaces> {
-        let first: usize = self.sizes[..piece as usize].iter().map(|size| size.1).sum();
-        let range = first..first + self.sizes[piece as usize].1;
-        Ok((self.whole.boundary[range.clone()].to_vec(), self.whole.boundary_patch[range].to_vec()))
+    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
+        let first: usize = self.sizes[..part as usize].iter().map(|size| size.0).sum();
+        let tets = &self.whole.mesh.tets[first..first + self.sizes[part as usize].0];
+        Ok(TetPiece { tets: tets.into(), ..TetPiece::default() })
     }
 
-    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
-        Ok(ids.iter().map(|&id| self.whole.mesh.points[id as usize]).collect())
+    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
+        let first: usize = self.sizes[..part as usize].iter().map(|size| size.1).sum();
+        let range = first..first + self.sizes[part as usize].1;
+        let patches = self.whole.boundary_patch[range.clone()].into();
+        Ok(FacePiece { faces: self.whole.boundary[range].into(), patches, ..FacePiece::default() })
     }
 }
 

@@ -1,0 +1,12 @@
+//! Between a path and its bytes, whatever the format: what can go wrong, and files that appear whole or not at all.
+
+mod atomic;
+mod error;
+mod whole;
+
+pub(super) use atomic::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
+pub use error::FileError;
+pub use whole::write_text;
+pub(super) use whole::{
+    Writing, by_extension, ensure_sound, extension, read_bytes, unsound, write_all_whole, write_whole,
+};

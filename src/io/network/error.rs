@@ -1,0 +1,59 @@
+//! Why a network could not be read or written.
+
+use super::swc::SwcError;
+use super::vtp::VtpError;
+use crate::io::file::FileError;
+use crate::skeleton::{NodeId, SkeletonError};
+use std::path::PathBuf;
+
+/// Why a network could not be read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum NetworkFileError {
+    /// The file has no known extension, cannot be read, is empty or holds no network.
+    #[error(transparent)]
+    File(#[from] FileError<NetworkFault>),
+    /// It is a directory.
+    #[error("{}: is a directory; name a network file (.swc, .vtp)", path.display())]
+    Directory {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// Networks are not written in this format.
+    #[error("{}: networks are written as .vtp; name a file with this extension", path.display())]
+    NotWritten {
+        /// The file.
+        path: PathBuf,
+    },
+    /// SWC holds trees only.
+    #[error("{}: several vessels lead to node {}: only trees are written as .swc; name a .vtp file", path.display(), node.0)]
+    NotATree {
+        /// The file.
+        path: PathBuf,
+        /// The node, numbered from 0.
+        node: NodeId,
+    },
+    /// The operating system refused to write.
+    #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Its reason.
+        source: std::io::Error,
+    },
+}
+
+/// Why the content of a file is no network.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum NetworkFault {
+    /// It is no usable SWC file.
+    #[error(transparent)]
+    Swc(#[from] SwcError),
+    /// It is no usable VTP file.
+    #[error(transparent)]
+    Vtp(#[from] VtpError),
+    /// A number in it cannot be used.
+    #[error("{0}; correct the file")]
+    Numbers(#[from] SkeletonError),
+}

@@ -1,0 +1,37 @@
+//! Reads a network in any format.
+
+use super::content::{NetworkFile, NetworkOptions};
+use super::error::{NetworkFault, NetworkFileError};
+use super::format::NetworkFormat;
+use super::{swc, vtp};
+use crate::io::file::{FileError, read_bytes};
+use std::path::Path;
+
+/// Reads a network file; the extension gives the format.
+///
+/// # Errors
+/// When the file cannot be read, or is no usable network.
+pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile, NetworkFileError> {
+    if path.is_dir() {
+        return Err(NetworkFileError::Directory { path: path.to_path_buf() });
+    }
+    let format = NetworkFormat::of(path)?;
+    Ok(read_network_from(&read_bytes(path)?, format, options).map_err(FileError::content(path))?)
+}
+
+/// Reads a network from the bytes of a file.
+///
+/// # Errors
+/// When the bytes are no usable network.
+pub fn read_network_from(
+    bytes: &[u8],
+    format: NetworkFormat,
+    options: &NetworkOptions,
+) -> Result<NetworkFile, NetworkFault> {
+    let network = match format {
+        NetworkFormat::Swc => swc::read(bytes)?,
+        NetworkFormat::Vtp => vtp::read(bytes, options)?,
+    };
+    network.skeleton.check_numbers()?;
+    Ok(network)
+}

@@ -1,0 +1,36 @@
+//! What a mesh file holds beside the mesh.
+
+use crate::mesh::VolumeMesh;
+use crate::mesh::check::Expectation;
+
+/// What a mesh file says beside the mesh itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshNotes {
+    /// What a check has to find.
+    pub expectation: Option<Expectation>,
+    /// The program that made the mesh and its version.
+    pub generator: String,
+    /// The options it was made with.
+    pub options: String,
+    /// Whether the blocks of the tetrahedra are regions, which a format that groups cells is to keep apart.
+    pub regions: bool,
+}
+
+/// A mesh as it was read from a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshFile {
+    /// The mesh. Boundary and patches are empty when the file labels no boundary.
+    pub volume: VolumeMesh,
+    /// Whether the file labels a boundary.
+    pub labelled: bool,
+    /// What else the file says.
+    pub notes: MeshNotes,
+}
+
+/// A mesh from a format that has no place for notes.
+impl From<VolumeMesh> for MeshFile {
+    fn from(volume: VolumeMesh) -> Self {
+        let labelled = !volume.boundary.is_empty();
+        Self { volume, labelled, notes: MeshNotes::default() }
+    }
+}

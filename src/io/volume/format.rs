@@ -1,0 +1,50 @@
+//! Which formats of volume meshes there are, and which of them a path asks for.
+
+use super::error::MeshFileError;
+use crate::io::file::{FileError, by_extension};
+use std::path::Path;
+
+/// A format of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshFormat {
+    /// VTK unstructured grid, `.vtu`.
+    Vtu,
+    /// VTK unstructured grid in pieces, `.pvtu` and a folder beside it.
+    Pvtu,
+    /// Gmsh 4.1, `.msh`.
+    Msh,
+    /// Medit's text format, `.mesh`.
+    Medit,
+    /// `TetGen`'s family of files, named by its `.ele` or `.node`.
+    Tetgen,
+}
+
+/// Extensions, in lower case.
+const EXTENSIONS: [(&str, MeshFormat); 6] = [
+    ("vtu", MeshFormat::Vtu),
+    ("pvtu", MeshFormat::Pvtu),
+    ("msh", MeshFormat::Msh),
+    ("mesh", MeshFormat::Medit),
+    ("ele", MeshFormat::Tetgen),
+    ("node", MeshFormat::Tetgen),
+];
+
+impl MeshFormat {
+    /// The format that a file name asks for by its extension.
+    ///
+    /// # Errors
+    /// `UnknownFormat` when no format has the extension.
+    pub fn of(path: &Path) -> Result<Self, MeshFileError> {
+        by_extension(path, &EXTENSIONS).ok_or_else(|| FileError::UnknownFormat {
+            path: path.to_path_buf(),
+            kind: "known mesh format",
+            known: ".vtu, .pvtu, .msh, .mesh, .ele",
+        })
+    }
+
+    /// Whether a mesh can be written without being held in memory as a whole.
+    pub fn is_written_in_passes(self) -> bool {
+        self != Self::Tetgen
+    }
+}

@@ -1,0 +1,28 @@
+//! Tetrahedral volume meshes in files: a folder for each format, and which of them a path asks for.
+//!
+//! A format has its faults in `error`, and `read` and `write` that know bytes and streams but neither of the other formats.
+
+mod bits;
+mod content;
+mod error;
+#[cfg(test)]
+pub(in crate::io) mod fixtures;
+mod format;
+mod medit;
+mod msh;
+mod pvtu;
+mod read;
+#[cfg(test)]
+mod tests;
+mod vtu;
+mod write;
+
+pub use content::{MeshFile, MeshNotes};
+pub use error::{MeshFault, MeshFileError};
+pub use format::MeshFormat;
+pub use medit::{MeditFault, write_medit};
+pub use msh::MshFault;
+pub use pvtu::PvtuFault;
+pub use read::{read_mesh, read_mesh_from};
+pub use vtu::{VtuFault, VtuPieces, VtuPiecesError};
+pub use write::{ensure_writable, write_mesh, write_mesh_to, write_mesh_within};

@@ -1,0 +1,18 @@
+//! Gmsh's MSH 4.1, binary: one volume, one surface per patch, physical groups of the patches' names.
+//!
+//! Node and element tags count from 1 in the order of the mesh (tetrahedra first), so that reading restores the order.
+//! What a later check needs to know has no place in the format; it goes into a section of our own, which Gmsh and
+//! others pass over.
+
+mod cursor;
+mod error;
+mod names;
+mod read;
+mod surfaces;
+#[cfg(test)]
+mod tests;
+mod write;
+
+pub use error::MshFault;
+pub(super) use read::read;
+pub(super) use write::write;

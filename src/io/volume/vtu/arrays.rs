@@ -1,0 +1,229 @@
+//! The arrays of an unstructured grid, and where their values come from.
+
+use super::names::{GLOBAL_IDS, VTK_TETRA, VTK_TRIANGLE, field};
+use crate::geometry::Point3;
+use crate::io::volume::content::MeshNotes;
+use crate::io::vtk_xml::Blocks;
+use crate::mesh::Patch;
+use crate::mesh::source::{MeshSource, SourceCounts};
+use std::io;
+
+/// Where an array stands in the file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    Field,
+    PointData,
+    Points,
+    Cells,
+    CellData,
+}
+
+/// The name of a type of values, and the bytes that one takes.
+type Kind = (&'static str, usize);
+
+const STRING: Kind = ("String", 1);
+const UINT8: Kind = ("UInt8", 1);
+const INT32: Kind = ("Int32", 4);
+const INT64: Kind = ("Int64", 8);
+const FLOAT64: Kind = ("Float64", 8);
+
+/// Gives an array's values, as little-endian bytes.
+type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
+
+/// One array of the file: what it is called and where its values come from.
+pub(super) struct Array<'a> {
+    pub place: Place,
+    pub name: &'static str,
+    pub kind: &'static str,
+    /// Bytes of a value.
+    pub width: usize,
+    pub components: usize,
+    pub values: usize,
+    pub fill: Fill<'a>,
+    /// Whether compression saves enough for the time it takes: coordinates and vertex numbers shrink little.
+    pub shrinks: bool,
+}
+
+impl<'a> Array<'a> {
+    fn new(
+        place: Place,
+        name: &'static str,
+        (kind, width): Kind,
+        values: usize,
+        fill: impl Fn(&mut Blocks) -> io::Result<()> + 'a,
+    ) -> Self {
+        Self { place, name, kind, width, components: 1, values, fill: Box::new(fill), shrinks: true }
+    }
+}
+
+/// Points, cells and their labels.
+pub(super) fn of_mesh(mesh: &dyn MeshSource) -> Vec<Array<'_>> {
+    let mut all = vec![points_array(mesh)];
+    all.extend(cell_arrays(mesh, Width::of(mesh.counts())));
+    all.extend([patch_array(mesh), block_array(mesh)]);
+    all
+}
+
+/// Patches with larger ids have no name in the file: the list has a place for every number below.
+pub(super) const LARGEST_NAMED: i32 = 1 << 16;
+
+/// Names by patch id: `lumen` stands for the inside (0), ids that no patch has stay empty.
+fn patch_names(patches: &[Patch]) -> Vec<String> {
+    let largest = patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
+    let mut names = vec![String::new(); largest + 1];
+    names[0] = "lumen".into();
+    for patch in patches {
+        if patch.id > 0
+            && let Some(name) = names.get_mut(patch.id as usize)
+        {
+            name.clone_from(&patch.name);
+        }
+    }
+    names
+}
+
+/// The field data.
+pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<Array<'a>> {
+    let caps: Vec<_> = patches.iter().filter_map(|p| p.cap.map(|cap| (p.id, cap))).collect();
+    let mut arrays = vec![strings(field::PATCH_NAMES, &patch_names(patches))];
+    if !caps.is_empty() {
+        let vectors = |f: fn(&crate::mesh::Cap) -> [f64; 3]| caps.iter().flat_map(|(_, cap)| f(cap)).collect();
+        arrays.push(ints(field::CAP_PATCH, caps.iter().map(|&(id, _)| i64::from(id)).collect()));
+        arrays.push(ints(field::CAP_NODE, caps.iter().map(|(_, cap)| i64::from(cap.node)).collect()));
+        arrays.push(floats(field::CAP_CENTER, 3, vectors(|cap| cap.center.coords.into())));
+        arrays.push(floats(field::CAP_NORMAL, 3, vectors(|cap| cap.normal.into())));
+        arrays.push(floats(field::CAP_RADIUS, 1, caps.iter().map(|(_, cap)| cap.radius).collect()));
+    }
+    if let Some(expected) = &notes.expectation {
+        arrays.push(ints(field::LOOPS, expected.loops.iter().map(|&n| i64::from(n)).collect()));
+        arrays.push(ints(field::TERMINALS, expected.terminals.iter().map(|&n| i64::from(n)).collect()));
+    }
+    for (name, text) in [(field::GENERATOR, &notes.generator), (field::OPTIONS, &notes.options)] {
+        if !text.is_empty() {
+            arrays.push(strings(name, std::slice::from_ref(text)));
+        }
+    }
+    // An array without values is legal in VTK but trips other readers.
+    arrays.retain(|array| array.values > 0);
+    arrays
+}
+
+/// VTK's string arrays: the characters of each string and a zero behind it.
+fn strings<'a>(name: &'static str, texts: &[String]) -> Array<'a> {
+    let mut bytes = Vec::new();
+    for text in texts {
+        bytes.extend(text.bytes().filter(|&b| b != 0));
+        bytes.push(0);
+    }
+    Array {
+        components: texts.len(),
+        ..Array::new(Place::Field, name, STRING, bytes.len(), move |out| out.push(bytes.len(), |i| [bytes[i]]))
+    }
+}
+
+fn ints<'a>(name: &'static str, values: Vec<i64>) -> Array<'a> {
+    let count = values.len();
+    Array::new(Place::Field, name, INT64, count, move |out| out.push(count, |i| values[i].to_le_bytes()))
+}
+
+fn floats<'a>(name: &'static str, components: usize, values: Vec<f64>) -> Array<'a> {
+    let count = values.len();
+    let fill = move |out: &mut Blocks| out.push(count, |i| values[i].to_le_bytes());
+    Array { components, ..Array::new(Place::Field, name, FLOAT64, count, fill) }
+}
+
+/// Which point of the whole mesh each point of a piece is.
+pub(super) fn of_ids(ids: &[u32]) -> Array<'_> {
+    let fill = |out: &mut Blocks| out.push(ids.len(), |i| u64::from(ids[i]).to_le_bytes());
+    Array::new(Place::PointData, GLOBAL_IDS, INT64, ids.len(), fill)
+}
+
+fn points_array(mesh: &dyn MeshSource) -> Array<'_> {
+    let fill = |out: &mut Blocks| mesh.each_points(|points| out.push(points.len(), |i| point_bytes(&points[i])));
+    let array = Array::new(Place::Points, "Points", FLOAT64, 3 * mesh.counts().points, fill);
+    Array { components: 3, shrinks: false, ..array }
+}
+
+fn point_bytes(p: &Point3) -> [u8; 24] {
+    let mut bytes = [0; 24];
+    let (words, _) = bytes.as_chunks_mut::<8>();
+    for (word, x) in words.iter_mut().zip([p.x, p.y, p.z]) {
+        *word = x.to_le_bytes();
+    }
+    bytes
+}
+
+/// How wide vertex numbers and offsets are.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Width {
+    Int32,
+    Int64,
+}
+
+impl Width {
+    /// Ids are u32: within the signed range they can be written as they are, else they need 64 bits.
+    pub(super) fn of(counts: SourceCounts) -> Self {
+        let fits = |count: usize| i32::try_from(count).is_ok();
+        let narrow = fits(4 * counts.tets + 3 * counts.boundary) && fits(counts.points);
+        if narrow { Self::Int32 } else { Self::Int64 }
+    }
+
+    fn kind(self) -> Kind {
+        if self == Self::Int32 { INT32 } else { INT64 }
+    }
+
+    fn push(self, out: &mut Blocks, count: usize, value: impl Fn(usize) -> u64 + Sync) -> io::Result<()> {
+        match self {
+            Self::Int32 => out.push(count, |i| (value(i) as u32).to_le_bytes()),
+            Self::Int64 => out.push(count, |i| value(i).to_le_bytes()),
+        }
+    }
+}
+
+pub(super) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
+    let SourceCounts { tets, boundary, .. } = mesh.counts();
+    let corners = move |out: &mut Blocks| {
+        let mut push = |ids: &[u32]| width.push(out, ids.len(), |i| u64::from(ids[i]));
+        mesh.each_tets(|piece| push(piece.tets.as_flattened()))?;
+        mesh.each_faces(|piece| push(piece.faces.as_flattened()))
+    };
+    let offsets = move |out: &mut Blocks| {
+        width.push(out, tets, |tet| 4 * (tet as u64 + 1))?;
+        width.push(out, boundary, |face| 4 * tets as u64 + 3 * (face as u64 + 1))
+    };
+    let types = move |out: &mut Blocks| {
+        out.push(tets, |_| [VTK_TETRA])?;
+        out.push(boundary, |_| [VTK_TRIANGLE])
+    };
+    let corners = Array::new(Place::Cells, "connectivity", width.kind(), 4 * tets + 3 * boundary, corners);
+    [
+        // Half of a wide number is zeros.
+        Array { shrinks: width == Width::Int64, ..corners },
+        Array::new(Place::Cells, "offsets", width.kind(), tets + boundary, offsets),
+        Array::new(Place::Cells, "types", UINT8, tets + boundary, types),
+    ]
+}
+
+/// Patches of the boundary faces; those of tetrahedra are 0.
+fn patch_array(mesh: &dyn MeshSource) -> Array<'_> {
+    let SourceCounts { tets, boundary, .. } = mesh.counts();
+    Array::new(Place::CellData, "patch", INT32, tets + boundary, move |out| {
+        out.push(tets, |_| [0; 4])?;
+        mesh.each_face_labels(|piece| push_known(out, &piece.patches, piece.count))
+    })
+}
+
+fn block_array(mesh: &dyn MeshSource) -> Array<'_> {
+    let SourceCounts { tets, boundary, .. } = mesh.counts();
+    Array::new(Place::CellData, "block", INT32, tets + boundary, |out| {
+        mesh.each_tet_labels(|piece| push_known(out, &piece.blocks, piece.count))?;
+        mesh.each_face_labels(|piece| push_known(out, &piece.blocks, piece.count))
+    })
+}
+
+/// Pushes `count` values, 0 where they are not known.
+fn push_known(out: &mut Blocks, values: &[i32], count: usize) -> io::Result<()> {
+    let known = values.len().min(count);
+    out.push_ints(&values[..known])?;
+    out.push(count - known, |_| [0; 4])
+}

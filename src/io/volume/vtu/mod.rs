@@ -1,0 +1,23 @@
+//! VTK unstructured grids (`.vtu`): a labelled tetrahedral mesh, in appended raw data compressed with zlib.
+//!
+//! Tetrahedra come first, then the boundary triangles; the `Int32` cell arrays `patch` and `block` say where each
+//! belongs (a tetrahedron's patch is 0). Field data name the patches (`patch_names`, indexed by the id) and hold what a
+//! later check needs to know: the caps, the loops of each component, the terminals.
+
+mod arrays;
+mod error;
+mod fields;
+mod layout;
+mod names;
+mod pieces;
+mod read;
+#[cfg(test)]
+mod tests;
+mod write;
+
+pub use error::VtuFault;
+pub use layout::VtuPiecesError;
+pub(super) use names::GLOBAL_IDS;
+pub use pieces::VtuPieces;
+pub(super) use read::{GridReader, read};
+pub(super) use write::{Grid, write};

@@ -1,0 +1,101 @@
+//! Writes a mesh in any format.
+
+use super::content::MeshNotes;
+use super::error::MeshFileError;
+use super::format::MeshFormat;
+use super::pvtu::{PieceFolder, Pieces};
+use super::{medit, msh, pvtu, vtu};
+use crate::io::file::{AtomicFile, FileError, write_whole};
+use crate::io::tetgen::MeshFamily;
+use crate::mesh::source::{MeshSource, gather};
+use std::io::{self, Cursor, Seek, Write};
+use std::path::Path;
+
+/// Makes sure, before any work is done, that a mesh can be written to `path`: the format is known, and a file can be
+/// made in its folder. Leaves nothing behind.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
+    let format = MeshFormat::of(path)?;
+    let pieces = || if format == MeshFormat::Pvtu { PieceFolder::ensure_replaceable(path) } else { Ok(()) };
+    AtomicFile::create(path).map(drop).and_then(|()| pieces()).map_err(FileError::write(path))
+}
+
+/// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all. The bytes depend
+/// on the mesh and the notes alone. No format but `TetGen`'s holds a mesh that is read in passes: see the writers of each.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Result<(), MeshFileError> {
+    write_mesh_within(Pieces::default().memory, path, mesh, notes)
+}
+
+/// As [`write_mesh`], holding about so many bytes of a mesh in pieces at a time; the other formats take less.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn write_mesh_within(
+    memory: usize,
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+) -> Result<(), MeshFileError> {
+    let written = match MeshFormat::of(path)? {
+        MeshFormat::Tetgen => return write_family(path, mesh),
+        MeshFormat::Pvtu => pvtu::write(path, mesh, notes, Pieces { memory, ..Pieces::default() }),
+        format => write_whole(path, |file| write_format(file, format, mesh, notes)),
+    };
+    written.map_err(FileError::write(path))
+}
+
+/// The neighbours of tetrahedra are not found in passes: this format holds the mesh in memory.
+fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError> {
+    let gathered;
+    let volume = if let Some(volume) = mesh.whole() {
+        volume
+    } else {
+        gathered = gather(mesh).map_err(FileError::write(path))?;
+        &gathered
+    };
+    match MeshFamily::of_volume(volume).write(path) {
+        Ok(_) => Ok(()),
+        Err(FileError::BadMesh { path, cell }) => {
+            let source = io::Error::new(io::ErrorKind::InvalidInput, format!("cell {cell} names no point"));
+            Err(FileError::Write { path, source })
+        }
+        Err(error) => Err(error.widen()),
+    }
+}
+
+/// Writes a mesh to a stream, such as standard output; the file is put together in memory first.
+///
+/// # Errors
+/// What the stream reports.
+pub fn write_mesh_to(
+    out: &mut impl Write,
+    format: MeshFormat,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+) -> io::Result<()> {
+    let mut bytes = Cursor::new(Vec::new());
+    write_format(&mut bytes, format, mesh, notes)?;
+    out.write_all(bytes.get_ref())
+}
+
+/// Writes a mesh in a format that is one file.
+pub(super) fn write_format(
+    out: &mut (impl Write + Seek),
+    format: MeshFormat,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+) -> io::Result<()> {
+    match format {
+        MeshFormat::Vtu => vtu::write(out, mesh, notes),
+        MeshFormat::Msh => msh::write(out, mesh, notes),
+        MeshFormat::Medit => medit::write(out, mesh),
+        MeshFormat::Tetgen | MeshFormat::Pvtu => {
+            Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
+        }
+    }
+}
