@@ -129,7 +129,7 @@ pub struct BoundResult {
 pub struct SizeUnmet {
     /// The length asked for.
     pub size: f64,
-    /// Edges of the input that are more than 1.5 times as long: those that would be split if they might.
+    /// Edges of the input that are so much longer that they would be split if they might.
     pub longer: usize,
     /// Edges of the input.
     pub edges: usize,
@@ -138,17 +138,21 @@ pub struct SizeUnmet {
 }
 
 impl SizeUnmet {
-    /// How much longer than wished an edge of a surface may be.
-    const LONGER: f64 = 1.5;
-
-    /// What edges of triangles and segments that stay do to a wished length; none when it can be met.
-    pub fn of(size: f64, points: &[Point3], triangles: &[[u32; 3]], segments: &[[u32; 2]]) -> Option<Self> {
+    /// What edges of triangles and segments that stay do to a wished length; none when none is more than `factor` times
+    /// as long.
+    pub fn of(
+        size: f64,
+        factor: f64,
+        points: &[Point3],
+        triangles: &[[u32; 3]],
+        segments: &[[u32; 2]],
+    ) -> Option<Self> {
         let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).chain(segments.iter().copied());
         let mut edges: Vec<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
         edges.sort_unstable();
         edges.dedup();
         let length = |&[a, b]: &[u32; 2]| (points[a as usize] - points[b as usize]).norm();
-        let longer = edges.iter().filter(|e| length(e) > Self::LONGER * size).count();
+        let longer = edges.iter().filter(|e| length(e) > factor * size).count();
         let longest = edges.iter().map(length).fold(0.0, f64::max);
         (longer > 0).then_some(Self { size, longer, edges: edges.len(), longest })
     }
@@ -391,7 +395,7 @@ mod tests {
     #[test]
     fn a_length_is_unmet_where_edges_that_stay_are_longer() {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]].map(Point3::from);
-        let of = |size| SizeUnmet::of(size, &points, &[[0, 1, 2], [0, 2, 1]], &[[1, 0]]);
+        let of = |size| SizeUnmet::of(size, 1.5, &points, &[[0, 1, 2], [0, 2, 1]], &[[1, 0]]);
         assert_eq!(of(1.5), None);
         let unmet = of(1.0).unwrap();
         assert_eq!((unmet.longer, unmet.edges, unmet.longest), (2, 3, 5.0_f64.sqrt()));

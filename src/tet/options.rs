@@ -113,6 +113,11 @@ pub enum Boundary {
     Split,
 }
 
+impl Boundary {
+    /// Edges of the input may be this much longer than wanted before they are split, where they may be.
+    pub const LONGER: f64 = 1.5;
+}
+
 /// How a surface is tetrahedralized by the short form [`super::tetrahedralize`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

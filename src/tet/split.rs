@@ -17,9 +17,6 @@ use crate::mesh::{TetMesh, TriMesh};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
-/// Edges of the surface may be this much longer than wanted.
-const LONGER: f64 = 1.5;
-
 /// Times that the surface is split for the sake of shape.
 const ROUNDS: usize = 3;
 
@@ -122,7 +119,7 @@ impl Pieces {
             for i in due {
                 let longest = self.longest(i);
                 let wanted = size(&self.middle(longest));
-                if wanted > 0.0 && self.length(longest) > LONGER * wanted {
+                if wanted > 0.0 && self.length(longest) > Boundary::LONGER * wanted {
                     let touched = self.at_edge.get(&longest).cloned().unwrap_or_default();
                     let first = self.plc.triangles.len() as u32;
                     if self.halve(longest) {

@@ -20,7 +20,7 @@ use crate::mesh::quality::TetQuality;
 use crate::report::tetrahedralize::{
     Bounds, InputSize, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
-use crate::tet::{LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
+use crate::tet::{Boundary, LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
 use format::{InputFormat, StreamFormat, Target, is_stream};
 use input::Input;
 use plan::TetPlan;
@@ -175,7 +175,8 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     if !input.only_points {
         report.bounds = bounds.results(mesh, &made.faces);
         let plc = Some(&input.plc).filter(|_| !plan.split);
-        let unmet = |size| plc.and_then(|plc| SizeUnmet::of(size, &plc.points, &plc.triangles, &plc.edges));
+        let unmet =
+            |size| plc.and_then(|plc| SizeUnmet::of(size, Boundary::LONGER, &plc.points, &plc.triangles, &plc.edges));
         report.size_unmet = plan.size.and_then(unmet);
         let how = if args.tetgen.is_some() { "leaving out Y" } else { "--split" };
         report.to_split = (!plan.split).then_some(how);

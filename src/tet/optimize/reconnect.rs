@@ -122,7 +122,7 @@ impl Improver {
 
     fn reconnect_with(&mut self, r: &mut Reconnection, t: u32, size: usize, nodes: usize) -> bool {
         r.choose_cavity(&self.c, t, size);
-        if r.tets.len() < 3 || !r.outline(&self.c) || r.is_known(&self.c) {
+        if r.tets.len() < 3 || !r.outline(&self.c) || r.is_known(&self.c, nodes) {
             return false;
         }
         r.limit = self.strain_of(&r.tets) - EASED;
@@ -189,17 +189,18 @@ impl Reconnection {
         }
     }
 
-    /// Whether the cavity, the very same tetrahedra, was searched before; what a search finds is gone afterwards, so it
-    /// was in vain. Many tetrahedra that are bad for the same reason grow the same cavity.
-    fn is_known(&mut self, c: &Complex) -> bool {
+    /// Whether the cavity, the very same tetrahedra in the same place, was searched before as thoroughly; what a search
+    /// finds is gone afterwards, so it was in vain. Many tetrahedra that are bad for the same reason grow the same cavity.
+    fn is_known(&mut self, c: &Complex, nodes: usize) -> bool {
         let print = |&t: &u32| {
             let mut v = c.verts(t);
             v.sort_unstable();
             let mut hasher = FxHasher::default();
             v.hash(&mut hasher);
+            v.iter().flat_map(|&v| c.points[v as usize].iter()).for_each(|x| x.to_bits().hash(&mut hasher));
             hasher.finish()
         };
-        !self.searched.insert(self.tets.iter().map(print).fold(0, u64::wrapping_add))
+        !self.searched.insert(self.tets.iter().map(print).fold(nodes as u64, u64::wrapping_add))
     }
 
     /// Forgets which cavities were searched: what is wanted has changed.

@@ -17,7 +17,7 @@ use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
 use crate::tet::recover::rule::least_height;
 use crate::tet::star::EdgeRing;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 
 /// Edges in the way of one, at most.
@@ -38,6 +38,13 @@ const AMPLE: usize = 4;
 /// Facets that are looked at for the plane of one.
 const AROUND: usize = 200;
 
+/// What is flat, and least distances of new vertices from the planes around, in heights that count as flat: the more
+/// edges are there the less is in the way of the others.
+const MEASURES: [(f64, f64); 3] = [(1.0, 2.0), (1.0, 0.1), (4.0, 0.1)];
+
+/// Share of the edges that have to come with one measure, for the next to be tried.
+const GAIN: f64 = 0.1;
+
 /// Exchanges for one edge, over the number of edges in its way and on top of it.
 const WORK: (usize, usize) = (8, 32);
 
@@ -56,10 +63,18 @@ pub(super) struct Level<'a> {
     pub facets: FxHashMap<[u32; 2], Vec<[u32; 3]>>,
     /// Vertices that may be put into planes for the edge at hand.
     pub spare: usize,
+    /// Points of the input.
+    pub points: usize,
+    /// What is thinner than that is flat.
+    pub tolerance: f64,
+    /// Least distance of a new vertex from the planes around.
+    pub clearance: f64,
     /// New vertices that lie on nothing.
     pub made: Vec<u32>,
     /// New vertices in planes.
     pub inside: Vec<(u32, Plane)>,
+    /// The same, as a set.
+    pub within: FxHashSet<u32>,
 }
 
 /// Recovers what lies in planes of faces but for rounding. Returns the edges and triangles that are still missing.
@@ -76,10 +91,24 @@ pub(super) fn level_out(
             facets.entry(side).or_default().push(triangle);
         }
     }
-    let mut level = Level { s: &mut push.s, keep, facets, spare: 0, made: Vec::new(), inside: Vec::new() };
-    for &edge in missing.edges {
-        watch.ask()?;
-        level.insert(edge);
+    let mut level = Level::new(push, keep, facets);
+    let mut left = missing.edges.to_vec();
+    for (tolerance, clearance) in MEASURES {
+        level.tolerance = tolerance * level.s.flat;
+        level.clearance = clearance * level.s.flat;
+        let before = left.len();
+        let mut again = Vec::new();
+        for edge in left {
+            watch.ask()?;
+            if !level.insert(edge) {
+                again.push(edge);
+            }
+        }
+        let gained = before - again.len();
+        left = again;
+        if (gained as f64) < GAIN * left.len() as f64 {
+            break;
+        }
     }
     level.leave();
     let made = level.made;
@@ -95,7 +124,21 @@ pub(super) fn level_out(
     Ok((lost_edges, lost_triangles))
 }
 
-impl Level<'_> {
+impl<'a> Level<'a> {
+    fn new(push: &'a mut Push, keep: &'a SurfaceEdges, facets: FxHashMap<[u32; 2], Vec<[u32; 3]>>) -> Self {
+        Self {
+            points: push.segments.points,
+            s: &mut push.s,
+            keep,
+            facets,
+            spare: 0,
+            tolerance: 0.0,
+            clearance: 0.0,
+            made: Vec::new(),
+            inside: Vec::new(),
+            within: FxHashSet::default(),
+        }
+    }
     /// Makes an edge if it lies in the plane of one of its facets and that is one of faces. What has changed when this
     /// does not succeed is as good as before.
     pub(super) fn insert(&mut self, [a, b]: [u32; 2]) -> bool {
@@ -112,6 +155,12 @@ impl Level<'_> {
         })
     }
 
+    /// Whether a vertex lies in a plane but for rounding: one of the input, or one that was put there.
+    pub(super) fn lies_in(&self, v: u32, plane: &Plane) -> bool {
+        ((v as usize) < self.points || self.within.contains(&v))
+            && plane.height(self.s.point(v)).abs() < 4.0 * self.tolerance
+    }
+
     /// The plane of a facet, told by the largest of the facets around that lie in it, and the area of that.
     fn plane(&self, facet: [u32; 3]) -> (f64, Plane) {
         let mut best = (area(self.s, facet), Plane::of(self.s, facet));
@@ -124,8 +173,8 @@ impl Level<'_> {
                     continue;
                 }
                 let plane = Plane::of(self.s, *other);
-                let tells = facet.iter().all(|&v| plane.has(self.s, v));
-                if tells || other.iter().all(|&v| best.1.has(self.s, v)) {
+                let tells = facet.iter().all(|&v| self.lies_in(v, &plane));
+                if tells || other.iter().all(|&v| self.lies_in(v, &best.1)) {
                     near.push(*other);
                     let area = area(self.s, *other);
                     if tells && area > best.0 {
@@ -209,9 +258,9 @@ impl Level<'_> {
                 }
                 let [p, q] = [f[(i + 1) % 3], f[(i + 2) % 3]];
                 let height = least_height([a, p, q, b].map(|v| self.s.point(v)));
-                let crosses = height < self.s.flat
-                    && plane.has(self.s, p)
-                    && plane.has(self.s, q)
+                let crosses = height < self.tolerance
+                    && self.lies_in(p, plane)
+                    && self.lies_in(q, plane)
                     && self.side([a, b], p, plane) < 0
                     && self.side([a, b], q, plane) > 0
                     && self.side([p, q], a, plane) > 0
@@ -227,13 +276,13 @@ impl Level<'_> {
     /// The vertices across from an edge, to its right and to its left seen from above, that lie in one plane with it.
     fn quadrilateral(&mut self, edge: [u32; 2], plane: &Plane) -> Option<Diagonal> {
         let ring = self.s.ring(edge[0], edge[1])?;
-        let side = |&v: &u32| if plane.has(self.s, v) { self.side(edge, v, plane) } else { 0 };
+        let side = |&v: &u32| if self.lies_in(v, plane) { self.side(edge, v, plane) } else { 0 };
         let sides: Vec<i32> = ring.rim.iter().map(side).collect();
         let mut best: Option<(f64, [u32; 2])> = None;
         for (&x, _) in ring.rim.iter().zip(&sides).filter(|&(_, &side)| side < 0) {
             for (&y, _) in ring.rim.iter().zip(&sides).filter(|&(_, &side)| side > 0) {
                 let height = least_height([edge[0], edge[1], x, y].map(|v| self.s.point(v)));
-                if height < self.s.flat && best.is_none_or(|b| height < b.0) {
+                if height < self.tolerance && best.is_none_or(|b| height < b.0) {
                     best = Some((height, [x, y]));
                 }
             }
@@ -290,9 +339,9 @@ impl Level<'_> {
         Some((sector, apex))
     }
 
-    /// Least distance over the size of a room that is more than flat.
+    /// Least distance over the size of a room that is asked for.
     fn least(&self, room: &Room) -> f64 {
-        2.0 * self.s.flat / room.size
+        self.clearance / room.size
     }
 }
 

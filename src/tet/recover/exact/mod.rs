@@ -48,6 +48,10 @@ const ATTEMPTS_ALONE: u64 = 2;
 /// Edges of a part that is worth a copy of all, to be tried again alone.
 const LARGE: usize = 100;
 
+/// Edges of those missing that may be left when what lies in planes is recovered; beyond that it gains nothing, and new
+/// vertices are in the way.
+const WORTHWHILE: f64 = 0.25;
+
 /// What the exact tier did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::tet) struct ExactSummary {
@@ -74,9 +78,22 @@ pub(in crate::tet) fn recover_exact(
     (ways, flat): (&[Way], f64),
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
-    let mut last = TetError::NotRecovered { edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
+    let (edges_of, triangles_of) = (missing.edges.to_vec(), missing.triangles.to_vec());
+    let segments = Segments::new(edges, surface.points.len());
+    let push = Push::new(Space::new(c.clone(), flat), segments, surface.triangles.clone());
+    let start = Start { push, edges: edges_of, triangles: triangles_of };
+    let mut level: Option<Start> = None;
+    let mut last = TetError::NotRecovered { edges: start.edges.clone(), triangles: start.triangles.clone() };
     for &way in ways {
-        match recover_parts(Space::new(c.clone(), flat), surface, edges, missing, way, watch) {
+        let start = match &mut level {
+            _ if !way.level => &start,
+            Some(level) => level,
+            none => none.insert(start.leveled(edges, watch)?),
+        };
+        if way.level && start.edges.len() as f64 > WORTHWHILE * missing.edges.len() as f64 {
+            continue;
+        }
+        match recover_parts(start.clone(), surface, way, watch) {
             Ok(recovered) => return Ok(recovered),
             Err(Failed { error, again: false }) => return Err(error),
             Err(Failed { error, .. }) => last = error,
@@ -85,34 +102,36 @@ pub(in crate::tet) fn recover_exact(
     Err(last)
 }
 
+/// A complex, and what of the surface is missing in it.
+#[derive(Clone)]
+struct Start<'a> {
+    push: Push<'a>,
+    edges: Vec<[u32; 2]>,
+    triangles: Vec<u32>,
+}
+
+impl Start<'_> {
+    /// With what lies in planes of faces recovered.
+    fn leveled(&self, edges: &SurfaceEdges, watch: &Watch) -> Result<Self, TetError> {
+        let mut push = self.push.clone();
+        let missing = Missing { edges: &self.edges, triangles: &self.triangles };
+        let (edges, triangles) = level_out(&mut push, edges, missing, watch)?;
+        Ok(Self { push, edges, triangles })
+    }
+}
+
 /// Why parts could not be recovered, and whether all may be tried again.
 struct Failed {
     error: TetError,
     again: bool,
 }
 
-impl From<TetError> for Failed {
-    fn from(error: TetError) -> Self {
-        Self { error, again: false }
-    }
-}
-
-fn recover_parts(
-    s: Space,
-    surface: &TriMesh,
-    edges: &SurfaceEdges,
-    missing: Missing,
-    way: Way,
-    watch: &Watch,
-) -> Result<(Complex, ExactSummary), Failed> {
-    let budget = way.budget(missing.edges.len());
-    let segments = Segments::new(edges, surface.points.len());
-    let mut push = Push::new(s, segments, surface.triangles.clone());
+fn recover_parts(start: Start, surface: &TriMesh, way: Way, watch: &Watch) -> Result<(Complex, ExactSummary), Failed> {
+    let Start { mut push, edges, triangles } = start;
+    let budget = way.budget(edges.len());
     let mut summary = ExactSummary::default();
-    let left = if way.level { Some(level_out(&mut push, edges, missing, watch)?) } else { None };
-    let missing = left.as_ref().map_or(missing, |(edges, triangles)| Missing { edges, triangles });
     push.segments.deep = way.deep;
-    for part in parts(&surface.triangles, missing) {
+    for part in parts(&surface.triangles, Missing { edges: &edges, triangles: &triangles }) {
         // Large parts take most of the time, and are tried again alone; a copy for each of the others would take longer.
         let saved = (part.edges.len() >= LARGE).then(|| (push.clone(), summary));
         let mut tried = 0;
@@ -122,17 +141,11 @@ fn recover_parts(
             // The surface does not meet itself, so whatever was in the way may not be there another way.
             let again = matches!(error, TetError::Stuck { .. });
             let Some(saved) = saved.as_ref().filter(|_| again && tried < ATTEMPTS_ALONE) else {
-                eprintln!(
-                    "DBG {way:?} missing {} implicit {} {error:?}",
-                    missing.edges.len(),
-                    push.s.implicit_vertices()
-                );
                 return Err(Failed { error, again });
             };
             (push, summary) = saved.clone();
         }
     }
-    eprintln!("DBG {way:?} missing {} implicit {} ok", missing.edges.len(), push.s.implicit_vertices());
     Ok((push.s.c, summary))
 }
 

@@ -41,7 +41,8 @@ impl Level<'_> {
         let s = &*self.s;
         let (p, q) = (*s.point(u), *s.point(v));
         let (x, y) = (plane.height(&p), plane.height(&q));
-        let pierces = x.min(y) < -s.flat && x.max(y) > s.flat;
+        let far = self.tolerance.min(self.clearance);
+        let pierces = x.min(y) < -far && x.max(y) > far;
         if !pierces || self.spare == 0 || self.keep.contains(u, v) {
             return None;
         }
@@ -57,13 +58,14 @@ impl Level<'_> {
         let w = self.s.fill(&ring.tets, &walls, at)?;
         self.spare -= 1;
         self.inside.push((w, *plane));
+        self.within.insert(w);
         Some(w)
     }
 
     /// Whether a point lies above a face, and not too near.
     fn sees(&self, f: [u32; 3], p: &Point3) -> bool {
         let [a, b, c] = f.map(|v| self.s.point(v).coords);
-        self.s.orient_to(f, p) > 0 && unit_normal(a, b, c).dot(&(p.coords - a)) > self.s.flat
+        self.s.orient_to(f, p) > 0 && unit_normal(a, b, c).dot(&(p.coords - a)) > 0.5 * self.clearance
     }
 
     /// Takes the vertices out of planes again that were put into them.
@@ -90,7 +92,7 @@ impl Level<'_> {
             let Some(i) = f.iter().position(|&v| v == w) else { continue };
             let [p, q] = [f[(i + 1) % 3], f[(i + 2) % 3]];
             let turn = |s: &Space| s.orient_to([w, p, q], &plane.above);
-            if plane.has(self.s, p) && plane.has(self.s, q) && turn(self.s) > 0 && next.insert(p, q).is_none() {
+            if self.lies_in(p, plane) && self.lies_in(q, plane) && turn(self.s) > 0 && next.insert(p, q).is_none() {
                 old.push([w, p, q]);
             }
         }

@@ -20,11 +20,6 @@ impl Plane {
         Self { at, normal, above: at + normal * size }
     }
 
-    /// Whether a vertex lies in it but for rounding.
-    pub(super) fn has(&self, s: &Space, v: u32) -> bool {
-        self.height(s.point(v)).abs() < 4.0 * s.flat
-    }
-
     pub(super) fn height(&self, p: &Point3) -> f64 {
         self.normal.dot(&(p - self.at))
     }

@@ -23,7 +23,7 @@ pub(super) struct Segment {
 pub(super) struct Segments<'a> {
     input: &'a SurfaceEdges,
     /// Points of the input.
-    points: usize,
+    pub points: usize,
     pub list: Vec<Segment>,
     /// Whether vertices are put well off all walls, where that can be.
     pub deep: bool,
@@ -137,23 +137,26 @@ impl<'a> Segments<'a> {
             Crossing::Vertex(v) => return Ok(Some(v)),
             Crossing::Nothing => return Err(stuck(ends, Stuck::Intersection)),
             Crossing::Face(half) if s.c.is_frozen(half) => return Err(meets(Obstacle::Triangle(s.c.face(half)))),
-            Crossing::Face(half) => match self.grazed(s, half, ends).filter(|_| self.deep) {
-                Some([p, q]) => ring(s, half >> 2, [p, q]),
-                None => vec![half >> 2, s.c.mate(half) >> 2],
-            },
+            Crossing::Face(half) => {
+                let grazed = self.grazed(s, half, ends).filter(|_| self.deep).map(|edge| ring(s, half >> 2, edge));
+                let pair = vec![half >> 2, s.c.mate(half) >> 2];
+                grazed.into_iter().chain([pair]).collect()
+            }
             Crossing::Edge(t, [p, q]) => {
                 if let Some(other) = self.of_piece(p, q) {
                     return Err(meets(Obstacle::Edge(other)));
                 }
-                ring(s, t, [p, q])
+                vec![ring(s, t, [p, q])]
             }
         };
-        if first.iter().any(|&t| s.c.is_ghost(t)) {
+        let inside = |tets: &Vec<u32>| !tets.iter().any(|&t| s.c.is_ghost(t));
+        let first: Vec<Vec<u32>> = first.into_iter().filter(inside).collect();
+        if first.is_empty() {
             return Err(stuck(ends, Stuck::Intersection));
         }
         let keep = |a, b| self.of_piece(a, b).is_some();
         let mut dig = Dig::new(s, self.points, &keep, at, ends);
-        let (cavity, weight) = match dig.dig(first, self.deep) {
+        let (cavity, weight) = match first.into_iter().find_map(|first| dig.dig(first, self.deep)) {
             Some(Dug::Joins(cavity)) => {
                 let walls = s.walls(&cavity);
                 return if s.join(&cavity, &walls, at) { Ok(None) } else { Err(stuck(ends, Stuck::Intersection)) };

@@ -7,7 +7,7 @@ const VERTICES: (usize, usize) = (256, 1_000_000);
 const VERTICES_DEEP: (usize, usize) = (64, 100_000);
 
 /// The same where other ways are left that may need fewer.
-const VERTICES_FIRST: (usize, usize) = (32, 10_000);
+const VERTICES_FIRST: (usize, usize) = (4, 25_000);
 
 /// A way to recover what is missing.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub(in crate::tet) struct Way {
     /// Chooses the order in which edges are cut.
     pub salt: u64,
     /// Implicit vertices allowed: for each missing edge, and in any case.
-    vertices: (usize, usize),
+    pub vertices: (usize, usize),
 }
 
 impl Way {
@@ -27,7 +27,8 @@ impl Way {
     pub(in crate::tet) const FIRST: [Self; 1] = [Self { vertices: VERTICES_FIRST, ..Self::seen(0) }];
 
     /// For parts that are flat but for rounding.
-    pub(in crate::tet) const TURNED: [Self; 3] = [Self::deep(true, 0), Self::deep(false, 1), Self::level(2)];
+    pub(in crate::tet) const TURNED: [Self; 5] =
+        [Self::deep(true, 0), Self::level(1), Self::deep(true, 2), Self::deep(false, 0), Self::deep(false, 1)];
 
     /// What is left to try.
     pub(in crate::tet) const OTHERS: [Self; 4] =
