@@ -84,6 +84,21 @@ def forms(args, points, triangles):
             yield f"split {times}, turned", (fine[0] @ rotation(1).T, fine[1])
 
 
+def oriented(args, path):
+    """A surface as it is, or as --repair makes it where that is needed."""
+    points, triangles = read_off(path)
+    kind = ["--plc"] if path.stem.startswith("plc_") else []
+    command = [args.program, "tetrahedralize", str(path), "-q", *kind]
+    if subprocess.run([*command, "--check-only"], capture_output=True).returncode == 0:
+        return points, triangles
+    with tempfile.TemporaryDirectory() as folder:
+        done = os.path.join(folder, "mesh.ele")
+        subprocess.run([*command, "-o", done, "--no-refine", "--repair"], check=True)
+        rows = [line.split()[1:4] for line in list(open(os.path.join(folder, "mesh.face")))[1:] if line[0] != "#"]
+        assert len(rows) == len(triangles), f"{path}: repaired, but not only turned"
+        return points, np.array(rows, int)
+
+
 def tetgen(args, surface, triangles, folder):
     code, cpu, _, _, _ = run([args.tetgen, "-pYQ", surface], args.limit, folder)
     if code != 0 or not os.path.exists(os.path.join(folder, "surface.1.face")):
@@ -141,15 +156,7 @@ def main():
         for path in sorted(args.folder.glob("*.off")):
             if args.only and not any(part in path.name for part in args.only):
                 continue
-            with tempfile.TemporaryDirectory() as folder:
-                # As --repair orients it.
-                points, triangles = read_off(path)
-                if path.stem == "cgal_blobby_shuffled":
-                    done = os.path.join(folder, "mesh.ele")
-                    command = [args.program, "tetrahedralize", str(path), "-o", done, "--no-refine", "--repair", "-q"]
-                    subprocess.run(command, check=True)
-                    table = [line.split()[1:4] for line in list(open(os.path.join(folder, "mesh.face")))[1:] if line[0] != "#"]
-                    triangles = np.array(table, int)
+            points, triangles = oriented(args, path)
             for form, surface in forms(args, points, triangles):
                 if len(surface[1]) <= args.max_triangles:
                     yield path.stem, form, surface
