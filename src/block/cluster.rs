@@ -224,16 +224,11 @@ fn trim_cluster(
     frozen.sort_unstable();
     frozen.dedup();
     let options = TrimOptions { edge: out.edge, relax: params.relax_ends, depth: params.depth };
-    let end_error = |i: usize, failure| end_error(id, index[i], &ends[i], failure);
-    let Trimmed { mesh, renumbered, ends: surfaces } =
-        trim(&out.mesh, &neighbours, &ends, &frozen, &options).map_err(|(i, f)| end_error(i, f))?;
+    let Trimmed { mesh, renumbered, ends: surfaces } = trim(&out.mesh, &neighbours, &ends, &frozen, &options)
+        .map_err(|(i, failure)| end_error(id, index[i], &ends[i], failure))?;
     for cap in &mut out.caps {
         for v in cap.triangles.iter_mut().flatten() {
             *v = renumbered[*v as usize];
-            if *v == u32::MAX {
-                // Trimming took a part of a cap: a cut plane reaches into another vessel's end.
-                return Err(end_error(0, FlattenFailure::LeavesVessel));
-            }
         }
     }
     out.mesh = mesh;

@@ -48,7 +48,7 @@ pub struct Trimmed {
 const GOOD: f64 = 0.25;
 
 /// Trims a mesh at its ends. `neighbours` are the face neighbours as handles `4·tet + face`, `u32::MAX` at the boundary;
-/// vertices in `frozen` (sorted) are not moved.
+/// vertices in `frozen` (sorted: those of the caps) are neither moved nor taken away.
 ///
 /// # Errors
 /// The index of the end that fails, and why.
@@ -87,7 +87,20 @@ pub fn trim(
         }
         surfaces.push((region, flat));
     }
-    finish(mesh, &points, &alive, ends, &surfaces)
+    let trimmed = finish(mesh, &points, &alive, ends, &surfaces)?;
+    match frozen.iter().find(|&&v| trimmed.renumbered[v as usize] == u32::MAX) {
+        // A cut plane reaches into another vessel's cap.
+        Some(&lost) => Err((taker(mesh, &surfaces, lost), FlattenFailure::LeavesVessel)),
+        None => Ok(trimmed),
+    }
+}
+
+/// The last end that took a tetrahedron at a vertex: it left nothing there.
+fn taker(mesh: &TetMesh, surfaces: &[(Region, Flat)], vertex: u32) -> usize {
+    let took = |(region, flat): &(Region, Flat)| {
+        region.tets.iter().zip(&flat.removed).any(|(&t, &gone)| gone && mesh.tets[t as usize].contains(&vertex))
+    };
+    surfaces.iter().rposition(took).unwrap_or(0)
 }
 
 /// For each end the tetrahedron whose centroid is nearest to a point of the axis in the tip.

@@ -169,6 +169,22 @@ fn a_tip_fused_with_a_neighbour_is_told() {
 }
 
 #[test]
+fn the_plane_that_takes_a_cap_is_blamed() {
+    let axis = Vec3::z();
+    let tube = Tube { a: Point3::origin(), b: Point3::new(0.0, 0.0, 9.0), ra: 1.0, rb: 1.0 };
+    let mesh = lattice_tube(&tube, 0.5, 0.1, 5);
+    let at = |z: f64| Point3::new(0.0, 0.0, z);
+    let ends = [cut_end(4, 0, at(2.0), -axis, 1.0), cut_end(7, 1, at(7.0), axis, 1.0)];
+    let farthest = |sign: f64| {
+        let heights = mesh.points.iter().map(|p| sign * p.z).enumerate();
+        heights.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a vertex").0 as u32
+    };
+    let lost = |vertex: u32| trim(&mesh, &neighbours(&mesh), &ends, &[vertex], &options(0.5, true)).err();
+    assert_eq!(lost(farthest(-1.0)), Some((0, FlattenFailure::LeavesVessel)));
+    assert_eq!(lost(farthest(1.0)), Some((1, FlattenFailure::LeavesVessel)));
+}
+
+#[test]
 fn a_plane_beyond_the_mesh_is_told() {
     let tube = Tube { a: Point3::origin(), b: Point3::new(0.0, 0.0, 6.0), ra: 1.0, rb: 1.0 };
     let mesh = lattice_tube(&tube, 0.5, 0.1, 5);
