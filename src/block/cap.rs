@@ -81,6 +81,11 @@ const LONGEST_TIP: f64 = 3.0;
 const WIDTH: f64 = 1.1;
 /// Mean edge length of a relaxed wall over the length that was aimed at.
 pub(super) const MEAN_EDGE: f64 = 0.92;
+/// How often a rim that is not yet one loop may lose what spoils it: each time a row of triangles goes, and so many rows are
+/// far more than the four edge lengths that may go.
+const RIM_ROUNDS: usize = 20;
+/// How far before the plane, in edge lengths, triangles may go for the rim's sake.
+const DEEPEST_RIM: f64 = 4.0;
 /// Least number of corners of a ring.
 const LEAST_CORNERS: u32 = 8;
 
@@ -274,14 +279,14 @@ impl Cutter<'_> {
     /// The loop in which the wall now ends, counter-clockwise about the axis; removes more where it is pinched, has
     /// teeth, or is not one loop.
     fn rim(&mut self, section: &Section, tip: &mut Vec<u32>, edge: f64) -> Result<Vec<u32>, CapFailure> {
-        for _ in 0..20 {
+        for _ in 0..RIM_ROUNDS {
             let boundary = self.boundary(tip);
             let extra = self.spoilers(&boundary);
             if extra.is_empty() {
                 return self.walk(&boundary);
             }
             for face in extra {
-                if self.triangle(face).iter().any(|p| section.height(p) < -4.0 * edge) {
+                if self.triangle(face).iter().any(|p| section.height(p) < -DEEPEST_RIM * edge) {
                     return Err(CapFailure::Loops);
                 }
                 if !self.removed[face as usize] {

@@ -55,6 +55,11 @@ pub(super) struct Settler<'a> {
     blending: f64,
 }
 
+/// How far before its plane, in radii, a vessel only leads to its own tip. A straight vessel's axis is clear of the tip from
+/// 2.8 radii on (half a radius of tip behind the plane, one radius, and the margin for two vessels side by side of 1.3
+/// radii); the rest is for bends.
+const OWN_LEAD: f64 = 3.5;
+
 /// Step of a plane that moves, in radii; it grows after a while.
 const STEP: f64 = 0.25;
 const STEPS: u32 = 96;
@@ -281,7 +286,7 @@ impl<'a> Settler<'a> {
                     if run == own {
                         // What leads to the tip is not in its way, only what comes back to it.
                         let r = course.radii[i][0].max(course.radii[i][1]).max(course.radius(s, way));
-                        let lead = s - way.sign() * 3.5 * r;
+                        let lead = s - way.sign() * OWN_LEAD * r;
                         match way {
                             Way::Onward => reach[1] = lead,
                             Way::Back => reach[0] = lead,

@@ -170,6 +170,7 @@ fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: usi
     let mut key = KeyMaker::new("cluster");
     options(&mut key, plan);
     key.id(u32::from(overlapping));
+    key.id(u32::from(plan.fuse));
     key.count(first);
     key.count(cluster.tubes.len());
     for tube in &cluster.tubes {
@@ -205,4 +206,27 @@ fn connector_key(cut: &Cut, plan: &MeshPlan, ends: &[StoredEnd]) -> Key {
         end.surface.triangles.as_flattened().iter().for_each(|&v| key.id(v));
     }
     key.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cluster_is_found_only_by_all_that_it_depends_on() {
+        let (cluster, plan) = (Cluster { nodes: Vec::new(), tubes: Vec::new(), ends: Vec::new() }, MeshPlan::default());
+        let plain = cluster_key(&cluster, &plan, true, 0);
+        let others = [
+            MeshPlan { rho: 4.0, ..plan.clone() },
+            MeshPlan { follow: 0.5, ..plan.clone() },
+            MeshPlan { joint: JointStyle::Woven, ..plan.clone() },
+            MeshPlan { fuse: true, ..plan.clone() },
+        ];
+        for other in others {
+            assert_ne!(cluster_key(&cluster, &other, true, 0), plain, "{other:?}");
+        }
+        assert_ne!(cluster_key(&cluster, &plan, false, 0), plain);
+        assert_ne!(cluster_key(&cluster, &plan, true, 1), plain);
+        assert_eq!(cluster_key(&cluster, &plan, true, 0), plain);
+    }
 }

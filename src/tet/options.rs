@@ -59,13 +59,17 @@ impl std::fmt::Debug for Sizing {
     }
 }
 
+/// The dihedral angle of the regular tetrahedron in degrees, acos(1/3): no tetrahedron's smallest is larger, so that bounds on
+/// the smallest have to be below.
+pub const REGULAR_DIHEDRAL: f64 = 70.528_779_365_509_31;
+
 /// When a tetrahedron is split. Each bound that is set holds for all tetrahedra, as far as the boundary allows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Refinement {
     /// Bound on the circumradius over the shortest edge.
     pub max_radius_edge: Option<f64>,
-    /// Bound on the smallest dihedral angle, in degrees.
+    /// Bound on the smallest dihedral angle, in degrees, below [`REGULAR_DIHEDRAL`].
     pub min_dihedral: Option<f64>,
     /// Bound on the volume.
     pub max_volume: Option<f64>,

@@ -4,7 +4,7 @@ use super::complex::Complex;
 use super::error::TetError;
 use super::fill::Request;
 use super::lattice::mean_edge;
-use super::options::{Interior, Refinement, Sizing};
+use super::options::{Interior, REGULAR_DIHEDRAL, Refinement, Sizing};
 use super::progress::Stage;
 use super::refine::{
     Goals, RefineReport, SizeLimit, SizeTree, TreeOptions, graded_points, refine_complex, vertex_sizes,
@@ -41,7 +41,7 @@ pub(super) fn check(refinement: Option<&Refinement>, sizing: &Sizing, points: us
     r.max_radius_edge.map_or(Ok(()), |b| positive("max_radius_edge", b))?;
     r.max_volume.map_or(Ok(()), |b| positive("max_volume", b))?;
     match r.min_dihedral {
-        Some(b) if !(0.0..=60.0).contains(&b) => Err(TetError::BadOption { option: "min_dihedral", value: b }),
+        Some(b) if !(0.0..REGULAR_DIHEDRAL).contains(&b) => Err(TetError::BadOption { option: "min_dihedral", value: b }),
         _ => Ok(()),
     }
 }

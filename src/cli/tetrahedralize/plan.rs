@@ -4,7 +4,7 @@ use super::Args;
 use super::format::{InputFormat, Target};
 use super::switches::{Quality, Switches};
 use crate::cli::exit::Failure;
-use crate::tet::{Boundary, InputKind, Interior, Refinement, Sizing, Tetrahedralizer};
+use crate::tet::{Boundary, InputKind, Interior, REGULAR_DIHEDRAL, Refinement, Sizing, Tetrahedralizer};
 use serde::Serialize;
 
 /// Side of the lattice's cubes in edge lengths: what gives a body-centred lattice edges of about that length.
@@ -150,10 +150,10 @@ impl TetPlan {
         positive("--max-volume", args.max_volume)?;
         positive("--size", args.size)?;
         if let Some(angle) = args.min_dihedral
-            && !(0.0..70.5).contains(&angle)
+            && !(0.0..REGULAR_DIHEDRAL).contains(&angle)
         {
             return Err(Failure::usage(format!(
-                "--min-dihedral is {angle}; give degrees from 0 to below 70.5, the angle of the regular tetrahedron"
+                "--min-dihedral is {angle}; give degrees from 0 to below {REGULAR_DIHEDRAL:.2}, the angle of the regular tetrahedron"
             )));
         }
         Ok(())

@@ -1,5 +1,7 @@
 //! `TetGen`'s switches, as its manual describes them (version 1.5, section 4): a string such as `pYq1.4a0.1`.
 
+use crate::tet::REGULAR_DIHEDRAL;
+
 /// What the switches ask for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Switches {
@@ -206,7 +208,7 @@ fn unsupported(letter: char, what: &'static str, instead: &'static str) -> Switc
 fn quality(cursor: &mut Cursor) -> Result<Quality, SwitchError> {
     const RATIO: &str =
         "a bound on circumradius over shortest edge has to follow, above 0.612 (1.4 to 2 are usual), as in q1.4";
-    const ANGLE: &str = "an angle in degrees, from 0 to below 70.5, has to follow the slash, as in q1.4/10";
+    const ANGLE: &str = "an angle in degrees, from 0 to below 70.53, has to follow the slash, as in q1.4/10";
     let max_radius_edge = match cursor.number() {
         "" => USUAL_RATIO,
         number => {
@@ -221,7 +223,7 @@ fn quality(cursor: &mut Cursor) -> Result<Quality, SwitchError> {
     let mut min_dihedral = None;
     if cursor.skip('/') {
         let number = cursor.number();
-        let angle = number.parse::<f64>().ok().filter(|angle| (0.0..70.5).contains(angle));
+        let angle = number.parse::<f64>().ok().filter(|angle| (0.0..REGULAR_DIHEDRAL).contains(angle));
         let bad = || SwitchError::BadNumber { switch: 'q', number: format!("/{number}"), expected: ANGLE };
         min_dihedral = Some(angle.ok_or_else(bad)?).filter(|&angle| angle > 0.0);
     }

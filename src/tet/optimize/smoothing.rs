@@ -26,6 +26,9 @@ const SEARCH_ROUNDS: usize = 12;
 /// mesh is small. On good surfaces that is all there are.
 const MOST_EASED: (usize, usize) = (20, 200);
 
+/// A tetrahedron that is better by this factor than when it was listed was helped along with another: it is not due.
+const HELPED: f64 = 1.05;
+
 /// Fall of the strain below which a move is not worth making.
 const LEAST_EASE: f64 = 0.002;
 /// Fall of the strain by a move from which it is worth trying again what was tried in vain around it.
@@ -323,7 +326,7 @@ impl Improver {
             Effort::Quick | Effort::Fast => usize::MAX,
         };
         for &(q, t) in &list {
-            if !self.c.is_real(t) || self.quality[t as usize] >= below.min(q * 1.05) {
+            if !self.c.is_real(t) || self.quality[t as usize] >= below.min(q * HELPED) {
                 continue;
             }
             for v in self.c.verts(t) {
