@@ -102,8 +102,7 @@ fn subtree_989_is_sound_but_for_its_overlaps() {
     // Terminals without a cap are those whose tips lie in another vessel.
     let mut uncapped: Vec<i64> = report.fused.iter().flat_map(|f| &f.uncapped).map(|&node| i64::from(node)).collect();
     uncapped.sort_unstable();
-    let missing: Vec<i64> =
-        line(Line::CapPerTerminal).offenders.iter().flat_map(|o| o.ids.iter().copied()).collect();
+    let missing: Vec<i64> = line(Line::CapPerTerminal).offenders.iter().flat_map(|o| o.ids.iter().copied()).collect();
     assert_eq!((missing.len() as u64, &missing), (line(Line::CapPerTerminal).count, &uncapped));
     // Handles are those of vessels that fused.
     let handles: i64 = report.fused.iter().map(|f| f.handles - f.loops).sum();

@@ -5,10 +5,11 @@
 //! is no such place are given up, which joins two clusters. Both only ever go one way, so it ends.
 
 use super::clearance::{Tip, tip_middle};
-use super::course::{Course, Way};
-use super::window::{Slot, room};
-use super::{PartitionParams, UncutReason};
+use super::params::PartitionParams;
+use super::parts::UncutReason;
+use super::window::Slot;
 use crate::geometry::{Aabb, Bvh, Section, Tube};
+use crate::skeleton::course::{Course, Way};
 use crate::skeleton::{BranchId, NodeId};
 
 /// A piece of a branch that is in one cluster.
@@ -220,7 +221,7 @@ impl<'a> Settler<'a> {
         let mut step = STEP * course.radius(planes[way.side()], way);
         for i in 0..STEPS {
             planes[way.side()] += way.sign() * step;
-            if planes[1] - planes[0] < room(course, self.params, planes[0], planes[1]) {
+            if planes[1] - planes[0] < self.params.cuts.room_between(course, planes[0], planes[1]) {
                 return None;
             }
             if self.clear_at(run, way, planes[way.side()]).is_ok() {
@@ -304,16 +305,6 @@ impl<'a> Settler<'a> {
             }
         }
         false
-    }
-}
-
-impl Way {
-    /// Index of the end of a piece that lies this way.
-    pub fn end_index(self) -> usize {
-        match self {
-            Way::Onward => 1,
-            Way::Back => 0,
-        }
     }
 }
 

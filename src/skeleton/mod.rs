@@ -3,7 +3,9 @@
 mod branch;
 mod check;
 mod clean;
+pub(crate) mod course;
 mod crowding;
+pub(crate) mod cuttability;
 mod error;
 pub mod generate;
 mod graph;
@@ -16,9 +18,10 @@ mod walk;
 pub use branch::{Branch, Branches, Place};
 pub use clean::{CleanReport, clean};
 pub use crowding::CrowdedTerminals;
+pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, separation};
 pub use error::{LARGEST, SkeletonError};
 pub use graph::{Adjacency, Component, Components};
-pub use metrics::{Barrier, CutRoom, FOLD, LENGTH, Metrics, NARROW, PairGradient, Share, separation};
+pub use metrics::{Barrier, FOLD, Metrics, NARROW, PairGradient, Share};
 pub use overlap::{Overlap, Overlaps};
 
 pub(crate) use metrics::paper_unit;

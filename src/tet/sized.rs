@@ -41,7 +41,9 @@ pub(super) fn check(refinement: Option<&Refinement>, sizing: &Sizing, points: us
     r.max_radius_edge.map_or(Ok(()), |b| positive("max_radius_edge", b))?;
     r.max_volume.map_or(Ok(()), |b| positive("max_volume", b))?;
     match r.min_dihedral {
-        Some(b) if !(0.0..REGULAR_DIHEDRAL).contains(&b) => Err(TetError::BadOption { option: "min_dihedral", value: b }),
+        Some(b) if !(0.0..REGULAR_DIHEDRAL).contains(&b) => {
+            Err(TetError::BadOption { option: "min_dihedral", value: b })
+        }
         _ => Ok(()),
     }
 }

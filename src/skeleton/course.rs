@@ -1,11 +1,11 @@
 //! The axis of a branch by arc length, and its direction where a plane crosses it.
 
+use super::{Branch, Skeleton};
 use crate::geometry::{Point3, Section, Tube, Vec3};
-use crate::skeleton::{Branch, Skeleton};
 
 /// Which way along a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(crate) enum Way {
     /// Towards larger arc lengths: out of the piece at side 0 of a cut.
     Onward,
     /// Towards smaller arc lengths: out of the piece at side 1 of a cut.
@@ -31,10 +31,18 @@ impl Way {
             Way::Back => 1,
         }
     }
+
+    /// Index of the end of a piece that lies this way.
+    pub fn end_index(self) -> usize {
+        match self {
+            Way::Onward => 1,
+            Way::Back => 0,
+        }
+    }
 }
 
 /// A branch with its geometry at hand.
-pub(super) struct Course<'a> {
+pub(crate) struct Course<'a> {
     pub branch: &'a Branch,
     /// Positions of `branch.nodes`.
     pub points: Vec<Point3>,
