@@ -9,7 +9,7 @@ mod weave;
 
 use super::shared_disc::SharedDisc;
 use crate::geometry::{Point3, Section, Vec3};
-use crate::mesh::TriMesh;
+use crate::mesh::{Kept, TriMesh};
 use crate::partition::{ClusterEnd, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::GROWTH;
@@ -360,22 +360,9 @@ impl Cutter<'_> {
         let mut cap = vec![None; triangles.len()];
         triangles.extend(self.added);
         cap.extend(self.cap);
-        let mut map = vec![u32::MAX; self.points.len()];
-        for &v in triangles.iter().flatten() {
-            map[v as usize] = 0;
-        }
-        let mut points = Vec::with_capacity(self.points.len());
-        let mut sizes = Vec::with_capacity(self.points.len());
-        for (v, slot) in map.iter_mut().enumerate() {
-            if *slot == 0 {
-                *slot = points.len() as u32;
-                points.push(self.points[v]);
-                sizes.push(self.sizes[v]);
-            }
-        }
-        for v in triangles.iter_mut().flatten() {
-            *v = map[*v as usize];
-        }
+        let used = Kept::used(&triangles, self.points.len(), 0);
+        let (points, sizes) = (used.select(&self.points), used.select(&self.sizes));
+        let triangles = triangles.iter().map(|t| used.cell(t)).collect();
         (TriMesh { points, triangles }, sizes, cap)
     }
 }

@@ -3,10 +3,10 @@
 use super::cap::{CapError, CappedSurface, Closing, cap_terminals};
 use super::end_surface::{EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
-use super::params::{BlockParams, EndStyle, filling, mean_edge};
+use super::params::{BlockParams, EndStyle, filling};
 use super::shared_disc::{SharedDisc, disc_of_end};
 use super::trim::{CutEnd, TrimOptions, Trimmed, trim};
-use crate::geometry::{Point3, Section, Tube};
+use crate::geometry::{DisjointSets, Section, Tube, place_key};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
@@ -55,7 +55,7 @@ pub struct ClusterMesh {
 /// Any stage's, with the cluster's id; the caller may retry with other [`BlockParams`].
 pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
     let (surface, voxel) = cluster_surface(id, cluster, params)?;
-    let edge = mean_edge(&surface.mesh);
+    let edge = surface.mesh.mean_edge();
     let filled = tetrahedralize(&surface.mesh, &filling(&surface.mesh))
         .map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
     let caps = caps(cluster, &surface);
@@ -147,28 +147,15 @@ fn smallest_radius(cluster: &Cluster) -> f64 {
 
 /// Independent loops of the graph of tubes, whose ends are the same node when they are the same point.
 fn independent_loops(tubes: &[Tube]) -> i64 {
-    let mut nodes: FxHashMap<[u64; 3], usize> = FxHashMap::default();
-    let mut parent: Vec<usize> = Vec::new();
+    let mut nodes: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    let mut sets = DisjointSets::new(0);
     let mut loops = 0;
     for t in tubes {
-        let mut root = |p: &Point3| {
-            // Adding zero makes −0 and 0 the same point.
-            let key = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
-            let mut i = *nodes.entry(key).or_insert_with(|| {
-                parent.push(parent.len());
-                parent.len() - 1
-            });
-            while parent[i] != i {
-                parent[i] = parent[parent[i]];
-                i = parent[i];
-            }
-            i
-        };
-        let (a, b) = (root(&t.a), root(&t.b));
-        if a == b {
+        let [a, b] = [&t.a, &t.b].map(|p| *nodes.entry(place_key(p)).or_insert_with(|| sets.push()));
+        if sets.root(a) == sets.root(b) {
             loops += i64::from(t.a != t.b);
         } else {
-            parent[a.max(b)] = a.min(b);
+            sets.join(a, b);
         }
     }
     loops

@@ -1,5 +1,6 @@
 //! A block when it is done: what the whole needs of it, whichever kind it is, and nothing else.
 
+use crate::mesh::face_key;
 use rustc_hash::FxHashMap;
 
 use super::cluster::ClusterMesh;
@@ -163,12 +164,12 @@ struct Faces {
 impl Faces {
     fn new(mesh: &TetMesh) -> Self {
         let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
-        let left = adjacency.boundary().map(|face| (sorted(face_vertices(&mesh.tets, face)), face)).collect();
+        let left = adjacency.boundary().map(|face| (face_key(face_vertices(&mesh.tets, face)), face)).collect();
         Self { left, adjacency }
     }
 
     fn take(&mut self, triangles: &[[u32; 3]]) -> Result<Vec<u32>, NotOnBoundary> {
-        let take = |&face: &[u32; 3]| self.left.remove(&sorted(face)).ok_or(NotOnBoundary { face });
+        let take = |&face: &[u32; 3]| self.left.remove(&face_key(face)).ok_or(NotOnBoundary { face });
         let mut faces = triangles.iter().map(take).collect::<Result<Vec<u32>, _>>()?;
         faces.sort_unstable();
         Ok(faces)
@@ -187,9 +188,4 @@ impl Faces {
         rest.sort_unstable();
         (rest, self.adjacency)
     }
-}
-
-fn sorted(mut face: [u32; 3]) -> [u32; 3] {
-    face.sort_unstable();
-    face
 }

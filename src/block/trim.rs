@@ -8,7 +8,7 @@ use super::relax::Relaxation;
 use super::shape::triangle_ratio;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::{Point3, Section};
-use crate::mesh::TetMesh;
+use crate::mesh::{Kept, TetMesh};
 use crate::partition::CutId;
 
 /// A cut end to trim.
@@ -221,20 +221,12 @@ fn finish(
     ends: &[CutEnd],
     surfaces: &[(Region, Flat)],
 ) -> Result<Trimmed, (usize, FlattenFailure)> {
-    let mut used = vec![false; points.len()];
-    for (t, _) in mesh.tets.iter().zip(alive).filter(|(_, a)| **a) {
-        for &v in t {
-            used[v as usize] = true;
-        }
-    }
-    let mut renumbered = vec![u32::MAX; points.len()];
-    let mut kept = Vec::new();
-    for (v, _) in used.iter().enumerate().filter(|(_, u)| **u) {
-        renumbered[v] = kept.len() as u32;
-        kept.push(points[v]);
-    }
+    let staying: Vec<[u32; 4]> = mesh.tets.iter().zip(alive).filter(|(_, a)| **a).map(|(t, _)| *t).collect();
+    let used = Kept::used(&staying, points.len(), 0);
+    let kept = used.select(points);
+    let tets = staying.iter().map(|t| used.cell(t)).collect();
+    let renumbered = used.number;
     let number = |v: u32| renumbered[v as usize];
-    let tets = mesh.tets.iter().zip(alive).filter(|(_, a)| **a).map(|(t, _)| t.map(number)).collect();
     let mut out = Vec::with_capacity(ends.len());
     for (i, ((region, flat), end)) in surfaces.iter().zip(ends).enumerate() {
         let surface = global_surface(region, flat, end, number);

@@ -8,7 +8,7 @@ use super::clearance::{Tip, tip_middle};
 use super::params::PartitionParams;
 use super::parts::UncutReason;
 use super::window::Slot;
-use crate::geometry::{Aabb, Bvh, Section, Tube};
+use crate::geometry::{Aabb, Bvh, DisjointSets, Section, Tube};
 use crate::skeleton::course::{Course, Way};
 use crate::skeleton::{BranchId, NodeId};
 
@@ -48,7 +48,7 @@ pub(super) struct Settler<'a> {
     pub first_run: Vec<u32>,
     /// Terminals at the branch's start and end.
     pub terminals: Vec<[bool; 2]>,
-    union: Union,
+    union: DisjointSets,
     /// Smallest radius of each cluster, by root.
     r_min: Vec<f64>,
     obstacles: Vec<Obstacle>,
@@ -78,11 +78,11 @@ impl<'a> Settler<'a> {
             (0..=courses.len() as u32).map(|b| slots.partition_point(|s| s.branch < b) as u32).collect();
         let blending = params.blending();
         let (obstacles, tree) = obstacles(courses, &terminals, params, blending);
-        let union = Union::new(slots.len() + courses.len() + nodes);
+        let union = DisjointSets::new(slots.len() + courses.len() + nodes);
         let mut settler = Self {
             courses,
             params,
-            r_min: vec![f64::INFINITY; union.parent.len()],
+            r_min: vec![f64::INFINITY; union.len()],
             union,
             slots,
             first_slot,
@@ -122,7 +122,7 @@ impl<'a> Settler<'a> {
     /// Moves planes and gives up cuts until every end is clear; returns why cuts were given up, by branch.
     pub fn settle(&mut self) -> Vec<(BranchId, UncutReason)> {
         let mut given_up = Vec::new();
-        let mut dirty = vec![true; self.union.parent.len()];
+        let mut dirty = vec![true; self.union.len()];
         loop {
             self.gather();
             let mut changed: Vec<u32> = Vec::new();
@@ -168,7 +168,7 @@ impl<'a> Settler<'a> {
         }
         for &slot in changed {
             for piece in pieces(self, slot) {
-                dirty[self.union.root(piece) as usize] = true;
+                dirty[self.union.find(piece) as usize] = true;
             }
         }
     }
@@ -183,11 +183,11 @@ impl<'a> Settler<'a> {
             let slots = self.first_slot[branch as usize]..self.first_slot[branch as usize + 1];
             let mut start = None;
             for slot in slots.clone().filter(|&s| self.slots[s as usize].alive) {
-                let root = self.union.root(self.piece(branch, slot - slots.start));
+                let root = self.union.find(self.piece(branch, slot - slots.start));
                 self.runs.push(Run { branch, slots: [start, Some(slot)], root });
                 start = Some(slot);
             }
-            let root = self.union.root(self.piece(branch, slots.end - slots.start));
+            let root = self.union.find(self.piece(branch, slots.end - slots.start));
             self.runs.push(Run { branch, slots: [start, None], root });
         }
         self.first_run.push(self.runs.len() as u32);
@@ -343,44 +343,4 @@ fn obstacles(
     }
     let tree = Bvh::new(&boxes);
     (list, tree)
-}
-
-/// Disjoint sets.
-struct Union {
-    parent: Vec<u32>,
-}
-
-impl Union {
-    fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect() }
-    }
-
-    fn root(&self, mut x: u32) -> u32 {
-        while self.parent[x as usize] != x {
-            x = self.parent[x as usize];
-        }
-        x
-    }
-
-    /// The smaller root stays; `flatten` keeps the ways short.
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.compress(a), self.compress(b));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
-
-    fn compress(&mut self, mut x: u32) -> u32 {
-        while self.parent[x as usize] != x {
-            let up = self.parent[self.parent[x as usize] as usize];
-            self.parent[x as usize] = up;
-            x = up;
-        }
-        x
-    }
-
-    fn flatten(&mut self) {
-        for x in 0..self.parent.len() as u32 {
-            // Parents are smaller than their children, so they are flat already.
-            self.parent[x as usize] = self.parent[self.parent[x as usize] as usize];
-        }
-    }
 }

@@ -1,6 +1,7 @@
 //! What a tetrahedralization has to say, for people and as JSON.
 
 use crate::geometry::Point3;
+use crate::mesh::face_key;
 use crate::mesh::quality::{TetQuality, dihedral_range, volume6};
 use crate::mesh::{TET_FACES, TetMesh};
 use serde::Serialize;
@@ -213,9 +214,10 @@ impl Bounds {
         // What was made to lie on the bound may be beyond it by rounding.
         const ROUNDING: f64 = 1e-9;
         let corners = |t: &[u32; 4]| t.map(|v| &mesh.points[v as usize]);
-        let mut staying: Vec<[u32; 3]> = staying.iter().map(|&f| sorted(f)).collect();
+        let mut staying: Vec<[u32; 3]> = staying.iter().map(|&f| face_key(f)).collect();
         staying.sort_unstable();
-        let on_input = |t: &[u32; 4]| TET_FACES.iter().any(|f| staying.binary_search(&sorted(f.map(|i| t[i]))).is_ok());
+        let on_input =
+            |t: &[u32; 4]| TET_FACES.iter().any(|f| staying.binary_search(&face_key(f.map(|i| t[i]))).is_ok());
         let mut results = Vec::new();
         let mut count = |bound, value, beyond: &dyn Fn([&Point3; 4]) -> bool| {
             let found: Vec<&[u32; 4]> = mesh.tets.iter().filter(|t| beyond(corners(t))).collect();
@@ -346,11 +348,6 @@ impl TetReport {
         let _ = writeln!(out, "{}{peak}", times.join(", "));
         out
     }
-}
-
-fn sorted(mut f: [u32; 3]) -> [u32; 3] {
-    f.sort_unstable();
-    f
 }
 
 /// `, 3 holes`, or nothing when there are none.

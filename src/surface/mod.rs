@@ -14,7 +14,9 @@ mod tests;
 pub use field::Field;
 pub(crate) use sizes::GROWTH;
 
+use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Tube, Vec3};
+use crate::mesh::Kept;
 use crate::mesh::TriMesh;
 use halfedge::HalfEdges;
 use relax::Relaxation;
@@ -235,46 +237,18 @@ fn outer_component(mesh: TriMesh, at_seeds: &[u32], owners: &[u32]) -> Result<Tr
 
 /// Component of every vertex, numbered by first vertex.
 fn components(mesh: &TriMesh) -> Vec<u32> {
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
+    let mut sets = DisjointSets::new(mesh.points.len());
+    for &[a, b, c] in &mesh.triangles {
+        sets.join(a, b);
+        sets.join(a, c);
     }
-    let mut parent: Vec<u32> = (0..mesh.points.len() as u32).collect();
-    for t in &mesh.triangles {
-        for v in [t[1], t[2]] {
-            let (a, b) = (root(&mut parent, t[0]), root(&mut parent, v));
-            parent[a.max(b) as usize] = a.min(b);
-        }
-    }
-    let mut number = 0;
-    let mut out = vec![0; parent.len()];
-    for v in 0..parent.len() as u32 {
-        let r = root(&mut parent, v);
-        if r == v {
-            out[v as usize] = number;
-            number += 1;
-        } else {
-            out[v as usize] = out[r as usize];
-        }
-    }
-    out
+    sets.numbered()
 }
 
 fn restricted(mesh: &TriMesh, component: &[u32], keep: u32) -> TriMesh {
-    let mut map = vec![u32::MAX; mesh.points.len()];
-    let mut out = TriMesh::default();
-    for (v, p) in mesh.points.iter().enumerate() {
-        if component[v] == keep {
-            map[v] = out.points.len() as u32;
-            out.points.push(*p);
-        }
-    }
-    let kept = mesh.triangles.iter().filter(|t| component[t[0] as usize] == keep);
-    out.triangles.extend(kept.map(|t| t.map(|v| map[v as usize])));
-    out
+    let kept = Kept::of(component.iter().map(|&c| c == keep));
+    let triangles = mesh.triangles.iter().filter(|t| component[t[0] as usize] == keep);
+    TriMesh { points: kept.select(&mesh.points), triangles: triangles.map(|t| kept.cell(t)).collect() }
 }
 
 /// The grid on which the field is sampled.

@@ -3,7 +3,6 @@
 use super::complex::Complex;
 use super::error::TetError;
 use super::fill::Request;
-use super::lattice::mean_edge;
 use super::options::{Interior, REGULAR_DIHEDRAL, Refinement, Sizing};
 use super::progress::Stage;
 use super::refine::{
@@ -125,7 +124,7 @@ pub(super) fn size_function(
     volume: Option<f64>,
 ) -> impl Fn(&Point3) -> f64 + use<> {
     let tree = size_tree(surface, sizing);
-    let mean = mean_edge(surface);
+    let mean = surface.mean_edge();
     let limit = volume.map_or(f64::INFINITY, edge_of_volume);
     move |p: &Point3| tree.as_ref().map_or(mean, |(tree, _)| tree.size_at(p)).min(limit)
 }

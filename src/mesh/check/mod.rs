@@ -6,7 +6,6 @@
 //! ask for; and every terminal has its flat cap while every other boundary face is wall.
 
 mod cells;
-mod disjoint_sets;
 mod labels;
 mod nested;
 pub mod parts;

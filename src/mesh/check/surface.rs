@@ -1,9 +1,9 @@
 //! Lines about the boundary as a surface.
 
 use super::cells::{centroid, face_offender, point_offender};
-use super::disjoint_sets::DisjointSets;
 use super::nested::nested_surfaces;
 use super::result::{Intersection, Line, LineResult, Offender, OffenderKind, Tally};
+use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, self_contacts};
 use crate::mesh::adjacency::{NONE, TriAdjacency, tri_adjacency};
 

@@ -1,5 +1,6 @@
 //! The tetrahedra of one joint, taken out of the whole mesh, worked on, and put back.
 
+use crate::mesh::tet_key;
 use rustc_hash::FxHashMap;
 
 use super::Improve;
@@ -128,17 +129,12 @@ fn blocks_after(before: &[[u32; 4]], blocks: &[i32], after: &TetMesh) -> Vec<i32
         for &v in t {
             votes[v as usize * names.len() + name] += 1;
         }
-        known.insert(sorted(*t), block);
+        known.insert(tet_key(*t), block);
     }
     let elect = |t: &[u32; 4]| {
         let sum = |name: usize| t.iter().map(|&v| votes[v as usize * names.len() + name]).sum::<u32>();
         // The last of equal maxima in reverse order is the smallest name.
         (0..names.len()).rev().max_by_key(|&name| sum(name)).map_or(0, |name| names[name])
     };
-    after.tets.iter().map(|t| known.get(&sorted(*t)).copied().unwrap_or_else(|| elect(t))).collect()
-}
-
-fn sorted(mut t: [u32; 4]) -> [u32; 4] {
-    t.sort_unstable();
-    t
+    after.tets.iter().map(|t| known.get(&tet_key(*t)).copied().unwrap_or_else(|| elect(t))).collect()
 }

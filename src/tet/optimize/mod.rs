@@ -124,7 +124,7 @@ pub fn optimize(mesh: &mut TetMesh, options: &OptimizeOptions) -> Result<Optimiz
     let report = optimize_complex(&mut complex, options);
     *mesh = complex.into_mesh();
     let kept = if options.keep_points { count } else { options.fixed_points };
-    drop_unused_points(mesh, kept);
+    mesh.drop_unused_points(kept);
     Ok(report)
 }
 
@@ -156,25 +156,6 @@ pub(super) fn strain(q: f64) -> f64 {
 fn ratio_of_strain(strain: f64) -> f64 {
     let bad = ((1.0 + 4.0 * STEEPER * strain.max(0.0)).sqrt() - 1.0) / (2.0 * STEEPER);
     STRAINED * (-bad).exp()
-}
-
-/// Drops the points from `fixed` on that no tetrahedron has, keeping the order of the others.
-fn drop_unused_points(mesh: &mut TetMesh, fixed: usize) {
-    let mut target = vec![u32::MAX; mesh.points.len()];
-    for &v in mesh.tets.iter().flatten() {
-        target[v as usize] = 0;
-    }
-    target[..fixed.min(mesh.points.len())].fill(0);
-    let mut count = 0;
-    for (old, slot) in target.iter_mut().enumerate().filter(|(_, slot)| **slot == 0) {
-        *slot = count;
-        mesh.points[count as usize] = mesh.points[old];
-        count += 1;
-    }
-    mesh.points.truncate(count as usize);
-    for v in mesh.tets.iter_mut().flatten() {
-        *v = target[*v as usize];
-    }
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ fn an_even_surface_has_an_even_field_of_its_size() {
     let s = sphere_surface(3);
     let sizes = vertex_sizes(&s);
     let tree = SizeTree::new(&s, &sizes, &[], &TreeOptions::default()).unwrap();
-    let h = super::super::lattice::mean_edge(&s);
+    let h = s.mean_edge();
     assert!(tree.is_uniform());
     assert!((tree.size_at(&Point3::origin()) / h - 1.0).abs() < 1e-12);
     let points = graded_points(&s, &sizes, &tree, 0.4);
