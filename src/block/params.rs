@@ -2,6 +2,7 @@
 
 use super::error::BlockError;
 use crate::mesh::TriMesh;
+use crate::skeleton::resolution::{FOLLOW, KAPPA, RHO};
 use crate::tet::optimize::Effort;
 use crate::tet::{Interior, TetOptions};
 
@@ -51,11 +52,11 @@ pub struct BlockParams {
 impl Default for BlockParams {
     fn default() -> Self {
         Self {
-            rho: 3.0,
-            follow: 1.0,
+            rho: RHO,
+            follow: FOLLOW,
             voxel_factor: 1.0,
             shift: [0.0; 3],
-            kappa: 0.4,
+            kappa: KAPPA,
             first_division: 0,
             ends: EndStyle::Disc,
             relax_ends: true,

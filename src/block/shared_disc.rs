@@ -6,6 +6,7 @@ use super::cap::{MEAN_EDGE, corners};
 use super::end_surface::EndSurface;
 use crate::geometry::{Point3, Section};
 use crate::partition::{CutId, EndKind};
+use crate::skeleton::resolution::FOLLOW;
 use crate::surface::SurfaceParams;
 
 /// Edges of a wall at the radius of its thinnest vessel and at larger ones differ by 7 % in what is aimed at; a disc
@@ -30,7 +31,7 @@ impl SharedDisc {
     /// alone. None if a disc of so many corners cannot be triangulated.
     pub fn new(along: &Section, rho: f64) -> Option<Self> {
         let radius = along.radius;
-        let wall = SurfaceParams { thin: radius, follow: 1.0, ..SurfaceParams::with_voxel(2.0 * radius / rho) };
+        let wall = SurfaceParams { thin: radius, follow: FOLLOW, ..SurfaceParams::with_voxel(2.0 * radius / rho) };
         let corners = corners(radius, BETWEEN * wall.edge_at(radius));
         let flat = disc(radius, corners, 0.0)?;
         let (u, w) = along.frame();

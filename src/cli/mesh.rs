@@ -1,5 +1,6 @@
 //! `anastomesh mesh`: from a network to a volume mesh.
 
+use crate::skeleton::resolution::{FOLLOW, RHO};
 use std::path::PathBuf;
 
 use serde::Serialize;
@@ -28,11 +29,11 @@ pub struct Args {
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
     /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
-    #[arg(long, default_value_t = 3.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = RHO, allow_negative_numbers = true)]
     rho: f64,
     /// How far edges follow the radius of wider vessels: 1 in proportion, so that each has RHO voxels across; 0 not at all,
     /// so that all of a cluster is as fine as its thinnest vessel
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = FOLLOW, allow_negative_numbers = true)]
     follow: f64,
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
     /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no

@@ -1,6 +1,7 @@
 //! Floor 2: what concerns one mesh, wherever it came from: arrays, adjacency, quality, smoothing, validity.
 
 pub mod adjacency;
+mod bounds;
 pub mod check;
 pub mod facets;
 mod keep;
@@ -12,6 +13,7 @@ pub(crate) mod shapes;
 pub mod smooth;
 pub mod source;
 
+pub use bounds::{Bounds, REGULAR_DIHEDRAL};
 pub(crate) use keep::Kept;
 pub(crate) use keys::{face_key, tet_key};
 

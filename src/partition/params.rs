@@ -1,5 +1,6 @@
 //! What a caller may choose about the partition, and what may be wrong with its input.
 
+use crate::skeleton::resolution::{KAPPA, RHO};
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::skeleton::{BranchId, CutRules, EdgeId, NodeId, Skeleton};
@@ -39,8 +40,8 @@ pub struct PartitionParams {
 impl Default for PartitionParams {
     fn default() -> Self {
         Self {
-            rho: 3.0,
-            kappa: 0.4,
+            rho: RHO,
+            kappa: KAPPA,
             cuts: CutRules::default(),
             overrun: 1.0,
             overrun_voxels: 1.6,

@@ -11,6 +11,7 @@ pub mod generate;
 mod graph;
 mod metrics;
 mod overlap;
+pub mod resolution;
 #[cfg(test)]
 mod tests;
 mod walk;

@@ -18,6 +18,7 @@ use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Tube, Vec3};
 use crate::mesh::Kept;
 use crate::mesh::TriMesh;
+use crate::skeleton::resolution::KAPPA;
 use halfedge::HalfEdges;
 use relax::Relaxation;
 
@@ -52,7 +53,7 @@ impl SurfaceParams {
     pub fn with_voxel(voxel: f64) -> Self {
         Self {
             voxel,
-            kappa: 0.4,
+            kappa: KAPPA,
             shift: [0.0; 3],
             edge: 0.965,
             thin: 1.0,

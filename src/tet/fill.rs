@@ -200,7 +200,7 @@ fn exactly(
 /// The interior asked for; a lattice whose size is left open gets tetrahedra within the bound on volumes.
 fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refinement>) -> Interior {
     let usual = CELL * surface.mean_edge();
-    match (interior, refinement.and_then(|r| r.max_volume)) {
+    match (interior, refinement.and_then(|r| r.bounds.max_volume)) {
         (Interior::Lattice { cell: None, clearance }, Some(bound)) => {
             // A cube holds twelve tetrahedra.
             let cell = (12.0 * VOLUME_SHARE * bound).cbrt().min(usual);

@@ -69,7 +69,7 @@ pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use complex::Complex;
 pub use error::{Obstacle, Stuck, TetError};
 pub use names::Names;
-pub use options::{Boundary, Interior, REGULAR_DIHEDRAL, Refinement, Sizing, TetOptions};
+pub use options::{Boundary, Interior, Refinement, Sizing, TetOptions};
 pub use outside::LeftOut;
 pub use plc::{InputKind, Plc, Region};
 pub use progress::{Progress, Stage, Watch};

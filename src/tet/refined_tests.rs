@@ -3,6 +3,7 @@
 use super::tests::tube;
 use super::*;
 use crate::geometry::{Point3, Vec3};
+use crate::mesh::REGULAR_DIHEDRAL;
 use crate::mesh::quality::TetQuality;
 use crate::mesh::shapes::sphere_surface;
 use std::sync::Arc;

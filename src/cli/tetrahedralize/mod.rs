@@ -18,7 +18,7 @@ use super::common::Common;
 use super::exit::{Exit, Failure};
 use crate::mesh::quality::TetQuality;
 use crate::report::tetrahedralize::{
-    Bounds, InputSize, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
+    BoundResult, InputSize, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
 use crate::tet::{LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
 use format::{InputFormat, StreamFormat, Target, is_stream};
@@ -170,10 +170,8 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     };
     report.left_out = left_out(made, input);
     report.quality = Some(TetQuality::of(mesh));
-    let bounds =
-        Bounds { max_radius_edge: plan.max_radius_edge, min_dihedral: plan.min_dihedral, max_volume: plan.max_volume };
     if !input.only_points {
-        report.bounds = bounds.results(mesh, &made.faces);
+        report.bounds = BoundResult::of(&plan.bounds, mesh, &made.faces);
         let plc = Some(&input.plc).filter(|_| !plan.split);
         let unmet = |size| plc.and_then(|plc| SizeUnmet::of(size, &plc.points, &plc.triangles, &plc.edges));
         report.size_unmet = plan.size.and_then(unmet);
