@@ -12,7 +12,7 @@ use crate::mesh::adjacency::tet_adjacency;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::{Field, SurfaceParams, euler_characteristic, vessel_wall};
-use crate::tet::tetrahedralize;
+use crate::tet::{Watch, tetrahedralize_watched};
 use rustc_hash::FxHashMap;
 
 /// The flat disc that closes a terminal.
@@ -54,9 +54,22 @@ pub struct ClusterMesh {
 /// # Errors
 /// Any stage's, with the cluster's id; the caller may retry with other [`BlockParams`].
 pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
+    mesh_cluster_watched(id, cluster, params, &Watch::NOBODY)
+}
+
+/// As [`mesh_cluster`], watched: filling, which takes most of the time, ends when the watch says so.
+///
+/// # Errors
+/// As there.
+pub(crate) fn mesh_cluster_watched(
+    id: ClusterId,
+    cluster: &Cluster,
+    params: &BlockParams,
+    watch: &Watch,
+) -> Result<ClusterMesh, BlockError> {
     let (surface, voxel) = cluster_surface(id, cluster, params)?;
     let edge = surface.mesh.mean_edge();
-    let filled = tetrahedralize(&surface.mesh, &filling(&surface.mesh))
+    let filled = tetrahedralize_watched(&surface.mesh, &filling(&surface.mesh), watch)
         .map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
     let caps = caps(cluster, &surface);
     let surface_triangles = surface.mesh.triangles.len();

@@ -27,6 +27,7 @@ mod wall;
 mod weave;
 
 pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
+pub(crate) use cluster::mesh_cluster_watched;
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
 pub use connector::{
     ConnectorAttempt, ConnectorFailure, ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends,

@@ -192,6 +192,10 @@ impl Args {
         let store = place.open(read, || self.options(plan))?;
         let kept = store.bytes_on_disk();
         let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, &self.output);
+        if self.work_dir.is_some() {
+            // Whoever stops the program cannot be told afterwards.
+            bars.note(&format!("it may be stopped at any time: {}", self.how_to_go_on()));
+        }
         let mut clock = Clock::default();
         let result = pipeline::mesh_into(&store, network, plan, &fits, bars, &mut clock);
         let result = result.map_err(|e| self.explain(e, plan, refinement))?;
@@ -242,9 +246,20 @@ impl Args {
                     report.failed.len()
                 )),
             },
+            RunError::Cancelled => Failure::stage(format!("stopped; {}", self.how_to_go_on())),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
             RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),
             _ => Failure::stage(error.to_string()),
+        }
+    }
+
+    /// What becomes of a run that is stopped.
+    fn how_to_go_on(&self) -> String {
+        match &self.work_dir {
+            Some(dir) => {
+                format!("finished blocks are kept in {}, and the same command goes on from there", dir.display())
+            }
+            None => "nothing is left of it; with --work-dir DIR the same command goes on from finished blocks".into(),
         }
     }
 

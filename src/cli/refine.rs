@@ -169,6 +169,7 @@ pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool) -> 
     let refined = refine::refine(skeleton, params, &mut Bar::new(quiet));
     refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
+        RefineError::Cancelled => Failure::stage("stopped; nothing is left of it"),
         _ => Failure::usage(e.to_string()),
     })
 }

@@ -3,11 +3,12 @@
 use super::plan::{JointStyle, MeshPlan};
 use crate::block::{
     BlockDump, BlockError, BlockParams, ConnectorAttempt, ConnectorEnd, ConnectorMesh, DIVISIONS, EndStyle, EndSurface,
-    Finished, dump_cluster, dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
-    shared_ends,
+    Finished, dump_cluster, dump_connector, dump_free_connector, mesh_cluster_watched, mesh_connector,
+    mesh_free_connector, shared_ends,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
 use crate::skeleton::NodeId;
+use crate::tet::Watch;
 
 /// Result of a block, and the failures before it.
 #[derive(Debug)]
@@ -125,10 +126,11 @@ pub fn cluster(
     overlapping: bool,
     first: usize,
     original: impl Fn(NodeId) -> u32,
+    watch: &Watch,
 ) -> Tried {
     let name = format!("cluster {}", id.0);
     first_good(&name, ways(plan, overlapping, first), |params| {
-        let mesh = mesh_cluster(id, cluster, params)?;
+        let mesh = mesh_cluster_watched(id, cluster, params, watch)?;
         Finished::of_cluster(mesh, &original).map_err(|source| BlockError::Faces { block: name.clone(), source })
     })
 }

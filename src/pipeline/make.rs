@@ -9,6 +9,7 @@ use crate::block::{About, BlockError, ConnectorEnd, EndSurface, Record, Sizes, e
 use crate::geometry::Point3;
 use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Partition};
 use crate::skeleton::Skeleton;
+use crate::tet::Watch;
 
 /// A finished block in the store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,13 +45,14 @@ impl Workshop<'_> {
         cluster: &Cluster,
         overlapping: bool,
         first: usize,
+        watch: &Watch,
     ) -> Result<Made, StoreError> {
         let key = cluster_key(cluster, self.plan, overlapping, first);
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
         let original = |node| self.skeleton.node(node).original;
-        self.keep(key, attempts::cluster(id, cluster, self.plan, overlapping, first, original))
+        self.keep(key, attempts::cluster(id, cluster, self.plan, overlapping, first, original, watch))
     }
 
     /// A connector between the discs that the vessel alone gives.

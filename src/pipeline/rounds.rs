@@ -17,6 +17,7 @@ use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
 use crate::partition::{self, ClusterId, Cut, CutId, Partition, PartitionError};
 use crate::skeleton::{BranchId, NodeId, Overlaps, Skeleton};
+use crate::tet::Watch;
 
 /// How often the partition is changed because of blocks that fail.
 const ROUNDS: usize = 6;
@@ -74,6 +75,15 @@ pub enum RoundsError {
     /// The machine is too small for it.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
+    /// The observer said so.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<io::Error> for RoundsError {
+    fn from(error: io::Error) -> Self {
+        StoreError::from(error).into()
+    }
 }
 
 /// Clusters and connectors.
@@ -100,7 +110,7 @@ impl Run<'_> {
                 fits(&Estimate::of(&partition, plan))?;
             }
             let (clusters, connectors) = self.pass(&partition, &mut times)?;
-            notes.take(self, &partition, &clusters, &connectors).map_err(StoreError::from)?;
+            notes.take(self, &partition, &clusters, &connectors)?;
             let blocks = Blocks { partition, clusters, connectors, retries: Vec::new(), times: BlockTimes::default() };
             let found = if round < ROUNDS { cure(self.shop.skeleton, &blocks, &mut cures) } else { Vec::new() };
             if found.is_empty() {
@@ -112,13 +122,16 @@ impl Run<'_> {
     }
 
     /// All blocks of a partition; none needs another, unless joints are woven.
-    fn pass(&mut self, partition: &Partition, times: &mut BlockTimes) -> Result<Pass, StoreError> {
+    fn pass(&mut self, partition: &Partition, times: &mut BlockTimes) -> Result<Pass, RoundsError> {
         let (plan, shop) = (self.shop.plan, self.shop);
         let tangled = tangled_clusters(self.shop.skeleton, partition, self.overlaps);
         let count = partition.clusters.len();
         let mut costs: Vec<Cost> = partition.clusters.iter().map(|c| cluster_cost(c, plan)).collect();
         costs.extend(partition.cuts.iter().map(|cut| connector_cost(cut, plan)));
-        let cluster = |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], 0);
+        let observer = self.observer;
+        let stop = move || observer.is_cancelled();
+        let watch = Watch::until(&stop);
+        let cluster = |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], 0, &watch);
         if plan.joint != JointStyle::Woven {
             let connector = |i: usize| shop.free_connector(CutId(i as u32), &partition.cuts[i]);
             let one = |i: usize| if i < count { cluster(i) } else { connector(i - count) };
@@ -142,16 +155,24 @@ impl Run<'_> {
         Ok((clusters, connectors))
     }
 
-    /// One stage over blocks: what became of them, and their seconds.
+    /// One stage over blocks: what became of them, and their seconds. Ends early when the observer says so: blocks that
+    /// failed because of that are no failures.
     pub(super) fn timed<T: Send>(
         &mut self,
         stage: Stage,
         costs: &[Cost],
         work: impl Fn(usize) -> Result<T, StoreError> + Sync,
-    ) -> Result<(Vec<T>, Vec<f64>), StoreError> {
+    ) -> Result<(Vec<T>, Vec<f64>), RoundsError> {
         let (observer, memory) = (self.observer, self.shop.plan.memory);
         let weight = |cost: &Cost| 1 + cost.tets as u64;
-        let step = |i: usize| work(i).inspect(|_| observer.advance(weight(&costs[i])));
+        let ask = || if observer.is_cancelled() { Err(RoundsError::Cancelled) } else { Ok(()) };
+        let step = |i: usize| {
+            ask()?;
+            let made = work(i)?;
+            ask()?;
+            observer.advance(weight(&costs[i]));
+            Ok::<_, RoundsError>(made)
+        };
         let run = || costliest_first(costs, memory, step);
         Ok(self.clock.time(observer, stage, costs.iter().map(weight).sum(), run)?.into_iter().unzip())
     }

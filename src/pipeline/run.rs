@@ -80,6 +80,9 @@ pub enum RunError {
     /// Caps are not where they should be: a fault of the program.
     #[error("{0}; this is a fault of the program")]
     Label(#[from] LabelError),
+    /// The observer said so. Blocks that were finished are in the store.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl From<RoundsError> for RunError {
@@ -88,6 +91,7 @@ impl From<RoundsError> for RunError {
             RoundsError::Partition(error) => error.into(),
             RoundsError::Store(error) => error.into(),
             RoundsError::TooLarge(error) => error.into(),
+            RoundsError::Cancelled => Self::Cancelled,
         }
     }
 }
@@ -139,12 +143,19 @@ pub fn mesh_into<'a>(
     let mut met = Vec::new();
     loop {
         let joined = join_blocks(network, plan, store, &met, fits, observer, clock)?;
+        ask(observer)?;
         let (stored, meetings) = joined.checked(plan, observer, clock)?;
+        ask(observer)?;
         if meetings.is_empty() || met.len() == tries {
             return Ok(stored);
         }
         met.push(meetings);
     }
+}
+
+/// Whether to go on.
+fn ask(observer: &dyn Observer) -> Result<(), RunError> {
+    if observer.is_cancelled() { Err(RunError::Cancelled) } else { Ok(()) }
 }
 
 /// Blocks that are done and numbered, before anybody has looked at the whole.
@@ -214,9 +225,11 @@ impl<'a> Joined<'a> {
 
     fn smoothed(self, observer: &dyn Observer, clock: &mut Clock) -> Result<Meshed, RunError> {
         let Self { whole, expectation, mut report, .. } = self;
+        ask(observer)?;
         let mut assembly = clock.time(observer, Stage::Merge, 0, || Assembly::new(&whole))?;
         report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
         let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
+        ask(observer)?;
         let check = || check_volume_with(&mesh, neighbors, Some(&expectation));
         let check = clock.time(observer, Stage::Check, 0, check);
         report.mesh = mesh_size(&mesh)?;

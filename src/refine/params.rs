@@ -108,6 +108,9 @@ pub enum RefineError {
     /// The skeleton cannot be used.
     #[error(transparent)]
     Skeleton(#[from] SkeletonError),
+    /// The caller said so.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl RefineParams {
