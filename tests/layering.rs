@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Rooms by floor; a room may import from rooms with a smaller number, and from itself.
-const FLOORS: [(&str, u32); 14] = [
+const FLOORS: [(&str, u32); 15] = [
     ("main", 7),
     ("cli", 6),
     ("pipeline", 5),
@@ -14,6 +14,7 @@ const FLOORS: [(&str, u32); 14] = [
     ("io", 3),
     ("report", 3),
     ("refine", 3),
+    ("grow", 3),
     ("partition", 3),
     ("mesh", 2),
     ("skeleton", 2),

@@ -5,12 +5,13 @@ use super::connector_surface::{
 };
 use super::end_surface::EndSurface;
 use super::error::BlockError;
+use super::error::{ConnectorAttempt, ConnectorFailure};
 use super::params::{BlockParams, filling};
 use super::shared_disc::SharedDisc;
 use crate::geometry::Section;
 use crate::mesh::TetMesh;
 use crate::partition::{Cut, CutId};
-use crate::tet::{TetError, tetrahedralize};
+use crate::tet::tetrahedralize;
 
 /// A meshed connector.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,27 +24,6 @@ pub struct ConnectorMesh {
     pub rings: u32,
     /// Attempts that failed before this one.
     pub failed: Vec<ConnectorAttempt>,
-}
-
-/// An attempt at a connector that failed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ConnectorAttempt {
-    /// How the tube was divided.
-    pub division: Division,
-    /// Why it failed.
-    pub failure: ConnectorFailure,
-}
-
-/// Why an attempt at a connector failed.
-#[non_exhaustive]
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ConnectorFailure {
-    /// The surface could not be woven.
-    #[error(transparent)]
-    Surface(ConnectorFault),
-    /// The surface could not be filled.
-    #[error(transparent)]
-    Tetrahedra(TetError),
 }
 
 /// Number of ways in which a connector's tube is divided.

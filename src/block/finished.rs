@@ -1,5 +1,6 @@
 //! A block when it is done: what the whole needs of it, whichever kind it is, and nothing else.
 
+use super::error::NotOnBoundary;
 use crate::mesh::face_key;
 use rustc_hash::FxHashMap;
 
@@ -73,14 +74,6 @@ pub struct About {
     pub failures: u32,
     /// The first of these failures.
     pub first_failure: String,
-}
-
-/// A face that was said to close a block and does not: a fault of the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("face {face:?} does not lie on the block's boundary, or belongs to two of its ends")]
-pub struct NotOnBoundary {
-    /// Its vertices in the block.
-    pub face: [u32; 3],
 }
 
 impl Finished {

@@ -29,16 +29,14 @@ mod weave;
 pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub(crate) use cluster::mesh_cluster_watched;
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
-pub use connector::{
-    ConnectorAttempt, ConnectorFailure, ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends,
-};
+pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
 pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
 pub use dump::{
     BlockDump, BlockOutcome, ClusterDump, ConnectorDump, dump_cluster, dump_connector, dump_free_connector,
 };
 pub use end_surface::{EndFault, EndSurface};
-pub use error::{BlockError, FlattenFailure};
-pub use finished::{About, Finished, FinishedCap, FinishedJoint, NotOnBoundary};
+pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
+pub use finished::{About, Finished, FinishedCap, FinishedJoint};
 pub use params::{BlockParams, EndStyle};
 pub use path::AxisPath;
 pub use record::{Bytes, Record, Sizes, encode};

@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 
 use super::attempts::{APART, remedy};
+use super::blocks::{Blocks, original_nodes};
 use super::estimate::cluster_cost;
 use super::observer::Stage;
 use super::report::Retry;
-use super::rounds::{Blocks, RoundsError, Run, original_nodes};
+use super::rounds::{RoundsError, Run};
 use super::routes::{Overlapping, tangled_clusters};
 use crate::partition::ClusterId;
 use crate::tet::Watch;

@@ -1,5 +1,6 @@
 //! What a run of the mesher did, for people and as JSON.
 
+use super::timing::{BlockTimes, StageTime};
 use std::fmt::Write as _;
 
 use serde::Serialize;
@@ -80,15 +81,6 @@ pub struct MeshSize {
     pub cap_triangles: usize,
 }
 
-/// Seconds of wall time per stage.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StageTime {
-    /// Name of the stage.
-    pub stage: &'static str,
-    /// Wall time, seconds.
-    pub seconds: f64,
-}
-
 /// Everything that a run has to say.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RunReport {
@@ -120,7 +112,7 @@ pub struct RunReport {
     /// Wall time.
     pub stages: Vec<StageTime>,
     /// How long blocks took.
-    pub block_times: super::timing::BlockTimes,
+    pub block_times: BlockTimes,
 }
 
 impl RunReport {

@@ -1,6 +1,7 @@
 //! All blocks of a network, with retries: a block that fails is tried with other parameters, then with its cuts moved,
 //! then joined to its neighbours.
 
+use super::blocks::{Blocks, cut_nodes, original_nodes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
@@ -16,39 +17,11 @@ use super::schedule::{Cost, costliest_first};
 use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
 use crate::partition::{self, ClusterId, Cut, CutId, Partition, PartitionError};
-use crate::skeleton::{BranchId, NodeId, Overlaps, Skeleton};
+use crate::skeleton::{BranchId, Overlaps};
 use crate::tet::Watch;
 
 /// How often the partition is changed because of blocks that fail.
 const ROUNDS: usize = 6;
-
-/// How many nodes of a block a report lists.
-const LISTED: usize = 20;
-
-/// The blocks of a network.
-#[derive(Debug)]
-pub struct Blocks {
-    /// The partition that they belong to.
-    pub partition: Partition,
-    /// By `ClusterId`; an error for a cluster that failed to the end.
-    pub clusters: Vec<Made>,
-    /// By `CutId`; none beside a failed cluster.
-    pub connectors: Vec<Option<Made>>,
-    /// What was retried.
-    pub retries: Vec<Retry>,
-    /// How long they took.
-    pub times: BlockTimes,
-}
-
-impl Blocks {
-    /// What a block is called, by its number: clusters by their ids, then connectors.
-    pub fn name(&self, block: u32) -> String {
-        match (block as usize).checked_sub(self.clusters.len()) {
-            None => format!("cluster {block}"),
-            Some(connector) => format!("connector {connector}"),
-        }
-    }
-}
 
 /// What a run works with.
 pub struct Run<'a> {
@@ -176,21 +149,6 @@ impl Run<'_> {
         let run = || costliest_first(costs, memory, step);
         Ok(self.clock.time(observer, stage, costs.iter().map(weight).sum(), run)?.into_iter().unzip())
     }
-}
-
-/// Names of the nodes at the ends of a block's branches, as in the file that was read.
-pub fn original_nodes(skeleton: &Skeleton, nodes: impl Iterator<Item = NodeId>) -> Vec<u32> {
-    let mut list: Vec<u32> = nodes.map(|n| skeleton.node(n).original).collect();
-    list.sort_unstable();
-    list.dedup();
-    list.truncate(LISTED);
-    list
-}
-
-/// The nodes of the two clusters that a cut separates.
-pub fn cut_nodes(skeleton: &Skeleton, partition: &Partition, cut: &Cut) -> Vec<u32> {
-    let nodes = cut.sides.iter().flat_map(|(cluster, _)| &partition.clusters[cluster.0 as usize].nodes);
-    original_nodes(skeleton, nodes.copied())
 }
 
 /// What blocks say of failures before they came out; each block says it once.

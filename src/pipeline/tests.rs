@@ -3,10 +3,13 @@
 use super::*;
 use crate::block::{Finished, Record, encode};
 use crate::geometry::Point3;
+use crate::grow::dual;
 use crate::mesh::WALL;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::source::gather;
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
+use crate::refine::{Figures, Progress, RefineError, RefineParams, Sample, refine};
+use crate::skeleton::fixtures::tangle;
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use store::Store;
@@ -308,8 +311,8 @@ fn a_run_that_is_told_to_stop_stops_and_goes_on_later() {
 /// Says to stop at once.
 struct Never;
 
-impl crate::refine::Progress for Never {
-    fn step(&mut self, _: usize, _: usize, _: Option<&crate::refine::Sample>) {}
+impl Progress for Never {
+    fn step(&mut self, _: usize, _: usize, _: Option<&Sample>) {}
 
     fn is_cancelled(&self) -> bool {
         true
@@ -322,6 +325,18 @@ fn smoothing_and_refinement_stop_as_well() {
     let stops = Stops { after: 1, blocks: AtomicUsize::new(0) };
     let stopped = mesh_network(&h(12.0), &plan, &stops, &mut Clock::default());
     assert!(matches!(stopped, Err(RunError::Cancelled)));
-    let refined = crate::refine::refine(&h(12.0), &crate::refine::RefineParams::default(), &mut Never);
-    assert!(matches!(refined, Err(crate::refine::RefineError::Cancelled)));
+    let refined = refine(&h(12.0), &RefineParams::default(), &mut Never);
+    assert!(matches!(refined, Err(RefineError::Cancelled)));
+}
+
+#[test]
+fn refinement_separates_two_trees_that_share_their_terminals() {
+    let run = |s: &Skeleton| refine(s, &RefineParams::default(), &mut ()).expect("refined");
+    let grown = dual(&run(&tangle(4, 3)).skeleton).skeleton;
+    let refined = run(&grown);
+    let before = Figures::of(&grown);
+    let r = &refined.report;
+    assert!(before.overlaps > 20 && r.moved.overlaps <= before.overlaps / 20, "{} {:?}", before.overlaps, r.moved);
+    assert_eq!(r.moved.metrics.folds.count, 0);
+    assert_eq!((grown.check(), refined.skeleton.check()), (Ok(()), Ok(())));
 }

@@ -6,9 +6,9 @@ use std::io;
 
 use rayon::prelude::*;
 
+use super::blocks::Blocks;
 use super::make::{JointPlace, Kept, joints_of_cut};
 use super::report::MeshSize;
-use super::rounds::Blocks;
 use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
 use crate::block::{FinishedJoint, Record};

@@ -3,7 +3,6 @@
 mod bend;
 mod contact;
 mod crowd;
-mod dual;
 mod figures;
 mod forces;
 mod frame;
@@ -19,7 +18,6 @@ mod split;
 mod tests;
 
 pub use crowd::CrowdedPair;
-pub use dual::{Dual, dual};
 pub use figures::{Figures, Metric};
 pub use params::{Crowded, RefineError, RefineParams, Residual};
 pub use progress::{Displacement, Progress, Sample};

@@ -1,6 +1,6 @@
 //! What was typed, resolved: flags, or `TetGen`'s switches, become one plan.
 
-use super::Args;
+use super::args::Args;
 use super::format::{InputFormat, Target};
 use super::switches::Switches;
 use crate::cli::exit::Failure;

@@ -11,6 +11,7 @@ mod nested;
 pub mod parts;
 mod result;
 mod surface;
+mod surfaces;
 
 #[cfg(test)]
 mod tests;

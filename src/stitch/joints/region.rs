@@ -3,10 +3,15 @@
 use crate::mesh::tet_key;
 use rustc_hash::FxHashMap;
 
-use super::Improve;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{face_vertices, tet_adjacency};
 use crate::mesh::quality::radius_ratio;
+
+/// Improves the inside of a mesh whose first so many points, and whose boundary faces, stay. All points keep their
+/// index; new ones may be appended. False when the mesh could not be improved and is unchanged.
+///
+/// The tetrahedralizer's optimiser is such a function; it is passed in because the stitching does not know it.
+pub type Improve<'a> = dyn Fn(&mut TetMesh, usize) -> bool + Sync + 'a;
 
 /// A part of a mesh with its own numbering: first the points that the inside's improvement may not move, then the
 /// inner ones.

@@ -11,7 +11,8 @@ use crate::mesh::check::cells;
 use crate::mesh::check::labels;
 use crate::mesh::check::nested::{Enclosed, enclosed};
 use crate::mesh::check::result::{Line, LineResult, Offender, OffenderKind, Tally};
-use crate::mesh::check::surface::{Boundary, Surfaces};
+use crate::mesh::check::surface::Boundary;
+use crate::mesh::check::surfaces::{Surface, Surfaces};
 use crate::mesh::face_key;
 use crate::mesh::quality::{QualitySum, volume6};
 
@@ -137,7 +138,7 @@ impl Certificate {
             1 => vec![Enclosed::exactly(self.volume)],
             _ => enclosed(points, faces, surfaces),
         };
-        let held = |(surface, enclosed): (&super::super::surface::Surface, Enclosed)| HeldSurface {
+        let held = |(surface, enclosed): (&Surface, Enclosed)| HeldSurface {
             vertex: NONE,
             euler: surface.euler() as i32,
             enclosed,

@@ -1,6 +1,6 @@
 //! The parts' certificates, held in a small form and put together.
 
-use super::whole::Tallies;
+use super::tallies::Tallies;
 use super::{Certificate, HeldCap, HeldJoint, HeldSurface, Parts, WallPiece, sums};
 use crate::geometry::DisjointSets;
 use crate::geometry::{Aabb, Point3};

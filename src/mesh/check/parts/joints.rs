@@ -1,7 +1,7 @@
 //! Joined joints: the same faces with the same ids, turned against each other, and bit-equal points.
 
 use super::glue::{Held, invalid, sum_of};
-use super::whole::Tallies;
+use super::tallies::Tallies;
 use super::{JointFaces, Parts};
 use crate::geometry::Point3;
 use crate::mesh::check::cells::{centroid, same_turn};

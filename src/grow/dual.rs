@@ -128,9 +128,8 @@ fn any_across(way: &Vec3) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{network, run, tangle};
-    use super::super::{Figures, RefineParams};
     use super::*;
+    use crate::skeleton::fixtures::{network, tangle};
 
     #[test]
     fn shares_the_terminals_and_has_its_own_root() {
@@ -150,16 +149,6 @@ mod tests {
         originals.sort_unstable();
         originals.dedup();
         assert_eq!(originals.len(), dual.skeleton.nodes.len());
-    }
-
-    #[test]
-    fn refinement_separates_the_two() {
-        let grown = dual(&run(&tangle(4, 3), &RefineParams::default()).skeleton).skeleton;
-        let refined = run(&grown, &RefineParams::default());
-        let before = Figures::of(&grown);
-        let r = &refined.report;
-        assert!(before.overlaps > 20 && r.moved.overlaps <= before.overlaps / 20, "{} {:?}", before.overlaps, r.moved);
-        assert_eq!(r.moved.metrics.folds.count, 0);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Shapes that are filled with terminals, and where in them the terminals are.
 
+use super::params::{GenerateError, Organ, TERMINAL_RADIUS, TERMINALS};
 use super::random::{Random, Stream};
-use super::{GenerateError, Organ};
 use crate::geometry::{Point3, Vec3};
 
 /// Half the extent of the organ along x, y, z; z is the longest. That of the published rat kidney
@@ -39,8 +39,7 @@ impl Organ {
     /// Longest extent of an organ with so many terminals, in µm: volume goes with the number of terminals, and all
     /// lengths with their radius.
     pub fn usual_size(self, terminals: u32, terminal_radius: f64) -> f64 {
-        let kidney =
-            KIDNEY * (f64::from(terminals) / super::TERMINALS).cbrt() * terminal_radius / super::TERMINAL_RADIUS;
+        let kidney = KIDNEY * (f64::from(terminals) / TERMINALS).cbrt() * terminal_radius / TERMINAL_RADIUS;
         match self {
             Self::Kidney => kidney,
             Self::Ellipsoid => kidney * FILLED.cbrt(),

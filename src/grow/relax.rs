@@ -1,7 +1,7 @@
 //! Forks moved to where their three vessels have the least volume, as far as these stay long enough to be meshed; and
 //! nodes moved out of thick vessels that they are no part of.
 
-use super::grow::{Tree, weiszfeld};
+use super::tree::{Tree, weiszfeld};
 use crate::geometry::{Aabb, Bvh, Point3, Tube, Vec3, point_tube};
 use rayon::prelude::*;
 

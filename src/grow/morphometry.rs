@@ -3,7 +3,7 @@
 //! A vessel is a chain of edges of one order. Terminals have order 0; where two vessels of one order meet, that before has
 //! the next order.
 
-use super::super::{NodeId, Skeleton};
+use crate::skeleton::{NodeId, Skeleton};
 
 /// Mean and standard deviation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
