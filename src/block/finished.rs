@@ -70,10 +70,17 @@ pub struct About {
     pub handles: i64,
     /// Independent loops of its skeleton.
     pub loops: i64,
-    /// How often it failed before, and the first reason.
-    pub failures: u32,
-    /// The first of these failures.
-    pub first_failure: String,
+    /// What helped, where it failed before.
+    pub cured: Option<Cured>,
+}
+
+/// Why a block had to be tried again, and how it came out then.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Cured {
+    /// The first failure.
+    pub failure: String,
+    /// The way in which it came out.
+    pub remedy: String,
 }
 
 impl Finished {

@@ -36,7 +36,7 @@ pub use dump::{
 };
 pub use end_surface::{EndFault, EndSurface};
 pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
-pub use finished::{About, Finished, FinishedCap, FinishedJoint};
+pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
 pub use params::{BlockParams, EndStyle};
 pub use path::AxisPath;
 pub use record::{Bytes, Record, Sizes, encode};

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::attempts::{APART, remedy};
+use super::attempts::Way;
 use super::blocks::{Blocks, original_nodes};
 use super::estimate::cluster_cost;
 use super::observer::Stage;
@@ -28,7 +28,7 @@ impl Run<'_> {
     ///
     /// # Errors
     /// When the store fails, or the observer says to stop.
-    pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: usize) -> Result<(), RoundsError> {
+    pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: Way) -> Result<(), RoundsError> {
         let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
         let mut again: BTreeMap<u32, u32> = BTreeMap::new();
         for &[a, b] in meetings {
@@ -45,12 +45,12 @@ impl Run<'_> {
         let watch = Watch::until(&stop);
         let make = |k: usize| {
             let i = again[k].0;
-            shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], APART[way], &watch)
+            shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], way, &watch)
         };
         let (made, _) = self.timed(Stage::Blocks, &costs, make)?;
         for (&(i, other), made) in again.iter().zip(made) {
             let remedy = match &made {
-                Ok(_) => remedy(APART[way]),
+                Ok(_) => way.name().into(),
                 Err(error) => format!("left as it is, for finer it fails: {error}"),
             };
             blocks.retries.push(Retry {

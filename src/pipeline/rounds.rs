@@ -5,7 +5,7 @@ use super::blocks::{Blocks, cut_nodes, original_nodes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
-use super::attempts;
+use super::attempts::Way;
 use super::cures::{Cure, cure, partition_params};
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::{Kept, Made, Workshop};
@@ -16,6 +16,7 @@ use super::routes::{branch_pairs, tangled_clusters};
 use super::schedule::{Cost, costliest_first};
 use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
+use crate::block::Cured;
 use crate::partition::{self, ClusterId, Cut, CutId, Partition, PartitionError};
 use crate::skeleton::{BranchId, Overlaps};
 use crate::tet::Watch;
@@ -104,7 +105,8 @@ impl Run<'_> {
         let observer = self.observer;
         let stop = move || observer.is_cancelled();
         let watch = Watch::until(&stop);
-        let cluster = |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], 0, &watch);
+        let cluster =
+            |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], Way::Usual, &watch);
         if plan.joint != JointStyle::Woven {
             let connector = |i: usize| shop.free_connector(CutId(i as u32), &partition.cuts[i]);
             let one = |i: usize| if i < count { cluster(i) } else { connector(i - count) };
@@ -168,31 +170,21 @@ impl Notes {
     ) -> io::Result<()> {
         for (i, kept) in clusters.iter().enumerate().filter_map(|(i, made)| Some((i, made.as_ref().ok()?))) {
             let nodes = || original_nodes(run.shop.skeleton, partition.clusters[i].nodes.iter().copied());
-            self.hear(run, kept, &format!("cluster {i}"), nodes, |failures| attempts::remedy(failures as usize))?;
+            self.hear(run, kept, &format!("cluster {i}"), nodes)?;
         }
         for (i, made) in connectors.iter().enumerate() {
             let Some(Ok(kept)) = made else { continue };
             let nodes = || cut_nodes(run.shop.skeleton, partition, &partition.cuts[i]);
-            let remedy = |_| "other division of the tube".to_owned();
-            self.hear(run, kept, &format!("connector {i}"), nodes, remedy)?;
+            self.hear(run, kept, &format!("connector {i}"), nodes)?;
         }
         Ok(())
     }
 
-    fn hear(
-        &mut self,
-        run: &Run,
-        kept: &Kept,
-        block: &str,
-        nodes: impl Fn() -> Vec<u32>,
-        remedy: impl Fn(u32) -> String,
-    ) -> io::Result<()> {
-        if self.heard.insert(kept.record) {
-            let about = run.shop.about(kept)?;
-            if about.failures > 0 {
-                let remedy = remedy(about.failures);
-                self.retries.push(Retry { block: block.into(), nodes: nodes(), reason: about.first_failure, remedy });
-            }
+    fn hear(&mut self, run: &Run, kept: &Kept, block: &str, nodes: impl Fn() -> Vec<u32>) -> io::Result<()> {
+        if self.heard.insert(kept.record)
+            && let Some(Cured { failure, remedy }) = run.shop.about(kept)?.cured
+        {
+            self.retries.push(Retry { block: block.into(), nodes: nodes(), reason: failure, remedy });
         }
         Ok(())
     }

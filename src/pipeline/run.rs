@@ -5,7 +5,7 @@ use std::io;
 
 use super::apart::{Meetings, hopeful};
 use super::assemble::Assembly;
-use super::attempts::APART;
+use super::attempts::Way;
 use super::blocks::Blocks;
 use super::describe::{Clusters, announce, describe_blocks};
 use super::estimate::{Estimate, TooLarge};
@@ -140,7 +140,7 @@ pub fn mesh_into<'a>(
 ) -> Result<Stored<'a>, RunError> {
     // What is in memory for the blocks is not while the whole is checked. In the rare case that blocks meet everything is
     // done again, which finds all blocks but these in the store. Woven connectors belong to the clusters as they are.
-    let tries = if plan.joint == JointStyle::Woven { 0 } else { APART.len() };
+    let tries = if plan.joint == JointStyle::Woven { 0 } else { Way::APART.len() };
     let mut met = Vec::new();
     loop {
         let joined = join_blocks(network, plan, store, &met, fits, observer, clock)?;
@@ -187,7 +187,7 @@ fn join_blocks<'a>(
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let mut run = Run { overlaps: &overlaps, shop, observer, clock };
     let mut blocks = run.build(if met.is_empty() { fits } else { &|_| Ok(()) })?;
-    for (way, meetings) in met.iter().enumerate() {
+    for (way, meetings) in Way::APART.into_iter().zip(met) {
         run.set_apart(&mut blocks, meetings, way)?;
     }
     let overlapping = Overlapping::of(&skeleton, &blocks.partition, &overlaps);

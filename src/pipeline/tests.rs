@@ -99,9 +99,17 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
     let params = PartitionParams { rho: plan.rho, ..PartitionParams::default() };
     let partition = partition(network, &params).expect("partitioned");
     let cluster = |(i, cluster): (usize, &Cluster)| {
-        attempts::cluster(ClusterId(i as u32), cluster, plan, false, 0, |node| node.0, &crate::tet::Watch::NOBODY)
-            .result
-            .expect("meshed")
+        attempts::cluster(
+            ClusterId(i as u32),
+            cluster,
+            plan,
+            false,
+            attempts::Way::Usual,
+            |node| node.0,
+            &crate::tet::Watch::NOBODY,
+        )
+        .result
+        .expect("meshed")
     };
     let mut blocks: Vec<Finished> = partition.clusters.iter().enumerate().map(cluster).collect();
     for (i, cut) in partition.cuts.iter().enumerate() {

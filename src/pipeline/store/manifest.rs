@@ -11,7 +11,7 @@ use super::key::Key;
 use super::log::LogFile;
 
 /// Version of what is in a work directory.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 const MANIFEST: &str = "anastomesh.json";
 const LOCK: &str = "anastomesh.lock";
