@@ -1,17 +1,18 @@
 //! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
 
-use super::cap::{CapError, CappedSurface, Closing, cap_terminals};
 use super::end_surface::{EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::params::{BlockParams, EndStyle, filling};
-use super::shared_disc::{SharedDisc, disc_of_end};
 use super::trim::{CutEnd, TrimOptions, Trimmed, trim};
 use crate::geometry::{DisjointSets, Section, Tube, place_key};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
-use crate::surface::{Field, SurfaceParams, euler_characteristic, vessel_wall};
+use crate::surface::{
+    CapError, CappedSurface, Closing, Field, SharedDisc, SurfaceParams, cap_terminals, euler_characteristic,
+    vessel_wall,
+};
 use crate::tet::{Watch, tetrahedralize_watched};
 use rustc_hash::FxHashMap;
 
@@ -120,8 +121,12 @@ pub fn cluster_surface(
         let given =
             |e: &ClusterEnd| disc_of_end(&e.section, e.kind, params.rho).filter(|_| params.ends == EndStyle::Shared);
         let discs: Vec<Option<SharedDisc>> = closed.iter().map(|(_, e)| given(e)).collect();
-        let ends: Vec<Closing> =
-            closed.iter().zip(&discs).map(|((_, end), disc)| Closing { end, disc: disc.as_ref() }).collect();
+        let closing = |((_, end), disc): (&(u32, &ClusterEnd), _)| Closing {
+            section: end.section,
+            node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
+            disc,
+        };
+        let ends: Vec<Closing> = closed.iter().zip(discs.iter().map(Option::as_ref)).map(closing).collect();
         match cap_terminals(&wall, &mut field, &ends, &surface_params) {
             Ok(capped) => break capped,
             // One end less each time, so this ends.
@@ -134,6 +139,14 @@ pub fn cluster_surface(
         *cap = closed[*cap as usize].0;
     }
     Ok((capped, voxel))
+}
+
+/// The disc that the vessel alone gives at an end of a cluster, if that is a cut.
+fn disc_of_end(section: &Section, kind: EndKind, rho: f64) -> Option<SharedDisc> {
+    match kind {
+        EndKind::Cut { side, .. } => SharedDisc::at_end(section, side, rho),
+        EndKind::Terminal(_) => None,
+    }
 }
 
 /// The ends that are closed by discs, with their indices in `Cluster::ends`.

@@ -7,10 +7,10 @@ use super::end_surface::EndSurface;
 use super::error::BlockError;
 use super::error::{ConnectorAttempt, ConnectorFailure};
 use super::params::{BlockParams, filling};
-use super::shared_disc::SharedDisc;
 use crate::geometry::Section;
 use crate::mesh::TetMesh;
 use crate::partition::{Cut, CutId};
+use crate::surface::SharedDisc;
 use crate::tet::tetrahedralize;
 
 /// A meshed connector.
@@ -100,7 +100,8 @@ impl FreeEnds {
             SharedDisc::at_end(&outward[usize::from(side)], side, params.rho).ok_or(ConnectorFault::Disc(side))
         };
         let discs = [disc(0)?, disc(1)?];
-        let surfaces = [0_u8, 1].map(|side| discs[usize::from(side)].end_surface(id, side, outward[usize::from(side)]));
+        let surfaces =
+            [0_u8, 1].map(|side| EndSurface::of_disc(&discs[usize::from(side)], id, side, outward[usize::from(side)]));
         Ok(Self { discs, surfaces })
     }
 

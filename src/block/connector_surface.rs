@@ -23,7 +23,7 @@ pub struct ConnectorEnd<'a> {
 pub struct EndVertex {
     /// Side of the cut, 0 or 1.
     pub side: u8,
-    /// Index in that side's cluster, or in that side's [`super::SharedDisc`] for a connector made without clusters.
+    /// Index in that side's cluster, or in that side's [`crate::surface::SharedDisc`] for a connector made without clusters.
     pub vertex: u32,
 }
 

@@ -1,9 +1,8 @@
 //! What can go wrong with one block.
 
-use super::cap::CapError;
 use super::connector_surface::{ConnectorFault, Division};
 use crate::partition::{ClusterId, CutId};
-use crate::surface::SurfaceError;
+use crate::surface::{CapError, SurfaceError};
 use crate::tet::TetError;
 
 /// Why no end surface could be exposed at a cut.

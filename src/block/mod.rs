@@ -4,7 +4,6 @@
 //! exposes at a cut is an [`EndSurface`]. A connector is a tube between two end surfaces, which it takes over vertex
 //! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
 
-pub mod cap;
 mod cluster;
 mod connector;
 mod connector_surface;
@@ -20,13 +19,10 @@ mod region;
 mod relax;
 mod rings;
 mod shape;
-mod shared_disc;
-mod strip;
 mod trim;
 mod wall;
 mod weave;
 
-pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub(crate) use cluster::mesh_cluster_watched;
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
@@ -40,7 +36,6 @@ pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
 pub use params::{BlockParams, EndStyle};
 pub use path::AxisPath;
 pub use record::{Bytes, Record, Sizes, encode};
-pub use shared_disc::SharedDisc;
 pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
 pub use weave::{WeaveCost, weave};
 

@@ -13,7 +13,7 @@ pub enum EndStyle {
     /// filled, and nothing that is meshed is thrown away.
     #[default]
     Disc,
-    /// As `Disc`, but the disc is the one that the vessel alone gives ([`super::SharedDisc`]), so that the neighbour need
+    /// As `Disc`, but the disc is the one that the vessel alone gives ([`crate::surface::SharedDisc`]), so that the neighbour need
     /// not be known.
     Shared,
     /// Tetrahedra beyond the plane are taken off and what that exposes is made flat (3.2.2).

@@ -1,8 +1,8 @@
 //! The strips of a connector's wall: of all strips between two loops the one with the best shapes.
 
 use super::shape::facing_ratio;
-use super::strip::{Step, cheapest};
 use crate::geometry::{Point3, Vec3};
+use crate::surface::strip::{Step, cheapest};
 
 /// Cost of a strip: Σ (radius ratio)⁻³, dominated by its worst triangle.
 pub type WeaveCost = f64;

@@ -1,20 +1,25 @@
 //! Floor 3: 3.2.2 of the paper. The wall of a cluster: the level set of a convolution field, contoured on a sparse grid
 //! and relaxed into well-shaped triangles.
 
+mod cap;
 mod cases;
 mod contour;
+mod disc;
 mod erf;
 mod field;
 pub(crate) mod halfedge;
 mod params;
 pub(crate) mod relax;
+mod shared_disc;
 mod sizes;
+pub(crate) mod strip;
 #[cfg(test)]
 mod tests;
 
+pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub use field::Field;
 pub use params::{SurfaceError, SurfaceParams};
-pub(crate) use sizes::GROWTH;
+pub use shared_disc::SharedDisc;
 
 use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Tube, Vec3};

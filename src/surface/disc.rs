@@ -4,9 +4,14 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
+/// Mean edge length of a relaxed wall over the length that was aimed at.
+pub(super) const MEAN_EDGE: f64 = 0.92;
+/// Least number of corners of a ring.
+const LEAST_CORNERS: u32 = 8;
+
 /// A triangulated disc in its plane; the first points are the ring, counter-clockwise from angle `phase`.
 #[derive(Clone, Debug)]
-pub(in crate::block) struct Disc {
+pub(super) struct Disc {
     /// Points in the plane.
     pub points: Vec<[f64; 2]>,
     /// Triangles, counter-clockwise.
@@ -24,7 +29,7 @@ const KEPT: usize = 128;
 
 /// The disc of `radius` whose ring has `corners` points, filled at the ring's spacing; none if the triangulation does
 /// not keep the ring.
-pub(in crate::block) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
+pub(super) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
     static DISCS: [OnceLock<Option<Disc>>; KEPT] = [const { OnceLock::new() }; KEPT];
     match DISCS.get(corners as usize) {
         Some(slot) => slot.get_or_init(|| unit_disc(corners)).as_ref().map(|d| d.placed(radius, phase)),
@@ -102,6 +107,11 @@ fn smooth(points: &mut [[f64; 2]], triangles: &[[u32; 3]], corners: u32) {
     for (p, s) in points.iter_mut().zip(sums).skip(corners as usize) {
         *p = [s[0] / s[2], s[1] / s[2]];
     }
+}
+
+/// How many corners the ring of a disc has where edges of the wall are aimed to be so long.
+pub(super) fn corners(radius: f64, edge: f64) -> u32 {
+    ((TAU * radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS)
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::geometry::{Tube, self_intersections};
-use crate::surface::{SurfaceParams, euler_characteristic, vessel_wall};
+use crate::surface::{euler_characteristic, vessel_wall};
 
 /// Tubes that start in one node, each with a terminal at its end, and the ends.
-fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<ClusterEnd>) {
+fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<Closing<'static>>) {
     let (mut tubes, mut ends) = (Vec::new(), Vec::new());
     for (i, &(to, ra, rb)) in arms.iter().enumerate() {
         let b = Point3::from(to);
@@ -13,26 +13,21 @@ fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<ClusterEnd>) {
         tubes.push(Tube { a: Point3::origin(), b, ra, rb });
         tubes.push(Tube { a: b, b: b + axis * (1.25 * rb), ra: rb, rb });
         let section = Section { origin: b, axis, radius: rb };
-        let kind = EndKind::Terminal(NodeId(i as u32));
-        ends.push(ClusterEnd { section, kind, overrun: tubes.len() as u32 - 1 });
+        ends.push(Closing { section, node: Some(NodeId(i as u32)), disc: None });
     }
     (tubes, ends)
 }
 
-fn closings(ends: &[ClusterEnd]) -> Vec<Closing<'_>> {
-    ends.iter().map(|end| Closing { end, disc: None }).collect()
-}
-
-fn capped(arms: &[([f64; 3], f64, f64)], rho: f64) -> (CappedSurface, Vec<ClusterEnd>) {
+fn capped(arms: &[([f64; 3], f64, f64)], rho: f64) -> (CappedSurface, Vec<Closing<'static>>) {
     let (tubes, ends) = star(arms);
     let smallest = tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
     let params = SurfaceParams::with_voxel(2.0 * smallest / rho);
     let wall = vessel_wall(&tubes, &params).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
-    (cap_terminals(&wall, &mut field, &closings(&ends), &params).unwrap(), ends)
+    (cap_terminals(&wall, &mut field, &ends, &params).unwrap(), ends)
 }
 
-fn check(surface: &CappedSurface, ends: &[ClusterEnd], smallest_angle: f64) {
+fn check(surface: &CappedSurface, ends: &[Closing], smallest_angle: f64) {
     let mesh = &surface.mesh;
     assert_eq!(surface.cap.len(), mesh.triangles.len());
     assert!(HalfEdges::new(mesh).is_ok());
@@ -100,6 +95,6 @@ fn a_terminal_inside_another_vessel_is_refused() {
     let params = SurfaceParams::with_voxel(0.6);
     let wall = vessel_wall(&tubes, &params).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
-    let error = cap_terminals(&wall, &mut field, &closings(&ends), &params).unwrap_err();
+    let error = cap_terminals(&wall, &mut field, &ends, &params).unwrap_err();
     assert!(matches!(error, CapError::End { end: 2, node: Some(NodeId(2)), .. }), "{error}");
 }

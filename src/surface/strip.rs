@@ -5,7 +5,7 @@
 
 /// One triangle of a strip: a step along one loop, seen from a vertex of the other. Numbers are places in the loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
+pub(crate) enum Step {
     /// A step along the lower loop.
     Low {
         /// Where the step begins.
@@ -29,7 +29,7 @@ pub(super) enum Step {
 impl Step {
     /// The triangle, with what the loops hold at its corners. Both loops run counter-clockwise about an axis that points
     /// from the lower to the upper one; the triangle looks away from it.
-    pub(super) fn triangle<T: Copy>(self, low: &[T], high: &[T]) -> [T; 3] {
+    pub(crate) fn triangle<T: Copy>(self, low: &[T], high: &[T]) -> [T; 3] {
         match self {
             Self::Low { from, to, apex } => [low[from], low[to], high[apex]],
             Self::High { from, to, apex } => [low[apex], high[to], high[from]],
@@ -40,7 +40,7 @@ impl Step {
 /// The cheapest strip between loops of `low` and `high` vertices that joins lower vertex 0 to upper vertex `first`, with
 /// its cost, the sum of `cost` over its triangles. The shares of the two loops that lie behind never differ by more than
 /// `band`. `None` when there is no such strip.
-pub(super) fn cheapest(
+pub(crate) fn cheapest(
     [low, high]: [usize; 2],
     first: usize,
     band: f64,

@@ -1,13 +1,10 @@
 //! The flat disc in which two blocks meet, as the vessel alone gives it: its triangles are the same, bit for bit,
 //! whichever block asks for them, so blocks owe each other nothing and are merged by the disc's vertices.
 
-use super::cap::disc::disc;
-use super::cap::{MEAN_EDGE, corners};
-use super::end_surface::EndSurface;
+use super::SurfaceParams;
+use super::disc::{MEAN_EDGE, corners, disc};
 use crate::geometry::{Point3, Section};
-use crate::partition::{CutId, EndKind};
 use crate::skeleton::resolution::FOLLOW;
-use crate::surface::SurfaceParams;
 
 /// Edges of a wall at the radius of its thinnest vessel and at larger ones differ by 7 % in what is aimed at; a disc
 /// does not know which its neighbours are.
@@ -60,22 +57,5 @@ impl SharedDisc {
             t.swap(1, 2);
         }
         self
-    }
-
-    /// The end surface of a piece that ends in this disc; its vertices are the disc's own.
-    pub fn end_surface(&self, cut: CutId, side: u8, outward: Section) -> EndSurface {
-        let mut rim = self.rim.clone();
-        if let Some(first) = (0..rim.len()).min_by_key(|&i| rim[i]) {
-            rim.rotate_left(first);
-        }
-        EndSurface { cut, side, section: outward, triangles: self.triangles.clone(), rim }
-    }
-}
-
-/// The disc at an end of a cluster, if it is a cut.
-pub(super) fn disc_of_end(section: &Section, kind: EndKind, rho: f64) -> Option<SharedDisc> {
-    match kind {
-        EndKind::Cut { side, .. } => SharedDisc::at_end(section, side, rho),
-        EndKind::Terminal(_) => None,
     }
 }

@@ -2,22 +2,19 @@
 //! regular ring is put on the plane and filled, a strip is woven between the wall that is left and the ring, and the
 //! wall near it is relaxed on the level set.
 
-pub(super) mod disc;
 #[cfg(test)]
 mod tests;
 mod weave;
 
+use super::disc::{MEAN_EDGE, corners, disc};
+use super::halfedge::HalfEdges;
+use super::relax::{Hold, Level, Relaxation};
 use super::shared_disc::SharedDisc;
+use super::sizes::GROWTH;
+use super::{Field, SizedWall, SurfaceParams};
 use crate::geometry::{Point3, Section, Vec3};
 use crate::mesh::{Kept, TriMesh};
-use crate::partition::{ClusterEnd, EndKind};
 use crate::skeleton::NodeId;
-use crate::surface::GROWTH;
-use crate::surface::halfedge::HalfEdges;
-use crate::surface::relax::{Hold, Level, Relaxation};
-use crate::surface::{Field, SizedWall, SurfaceParams};
-use disc::disc;
-use std::f64::consts::TAU;
 use weave::weave;
 
 /// A closed wall whose terminals are flat discs.
@@ -79,21 +76,20 @@ const RELAXED: f64 = 3.5;
 const LONGEST_TIP: f64 = 3.0;
 /// What lies further (in radii) from the axis than this belongs to another vessel.
 const WIDTH: f64 = 1.1;
-/// Mean edge length of a relaxed wall over the length that was aimed at.
-pub(super) const MEAN_EDGE: f64 = 0.92;
+
 /// How often a rim that is not yet one loop may lose what spoils it: each time a row of triangles goes, and so many rows are
 /// far more than the four edge lengths that may go.
 const RIM_ROUNDS: usize = 20;
 /// How far before the plane, in edge lengths, triangles may go for the rim's sake.
 const DEEPEST_RIM: f64 = 4.0;
-/// Least number of corners of a ring.
-const LEAST_CORNERS: u32 = 8;
 
 /// An end, and the disc that closes it where that is given.
 #[derive(Clone, Copy, Debug)]
 pub struct Closing<'a> {
-    /// The end.
-    pub end: &'a ClusterEnd,
+    /// The plane; its axis points out of the vessel.
+    pub section: Section,
+    /// The terminal's node; none for a cut.
+    pub node: Option<NodeId>,
     /// The disc, seen along the end's axis; none: one that suits the wall.
     pub disc: Option<&'a SharedDisc>,
 }
@@ -101,13 +97,8 @@ pub struct Closing<'a> {
 impl Closing<'_> {
     /// The edge length of the disc.
     fn edge(&self, params: &SurfaceParams) -> f64 {
-        self.disc.map_or_else(|| params.edge_at(self.end.section.radius), |disc| disc.edge)
+        self.disc.map_or_else(|| params.edge_at(self.section.radius), |disc| disc.edge)
     }
-}
-
-/// How many corners the ring of a disc has where edges of the wall are aimed to be so long.
-pub(super) fn corners(radius: f64, edge: f64) -> u32 {
-    ((TAU * radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS)
 }
 
 /// Replaces the tips beyond the `ends` by flat discs. `field` is the field that the wall is a level set of, `params` are
@@ -152,11 +143,10 @@ fn closed<'a>(
         cap: Vec::new(),
     };
     for (i, closing) in ends.iter().enumerate() {
-        let end = closing.end;
         cutter.cut(closing, i as u32, closing.edge(params), margins).map_err(|reason| CapError::End {
             end: i as u32,
-            node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
-            origin: end.section.origin,
+            node: closing.node,
+            origin: closing.section.origin,
             reason,
         })?;
     }
@@ -179,7 +169,7 @@ struct Cutter<'a> {
 impl Cutter<'_> {
     /// Takes one tip off and puts the disc on.
     fn cut(&mut self, closing: &Closing, end: u32, edge: f64, margins: &[f64]) -> Result<(), CapFailure> {
-        let section = &closing.end.section;
+        let section = &closing.section;
         let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
         let rim = self.opened(section, seed, edge, margins)?;
         if rim.iter().any(|&v| section.height(&self.points[v as usize]) > LONGEST_TIP * section.radius) {
@@ -443,7 +433,7 @@ fn relaxed(
         }
     }
     for closing in ends {
-        let section = &closing.end.section;
+        let section = &closing.section;
         let edge = closing.edge(params);
         let chord = MEAN_EDGE * edge / section.radius;
         let mut level = Raised { field: &mut *field, by: chord * chord / 16.0, section };
