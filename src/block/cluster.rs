@@ -1,9 +1,9 @@
 //! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
 
-use super::end_surface::{EndSurface, disc_rim};
+use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::params::{BlockParams, EndStyle, filling};
-use super::trim::{CutEnd, TrimOptions, Trimmed, trim};
+use super::woven::{TrimOptions, Trimmed, trim};
 use crate::geometry::{DisjointSets, Section, Tube, place_key};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::tet_adjacency;
@@ -238,7 +238,7 @@ fn trim_cluster(
     frozen.dedup();
     let options = TrimOptions { edge: out.edge, relax: params.relax_ends, depth: params.depth };
     let Trimmed { mesh, renumbered, ends: surfaces } = trim(&out.mesh, &neighbours, &ends, &frozen, &options)
-        .map_err(|(i, failure)| end_error(id, index[i], &ends[i], failure))?;
+        .map_err(|(i, failure)| BlockError::at_end(id, index[i], &ends[i], failure))?;
     for cap in &mut out.caps {
         for v in cap.triangles.iter_mut().flatten() {
             *v = renumbered[*v as usize];
@@ -247,10 +247,6 @@ fn trim_cluster(
     out.mesh = mesh;
     out.ends = surfaces;
     Ok(())
-}
-
-fn end_error(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> BlockError {
-    BlockError::End { cluster, end, cut: cut.cut, at: cut.section.origin.coords.into(), failure }
 }
 
 /// End surfaces that are discs of the surface.
@@ -263,7 +259,7 @@ fn disc_ends(
     cut_ends(cluster)
         .into_iter()
         .map(|(i, end)| {
-            let failed = || end_error(id, i, &end, FlattenFailure::NotADisc);
+            let failed = || BlockError::at_end(id, i, &end, FlattenFailure::NotADisc);
             let triangles = faces_of(surface, i);
             let rim = disc_rim(&triangles).ok_or_else(failed)?;
             let surface = EndSurface { cut: end.cut, side: end.side, section: end.section, triangles, rim };
@@ -284,7 +280,7 @@ fn check_shared(id: ClusterId, cluster: &Cluster, mesh: &ClusterMesh, rho: f64) 
                 && surface.triangles.iter().map(|t| t.map(local)).eq(disc.triangles.iter().copied())
         });
         if !same {
-            return Err(end_error(id, *i, end, FlattenFailure::NotShared));
+            return Err(BlockError::at_end(id, *i, end, FlattenFailure::NotShared));
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! Whole blocks: clusters from tubes, connectors between their end surfaces, dumps.
 
 use super::fixtures::direction;
-use super::trim_tests::assert_mesh;
+use super::woven::trim_tests::assert_mesh;
 use super::{
     BlockDump, BlockError, BlockOutcome, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, dump_cluster,
     dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,

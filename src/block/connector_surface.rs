@@ -122,7 +122,7 @@ fn rim(path: &AxisPath, points: &[Point3], vertices: &[u32], end: PathEnd) -> Op
     let rim = Rim::new(&located);
     let first = *rim.theta.first()?;
     let last = *rim.theta.last()?;
-    let winding = last + super::relax::turn(first - last) - first;
+    let winding = last + crate::geometry::turn(first - last) - first;
     ((winding - TAU).abs() < 0.1).then_some(rim)
 }
 

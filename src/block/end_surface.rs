@@ -4,6 +4,17 @@ use crate::geometry::{Point3, Section};
 use crate::partition::CutId;
 use crate::surface::SharedDisc;
 
+/// A cut end to trim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutEnd {
+    /// The cut.
+    pub cut: CutId,
+    /// Which side of the cut the cluster is.
+    pub side: u8,
+    /// The cut plane; its axis points out of the cluster.
+    pub section: Section,
+}
+
 /// The triangles exposed at a cut.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EndSurface {

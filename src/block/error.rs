@@ -1,6 +1,7 @@
 //! What can go wrong with one block.
 
 use super::connector_surface::{ConnectorFault, Division};
+use super::end_surface::CutEnd;
 use crate::partition::{ClusterId, CutId};
 use crate::surface::{CapError, SurfaceError};
 use crate::tet::TetError;
@@ -144,4 +145,11 @@ pub enum ConnectorFailure {
 pub struct NotOnBoundary {
     /// Its vertices in the block.
     pub face: [u32; 3],
+}
+
+impl BlockError {
+    /// Of a cluster that fails at a cut; `end` is the index among all its ends.
+    pub(super) fn at_end(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> Self {
+        Self::End { cluster, end, cut: cut.cut, at: cut.section.origin.coords.into(), failure }
+    }
 }

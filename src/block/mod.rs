@@ -11,17 +11,14 @@ mod dump;
 mod end_surface;
 mod error;
 mod finished;
-mod flatten;
 mod params;
 mod path;
 mod record;
-mod region;
-mod relax;
 mod rings;
 mod shape;
-mod trim;
 mod wall;
 mod weave;
+mod woven;
 
 pub(crate) use cluster::mesh_cluster_watched;
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
@@ -30,14 +27,14 @@ pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Divi
 pub use dump::{
     BlockDump, BlockOutcome, ClusterDump, ConnectorDump, dump_cluster, dump_connector, dump_free_connector,
 };
-pub use end_surface::{EndFault, EndSurface};
+pub use end_surface::{CutEnd, EndFault, EndSurface};
 pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
 pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
 pub use params::{BlockParams, EndStyle};
 pub use path::AxisPath;
 pub use record::{Bytes, Record, Sizes, encode};
-pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
 pub use weave::{WeaveCost, weave};
+pub use woven::{TrimOptions, Trimmed, trim};
 
 #[cfg(test)]
 mod cluster_tests;
@@ -45,5 +42,3 @@ mod cluster_tests;
 mod connector_tests;
 #[cfg(test)]
 mod fixtures;
-#[cfg(test)]
-mod trim_tests;

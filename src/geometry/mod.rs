@@ -1,6 +1,7 @@
 //! Floor 1: points, tubes and cross-sections; predicates, intersections, distances and search trees.
 
 mod aabb;
+mod angle;
 mod bvh;
 mod convex;
 mod disjoint_sets;
@@ -18,6 +19,7 @@ mod tri_tri;
 mod tube;
 
 pub use aabb::Aabb;
+pub(crate) use angle::turn;
 pub use bvh::Bvh;
 pub(crate) use convex::minimise_convex;
 pub(crate) use disjoint_sets::DisjointSets;

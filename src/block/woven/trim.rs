@@ -1,26 +1,14 @@
 //! Trimming (3.2.2): what lies beyond a cut plane is taken off the cluster, and the end surface is made flat.
 
-use super::end_surface::EndSurface;
-use super::error::FlattenFailure;
 use super::flatten::{Attempt, Flat, flatten};
 use super::region::{Ground, Reach, Region, WALL};
 use super::relax::Relaxation;
-use super::shape::triangle_ratio;
+use crate::block::end_surface::{CutEnd, EndSurface};
+use crate::block::error::FlattenFailure;
+use crate::block::shape::triangle_ratio;
+use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
-use crate::geometry::{Point3, Section};
 use crate::mesh::{Kept, TetMesh};
-use crate::partition::CutId;
-
-/// A cut end to trim.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CutEnd {
-    /// The cut.
-    pub cut: CutId,
-    /// Which side of the cut the cluster is.
-    pub side: u8,
-    /// The cut plane; its axis points out of the cluster.
-    pub section: Section,
-}
 
 /// How to trim.
 #[derive(Clone, Copy, Debug)]
@@ -168,7 +156,7 @@ fn score(region: &Region, points: &[Point3], flat: &Flat, h: f64) -> f64 {
     let backwards = (0..n)
         .filter(|&i| {
             let (a, b) = (flat.rim[i], flat.rim[(i + 1) % n]);
-            super::end_surface::cross([0, 0], region.flat[a as usize], region.flat[b as usize]) <= 0
+            crate::block::end_surface::cross([0, 0], region.flat[a as usize], region.flat[b as usize]) <= 0
         })
         .count();
     let (low, high) = flat.rim.iter().fold((f64::MAX, f64::MIN), |(l, u), &v| {

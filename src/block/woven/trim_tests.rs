@@ -1,8 +1,10 @@
 //! Trimming on tubes filled with a lattice.
 
-use super::fixtures::{direction, jitter, lattice_tube, lattice_tubes, neighbours, section};
-use super::shape::{tet_ratio, triangle_ratio};
-use super::{CutEnd, FlattenFailure, TrimOptions, Trimmed, trim};
+use super::trim::{TrimOptions, Trimmed, trim};
+use crate::block::end_surface::CutEnd;
+use crate::block::error::FlattenFailure;
+use crate::block::fixtures::{direction, jitter, lattice_tube, lattice_tubes, neighbours, section};
+use crate::block::shape::{tet_ratio, triangle_ratio};
 use crate::geometry::{Point3, Tube, Vec3};
 use crate::mesh::{TET_FACES, TetMesh};
 use crate::partition::CutId;
@@ -17,7 +19,7 @@ fn options(edge: f64, relax: bool) -> TrimOptions {
 }
 
 /// Positive tetrahedra, face-connected, boundary a closed manifold with single fans.
-pub(super) fn assert_mesh(mesh: &TetMesh, euler: i64) {
+pub(in crate::block) fn assert_mesh(mesh: &TetMesh, euler: i64) {
     for t in &mesh.tets {
         assert!(tet_ratio(&t.map(|v| mesh.points[v as usize])) > 0.0, "inverted");
     }
@@ -43,7 +45,7 @@ fn boundary(mesh: &TetMesh) -> Vec<[u32; 3]> {
 }
 
 /// The Euler number of a closed oriented 2-manifold; `None` if the triangles are not one.
-pub(super) fn closed_euler(triangles: &[[u32; 3]]) -> Option<i64> {
+pub(in crate::block) fn closed_euler(triangles: &[[u32; 3]]) -> Option<i64> {
     let mut links: FxHashMap<(u32, u32), u32> = FxHashMap::default();
     let mut valence: FxHashMap<u32, u32> = FxHashMap::default();
     for t in triangles {
@@ -112,7 +114,7 @@ fn ends_of_tubes_at_all_angles_become_flat_discs() {
 #[test]
 fn relaxing_evens_the_rim_and_keeps_shapes() {
     let spread = |t: &Trimmed| -> f64 {
-        let heights = |e: &super::EndSurface| {
+        let heights = |e: &crate::block::EndSurface| {
             let h = e.rim.iter().map(|&v| e.section.height(&t.mesh.points[v as usize]));
             let (l, u) = h.fold((f64::MAX, f64::MIN), |(l, u), x| (l.min(x), u.max(x)));
             u - l

@@ -1,6 +1,6 @@
 //! The part of a cluster's mesh round one cut: everything trimming may look at, renumbered.
 
-use super::end_surface::Plane;
+use crate::block::end_surface::Plane;
 
 use crate::geometry::{Point3, Section};
 

@@ -3,9 +3,9 @@
 //! Positive triangles that form one disc whose projected rim is a simple polygon cover every point of the plane at most
 //! once (the degree of the projection is one), so overlap need not be searched triangle against triangle.
 
-use super::end_surface::{cross, crossing, disc_rim};
-use super::error::FlattenFailure;
 use super::region::{OUTSIDE, Region, WALL};
+use crate::block::end_surface::{cross, crossing, disc_rim};
+use crate::block::error::FlattenFailure;
 use crate::geometry::Point3;
 use crate::mesh::TET_FACES;
 

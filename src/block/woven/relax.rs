@@ -5,7 +5,8 @@
 //! than it has to be. This is where a seam's needles would otherwise come from.
 
 use super::region::{OUTSIDE, Region, WALL};
-use super::shape::{tet_ratio, triangle_ratio};
+use crate::block::shape::{tet_ratio, triangle_ratio};
+use crate::geometry::turn;
 use crate::geometry::{Point3, Section, Vec3};
 use crate::mesh::TET_FACES;
 
@@ -121,13 +122,6 @@ impl Relaxation<'_> {
         }
         worst
     }
-}
-
-/// An angle brought into (−π, π].
-pub(super) fn turn(angle: f64) -> f64 {
-    use std::f64::consts::{PI, TAU};
-    let a = angle.rem_euclid(TAU);
-    if a > PI { a - TAU } else { a }
 }
 
 fn inner_vertices(triangles: &[[u32; 3]], rim: &[u32]) -> Vec<u32> {
