@@ -15,7 +15,7 @@ const WALL_OF_BASELINE: usize = 227_134;
 fn kidney(name: &str, rho: f64) -> Option<Meshed> {
     let path = shared()?.join("data/kidney").join(name);
     let meshed = mesh(&network(&path), rho);
-    print!("{name}, rho {rho}\n{}{}", meshed.report.text(), text(&meshed.check));
+    print!("{name}, rho {rho}\n{}{}", anastomesh::report::mesh::text(&meshed.report), text(&meshed.check));
     Some(meshed)
 }
 

@@ -283,7 +283,7 @@ impl Args {
             super::refine::write(path, &refined)?;
         }
         if !self.common.quiet && !self.common.json {
-            eprint!("{}", super::refine_report::text(&refined.report));
+            eprint!("{}", crate::report::refine::text(&refined.report));
         }
         Ok(Some(refined))
     }
@@ -301,7 +301,7 @@ impl Args {
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
-            eprint!("{}", run.text());
+            eprint!("{}", crate::report::mesh::text(run));
             if let Some(check) = check {
                 eprint!("{}", crate::report::check::text(check));
             }

@@ -9,13 +9,13 @@ use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::{shows_bars, stage_bar};
-use super::refine_report::{csv, panels, text};
 use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
 use crate::io::write_text;
 use crate::refine::{
     self, Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, Sample,
 };
 use crate::report::plot::svg;
+use crate::report::refine::{csv, panels, text};
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]

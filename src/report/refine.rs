@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::plot::{Panel, Series};
 use crate::refine::{Figures, RefineReport, Sample, Treatment};
-use crate::report::plot::{Panel, Series};
 
 /// A line of the table of figures: its name and what it shows of a state.
 type Row = (&'static str, fn(&Figures) -> String);
