@@ -63,7 +63,7 @@ fn has_repeated_vertex(&[a, b, c, d]: &[u32; 4]) -> bool {
     a == b || a == c || a == d || b == c || b == d || c == d
 }
 
-pub(super) fn no_repeated_vertex(mesh: &TetMesh) -> LineResult {
+fn no_repeated_vertex(mesh: &TetMesh) -> LineResult {
     let mut tally = Tally::new(Line::NoRepeatedVertex);
     for (i, _) in mesh.tets.iter().enumerate().filter(|(_, t)| has_repeated_vertex(t)) {
         tally.add(|| tet_offender(mesh, i as u32));
@@ -72,7 +72,7 @@ pub(super) fn no_repeated_vertex(mesh: &TetMesh) -> LineResult {
 }
 
 /// Tetrahedra that are not positive.
-pub(super) fn positive_tets(mesh: &TetMesh) -> LineResult {
+fn positive_tets(mesh: &TetMesh) -> LineResult {
     let positive = |&[a, b, c, d]: &[u32; 4]| {
         let p = |v: u32| &mesh.points[v as usize];
         orient3d(p(a), p(b), p(c), p(d)) > 0.0
@@ -94,7 +94,7 @@ pub(super) fn positive_tets(mesh: &TetMesh) -> LineResult {
 
 /// Tetrahedra that repeat another. Two equal ones share all their faces, so only those whose neighbour has the same
 /// fourth vertex, and those at crowded faces, need a look.
-pub(super) fn no_duplicate_tets(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
+fn no_duplicate_tets(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     let mut suspects: Vec<u32> = adjacency.crowded.iter().map(|handle| handle / 4).collect();
     for (tet, row) in adjacency.neighbors.iter().enumerate() {
         let t = &mesh.tets[tet];
@@ -120,7 +120,7 @@ pub(super) fn face_offender(points: &[Point3], face: [u32; 3]) -> Offender {
     Offender::new(OffenderKind::Face, &face, Some(centroid(points, &face)))
 }
 
-pub(super) fn faces_shared_by_two(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
+fn faces_shared_by_two(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     let mut faces: Vec<[u32; 3]> =
         adjacency.crowded.iter().map(|&handle| face_key(face_vertices(&mesh.tets, handle))).collect();
     faces.sort_unstable();
@@ -139,7 +139,7 @@ pub(super) fn same_turn(a: [u32; 3], b: [u32; 3]) -> bool {
 
 /// Interior faces whose two tetrahedra lie on the same side: both see the face turn the same way from outside. (For
 /// positive tetrahedra this is the geometric statement.)
-pub(super) fn opposite_sides(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
+fn opposite_sides(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     let mut tally = Tally::new(Line::OppositeSides);
     for (handle, &neighbor) in adjacency.neighbors.as_flattened().iter().enumerate() {
         if neighbor != NONE && (handle as u32) < neighbor {
@@ -173,13 +173,25 @@ pub(super) fn no_duplicate_points(mesh: &TetMesh) -> LineResult {
     tally.done()
 }
 
-pub(super) fn no_unused_points(mesh: &TetMesh) -> LineResult {
+fn no_unused_points(mesh: &TetMesh) -> LineResult {
     let used = crate::mesh::adjacency::vertices_of(&mesh.tets, mesh.points.len());
     let mut tally = Tally::new(Line::NoUnusedPoints);
     for (i, _) in used.iter().enumerate().filter(|&(_, &used)| !used) {
         tally.add(|| point_offender(&mesh.points, i as u32));
     }
     tally.done()
+}
+
+/// The lines about tetrahedra and the points that they use, of a mesh whose arrays are sound.
+pub(super) fn lines(mesh: &TetMesh, adjacency: &TetAdjacency) -> [LineResult; 6] {
+    [
+        no_repeated_vertex(mesh),
+        no_duplicate_tets(mesh, adjacency),
+        positive_tets(mesh),
+        faces_shared_by_two(mesh, adjacency),
+        opposite_sides(mesh, adjacency),
+        no_unused_points(mesh),
+    ]
 }
 
 /// Number of components of tetrahedra joined by faces.

@@ -49,14 +49,7 @@ pub fn certify_with(part: &PartView, adjacency: impl FnOnce() -> TetAdjacency) -
     }
     let adjacency = adjacency();
     if !certificate.measure_cells(mesh, &adjacency) {
-        certificate.take([
-            cells::no_repeated_vertex(mesh),
-            cells::no_duplicate_tets(mesh, &adjacency),
-            cells::positive_tets(mesh),
-            cells::faces_shared_by_two(mesh, &adjacency),
-            cells::opposite_sides(mesh, &adjacency),
-            cells::no_unused_points(mesh),
-        ]);
+        certificate.take(cells::lines(mesh, &adjacency));
     }
     certificate.look_at_boundary(part, &adjacency);
     // Else equal points are excluded by what has been found, see `super`.

@@ -11,6 +11,7 @@ use crate::mesh::Patch;
 use crate::mesh::check::labels;
 use crate::mesh::check::result::{
     CheckReport, Counts, Expectation, Intersection, Line, LineResult, Offender, OffenderKind, Skipped, Tally,
+    components,
 };
 use crate::mesh::check::surface::{compare_loops, genus};
 use rustc_hash::FxHashMap;
@@ -98,7 +99,7 @@ impl Whole<'_> {
         counts.boundary_faces =
             (0..self.held.count()).map(|part| self.held.faces_of(part, &self.joined.flags) as usize).sum();
         counts.caps = self.patches.iter().filter(|patch| patch.cap.is_some()).count();
-        let mut lines = vec![self.components(glued.components), self.loops(&glued, &roots)];
+        let mut lines = vec![components(self.expectation, glued.components), self.loops(&glued, &roots)];
         // That no points are equal follows from the other lines: when one of them fails, it has not been shown.
         if let Some(line) = self.joined.broken.or(self.tallies.first_of(&EXCLUDE_EQUAL_POINTS))
             && !self.tallies.fails(Line::NoDuplicatePoints)
@@ -141,15 +142,6 @@ impl Whole<'_> {
         all.extend(meetings.intersections.into_iter().map(|(intersection, _)| intersection));
         all.sort_by_key(|i| (i.faces, i.kind));
         all
-    }
-
-    fn components(&self, found: usize) -> LineResult {
-        let Some(expected) = self.expectation else {
-            return LineResult::skipped(Line::Components, Skipped::NoExpectation);
-        };
-        let mut tally = Tally::new(Line::Components);
-        tally.compare(vec![expected.loops.len() as u32], vec![found as u32]);
-        tally.done()
     }
 
     fn loops(&self, glued: &Glued, roots: &[u32]) -> LineResult {
