@@ -1,4 +1,5 @@
-//! Floor 3: networks that are made, not measured. Grown ones: an organ filled with terminals, and a tree of vessels that reaches them all.
+//! Floor 3: networks that are made, not measured. Grown ones: an organ filled with terminals, and a tree of vessels that
+//! reaches them all.
 //!
 //! Terminals fill the organ evenly (`organ`). The tree is grown from the inlet by splitting the set of terminals again and
 //! again (`tree`); how many go to either side is such that each Strahler order has as many vessels as in a rat's kidney
