@@ -28,7 +28,7 @@ fn bench(c: &mut Criterion) {
     for rho in [3.0, 4.0, 5.0] {
         for ends in [EndStyle::Trimmed, EndStyle::Disc] {
             let params = BlockParams { ends, ..BlockParams::with_rho(rho) };
-            let Ok(mesh) = mesh_cluster(ClusterId(0), &cluster, &params) else { continue };
+            let mesh = mesh_cluster(ClusterId(0), &cluster, &params).expect("the cluster is meshed");
             group.throughput(Throughput::Elements(mesh.mesh.tets.len() as u64));
             group.bench_with_input(BenchmarkId::new(format!("{ends:?}"), rho), &params, |b, params| {
                 b.iter(|| mesh_cluster(ClusterId(0), black_box(&cluster), params));

@@ -11,7 +11,7 @@ fn tube(a: [f64; 3], b: [f64; 3], r: f64) -> Tube {
 }
 
 fn evaluate(c: &mut Criterion, name: &str, tubes: &[Tube]) {
-    let Ok(mut field) = Field::new(tubes, 0.4) else { return };
+    let mut field = Field::new(tubes, 0.4).expect("tubes with a radius");
     let points: Vec<Point3> = (0..1000)
         .map(|i| {
             let (t, a) = (f64::from(i) / 1000.0, f64::from(i) * 2.4);

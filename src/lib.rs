@@ -8,6 +8,7 @@ pub mod block;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod geometry;
+pub mod grow;
 pub mod io;
 pub mod mesh;
 pub mod partition;

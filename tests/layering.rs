@@ -4,17 +4,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Rooms by floor; a room may import from rooms with a smaller number, and from itself.
-const FLOORS: [(&str, u32); 14] = [
-    ("main", 7),
-    ("cli", 6),
+const FLOORS: [(&str, u32); 15] = [
+    ("main", 8),
+    ("cli", 7),
+    ("report", 6),
     ("pipeline", 5),
     ("block", 4),
     ("surface", 3),
     ("tet", 3),
     ("stitch", 3),
     ("io", 3),
-    ("report", 3),
     ("refine", 3),
+    ("grow", 3),
     ("partition", 3),
     ("mesh", 2),
     ("skeleton", 2),

@@ -4,7 +4,8 @@
 mod common;
 
 use anastomesh::geometry::Point3;
-use anastomesh::refine::{Crowded, Figures, RefineParams, Refined, Residual, dual, refine};
+use anastomesh::grow::dual;
+use anastomesh::refine::{Crowded, Figures, RefineParams, Refined, Residual, refine};
 use anastomesh::skeleton::Skeleton;
 
 fn refined(skeleton: &Skeleton, params: &RefineParams) -> Refined {

@@ -10,7 +10,7 @@ use common::{mesh, network, shared};
 fn skeleton(name: &str) -> Option<Meshed> {
     let path = shared()?.join("data/skeletons").join(name);
     let meshed = mesh(&network(&path), 3.0);
-    print!("{name}\n{}{}", meshed.report.text(), text(&meshed.check));
+    print!("{name}\n{}{}", anastomesh::report::mesh::text(&meshed.report), text(&meshed.check));
     Some(meshed)
 }
 

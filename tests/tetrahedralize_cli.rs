@@ -1,5 +1,7 @@
 //! `anastomesh tetrahedralize` as it is run: formats, switches, exit codes, messages, files.
 
+mod common;
+
 use anastomesh::geometry::Point3;
 use anastomesh::io::surface::write_surface;
 use anastomesh::io::volume::{MeshFormat, read_mesh, read_mesh_from};
@@ -337,18 +339,14 @@ fn the_bytes_depend_on_the_input_alone() {
 
 #[test]
 fn tetgen_reads_what_we_write() {
-    let version = Command::new("tetgen").arg("-h").output();
-    if !version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("TetGen")) {
-        eprintln!("skipped: no tetgen");
-        return;
-    }
+    let Some(tetgen) = common::oracle::tetgen() else { return };
     let folder = folder();
     for (input, options) in
         [(save(&folder, "s.off", &sphere(7)), "--tetgen=pY"), (text(&folder, "r.poly", &rooms(false)), "--no-refine")]
     {
         let out = folder.path().join("mesh.ele");
         assert_code(&fill(&input, &out, &[options, "-q"]), FINE);
-        let read = Command::new("tetgen").args(["-rQ", "mesh"]).current_dir(&folder).output().expect("tetgen runs");
+        let read = Command::new(&tetgen).args(["-rQ", "mesh"]).current_dir(&folder).output().expect("tetgen runs");
         assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stdout));
         let count = |name: &str| {
             let text = fs::read_to_string(folder.path().join(name)).expect("a file");
@@ -403,10 +401,20 @@ fn switches_and_options_that_make_no_sense() {
     refused(&["--max-volume", "-1"], &["--max-volume", "above 0"]);
     refused(&["--size", "nan"], &["--size", "finite"]);
     refused(&["--min-dihedral", "80"], &["--min-dihedral", "70.5"]);
+    refused(&["--min-dihedral", "70.53"], &["--min-dihedral", "70.53"]);
     let nowhere = command(&input, None, &[]).output().expect("the program runs");
     assert_code(&nowhere, USAGE);
     assert!(stderr(&nowhere).contains("-o MESH"));
     assert_eq!(entries(folder.path()), ["s.off"]);
+}
+
+#[test]
+fn every_angle_that_is_not_refused_is_aimed_at() {
+    let folder = folder();
+    let input = save(&folder, "s.off", &sphere(3));
+    for options in [["--min-dihedral", "65"], ["--tetgen", "pYq1.4/65"]] {
+        assert_code(&fill(&input, &folder.path().join("m.vtu"), &options), FINE);
+    }
 }
 
 #[test]

@@ -1,18 +1,19 @@
 //! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
 
-use super::cap::{CapError, CappedSurface, Closing, cap_terminals};
-use super::end_surface::{EndSurface, disc_rim};
+use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
-use super::params::{BlockParams, EndStyle, filling, mean_edge};
-use super::shared_disc::{SharedDisc, disc_of_end};
-use super::trim::{CutEnd, TrimOptions, Trimmed, trim};
-use crate::geometry::{Point3, Section, Tube};
+use super::params::{BlockParams, EndStyle, filling};
+use super::woven::{TrimOptions, Trimmed, trim};
+use crate::geometry::{DisjointSets, Section, Tube, place_key};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
-use crate::surface::{Field, SurfaceParams, euler_characteristic, vessel_wall};
-use crate::tet::tetrahedralize;
+use crate::surface::{
+    CapError, CappedSurface, Closing, Field, SharedDisc, SurfaceParams, cap_terminals, euler_characteristic,
+    vessel_wall,
+};
+use crate::tet::{Watch, tetrahedralize_watched};
 use rustc_hash::FxHashMap;
 
 /// The flat disc that closes a terminal.
@@ -54,9 +55,22 @@ pub struct ClusterMesh {
 /// # Errors
 /// Any stage's, with the cluster's id; the caller may retry with other [`BlockParams`].
 pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
+    mesh_cluster_watched(id, cluster, params, &Watch::NOBODY)
+}
+
+/// As [`mesh_cluster`], watched: filling, which takes most of the time, ends when the watch says so.
+///
+/// # Errors
+/// As there.
+pub(crate) fn mesh_cluster_watched(
+    id: ClusterId,
+    cluster: &Cluster,
+    params: &BlockParams,
+    watch: &Watch,
+) -> Result<ClusterMesh, BlockError> {
     let (surface, voxel) = cluster_surface(id, cluster, params)?;
-    let edge = mean_edge(&surface.mesh);
-    let filled = tetrahedralize(&surface.mesh, &filling(&surface.mesh))
+    let edge = surface.mesh.mean_edge();
+    let filled = tetrahedralize_watched(&surface.mesh, &filling(&surface.mesh), watch)
         .map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
     let caps = caps(cluster, &surface);
     let surface_triangles = surface.mesh.triangles.len();
@@ -107,8 +121,12 @@ pub fn cluster_surface(
         let given =
             |e: &ClusterEnd| disc_of_end(&e.section, e.kind, params.rho).filter(|_| params.ends == EndStyle::Shared);
         let discs: Vec<Option<SharedDisc>> = closed.iter().map(|(_, e)| given(e)).collect();
-        let ends: Vec<Closing> =
-            closed.iter().zip(&discs).map(|((_, end), disc)| Closing { end, disc: disc.as_ref() }).collect();
+        let closing = |((_, end), disc): (&(u32, &ClusterEnd), _)| Closing {
+            section: end.section,
+            node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
+            disc,
+        };
+        let ends: Vec<Closing> = closed.iter().zip(discs.iter().map(Option::as_ref)).map(closing).collect();
         match cap_terminals(&wall, &mut field, &ends, &surface_params) {
             Ok(capped) => break capped,
             // One end less each time, so this ends.
@@ -121,6 +139,14 @@ pub fn cluster_surface(
         *cap = closed[*cap as usize].0;
     }
     Ok((capped, voxel))
+}
+
+/// The disc that the vessel alone gives at an end of a cluster, if that is a cut.
+fn disc_of_end(section: &Section, kind: EndKind, rho: f64) -> Option<SharedDisc> {
+    match kind {
+        EndKind::Cut { side, .. } => SharedDisc::at_end(section, side, rho),
+        EndKind::Terminal(_) => None,
+    }
 }
 
 /// The ends that are closed by discs, with their indices in `Cluster::ends`.
@@ -147,28 +173,15 @@ fn smallest_radius(cluster: &Cluster) -> f64 {
 
 /// Independent loops of the graph of tubes, whose ends are the same node when they are the same point.
 fn independent_loops(tubes: &[Tube]) -> i64 {
-    let mut nodes: FxHashMap<[u64; 3], usize> = FxHashMap::default();
-    let mut parent: Vec<usize> = Vec::new();
+    let mut nodes: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    let mut sets = DisjointSets::new(0);
     let mut loops = 0;
     for t in tubes {
-        let mut root = |p: &Point3| {
-            // Adding zero makes −0 and 0 the same point.
-            let key = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
-            let mut i = *nodes.entry(key).or_insert_with(|| {
-                parent.push(parent.len());
-                parent.len() - 1
-            });
-            while parent[i] != i {
-                parent[i] = parent[parent[i]];
-                i = parent[i];
-            }
-            i
-        };
-        let (a, b) = (root(&t.a), root(&t.b));
-        if a == b {
+        let [a, b] = [&t.a, &t.b].map(|p| *nodes.entry(place_key(p)).or_insert_with(|| sets.push()));
+        if sets.root(a) == sets.root(b) {
             loops += i64::from(t.a != t.b);
         } else {
-            parent[a.max(b)] = a.min(b);
+            sets.join(a, b);
         }
     }
     loops
@@ -224,25 +237,16 @@ fn trim_cluster(
     frozen.sort_unstable();
     frozen.dedup();
     let options = TrimOptions { edge: out.edge, relax: params.relax_ends, depth: params.depth };
-    let end_error = |i: usize, failure| end_error(id, index[i], &ends[i], failure);
-    let Trimmed { mesh, renumbered, ends: surfaces } =
-        trim(&out.mesh, &neighbours, &ends, &frozen, &options).map_err(|(i, f)| end_error(i, f))?;
+    let Trimmed { mesh, renumbered, ends: surfaces } = trim(&out.mesh, &neighbours, &ends, &frozen, &options)
+        .map_err(|(i, failure)| BlockError::at_end(id, index[i], &ends[i], failure))?;
     for cap in &mut out.caps {
         for v in cap.triangles.iter_mut().flatten() {
             *v = renumbered[*v as usize];
-            if *v == u32::MAX {
-                // Trimming took a part of a cap: a cut plane reaches into another vessel's end.
-                return Err(end_error(0, FlattenFailure::LeavesVessel));
-            }
         }
     }
     out.mesh = mesh;
     out.ends = surfaces;
     Ok(())
-}
-
-fn end_error(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> BlockError {
-    BlockError::End { cluster, end, cut: cut.cut, at: cut.section.origin.coords.into(), failure }
 }
 
 /// End surfaces that are discs of the surface.
@@ -255,7 +259,7 @@ fn disc_ends(
     cut_ends(cluster)
         .into_iter()
         .map(|(i, end)| {
-            let failed = || end_error(id, i, &end, FlattenFailure::NotADisc);
+            let failed = || BlockError::at_end(id, i, &end, FlattenFailure::NotADisc);
             let triangles = faces_of(surface, i);
             let rim = disc_rim(&triangles).ok_or_else(failed)?;
             let surface = EndSurface { cut: end.cut, side: end.side, section: end.section, triangles, rim };
@@ -276,7 +280,7 @@ fn check_shared(id: ClusterId, cluster: &Cluster, mesh: &ClusterMesh, rho: f64) 
                 && surface.triangles.iter().map(|t| t.map(local)).eq(disc.triangles.iter().copied())
         });
         if !same {
-            return Err(end_error(id, *i, end, FlattenFailure::NotShared));
+            return Err(BlockError::at_end(id, *i, end, FlattenFailure::NotShared));
         }
     }
     Ok(())

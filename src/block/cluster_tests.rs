@@ -1,9 +1,9 @@
 //! Whole blocks: clusters from tubes, connectors between their end surfaces, dumps.
 
 use super::fixtures::direction;
-use super::trim_tests::assert_mesh;
+use super::woven::trim_tests::assert_mesh;
 use super::{
-    BlockDump, BlockError, BlockOutcome, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, SharedDisc, dump_cluster,
+    BlockDump, BlockError, BlockOutcome, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, dump_cluster,
     dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
 };
 use crate::geometry::{Point3, Section, Tube, Vec3};
@@ -13,6 +13,7 @@ use crate::partition::{
     Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, PartitionParams, PartitionWarning, partition,
 };
 use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
+use crate::surface::SharedDisc;
 
 /// A star of vessels from a node: one per direction, ending in a cut or a terminal at 4 radii.
 fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
@@ -145,7 +146,7 @@ fn a_shared_disc_is_the_same_from_both_sides() {
         let behind = SharedDisc::at_end(&Section { axis: -along.axis, ..along }, 1, 3.0).expect("disc");
         assert_eq!(ahead.points, behind.points);
         assert_eq!(ahead, behind.turned());
-        let surface = ahead.end_surface(CutId(0), 0, along);
+        let surface = super::EndSurface::of_disc(&ahead, CutId(0), 0, along);
         assert_eq!(surface.check(&ahead.points), Ok(()));
     }
 }

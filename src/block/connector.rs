@@ -5,12 +5,13 @@ use super::connector_surface::{
 };
 use super::end_surface::EndSurface;
 use super::error::BlockError;
+use super::error::{ConnectorAttempt, ConnectorFailure};
 use super::params::{BlockParams, filling};
-use super::shared_disc::SharedDisc;
 use crate::geometry::Section;
 use crate::mesh::TetMesh;
 use crate::partition::{Cut, CutId};
-use crate::tet::{TetError, tetrahedralize};
+use crate::surface::SharedDisc;
+use crate::tet::tetrahedralize;
 
 /// A meshed connector.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,27 +24,6 @@ pub struct ConnectorMesh {
     pub rings: u32,
     /// Attempts that failed before this one.
     pub failed: Vec<ConnectorAttempt>,
-}
-
-/// An attempt at a connector that failed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ConnectorAttempt {
-    /// How the tube was divided.
-    pub division: Division,
-    /// Why it failed.
-    pub failure: ConnectorFailure,
-}
-
-/// Why an attempt at a connector failed.
-#[non_exhaustive]
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ConnectorFailure {
-    /// The surface could not be woven.
-    #[error(transparent)]
-    Surface(ConnectorFault),
-    /// The surface could not be filled.
-    #[error(transparent)]
-    Tetrahedra(TetError),
 }
 
 /// Number of ways in which a connector's tube is divided.
@@ -120,7 +100,8 @@ impl FreeEnds {
             SharedDisc::at_end(&outward[usize::from(side)], side, params.rho).ok_or(ConnectorFault::Disc(side))
         };
         let discs = [disc(0)?, disc(1)?];
-        let surfaces = [0_u8, 1].map(|side| discs[usize::from(side)].end_surface(id, side, outward[usize::from(side)]));
+        let surfaces =
+            [0_u8, 1].map(|side| EndSurface::of_disc(&discs[usize::from(side)], id, side, outward[usize::from(side)]));
         Ok(Self { discs, surfaces })
     }
 

@@ -23,7 +23,7 @@ pub struct ConnectorEnd<'a> {
 pub struct EndVertex {
     /// Side of the cut, 0 or 1.
     pub side: u8,
-    /// Index in that side's cluster, or in that side's [`super::SharedDisc`] for a connector made without clusters.
+    /// Index in that side's cluster, or in that side's [`crate::surface::SharedDisc`] for a connector made without clusters.
     pub vertex: u32,
 }
 
@@ -122,7 +122,7 @@ fn rim(path: &AxisPath, points: &[Point3], vertices: &[u32], end: PathEnd) -> Op
     let rim = Rim::new(&located);
     let first = *rim.theta.first()?;
     let last = *rim.theta.last()?;
-    let winding = last + super::relax::turn(first - last) - first;
+    let winding = last + crate::geometry::turn(first - last) - first;
     ((winding - TAU).abs() < 0.1).then_some(rim)
 }
 

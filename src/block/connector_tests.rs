@@ -2,7 +2,7 @@
 
 use super::fixtures::{direction, jitter, lattice_tube, neighbours, section};
 use super::rings::chord_factor;
-use super::trim_tests::closed_euler;
+use super::woven::trim_tests::closed_euler;
 use super::{
     ConnectorEnd, ConnectorSurface, CutEnd, Division, EndSurface, TrimOptions, connector_surface, trim, weave,
 };

@@ -2,6 +2,18 @@
 
 use crate::geometry::{Point3, Section};
 use crate::partition::CutId;
+use crate::surface::SharedDisc;
+
+/// A cut end to trim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutEnd {
+    /// The cut.
+    pub cut: CutId,
+    /// Which side of the cut the cluster is.
+    pub side: u8,
+    /// The cut plane; its axis points out of the cluster.
+    pub section: Section,
+}
 
 /// The triangles exposed at a cut.
 #[derive(Clone, Debug, PartialEq)]
@@ -174,6 +186,15 @@ fn edge_connected(triangles: &[[u32; 3]], edges: &[(u32, u32)]) -> bool {
 }
 
 impl EndSurface {
+    /// That of a piece of a vessel that ends in a disc; its vertices are the disc's own.
+    pub fn of_disc(disc: &SharedDisc, cut: CutId, side: u8, outward: Section) -> Self {
+        let mut rim = disc.rim.clone();
+        if let Some(first) = (0..rim.len()).min_by_key(|&i| rim[i]) {
+            rim.rotate_left(first);
+        }
+        Self { cut, side, section: outward, triangles: disc.triangles.clone(), rim }
+    }
+
     /// Checks that the surface is one disc and projection flat: positive triangles whose boundary loop is a simple
     /// polygon cover every point of the plane at most once.
     ///

@@ -1,10 +1,9 @@
 //! What can go wrong with one block.
 
-use super::cap::CapError;
-use super::connector::ConnectorAttempt;
-use super::finished::NotOnBoundary;
+use super::connector_surface::{ConnectorFault, Division};
+use super::end_surface::CutEnd;
 use crate::partition::{ClusterId, CutId};
-use crate::surface::SurfaceError;
+use crate::surface::{CapError, SurfaceError};
 use crate::tet::TetError;
 
 /// Why no end surface could be exposed at a cut.
@@ -117,4 +116,40 @@ pub enum BlockError {
         /// What was tried, in order, and why it failed.
         attempts: Vec<ConnectorAttempt>,
     },
+}
+
+/// An attempt at a connector that failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConnectorAttempt {
+    /// How the tube was divided.
+    pub division: Division,
+    /// Why it failed.
+    pub failure: ConnectorFailure,
+}
+
+/// Why an attempt at a connector failed.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ConnectorFailure {
+    /// The surface could not be woven.
+    #[error(transparent)]
+    Surface(ConnectorFault),
+    /// The surface could not be filled.
+    #[error(transparent)]
+    Tetrahedra(TetError),
+}
+
+/// A face that was said to close a block and does not: a fault of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("face {face:?} does not lie on the block's boundary, or belongs to two of its ends")]
+pub struct NotOnBoundary {
+    /// Its vertices in the block.
+    pub face: [u32; 3],
+}
+
+impl BlockError {
+    /// Of a cluster that fails at a cut; `end` is the index among all its ends.
+    pub(super) fn at_end(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> Self {
+        Self::End { cluster, end, cut: cut.cut, at: cut.section.origin.coords.into(), failure }
+    }
 }

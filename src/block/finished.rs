@@ -1,5 +1,7 @@
 //! A block when it is done: what the whole needs of it, whichever kind it is, and nothing else.
 
+use super::error::NotOnBoundary;
+use crate::mesh::face_key;
 use rustc_hash::FxHashMap;
 
 use super::cluster::ClusterMesh;
@@ -68,18 +70,17 @@ pub struct About {
     pub handles: i64,
     /// Independent loops of its skeleton.
     pub loops: i64,
-    /// How often it failed before, and the first reason.
-    pub failures: u32,
-    /// The first of these failures.
-    pub first_failure: String,
+    /// What helped, where it failed before.
+    pub cured: Option<Cured>,
 }
 
-/// A face that was said to close a block and does not: a fault of the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("face {face:?} does not lie on the block's boundary, or belongs to two of its ends")]
-pub struct NotOnBoundary {
-    /// Its vertices in the block.
-    pub face: [u32; 3],
+/// Why a block had to be tried again, and how it came out then.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Cured {
+    /// The first failure.
+    pub failure: String,
+    /// The way in which it came out.
+    pub remedy: String,
 }
 
 impl Finished {
@@ -163,12 +164,12 @@ struct Faces {
 impl Faces {
     fn new(mesh: &TetMesh) -> Self {
         let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
-        let left = adjacency.boundary().map(|face| (sorted(face_vertices(&mesh.tets, face)), face)).collect();
+        let left = adjacency.boundary().map(|face| (face_key(face_vertices(&mesh.tets, face)), face)).collect();
         Self { left, adjacency }
     }
 
     fn take(&mut self, triangles: &[[u32; 3]]) -> Result<Vec<u32>, NotOnBoundary> {
-        let take = |&face: &[u32; 3]| self.left.remove(&sorted(face)).ok_or(NotOnBoundary { face });
+        let take = |&face: &[u32; 3]| self.left.remove(&face_key(face)).ok_or(NotOnBoundary { face });
         let mut faces = triangles.iter().map(take).collect::<Result<Vec<u32>, _>>()?;
         faces.sort_unstable();
         Ok(faces)
@@ -187,9 +188,4 @@ impl Faces {
         rest.sort_unstable();
         (rest, self.adjacency)
     }
-}
-
-fn sorted(mut face: [u32; 3]) -> [u32; 3] {
-    face.sort_unstable();
-    face
 }

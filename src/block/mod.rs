@@ -4,7 +4,6 @@
 //! exposes at a cut is an [`EndSurface`]. A connector is a tube between two end surfaces, which it takes over vertex
 //! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
 
-pub mod cap;
 mod cluster;
 mod connector;
 mod connector_surface;
@@ -12,38 +11,30 @@ mod dump;
 mod end_surface;
 mod error;
 mod finished;
-mod flatten;
 mod params;
 mod path;
 mod record;
-mod region;
-mod relax;
 mod rings;
 mod shape;
-mod shared_disc;
-mod strip;
-mod trim;
 mod wall;
 mod weave;
+mod woven;
 
-pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
+pub(crate) use cluster::mesh_cluster_watched;
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
-pub use connector::{
-    ConnectorAttempt, ConnectorFailure, ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends,
-};
+pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
 pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
 pub use dump::{
     BlockDump, BlockOutcome, ClusterDump, ConnectorDump, dump_cluster, dump_connector, dump_free_connector,
 };
-pub use end_surface::{EndFault, EndSurface};
-pub use error::{BlockError, FlattenFailure};
-pub use finished::{About, Finished, FinishedCap, FinishedJoint, NotOnBoundary};
+pub use end_surface::{CutEnd, EndFault, EndSurface};
+pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
+pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
 pub use params::{BlockParams, EndStyle};
 pub use path::AxisPath;
 pub use record::{Bytes, Record, Sizes, encode};
-pub use shared_disc::SharedDisc;
-pub use trim::{CutEnd, TrimOptions, Trimmed, trim};
 pub use weave::{WeaveCost, weave};
+pub use woven::{TrimOptions, Trimmed, trim};
 
 #[cfg(test)]
 mod cluster_tests;
@@ -51,5 +42,3 @@ mod cluster_tests;
 mod connector_tests;
 #[cfg(test)]
 mod fixtures;
-#[cfg(test)]
-mod trim_tests;

@@ -2,6 +2,7 @@
 
 use super::error::BlockError;
 use crate::mesh::TriMesh;
+use crate::skeleton::resolution::{FOLLOW, KAPPA, RHO};
 use crate::tet::optimize::Effort;
 use crate::tet::{Interior, TetOptions};
 
@@ -12,7 +13,7 @@ pub enum EndStyle {
     /// filled, and nothing that is meshed is thrown away.
     #[default]
     Disc,
-    /// As `Disc`, but the disc is the one that the vessel alone gives ([`super::SharedDisc`]), so that the neighbour need
+    /// As `Disc`, but the disc is the one that the vessel alone gives ([`crate::surface::SharedDisc`]), so that the neighbour need
     /// not be known.
     Shared,
     /// Tetrahedra beyond the plane are taken off and what that exposes is made flat (3.2.2).
@@ -51,11 +52,11 @@ pub struct BlockParams {
 impl Default for BlockParams {
     fn default() -> Self {
         Self {
-            rho: 3.0,
-            follow: 1.0,
+            rho: RHO,
+            follow: FOLLOW,
             voxel_factor: 1.0,
             shift: [0.0; 3],
-            kappa: 0.4,
+            kappa: KAPPA,
             first_division: 0,
             ends: EndStyle::Disc,
             relax_ends: true,
@@ -101,7 +102,7 @@ const WIDE: [f64; 2] = [2.8, 5.3];
 
 /// How a block is filled. There is no certificate: the whole mesh is checked in the end.
 pub(super) fn filling(surface: &TriMesh) -> TetOptions {
-    let wide = ((half_width(surface) / mean_edge(surface) - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
+    let wide = ((half_width(surface) / surface.mean_edge() - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
     let interior = Interior::Local { cell: CELL * (1.0 + WIDER * wide), clearance: CLEARANCE };
     TetOptions::default().interior(interior).effort(Effort::Quick).certify(false)
 }
@@ -116,11 +117,4 @@ fn half_width(surface: &TriMesh) -> f64 {
         area += (b - a).cross(&(c - a)).norm() / 2.0;
     }
     2.0 * volume / area
-}
-
-/// Mean edge length of a surface.
-pub(super) fn mean_edge(surface: &TriMesh) -> f64 {
-    let p = |v: u32| surface.points[v as usize];
-    let around = |t: &[u32; 3]| (0..3).map(|k| (p(t[k]) - p(t[(k + 1) % 3])).norm()).sum::<f64>();
-    surface.triangles.iter().map(around).sum::<f64>() / (3 * surface.triangles.len().max(1)) as f64
 }

@@ -2,7 +2,7 @@
 
 use super::path::AxisPath;
 use super::rings::RingVertex;
-use super::shape::triangle_ratio;
+use super::shape::facing_ratio;
 use crate::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 
@@ -11,6 +11,9 @@ const GOOD: f64 = 0.9;
 
 /// Rounds of flips and slides.
 const ROUNDS: usize = 3;
+
+/// What a flip or a slide must gain in the worst shape: less is rounding, by which changes could undo each other for ever.
+const GAIN: f64 = 1e-3;
 
 /// The wall: triangles between two rims. Vertices from `first_free` on are ring vertices, whose places on the path are
 /// in `rings`.
@@ -59,10 +62,8 @@ impl<'a> Wall<'a> {
     /// Radius ratio, negative when the triangle faces the axis.
     fn shape(&self, t: [u32; 3]) -> f64 {
         let p = t.map(|v| self.at(v));
-        let normal = (p[1] - p[0]).cross(&(p[2] - p[0]));
         let radial: Vec3 = t.iter().map(|&v| self.outward[v as usize]).sum();
-        let cosine = normal.dot(&radial) / (normal.norm() * radial.norm()).max(f64::MIN_POSITIVE);
-        triangle_ratio(&p) * (cosine / 0.7).min(1.0)
+        facing_ratio(&p, &radial)
     }
 
     /// Direction from the axis to a vertex, roughly.
@@ -110,7 +111,7 @@ impl<'a> Wall<'a> {
                 let new = [[a, d, c], [d, b, c]];
                 let before = self.shapes[i].min(self.shapes[j as usize]);
                 let shapes = new.map(|t| self.shape(t));
-                if shapes[0].min(shapes[1]) <= before + 1e-3 {
+                if shapes[0].min(shapes[1]) <= before + GAIN {
                     continue;
                 }
                 owner.remove(&(a, b));
@@ -180,7 +181,7 @@ impl<'a> Wall<'a> {
             self.points[v as usize] = moved;
             self.outward[v as usize] = (moved - there.origin) / next.distance;
             self.rings[k] = next;
-            if self.worst(star) > before + 1e-3 {
+            if self.worst(star) > before + GAIN {
                 for &t in star {
                     self.shapes[t as usize] = self.shape(self.triangles[t as usize]);
                 }

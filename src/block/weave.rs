@@ -1,8 +1,8 @@
 //! The strips of a connector's wall: of all strips between two loops the one with the best shapes.
 
-use super::shape::triangle_ratio;
-use super::strip::{Step, cheapest};
+use super::shape::facing_ratio;
 use crate::geometry::{Point3, Vec3};
+use crate::surface::strip::{Step, cheapest};
 
 /// Cost of a strip: Σ (radius ratio)⁻³, dominated by its worst triangle.
 pub type WeaveCost = f64;
@@ -10,7 +10,10 @@ pub type WeaveCost = f64;
 /// A strip of this cost per triangle is taken without looking for a better start: a mean radius ratio of about 0.87.
 const GOOD: WeaveCost = 1.5;
 
-/// A folded or degenerate triangle costs this much.
+/// Radius ratio up to which a triangle counts as degenerate: its cost would be that of a fold.
+const FLATTEST: f64 = 1e-3;
+
+/// A folded or degenerate triangle costs this much: no strip of sound ones costs more.
 const FOLD: f64 = 1e9;
 
 /// Weaves two loops, both counter-clockwise about `axis`, `upper` on the side to which it points. `center` is a point on
@@ -69,11 +72,9 @@ impl Strip<'_> {
 
     fn cost(&self, step: Step) -> f64 {
         let p = step.triangle(self.lower, self.upper).map(|v| self.points[v as usize]);
-        let normal = (p[1] - p[0]).cross(&(p[2] - p[0]));
         let c = Point3::from((p[0].coords + p[1].coords + p[2].coords) / 3.0) - self.center;
         let radial = c - self.axis * c.dot(&self.axis);
-        let cosine = normal.dot(&radial) / (normal.norm() * radial.norm()).max(f64::MIN_POSITIVE);
-        let q = triangle_ratio(&p) * (cosine / 0.7).min(1.0);
-        if q > 1e-3 { 1.0 / (q * q * q) } else { FOLD }
+        let q = facing_ratio(&p, &radial);
+        if q > FLATTEST { 1.0 / (q * q * q) } else { FOLD }
     }
 }

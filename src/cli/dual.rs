@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
+use crate::grow::dual;
 use crate::io::network::{NetworkArray, ensure_network_writable, write_network};
-use crate::refine::dual;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

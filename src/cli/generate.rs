@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::common::Common;
 use super::exit::{Exit, Failure};
+use crate::grow::{GenerateParams, Morphometry, Organ, RAT_KIDNEY, generate};
 use crate::io::network::{ensure_tree_writable, write_tree};
-use crate::skeleton::generate::{GenerateParams, Morphometry, Organ, RAT_KIDNEY, generate};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

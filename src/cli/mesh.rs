@@ -1,5 +1,6 @@
 //! `anastomesh mesh`: from a network to a volume mesh.
 
+use crate::skeleton::resolution::{FOLLOW, RHO};
 use std::path::PathBuf;
 
 use serde::Serialize;
@@ -28,11 +29,11 @@ pub struct Args {
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
     /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
-    #[arg(long, default_value_t = 3.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = RHO, allow_negative_numbers = true)]
     rho: f64,
     /// How far edges follow the radius of wider vessels: 1 in proportion, so that each has RHO voxels across; 0 not at all,
     /// so that all of a cluster is as fine as its thinnest vessel
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = FOLLOW, allow_negative_numbers = true)]
     follow: f64,
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
     /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
@@ -191,6 +192,10 @@ impl Args {
         let store = place.open(read, || self.options(plan))?;
         let kept = store.bytes_on_disk();
         let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, &self.output);
+        if self.work_dir.is_some() {
+            // Whoever stops the program cannot be told afterwards.
+            bars.note(&format!("it may be stopped at any time: {}", self.how_to_go_on()));
+        }
         let mut clock = Clock::default();
         let result = pipeline::mesh_into(&store, network, plan, &fits, bars, &mut clock);
         let result = result.map_err(|e| self.explain(e, plan, refinement))?;
@@ -241,9 +246,20 @@ impl Args {
                     report.failed.len()
                 )),
             },
+            RunError::Cancelled => Failure::stage(format!("stopped; {}", self.how_to_go_on())),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
             RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),
             _ => Failure::stage(error.to_string()),
+        }
+    }
+
+    /// What becomes of a run that is stopped.
+    fn how_to_go_on(&self) -> String {
+        match &self.work_dir {
+            Some(dir) => {
+                format!("finished blocks are kept in {}, and the same command goes on from there", dir.display())
+            }
+            None => "nothing is left of it; with --work-dir DIR the same command goes on from finished blocks".into(),
         }
     }
 
@@ -267,7 +283,7 @@ impl Args {
             super::refine::write(path, &refined)?;
         }
         if !self.common.quiet && !self.common.json {
-            eprint!("{}", super::refine_report::text(&refined.report));
+            eprint!("{}", crate::report::refine::text(&refined.report));
         }
         Ok(Some(refined))
     }
@@ -285,7 +301,7 @@ impl Args {
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
-            eprint!("{}", run.text());
+            eprint!("{}", crate::report::mesh::text(run));
             if let Some(check) = check {
                 eprint!("{}", crate::report::check::text(check));
             }

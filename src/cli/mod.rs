@@ -10,7 +10,6 @@ mod mesh;
 mod network;
 mod progress;
 mod refine;
-mod refine_report;
 mod room;
 mod tetrahedralize;
 

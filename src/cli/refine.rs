@@ -9,13 +9,13 @@ use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::{shows_bars, stage_bar};
-use super::refine_report::{csv, panels, text};
 use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
 use crate::io::write_text;
 use crate::refine::{
     self, Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, Sample,
 };
 use crate::report::plot::svg;
+use crate::report::refine::{csv, panels, text};
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -169,6 +169,7 @@ pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool) -> 
     let refined = refine::refine(skeleton, params, &mut Bar::new(quiet));
     refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
+        RefineError::Cancelled => Failure::stage("stopped; nothing is left of it"),
         _ => Failure::usage(e.to_string()),
     })
 }

@@ -1,8 +1,10 @@
 //! Floor 1: points, tubes and cross-sections; predicates, intersections, distances and search trees.
 
 mod aabb;
+mod angle;
 mod bvh;
 mod convex;
+mod disjoint_sets;
 mod distance;
 mod dyadic;
 mod fans;
@@ -10,16 +12,20 @@ pub mod hilbert;
 pub mod implicit;
 mod integer;
 mod normal;
+mod place;
 pub mod predicates;
 mod ray;
 mod tri_tri;
 mod tube;
 
 pub use aabb::Aabb;
+pub(crate) use angle::turn;
 pub use bvh::Bvh;
 pub(crate) use convex::minimise_convex;
+pub(crate) use disjoint_sets::DisjointSets;
 pub use distance::{SegmentPair, TubePair, point_segment, point_triangle, point_tube, segment_segment, tube_tube};
 pub use normal::unit_normal;
+pub(crate) use place::place_key;
 pub use ray::crossing;
 pub use tri_tri::{Contact, Improper, Triangle, classify, classify_triangles, self_contacts, self_intersections};
 pub use tube::{Section, Tube};

@@ -1,6 +1,7 @@
 //! Who is next to whom: face neighbours of tetrahedra, the boundary, edge neighbours of triangles, and what lies around
 //! a vertex. Flat arrays of `u32`; a counting sort by the smallest vertex stands in for a hash table.
 
+use super::face_key;
 use super::{TET_FACES, TetMesh};
 
 /// Stands for "nothing there" in neighbour arrays.
@@ -95,7 +96,7 @@ pub fn tet_adjacency(tets: &[[u32; 4]], vertices: usize) -> TetAdjacency {
     match_sides(tets.len(), vertices, |handle| {
         let [i, j, k] = TET_FACES[(handle & 3) as usize];
         let t = &tets[(handle >> 2) as usize];
-        sorted3([t[i], t[j], t[k]])
+        face_key([t[i], t[j], t[k]])
     })
 }
 
@@ -219,13 +220,6 @@ impl Bucket {
     }
 }
 
-#[inline]
-fn sorted3([a, b, c]: [u32; 3]) -> [u32; 3] {
-    let (a, b) = (a.min(b), a.max(b));
-    let (b, c) = (b.min(c), b.max(c));
-    [a.min(b), a.max(b), c]
-}
-
 impl TetAdjacency {
     /// The faces (`4 · tet + face`) that only one tetrahedron has, in ascending order.
     pub fn boundary(&self) -> impl Iterator<Item = u32> {
@@ -333,7 +327,7 @@ mod tests {
             let tets: Vec<[u32; 4]> = tets.iter().map(|t| [t[0], t[1], t[2], t[3]]).collect();
             let mut map: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
             for handle in 0..4 * tets.len() as u32 {
-                map.entry(sorted3(face_vertices(&tets, handle))).or_default().push(handle);
+                map.entry(face_key(face_vertices(&tets, handle))).or_default().push(handle);
             }
             let adjacency = tet_adjacency(&tets, 9);
             for handles in map.values() {

@@ -1,14 +1,21 @@
 //! Floor 2: what concerns one mesh, wherever it came from: arrays, adjacency, quality, smoothing, validity.
 
 pub mod adjacency;
+mod bounds;
 pub mod check;
 pub mod facets;
+mod keep;
+mod keys;
 pub mod quality;
 pub mod repair;
 #[cfg(test)]
 pub(crate) mod shapes;
 pub mod smooth;
 pub mod source;
+
+pub use bounds::{Bounds, REGULAR_DIHEDRAL};
+pub(crate) use keep::Kept;
+pub(crate) use keys::{face_key, tet_key};
 
 use crate::geometry::Point3;
 
@@ -19,6 +26,18 @@ pub struct TriMesh {
     pub points: Vec<Point3>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
+}
+
+impl TriMesh {
+    /// Mean edge length, each edge counted with each of its triangles; 0 without any.
+    pub(crate) fn mean_edge(&self) -> f64 {
+        let mut sum = 0.0;
+        for t in &self.triangles {
+            let [a, b, c] = t.map(|v| self.points[v as usize]);
+            sum += (b - a).norm() + (c - b).norm() + (a - c).norm();
+        }
+        sum / (3 * self.triangles.len()).max(1) as f64
+    }
 }
 
 /// A tetrahedral mesh. Tetrahedra `[a, b, c, d]` are positive: `orient3d(a, b, c, d) > 0`, that is

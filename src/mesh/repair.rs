@@ -7,6 +7,8 @@ mod sheets;
 
 use super::TriMesh;
 use super::adjacency::{NONE, tri_adjacency};
+use super::face_key;
+use crate::geometry::place_key;
 use crate::geometry::predicates::{collinear, orient2d, orient3d};
 use crate::geometry::{Aabb, Bvh, Point3, Vec3};
 
@@ -78,9 +80,8 @@ fn repaired(surface: &TriMesh, bounds: bool) -> Repaired {
 
 fn merge_points(surface: &TriMesh) -> Repaired {
     let points = &surface.points;
-    let key = |i: u32| points[i as usize].coords.map(|x| (x + 0.0).to_bits());
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    order.sort_unstable_by_key(|&i| (key(i).x, key(i).y, key(i).z, i));
+    order.sort_unstable_by_key(|&i| (place_key(&points[i as usize]), i));
     let mut first: Vec<u32> = (0..points.len() as u32).collect();
     for run in order.chunk_by(|&i, &j| points[i as usize] == points[j as usize]) {
         for &i in run {
@@ -102,17 +103,11 @@ fn merge_points(surface: &TriMesh) -> Repaired {
     r
 }
 
-fn sorted([a, b, c]: [u32; 3]) -> [u32; 3] {
-    let mut t = [a, b, c];
-    t.sort_unstable();
-    t
-}
-
 /// Drops triangles that have a vertex twice, or the vertices of an earlier one; of those that bound a volume also sheets.
 fn drop_triangles(r: &mut Repaired, bounds: bool) {
     let triangles = std::mem::take(&mut r.surface.triangles);
     let broken = |t: &[u32; 3]| t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || t.contains(&NONE);
-    let mut order: Vec<([u32; 3], u32)> = triangles.iter().map(|&t| sorted(t)).zip(0..).collect();
+    let mut order: Vec<([u32; 3], u32)> = triangles.iter().map(|&t| face_key(t)).zip(0..).collect();
     order.retain(|(t, _)| !broken(t));
     r.report.collapsed_triangles = triangles.len() - order.len();
     order.sort_unstable();

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::course::Way;
+use super::parts::{
+    Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, Piece, UncutReason,
+};
 use super::path::path;
 use super::settle::{Run, Settler};
-use super::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, Piece, UncutReason};
 use crate::geometry::{Section, Tube};
+use crate::skeleton::course::Way;
 use crate::skeleton::{BranchId, NodeId};
 
 const NONE: u32 = u32::MAX;

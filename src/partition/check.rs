@@ -3,6 +3,7 @@
 // Arc lengths of neighbouring pieces and connectors are copies of one number.
 
 use super::{ClusterEnd, ClusterId, CutId, EndKind, Partition, Piece};
+use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Section, Tube};
 use crate::skeleton::{Branch, BranchId, NodeId, Skeleton};
 
@@ -186,28 +187,20 @@ fn nodes(skeleton: &Skeleton, partition: &Partition, branches: &[Branch]) -> Res
 /// Pieces that share a node at the end of a branch are connected; nothing else connects them.
 fn connected(skeleton: &Skeleton, partition: &Partition, branches: &[Branch]) -> Result<(), PartitionFlaw> {
     let pieces = &partition.pieces;
-    let mut parent: Vec<usize> = (0..pieces.len() + skeleton.nodes.len()).collect();
-    let root = |parent: &mut Vec<usize>, mut x: usize| {
-        while parent[x] != x {
-            parent[x] = parent[parent[x]];
-            x = parent[x];
-        }
-        x
-    };
-    for (i, piece) in pieces.iter().enumerate() {
+    let mut sets = DisjointSets::new(pieces.len() + skeleton.nodes.len());
+    for (i, piece) in (0..).zip(pieces) {
         let branch = &branches[piece.branch.0 as usize];
         let [a, b] = branch.ends();
         for (node, touches) in [(a, piece.arc[0] == 0.0), (b, piece.arc[1] == branch.length())] {
             if touches {
-                let (x, y) = (root(&mut parent, i), root(&mut parent, pieces.len() + node.0 as usize));
-                parent[x.max(y)] = x.min(y);
+                sets.join(i, pieces.len() as u32 + node.0);
             }
         }
     }
     let mut of_cluster = vec![None; partition.clusters.len()];
-    let mut of_root = vec![None; parent.len()];
-    for (i, piece) in pieces.iter().enumerate() {
-        let own = root(&mut parent, i);
+    let mut of_root = vec![None; sets.len()];
+    for (i, piece) in (0..).zip(pieces) {
+        let own = sets.root(i) as usize;
         let cluster = piece.cluster;
         let same = *of_cluster[cluster.0 as usize].get_or_insert(own) == own;
         if !same || *of_root[own].get_or_insert(cluster) != cluster {

@@ -1,8 +1,9 @@
 //! What a caller may choose about the partition, and what may be wrong with its input.
 
+use crate::skeleton::resolution::{KAPPA, RHO};
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::skeleton::{BranchId, EdgeId, NodeId, Skeleton};
+use crate::skeleton::{BranchId, CutRules, EdgeId, NodeId, Skeleton};
 
 /// How a skeleton is cut. Lengths are in radii of the vessel concerned unless said otherwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,12 +12,8 @@ pub struct PartitionParams {
     pub rho: f64,
     /// Width κ of the convolution kernel: σ = κ r. Decides how close two vessels may come before they fuse.
     pub kappa: f64,
-    /// Least distance of a cut plane from a junction, in radii of the node (2 ω of equation 11).
-    pub node_distance: f64,
-    /// Margin factor on the angle condition (ω of equation 12).
-    pub angle_margin: f64,
-    /// Room that a connector needs between its two planes.
-    pub room: f64,
+    /// What a cut needs, in the terms of equations 11 and 12.
+    pub cuts: CutRules,
     /// Length of the straight piece that continues a vessel beyond its end plane.
     pub overrun: f64,
     /// Least length of that piece in voxels.
@@ -30,8 +27,6 @@ pub struct PartitionParams {
     pub taper: f64,
     /// Longest connector.
     pub longest_connector: f64,
-    /// Largest turn, in radians, of a vessel over one radius inside a connector: bends are left to the clusters.
-    pub max_turn: f64,
     /// Branches that must not be cut.
     pub forbidden_cuts: BTreeSet<BranchId>,
     /// Pairs of branches that are to be in one cluster, though they may meet nowhere in the skeleton. They are not cut.
@@ -45,18 +40,15 @@ pub struct PartitionParams {
 impl Default for PartitionParams {
     fn default() -> Self {
         Self {
-            rho: 3.0,
-            kappa: 0.4,
-            node_distance: 2.2,
-            angle_margin: 1.25,
-            room: 2.0,
+            rho: RHO,
+            kappa: KAPPA,
+            cuts: CutRules::default(),
             overrun: 1.0,
             overrun_voxels: 1.6,
             shortest_overrun: 0.4,
             long: 30.0,
             taper: 2.0,
             longest_connector: 200.0,
-            max_turn: 20.0_f64.to_radians(),
             forbidden_cuts: BTreeSet::new(),
             together: BTreeSet::new(),
             shifted_cuts: BTreeMap::new(),
@@ -80,16 +72,16 @@ impl PartitionParams {
         let all = [
             ("rho", self.rho),
             ("kappa", self.kappa),
-            ("node_distance", self.node_distance),
-            ("angle_margin", self.angle_margin),
-            ("room", self.room),
+            ("node_distance", self.cuts.node_distance),
+            ("angle_margin", self.cuts.angle_margin),
+            ("room", self.cuts.room),
             ("overrun", self.overrun),
             ("overrun_voxels", self.overrun_voxels),
             ("shortest_overrun", self.shortest_overrun),
             ("long", self.long),
             ("taper", self.taper),
             ("longest_connector", self.longest_connector),
-            ("max_turn", self.max_turn),
+            ("max_turn", self.cuts.max_turn),
         ];
         match all.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
             Some((name, value)) => Err(PartitionError::Parameter { name, value }),

@@ -5,10 +5,11 @@
 //! is no such place are given up, which joins two clusters. Both only ever go one way, so it ends.
 
 use super::clearance::{Tip, tip_middle};
-use super::course::{Course, Way};
-use super::window::{Slot, room};
-use super::{PartitionParams, UncutReason};
-use crate::geometry::{Aabb, Bvh, Section, Tube};
+use super::params::PartitionParams;
+use super::parts::UncutReason;
+use super::window::Slot;
+use crate::geometry::{Aabb, Bvh, DisjointSets, Section, Tube};
+use crate::skeleton::course::{Course, Way};
 use crate::skeleton::{BranchId, NodeId};
 
 /// A piece of a branch that is in one cluster.
@@ -47,13 +48,18 @@ pub(super) struct Settler<'a> {
     pub first_run: Vec<u32>,
     /// Terminals at the branch's start and end.
     pub terminals: Vec<[bool; 2]>,
-    union: Union,
+    union: DisjointSets,
     /// Smallest radius of each cluster, by root.
     r_min: Vec<f64>,
     obstacles: Vec<Obstacle>,
     tree: Bvh,
     blending: f64,
 }
+
+/// How far before its plane, in radii, a vessel only leads to its own tip. A straight vessel's axis is clear of the tip from
+/// 2.8 radii on (half a radius of tip behind the plane, one radius, and the margin for two vessels side by side of 1.3
+/// radii); the rest is for bends.
+const OWN_LEAD: f64 = 3.5;
 
 /// Step of a plane that moves, in radii; it grows after a while.
 const STEP: f64 = 0.25;
@@ -72,11 +78,11 @@ impl<'a> Settler<'a> {
             (0..=courses.len() as u32).map(|b| slots.partition_point(|s| s.branch < b) as u32).collect();
         let blending = params.blending();
         let (obstacles, tree) = obstacles(courses, &terminals, params, blending);
-        let union = Union::new(slots.len() + courses.len() + nodes);
+        let union = DisjointSets::new(slots.len() + courses.len() + nodes);
         let mut settler = Self {
             courses,
             params,
-            r_min: vec![f64::INFINITY; union.parent.len()],
+            r_min: vec![f64::INFINITY; union.len()],
             union,
             slots,
             first_slot,
@@ -116,7 +122,7 @@ impl<'a> Settler<'a> {
     /// Moves planes and gives up cuts until every end is clear; returns why cuts were given up, by branch.
     pub fn settle(&mut self) -> Vec<(BranchId, UncutReason)> {
         let mut given_up = Vec::new();
-        let mut dirty = vec![true; self.union.parent.len()];
+        let mut dirty = vec![true; self.union.len()];
         loop {
             self.gather();
             let mut changed: Vec<u32> = Vec::new();
@@ -162,7 +168,7 @@ impl<'a> Settler<'a> {
         }
         for &slot in changed {
             for piece in pieces(self, slot) {
-                dirty[self.union.root(piece) as usize] = true;
+                dirty[self.union.find(piece) as usize] = true;
             }
         }
     }
@@ -177,11 +183,11 @@ impl<'a> Settler<'a> {
             let slots = self.first_slot[branch as usize]..self.first_slot[branch as usize + 1];
             let mut start = None;
             for slot in slots.clone().filter(|&s| self.slots[s as usize].alive) {
-                let root = self.union.root(self.piece(branch, slot - slots.start));
+                let root = self.union.find(self.piece(branch, slot - slots.start));
                 self.runs.push(Run { branch, slots: [start, Some(slot)], root });
                 start = Some(slot);
             }
-            let root = self.union.root(self.piece(branch, slots.end - slots.start));
+            let root = self.union.find(self.piece(branch, slots.end - slots.start));
             self.runs.push(Run { branch, slots: [start, None], root });
         }
         self.first_run.push(self.runs.len() as u32);
@@ -215,7 +221,7 @@ impl<'a> Settler<'a> {
         let mut step = STEP * course.radius(planes[way.side()], way);
         for i in 0..STEPS {
             planes[way.side()] += way.sign() * step;
-            if planes[1] - planes[0] < room(course, self.params, planes[0], planes[1]) {
+            if planes[1] - planes[0] < self.params.cuts.room_between(course, planes[0], planes[1]) {
                 return None;
             }
             if self.clear_at(run, way, planes[way.side()]).is_ok() {
@@ -281,7 +287,7 @@ impl<'a> Settler<'a> {
                     if run == own {
                         // What leads to the tip is not in its way, only what comes back to it.
                         let r = course.radii[i][0].max(course.radii[i][1]).max(course.radius(s, way));
-                        let lead = s - way.sign() * 3.5 * r;
+                        let lead = s - way.sign() * OWN_LEAD * r;
                         match way {
                             Way::Onward => reach[1] = lead,
                             Way::Back => reach[0] = lead,
@@ -299,16 +305,6 @@ impl<'a> Settler<'a> {
             }
         }
         false
-    }
-}
-
-impl Way {
-    /// Index of the end of a piece that lies this way.
-    pub fn end_index(self) -> usize {
-        match self {
-            Way::Onward => 1,
-            Way::Back => 0,
-        }
     }
 }
 
@@ -347,44 +343,4 @@ fn obstacles(
     }
     let tree = Bvh::new(&boxes);
     (list, tree)
-}
-
-/// Disjoint sets.
-struct Union {
-    parent: Vec<u32>,
-}
-
-impl Union {
-    fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect() }
-    }
-
-    fn root(&self, mut x: u32) -> u32 {
-        while self.parent[x as usize] != x {
-            x = self.parent[x as usize];
-        }
-        x
-    }
-
-    /// The smaller root stays; `flatten` keeps the ways short.
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.compress(a), self.compress(b));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
-
-    fn compress(&mut self, mut x: u32) -> u32 {
-        while self.parent[x as usize] != x {
-            let up = self.parent[self.parent[x as usize] as usize];
-            self.parent[x as usize] = up;
-            x = up;
-        }
-        x
-    }
-
-    fn flatten(&mut self) {
-        for x in 0..self.parent.len() as u32 {
-            // Parents are smaller than their children, so they are flat already.
-            self.parent[x as usize] = self.parent[self.parent[x as usize] as usize];
-        }
-    }
 }

@@ -1,6 +1,6 @@
 //! A partition in figures.
 
-use super::{Partition, PartitionWarning, UncutReason};
+use super::parts::{Partition, PartitionWarning, UncutReason};
 
 /// What the pipeline prints of a partition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]

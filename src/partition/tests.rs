@@ -5,8 +5,9 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::geometry::{Point3, Vec3, point_segment, segment_segment};
-use crate::skeleton::{Edge, Node};
+use crate::geometry::{Point3, Tube, Vec3, point_segment, segment_segment};
+use crate::skeleton::{Edge, Node, NodeId};
+use std::ops::Range;
 
 /// A skeleton of points with radii and edges between them.
 fn skeleton(points: &[([f64; 3], f64)], edges: &[[u32; 2]]) -> Skeleton {
@@ -467,6 +468,25 @@ proptest! {
         prop_assert_eq!(check_partition(&s, &p), Ok(()));
         prop_assert!(p.uncut.iter().all(|(b, _)| p.cuts.iter().all(|c| c.branch != *b)));
         prop_assert!(p == partition(&s, &params).unwrap());
+    }
+
+    /// What the metrics call cuttable is cut, but for vessels in the way.
+    #[test]
+    fn what_is_called_cuttable_is_cut(s in any_network()) {
+        prop_assume!(s.edge_ids().all(|e| s.length(e) > 1e-6));
+        let adjacency = s.adjacency();
+        let branches = s.branches(&adjacency);
+        let p = partition(&s, &PartitionParams::default()).unwrap();
+        let is_cut = |branch: BranchId| {
+            let uncut = p.uncut.iter().find(|(b, _)| *b == branch).map(|(_, reason)| reason);
+            matches!(uncut, None | Some(UncutReason::Clearance { .. }))
+        };
+        let inner: Vec<BranchId> = (0..branches.list.len() as u32)
+            .map(BranchId)
+            .filter(|b| branches.list[b.index()].ends().iter().all(|&n| adjacency.valence(n) > 2))
+            .collect();
+        let cuttable = s.metrics(&adjacency, &branches).cuttable;
+        prop_assert_eq!((cuttable.count, cuttable.of), (inner.iter().filter(|b| is_cut(**b)).count(), inner.len()));
     }
 
     /// No vessel of a cluster comes close to the tip of another one that ends in a cut.

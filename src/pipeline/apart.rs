@@ -3,14 +3,15 @@
 
 use std::collections::BTreeMap;
 
-use super::attempts::{APART, remedy};
+use super::attempts::Way;
+use super::blocks::{Blocks, original_nodes};
 use super::estimate::cluster_cost;
 use super::observer::Stage;
 use super::report::Retry;
-use super::rounds::{Blocks, Run, original_nodes};
+use super::rounds::{RoundsError, Run};
 use super::routes::{Overlapping, tangled_clusters};
-use super::store::StoreError;
 use crate::partition::ClusterId;
+use crate::tet::Watch;
 
 /// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
 pub type Meetings = Vec<[u32; 2]>;
@@ -26,8 +27,8 @@ impl Run<'_> {
     /// not come out so is left as it is.
     ///
     /// # Errors
-    /// When the store fails.
-    pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: usize) -> Result<(), StoreError> {
+    /// When the store fails, or the observer says to stop.
+    pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: Way) -> Result<(), RoundsError> {
         let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
         let mut again: BTreeMap<u32, u32> = BTreeMap::new();
         for &[a, b] in meetings {
@@ -39,14 +40,17 @@ impl Run<'_> {
         let again = &again[..clusters];
         let tangled = tangled_clusters(shop.skeleton, partition, self.overlaps);
         let costs: Vec<_> = again.iter().map(|(i, _)| cluster_cost(&partition.clusters[*i], plan)).collect();
+        let observer = self.observer;
+        let stop = move || observer.is_cancelled();
+        let watch = Watch::until(&stop);
         let make = |k: usize| {
             let i = again[k].0;
-            shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], APART[way])
+            shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], way, &watch)
         };
         let (made, _) = self.timed(Stage::Blocks, &costs, make)?;
         for (&(i, other), made) in again.iter().zip(made) {
             let remedy = match &made {
-                Ok(_) => remedy(APART[way]),
+                Ok(_) => way.name().into(),
                 Err(error) => format!("left as it is, for finer it fails: {error}"),
             };
             blocks.retries.push(Retry {

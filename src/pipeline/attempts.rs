@@ -3,11 +3,12 @@
 use super::plan::{JointStyle, MeshPlan};
 use crate::block::{
     BlockDump, BlockError, BlockParams, ConnectorAttempt, ConnectorEnd, ConnectorMesh, DIVISIONS, EndStyle, EndSurface,
-    Finished, dump_cluster, dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
-    shared_ends,
+    Finished, dump_cluster, dump_connector, dump_free_connector, mesh_cluster_watched, mesh_connector,
+    mesh_free_connector, shared_ends,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
 use crate::skeleton::NodeId;
+use crate::tet::Watch;
 
 /// Result of a block, and the failures before it.
 #[derive(Debug)]
@@ -16,58 +17,102 @@ pub struct Tried {
     pub result: Result<Finished, BlockError>,
     /// Failures of the other attempts.
     pub failures: Vec<BlockError>,
+    /// What the way is called in which it came out.
+    pub way: String,
 }
 
-/// What is changed from attempt to attempt; the first is the usual way.
-const CHANGES: [&str; 7] = [
-    "as usual",
-    "grid shifted",
-    "narrower kernel",
-    "other ends or grid",
-    "finer voxel, grid shifted",
-    "finer voxel, narrower kernel",
-    "much finer voxel, thin kernel",
-];
+/// A way of making a cluster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Way {
+    /// As the plan has it.
+    Usual,
+    /// With the grid of the contour moved: another triangulation of the same wall.
+    Shifted,
+    /// With a narrower kernel: parallel vessels fuse when their axes are closer than √(1 + 2 κ² ln 2) times the sum of their
+    /// radii.
+    Narrower,
+    /// With ends of the other kind where joints are woven, else with yet another grid and a kernel in between.
+    Other,
+    /// `Shifted`, with smaller voxels.
+    FinerShifted,
+    /// `Narrower`, with smaller voxels.
+    FinerNarrower,
+    /// With the smallest voxels and the thinnest kernel.
+    Finest,
+}
 
-/// The ways in which clusters are tried whose walls meet those of others.
-pub const APART: [usize; 2] = [5, 6];
+impl Way {
+    /// All, in the order in which they are tried.
+    const ALL: [Self; 7] = [
+        Self::Usual,
+        Self::Shifted,
+        Self::Narrower,
+        Self::Other,
+        Self::FinerShifted,
+        Self::FinerNarrower,
+        Self::Finest,
+    ];
 
-/// What helped after so many failures.
-pub fn remedy(failures: usize) -> String {
-    match CHANGES.get(failures) {
-        Some(change) => (*change).to_owned(),
-        None => format!("vessels that overlap taken as one, {}", CHANGES[failures % CHANGES.len()]),
+    /// Those that begin a new try at a cluster whose wall meets that of another.
+    pub const APART: [Self; 2] = [Self::FinerNarrower, Self::Finest];
+
+    /// What it is called in a report.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Usual => "as usual",
+            Self::Shifted => "grid shifted",
+            Self::Narrower => "narrower kernel",
+            Self::Other => "other ends or grid",
+            Self::FinerShifted => "finer voxel, grid shifted",
+            Self::FinerNarrower => "finer voxel, narrower kernel",
+            Self::Finest => "much finer voxel, thin kernel",
+        }
+    }
+
+    /// Whether it may keep vessels apart that come close to each other.
+    fn may_part(self) -> bool {
+        matches!(self, Self::Usual | Self::Shifted | Self::FinerNarrower)
+    }
+
+    fn params(self, plan: &MeshPlan) -> BlockParams {
+        let usual = plan.block_params();
+        let shifted = BlockParams { shift: [0.37, -0.23, 0.11], ..usual };
+        let narrower = BlockParams { kappa: 0.3, ..usual };
+        let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
+        match self {
+            Self::Usual => usual,
+            Self::Shifted => shifted,
+            Self::Narrower => narrower,
+            Self::Other => match plan.joint {
+                JointStyle::Woven => BlockParams { ends: EndStyle::Trimmed, ..usual },
+                JointStyle::Disc | JointStyle::None => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.35, ..usual },
+            },
+            Self::FinerShifted => finer(shifted),
+            Self::FinerNarrower => finer(narrower),
+            Self::Finest => BlockParams { kappa: 0.22, voxel_factor: 0.5, ..shifted },
+        }
     }
 }
 
-fn variants(plan: &MeshPlan) -> [BlockParams; CHANGES.len()] {
-    let usual = plan.block_params();
-    let shifted = BlockParams { shift: [0.37, -0.23, 0.11], ..usual };
-    // Parallel vessels fuse when their axes are closer than √(1 + 2 κ² ln 2) times the sum of their radii.
-    let narrower = BlockParams { kappa: 0.3, ..usual };
-    let other = match plan.joint {
-        JointStyle::Woven => BlockParams { ends: EndStyle::Trimmed, ..usual },
-        JointStyle::Disc | JointStyle::None => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.35, ..usual },
-    };
-    let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
-    let finest = BlockParams { kappa: 0.22, voxel_factor: 0.5, ..shifted };
-    [usual, shifted, narrower, other, finer(shifted), finer(narrower), finest]
+/// One attempt at a block.
+#[derive(Clone, Debug)]
+struct Attempt {
+    name: String,
+    params: BlockParams,
 }
 
-/// The ways in which a cluster is tried, each with its place in the list of all. `overlapping`: vessels of the network
-/// overlap in it, or come so close to each other that they may. If neither another grid nor a finer one with a narrower
-/// kernel keeps them apart they are taken as one, at once if that is what is wanted. `first`: the first of `CHANGES` that is
-/// tried.
-fn ways(plan: &MeshPlan, overlapping: bool, first: usize) -> Vec<(usize, BlockParams)> {
-    let apart = variants(plan);
-    let fused = apart.map(|params| BlockParams { allow_fused: true, ..params });
-    let places = (0..).zip([apart, fused].concat());
-    let is_tried = |place: usize| match (overlapping, plan.fuse) {
-        (false, _) => place < CHANGES.len(),
-        (true, true) => place >= CHANGES.len(),
-        (true, false) => [0, 1, 5].contains(&place) || place >= CHANGES.len(),
-    };
-    places.filter(|(place, _)| is_tried(*place) && place % CHANGES.len() >= first).collect()
+/// The attempts at a cluster. `overlapping`: vessels of the network overlap in it, or come so close to each other that they
+/// may. If neither another grid nor a finer one with a narrower kernel keeps them apart they are taken as one, at once if
+/// that is what is wanted. `first`: the first of the ways that is tried.
+fn attempts(plan: &MeshPlan, overlapping: bool, first: Way) -> Vec<Attempt> {
+    let ways = || Way::ALL.into_iter().filter(move |&way| way >= first);
+    let apart = ways().filter(|way| !overlapping || (!plan.fuse && way.may_part()));
+    let apart = apart.map(|way| Attempt { name: way.name().into(), params: way.params(plan) });
+    let fused = ways().filter(|_| overlapping).map(|way| Attempt {
+        name: format!("vessels that overlap taken as one, {}", way.name()),
+        params: BlockParams { allow_fused: true, ..way.params(plan) },
+    });
+    apart.chain(fused).collect()
 }
 
 /// A block with a smaller radius ratio is tried in other ways, too.
@@ -75,39 +120,39 @@ const FLAT: f64 = 0.1;
 
 /// Makes a block in the first way that does it well: nothing fails, no tetrahedron is all but flat, and the block's own check
 /// finds no fault. Else the best of those that came out is taken. When nothing helps, the failure of the first way counts: it
-/// is what the dump of the input reproduces. What was not tried in between counts as failed like the attempt before.
+/// is what the dump of the input reproduces.
 fn first_good(
-    name: &str,
-    ways: Vec<(usize, BlockParams)>,
+    block: &str,
+    attempts: Vec<Attempt>,
     mut make: impl FnMut(&BlockParams) -> Result<Finished, BlockError>,
 ) -> Tried {
     let mut failures: Vec<BlockError> = Vec::new();
-    let mut best: Option<(usize, bool, Finished)> = None;
-    for (place, params) in ways {
+    let mut best: Option<(usize, Attempt, Finished)> = None;
+    for attempt in attempts {
         // Vessels that can be kept apart are not taken as one for the sake of a tetrahedron.
-        if best.as_ref().is_some_and(|(_, fused, _)| *fused != params.allow_fused) {
+        if best.as_ref().is_some_and(|(_, best, _)| best.params.allow_fused != attempt.params.allow_fused) {
             break;
         }
-        if let Some(last) = failures.last().cloned() {
-            failures.resize(place, last);
-        }
-        match make(&params) {
-            Ok(block) if goodness(&block) >= (true, FLAT) => return Tried { result: Ok(block), failures },
-            Ok(block) => {
-                failures.push(BlockError::Flat { block: name.to_owned(), ratio: block.certificate.worst_ratio() });
-                if best.as_ref().is_none_or(|(_, _, best)| goodness(&block) > goodness(best)) {
-                    best = Some((place, params.allow_fused, block));
+        match make(&attempt.params) {
+            Ok(made) if goodness(&made) >= (true, FLAT) => {
+                return Tried { result: Ok(made), failures, way: attempt.name };
+            }
+            Ok(made) => {
+                let before = failures.len();
+                failures.push(BlockError::Flat { block: block.to_owned(), ratio: made.certificate.worst_ratio() });
+                if best.as_ref().is_none_or(|(_, _, best)| goodness(&made) > goodness(best)) {
+                    best = Some((before, attempt, made));
                 }
             }
             Err(error) => failures.push(error),
         }
     }
     match best {
-        Some((place, _, block)) => {
-            failures.truncate(place);
-            Tried { result: Ok(block), failures }
+        Some((before, attempt, made)) => {
+            failures.truncate(before);
+            Tried { result: Ok(made), failures, way: attempt.name }
         }
-        None => Tried { result: Err(failures.swap_remove(0)), failures },
+        None => Tried { result: Err(failures.swap_remove(0)), failures, way: String::new() },
     }
 }
 
@@ -123,12 +168,13 @@ pub fn cluster(
     cluster: &Cluster,
     plan: &MeshPlan,
     overlapping: bool,
-    first: usize,
+    first: Way,
     original: impl Fn(NodeId) -> u32,
+    watch: &Watch,
 ) -> Tried {
     let name = format!("cluster {}", id.0);
-    first_good(&name, ways(plan, overlapping, first), |params| {
-        let mesh = mesh_cluster(id, cluster, params)?;
+    first_good(&name, attempts(plan, overlapping, first), |params| {
+        let mesh = mesh_cluster_watched(id, cluster, params, watch)?;
         Finished::of_cluster(mesh, &original).map_err(|source| BlockError::Faces { block: name.clone(), source })
     })
 }
@@ -154,7 +200,10 @@ fn divided(
     mut make: impl FnMut(&BlockParams) -> Result<(ConnectorMesh, [EndSurface; 2]), BlockError>,
 ) -> Tried {
     let name = format!("connector {}", id.0);
-    let way = |first_division| (first_division, BlockParams { first_division, ..plan.block_params() });
+    let way = |first_division| Attempt {
+        name: "other division of the tube".into(),
+        params: BlockParams { first_division, ..plan.block_params() },
+    };
     let mut before: Vec<BlockError> = Vec::new();
     let mut tried = first_good(&name, (0..DIVISIONS).map(way).collect(), |params| {
         let (mesh, ends) = make(params)?;
@@ -205,12 +254,16 @@ mod tests {
         let usual = MeshPlan::default().block_params();
         let failed = || BlockError::Parameter { name: "none", value: 0.0 };
         let try_all = |results: &[Option<f64>]| {
-            let ways =
-                (0..results.len()).map(|place| (place, BlockParams { first_division: place, ..usual })).collect();
-            first_good("block", ways, |params| results[params.first_division].map(block).ok_or_else(failed))
+            let way = |first_division: usize| Attempt {
+                name: first_division.to_string(),
+                params: BlockParams { first_division, ..usual },
+            };
+            first_good("block", (0..results.len()).map(way).collect(), |params| {
+                results[params.first_division].map(block).ok_or_else(failed)
+            })
         };
         let of = |results: &[Option<f64>]| {
-            let Tried { result, failures } = try_all(results);
+            let Tried { result, failures, .. } = try_all(results);
             (result.ok(), failures.len())
         };
         assert_eq!(of(&[Some(0.8), Some(0.9)]), (Some(block(0.8)), 0));
@@ -218,25 +271,29 @@ mod tests {
         assert_eq!(of(&[Some(1e-3), Some(2e-3), None]), (Some(block(2e-3)), 1));
         assert_eq!(of(&[Some(2e-3), Some(1e-3), None]), (Some(block(2e-3)), 0));
         assert_eq!(of(&[None, None]), (None, 1));
-        let Tried { failures, .. } = try_all(&[Some(1e-3), Some(0.8)]);
+        let Tried { failures, way, .. } = try_all(&[Some(1e-3), Some(0.8)]);
+        assert_eq!(way, "1");
+        assert_eq!(try_all(&[None, Some(2e-3), Some(1e-3), None]).way, "1");
         assert!(failures[0].to_string().contains("all but flat"), "{}", failures[0]);
     }
 
     #[test]
     fn vessels_that_may_overlap_are_kept_apart_if_they_can_be() {
         let fused = |plan: &MeshPlan, overlapping| -> Vec<bool> {
-            ways(plan, overlapping, 0).iter().map(|(_, params)| params.allow_fused).collect()
+            attempts(plan, overlapping, Way::Usual).iter().map(|attempt| attempt.params.allow_fused).collect()
         };
         let plan = MeshPlan::default();
-        assert_eq!(fused(&plan, false), [false; CHANGES.len()]);
-        assert_eq!(fused(&plan, true), [[false; 3].as_slice(), &[true; CHANGES.len()]].concat());
-        assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; CHANGES.len()]);
-        let words: Vec<String> = ways(&plan, true, 0).iter().map(|(place, _)| remedy(*place)).collect();
-        assert_eq!(words[2], "finer voxel, narrower kernel");
-        assert_eq!(words[3], "vessels that overlap taken as one, as usual");
-        for first in APART {
-            assert_eq!(ways(&plan, false, first)[0].0, first);
-            assert!(ways(&plan, true, first).iter().any(|(_, params)| !params.allow_fused) == (first == 5));
+        assert_eq!(fused(&plan, false), [false; Way::ALL.len()]);
+        assert_eq!(fused(&plan, true), [[false; 3].as_slice(), &[true; Way::ALL.len()]].concat());
+        assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; Way::ALL.len()]);
+        let names: Vec<String> = attempts(&plan, true, Way::Usual).into_iter().map(|attempt| attempt.name).collect();
+        assert_eq!(names[2], "finer voxel, narrower kernel");
+        assert_eq!(names[3], "vessels that overlap taken as one, as usual");
+        assert!(Way::ALL.is_sorted());
+        for first in Way::APART {
+            assert_eq!(attempts(&plan, false, first)[0].name, first.name());
+            let parts = attempts(&plan, true, first).iter().any(|attempt| !attempt.params.allow_fused);
+            assert_eq!(parts, first == Way::FinerNarrower);
         }
     }
 }

@@ -3,9 +3,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::plan::{JointStyle, MeshPlan};
 use super::report::Retry;
-use super::rounds::{Blocks, cut_nodes, original_nodes};
 use crate::block::BlockError;
 use crate::partition::{Cluster, ClusterEnd, EndKind, PartitionParams};
 use crate::skeleton::{BranchId, Skeleton};

@@ -3,12 +3,12 @@
 use std::io;
 
 use super::attempts;
+use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{Made, Workshop};
 use super::observer::Observer;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{BlockCounts, FailedBlock, FusedBlock, RunReport};
-use super::rounds::{self, Blocks, original_nodes};
 use crate::block::{About, BlockDump, ConnectorEnd};
 use crate::partition::{ClusterId, CutId};
 use crate::skeleton::{NodeId, Skeleton};
@@ -103,7 +103,7 @@ pub(super) fn describe_blocks(
         };
         report.failed.push(FailedBlock {
             block: format!("connector {i}"),
-            nodes: rounds::cut_nodes(skeleton, partition, cut),
+            nodes: cut_nodes(skeleton, partition, cut),
             reason: error.to_string(),
             dump: input.and_then(|input| write_dump(shop.plan, &format!("connector_{i}"), &input)),
         });

@@ -2,13 +2,14 @@
 
 use std::io;
 
-use super::attempts::{self, Tried};
+use super::attempts::{self, Tried, Way};
 use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
-use crate::block::{About, BlockError, ConnectorEnd, EndSurface, Record, Sizes, encode};
+use crate::block::{About, BlockError, ConnectorEnd, Cured, EndSurface, Record, Sizes, encode};
 use crate::geometry::Point3;
 use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Partition};
 use crate::skeleton::Skeleton;
+use crate::tet::Watch;
 
 /// A finished block in the store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,14 +44,15 @@ impl Workshop<'_> {
         id: ClusterId,
         cluster: &Cluster,
         overlapping: bool,
-        first: usize,
+        first: Way,
+        watch: &Watch,
     ) -> Result<Made, StoreError> {
         let key = cluster_key(cluster, self.plan, overlapping, first);
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
         let original = |node| self.skeleton.node(node).original;
-        self.keep(key, attempts::cluster(id, cluster, self.plan, overlapping, first, original))
+        self.keep(key, attempts::cluster(id, cluster, self.plan, overlapping, first, original, watch))
     }
 
     /// A connector between the discs that the vessel alone gives.
@@ -78,13 +80,14 @@ impl Workshop<'_> {
         self.keep(key, attempts::connector(id, cut, both, self.plan))
     }
 
-    fn keep(&self, key: Key, Tried { result, failures }: Tried) -> Result<Made, StoreError> {
+    fn keep(&self, key: Key, Tried { result, failures, way }: Tried) -> Result<Made, StoreError> {
         let mut finished = match result {
             Ok(finished) => finished,
             Err(error) => return Ok(Err(error)),
         };
-        finished.about.failures = failures.len() as u32;
-        finished.about.first_failure = failures.first().map(ToString::to_string).unwrap_or_default();
+        if let Some(first) = failures.first() {
+            finished.about.cured = Some(Cured { failure: first.to_string(), remedy: way });
+        }
         let record = self.store.keep(key, encode(&finished)?)?;
         Ok(Ok(self.kept(record)?))
     }
@@ -166,11 +169,12 @@ fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     });
 }
 
-fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: usize) -> Key {
+fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: Way) -> Key {
     let mut key = KeyMaker::new("cluster");
     options(&mut key, plan);
     key.id(u32::from(overlapping));
-    key.count(first);
+    key.id(u32::from(plan.fuse));
+    key.text(first.name());
     key.count(cluster.tubes.len());
     for tube in &cluster.tubes {
         key.point(&tube.a);
@@ -205,4 +209,27 @@ fn connector_key(cut: &Cut, plan: &MeshPlan, ends: &[StoredEnd]) -> Key {
         end.surface.triangles.as_flattened().iter().for_each(|&v| key.id(v));
     }
     key.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cluster_is_found_only_by_all_that_it_depends_on() {
+        let (cluster, plan) = (Cluster { nodes: Vec::new(), tubes: Vec::new(), ends: Vec::new() }, MeshPlan::default());
+        let plain = cluster_key(&cluster, &plan, true, Way::Usual);
+        let others = [
+            MeshPlan { rho: 4.0, ..plan.clone() },
+            MeshPlan { follow: 0.5, ..plan.clone() },
+            MeshPlan { joint: JointStyle::Woven, ..plan.clone() },
+            MeshPlan { fuse: true, ..plan.clone() },
+        ];
+        for other in others {
+            assert_ne!(cluster_key(&cluster, &other, true, Way::Usual), plain, "{other:?}");
+        }
+        assert_ne!(cluster_key(&cluster, &plan, false, Way::Usual), plain);
+        assert_ne!(cluster_key(&cluster, &plan, true, Way::Finest), plain);
+        assert_eq!(cluster_key(&cluster, &plan, true, Way::Usual), plain);
+    }
 }

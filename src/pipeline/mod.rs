@@ -3,6 +3,7 @@
 mod apart;
 mod assemble;
 mod attempts;
+mod blocks;
 mod cures;
 mod describe;
 mod estimate;
@@ -24,8 +25,8 @@ mod whole;
 pub use estimate::{Estimate, TooLarge};
 pub use observer::{Observer, Silent, Stage};
 pub use plan::{JointStyle, MeshPlan, PlanError};
-pub use report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, Retry, RunReport, StageTime};
+pub use report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, Retry, RunReport};
 pub use run::{Meshed, RunError, Stored, mesh_into, mesh_network};
 pub use terminals::{NotATerminal, TerminalPatches, assign as assign_patches};
-pub use timing::{BlockTimes, Clock};
+pub use timing::{BlockTimes, Clock, StageTime};
 pub use whole::Whole;

@@ -1,4 +1,4 @@
-//! How a run tells of its progress.
+//! How a run tells of its progress, and is told to stop.
 
 /// The stages of a run, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
@@ -51,6 +51,10 @@ pub trait Observer: Sync {
     fn end(&self, _stage: Stage) {}
     /// Something that a person should read.
     fn note(&self, _message: &str) {}
+    /// Asked often, from all threads: whether to stop. What was done so far stays in the store.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
 }
 
 /// Listens to nothing.

@@ -1,6 +1,7 @@
 //! What a run is asked to do.
 
 use crate::block::{BlockParams, EndStyle};
+use crate::skeleton::resolution::{FOLLOW, RHO};
 
 /// How blocks meet at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -51,8 +52,8 @@ pub struct MeshPlan {
 impl Default for MeshPlan {
     fn default() -> Self {
         Self {
-            rho: 3.0,
-            follow: 1.0,
+            rho: RHO,
+            follow: FOLLOW,
             joint: JointStyle::default(),
             frozen_joints: false,
             memory: 2 << 30,

@@ -1,7 +1,6 @@
-//! What a run of the mesher did, for people and as JSON.
+//! What a run of the mesher did.
 
-use std::fmt::Write as _;
-
+use super::timing::{BlockTimes, StageTime};
 use serde::Serialize;
 
 /// A block that did not come out at the first try.
@@ -80,15 +79,6 @@ pub struct MeshSize {
     pub cap_triangles: usize,
 }
 
-/// Seconds of wall time per stage.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StageTime {
-    /// Name of the stage.
-    pub stage: &'static str,
-    /// Wall time, seconds.
-    pub seconds: f64,
-}
-
 /// Everything that a run has to say.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RunReport {
@@ -120,51 +110,5 @@ pub struct RunReport {
     /// Wall time.
     pub stages: Vec<StageTime>,
     /// How long blocks took.
-    pub block_times: super::timing::BlockTimes,
-}
-
-impl RunReport {
-    /// The report as lines for people.
-    pub fn text(&self) -> String {
-        let mut out = String::new();
-        let (b, m) = (&self.blocks, &self.mesh);
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            out,
-            "{} clusters (largest {} nodes), {} connectors, {} blocks retried, {} failed",
-            b.clusters,
-            b.largest_cluster_nodes,
-            b.connectors,
-            self.retries.len(),
-            self.failed.len()
-        );
-        for retry in &self.retries {
-            let _ = writeln!(
-                out,
-                "  retried {} (nodes {:?}): {}; {}",
-                retry.block, retry.nodes, retry.reason, retry.remedy
-            );
-        }
-        for f in &self.fused {
-            let _ = writeln!(
-                out,
-                "  overlapping vessels in {} (nodes {:?}): {} handles for {} loops, terminals without a cap {:?}",
-                f.block, f.nodes, f.handles, f.loops, f.uncapped
-            );
-        }
-        for failed in &self.failed {
-            let _ = writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason);
-            if let Some(dump) = &failed.dump {
-                let _ = writeln!(out, "    its input is in {dump}");
-            }
-        }
-        let _ = writeln!(
-            out,
-            "{} tetrahedra, {} points, {} wall triangles, {} cap triangles",
-            m.tets, m.points, m.wall_triangles, m.cap_triangles
-        );
-        let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
-        let _ = writeln!(out, "{}", times.join(", "));
-        out
-    }
+    pub block_times: BlockTimes,
 }

@@ -1,10 +1,11 @@
 //! All blocks of a network, with retries: a block that fails is tried with other parameters, then with its cuts moved,
 //! then joined to its neighbours.
 
+use super::blocks::{Blocks, cut_nodes, original_nodes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
-use super::attempts;
+use super::attempts::Way;
 use super::cures::{Cure, cure, partition_params};
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::{Kept, Made, Workshop};
@@ -15,39 +16,13 @@ use super::routes::{branch_pairs, tangled_clusters};
 use super::schedule::{Cost, costliest_first};
 use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
+use crate::block::Cured;
 use crate::partition::{self, ClusterId, Cut, CutId, Partition, PartitionError};
-use crate::skeleton::{BranchId, NodeId, Overlaps, Skeleton};
+use crate::skeleton::{BranchId, Overlaps};
+use crate::tet::Watch;
 
 /// How often the partition is changed because of blocks that fail.
 const ROUNDS: usize = 6;
-
-/// How many nodes of a block a report lists.
-const LISTED: usize = 20;
-
-/// The blocks of a network.
-#[derive(Debug)]
-pub struct Blocks {
-    /// The partition that they belong to.
-    pub partition: Partition,
-    /// By `ClusterId`; an error for a cluster that failed to the end.
-    pub clusters: Vec<Made>,
-    /// By `CutId`; none beside a failed cluster.
-    pub connectors: Vec<Option<Made>>,
-    /// What was retried.
-    pub retries: Vec<Retry>,
-    /// How long they took.
-    pub times: BlockTimes,
-}
-
-impl Blocks {
-    /// What a block is called, by its number: clusters by their ids, then connectors.
-    pub fn name(&self, block: u32) -> String {
-        match (block as usize).checked_sub(self.clusters.len()) {
-            None => format!("cluster {block}"),
-            Some(connector) => format!("connector {connector}"),
-        }
-    }
-}
 
 /// What a run works with.
 pub struct Run<'a> {
@@ -74,6 +49,15 @@ pub enum RoundsError {
     /// The machine is too small for it.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
+    /// The observer said so.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<io::Error> for RoundsError {
+    fn from(error: io::Error) -> Self {
+        StoreError::from(error).into()
+    }
 }
 
 /// Clusters and connectors.
@@ -100,7 +84,7 @@ impl Run<'_> {
                 fits(&Estimate::of(&partition, plan))?;
             }
             let (clusters, connectors) = self.pass(&partition, &mut times)?;
-            notes.take(self, &partition, &clusters, &connectors).map_err(StoreError::from)?;
+            notes.take(self, &partition, &clusters, &connectors)?;
             let blocks = Blocks { partition, clusters, connectors, retries: Vec::new(), times: BlockTimes::default() };
             let found = if round < ROUNDS { cure(self.shop.skeleton, &blocks, &mut cures) } else { Vec::new() };
             if found.is_empty() {
@@ -112,13 +96,17 @@ impl Run<'_> {
     }
 
     /// All blocks of a partition; none needs another, unless joints are woven.
-    fn pass(&mut self, partition: &Partition, times: &mut BlockTimes) -> Result<Pass, StoreError> {
+    fn pass(&mut self, partition: &Partition, times: &mut BlockTimes) -> Result<Pass, RoundsError> {
         let (plan, shop) = (self.shop.plan, self.shop);
         let tangled = tangled_clusters(self.shop.skeleton, partition, self.overlaps);
         let count = partition.clusters.len();
         let mut costs: Vec<Cost> = partition.clusters.iter().map(|c| cluster_cost(c, plan)).collect();
         costs.extend(partition.cuts.iter().map(|cut| connector_cost(cut, plan)));
-        let cluster = |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], 0);
+        let observer = self.observer;
+        let stop = move || observer.is_cancelled();
+        let watch = Watch::until(&stop);
+        let cluster =
+            |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], Way::Usual, &watch);
         if plan.joint != JointStyle::Woven {
             let connector = |i: usize| shop.free_connector(CutId(i as u32), &partition.cuts[i]);
             let one = |i: usize| if i < count { cluster(i) } else { connector(i - count) };
@@ -142,34 +130,27 @@ impl Run<'_> {
         Ok((clusters, connectors))
     }
 
-    /// One stage over blocks: what became of them, and their seconds.
+    /// One stage over blocks: what became of them, and their seconds. Ends early when the observer says so: blocks that
+    /// failed because of that are no failures.
     pub(super) fn timed<T: Send>(
         &mut self,
         stage: Stage,
         costs: &[Cost],
         work: impl Fn(usize) -> Result<T, StoreError> + Sync,
-    ) -> Result<(Vec<T>, Vec<f64>), StoreError> {
+    ) -> Result<(Vec<T>, Vec<f64>), RoundsError> {
         let (observer, memory) = (self.observer, self.shop.plan.memory);
         let weight = |cost: &Cost| 1 + cost.tets as u64;
-        let step = |i: usize| work(i).inspect(|_| observer.advance(weight(&costs[i])));
+        let ask = || if observer.is_cancelled() { Err(RoundsError::Cancelled) } else { Ok(()) };
+        let step = |i: usize| {
+            ask()?;
+            let made = work(i)?;
+            ask()?;
+            observer.advance(weight(&costs[i]));
+            Ok::<_, RoundsError>(made)
+        };
         let run = || costliest_first(costs, memory, step);
         Ok(self.clock.time(observer, stage, costs.iter().map(weight).sum(), run)?.into_iter().unzip())
     }
-}
-
-/// Names of the nodes at the ends of a block's branches, as in the file that was read.
-pub fn original_nodes(skeleton: &Skeleton, nodes: impl Iterator<Item = NodeId>) -> Vec<u32> {
-    let mut list: Vec<u32> = nodes.map(|n| skeleton.node(n).original).collect();
-    list.sort_unstable();
-    list.dedup();
-    list.truncate(LISTED);
-    list
-}
-
-/// The nodes of the two clusters that a cut separates.
-pub fn cut_nodes(skeleton: &Skeleton, partition: &Partition, cut: &Cut) -> Vec<u32> {
-    let nodes = cut.sides.iter().flat_map(|(cluster, _)| &partition.clusters[cluster.0 as usize].nodes);
-    original_nodes(skeleton, nodes.copied())
 }
 
 /// What blocks say of failures before they came out; each block says it once.
@@ -189,31 +170,21 @@ impl Notes {
     ) -> io::Result<()> {
         for (i, kept) in clusters.iter().enumerate().filter_map(|(i, made)| Some((i, made.as_ref().ok()?))) {
             let nodes = || original_nodes(run.shop.skeleton, partition.clusters[i].nodes.iter().copied());
-            self.hear(run, kept, &format!("cluster {i}"), nodes, |failures| attempts::remedy(failures as usize))?;
+            self.hear(run, kept, &format!("cluster {i}"), nodes)?;
         }
         for (i, made) in connectors.iter().enumerate() {
             let Some(Ok(kept)) = made else { continue };
             let nodes = || cut_nodes(run.shop.skeleton, partition, &partition.cuts[i]);
-            let remedy = |_| "other division of the tube".to_owned();
-            self.hear(run, kept, &format!("connector {i}"), nodes, remedy)?;
+            self.hear(run, kept, &format!("connector {i}"), nodes)?;
         }
         Ok(())
     }
 
-    fn hear(
-        &mut self,
-        run: &Run,
-        kept: &Kept,
-        block: &str,
-        nodes: impl Fn() -> Vec<u32>,
-        remedy: impl Fn(u32) -> String,
-    ) -> io::Result<()> {
-        if self.heard.insert(kept.record) {
-            let about = run.shop.about(kept)?;
-            if about.failures > 0 {
-                let remedy = remedy(about.failures);
-                self.retries.push(Retry { block: block.into(), nodes: nodes(), reason: about.first_failure, remedy });
-            }
+    fn hear(&mut self, run: &Run, kept: &Kept, block: &str, nodes: impl Fn() -> Vec<u32>) -> io::Result<()> {
+        if self.heard.insert(kept.record)
+            && let Some(Cured { failure, remedy }) = run.shop.about(kept)?.cured
+        {
+            self.retries.push(Retry { block: block.into(), nodes: nodes(), reason: failure, remedy });
         }
         Ok(())
     }

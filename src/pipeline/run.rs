@@ -5,14 +5,15 @@ use std::io;
 
 use super::apart::{Meetings, hopeful};
 use super::assemble::Assembly;
-use super::attempts::APART;
+use super::attempts::Way;
+use super::blocks::Blocks;
 use super::describe::{Clusters, announce, describe_blocks};
 use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
 use super::observer::{Observer, Stage};
 use super::plan::{JointStyle, MeshPlan, PlanError};
 use super::report::{Meeting, MeshSize, RunReport};
-use super::rounds::{Blocks, RoundsError, Run};
+use super::rounds::{RoundsError, Run};
 use super::routes::Overlapping;
 use super::store::{Store, StoreError};
 use super::terminals::{self, NotATerminal};
@@ -80,6 +81,9 @@ pub enum RunError {
     /// Caps are not where they should be: a fault of the program.
     #[error("{0}; this is a fault of the program")]
     Label(#[from] LabelError),
+    /// The observer said so. Blocks that were finished are in the store.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl From<RoundsError> for RunError {
@@ -88,6 +92,7 @@ impl From<RoundsError> for RunError {
             RoundsError::Partition(error) => error.into(),
             RoundsError::Store(error) => error.into(),
             RoundsError::TooLarge(error) => error.into(),
+            RoundsError::Cancelled => Self::Cancelled,
         }
     }
 }
@@ -135,16 +140,23 @@ pub fn mesh_into<'a>(
 ) -> Result<Stored<'a>, RunError> {
     // What is in memory for the blocks is not while the whole is checked. In the rare case that blocks meet everything is
     // done again, which finds all blocks but these in the store. Woven connectors belong to the clusters as they are.
-    let tries = if plan.joint == JointStyle::Woven { 0 } else { APART.len() };
+    let tries = if plan.joint == JointStyle::Woven { 0 } else { Way::APART.len() };
     let mut met = Vec::new();
     loop {
         let joined = join_blocks(network, plan, store, &met, fits, observer, clock)?;
+        ask(observer)?;
         let (stored, meetings) = joined.checked(plan, observer, clock)?;
+        ask(observer)?;
         if meetings.is_empty() || met.len() == tries {
             return Ok(stored);
         }
         met.push(meetings);
     }
+}
+
+/// Whether to go on.
+fn ask(observer: &dyn Observer) -> Result<(), RunError> {
+    if observer.is_cancelled() { Err(RunError::Cancelled) } else { Ok(()) }
 }
 
 /// Blocks that are done and numbered, before anybody has looked at the whole.
@@ -175,7 +187,7 @@ fn join_blocks<'a>(
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let mut run = Run { overlaps: &overlaps, shop, observer, clock };
     let mut blocks = run.build(if met.is_empty() { fits } else { &|_| Ok(()) })?;
-    for (way, meetings) in met.iter().enumerate() {
+    for (way, meetings) in Way::APART.into_iter().zip(met) {
         run.set_apart(&mut blocks, meetings, way)?;
     }
     let overlapping = Overlapping::of(&skeleton, &blocks.partition, &overlaps);
@@ -214,9 +226,11 @@ impl<'a> Joined<'a> {
 
     fn smoothed(self, observer: &dyn Observer, clock: &mut Clock) -> Result<Meshed, RunError> {
         let Self { whole, expectation, mut report, .. } = self;
+        ask(observer)?;
         let mut assembly = clock.time(observer, Stage::Merge, 0, || Assembly::new(&whole))?;
         report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
         let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
+        ask(observer)?;
         let check = || check_volume_with(&mesh, neighbors, Some(&expectation));
         let check = clock.time(observer, Stage::Check, 0, check);
         report.mesh = mesh_size(&mesh)?;

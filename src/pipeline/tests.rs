@@ -3,11 +3,16 @@
 use super::*;
 use crate::block::{Finished, Record, encode};
 use crate::geometry::Point3;
+use crate::grow::dual;
 use crate::mesh::WALL;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::source::gather;
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
+use crate::refine::{Figures, Progress, RefineError, RefineParams, Sample, refine};
+use crate::skeleton::fixtures::tangle;
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use store::Store;
 
 /// A skeleton of nodes `[x, y, z, radius]` and edges between them.
 fn skeleton(nodes: &[[f64; 4]], edges: &[[u32; 2]]) -> Skeleton {
@@ -94,7 +99,17 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
     let params = PartitionParams { rho: plan.rho, ..PartitionParams::default() };
     let partition = partition(network, &params).expect("partitioned");
     let cluster = |(i, cluster): (usize, &Cluster)| {
-        attempts::cluster(ClusterId(i as u32), cluster, plan, false, 0, |node| node.0).result.expect("meshed")
+        attempts::cluster(
+            ClusterId(i as u32),
+            cluster,
+            plan,
+            false,
+            attempts::Way::Usual,
+            |node| node.0,
+            &crate::tet::Watch::NOBODY,
+        )
+        .result
+        .expect("meshed")
     };
     let mut blocks: Vec<Finished> = partition.clusters.iter().enumerate().map(cluster).collect();
     for (i, cut) in partition.cuts.iter().enumerate() {
@@ -266,4 +281,70 @@ fn what_can_be_meshed_is_kept_on_request() {
     assert_eq!(meshed.report.failed.len(), 1);
     assert!(!meshed.check.is_valid(), "a component is missing");
     assert!(meshed.mesh.tet_block.contains(&1) && !meshed.mesh.tet_block.contains(&0));
+}
+
+/// Says to stop after so many blocks.
+struct Stops {
+    after: usize,
+    blocks: AtomicUsize,
+}
+
+impl Observer for Stops {
+    fn advance(&self, _: u64) {
+        self.blocks.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.blocks.load(Ordering::Relaxed) >= self.after
+    }
+}
+
+#[test]
+fn a_run_that_is_told_to_stop_stops_and_goes_on_later() {
+    let network = h(12.0);
+    let plan = MeshPlan::default();
+    let run = |store: &Store, observer: &dyn Observer| {
+        let stored = mesh_into(store, &network, &plan, &|_| Ok(()), observer, &mut Clock::default())?;
+        Ok::<_, RunError>((gather(&stored.whole)?, stored.report.retries))
+    };
+    let whole = run(&Store::in_memory(), &Silent).expect("a mesh");
+    let store = Store::in_memory();
+    for after in [0, 1, 2] {
+        let stopped = run(&store, &Stops { after, blocks: AtomicUsize::new(0) });
+        assert!(matches!(stopped, Err(RunError::Cancelled)), "after {after} blocks");
+    }
+    assert!(run(&store, &Silent).expect("a mesh") == whole, "what was stopped leaves no trace");
+}
+
+/// Says to stop at once.
+struct Never;
+
+impl Progress for Never {
+    fn step(&mut self, _: usize, _: usize, _: Option<&Sample>) {}
+
+    fn is_cancelled(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn smoothing_and_refinement_stop_as_well() {
+    let plan = MeshPlan { joint: JointStyle::Woven, ..MeshPlan::default() };
+    let stops = Stops { after: 1, blocks: AtomicUsize::new(0) };
+    let stopped = mesh_network(&h(12.0), &plan, &stops, &mut Clock::default());
+    assert!(matches!(stopped, Err(RunError::Cancelled)));
+    let refined = refine(&h(12.0), &RefineParams::default(), &mut Never);
+    assert!(matches!(refined, Err(RefineError::Cancelled)));
+}
+
+#[test]
+fn refinement_separates_two_trees_that_share_their_terminals() {
+    let run = |s: &Skeleton| refine(s, &RefineParams::default(), &mut ()).expect("refined");
+    let grown = dual(&run(&tangle(4, 3)).skeleton).skeleton;
+    let refined = run(&grown);
+    let before = Figures::of(&grown);
+    let r = &refined.report;
+    assert!(before.overlaps > 20 && r.moved.overlaps <= before.overlaps / 20, "{} {:?}", before.overlaps, r.moved);
+    assert_eq!(r.moved.metrics.folds.count, 0);
+    assert_eq!((grown.check(), refined.skeleton.check()), (Ok(()), Ok(())));
 }

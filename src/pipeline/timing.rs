@@ -3,8 +3,16 @@
 use std::time::Instant;
 
 use super::observer::{Observer, Stage};
-use super::report::StageTime;
 use serde::Serialize;
+
+/// Seconds of wall time per stage.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StageTime {
+    /// Name of the stage.
+    pub stage: &'static str,
+    /// Wall time, seconds.
+    pub seconds: f64,
+}
 
 /// Sums up the time that each stage takes.
 #[derive(Debug, Default)]

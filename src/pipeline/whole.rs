@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::io;
 
+use super::blocks::Blocks;
 use super::make::{JointPlace, Kept, joints_of_cut};
 use super::report::MeshSize;
-use super::rounds::Blocks;
 use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
 use crate::block::{FinishedJoint, Record};

@@ -1,7 +1,7 @@
 //! What stays the same while a skeleton is refined: who is joined to whom, who may move, and how chains of vessel run.
 
 use crate::geometry::Point3;
-use crate::skeleton::{Adjacency, Edge, EdgeId, LENGTH, Node, NodeId, Skeleton};
+use crate::skeleton::{Adjacency, CUT_DISTANCE, Edge, EdgeId, Node, NodeId, Skeleton};
 
 /// Length that a vessel keeps while it overlaps another one, in radii: parting comes before room for cuts, and two
 /// terminals close to each other can have the fork that leads to them only near by.
@@ -90,7 +90,7 @@ impl Frame {
 
     fn keep(&self, edge: EdgeId) -> f64 {
         let radii = self.skeleton.edge(edge).radii;
-        self.skeleton.length(edge).min(LENGTH * (radii[0] + radii[1]))
+        self.skeleton.length(edge).min(CUT_DISTANCE * (radii[0] + radii[1]))
     }
 
     fn find_chains(&self) -> Vec<Chain> {

@@ -3,11 +3,11 @@
 mod bend;
 mod contact;
 mod crowd;
-mod dual;
 mod figures;
 mod forces;
 mod frame;
 mod params;
+mod progress;
 mod push;
 mod residual;
 mod room;
@@ -18,11 +18,11 @@ mod split;
 mod tests;
 
 pub use crowd::CrowdedPair;
-pub use dual::{Dual, dual};
 pub use figures::{Figures, Metric};
 pub use params::{Crowded, RefineError, RefineParams, Residual};
+pub use progress::{Displacement, Progress, Sample};
 pub use residual::{ResidualPair, ResidualReport, Treatment};
-pub use solve::{Displacement, Sample};
+
 pub use split::{SplitNode, SplitReport, split};
 
 use crate::geometry::Point3;
@@ -78,16 +78,6 @@ pub struct RefineReport {
     pub history: Vec<Sample>,
 }
 
-/// Who is told about progress.
-pub trait Progress {
-    /// An iteration is done, of at most `of`; `sample` is there when the metrics were measured.
-    fn step(&mut self, iteration: usize, of: usize, sample: Option<&Sample>);
-}
-
-impl Progress for () {
-    fn step(&mut self, _: usize, _: usize, _: Option<&Sample>) {}
-}
-
 /// Refines a skeleton (3.1 of the paper): nodes of more than three vessels are split; the paper's three forces act; then
 /// vessels are pushed apart, lengthened and opened by projection until none overlap and all can be cut, or the
 /// iterations are over; what is left is treated as `params.residual` says.
@@ -105,7 +95,7 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progre
     let mut origin: Vec<Point3> = start.nodes.iter().map(|n| n.position).collect();
     let crowded = crowd::treat(&mut start, &mut origin, params);
     let split_figures = Figures::of(&start);
-    let moved = solve::solve(&start, &given_figures, params, progress);
+    let moved = solve::solve(&start, &given_figures, params, progress)?;
     let chosen = moved.best.as_ref().map(|best| best.iteration);
     let bends = moved.best.as_ref().map_or(0, |best| best.bends);
     let (mut skeleton, mut origin) = match moved.best {

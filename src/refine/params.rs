@@ -2,6 +2,7 @@
 
 use super::figures::Metric;
 use crate::skeleton::SkeletonError;
+use crate::skeleton::resolution::RHO;
 use serde::Serialize;
 
 /// What is done about vessels that still overlap when the nodes have come to rest.
@@ -84,7 +85,7 @@ impl Default for RefineParams {
             hold: vec![Metric::Overlaps, Metric::FarPairs],
             residual: Residual::Shrink,
             shrink: 0.3,
-            rho: 3.0,
+            rho: RHO,
             every: 10,
         }
     }
@@ -107,6 +108,9 @@ pub enum RefineError {
     /// The skeleton cannot be used.
     #[error(transparent)]
     Skeleton(#[from] SkeletonError),
+    /// The caller said so.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl RefineParams {

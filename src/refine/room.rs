@@ -3,7 +3,7 @@
 use super::frame::{Chain, Frame, LEAST};
 use super::push::{Push, project};
 use crate::geometry::Vec3;
-use crate::skeleton::{EdgeId, LENGTH, NARROW, NodeId, separation};
+use crate::skeleton::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, EdgeId, NARROW, NodeId, separation};
 use rayon::prelude::*;
 
 /// Where conditions are taken as met: a little beyond what is asked for.
@@ -44,12 +44,12 @@ fn needed(frame: &Frame, chain: &Chain, gradient: &mut Vec<(NodeId, Vec3)>) -> O
     if ends.iter().any(|n| frame.urgent[n.index()]) {
         return Some(LEAST * radii[0].max(radii[1]));
     }
-    let by_11 = LENGTH * (radii[0] + radii[1]);
+    let by_11 = CUT_DISTANCE * (radii[0] + radii[1]);
     let inner = ends.map(|n| frame.adjacency.valence(n) > 2);
     // Between two junctions a connector of 2 r, at a terminal a piece of r with its cap.
     let mut cut = 0.0;
     for i in [0, 1] {
-        cut += radii[i];
+        cut += 0.5 * CONNECTOR_ROOM * radii[i];
         if inner[i] {
             cut += distance(frame, ends[i], own[i], gradient);
         }
@@ -97,22 +97,22 @@ fn distance(frame: &Frame, node: NodeId, own: EdgeId, gradient: &mut Vec<(NodeId
             worst = Some((apart, end, r2));
         }
     }
-    let Some((apart, end, r2)) = worst else { return LENGTH * r };
-    if 1.25 * apart <= LENGTH * r || frame.is_as_close_as_may_be(node, [lever, end]) {
-        return LENGTH * r;
+    let Some((apart, end, r2)) = worst else { return CUT_DISTANCE * r };
+    if ANGLE_MARGIN * apart <= CUT_DISTANCE * r || frame.is_as_close_as_may_be(node, [lever, end]) {
+        return CUT_DISTANCE * r;
     }
     let v = frame.at(end) - frame.at(node);
     let (lu, lv) = (u.norm(), v.norm());
     let cos = u.dot(&v) / (lu * lv);
     // Angles below two degrees or so give no useful derivative.
     let sin = (u.cross(&v).norm() / (lu * lv)).max(0.04);
-    let slope = 1.25 * (r + r2 * cos) / (sin * sin);
+    let slope = ANGLE_MARGIN * (r + r2 * cos) / (sin * sin);
     let [by_u, by_v] = opening(&u, &v);
     gradient.push((lever, by_u * slope));
     gradient.push((end, by_v * slope));
     gradient.push((node, (by_u + by_v) * -slope));
     // No more than can be had by both ways together.
-    1.25 * (r2 + r * cos) / sin
+    ANGLE_MARGIN * (r2 + r * cos) / sin
 }
 
 /// Derivatives of the angle between `u` and `v` by both.

@@ -5,12 +5,12 @@ use super::contact::Contacts;
 use super::figures::Figures;
 use super::forces::{self, Rates};
 use super::frame::Frame;
-use super::params::RefineParams;
+use super::params::{RefineError, RefineParams};
+use super::progress::{Displacement, Progress, Sample};
 use super::push::Push;
-use super::{Progress, room, shape};
+use super::{room, shape};
 use crate::geometry::{Point3, Vec3};
-use crate::skeleton::{Barrier, Metrics, Overlaps, Skeleton, paper_unit};
-use serde::Serialize;
+use crate::skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
 
 /// How much of what is asked of a node by several conditions at once it does: their sum over the number to this power.
 const AVERAGE: f64 = 0.25;
@@ -24,53 +24,6 @@ const BENDS: f64 = 0.125;
 const EARLY: usize = 10;
 /// It stops when the state has not become better in so many rounds of bends.
 const PATIENCE: usize = 4;
-
-/// The metrics after some iterations.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Sample {
-    /// How many iterations.
-    pub iteration: usize,
-    /// Displacement of the nodes.
-    pub displacement: Displacement,
-    /// The metrics.
-    pub metrics: Metrics,
-    /// Pairs of vessels pushed apart in this iteration, and vessels lengthened or opened.
-    pub asked: usize,
-}
-
-/// How far nodes have moved, in the unit of the skeleton.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Displacement {
-    /// Mean.
-    pub mean: f64,
-    /// Median.
-    pub median: f64,
-    /// 95th percentile.
-    pub p95: f64,
-    /// 99th percentile.
-    pub p99: f64,
-    /// Largest.
-    pub max: f64,
-}
-
-impl Displacement {
-    /// Of the nodes of `skeleton` from where they were.
-    pub fn of(skeleton: &Skeleton, origin: &[Point3]) -> Self {
-        let mut far: Vec<f64> = skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).norm()).collect();
-        if far.is_empty() {
-            return Self::default();
-        }
-        far.sort_unstable_by(f64::total_cmp);
-        let at = |share: f64| far[(share * (far.len() - 1) as f64).round() as usize];
-        Self {
-            mean: far.iter().sum::<f64>() / far.len() as f64,
-            median: at(0.5),
-            p95: at(0.95),
-            p99: at(0.99),
-            max: at(1.0),
-        }
-    }
-}
 
 /// What the loop hands over.
 pub(super) struct Moved {
@@ -90,7 +43,15 @@ pub(super) struct State {
 }
 
 /// Moves the nodes of a split skeleton; `given` is what the input had.
-pub(super) fn solve(skeleton: &Skeleton, given: &Figures, params: &RefineParams, progress: &mut dyn Progress) -> Moved {
+///
+/// # Errors
+/// [`RefineError::Cancelled`].
+pub(super) fn solve(
+    skeleton: &Skeleton,
+    given: &Figures,
+    params: &RefineParams,
+    progress: &mut dyn Progress,
+) -> Result<Moved, RefineError> {
     let mut solver = Solver::new(skeleton, params);
     let start = solver.sample(0, 0);
     progress.step(0, params.iterations, Some(&start));
@@ -100,6 +61,9 @@ pub(super) fn solve(skeleton: &Skeleton, given: &Figures, params: &RefineParams,
     let mut best = Best { given: *given, score: None, improved: 0, state: None };
     best.offer(&solver, 0);
     for iteration in 1..=params.iterations {
+        if progress.is_cancelled() {
+            return Err(RefineError::Cancelled);
+        }
         let asked = solver.step(iteration <= with_forces);
         let quiet = asked == 0 && iteration > with_forces;
         let mut last = iteration == params.iterations;
@@ -126,7 +90,7 @@ pub(super) fn solve(skeleton: &Skeleton, given: &Figures, params: &RefineParams,
             break;
         }
     }
-    Moved { best: best.state, history, unit: solver.unit }
+    Ok(Moved { best: best.state, history, unit: solver.unit })
 }
 
 /// The best state so far.

@@ -1,6 +1,8 @@
-//! Floor 3: what the verbs say, as models with a text and a JSON form.
+//! Floor 6: what the verbs say, for people, in tables and plots; models with a text and a JSON form.
 
 pub mod check;
 pub mod info;
+pub mod mesh;
 pub mod plot;
+pub mod refine;
 pub mod tetrahedralize;

@@ -2,6 +2,7 @@
 
 use crate::geometry::Point3;
 use crate::mesh::quality::{TetQuality, dihedral_range, volume6};
+use crate::mesh::{Bounds, face_key};
 use crate::mesh::{TET_FACES, TetMesh};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -200,49 +201,39 @@ pub struct TetReport {
     pub files: Vec<String>,
 }
 
-/// The bounds that can be asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bounds {
-    /// Circumradius over shortest edge.
-    pub max_radius_edge: Option<f64>,
-    /// Smallest dihedral angle, degrees.
-    pub min_dihedral: Option<f64>,
-    /// Volume of a tetrahedron.
-    pub max_volume: Option<f64>,
-}
+impl BoundResult {
+    /// What the bound on volume is called.
+    const VOLUME: &'static str = "volume at most";
 
-impl Bounds {
     /// How many tetrahedra are beyond each bound that is set, and how many of these have one of the faces that stay.
-    pub fn results(&self, mesh: &TetMesh, staying: &[[u32; 3]]) -> Vec<BoundResult> {
+    pub fn of(bounds: &Bounds, mesh: &TetMesh, staying: &[[u32; 3]]) -> Vec<Self> {
         // What was made to lie on the bound may be beyond it by rounding.
         const ROUNDING: f64 = 1e-9;
         let corners = |t: &[u32; 4]| t.map(|v| &mesh.points[v as usize]);
-        let mut staying: Vec<[u32; 3]> = staying.iter().map(|&f| sorted(f)).collect();
+        let mut staying: Vec<[u32; 3]> = staying.iter().map(|&f| face_key(f)).collect();
         staying.sort_unstable();
-        let on_input = |t: &[u32; 4]| TET_FACES.iter().any(|f| staying.binary_search(&sorted(f.map(|i| t[i]))).is_ok());
+        let on_input =
+            |t: &[u32; 4]| TET_FACES.iter().any(|f| staying.binary_search(&face_key(f.map(|i| t[i]))).is_ok());
         let mut results = Vec::new();
         let mut count = |bound, value, beyond: &dyn Fn([&Point3; 4]) -> bool| {
             let found: Vec<&[u32; 4]> = mesh.tets.iter().filter(|t| beyond(corners(t))).collect();
             let on_input = found.iter().filter(|t| on_input(t)).count();
-            results.push(BoundResult { bound, value, beyond: found.len(), on_input });
+            results.push(Self { bound, value, beyond: found.len(), on_input });
         };
-        if let Some(value) = self.max_radius_edge {
+        if let Some(value) = bounds.max_radius_edge {
             let beyond = |t: [&Point3; 4]| radius_edge(t) > value * (1.0 + ROUNDING);
             count("circumradius over shortest edge at most", value, &beyond);
         }
-        if let Some(value) = self.min_dihedral {
+        if let Some(value) = bounds.min_dihedral {
             let beyond = |t: [&Point3; 4]| dihedral_range(t).0.to_degrees() < value * (1.0 - ROUNDING);
             count("dihedral angles at least", value, &beyond);
         }
-        if let Some(value) = self.max_volume {
+        if let Some(value) = bounds.max_volume {
             let beyond = |[a, b, c, d]: [&Point3; 4]| volume6(a, b, c, d) / 6.0 > value * (1.0 + ROUNDING);
             count(Self::VOLUME, value, &beyond);
         }
         results
     }
-
-    /// What the bound on volume is called in [`BoundResult`].
-    pub const VOLUME: &'static str = "volume at most";
 }
 
 /// Circumradius over shortest edge; infinite for a flat tetrahedron.
@@ -275,7 +266,7 @@ pub fn volume_of(mesh: &TetMesh, t: &[u32; 4]) -> f64 {
 impl TetReport {
     /// Whether every bound that can always be met is.
     pub fn bounds_met(&self) -> bool {
-        self.bounds.iter().all(|result| result.bound != Bounds::VOLUME || result.beyond == 0)
+        self.bounds.iter().all(|result| result.bound != BoundResult::VOLUME || result.beyond == 0)
     }
 
     /// What became of the wishes, and what the input has to do with it.
@@ -352,11 +343,6 @@ impl TetReport {
     }
 }
 
-fn sorted(mut f: [u32; 3]) -> [u32; 3] {
-    f.sort_unstable();
-    f
-}
-
 /// `, 3 holes`, or nothing when there are none.
 fn counted(count: usize, what: &str) -> String {
     if count == 0 { String::new() } else { format!(", {count} {what}") }
@@ -379,7 +365,7 @@ mod tests {
         ];
         let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3], [0, 2, 1, 4]] };
         let bounds = Bounds { max_radius_edge: Some(0.613), min_dihedral: Some(70.5), max_volume: Some(0.1) };
-        let results = bounds.results(&mesh, &[[3, 0, 1]]);
+        let results = BoundResult::of(&bounds, &mesh, &[[3, 0, 1]]);
         assert_eq!(results.iter().map(|r| r.beyond).collect::<Vec<_>>(), [1, 1, 1]);
         // The face is one of the first tetrahedron, which is too large; the flat one is the second.
         assert_eq!(results.iter().map(|r| r.on_input).collect::<Vec<_>>(), [0, 0, 1]);

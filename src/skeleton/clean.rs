@@ -1,6 +1,7 @@
 //! From a network as it was read to a skeleton that satisfies `Skeleton::check`.
 
 use super::{Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError};
+use crate::geometry::DisjointSets;
 use serde::Serialize;
 
 /// Edges shorter than this share of their radius have no direction worth the name (rounding of the coordinates decides
@@ -71,28 +72,9 @@ pub fn clean(raw: &Skeleton) -> Result<(Skeleton, CleanReport), SkeletonError> {
     Ok((skeleton, report))
 }
 
-/// Disjoint sets; the smallest member names its set.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn find(&mut self, mut x: u32) -> u32 {
-        while self.0[x as usize] != x {
-            let up = self.0[self.0[x as usize] as usize];
-            self.0[x as usize] = up;
-            x = up;
-        }
-        x
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
 /// For each node the one that it becomes.
 fn merge_nodes(raw: &Skeleton, report: &mut CleanReport) -> Vec<u32> {
-    let mut sets = Sets((0..raw.nodes.len() as u32).collect());
+    let mut sets = DisjointSets::new(raw.nodes.len());
     // Adding 0 turns −0 into 0.
     let key = |i: u32| raw.nodes[i as usize].position.coords.add_scalar(0.0);
     let order = |&i: &u32, &j: &u32| {
@@ -117,7 +99,7 @@ fn merge_nodes(raw: &Skeleton, report: &mut CleanReport) -> Vec<u32> {
             report.contracted.push(id as u32);
         }
     }
-    (0..raw.nodes.len() as u32).map(|i| sets.find(i)).collect()
+    (0..raw.nodes.len() as u32).map(|i| sets.root(i)).collect()
 }
 
 /// The edges to keep, in ascending order.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::geometry::Point3;
 use proptest::prelude::*;
 
 /// A skeleton with unit radii, nodes on a lattice that no two share.

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::mesh::TetMesh;
 use crate::mesh::smooth::Taubin;
+pub use region::Improve;
 use region::Region;
 
 /// One end surface at which two blocks meet.
@@ -68,12 +69,6 @@ pub struct JointReport {
     /// Smallest radius ratio in the joints after.
     pub worst_after: f64,
 }
-
-/// Improves the inside of a mesh whose first so many points, and whose boundary faces, stay. All points keep their
-/// index; new ones may be appended. False when the mesh could not be improved and is unchanged.
-///
-/// The tetrahedralizer's optimiser is such a function; it is passed in because the stitching does not know it.
-pub type Improve<'a> = dyn Fn(&mut TetMesh, usize) -> bool + Sync + 'a;
 
 /// Smooths the joints of a merged mesh.
 ///

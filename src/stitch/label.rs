@@ -1,5 +1,6 @@
 //! Labels on the boundary: which face is wall, which closes a vessel.
 
+use crate::mesh::face_key;
 use rustc_hash::FxHashMap;
 
 use crate::mesh::adjacency::{self, TetAdjacency};
@@ -51,7 +52,7 @@ pub fn label(
     let mut listed: FxHashMap<[u32; 3], i32> = FxHashMap::default();
     for PatchFaces { patch, faces } in &patches {
         for &face in faces {
-            if let Some(first) = listed.insert(sorted(face), patch.id) {
+            if let Some(first) = listed.insert(face_key(face), patch.id) {
                 return Err(LabelError::Twice { face, first, second: patch.id });
             }
         }
@@ -62,7 +63,7 @@ pub fn label(
         let face = adjacency::face_vertices(&mesh.tets, handle);
         out.boundary.push(face);
         out.boundary_block.push(tet_block[handle as usize / 4]);
-        out.boundary_patch.push(listed.remove(&sorted(face)).unwrap_or(WALL));
+        out.boundary_patch.push(listed.remove(&face_key(face)).unwrap_or(WALL));
     }
     out.mesh = mesh;
     // What is left was listed but is not there; name the smallest so that the message does not depend on the hashing.
@@ -74,11 +75,6 @@ pub fn label(
     out.patches.extend(patches.into_iter().map(|p| p.patch));
     out.patches.sort_by_key(|p| p.id);
     Ok((out, neighbors))
-}
-
-fn sorted(mut face: [u32; 3]) -> [u32; 3] {
-    face.sort_unstable();
-    face
 }
 
 #[cfg(test)]
@@ -101,7 +97,7 @@ mod tests {
         assert_eq!(labelled.boundary.len(), 4);
         assert_eq!(labelled.boundary_patch.iter().filter(|&&p| p == WALL).count(), 3);
         let capped = labelled.boundary_patch.iter().position(|&p| p == 3).expect("labelled");
-        assert_eq!(sorted(labelled.boundary[capped]), [0, 1, 2]);
+        assert_eq!(face_key(labelled.boundary[capped]), [0, 1, 2]);
         assert_eq!(labelled.boundary_block, [7; 4]);
     }
 

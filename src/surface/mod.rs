@@ -1,124 +1,32 @@
 //! Floor 3: 3.2.2 of the paper. The wall of a cluster: the level set of a convolution field, contoured on a sparse grid
 //! and relaxed into well-shaped triangles.
 
+mod cap;
 mod cases;
 mod contour;
+mod disc;
 mod erf;
 mod field;
 pub(crate) mod halfedge;
+mod params;
 pub(crate) mod relax;
+mod shared_disc;
 mod sizes;
+pub(crate) mod strip;
 #[cfg(test)]
 mod tests;
 
+pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub use field::Field;
-pub(crate) use sizes::GROWTH;
+pub use params::{SurfaceError, SurfaceParams};
+pub use shared_disc::SharedDisc;
 
+use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Tube, Vec3};
+use crate::mesh::Kept;
 use crate::mesh::TriMesh;
 use halfedge::HalfEdges;
 use relax::Relaxation;
-
-/// How a surface is made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceParams {
-    /// Edge of a grid cell, in the unit of the tubes: `2 r_min / ρ`.
-    pub voxel: f64,
-    /// Kernel width σ / r.
-    pub kappa: f64,
-    /// Where the grid lies: its origin, in cells. Another shift gives another triangulation of the same wall.
-    pub shift: [f64; 3],
-    /// Edge length to aim at, in cells, where vessels have the radius `thin` or less.
-    pub edge: f64,
-    /// A radius.
-    pub thin: f64,
-    /// How far edges follow the radius of wider vessels: they grow with the radius to this power. 0: not at all; 1: in
-    /// proportion.
-    pub follow: f64,
-    /// Rounds of relaxation.
-    pub rounds: u32,
-    /// Most cells that the wall may cross.
-    pub max_cells: usize,
-}
-
-/// Collapsing a contour that is too fine leaves longer edges than a contour of the right size has: so much less is aimed
-/// at.
-const COARSENED: f64 = 0.93;
-
-impl SurfaceParams {
-    /// Usual parameters for a cell edge; edges are as long everywhere.
-    pub fn with_voxel(voxel: f64) -> Self {
-        Self {
-            voxel,
-            kappa: 0.4,
-            shift: [0.0; 3],
-            edge: 0.965,
-            thin: 1.0,
-            follow: 0.0,
-            rounds: 2,
-            max_cells: 20_000_000,
-        }
-    }
-
-    /// The edge length to aim at where a vessel has this radius.
-    pub fn edge_at(&self, radius: f64) -> f64 {
-        let wider = (radius / self.thin).max(1.0).powf(self.follow);
-        self.edge * self.voxel * (COARSENED * wider).max(1.0)
-    }
-}
-
-/// Why there is no surface.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SurfaceError {
-    /// There is no tube with a length.
-    #[error("no tube has a length")]
-    Empty,
-    /// A tube has a coordinate or radius that is not finite, or a radius that is not positive.
-    #[error("tube {tube} has a coordinate or radius that is not finite, or a radius that is not positive")]
-    InvalidTube {
-        /// Index of the tube.
-        tube: u32,
-    },
-    /// A parameter is out of its range.
-    #[error("{name} = {value} is out of range")]
-    InvalidParameter {
-        /// Its name.
-        name: &'static str,
-        /// What it was.
-        value: f64,
-    },
-    /// The wall would cross too many cells.
-    #[error("the wall crosses about {cells:.3e} grid cells, more than the limit of {limit}")]
-    TooLarge {
-        /// Estimated or counted cells.
-        cells: f64,
-        /// The limit.
-        limit: usize,
-    },
-    /// The grid is too coarse to see a tube.
-    #[error("the grid (cell {voxel}) does not see tube {tube}")]
-    Unresolved {
-        /// Index of the tube.
-        tube: u32,
-        /// The cell edge.
-        voxel: f64,
-    },
-    /// The tubes do not make one connected vessel.
-    #[error("tubes {} and {} are not connected: the wall has {components} components", tubes[0], tubes[1])]
-    Disconnected {
-        /// Number of components.
-        components: u32,
-        /// One tube of each of two components.
-        tubes: [u32; 2],
-    },
-    /// Contouring gave a surface that is not a closed manifold, which is a bug.
-    #[error("the contour is not a closed manifold at edge {} – {}", edge[0], edge[1])]
-    NotManifold {
-        /// Vertices of the edge (equal: of the vertex).
-        edge: [u32; 2],
-    },
-}
 
 /// The wall of the vessels `tubes`: one closed 2-manifold, oriented outwards, at the tubes' radii.
 ///
@@ -235,46 +143,18 @@ fn outer_component(mesh: TriMesh, at_seeds: &[u32], owners: &[u32]) -> Result<Tr
 
 /// Component of every vertex, numbered by first vertex.
 fn components(mesh: &TriMesh) -> Vec<u32> {
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
+    let mut sets = DisjointSets::new(mesh.points.len());
+    for &[a, b, c] in &mesh.triangles {
+        sets.join(a, b);
+        sets.join(a, c);
     }
-    let mut parent: Vec<u32> = (0..mesh.points.len() as u32).collect();
-    for t in &mesh.triangles {
-        for v in [t[1], t[2]] {
-            let (a, b) = (root(&mut parent, t[0]), root(&mut parent, v));
-            parent[a.max(b) as usize] = a.min(b);
-        }
-    }
-    let mut number = 0;
-    let mut out = vec![0; parent.len()];
-    for v in 0..parent.len() as u32 {
-        let r = root(&mut parent, v);
-        if r == v {
-            out[v as usize] = number;
-            number += 1;
-        } else {
-            out[v as usize] = out[r as usize];
-        }
-    }
-    out
+    sets.numbered()
 }
 
 fn restricted(mesh: &TriMesh, component: &[u32], keep: u32) -> TriMesh {
-    let mut map = vec![u32::MAX; mesh.points.len()];
-    let mut out = TriMesh::default();
-    for (v, p) in mesh.points.iter().enumerate() {
-        if component[v] == keep {
-            map[v] = out.points.len() as u32;
-            out.points.push(*p);
-        }
-    }
-    let kept = mesh.triangles.iter().filter(|t| component[t[0] as usize] == keep);
-    out.triangles.extend(kept.map(|t| t.map(|v| map[v as usize])));
-    out
+    let kept = Kept::of(component.iter().map(|&c| c == keep));
+    let triangles = mesh.triangles.iter().filter(|t| component[t[0] as usize] == keep);
+    TriMesh { points: kept.select(&mesh.points), triangles: triangles.map(|t| kept.cell(t)).collect() }
 }
 
 /// The grid on which the field is sampled.

@@ -56,6 +56,8 @@ struct Patch {
     faces: Vec<u32>,
 }
 
+/// What a flip must take from the largest cosine: less is rounding, by which flips could undo each other for ever.
+const COSINE_GAIN: f64 = 1e-3;
 /// Edges longer or shorter than these multiples of the aim are split or collapsed.
 const SPLIT_ABOVE: f64 = 1.45;
 const COLLAPSE_BELOW: f64 = 0.62;
@@ -347,7 +349,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
             return false;
         }
         let after = largest_cosine(&a, &d, &c).max(largest_cosine(&d, &b, &c));
-        after < before - 1e-3
+        after < before - COSINE_GAIN
     }
 
     /// The two new triangles look the way the old ones did, and the new edge is not a ridge.

@@ -33,7 +33,7 @@ pub struct Tetrahedralizer {
     effort: Effort,
     strict: bool,
     on_progress: Option<Arc<OnProgress>>,
-    cancel: Option<Arc<Cancel>>,
+    cancel: Option<Arc<Cancel<'static>>>,
 }
 
 /// A certified mesh, and what it took.

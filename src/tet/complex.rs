@@ -8,6 +8,7 @@
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
 use crate::mesh::adjacency::tet_adjacency;
+pub(crate) use crate::mesh::face_key;
 use crate::mesh::{TET_FACES, TetMesh};
 
 /// The vertex at infinity, last vertex of every ghost tetrahedron.
@@ -108,20 +109,6 @@ struct FaceRecord {
     key: [u32; 3],
     inner: bool,
     half: u32,
-}
-
-/// The vertices of a face in ascending order: the same for both its half-faces.
-pub fn face_key(mut f: [u32; 3]) -> [u32; 3] {
-    if f[0] > f[1] {
-        f.swap(0, 1);
-    }
-    if f[1] > f[2] {
-        f.swap(1, 2);
-    }
-    if f[0] > f[1] {
-        f.swap(0, 1);
-    }
-    f
 }
 
 /// The vertices of face `i` of a tetrahedron, counter-clockwise seen from outside.
@@ -294,22 +281,7 @@ impl Complex {
     /// As [`Complex::into_mesh`], without the points from `fixed` on that no tetrahedron has.
     pub fn into_compact_mesh(self, fixed: usize) -> TetMesh {
         let mut mesh = self.into_mesh();
-        let mut id = vec![NONE; mesh.points.len()];
-        for &v in mesh.tets.iter().flatten() {
-            id[v as usize] = 0;
-        }
-        let mut count = 0;
-        for (v, slot) in id.iter_mut().enumerate() {
-            if v < fixed || *slot == 0 {
-                mesh.points[count as usize] = mesh.points[v];
-                *slot = count;
-                count += 1;
-            }
-        }
-        mesh.points.truncate(count as usize);
-        for v in mesh.tets.iter_mut().flatten() {
-            *v = id[*v as usize];
-        }
+        mesh.drop_unused_points(fixed);
         mesh
     }
 

@@ -124,8 +124,8 @@ fn points(r: &Request) -> Result<Vec<Point3>, TetError> {
 
 /// The interior asked for; a lattice whose size is left open gets tetrahedra within the bound on volumes.
 fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refinement>) -> Interior {
-    let usual = CELL * lattice::mean_edge(surface);
-    match (interior, refinement.and_then(|r| r.max_volume)) {
+    let usual = CELL * surface.mean_edge();
+    match (interior, refinement.and_then(|r| r.bounds.max_volume)) {
         (Interior::Lattice { cell: None, clearance }, Some(bound)) => {
             // A cube holds twelve tetrahedra.
             let cell = (12.0 * VOLUME_SHARE * bound).cbrt().min(usual);
@@ -140,7 +140,7 @@ fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>
     match interior {
         Interior::None => Ok(Vec::new()),
         Interior::Lattice { cell, clearance } | Interior::Graded { cell, clearance } => {
-            let h = lattice::mean_edge(surface);
+            let h = surface.mean_edge();
             let (cell, clearance) = (cell.unwrap_or(CELL * h), clearance.unwrap_or(CLEARANCE * h));
             let graded = matches!(interior, Interior::Graded { .. });
             let points = if graded { lattice::graded_lattice_points } else { lattice::lattice_points };

@@ -5,6 +5,7 @@ use super::certify::enclosed_volume;
 use super::error::{NAMED, TetError};
 use super::plc::{InputKind, Plc};
 use crate::geometry::Point3;
+use crate::geometry::place_key;
 use crate::geometry::predicates::{MAX_MAGNITUDE, collinear, in_exact_range};
 use crate::mesh::TriMesh;
 
@@ -259,11 +260,6 @@ fn twins(points: &[Point3], edges: &[[u32; 2]]) -> Vec<[u32; 2]> {
     found
 }
 
-/// Equal for points at the same place only; −0 is 0.
-fn place_key(p: &Point3) -> [u64; 3] {
-    [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits())
-}
-
 /// The triangles that have one of some edges, which are in ascending order.
 fn triangles_at(surface: &TriMesh, edges: &[[u32; 2]]) -> Offenders {
     let has = |t: &[u32; 3]| (0..3).any(|i| edges.binary_search(&edge_of(t, i).0).is_ok());
@@ -288,7 +284,7 @@ pub(super) fn no_duplicate_points(points: &[Point3]) -> Result<(), TetError> {
 
 /// Checks that no two triangles have the same three vertices.
 pub(super) fn no_duplicate_triangles(triangles: &[[u32; 3]]) -> Result<(), TetError> {
-    let mut order: Vec<([u32; 3], u32)> = triangles.iter().map(|&t| super::complex::face_key(t)).zip(0..).collect();
+    let mut order: Vec<([u32; 3], u32)> = triangles.iter().map(|&t| crate::mesh::face_key(t)).zip(0..).collect();
     order.sort_unstable();
     let mut twice: Vec<[u32; 2]> = Vec::new();
     for run in order.chunk_by(|x, y| x.0 == y.0) {

@@ -23,16 +23,6 @@ const MAX_POINTS: usize = 50_000_000;
 /// times and eight times as large.
 const COARSER_AT: [u32; 3] = [3, 8, 16];
 
-/// Mean edge length of a surface.
-pub fn mean_edge(surface: &TriMesh) -> f64 {
-    let mut sum = 0.0;
-    for t in &surface.triangles {
-        let [a, b, c] = t.map(|v| surface.points[v as usize]);
-        sum += (b - a).norm() + (c - b).norm() + (a - c).norm();
-    }
-    sum / (3 * surface.triangles.len()).max(1) as f64
-}
-
 /// Mean edge length at every vertex of a surface, evened out over its neighbours; 0 where there is none.
 fn edges_at_vertices(surface: &TriMesh) -> Vec<f64> {
     let n = surface.points.len();

@@ -74,7 +74,7 @@ pub use names::Names;
 pub use options::{Boundary, Interior, Refinement, Sizing, TetOptions};
 pub use outside::LeftOut;
 pub use plc::{InputKind, Plc, Region};
-pub use progress::{Progress, Stage, Watch};
+pub use progress::{Cancel, Progress, Stage, Watch};
 pub use recover::RecoverySummary;
 
 use crate::mesh::{TetMesh, TriMesh};
@@ -88,6 +88,18 @@ use certify::Place;
 /// # Errors
 /// [`TetError`]: what is wrong with the surface, or what could not be recovered.
 pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh, TetError> {
+    tetrahedralize_watched(surface, options, &Watch::NOBODY)
+}
+
+/// As [`tetrahedralize`], watched.
+///
+/// # Errors
+/// [`TetError`]; [`TetError::Cancelled`] when the watch says so.
+pub(crate) fn tetrahedralize_watched(
+    surface: &TriMesh,
+    options: &TetOptions,
+    watch: &Watch,
+) -> Result<TetMesh, TetError> {
     let edges = input::validate(surface, &[], InputKind::Closed)?;
     input::outward(surface)?;
     let filled = fill::fill(&request::Request {
@@ -105,7 +117,7 @@ pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh
         effort: options.effort,
         strict: true,
         label: false,
-        watch: &Watch::NOBODY,
+        watch,
     })?;
     match filled.places.iter().position(|&p| p != Place::Boundary) {
         Some(triangle) => Err(TetError::NotSeparating { triangle: triangle as u32 }),

@@ -2,6 +2,7 @@
 
 use super::optimize::Effort;
 use crate::geometry::Point3;
+use crate::mesh::Bounds;
 use std::sync::Arc;
 
 /// Which points are put inside the surface.
@@ -63,12 +64,8 @@ impl std::fmt::Debug for Sizing {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Refinement {
-    /// Bound on the circumradius over the shortest edge.
-    pub max_radius_edge: Option<f64>,
-    /// Bound on the smallest dihedral angle, in degrees.
-    pub min_dihedral: Option<f64>,
-    /// Bound on the volume.
-    pub max_volume: Option<f64>,
+    /// Bounds on its shape and volume.
+    pub bounds: Bounds,
     /// Most points that are added; none: as many as the tetrahedralizer can number.
     pub max_points: Option<usize>,
 }
@@ -77,21 +74,21 @@ impl Refinement {
     /// With a bound on the circumradius over the shortest edge; 2 and above is sure to end, 1.2 to 2 mostly does.
     #[must_use]
     pub fn max_radius_edge(mut self, bound: f64) -> Self {
-        self.max_radius_edge = Some(bound);
+        self.bounds.max_radius_edge = Some(bound);
         self
     }
 
     /// With a bound on the smallest dihedral angle, in degrees.
     #[must_use]
     pub fn min_dihedral(mut self, degrees: f64) -> Self {
-        self.min_dihedral = Some(degrees);
+        self.bounds.min_dihedral = Some(degrees);
         self
     }
 
     /// With a bound on the volume.
     #[must_use]
     pub fn max_volume(mut self, bound: f64) -> Self {
-        self.max_volume = Some(bound);
+        self.bounds.max_volume = Some(bound);
         self
     }
 

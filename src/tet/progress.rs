@@ -37,20 +37,25 @@ pub struct Progress {
 pub(super) type OnProgress = dyn Fn(Progress) + Send + Sync;
 
 /// What is asked whether to stop.
-pub(super) type Cancel = dyn Fn() -> bool + Send + Sync;
+pub type Cancel<'a> = dyn Fn() -> bool + Send + Sync + 'a;
 
 /// Who watches a run. Long loops report to it every now and then, and end with [`TetError::Cancelled`] when told so.
 #[derive(Clone, Copy, Default)]
 pub struct Watch<'a> {
     on_progress: Option<&'a OnProgress>,
-    cancel: Option<&'a Cancel>,
+    cancel: Option<&'a Cancel<'a>>,
 }
 
 impl<'a> Watch<'a> {
     /// Nobody watches.
     pub const NOBODY: Watch<'static> = Watch { on_progress: None, cancel: None };
 
-    pub(super) fn new(on_progress: Option<&'a OnProgress>, cancel: Option<&'a Cancel>) -> Self {
+    /// Nobody looks on, but this is asked, often, whether to stop.
+    pub fn until(cancel: &'a Cancel<'a>) -> Self {
+        Self::new(None, Some(cancel))
+    }
+
+    pub(super) fn new(on_progress: Option<&'a OnProgress>, cancel: Option<&'a Cancel<'a>>) -> Self {
         Self { on_progress, cancel }
     }
 

@@ -3,6 +3,7 @@
 use super::tests::tube;
 use super::*;
 use crate::geometry::{Point3, Vec3};
+use crate::mesh::REGULAR_DIHEDRAL;
 use crate::mesh::quality::TetQuality;
 use crate::mesh::shapes::sphere_surface;
 use std::sync::Arc;
@@ -34,6 +35,15 @@ fn a_function_of_the_place_sizes_the_inside() {
     assert!(q.mean > 0.8 && q.min > 0.1, "{q:?}");
 }
 
+/// What no mesh fulfils is aimed at as far as the boundary allows.
+#[test]
+fn any_angle_of_a_tetrahedron_may_be_asked_for() {
+    let s = sphere_surface(2);
+    let bounds = Refinement::default().min_dihedral(65.0);
+    let t = Tetrahedralizer::new().refine(Some(bounds)).run(&Plc::from(&s)).unwrap();
+    assert_eq!(t.faces, s.triangles);
+}
+
 #[test]
 fn volumes_are_bounded_and_what_is_not_a_number_is_refused() {
     let s = sphere_surface(2);
@@ -41,7 +51,9 @@ fn volumes_are_bounded_and_what_is_not_a_number_is_refused() {
     let t = Tetrahedralizer::new().refine(Some(bounds)).interior(Interior::None).run(&Plc::from(&s)).unwrap();
     assert!(t.summary.refine.is_some_and(|r| r.points > 0));
     assert_eq!(t.faces, s.triangles);
-    for bad in [Refinement::default().max_volume(-1.0), Refinement::default().max_radius_edge(f64::NAN)] {
+    let angle = |degrees| Refinement::default().min_dihedral(degrees);
+    let bounds = [Refinement::default().max_volume(-1.0), Refinement::default().max_radius_edge(f64::NAN)];
+    for bad in bounds.into_iter().chain([angle(-1.0), angle(REGULAR_DIHEDRAL), angle(f64::NAN)]) {
         let error = Tetrahedralizer::new().refine(Some(bad)).run(&Plc::from(&s)).unwrap_err();
         assert!(matches!(error, TetError::BadOption { .. }), "{error}");
     }

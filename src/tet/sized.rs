@@ -2,7 +2,6 @@
 
 use super::complex::Complex;
 use super::error::TetError;
-use super::lattice::mean_edge;
 use super::options::{Interior, Refinement, Sizing};
 use super::progress::Stage;
 use super::refine::{
@@ -37,12 +36,9 @@ pub(super) fn check(refinement: Option<&Refinement>, sizing: &Sizing, points: us
         }
         Sizing::Surface | Sizing::Function(_) => {}
     }
-    let Some(r) = refinement else { return Ok(()) };
-    r.max_radius_edge.map_or(Ok(()), |b| positive("max_radius_edge", b))?;
-    r.max_volume.map_or(Ok(()), |b| positive("max_volume", b))?;
-    match r.min_dihedral {
-        Some(b) if !(0.0..=60.0).contains(&b) => Err(TetError::BadOption { option: "min_dihedral", value: b }),
-        _ => Ok(()),
+    match refinement.and_then(|r| r.bounds.senseless()) {
+        Some((option, value)) => Err(TetError::BadOption { option, value }),
+        None => Ok(()),
     }
 }
 
@@ -92,7 +88,7 @@ pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineR
     let bounds = if bounded { Regions::of(carved, r.regions)?.volume_bounds(r.regions) } else { Vec::new() };
     if r.optimize {
         // Moves make some larger again.
-        goals.max_volume = goals.max_volume.map(|bound| MARGIN * bound);
+        goals.bounds.max_volume = goals.bounds.max_volume.map(|bound| MARGIN * bound);
     }
     let report = refine_complex(carved, &goals, bounds, |points| r.watch.report(Stage::Refine, points, 0).is_ok());
     r.watch.report(Stage::Refine, report.points, report.points)?;
@@ -102,13 +98,7 @@ pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineR
 /// The goals of a refinement, without sizes.
 pub(super) fn goals(refinement: Option<&Refinement>) -> Goals<'static> {
     let Some(r) = refinement else { return Goals::default() };
-    Goals {
-        max_radius_edge: r.max_radius_edge,
-        min_dihedral: r.min_dihedral,
-        max_volume: r.max_volume,
-        size: None,
-        max_points: r.max_points,
-    }
+    Goals { bounds: r.bounds, size: None, max_points: r.max_points }
 }
 
 /// The edge length of a regular tetrahedron of this volume.
@@ -123,7 +113,7 @@ pub(super) fn size_function(
     volume: Option<f64>,
 ) -> impl Fn(&Point3) -> f64 + use<> {
     let tree = size_tree(surface, sizing);
-    let mean = mean_edge(surface);
+    let mean = surface.mean_edge();
     let limit = volume.map_or(f64::INFINITY, edge_of_volume);
     move |p: &Point3| tree.as_ref().map_or(mean, |(tree, _)| tree.size_at(p)).min(limit)
 }

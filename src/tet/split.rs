@@ -13,6 +13,7 @@ use super::outside::{LeftOut, without};
 use super::plc::Plc;
 use super::sized;
 use crate::geometry::Point3;
+use crate::mesh::Bounds;
 use crate::mesh::{TetMesh, TriMesh};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
@@ -195,7 +196,7 @@ impl Tetrahedralizer {
     fn run_pieces(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
         let (refinement, sizing) = self.wishes();
         let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
-        let volume = refinement.and_then(|r| r.max_volume);
+        let volume = refinement.and_then(|r| r.bounds.max_volume);
         let size = Arc::new(sized::size_function(&surface, sizing, volume));
         let mut pieces = Pieces::new(plc);
         if volume.is_some() || !matches!(sizing, Sizing::Surface) {
@@ -211,7 +212,7 @@ impl Tetrahedralizer {
             _ => keep,
         };
         let goals = sized::goals(refinement);
-        let shape = super::refine::Goals { max_volume: None, ..goals };
+        let shape = super::refine::Goals { bounds: Bounds { max_volume: None, ..goals.bounds }, ..goals };
         for round in 0.. {
             let mut done = keep.run(&pieces.plc)?;
             let split = if round < ROUNDS { to_split(&done.mesh, &pieces, &shape) } else { Vec::new() };

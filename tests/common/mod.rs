@@ -44,7 +44,7 @@ pub fn mesh(network: &Skeleton, rho: f64) -> Meshed {
 pub fn mesh_by(network: &Skeleton, plan: &MeshPlan) -> Meshed {
     match mesh_network(network, plan, &Silent, &mut Clock::default()) {
         Ok(meshed) => meshed,
-        Err(RunError::BlocksFailed(report)) => panic!("blocks failed\n{}", report.text()),
+        Err(RunError::BlocksFailed(report)) => panic!("blocks failed\n{}", anastomesh::report::mesh::text(&report)),
         Err(error) => panic!("{error}"),
     }
 }

@@ -1,5 +1,6 @@
 //! The input: read, facets cut into triangles, repaired where asked for.
 
+use crate::geometry::place_key;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -7,7 +8,6 @@ use super::format::{InputFormat, is_stream};
 use super::numbers::{Counted, FileNumbers};
 use super::plan::TetPlan;
 use crate::cli::exit::Failure;
-use crate::geometry::Point3;
 use crate::io::surface::{SurfaceContent, read_content_as, read_content_from};
 use crate::io::tetgen::{self, Nodes};
 use crate::mesh::TriMesh;
@@ -223,8 +223,7 @@ fn regions(listed: &[tetgen::Region], plan: &TetPlan) -> Result<Vec<Region>, Com
 /// Lets the polygons name the first of points at the same place.
 fn name_first_of_duplicates(file: &mut tetgen::Plc) {
     let mut known = FxHashMap::default();
-    let bits = |p: &Point3| [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
-    let first: Vec<u32> = file.points.iter().zip(0..).map(|(p, i)| *known.entry(bits(p)).or_insert(i)).collect();
+    let first: Vec<u32> = file.points.iter().zip(0..).map(|(p, i)| *known.entry(place_key(p)).or_insert(i)).collect();
     for corner in file.facets.iter_mut().flat_map(|facet| facet.polygons.iter_mut().flatten()) {
         *corner = first[*corner as usize];
     }

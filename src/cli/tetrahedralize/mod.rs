@@ -1,5 +1,6 @@
 //! `anastomesh tetrahedralize`: from a surface, a complex of facets or points to a tetrahedral mesh.
 
+mod args;
 mod fault;
 mod format;
 mod input;
@@ -9,76 +10,21 @@ mod plan;
 mod switches;
 mod watch;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::common::Common;
 use super::exit::{Exit, Failure};
 use crate::mesh::quality::TetQuality;
 use crate::report::tetrahedralize::{
-    Bounds, InputSize, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
+    BoundResult, InputSize, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
 use crate::tet::{Boundary, LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
-use format::{InputFormat, StreamFormat, Target, is_stream};
+pub use args::Args;
+use format::{InputFormat, Target, is_stream};
 use input::Input;
 use plan::TetPlan;
 use watch::{Watch, peak_memory};
-
-#[derive(Debug, clap::Args)]
-pub struct Args {
-    /// A closed surface (.off, .ply, .stl, .obj), a complex of facets (TetGen's .poly, .smesh), or points (.node);
-    /// `-` for standard input
-    #[arg(value_name = "IN")]
-    input: PathBuf,
-    /// Where the mesh goes: .vtu, .pvtu (pieces), .msh (Gmsh 4.1), .mesh (Medit), .ele (TetGen's files .node .ele .face
-    /// .edge .neigh); `-` for standard output
-    #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
-    /// Format of the input, whatever its extension
-    #[arg(long, value_name = "FORMAT")]
-    from: Option<InputFormat>,
-    /// Format of standard output
-    #[arg(long, value_name = "FORMAT")]
-    to: Option<StreamFormat>,
-    /// Add no points but those that the surface needs, and leave the shape of tetrahedra as it is
-    #[arg(long, conflicts_with_all = ["max_radius_edge", "min_dihedral", "max_volume", "size", "tetgen"])]
-    no_refine: bool,
-    /// Bound on circumradius over shortest edge, as far as the boundary allows
-    #[arg(long, value_name = "RATIO", conflicts_with = "tetgen", allow_negative_numbers = true)]
-    max_radius_edge: Option<f64>,
-    /// Bound on the smallest dihedral angle in degrees, as far as the boundary allows
-    #[arg(long, value_name = "DEGREES", conflicts_with = "tetgen", allow_negative_numbers = true)]
-    min_dihedral: Option<f64>,
-    /// Bound on the volume of a tetrahedron; exit 1 when it is not met
-    #[arg(long, value_name = "VOLUME", conflicts_with = "tetgen", allow_negative_numbers = true)]
-    max_volume: Option<f64>,
-    /// Length of edges inside (default: as the surface has them nearby)
-    #[arg(long, value_name = "LENGTH", conflicts_with = "tetgen", allow_negative_numbers = true)]
-    size: Option<f64>,
-    /// The input is a complex: facets may lie inside, dangle, and meet by threes (always so for .poly and .smesh)
-    #[arg(long)]
-    plc: bool,
-    /// The triangles of the input may be split, as TetGen does without Y
-    #[arg(long, conflicts_with = "tetgen")]
-    split: bool,
-    /// First orient the triangles and join what is there twice, bit for bit
-    #[arg(long)]
-    repair: bool,
-    /// Refuse what is otherwise left out with a note: facets and segments outside of what is filled or in a hole, bytes
-    /// behind the last triangle of a binary STL
-    #[arg(long)]
-    strict: bool,
-    /// Check the input and stop
-    #[arg(long)]
-    check_only: bool,
-    /// TetGen's switches instead of these options, such as pYq1.4a0.1
-    #[arg(long, value_name = "SWITCHES", allow_hyphen_values = true)]
-    tetgen: Option<String>,
-    #[command(flatten)]
-    common: Common,
-}
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -170,10 +116,8 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     };
     report.left_out = left_out(made, input);
     report.quality = Some(TetQuality::of(mesh));
-    let bounds =
-        Bounds { max_radius_edge: plan.max_radius_edge, min_dihedral: plan.min_dihedral, max_volume: plan.max_volume };
     if !input.only_points {
-        report.bounds = bounds.results(mesh, &made.faces);
+        report.bounds = BoundResult::of(&plan.bounds, mesh, &made.faces);
         let plc = Some(&input.plc).filter(|_| !plan.split);
         let unmet =
             |size| plc.and_then(|plc| SizeUnmet::of(size, Boundary::LONGER, &plc.points, &plc.triangles, &plc.edges));

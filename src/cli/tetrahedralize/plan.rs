@@ -1,9 +1,10 @@
 //! What was typed, resolved: flags, or `TetGen`'s switches, become one plan.
 
-use super::Args;
+use super::args::Args;
 use super::format::{InputFormat, Target};
-use super::switches::{Quality, Switches};
+use super::switches::Switches;
 use crate::cli::exit::Failure;
+use crate::mesh::{Bounds, REGULAR_DIHEDRAL};
 use crate::tet::{Boundary, InputKind, Interior, Refinement, Sizing, Tetrahedralizer};
 use serde::Serialize;
 
@@ -17,12 +18,9 @@ pub struct TetPlan {
     pub plc: bool,
     /// Whether points are put inside to make tetrahedra of good shape.
     pub refine: bool,
-    /// Bound on circumradius over shortest edge.
-    pub max_radius_edge: Option<f64>,
-    /// Bound on the smallest dihedral angle, degrees.
-    pub min_dihedral: Option<f64>,
-    /// Bound on the volume of a tetrahedron.
-    pub max_volume: Option<f64>,
+    /// Bounds on the tetrahedra.
+    #[serde(flatten)]
+    pub bounds: Bounds,
     /// Edge length wanted everywhere; none: as the surface has it nearby.
     pub size: Option<f64>,
     /// Whether the triangles of the input may be split.
@@ -96,9 +94,7 @@ impl TetPlan {
         Self {
             plc: args.plc || format.is_complex(),
             refine,
-            max_radius_edge: args.max_radius_edge,
-            min_dihedral: args.min_dihedral,
-            max_volume: args.max_volume,
+            bounds: bounds_of(args),
             size: args.size,
             split: args.split,
             optimize: refine,
@@ -114,8 +110,6 @@ impl TetPlan {
 
     fn of_switches(s: &Switches, format: InputFormat) -> Self {
         let refine = s.quality.is_some() || s.max_volume.is_some() || s.region_volumes;
-        let Quality { max_radius_edge, min_dihedral } =
-            s.quality.unwrap_or(Quality { max_radius_edge: f64::INFINITY, min_dihedral: None });
         let all = |wanted: bool| if wanted { Wanted::All } else { Wanted::Boundary };
         let (faces, edges) =
             if s.no_faces { (Wanted::Nothing, Wanted::Nothing) } else { (all(s.all_faces), all(s.all_edges)) };
@@ -123,9 +117,7 @@ impl TetPlan {
             // TetGen takes every surface as a complex.
             plc: s.plc || format.is_complex(),
             refine,
-            max_radius_edge: Some(max_radius_edge).filter(|bound| bound.is_finite()),
-            min_dihedral,
-            max_volume: s.max_volume,
+            bounds: Bounds { max_volume: s.max_volume, ..s.quality.unwrap_or_default() },
             size: None,
             split: !s.keep_boundary,
             optimize: refine && !s.no_optimization,
@@ -140,48 +132,43 @@ impl TetPlan {
     }
 
     fn validate(args: &Args) -> Result<(), Failure> {
-        let positive = |name: &str, value: Option<f64>| match value {
-            Some(value) if !(value > 0.0 && value.is_finite()) => {
-                Err(Failure::usage(format!("{name} is {value}; give a finite number above 0")))
-            }
-            _ => Ok(()),
-        };
-        positive("--max-radius-edge", args.max_radius_edge)?;
-        positive("--max-volume", args.max_volume)?;
-        positive("--size", args.size)?;
-        if let Some(angle) = args.min_dihedral
-            && !(0.0..70.5).contains(&angle)
-        {
-            return Err(Failure::usage(format!(
-                "--min-dihedral is {angle}; give degrees from 0 to below 70.5, the angle of the regular tetrahedron"
-            )));
+        let flag = |name: &str| format!("--{}", name.replace('_', "-"));
+        match bounds_of(args).senseless() {
+            Some((name @ "min_dihedral", angle)) => Err(Failure::usage(format!(
+                "{} is {angle}; give degrees from 0 to below {REGULAR_DIHEDRAL:.2}, the angle of the regular tetrahedron",
+                flag(name)
+            ))),
+            Some((name, value)) => Err(not_positive(&flag(name), value)),
+            None => match args.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
+                Some(size) => Err(not_positive("--size", size)),
+                None => Ok(()),
+            },
         }
-        Ok(())
     }
 
     /// The tetrahedralizer that does it.
     pub fn tetrahedralizer(&self) -> Tetrahedralizer {
-        let mut bounds = Refinement::default();
-        if let Some(bound) = self.max_radius_edge {
-            bounds = bounds.max_radius_edge(bound);
-        }
-        if let Some(bound) = self.min_dihedral {
-            bounds = bounds.min_dihedral(bound);
-        }
-        if let Some(bound) = self.max_volume {
-            bounds = bounds.max_volume(bound);
-        }
+        let refinement = Refinement { bounds: self.bounds, ..Refinement::default() };
         let lattice = Interior::Lattice { cell: self.size.map(|size| LATTICE_CELL * size), clearance: None };
-        let bounded = bounds != Refinement::default();
+        let bounded = self.bounds != Bounds::default();
         Tetrahedralizer::new()
             .kind(if self.plc { InputKind::Plc } else { InputKind::Closed })
             .interior(if self.refine { lattice } else { Interior::None })
-            .refine(bounded.then_some(bounds))
+            .refine(bounded.then_some(refinement))
             .sizing(self.size.filter(|_| bounded || self.split).map_or(Sizing::Surface, Sizing::Constant))
             .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
             .optimize(self.optimize)
             .strict(self.strict)
     }
+}
+
+/// The bounds among the flags.
+fn bounds_of(args: &Args) -> Bounds {
+    Bounds { max_radius_edge: args.max_radius_edge, min_dihedral: args.min_dihedral, max_volume: args.max_volume }
+}
+
+fn not_positive(flag: &str, value: f64) -> Failure {
+    Failure::usage(format!("{flag} is {value}; give a finite number above 0"))
 }
 
 /// What belongs together between target and plan.

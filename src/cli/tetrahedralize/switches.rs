@@ -1,5 +1,7 @@
 //! `TetGen`'s switches, as its manual describes them (version 1.5, section 4): a string such as `pYq1.4a0.1`.
 
+use crate::mesh::{Bounds, REGULAR_DIHEDRAL};
+
 /// What the switches ask for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Switches {
@@ -8,7 +10,7 @@ pub struct Switches {
     /// `Y`: the input's triangles are kept as they are.
     pub keep_boundary: bool,
     /// `q`: bad tetrahedra are refined.
-    pub quality: Option<Quality>,
+    pub quality: Option<Bounds>,
     /// `a` with a number: no tetrahedron is larger.
     pub max_volume: Option<f64>,
     /// `a` without a number: no tetrahedron is larger than its region says.
@@ -35,15 +37,6 @@ pub struct Switches {
     pub quiet: bool,
     /// What is understood but does nothing here, with the reason.
     pub without_effect: Vec<String>,
-}
-
-/// What `q` asks for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quality {
-    /// Bound on the circumradius over the shortest edge.
-    pub max_radius_edge: f64,
-    /// Bound on the smallest dihedral angle in degrees; none where it is 0.
-    pub min_dihedral: Option<f64>,
 }
 
 /// The bound of `q` without a number.
@@ -203,10 +196,10 @@ fn unsupported(letter: char, what: &'static str, instead: &'static str) -> Switc
 }
 
 /// `q[ratio][/mindihedral]`.
-fn quality(cursor: &mut Cursor) -> Result<Quality, SwitchError> {
+fn quality(cursor: &mut Cursor) -> Result<Bounds, SwitchError> {
     const RATIO: &str =
         "a bound on circumradius over shortest edge has to follow, above 0.612 (1.4 to 2 are usual), as in q1.4";
-    const ANGLE: &str = "an angle in degrees, from 0 to below 70.5, has to follow the slash, as in q1.4/10";
+    const ANGLE: &str = "an angle in degrees, from 0 to below 70.53, has to follow the slash, as in q1.4/10";
     let max_radius_edge = match cursor.number() {
         "" => USUAL_RATIO,
         number => {
@@ -221,11 +214,11 @@ fn quality(cursor: &mut Cursor) -> Result<Quality, SwitchError> {
     let mut min_dihedral = None;
     if cursor.skip('/') {
         let number = cursor.number();
-        let angle = number.parse::<f64>().ok().filter(|angle| (0.0..70.5).contains(angle));
+        let angle = number.parse::<f64>().ok().filter(|angle| (0.0..REGULAR_DIHEDRAL).contains(angle));
         let bad = || SwitchError::BadNumber { switch: 'q', number: format!("/{number}"), expected: ANGLE };
         min_dihedral = Some(angle.ok_or_else(bad)?).filter(|&angle| angle > 0.0);
     }
-    Ok(Quality { max_radius_edge, min_dihedral })
+    Ok(Bounds { max_radius_edge: Some(max_radius_edge), min_dihedral, max_volume: None })
 }
 
 /// `O[level][/operations]`: whether it turns improvement off.
@@ -295,6 +288,10 @@ impl<'a> Cursor<'a> {
 mod tests {
     use super::*;
 
+    fn bounds(max_radius_edge: f64, min_dihedral: Option<f64>) -> Bounds {
+        Bounds { max_radius_edge: Some(max_radius_edge), min_dihedral, max_volume: None }
+    }
+
     fn parse(text: &str) -> Switches {
         Switches::parse(text).unwrap_or_else(|e| panic!("{text}: {e}"))
     }
@@ -306,7 +303,7 @@ mod tests {
     #[test]
     fn what_people_write() {
         let all = parse("pYq1.4a0.1");
-        let quality = Some(Quality { max_radius_edge: 1.4, min_dihedral: None });
+        let quality = Some(bounds(1.4, None));
         let expected =
             Switches { plc: true, keep_boundary: true, quality, max_volume: Some(0.1), ..Default::default() };
         assert_eq!(all, expected);
@@ -320,10 +317,10 @@ mod tests {
     #[test]
     fn quality_has_a_ratio_and_an_angle() {
         let quality = |text| parse(text).quality.unwrap();
-        assert_eq!(quality("q"), Quality { max_radius_edge: 2.0, min_dihedral: None });
-        assert_eq!(quality("q/18"), Quality { max_radius_edge: 2.0, min_dihedral: Some(18.0) });
-        assert_eq!(quality("q1.1/20.5p"), Quality { max_radius_edge: 1.1, min_dihedral: Some(20.5) });
-        assert_eq!(quality("q1.2/0"), Quality { max_radius_edge: 1.2, min_dihedral: None });
+        assert_eq!(quality("q"), bounds(2.0, None));
+        assert_eq!(quality("q/18"), bounds(2.0, Some(18.0)));
+        assert_eq!(quality("q1.1/20.5p"), bounds(1.1, Some(20.5)));
+        assert_eq!(quality("q1.2/0"), bounds(1.2, None));
         for bad in ["q0", "q0.5", "q1.2.3", "q1.4/80", "q1.4/", "q."] {
             assert!(fault(bad).starts_with("switch 'q' of --tetgen has the number '"), "{}", fault(bad));
         }

@@ -1,11 +1,13 @@
 //! Lines about points and tetrahedra.
 
-use super::disjoint_sets::DisjointSets;
 use super::result::{Line, LineResult, Offender, OffenderKind, Tally};
+use crate::geometry::DisjointSets;
 use crate::geometry::Point3;
+use crate::geometry::place_key;
 use crate::geometry::predicates::{in_exact_range, orient3d};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{NONE, TetAdjacency, face_vertices};
+use crate::mesh::{face_key, tet_key};
 use rayon::prelude::*;
 
 pub(super) fn centroid(points: &[Point3], ids: &[u32]) -> Point3 {
@@ -61,7 +63,7 @@ fn has_repeated_vertex(&[a, b, c, d]: &[u32; 4]) -> bool {
     a == b || a == c || a == d || b == c || b == d || c == d
 }
 
-pub(super) fn no_repeated_vertex(mesh: &TetMesh) -> LineResult {
+fn no_repeated_vertex(mesh: &TetMesh) -> LineResult {
     let mut tally = Tally::new(Line::NoRepeatedVertex);
     for (i, _) in mesh.tets.iter().enumerate().filter(|(_, t)| has_repeated_vertex(t)) {
         tally.add(|| tet_offender(mesh, i as u32));
@@ -70,7 +72,7 @@ pub(super) fn no_repeated_vertex(mesh: &TetMesh) -> LineResult {
 }
 
 /// Tetrahedra that are not positive.
-pub(super) fn positive_tets(mesh: &TetMesh) -> LineResult {
+fn positive_tets(mesh: &TetMesh) -> LineResult {
     let positive = |&[a, b, c, d]: &[u32; 4]| {
         let p = |v: u32| &mesh.points[v as usize];
         orient3d(p(a), p(b), p(c), p(d)) > 0.0
@@ -90,14 +92,9 @@ pub(super) fn positive_tets(mesh: &TetMesh) -> LineResult {
     tally.done()
 }
 
-pub(super) fn sorted<const N: usize>(mut ids: [u32; N]) -> [u32; N] {
-    ids.sort_unstable();
-    ids
-}
-
 /// Tetrahedra that repeat another. Two equal ones share all their faces, so only those whose neighbour has the same
 /// fourth vertex, and those at crowded faces, need a look.
-pub(super) fn no_duplicate_tets(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
+fn no_duplicate_tets(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     let mut suspects: Vec<u32> = adjacency.crowded.iter().map(|handle| handle / 4).collect();
     for (tet, row) in adjacency.neighbors.iter().enumerate() {
         let t = &mesh.tets[tet];
@@ -108,10 +105,10 @@ pub(super) fn no_duplicate_tets(mesh: &TetMesh, adjacency: &TetAdjacency) -> Lin
     }
     suspects.sort_unstable();
     suspects.dedup();
-    suspects.sort_by_key(|&tet| sorted(mesh.tets[tet as usize]));
+    suspects.sort_by_key(|&tet| tet_key(mesh.tets[tet as usize]));
     let mut tally = Tally::new(Line::NoDuplicateTets);
     for pair in suspects.windows(2) {
-        if sorted(mesh.tets[pair[0] as usize]) == sorted(mesh.tets[pair[1] as usize]) {
+        if tet_key(mesh.tets[pair[0] as usize]) == tet_key(mesh.tets[pair[1] as usize]) {
             let place = centroid(&mesh.points, &mesh.tets[pair[0] as usize]);
             tally.add(|| Offender::new(OffenderKind::TetPair, pair, Some(place)));
         }
@@ -123,9 +120,9 @@ pub(super) fn face_offender(points: &[Point3], face: [u32; 3]) -> Offender {
     Offender::new(OffenderKind::Face, &face, Some(centroid(points, &face)))
 }
 
-pub(super) fn faces_shared_by_two(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
+fn faces_shared_by_two(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     let mut faces: Vec<[u32; 3]> =
-        adjacency.crowded.iter().map(|&handle| sorted(face_vertices(&mesh.tets, handle))).collect();
+        adjacency.crowded.iter().map(|&handle| face_key(face_vertices(&mesh.tets, handle))).collect();
     faces.sort_unstable();
     faces.dedup();
     let mut tally = Tally::new(Line::FacesSharedByTwo);
@@ -142,7 +139,7 @@ pub(super) fn same_turn(a: [u32; 3], b: [u32; 3]) -> bool {
 
 /// Interior faces whose two tetrahedra lie on the same side: both see the face turn the same way from outside. (For
 /// positive tetrahedra this is the geometric statement.)
-pub(super) fn opposite_sides(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
+fn opposite_sides(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     let mut tally = Tally::new(Line::OppositeSides);
     for (handle, &neighbor) in adjacency.neighbors.as_flattened().iter().enumerate() {
         if neighbor != NONE && (handle as u32) < neighbor {
@@ -155,13 +152,8 @@ pub(super) fn opposite_sides(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineRe
     tally.done()
 }
 
-/// A key under which equal points (and 0 and −0) are equal.
-pub(super) fn bits(p: &Point3) -> [u64; 3] {
-    [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits())
-}
-
 fn hash(p: &Point3) -> u64 {
-    bits(p).iter().fold(0, |h: u64, &x| (h.rotate_left(23) ^ x).wrapping_mul(0x9E37_79B9_7F4A_7C15))
+    place_key(p).iter().fold(0, |h: u64, &x| (h.rotate_left(23) ^ x).wrapping_mul(0x9E37_79B9_7F4A_7C15))
 }
 
 pub(super) fn no_duplicate_points(mesh: &TetMesh) -> LineResult {
@@ -169,7 +161,8 @@ pub(super) fn no_duplicate_points(mesh: &TetMesh) -> LineResult {
     order.par_sort_unstable();
     let mut tally = Tally::new(Line::NoDuplicatePoints);
     for run in order.chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() > 1) {
-        let mut points: Vec<([u64; 3], u32)> = run.iter().map(|&(_, i)| (bits(&mesh.points[i as usize]), i)).collect();
+        let mut points: Vec<([u64; 3], u32)> =
+            run.iter().map(|&(_, i)| (place_key(&mesh.points[i as usize]), i)).collect();
         points.sort_unstable();
         for pair in points.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
             tally.add(|| {
@@ -180,13 +173,25 @@ pub(super) fn no_duplicate_points(mesh: &TetMesh) -> LineResult {
     tally.done()
 }
 
-pub(super) fn no_unused_points(mesh: &TetMesh) -> LineResult {
+fn no_unused_points(mesh: &TetMesh) -> LineResult {
     let used = crate::mesh::adjacency::vertices_of(&mesh.tets, mesh.points.len());
     let mut tally = Tally::new(Line::NoUnusedPoints);
     for (i, _) in used.iter().enumerate().filter(|&(_, &used)| !used) {
         tally.add(|| point_offender(&mesh.points, i as u32));
     }
     tally.done()
+}
+
+/// The lines about tetrahedra and the points that they use, of a mesh whose arrays are sound.
+pub(super) fn lines(mesh: &TetMesh, adjacency: &TetAdjacency) -> [LineResult; 6] {
+    [
+        no_repeated_vertex(mesh),
+        no_duplicate_tets(mesh, adjacency),
+        positive_tets(mesh),
+        faces_shared_by_two(mesh, adjacency),
+        opposite_sides(mesh, adjacency),
+        no_unused_points(mesh),
+    ]
 }
 
 /// Number of components of tetrahedra joined by faces.

@@ -2,7 +2,9 @@
 
 use super::cells::{face_offender, same_turn};
 use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally};
+use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Vec3};
+use crate::mesh::face_key;
 use crate::mesh::quality::triangle_area_vector;
 use crate::mesh::{Cap, Patch, VolumeMesh, WALL};
 use rustc_hash::FxHashMap;
@@ -55,15 +57,7 @@ pub(super) fn face_at(points: &[Point3], face: [u32; 3]) -> Offender {
 
 /// The triangles' sorted vertices with their indices, ascending.
 fn by_vertices(triangles: &[[u32; 3]]) -> Vec<([u32; 3], u32)> {
-    let mut keys: Vec<_> = triangles
-        .iter()
-        .enumerate()
-        .map(|(i, t)| {
-            let mut key = *t;
-            key.sort_unstable();
-            (key, i as u32)
-        })
-        .collect();
+    let mut keys: Vec<_> = triangles.iter().map(|&t| face_key(t)).zip(0..).collect();
     keys.sort_unstable();
     keys
 }
@@ -263,7 +257,7 @@ pub(super) fn is_disc(triangles: &[[u32; 3]]) -> bool {
         return false;
     }
     let find = |edge: [u32; 2]| directed.binary_search_by_key(&edge, |entry| entry.0).ok().map(|i| directed[i].1);
-    let mut sets = super::disjoint_sets::DisjointSets::new(triangles.len());
+    let mut sets = DisjointSets::new(triangles.len());
     let mut rim: Vec<[u32; 2]> = Vec::new();
     for &([a, b], t) in &directed {
         match find([b, a]) {

@@ -6,12 +6,12 @@
 //! ask for; and every terminal has its flat cap while every other boundary face is wall.
 
 mod cells;
-mod disjoint_sets;
 mod labels;
 mod nested;
 pub mod parts;
 mod result;
 mod surface;
+mod surfaces;
 
 #[cfg(test)]
 mod tests;
@@ -86,16 +86,11 @@ impl Check<'_> {
         adjacency: TetAdjacency,
     ) -> CheckReport {
         let mesh = self.mesh;
-        lines.push(cells::no_repeated_vertex(mesh));
-        lines.push(cells::no_duplicate_tets(mesh, &adjacency));
-        lines.push(cells::positive_tets(mesh));
-        lines.push(cells::faces_shared_by_two(mesh, &adjacency));
-        lines.push(cells::opposite_sides(mesh, &adjacency));
+        lines.extend(cells::lines(mesh, &adjacency));
         lines.push(cells::no_duplicate_points(mesh));
-        lines.push(cells::no_unused_points(mesh));
         counts.components = cells::component_count(&adjacency);
         counts.volume = cells::volume(mesh);
-        lines.push(self.components(counts.components));
+        lines.push(result::components(self.expectation, counts.components));
         let faces = boundary_of(mesh, &adjacency);
         drop(adjacency);
         let boundary = Boundary::new(&mesh.points, &faces);
@@ -111,15 +106,6 @@ impl Check<'_> {
         lines.extend(self.labels(&faces));
         counts.caps = self.volume.map_or(0, |v| v.patches.iter().filter(|p| p.cap.is_some()).count());
         CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections)
-    }
-
-    fn components(&self, found: usize) -> LineResult {
-        let Some(expected) = self.expectation else {
-            return LineResult::skipped(Line::Components, Skipped::NoExpectation);
-        };
-        let mut tally = result::Tally::new(Line::Components);
-        tally.compare(vec![expected.loops.len() as u32], vec![found as u32]);
-        tally.done()
     }
 
     /// The genus is defined for closed manifolds alone: `open` is the line that says the boundary is none.

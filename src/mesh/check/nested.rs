@@ -4,7 +4,7 @@
 //! it must be 0 or 1. Crossing a surface changes it by one; round a point of a surface the others must therefore wind
 //! 0 times when the surface faces outwards, and once when it faces into a cavity.
 
-use super::surface::Surfaces;
+use super::surfaces::Surfaces;
 use crate::geometry::{Aabb, Bvh, Point3, crossing};
 
 /// Relative roundoff of a term of [`Enclosed`], with a wide margin.

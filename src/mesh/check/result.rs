@@ -261,6 +261,16 @@ impl Tally {
     }
 }
 
+/// Whether there are as many components as the skeleton has.
+pub(super) fn components(expectation: Option<&Expectation>, found: usize) -> LineResult {
+    let Some(expected) = expectation else {
+        return LineResult::skipped(Line::Components, Skipped::NoExpectation);
+    };
+    let mut tally = Tally::new(Line::Components);
+    tally.compare(vec![expected.loops.len() as u32], vec![found as u32]);
+    tally.done()
+}
+
 /// Sizes of what was checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Counts {

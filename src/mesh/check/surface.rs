@@ -1,9 +1,10 @@
 //! Lines about the boundary as a surface.
 
 use super::cells::{centroid, face_offender, point_offender};
-use super::disjoint_sets::DisjointSets;
 use super::nested::nested_surfaces;
 use super::result::{Intersection, Line, LineResult, Offender, OffenderKind, Tally};
+use super::surfaces::{Surface, Surfaces, surfaces};
+use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, self_contacts};
 use crate::mesh::adjacency::{NONE, TriAdjacency, tri_adjacency};
 
@@ -13,29 +14,6 @@ pub(super) struct Boundary<'a> {
     faces: &'a [[u32; 3]],
     edges: TriAdjacency,
     surfaces: Surfaces,
-}
-
-/// The boundary surfaces: faces joined by vertices.
-pub(super) struct Surfaces {
-    /// Surface of each vertex; `NONE` off the boundary.
-    pub of: Vec<u32>,
-    /// Ascending by their smallest vertex.
-    pub all: Vec<Surface>,
-}
-
-/// A boundary surface.
-pub(super) struct Surface {
-    /// Its smallest vertex.
-    pub vertex: u32,
-    pub vertices: i64,
-    pub faces: i64,
-}
-
-impl Surface {
-    /// Euler number of a closed one: 2 E = 3 F there.
-    pub(super) fn euler(&self) -> i64 {
-        self.vertices - self.faces / 2
-    }
 }
 
 impl<'a> Boundary<'a> {
@@ -189,35 +167,4 @@ pub(super) fn compare_loops(
     }
     tally.compare(expected, genera);
     tally.done()
-}
-
-fn surfaces(points: usize, faces: &[[u32; 3]]) -> Surfaces {
-    let mut sets = DisjointSets::new(points);
-    let mut of = vec![NONE; points];
-    for &[a, b, c] in faces {
-        sets.join(a, b);
-        sets.join(b, c);
-        for v in [a, b, c] {
-            of[v as usize] = v;
-        }
-    }
-    let mut all: Vec<Surface> = Vec::new();
-    for v in 0..points as u32 {
-        if of[v as usize] == NONE {
-            continue;
-        }
-        // The root is the smallest vertex, which comes first.
-        let root = sets.root(v);
-        if root == v {
-            of[v as usize] = all.len() as u32;
-            all.push(Surface { vertex: v, vertices: 0, faces: 0 });
-        } else {
-            of[v as usize] = of[root as usize];
-        }
-        all[of[v as usize] as usize].vertices += 1;
-    }
-    for face in faces {
-        all[of[face[0] as usize] as usize].faces += 1;
-    }
-    Surfaces { of, all }
 }

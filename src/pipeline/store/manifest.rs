@@ -1,18 +1,17 @@
 //! What a work directory was begun with: a run goes on only with blocks of the same network, options and version.
 
-use std::fmt;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::StoreError;
+use super::error::{Difference, StoreError};
 use super::key::Key;
 use super::log::LogFile;
 
 /// Version of what is in a work directory.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 const MANIFEST: &str = "anastomesh.json";
 const LOCK: &str = "anastomesh.lock";
@@ -25,35 +24,6 @@ pub struct Manifest {
     program: String,
     network: String,
     options: serde_json::Value,
-}
-
-/// What is not as it was when a work directory was begun.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Difference {
-    /// Another version of the program, or what is there is no manifest.
-    Version(String),
-    /// Another network.
-    Network,
-    /// Another option.
-    Option {
-        /// Its name.
-        name: String,
-        /// What it was.
-        was: String,
-        /// What it is.
-        is: String,
-    },
-}
-
-impl fmt::Display for Difference {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Version(program) => write!(f, "another version ({program})"),
-            Self::Network => f.write_str("another network"),
-            Self::Option { name, was, is } => write!(f, "another option: {name} was {was} and is now {is}"),
-        }
-    }
 }
 
 impl Manifest {

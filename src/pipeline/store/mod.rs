@@ -3,6 +3,7 @@
 //! Whoever asks for a block looks for its key first. So a block that does not change when others are cut anew is not
 //! meshed again, and a run that was killed goes on where it was: it does everything again and finds nearly all of it done.
 
+mod error;
 mod key;
 mod log;
 mod manifest;
@@ -12,71 +13,21 @@ mod tests;
 use std::collections::hash_map::Entry;
 use std::io;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use rustc_hash::FxHashMap;
 
+pub use error::{Difference, StoreError};
 pub use key::{Key, KeyMaker};
 use log::LogFile;
-pub use manifest::{Difference, Manifest};
+pub use manifest::Manifest;
 
 use crate::block::Bytes;
 
 /// A record of the store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RecordId(u32);
-
-/// Why blocks cannot be kept.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum StoreError {
-    /// The folder cannot be used.
-    #[error("{}: cannot be used as work directory: {source}; name a folder that can be written to", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// Another run uses the folder.
-    #[error("{}: another run is using this work directory; wait for it, or name another one", path.display())]
-    Locked {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The folder holds the blocks of another version of the program, another network or other options.
-    #[error(
-        "{}: this work directory was begun with {difference}; name another one, or give --restart to throw its blocks away",
-        path.display()
-    )]
-    Other {
-        /// The folder.
-        path: PathBuf,
-        /// What is not as it was.
-        difference: Difference,
-    },
-    /// A block cannot be written.
-    #[error("a finished block cannot be written to {place}: {source}; {}", advice(source))]
-    Write {
-        /// Where blocks are kept.
-        place: String,
-        /// Why.
-        source: io::Error,
-    },
-    /// A block cannot be read back.
-    #[error("a finished block cannot be read back: {0}")]
-    Read(#[from] io::Error),
-}
-
-fn advice(source: &io::Error) -> &'static str {
-    match source.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "make room or name a --work-dir on a larger disk; blocks in a --work-dir are kept, so the next run goes on there"
-        }
-        _ => "check the disk; blocks in a --work-dir are kept, so the next run goes on there",
-    }
-}
 
 /// Keeps finished blocks, in memory or in a file.
 #[derive(Debug)]

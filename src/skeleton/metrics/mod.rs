@@ -1,12 +1,12 @@
 //! How well a skeleton can be meshed: the figures of the paper's Fig. 11, and those that decide whether it is cut.
 
 mod barrier;
-mod cut;
 
 pub(crate) use barrier::paper_unit;
 pub use barrier::{Barrier, PairGradient};
-pub use cut::{CutRoom, separation};
 
+use super::course::Course;
+use super::cuttability::{BranchEnd, CUT_DISTANCE, CutRules, Cuttability, separation};
 use super::{Adjacency, Branches, EdgeId, NodeId, Skeleton};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,9 +16,6 @@ pub const NARROW: f64 = std::f64::consts::PI / 10.0;
 
 /// Least angle between the two vessels of a node of valence 2 that is no fold, in radians.
 pub const FOLD: f64 = std::f64::consts::PI / 6.0;
-
-/// Length that equation 11 asks of an edge, in sums of the radii at its ends: 2 ω with ω = 1.1.
-pub const LENGTH: f64 = 2.2;
 
 /// A count and what it is counted of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -56,7 +53,8 @@ pub struct Metrics {
     pub long_enough: Share,
     /// Edges longer than what equation 12 asks at their two ends.
     pub open_enough: Share,
-    /// Inner branches (no end is a terminal) that can be cut: d1 + d2 + 2 r ≤ length, d = max(2.2 r, 1.25 × (12)).
+    /// Inner branches (no end is a terminal) that have a straight place for a cut by equations 11 and 12, as the partition
+    /// decides it.
     pub cuttable: Share,
 }
 
@@ -66,12 +64,20 @@ impl Skeleton {
         let mut m = Metrics { barrier: Barrier::default().potential(self), ..Metrics::default() };
         self.measure_edges(adjacency, &mut m);
         self.measure_angles(adjacency, &mut m);
-        let rooms: Vec<Option<bool>> = branches.list.par_iter().map(|b| self.is_cuttable(adjacency, b)).collect();
-        for cuttable in rooms.into_iter().flatten() {
-            m.cuttable.of += 1;
-            m.cuttable.count += usize::from(cuttable);
-        }
+        m.cuttable = self.cuttable(adjacency, branches);
         m
+    }
+
+    /// Inner branches, and those of them that the partition may cut.
+    fn cuttable(&self, adjacency: &Adjacency, branches: &Branches) -> Share {
+        let courses: Vec<Course> = branches.list.par_iter().map(|branch| Course::new(self, branch)).collect();
+        let cuttability = Cuttability::new(self, adjacency, &courses, CutRules::default());
+        let is_inner = |course: &Course| {
+            course.branch.ends().iter().all(|&node| BranchEnd::of(adjacency, node) == BranchEnd::Junction)
+        };
+        let inner: Vec<u32> = (0..).zip(&courses).filter(|(_, course)| is_inner(course)).map(|(i, _)| i).collect();
+        let count = inner.par_iter().filter(|&&branch| cuttability.window(branch).is_ok()).count();
+        Share { count, of: inner.len() }
     }
 
     fn measure_edges(&self, adjacency: &Adjacency, m: &mut Metrics) {
@@ -85,7 +91,7 @@ impl Skeleton {
                 share.count += usize::from(length < limit * radius);
             }
             m.long_enough.of += 1;
-            m.long_enough.count += usize::from(length > LENGTH * (edge.radii[0] + edge.radii[1]));
+            m.long_enough.count += usize::from(length > CUT_DISTANCE * (edge.radii[0] + edge.radii[1]));
             let apart: f64 = edge.nodes.iter().map(|&n| self.separation_at(adjacency, id, n)).sum();
             m.open_enough.of += 1;
             m.open_enough.count += usize::from(length > apart);

@@ -1,11 +1,17 @@
 //! The tetrahedra of one joint, taken out of the whole mesh, worked on, and put back.
 
+use crate::mesh::tet_key;
 use rustc_hash::FxHashMap;
 
-use super::Improve;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{face_vertices, tet_adjacency};
 use crate::mesh::quality::radius_ratio;
+
+/// Improves the inside of a mesh whose first so many points, and whose boundary faces, stay. All points keep their
+/// index; new ones may be appended. False when the mesh could not be improved and is unchanged.
+///
+/// The tetrahedralizer's optimiser is such a function; it is passed in because the stitching does not know it.
+pub type Improve<'a> = dyn Fn(&mut TetMesh, usize) -> bool + Sync + 'a;
 
 /// A part of a mesh with its own numbering: first the points that the inside's improvement may not move, then the
 /// inner ones.
@@ -128,17 +134,12 @@ fn blocks_after(before: &[[u32; 4]], blocks: &[i32], after: &TetMesh) -> Vec<i32
         for &v in t {
             votes[v as usize * names.len() + name] += 1;
         }
-        known.insert(sorted(*t), block);
+        known.insert(tet_key(*t), block);
     }
     let elect = |t: &[u32; 4]| {
         let sum = |name: usize| t.iter().map(|&v| votes[v as usize * names.len() + name]).sum::<u32>();
         // The last of equal maxima in reverse order is the smallest name.
         (0..names.len()).rev().max_by_key(|&name| sum(name)).map_or(0, |name| names[name])
     };
-    after.tets.iter().map(|t| known.get(&sorted(*t)).copied().unwrap_or_else(|| elect(t))).collect()
-}
-
-fn sorted(mut t: [u32; 4]) -> [u32; 4] {
-    t.sort_unstable();
-    t
+    after.tets.iter().map(|t| known.get(&tet_key(*t)).copied().unwrap_or_else(|| elect(t))).collect()
 }

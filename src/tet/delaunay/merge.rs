@@ -6,11 +6,17 @@
 //! alone, a layer along the plane and few others, has all that is missing. There it lies outside the final part, whose
 //! boundary faces it has. The perturbed answer is unique, so both sides of each such face fit.
 
-use super::parallel::Cut;
 use crate::geometry::Point3;
 use crate::tet::complex::{Cell, GHOST, NONE, face_key, face_of, opposed};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+
+/// A plane across an axis, between points on its lower side and points on or above it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    pub(super) axis: usize,
+    pub(super) at: f64,
+}
 
 /// The tetrahedra of one side of a cut.
 pub(super) struct Half {

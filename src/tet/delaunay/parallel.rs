@@ -3,9 +3,10 @@
 //! Where the cuts are depends on the points alone, never on the number of threads, and so do the numbers of the
 //! tetrahedra.
 
-use super::merge::{Half, compact, merge};
+use super::merge::{Cut, Half, compact, merge};
+use super::order::hash;
 use super::order::{brio_of_sorted, hilbert};
-use super::{hash, insert_all};
+use super::sequence::insert_all;
 use crate::geometry::Point3;
 use crate::tet::complex::{Cell, GHOST, NONE};
 use rayon::prelude::*;
@@ -20,13 +21,6 @@ const SAMPLE: usize = 16_000;
 /// Largest part of the sample's tetrahedra that may reach across the cut. In space filled evenly it is a fifth; of
 /// points on a sphere, all do.
 const CROSSING: f64 = 0.45;
-
-/// A plane across an axis, between points on its lower side and points on or above it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
-    pub(super) axis: usize,
-    pub(super) at: f64,
-}
 
 /// The tetrahedra of points, ghosts included, without unused slots, and for each point one that has it; none when they
 /// are better tetrahedralized at one piece, or when something is wrong with them.

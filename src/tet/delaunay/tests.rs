@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::predicates::insphere;
+use crate::geometry::predicates::{insphere, orient3d};
 use proptest::prelude::*;
 
 fn check_delaunay(points: &[Point3], c: &Complex) {
@@ -102,6 +102,13 @@ fn points_on_a_sphere_with_one_far_vertex() {
     check_delaunay(&points, &c);
 }
 
+/// Whether all points lie in one plane, exactly: the vectors from the first span no volume, no three of them.
+fn are_coplanar(points: &[Point3]) -> bool {
+    let Some((o, rest)) = points.split_first() else { return true };
+    let flat = |i: usize, j: usize, k: usize| orient3d(o, &rest[i], &rest[j], &rest[k]) == 0.0;
+    (0..rest.len()).all(|i| (0..i).all(|j| (0..j).all(|k| flat(i, j, k))))
+}
+
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![(-2i32..3).prop_map(f64::from), (-2i32..3).prop_map(|i| f64::from(i) * 0.1), -2.0..2.0f64]
 }
@@ -119,7 +126,7 @@ proptest! {
                 check_delaunay(&points, &c);
             }
             Err(TetError::DuplicatePoints { count, .. }) => prop_assert_eq!(count, repeated),
-            Err(TetError::Flat) => {}
+            Err(TetError::Flat) => prop_assert!(are_coplanar(&points)),
             Err(e) => prop_assert!(false, "{e}"),
         }
     }
@@ -137,7 +144,10 @@ proptest! {
         }
         match delaunay(&points) {
             Ok(c) => check_delaunay(&points, &c),
-            Err(e) => prop_assert_eq!(e, TetError::Flat),
+            Err(e) => {
+                prop_assert_eq!(e, TetError::Flat);
+                prop_assert!(are_coplanar(&points));
+            }
         }
     }
 }

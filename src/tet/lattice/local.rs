@@ -1,7 +1,7 @@
 //! Lattices whose cubes are as large as the surface's triangles nearby: one lattice for each band of edge lengths, each
 //! kept where the nearest vertex of the surface has edges of its band.
 
-use super::{edges_at_vertices, graded_lattice_points, mean_edge, sites};
+use super::{edges_at_vertices, graded_lattice_points, sites};
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::TriMesh;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
@@ -22,7 +22,7 @@ const MOST_BANDS: usize = 12;
 pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
     let sizes = edges_at_vertices(surface);
     let Some(bands) = Bands::of(&sizes) else {
-        let h = mean_edge(surface);
+        let h = surface.mean_edge();
         return graded_lattice_points(surface, cell * h, clearance * h);
     };
     let band: Vec<usize> = sizes.iter().map(|&s| bands.of_size(s)).collect();
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn even_surfaces_get_the_graded_lattice() {
         let s = horn(12, 1.0);
-        let h = mean_edge(&s);
+        let h = s.mean_edge();
         assert_eq!(local_lattice_points(&s, 1.2, 0.4), graded_lattice_points(&s, 1.2 * h, 0.4 * h));
     }
 }

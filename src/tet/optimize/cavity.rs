@@ -1,10 +1,10 @@
 //! For tetrahedra that neither moves nor flips can mend: a new vertex in a cavity around them, or the contraction of
 //! an edge that takes an inner vertex away.
 
+use super::improver::Cavity;
 use super::{Effort, Improver};
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::quality::{TET_EDGES, radius_ratio};
-use crate::tet::star::EdgeRing;
 
 /// Tetrahedra that a cavity may hold.
 const MAX_CAVITY: usize = 40;
@@ -16,20 +16,6 @@ const GAIN: f64 = 1.1;
 const LEAP: f64 = 3.0;
 /// Rounds over the stubborn tetrahedra.
 const ROUNDS: usize = 4;
-
-/// Buffers of the cavity operations.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Cavity {
-    tets: Vec<u32>,
-    /// Faces of the cavity, turned inwards: (new vertex, face) is positive.
-    faces: Vec<[u32; 3]>,
-    new: Vec<[u32; 4]>,
-    created: Vec<u32>,
-    neighbors: Vec<u32>,
-    ring: EdgeRing,
-    /// Half-faces of the cavity towards the outside.
-    halves: Vec<u32>,
-}
 
 impl Improver {
     /// Inserts and contracts vertices where tetrahedra are below the stubborn limit, the worst first.

@@ -9,6 +9,8 @@ const MAX_RING: usize = 7;
 const GAIN: f64 = 1.02;
 /// Rounds over the tetrahedra that are still bad, the new ones included.
 const FLIP_ROUNDS: usize = 3;
+/// Rounds end when only one tetrahedron of so many that were tried has changed: the next would try the same in vain.
+const YIELD: usize = 50;
 
 /// A face or an edge of a tetrahedron to remove.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +35,7 @@ impl Improver {
             let tried = list.len();
             self.keep_list(list);
             total += flips;
-            if flips * 50 <= tried {
+            if flips * YIELD <= tried {
                 break;
             }
         }

@@ -1,18 +1,32 @@
 //! The state of an improvement and its plan: which passes, in which order.
 
 use super::allowance::Allowance;
-use super::smoothing::StarEnergy;
+use super::star_energy::StarEnergy;
 use super::{Effort, OptimizeOptions, OptimizeReport, strain};
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::{Complex, NONE};
 use crate::tet::flips::Flipper;
-use crate::tet::star::Star;
+use crate::tet::star::{EdgeRing, Star};
 
 /// Stands for a radius ratio that is out of date.
 pub(super) const STALE: f64 = f64::NAN;
 
 /// Fall of the strain from which a change is worth making.
 pub(super) const EASED: f64 = 0.02;
+
+/// Buffers of the cavity operations.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cavity {
+    pub tets: Vec<u32>,
+    /// Faces of the cavity, turned inwards: (new vertex, face) is positive.
+    pub faces: Vec<[u32; 3]>,
+    pub new: Vec<[u32; 4]>,
+    pub created: Vec<u32>,
+    pub neighbors: Vec<u32>,
+    pub ring: EdgeRing,
+    /// Half-faces of the cavity towards the outside.
+    pub halves: Vec<u32>,
+}
 
 /// A complex under improvement, with the radius ratio of each tetrahedron at hand.
 #[derive(Debug)]
@@ -37,7 +51,7 @@ pub struct Improver {
     pub(super) flipper: Flipper,
     pub(super) star: Star,
     pub(super) energy: StarEnergy,
-    pub(super) cavity: super::cavity::Cavity,
+    pub(super) cavity: Cavity,
     pub(super) reconnection: super::reconnect::Reconnection,
     /// Counts attempts made in vain.
     pub(super) epoch: u32,
@@ -64,7 +78,7 @@ impl Improver {
             flipper: Flipper::default(),
             star: Star::default(),
             energy: StarEnergy::default(),
-            cavity: super::cavity::Cavity::default(),
+            cavity: Cavity::default(),
             reconnection: super::reconnect::Reconnection::default(),
             epoch: 0,
             changed: Vec::new(),

@@ -1,6 +1,7 @@
 //! When a tetrahedron is split.
 
 use crate::geometry::{Point3, Vec3};
+use crate::mesh::Bounds;
 use crate::mesh::quality::dihedral_range;
 
 /// Edges may be this much longer than the size wanted: those of the graded lattice are up to 1.9 times as long.
@@ -12,12 +13,8 @@ const REGULAR: f64 = 8.485_281_374;
 /// What each tetrahedron has to fulfil, as far as the boundary allows.
 #[derive(Clone, Copy, Default)]
 pub struct Goals<'a> {
-    /// Bound on the circumradius over the shortest edge.
-    pub max_radius_edge: Option<f64>,
-    /// Bound on the smallest dihedral angle, degrees.
-    pub min_dihedral: Option<f64>,
-    /// Bound on the volume, everywhere.
-    pub max_volume: Option<f64>,
+    /// Bounds on its shape and volume.
+    pub bounds: Bounds,
     /// The edge length wanted at a place.
     pub size: Option<&'a dyn Fn(&Point3) -> f64>,
     /// Most points that are added.
@@ -27,9 +24,7 @@ pub struct Goals<'a> {
 impl std::fmt::Debug for Goals<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.debug_struct("Goals")
-            .field("max_radius_edge", &self.max_radius_edge)
-            .field("min_dihedral", &self.min_dihedral)
-            .field("max_volume", &self.max_volume)
+            .field("bounds", &self.bounds)
             .field("size", &self.size.is_some())
             .field("max_points", &self.max_points)
             .finish()
@@ -57,7 +52,7 @@ impl Goals<'_> {
                 worst = Some(Fault { excess, spacing });
             }
         };
-        let volume = bound.min(self.max_volume.unwrap_or(f64::INFINITY));
+        let volume = bound.min(self.bounds.max_volume.unwrap_or(f64::INFINITY));
         if volume < f64::INFINITY {
             let own = (p[1] - p[0]).cross(&(p[2] - p[0])).dot(&(p[3] - p[0])) / 6.0;
             note((own / volume).cbrt(), 0.5 * (REGULAR * volume).cbrt());
@@ -69,11 +64,11 @@ impl Goals<'_> {
                 note(longest / (LONGER * wanted), 0.6 * wanted);
             }
         }
-        if let Some(bound) = self.max_radius_edge {
+        if let Some(bound) = self.bounds.max_radius_edge {
             let radius = circumcenter(p).map_or(f64::INFINITY, |c| (c - p[0]).norm());
             note((radius / shortest / bound).min(1e3), shortest);
         }
-        if let Some(bound) = self.min_dihedral {
+        if let Some(bound) = self.bounds.min_dihedral {
             let angle = dihedral_range(p).0.to_degrees();
             note((bound / angle).min(1e3), shortest);
         }

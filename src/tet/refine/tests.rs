@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::Point3;
+use crate::mesh::Bounds;
 use crate::mesh::TriMesh;
 use crate::mesh::shapes::sphere_surface;
 
@@ -19,7 +20,7 @@ fn an_even_surface_has_an_even_field_of_its_size() {
     let s = sphere_surface(3);
     let sizes = vertex_sizes(&s);
     let tree = SizeTree::new(&s, &sizes, &[], &TreeOptions::default()).unwrap();
-    let h = super::super::lattice::mean_edge(&s);
+    let h = s.mean_edge();
     assert!(tree.is_uniform());
     assert!((tree.size_at(&Point3::origin()) / h - 1.0).abs() < 1e-12);
     let points = graded_points(&s, &sizes, &tree, 0.4);
@@ -96,8 +97,12 @@ mod insertion {
     fn volumes_are_bounded_inside_and_the_boundary_stays() {
         let mut c = cube();
         let before = boundary(&c);
-        let report =
-            refine_complex(&mut c, &Goals { max_volume: Some(0.01), ..Goals::default() }, Vec::new(), |_| true);
+        let report = refine_complex(
+            &mut c,
+            &Goals { bounds: Bounds { max_volume: Some(0.01), ..Bounds::default() }, ..Goals::default() },
+            Vec::new(),
+            |_| true,
+        );
         c.sanity_check().unwrap();
         assert!(report.points > 10, "{report:?}");
         assert_eq!(before, boundary(&c));
@@ -131,8 +136,12 @@ mod insertion {
         let inner = c.real_tets().flat_map(|t| 4 * t..4 * t + 4).find(|&h| !c.is_ghost(c.mate(h) >> 2)).unwrap();
         let face = c.face(inner);
         c.freeze(inner);
-        let report =
-            refine_complex(&mut c, &Goals { max_radius_edge: Some(1.4), ..Goals::default() }, Vec::new(), |_| true);
+        let report = refine_complex(
+            &mut c,
+            &Goals { bounds: Bounds { max_radius_edge: Some(1.4), ..Bounds::default() }, ..Goals::default() },
+            Vec::new(),
+            |_| true,
+        );
         c.sanity_check().unwrap();
         assert!(crate::tet::star::Star::default().find_face(&c, face).is_some_and(|h| c.is_frozen(h)));
         let after = TetQuality::of(&c.into_mesh());

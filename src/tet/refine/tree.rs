@@ -59,7 +59,7 @@ impl SizeTree {
                 SizeLimit::Function(_) => {}
             }
         }
-        let reference = super::super::lattice::mean_edge(surface);
+        let reference = surface.mean_edge();
         let coarsest = coarsest(surface, &wanted);
         let usable = reference > 0.0 && coarsest > 0.0 && coarsest.is_finite() && options.cell > 0.0;
         if !usable {

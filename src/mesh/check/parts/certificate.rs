@@ -2,16 +2,18 @@
 
 use super::sums::face_sum;
 use super::{Certificate, Fault, HeldCap, HeldJoint, HeldSurface, PartView};
+use crate::geometry::DisjointSets;
 use crate::geometry::predicates::{in_exact_range, orient3d};
 use crate::geometry::{Aabb, Point3};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{NONE, TetAdjacency, face_vertices, tet_adjacency};
 use crate::mesh::check::cells;
-use crate::mesh::check::disjoint_sets::DisjointSets;
 use crate::mesh::check::labels;
 use crate::mesh::check::nested::{Enclosed, enclosed};
 use crate::mesh::check::result::{Line, LineResult, Offender, OffenderKind, Tally};
-use crate::mesh::check::surface::{Boundary, Surfaces};
+use crate::mesh::check::surface::Boundary;
+use crate::mesh::check::surfaces::{Surface, Surfaces};
+use crate::mesh::face_key;
 use crate::mesh::quality::{QualitySum, volume6};
 
 /// Pairs of faces that meet improperly which a certificate keeps.
@@ -47,14 +49,7 @@ pub fn certify_with(part: &PartView, adjacency: impl FnOnce() -> TetAdjacency) -
     }
     let adjacency = adjacency();
     if !certificate.measure_cells(mesh, &adjacency) {
-        certificate.take([
-            cells::no_repeated_vertex(mesh),
-            cells::no_duplicate_tets(mesh, &adjacency),
-            cells::positive_tets(mesh),
-            cells::faces_shared_by_two(mesh, &adjacency),
-            cells::opposite_sides(mesh, &adjacency),
-            cells::no_unused_points(mesh),
-        ]);
+        certificate.take(cells::lines(mesh, &adjacency));
     }
     certificate.look_at_boundary(part, &adjacency);
     // Else equal points are excluded by what has been found, see `super`.
@@ -136,7 +131,7 @@ impl Certificate {
             1 => vec![Enclosed::exactly(self.volume)],
             _ => enclosed(points, faces, surfaces),
         };
-        let held = |(surface, enclosed): (&super::super::surface::Surface, Enclosed)| HeldSurface {
+        let held = |(surface, enclosed): (&Surface, Enclosed)| HeldSurface {
             vertex: NONE,
             euler: surface.euler() as i32,
             enclosed,
@@ -261,10 +256,10 @@ fn owners(part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, LineResult) {
     let points = &part.mesh.points;
     let mut named: Vec<([u32; 3], Owner, [u32; 3])> = Vec::new();
     for (j, list) in (0..).zip(part.joints) {
-        named.extend(list.iter().map(|&face| (cells::sorted(face), Owner::Joint(j), face)));
+        named.extend(list.iter().map(|&face| (face_key(face), Owner::Joint(j), face)));
     }
     for (c, (_, list)) in (0..).zip(part.caps) {
-        named.extend(list.iter().map(|&face| (cells::sorted(face), Owner::Cap(c), face)));
+        named.extend(list.iter().map(|&face| (face_key(face), Owner::Cap(c), face)));
     }
     named.sort_by_key(|entry| entry.0);
     let mut on = vec![false; points.len()];
@@ -276,7 +271,7 @@ fn owners(part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, LineResult) {
     let mut met = vec![false; named.len()];
     let mut owner_of = |&face: &[u32; 3]| {
         if face.iter().all(|&v| on[v as usize])
-            && let Ok(i) = named.binary_search_by_key(&cells::sorted(face), |entry| entry.0)
+            && let Ok(i) = named.binary_search_by_key(&face_key(face), |entry| entry.0)
             && cells::same_turn(face, named[i].2)
         {
             met[i] = true;

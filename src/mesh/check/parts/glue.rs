@@ -1,9 +1,9 @@
 //! The parts' certificates, held in a small form and put together.
 
-use super::whole::Tallies;
+use super::tallies::Tallies;
 use super::{Certificate, HeldCap, HeldJoint, HeldSurface, Parts, WallPiece, sums};
+use crate::geometry::DisjointSets;
 use crate::geometry::{Aabb, Point3};
-use crate::mesh::check::disjoint_sets::DisjointSets;
 use crate::mesh::check::nested::Enclosed;
 use crate::mesh::check::result::{Intersection, Line};
 use crate::mesh::quality::QualitySum;

@@ -6,7 +6,7 @@
 use super::Parts;
 use super::glue::{Held, invalid};
 use super::joints::Joined;
-use super::whole::Tallies;
+use super::tallies::Tallies;
 use crate::mesh::check::result::{Line, Offender, OffenderKind};
 use rayon::prelude::*;
 use std::collections::BTreeMap;

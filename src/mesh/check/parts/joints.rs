@@ -1,11 +1,12 @@
 //! Joined joints: the same faces with the same ids, turned against each other, and bit-equal points.
 
 use super::glue::{Held, invalid, sum_of};
-use super::whole::Tallies;
+use super::tallies::Tallies;
 use super::{JointFaces, Parts};
 use crate::geometry::Point3;
-use crate::mesh::check::cells::{centroid, same_turn, sorted};
+use crate::mesh::check::cells::{centroid, same_turn};
 use crate::mesh::check::result::{Line, Offender, OffenderKind};
+use crate::mesh::face_key;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::io;
@@ -114,7 +115,7 @@ fn compare(parts: &dyn Parts, held: &Held, pair: &[(u32, u32); 2]) -> io::Result
 /// The faces by their ids, ascending.
 fn by_ids(joint: &JointFaces) -> Vec<([u32; 3], [u32; 3], [u32; 3])> {
     let ids = |face: &[u32; 3]| face.map(|v| joint.vertices[v as usize]);
-    let mut faces: Vec<_> = joint.faces.iter().map(|face| (sorted(ids(face)), ids(face), *face)).collect();
+    let mut faces: Vec<_> = joint.faces.iter().map(|face| (face_key(ids(face)), ids(face), *face)).collect();
     faces.sort_unstable();
     faces
 }

@@ -46,6 +46,7 @@ mod joints;
 mod nests;
 mod pieces;
 mod sums;
+mod tallies;
 mod walls;
 mod whole;
 

@@ -2,8 +2,8 @@
 
 use super::glue::{Glued, invalid};
 use super::walls::{Reader, Wall};
+use crate::geometry::DisjointSets;
 use crate::geometry::{Aabb, Bvh, Point3, crossing};
-use crate::mesh::check::disjoint_sets::DisjointSets;
 use crate::mesh::check::nested::is_within;
 use crate::mesh::check::result::{Offender, OffenderKind};
 use rayon::prelude::*;

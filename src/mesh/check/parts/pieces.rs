@@ -5,10 +5,11 @@
 //! mesh may be valid or not, and has to be checked as a whole.
 
 use super::{Certificate, JointFaces, PartView, Parts, WallPiece, certify_with, check_parts, sums};
+use crate::geometry::DisjointSets;
 use crate::mesh::adjacency::{NONE, face_vertices, tet_adjacency};
-use crate::mesh::check::cells::{same_turn, sorted};
-use crate::mesh::check::disjoint_sets::DisjointSets;
+use crate::mesh::check::cells::same_turn;
 use crate::mesh::check::result::{CheckReport, Expectation};
+use crate::mesh::face_key;
 use crate::mesh::source::{FacePiece, MeshSource};
 use crate::mesh::{Cap, TetMesh, WALL};
 use rayon::prelude::*;
@@ -162,7 +163,7 @@ impl Local {
             };
             labelled.push(([a, b, c], patch));
         }
-        labelled.sort_unstable_by_key(|(face, _)| sorted(*face));
+        labelled.sort_unstable_by_key(|(face, _)| face_key(*face));
         Ok(labelled)
     }
 
@@ -173,7 +174,7 @@ impl Local {
     /// A number for some faces, in the numbers of the whole, whatever their order and orientation.
     fn sum(&self, faces: &[[u32; 3]]) -> u64 {
         let id = |v: u32| self.ids.all[v as usize];
-        faces.iter().fold(0, |sum, face| sum.wrapping_add(sums::id_sum(sorted(face.map(id)))))
+        faces.iter().fold(0, |sum, face| sum.wrapping_add(sums::id_sum(face_key(face.map(id)))))
     }
 }
 
@@ -185,7 +186,7 @@ impl Known {
         let mut met = vec![false; labelled.len()];
         let is_labelled = |&handle: &u32| {
             let face = face_vertices(&local.mesh.tets, handle);
-            let found = labelled.binary_search_by_key(&sorted(face), |(label, _)| sorted(*label));
+            let found = labelled.binary_search_by_key(&face_key(face), |(label, _)| face_key(*label));
             found.is_ok_and(|i| same_turn(face, labelled[i].0) && !std::mem::replace(&mut met[i], true))
         };
         let (_, open): (Vec<u32>, Vec<u32>) = adjacency.boundary().partition(is_labelled);

@@ -3,22 +3,19 @@
 use super::glue::{Glued, Held, needs_sound_arrays};
 use super::joints::Joined;
 use super::nests;
+use super::tallies::Tallies;
 use super::walls::{self, Meetings, Reader};
-use super::{Fault, HeldCap, Parts, PartsCheck, ids, joints};
+use super::{HeldCap, Parts, PartsCheck, ids, joints};
 use crate::geometry::Bvh;
 use crate::mesh::Patch;
 use crate::mesh::check::labels;
 use crate::mesh::check::result::{
-    CheckReport, Counts, Expectation, Intersection, KEPT_OFFENDERS, Line, LineResult, Offender, OffenderKind, Outcome,
-    Skipped, Tally,
+    CheckReport, Counts, Expectation, Intersection, Line, LineResult, Offender, OffenderKind, Skipped, Tally,
+    components,
 };
 use crate::mesh::check::surface::{compare_loops, genus};
 use rustc_hash::FxHashMap;
-use std::collections::BTreeMap;
 use std::io;
-
-/// More offenders than that are not held at a time.
-const MOST_HELD: usize = 4096;
 
 /// The lines from which it follows that no two points are equal.
 const EXCLUDE_EQUAL_POINTS: [Line; 8] = [
@@ -31,64 +28,6 @@ const EXCLUDE_EQUAL_POINTS: [Line; 8] = [
     Line::BoundaryFans,
     Line::NoSelfIntersection,
 ];
-
-/// Offenders of lines, in numbers of the whole.
-#[derive(Debug, Default)]
-pub(super) struct Tallies(BTreeMap<Line, (u64, Vec<Offender>)>);
-
-impl Tallies {
-    pub(super) fn add(&mut self, line: Line, offender: Offender) {
-        self.add_some(line, 1, [offender]);
-    }
-
-    fn add_some(&mut self, line: Line, count: u64, offenders: impl IntoIterator<Item = Offender>) {
-        let (all, held) = self.0.entry(line).or_default();
-        *all += count;
-        held.extend(offenders);
-        if held.len() > MOST_HELD {
-            *all -= tidy(held);
-            held.truncate(KEPT_OFFENDERS);
-        }
-    }
-
-    /// Adds what a part breaks.
-    pub(super) fn add_fault(&mut self, parts: &dyn Parts, part: u32, fault: &Fault) {
-        let id = |kind: OffenderKind, id: i64| match (kind, u32::try_from(id)) {
-            (OffenderKind::Patch | OffenderKind::Node, _) | (_, Err(_)) => id,
-            (OffenderKind::Tet | OffenderKind::TetPair, Ok(tet)) => parts.tet(part, tet) as i64,
-            (_, Ok(vertex)) => i64::from(parts.vertex(part, vertex)),
-        };
-        let whole = |offender: &Offender| Offender {
-            ids: offender.ids.iter().map(|&i| id(offender.kind, i)).collect(),
-            ..offender.clone()
-        };
-        self.add_some(fault.line, fault.count, fault.offenders.iter().map(whole));
-    }
-
-    fn fails(&self, line: Line) -> bool {
-        self.0.contains_key(&line)
-    }
-
-    fn first_of(&self, lines: &[Line]) -> Option<Line> {
-        lines.iter().copied().find(|&line| self.fails(line))
-    }
-
-    /// The result of a line.
-    fn take(&mut self, line: Line) -> LineResult {
-        let Some((mut count, mut offenders)) = self.0.remove(&line) else { return Tally::new(line).done() };
-        count -= tidy(&mut offenders);
-        offenders.truncate(KEPT_OFFENDERS);
-        LineResult { outcome: Outcome::Fail, count, offenders, ..Tally::new(line).done() }
-    }
-}
-
-/// Sorts offenders; how many were there twice (as both parts of a joint name what is on it).
-fn tidy(offenders: &mut Vec<Offender>) -> u64 {
-    let before = offenders.len();
-    offenders.sort_by(|a, b| a.ids.cmp(&b.ids));
-    offenders.dedup_by(|a, b| a.ids == b.ids);
-    (before - offenders.len()) as u64
-}
 
 /// Checks a mesh that is made of parts. Of walls some `memory` bytes are held at a time (two walls at least), of every
 /// part some 300 bytes. The result does not depend on the number of threads.
@@ -160,7 +99,7 @@ impl Whole<'_> {
         counts.boundary_faces =
             (0..self.held.count()).map(|part| self.held.faces_of(part, &self.joined.flags) as usize).sum();
         counts.caps = self.patches.iter().filter(|patch| patch.cap.is_some()).count();
-        let mut lines = vec![self.components(glued.components), self.loops(&glued, &roots)];
+        let mut lines = vec![components(self.expectation, glued.components), self.loops(&glued, &roots)];
         // That no points are equal follows from the other lines: when one of them fails, it has not been shown.
         if let Some(line) = self.joined.broken.or(self.tallies.first_of(&EXCLUDE_EQUAL_POINTS))
             && !self.tallies.fails(Line::NoDuplicatePoints)
@@ -203,15 +142,6 @@ impl Whole<'_> {
         all.extend(meetings.intersections.into_iter().map(|(intersection, _)| intersection));
         all.sort_by_key(|i| (i.faces, i.kind));
         all
-    }
-
-    fn components(&self, found: usize) -> LineResult {
-        let Some(expected) = self.expectation else {
-            return LineResult::skipped(Line::Components, Skipped::NoExpectation);
-        };
-        let mut tally = Tally::new(Line::Components);
-        tally.compare(vec![expected.loops.len() as u32], vec![found as u32]);
-        tally.done()
     }
 
     fn loops(&self, glued: &Glued, roots: &[u32]) -> LineResult {

@@ -207,7 +207,7 @@ fn parts_that_meet_are_found() {
 }
 
 fn faces(i: &Intersection) -> BTreeSet<[u32; 3]> {
-    i.faces.iter().map(|&f| sorted(f)).collect()
+    i.faces.iter().map(|&f| face_key(f)).collect()
 }
 
 /// The same lines fail, as often.

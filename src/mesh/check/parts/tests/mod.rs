@@ -5,11 +5,11 @@ mod pieces;
 mod random;
 
 use super::*;
+use crate::geometry::DisjointSets;
 use crate::geometry::Vec3;
 use crate::mesh::adjacency::{boundary_faces, face_vertices, tet_adjacency};
-use crate::mesh::check::cells::sorted;
-use crate::mesh::check::disjoint_sets::DisjointSets;
 use crate::mesh::check::{CheckReport, Expectation, LineResult, Outcome, Skipped, Verdict, check_volume};
+use crate::mesh::face_key;
 use crate::mesh::shapes::{cube_lattice, perturb, tube_lattice};
 use crate::mesh::{Patch, VolumeMesh, WALL};
 use std::collections::{BTreeMap, BTreeSet};
@@ -68,10 +68,10 @@ impl Parts for Cut {
         let inner: BTreeSet<[u32; 3]> = (0..)
             .zip(&piece.joints)
             .filter(|(j, _)| is_joined(*j))
-            .flat_map(|(_, faces)| faces.iter().map(|&f| sorted(f)))
+            .flat_map(|(_, faces)| faces.iter().map(|&f| face_key(f)))
             .collect();
         let mut faces = boundary_faces(&piece.mesh);
-        faces.retain(|&f| !inner.contains(&sorted(f)));
+        faces.retain(|&f| !inner.contains(&face_key(f)));
         Ok(piece.faces(&faces))
     }
 
@@ -191,7 +191,8 @@ impl Cut {
             let wall = self.wall(part as u32).unwrap();
             for face in &wall.faces {
                 let face = face.map(|v| wall.vertices[v as usize]);
-                let patch = piece.caps.iter().find(|(_, of)| of.iter().any(|f| sorted(f.map(whole)) == sorted(face)));
+                let patch =
+                    piece.caps.iter().find(|(_, of)| of.iter().any(|f| face_key(f.map(whole)) == face_key(face)));
                 let id = patch.and_then(|(cap, _)| self.patches.iter().find(|p| p.cap == Some(*cap)));
                 labels.push((face, id.map_or(WALL, |p| p.id)));
             }

@@ -1,0 +1,161 @@
+//! A second tree that shares the terminals of the first, as veins share the capillaries with arteries.
+//!
+//! The paper leaves this to future work; its data hold such a network. The second tree has a copy of every node but the
+//! terminals, grown beside the first from its own root: each copy lies off the first vessel, across the plane in which
+//! the vessels of the node fork, so that the two trees run in layers. At the terminals, which they share, the two fold
+//! back on each other; refinement opens the folds and separates the trees.
+
+use crate::geometry::{Point3, Vec3};
+use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
+
+/// Distance of the second tree's axes from the first's, in sums of their radii.
+const BESIDE: f64 = 1.3;
+/// How much the plane of a fork counts against the side on which the second tree runs before the fork.
+const FORK: f64 = 2.0;
+
+/// A network of two trees.
+#[derive(Clone, Debug)]
+pub struct Dual {
+    /// Both trees. The nodes and edges of the first come first, as they were.
+    pub skeleton: Skeleton,
+    /// 0 for nodes of the first tree, 1 for those of the second, 2 for the terminals that they share.
+    pub tree: Vec<u32>,
+    /// The root of the second tree in each component that has one.
+    pub roots: Vec<NodeId>,
+}
+
+/// Grows the second tree. Copies get the number (`original`) of their node plus one more than the largest there is.
+///
+/// A network with loops is legal: every vessel gets a companion. The root of a component is its thickest terminal.
+pub fn dual(skeleton: &Skeleton) -> Dual {
+    let adjacency = skeleton.adjacency();
+    let components = skeleton.components(&adjacency);
+    let roots = skeleton.roots(&adjacency, &components);
+    let mut is_root = vec![false; skeleton.nodes.len()];
+    for root in roots.iter().flatten() {
+        is_root[root.index()] = true;
+    }
+    let seeds: Vec<NodeId> =
+        roots.iter().zip(&components.list).filter_map(|(root, c)| root.or(c.nodes.first().copied())).collect();
+    let sides = sides(skeleton, &adjacency, &seeds);
+    let mut out = skeleton.clone();
+    let beyond = skeleton.nodes.iter().map(|n| n.original).max().unwrap_or(0).saturating_add(1);
+    let mut tree = vec![0; skeleton.nodes.len()];
+    let mut copy: Vec<NodeId> = skeleton.node_ids().collect();
+    for node in skeleton.node_ids() {
+        let i = node.index();
+        if adjacency.valence(node) == 1 && !is_root[i] {
+            tree[i] = 2;
+            continue;
+        }
+        copy[i] = NodeId(out.nodes.len() as u32);
+        let thickest = adjacency.edges(node).iter().map(|&e| radius_at(skeleton, e, node)).fold(0.0, f64::max);
+        let Node { position, radius, original } = *skeleton.node(node);
+        let position: Point3 = position + sides[i] * (BESIDE * 2.0 * thickest);
+        out.nodes.push(Node { position, radius, original: original.saturating_add(beyond) });
+        tree.push(1);
+    }
+    for edge in &skeleton.edges {
+        let nodes = edge.nodes.map(|n| copy[n.index()]);
+        // A vessel between two terminals has no node of its own to copy: its companion would be itself.
+        if nodes != edge.nodes {
+            out.edges.push(Edge { nodes, radii: edge.radii });
+        }
+    }
+    let roots = roots.into_iter().flatten().map(|root| copy[root.index()]).collect();
+    Dual { skeleton: out, tree, roots }
+}
+
+fn radius_at(skeleton: &Skeleton, edge: EdgeId, node: NodeId) -> f64 {
+    let edge = skeleton.edge(edge);
+    edge.radii[edge.end(node)]
+}
+
+/// For each node the unit direction in which its copy lies: carried along the vessels from the seeds outwards.
+fn sides(skeleton: &Skeleton, adjacency: &Adjacency, seeds: &[NodeId]) -> Vec<Vec3> {
+    let mut sides = vec![Vec3::zeros(); skeleton.nodes.len()];
+    let mut seen = vec![false; skeleton.nodes.len()];
+    let mut queue = std::collections::VecDeque::new();
+    let at = |n: NodeId| skeleton.node(n).position;
+    for &seed in seeds {
+        let Some(&first) = adjacency.edges(seed).first() else { continue };
+        let way = at(skeleton.edge(first).other(seed)) - at(seed);
+        sides[seed.index()] = side_of(skeleton, adjacency, seed, &way, &any_across(&way));
+        seen[seed.index()] = true;
+        queue.push_back(seed);
+        while let Some(node) = queue.pop_front() {
+            for &edge in adjacency.edges(node) {
+                let next = skeleton.edge(edge).other(node);
+                if std::mem::replace(&mut seen[next.index()], true) {
+                    continue;
+                }
+                let way = at(next) - at(node);
+                sides[next.index()] = side_of(skeleton, adjacency, next, &way, &sides[node.index()]);
+                queue.push_back(next);
+            }
+        }
+    }
+    sides
+}
+
+/// The side on which the copy of a node lies that is reached along `way`, `before` being the side until there.
+fn side_of(skeleton: &Skeleton, adjacency: &Adjacency, node: NodeId, way: &Vec3, before: &Vec3) -> Vec3 {
+    let way = way.try_normalize(0.0).unwrap_or_else(Vec3::x);
+    let carried = (before - way * way.dot(before)).try_normalize(1e-6).unwrap_or_else(|| any_across(&way));
+    let edges = adjacency.edges(node);
+    let mut normal = Vec3::zeros();
+    for (i, &e) in edges.iter().enumerate() {
+        for &f in &edges[..i] {
+            let [u, v] = [e, f].map(|e| {
+                let chord = skeleton.node(skeleton.edge(e).other(node)).position - skeleton.node(node).position;
+                chord.try_normalize(0.0).unwrap_or_else(Vec3::zeros)
+            });
+            let across = u.cross(&v);
+            normal += if across.dot(&carried) < 0.0 { -across } else { across };
+        }
+    }
+    let blended =
+        carried + normal.try_normalize(1e-6).unwrap_or_else(Vec3::zeros) * if edges.len() > 2 { FORK } else { 0.0 };
+    let blended = blended - way * way.dot(&blended);
+    blended.try_normalize(1e-6).unwrap_or(carried)
+}
+
+fn any_across(way: &Vec3) -> Vec3 {
+    let mut axis = Vec3::zeros();
+    axis[way.iamin()] = 1.0;
+    way.cross(&axis).try_normalize(0.0).unwrap_or(axis)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::fixtures::{network, tangle};
+
+    #[test]
+    fn shares_the_terminals_and_has_its_own_root() {
+        let s = tangle(4, 2);
+        let dual = dual(&s);
+        assert_eq!(dual.skeleton.check(), Ok(()));
+        let (before, after) = (s.adjacency(), dual.skeleton.adjacency());
+        let terminals = before.terminals().len() - 1;
+        assert_eq!(dual.skeleton.edges.len(), 2 * s.edges.len());
+        assert_eq!(dual.skeleton.nodes.len(), 2 * s.nodes.len() - terminals);
+        // Only the two roots are left open; each shared terminal but one closes a loop.
+        assert_eq!(after.terminals(), [NodeId(0), dual.roots[0]]);
+        let components = dual.skeleton.components(&after).list;
+        assert_eq!((components.len(), components[0].loops()), (1, terminals - 1));
+        assert_eq!(dual.tree.iter().filter(|t| **t == 2).count(), terminals);
+        let mut originals: Vec<u32> = dual.skeleton.nodes.iter().map(|n| n.original).collect();
+        originals.sort_unstable();
+        originals.dedup();
+        assert_eq!(originals.len(), dual.skeleton.nodes.len());
+    }
+
+    #[test]
+    fn a_single_vessel_and_a_ring_have_companions_as_far_as_they_can() {
+        let vessel = dual(&network(&[[0.0; 3], [9.0, 0.0, 0.0]], 1.0, &[(0, 1)]));
+        assert_eq!((vessel.skeleton.check(), vessel.skeleton.edges.len()), (Ok(()), 2));
+        let ring = dual(&network(&[[0.0; 3], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]], 1.0, &[(0, 1), (1, 2), (2, 0)]));
+        assert_eq!((ring.skeleton.check(), ring.skeleton.edges.len(), ring.roots.len()), (Ok(()), 6, 0));
+    }
+}

@@ -1,0 +1,28 @@
+//! Bounds on the size and shape of tetrahedra: what can be asked of a mesh.
+
+/// The dihedral angle of the regular tetrahedron in degrees, acos(1/3): no tetrahedron's smallest is larger, so that bounds on
+/// the smallest have to be below.
+pub const REGULAR_DIHEDRAL: f64 = 70.528_779_365_509_31;
+
+/// Bounds that all tetrahedra of a mesh are to keep; those that are none hold nothing back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Bounds {
+    /// Bound on the circumradius over the shortest edge.
+    pub max_radius_edge: Option<f64>,
+    /// Bound on the smallest dihedral angle, in degrees, below [`REGULAR_DIHEDRAL`].
+    pub min_dihedral: Option<f64>,
+    /// Bound on the volume.
+    pub max_volume: Option<f64>,
+}
+
+impl Bounds {
+    /// The name and value of the first bound that no mesh can keep.
+    pub fn senseless(&self) -> Option<(&'static str, f64)> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let angle = |x: f64| (0.0..REGULAR_DIHEDRAL).contains(&x);
+        let wrong = |name, bound: Option<f64>, good: &dyn Fn(f64) -> bool| Some((name, bound.filter(|&b| !good(b))?));
+        wrong("max_radius_edge", self.max_radius_edge, &positive)
+            .or_else(|| wrong("max_volume", self.max_volume, &positive))
+            .or_else(|| wrong("min_dihedral", self.min_dihedral, &angle))
+    }
+}

@@ -1,0 +1,67 @@
+//! Telling a caller how far a refinement is, and being told to stop.
+
+use crate::geometry::Point3;
+use crate::skeleton::{Metrics, Skeleton};
+use serde::Serialize;
+
+/// The metrics after some iterations.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Sample {
+    /// How many iterations.
+    pub iteration: usize,
+    /// Displacement of the nodes.
+    pub displacement: Displacement,
+    /// The metrics.
+    pub metrics: Metrics,
+    /// Pairs of vessels pushed apart in this iteration, and vessels lengthened or opened.
+    pub asked: usize,
+}
+
+/// How far nodes have moved, in the unit of the skeleton.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Displacement {
+    /// Mean.
+    pub mean: f64,
+    /// Median.
+    pub median: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+impl Displacement {
+    /// Of the nodes of `skeleton` from where they were.
+    pub fn of(skeleton: &Skeleton, origin: &[Point3]) -> Self {
+        let mut far: Vec<f64> = skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).norm()).collect();
+        if far.is_empty() {
+            return Self::default();
+        }
+        far.sort_unstable_by(f64::total_cmp);
+        let at = |share: f64| far[(share * (far.len() - 1) as f64).round() as usize];
+        Self {
+            mean: far.iter().sum::<f64>() / far.len() as f64,
+            median: at(0.5),
+            p95: at(0.95),
+            p99: at(0.99),
+            max: at(1.0),
+        }
+    }
+}
+
+/// Who is told about progress.
+pub trait Progress {
+    /// An iteration is done, of at most `of`; `sample` is there when the metrics were measured.
+    fn step(&mut self, iteration: usize, of: usize, sample: Option<&Sample>);
+
+    /// Asked before each iteration: whether to stop.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+impl Progress for () {
+    fn step(&mut self, _: usize, _: usize, _: Option<&Sample>) {}
+}

@@ -1,0 +1,201 @@
+//! What `refine` says of a refinement: text for people, a table, the panels of a plot.
+
+use std::fmt::Write as _;
+
+use super::plot::{Panel, Series};
+use crate::refine::{Figures, RefineReport, Sample, Treatment};
+
+/// A line of the table of figures: its name and what it shows of a state.
+type Row = (&'static str, fn(&Figures) -> String);
+
+/// Pairs that are spelt out for people.
+const LISTED: usize = 50;
+
+/// The report for people.
+pub fn text(report: &RefineReport) -> String {
+    let mut out = String::new();
+    let d = &report.displacement;
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        out,
+        "nodes: {} to {} ({} split, {} bends put in); edges: {} to {}",
+        report.size_before[0],
+        report.size_after[0],
+        report.nodes_split,
+        report.bends,
+        report.size_before[1],
+        report.size_after[1]
+    );
+    let iterations = report.history.last().map_or(0, |s| s.iteration);
+    let best = match report.chosen {
+        Some(iteration) => format!("best after {iteration}"),
+        None => "none as good as the input in what was to be held: nothing was moved".into(),
+    };
+    let _ = writeln!(
+        out,
+        "moved in {iterations} iterations ({best}): mean {:.4}, median {:.4}, 95 % {:.4}, 99 % {:.4}, furthest {:.4} (a \
+         median radius is {:.4})",
+        d.mean,
+        d.median,
+        d.p95,
+        d.p99,
+        d.max,
+        0.448 * report.unit
+    );
+    let _ = writeln!(out, "{:26}{:>12}{:>12}{:>12}{:>12}", "", "given", "split", "moved", "result");
+    let states = [&report.given, &report.split, &report.moved, &report.result];
+    let rows: [Row; 13] = [
+        ("overlapping pairs", |f| f.overlaps.to_string()),
+        ("  that share a node", |f| f.beside.to_string()),
+        ("unconnected pairs", |f| f.unconnected.to_string()),
+        ("  far from each other", |f| f.far.to_string()),
+        ("barrier potential", |f| format!("{:.4e}", f.metrics.barrier)),
+        ("shorter than 2 r", |f| percent(f.metrics.shorter_than_2.percent())),
+        ("shorter than 2.5 r", |f| percent(f.metrics.shorter_than_2_5.percent())),
+        ("shorter than 3 r", |f| percent(f.metrics.shorter_than_3.percent())),
+        ("angles under pi/10", |f| percent(f.metrics.narrow.percent())),
+        ("folds under 30 degrees", |f| percent(f.metrics.folds.percent())),
+        ("equation 11 met", |f| percent(f.metrics.long_enough.percent())),
+        ("equation 12 met", |f| percent(f.metrics.open_enough.percent())),
+        ("inner branches cuttable", |f| percent(f.metrics.cuttable.percent())),
+    ];
+    for (name, value) in rows {
+        let _ = write!(out, "{name:26}");
+        for state in states {
+            let _ = write!(out, "{:>12}", value(state));
+        }
+        out.push('\n');
+    }
+    if !report.worse.is_empty() {
+        let names: Vec<&str> = report.worse.iter().map(|m| m.name()).collect();
+        let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", names.join(", "));
+    }
+    crowded_text(report, &mut out);
+    residual_text(report, &mut out);
+    out
+}
+
+fn percent(value: f64) -> String {
+    format!("{value:.3} %")
+}
+
+fn crowded_text(report: &RefineReport, out: &mut String) {
+    if report.crowded.is_empty() {
+        return;
+    }
+    let _ = writeln!(out, "{} pairs of terminals are too close to each other for two caps", report.crowded.len());
+    for pair in report.crowded.iter().take(LISTED) {
+        let [a, b] = pair.nodes;
+        let done = match (pair.resolved, pair.moved) {
+            (false, _) => "left; the mesh will lack a cap (--crowded-terminals part or merge)".into(),
+            (true, [a, b]) if a + b == 0.0 => "made one".into(),
+            (true, [a, b]) => format!("moved by {a:.4} and {b:.4} (--crowded-terminals keep leaves them)"),
+        };
+        let _ = writeln!(out, "  {a} and {b}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
+    }
+}
+
+fn residual_text(report: &RefineReport, out: &mut String) {
+    let r = &report.residual;
+    if r.pairs.is_empty() {
+        out.push_str("no vessels overlap\n");
+        return;
+    }
+    let lost = if r.volume > 0.0 { 100.0 * r.volume_lost / r.volume } else { 0.0 };
+    let _ = writeln!(
+        out,
+        "{} pairs overlapped when the nodes had come to rest; {} edges were shrunk ({lost:.4} % of the lumen); {} pairs \
+         overlap still",
+        r.pairs.len(),
+        r.shrunk_edges,
+        r.left
+    );
+    for pair in r.pairs.iter().take(LISTED) {
+        let [[a, b], [c, d]] = pair.edges;
+        let done = match pair.treatment {
+            Treatment::Shrunk { kept } => format!("shrunk to {:.0} %", 100.0 * kept),
+            Treatment::Cleared => "parted by what was done about others".into(),
+            Treatment::Fused => "to be meshed together".into(),
+            Treatment::Left if pair.terminals_too_close => {
+                "left: their terminals are too close to each other (--crowded-terminals part)".into()
+            }
+            Treatment::Left => "left".into(),
+        };
+        let _ = writeln!(out, "  {a}-{b} and {c}-{d}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
+    }
+    if r.pairs.len() > LISTED {
+        let _ = writeln!(out, "  and {} more (--json lists all)", r.pairs.len() - LISTED);
+    }
+}
+
+/// The metrics over the iterations as a table.
+pub fn csv(report: &RefineReport) -> String {
+    let mut out = String::from(
+        "iteration,displacement_mean,displacement_median,displacement_p95,displacement_p99,displacement_max,\
+         barrier_potential,percent_shorter_than_2r,percent_shorter_than_2.5r,percent_shorter_than_3r,\
+         percent_angles_under_pi/10,percent_folds,percent_equation_11,percent_equation_12,percent_cuttable\n",
+    );
+    for s in &report.history {
+        let (d, m) = (&s.displacement, &s.metrics);
+        let shares = [
+            m.shorter_than_2,
+            m.shorter_than_2_5,
+            m.shorter_than_3,
+            m.narrow,
+            m.folds,
+            m.long_enough,
+            m.open_enough,
+            m.cuttable,
+        ];
+        let _ = write!(out, "{},{},{},{},{},{},{}", s.iteration, d.mean, d.median, d.p95, d.p99, d.max, m.barrier);
+        for share in shares {
+            let _ = write!(out, ",{}", share.percent());
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// The four panels of the paper's Fig. 11.
+pub fn panels(report: &RefineReport) -> Vec<Panel> {
+    let line = |label: &str, value: fn(&Sample) -> f64| Series {
+        label: label.into(),
+        points: report.history.iter().map(|s| [s.iteration as f64, value(s)]).collect(),
+    };
+    let panel = |title: &str, vertical: &str, logarithmic: bool, series: Vec<Series>| Panel {
+        title: title.into(),
+        axes: ["iteration".into(), vertical.into()],
+        logarithmic,
+        series,
+    };
+    vec![
+        panel(
+            "A  Displacement of the nodes",
+            "displacement (unit of the network)",
+            false,
+            vec![
+                line("mean", |s| s.displacement.mean),
+                line("median", |s| s.displacement.median),
+                line("95 %", |s| s.displacement.p95),
+                line("99 %", |s| s.displacement.p99),
+                line("largest", |s| s.displacement.max),
+            ],
+        ),
+        panel("B  Barrier potential", "potential (no unit)", true, vec![line("all pairs", |s| s.metrics.barrier)]),
+        panel(
+            "C  Short edges",
+            "edges (%)",
+            false,
+            vec![
+                line("shorter than 2.5 radii", |s| s.metrics.shorter_than_2_5.percent()),
+                line("shorter than 3 radii", |s| s.metrics.shorter_than_3.percent()),
+            ],
+        ),
+        panel(
+            "D  Narrow angles",
+            "pairs of edges at a node (%)",
+            false,
+            vec![line("under \u{3c0}/10", |s| s.metrics.narrow.percent())],
+        ),
+    ]
+}

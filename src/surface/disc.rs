@@ -1,0 +1,140 @@
+//! The flat disc in a regular ring: rings of points towards the centre, triangulated by constrained Delaunay (spade).
+
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
+
+/// Mean edge length of a relaxed wall over the length that was aimed at.
+pub(super) const MEAN_EDGE: f64 = 0.92;
+/// Least number of corners of a ring.
+const LEAST_CORNERS: u32 = 8;
+
+/// A triangulated disc in its plane; the first points are the ring, counter-clockwise from angle `phase`.
+#[derive(Clone, Debug)]
+pub(super) struct Disc {
+    /// Points in the plane.
+    pub points: Vec<[f64; 2]>,
+    /// Triangles, counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// The radius at which the corners of a regular polygon have to lie for its area to be that of the circle.
+pub(crate) fn ring_radius(radius: f64, corners: u32) -> f64 {
+    let t = TAU / f64::from(corners);
+    radius * (t / t.sin()).sqrt()
+}
+
+/// Rings with fewer corners share their triangulation.
+const KEPT: usize = 128;
+
+/// The disc of `radius` whose ring has `corners` points, filled at the ring's spacing; none if the triangulation does
+/// not keep the ring.
+pub(super) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
+    static DISCS: [OnceLock<Option<Disc>>; KEPT] = [const { OnceLock::new() }; KEPT];
+    match DISCS.get(corners as usize) {
+        Some(slot) => slot.get_or_init(|| unit_disc(corners)).as_ref().map(|d| d.placed(radius, phase)),
+        None => unit_disc(corners).map(|d| d.placed(radius, phase)),
+    }
+}
+
+impl Disc {
+    /// Scaled and turned.
+    fn placed(&self, radius: f64, phase: f64) -> Self {
+        let (s, c) = phase.sin_cos();
+        let (s, c) = (s * radius, c * radius);
+        let points = self.points.iter().map(|&[x, y]| [c * x - s * y, s * x + c * y]).collect();
+        Self { points, triangles: self.triangles.clone() }
+    }
+}
+
+/// The disc of radius 1 whose first corner is at angle 0.
+fn unit_disc(corners: u32) -> Option<Disc> {
+    let ring = ring_radius(1.0, corners);
+    let spacing = 2.0 * ring * (PI / f64::from(corners)).sin();
+    let layers = (ring / (0.87 * spacing)).round().max(1.0) as u32;
+    let mut points = circle(ring, corners, 0.0);
+    for layer in (1..layers).rev() {
+        let r = ring * f64::from(layer) / f64::from(layers);
+        let count = ((TAU * r / spacing).round() as u32).max(5);
+        points.extend(circle(r, count, 0.5 * TAU / f64::from(count) * f64::from((layers - layer) % 2)));
+    }
+    points.push([0.0, 0.0]);
+    let mut triangles = triangulate(&points, corners)?;
+    for _ in 0..3 {
+        smooth(&mut points, &triangles, corners);
+        triangles = triangulate(&points, corners)?;
+    }
+    Some(Disc { points, triangles })
+}
+
+fn circle(radius: f64, count: u32, phase: f64) -> Vec<[f64; 2]> {
+    let angle = |i: u32| phase + TAU * f64::from(i) / f64::from(count);
+    (0..count).map(|i| [radius * angle(i).cos(), radius * angle(i).sin()]).collect()
+}
+
+/// Constrained Delaunay triangulation whose constraints are the ring of the first `corners` points.
+fn triangulate(points: &[[f64; 2]], corners: u32) -> Option<Vec<[u32; 3]>> {
+    let mut cdt = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
+    let mut handles = Vec::with_capacity(points.len());
+    for &[x, y] in points {
+        handles.push(cdt.insert(Point2::new(x, y)).ok()?);
+    }
+    if cdt.num_vertices() != points.len() {
+        return None;
+    }
+    let m = corners as usize;
+    for i in 0..m {
+        let (a, b) = (handles[i], handles[(i + 1) % m]);
+        if !cdt.can_add_constraint(a, b) {
+            return None;
+        }
+        cdt.add_constraint(a, b);
+    }
+    let triangles: Vec<[u32; 3]> = cdt.inner_faces().map(|f| f.vertices().map(|v| v.fix().index() as u32)).collect();
+    // A disc: each interior point makes two triangles, the ring two less than its corners.
+    (triangles.len() == 2 * (points.len() - m) + m - 2).then_some(triangles)
+}
+
+/// Moves the interior points to the mean of their neighbours.
+fn smooth(points: &mut [[f64; 2]], triangles: &[[u32; 3]], corners: u32) {
+    let mut sums = vec![[0.0; 3]; points.len()];
+    for t in triangles {
+        for i in 0..3 {
+            let (a, b) = (t[i] as usize, points[t[(i + 1) % 3] as usize]);
+            sums[a] = [sums[a][0] + b[0], sums[a][1] + b[1], sums[a][2] + 1.0];
+        }
+    }
+    for (p, s) in points.iter_mut().zip(sums).skip(corners as usize) {
+        *p = [s[0] / s[2], s[1] / s[2]];
+    }
+}
+
+/// How many corners the ring of a disc has where edges of the wall are aimed to be so long.
+pub(super) fn corners(radius: f64, edge: f64) -> u32 {
+    ((TAU * radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn discs_have_the_circles_area_and_good_angles() {
+        for corners in 6..80 {
+            let d = disc(2.0, corners, 0.1).unwrap();
+            let (mut area, mut smallest) = (0.0, PI);
+            for t in &d.triangles {
+                let p = t.map(|v| d.points[v as usize]);
+                for i in 0..3 {
+                    let [a, b, c] = [p[i], p[(i + 1) % 3], p[(i + 2) % 3]];
+                    let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+                    let cross: f64 = u[0] * v[1] - u[1] * v[0];
+                    area += cross / 6.0;
+                    smallest = smallest.min(cross.atan2(u[0] * v[0] + u[1] * v[1]));
+                }
+            }
+            assert!((area - PI * 4.0).abs() < 1e-12 * area, "{corners}: area {area}");
+            assert!(smallest > 0.45, "{corners}: angle {}", smallest.to_degrees());
+        }
+    }
+}
