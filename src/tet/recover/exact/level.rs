@@ -11,7 +11,7 @@ use super::room::{Apex, LEVELS, Room};
 use super::sectors::{Sector, refill};
 use super::space::Space;
 use super::wider::Wider;
-use crate::geometry::Point3;
+use crate::geometry::{Point3, Vec3, unit_normal};
 use crate::tet::error::TetError;
 use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
@@ -328,15 +328,28 @@ impl<'a> Level<'a> {
         };
         let (ample, scant) = LEVELS.split_at(AMPLE);
         if let Some(apex) = direct(ample) {
-            return Some((sector, apex));
+            return Some(self.raised(origin, sector, apex, least));
         }
         let (mut wide, narrow) = (sector.clone(), wider.cavity.len());
         if let Some(apex) = wider.apex(&mut wide, LEVELS[AMPLE].max(least), STEPS) {
-            return Some((wide, apex));
+            return Some(self.raised(origin, wide, apex, least));
         }
         wider.cavity.truncate(narrow);
         let apex = direct(scant)?;
-        Some((sector, apex))
+        Some(self.raised(origin, sector, apex, least))
+    }
+
+    /// A sector and its apex, a new one as high as can be above the new faces: then the next exchanges there have room.
+    fn raised(&self, origin: Point3, sector: Sector, apex: Apex, least: f64) -> (Sector, Apex) {
+        let mut apex = apex;
+        if let (Apex::Point(_), Some(&face)) = (apex, sector.faces.last()) {
+            let [a, b, c] = face.map(|v| self.s.point(v).coords);
+            let room = Room::new(self.s, origin, &sector.faces);
+            if let Some(p) = room.tallest(self.s, &unit_normal(a, b, c), least) {
+                apex = Apex::Point(p);
+            }
+        }
+        (sector, apex)
     }
 
     /// Least distance over the size of a room that is asked for.

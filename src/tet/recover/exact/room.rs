@@ -108,6 +108,25 @@ impl<'a> Room<'a> {
         Some((faces, highest.x[3]))
     }
 
+    /// A point that sees all faces and lies as far in a direction as can be, from a distance of at least `least` times the
+    /// size: between walls that are steep it is taller than the deepest place, and leaves more room below.
+    pub(super) fn tallest(&self, s: &Space, up: &Vec3, least: f64) -> Option<Point3> {
+        let mut constraints = constraints(&self.planes, self.size);
+        let deepest = highest(&constraints)?.x[3];
+        let kept = least.max(KEPT * deepest);
+        if deepest < least {
+            return None;
+        }
+        for (a, b) in &mut constraints[BOUNDS..] {
+            *b -= kept;
+            a[3] = 0.0;
+        }
+        constraints.push((Vector4::new(-up.x, -up.y, -up.z, 1.0), 0.0));
+        let aim = highest(&constraints)?.x.xyz() * self.size;
+        let p = self.origin + aim;
+        self.faces.iter().all(|f| s.orient_to(*f, &p) > 0).then_some(p)
+    }
+
     /// A point that sees all faces, from a distance of at least `least` times the size. Where there is none, the largest
     /// such distance over the size, if a look for less may find one.
     pub(super) fn place(&self, s: &Space, least: f64) -> Result<Point3, f64> {
@@ -120,6 +139,9 @@ impl<'a> Room<'a> {
         SHARES.iter().map(|share| self.origin + aim * *share).find(sees).ok_or(f64::NEG_INFINITY)
     }
 }
+
+/// Part of the room's depth that its tallest place keeps from the walls.
+const KEPT: f64 = 0.1;
 
 /// `a · x ≤ b`.
 type Constraint = (Vector4<f64>, f64);
