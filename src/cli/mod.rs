@@ -11,6 +11,7 @@ mod network;
 mod progress;
 mod refine;
 mod room;
+mod stop;
 mod tetrahedralize;
 
 use std::process::ExitCode;
@@ -22,7 +23,7 @@ use exit::{Exit, Failure};
 #[derive(Debug, Parser)]
 #[command(name = "anastomesh", version, propagate_version = true, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 fine, 1 a gate is not met (the mesh is not valid), 2 usage, 3 bad input, \
-                        4 a stage failed, 70 a fault of the program.")]
+                        4 a stage failed, 70 a fault of the program, 130 stopped by Ctrl-C.")]
 struct Args {
     #[command(subcommand)]
     verb: Verb,
@@ -92,15 +93,21 @@ fn install_panic_note() {
     }));
 }
 
-/// Prints a result for people or, with `--json`, for programs. A closed pipe is the reader's decision, not an error.
+/// Prints a result for people or, with `--json`, for programs.
 fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
-    use std::io::Write;
     let out = if json {
         serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?
     } else {
         text()
     };
-    match writeln!(std::io::stdout().lock(), "{}", out.trim_end()) {
+    print_bytes(format!("{}\n", out.trim_end()).as_bytes())
+}
+
+/// Writes to standard output. A closed pipe is the reader's decision, not an error.
+fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::input(format!("standard output: {e}"))),
         _ => Ok(()),
     }

@@ -10,6 +10,9 @@ use crate::tet::{Names, TetError};
 
 /// The message and exit code for an error; `from` names the input.
 pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
+    if *error == TetError::Cancelled {
+        return Failure::stopped("stopped; nothing is kept, and no file is touched");
+    }
     let asked = Asked { numbers: &input.numbers, triangles: Cell::new(false), points: Cell::new(false) };
     let mut message = format!("{from}: {}", error.clone().renamed(&asked));
     message.push_str(&place(error, input));
@@ -66,11 +69,9 @@ fn place(error: &TetError, input: &Input) -> String {
 fn exit(error: &TetError) -> Exit {
     match error {
         TetError::BadOption { .. } | TetError::Unsupported { .. } => Exit::Usage,
-        TetError::NotRecovered { .. }
-        | TetError::NotCertified(_)
-        | TetError::Broken(_)
-        | TetError::Cancelled
-        | TetError::TooLarge { .. } => Exit::StageFailed,
+        TetError::NotRecovered { .. } | TetError::NotCertified(_) | TetError::Broken(_) | TetError::TooLarge { .. } => {
+            Exit::StageFailed
+        }
         _ => Exit::BadInput,
     }
 }
