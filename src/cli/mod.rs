@@ -10,6 +10,7 @@ mod mesh;
 mod network;
 mod progress;
 mod refine;
+mod replay;
 mod room;
 mod stop;
 mod tetrahedralize;
@@ -43,6 +44,8 @@ enum Verb {
     Tetrahedralize(tetrahedralize::Args),
     /// Verify a volume mesh line by line
     Check(check::Args),
+    /// Make a block again that failed, from what `mesh` left of it
+    Replay(replay::Args),
     /// Print what a network holds
     Info(info::Args),
 }
@@ -65,6 +68,7 @@ pub fn main() -> ExitCode {
         Verb::Generate(args) => generate::run(args),
         Verb::Tetrahedralize(args) => tetrahedralize::run(args),
         Verb::Check(args) => check::run(args),
+        Verb::Replay(args) => replay::run(args),
         Verb::Info(args) => info::run(args),
     });
     match result {
