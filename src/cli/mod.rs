@@ -2,10 +2,12 @@
 
 mod check;
 mod common;
+mod completions;
 mod dual;
 mod exit;
 mod generate;
 mod info;
+mod man;
 mod mesh;
 mod network;
 mod progress;
@@ -17,7 +19,7 @@ mod tetrahedralize;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Command, CommandFactory, Parser, Subcommand};
 use exit::{Exit, Failure};
 
 /// From the skeleton of a vascular network to one valid tetrahedral volume mesh.
@@ -48,6 +50,10 @@ enum Verb {
     Replay(replay::Args),
     /// Print what a network holds
     Info(info::Args),
+    /// Print what a shell needs to complete this command line
+    Completions(completions::Args),
+    /// Print a page of the manual
+    Man(man::Args),
 }
 
 /// Runs the program on the process's arguments.
@@ -70,6 +76,8 @@ pub fn main() -> ExitCode {
         Verb::Check(args) => check::run(args),
         Verb::Replay(args) => replay::run(args),
         Verb::Info(args) => info::run(args),
+        Verb::Completions(args) => completions::run(args, definition()),
+        Verb::Man(args) => man::run(args, &definition()),
     });
     match result {
         Ok(Ok(exit)) => exit.into(),
@@ -79,6 +87,13 @@ pub fn main() -> ExitCode {
         }
         Err(_) => Exit::Bug.into(),
     }
+}
+
+/// The command line, with the options that every verb has.
+fn definition() -> Command {
+    let mut definition = Args::command();
+    definition.build();
+    definition
 }
 
 /// As many threads as were asked for, or as there are cores.
