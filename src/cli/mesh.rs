@@ -127,6 +127,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let refined = pool.install(|| args.refined(&network.skeleton, &stop))?;
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
     let refinement = refined.as_ref().map(|r| &r.report);
+    // Blocks are kept as soon as they are done.
+    stop.keep();
     pool.install(|| {
         if plan.smooths_joints() {
             args.run_in_memory(skeleton, &plan, refinement, &bars)
@@ -289,6 +291,7 @@ impl Args {
         let Some(iterations) = self.refine else { return Ok(None) };
         let refined = super::refine::moved(skeleton, &self.how.params(iterations), self.common.quiet, stop)?;
         if let Some(path) = &self.refined {
+            stop.keep();
             super::refine::write(path, &refined)?;
         }
         if !self.common.quiet && !self.common.json {

@@ -9,7 +9,7 @@ use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::{shows_bars, stage_bar};
-use super::stop::Stop;
+use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
 use crate::io::write_text;
 use crate::refine::{
@@ -141,13 +141,13 @@ struct Output<'a> {
 }
 
 /// A bar on standard error, on a terminal only.
-struct Bar<'a> {
+struct Steps<'a> {
     shown: bool,
     bar: Option<ProgressBar>,
     stop: &'a Stop,
 }
 
-impl Progress for Bar<'_> {
+impl Progress for Steps<'_> {
     fn step(&mut self, iteration: usize, of: usize, _: Option<&Sample>) {
         if !self.shown {
             return;
@@ -166,11 +166,11 @@ impl Progress for Bar<'_> {
 
 /// Refines a skeleton, with a bar.
 pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool, stop: &Stop) -> Result<Refined, Failure> {
-    let mut bar = Bar { shown: shows_bars(quiet), bar: None, stop };
-    let refined = refine::refine(skeleton, params, &mut bar);
+    let mut steps = Steps { shown: shows_bars(quiet), bar: None, stop };
+    let refined = refine::refine(skeleton, params, &mut steps);
     refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
-        RefineError::Cancelled => Failure::stopped("stopped; nothing is kept of the refinement"),
+        RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
         _ => Failure::usage(e.to_string()),
     })
 }
@@ -188,6 +188,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = super::thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
     let refined = pool.install(|| moved(&network.skeleton, &params, args.common.quiet, &stop))?;
+    stop.keep();
     write(&args.output, &refined)?;
     let report = &refined.report;
     for (path, text) in [(&args.metrics, csv as fn(&RefineReport) -> String), (&args.plot, |r| svg(&panels(r)))] {

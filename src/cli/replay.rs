@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::room::size;
-use super::stop::Stop;
+use super::stop::{NOTHING_KEPT, Stop};
 use crate::block::{BlockDump, BlockError, Finished};
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh};
 use crate::mesh::quality::TetQuality;
@@ -75,11 +75,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let stop = Stop::listen(args.common.quiet)?;
     let ask = || stop.is_asked();
     match pool.install(|| dump.run(&Watch::until(&ask))) {
-        Err(BlockError::Tetrahedra { source: TetError::Cancelled, .. }) => {
-            Err(Failure::stopped("stopped; nothing is kept"))
-        }
+        Err(BlockError::Tetrahedra { source: TetError::Cancelled, .. }) => Err(Failure::stopped(NOTHING_KEPT)),
         Err(error) => args.fails_again(&dump, &error),
-        Ok(block) => args.comes_out(&dump, block),
+        Ok(block) => {
+            stop.keep();
+            args.comes_out(&dump, block)
+        }
     }
 }
 

@@ -3,60 +3,88 @@
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+#[cfg(unix)]
+use std::time::Duration;
 
 use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::{flag, low_level};
+use signal_hook::flag;
+#[cfg(unix)]
+use signal_hook::low_level;
 
 use super::exit::{Exit, Failure};
 
+/// How long a run that keeps nothing may take to end by itself: some stages are long and do not ask.
+#[cfg(unix)]
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// What is said of a run that keeps nothing.
+pub const NOTHING_KEPT: &str = "stopped; nothing is kept, and no file is touched";
+
 /// Whether the run is to end. Only verbs that ask listen: elsewhere the first Ctrl-C ends the program, as everywhere.
 #[derive(Clone, Debug)]
-pub struct Stop(Arc<AtomicBool>);
+pub struct Stop {
+    asked: Arc<AtomicBool>,
+    /// Whether there is something that only the run itself can end well.
+    keeps: Arc<AtomicBool>,
+}
 
 impl Stop {
-    /// Begins to listen; unless `quiet`, the first time is answered at once.
+    /// Begins to listen, for a run that leaves nothing before it calls [`Stop::keep`]. Unless `quiet`, the first signal is
+    /// answered at once.
     pub fn listen(quiet: bool) -> Result<Self, Failure> {
-        let asked = Arc::new(AtomicBool::new(false));
+        let stop = Self { asked: Arc::default(), keeps: Arc::default() };
         // SIGHUP stays as it is: a run under `nohup` goes on when its terminal is closed.
         for signal in [SIGINT, SIGTERM] {
-            listen_to(signal, &asked, quiet).map_err(|e| Failure::stage(format!("Ctrl-C cannot be heard: {e}")))?;
+            stop.listen_to(signal, quiet).map_err(|e| Failure::stage(format!("Ctrl-C cannot be heard: {e}")))?;
         }
-        Ok(Self(asked))
+        Ok(stop)
+    }
+
+    /// From here on the run ends by itself alone: it writes, or keeps what it has done.
+    pub fn keep(&self) {
+        self.keeps.store(true, Ordering::SeqCst);
     }
 
     /// Whether the run is to end.
     pub fn is_asked(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.asked.load(Ordering::Relaxed)
     }
-}
 
-/// In this order: the second signal finds the flag that the first one has set.
-fn listen_to(signal: i32, asked: &Arc<AtomicBool>, quiet: bool) -> io::Result<()> {
-    flag::register_conditional_shutdown(signal, i32::from(Exit::Stopped.code()), Arc::clone(asked))?;
-    if !quiet {
-        answer(signal)?;
+    /// In this order: the second signal finds the flag that the first one has set.
+    fn listen_to(&self, signal: i32, quiet: bool) -> io::Result<()> {
+        flag::register_conditional_shutdown(signal, i32::from(Exit::Stopped.code()), Arc::clone(&self.asked))?;
+        self.answer(signal, quiet)?;
+        flag::register(signal, Arc::clone(&self.asked)).map(drop)
     }
-    flag::register(signal, Arc::clone(asked)).map(drop)
-}
 
-/// Says that the signal was heard: what is being done may take a moment to end.
-#[cfg(unix)]
-fn answer(signal: i32) -> io::Result<()> {
-    use std::io::Read;
-    let (mut heard, told) = std::os::unix::net::UnixStream::pair()?;
-    low_level::pipe::register(signal, told)?;
-    let wait = move || {
-        if heard.read_exact(&mut [0]).is_ok() {
-            eprintln!("anastomesh: stopping; Ctrl-C again ends at once");
-        }
-    };
-    std::thread::Builder::new().spawn(wait).map(drop)
-}
+    /// Says that the signal was heard, and ends a run that keeps nothing when it takes too long to end by itself.
+    #[cfg(unix)]
+    fn answer(&self, signal: i32, quiet: bool) -> io::Result<()> {
+        use std::io::Read;
+        let (mut heard, told) = std::os::unix::net::UnixStream::pair()?;
+        low_level::pipe::register(signal, told)?;
+        let keeps = Arc::clone(&self.keeps);
+        let wait = move || {
+            if heard.read_exact(&mut [0]).is_err() {
+                return;
+            }
+            if !quiet {
+                eprintln!("anastomesh: stopping; Ctrl-C again ends at once");
+            }
+            std::thread::sleep(PATIENCE);
+            if !keeps.load(Ordering::SeqCst) {
+                eprintln!("anastomesh: {NOTHING_KEPT}");
+                low_level::exit(Exit::Stopped.code().into());
+            }
+        };
+        std::thread::Builder::new().spawn(wait).map(drop)
+    }
 
-/// There is nothing here that a thread could wait for.
-#[cfg(not(unix))]
-fn answer(_: i32) -> io::Result<()> {
-    Ok(())
+    /// There is nothing here that a thread could wait for: a second Ctrl-C ends what does not ask.
+    #[cfg(not(unix))]
+    fn answer(&self, _: i32, _: bool) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// What was typed, to be typed again.

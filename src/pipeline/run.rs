@@ -99,7 +99,7 @@ impl From<RoundsError> for RunError {
 
 impl From<io::Error> for RunError {
     fn from(error: io::Error) -> Self {
-        if error.get_ref().is_some_and(|inner| inner.is::<Cancelled>()) {
+        if error.get_ref().is_some_and(<dyn std::error::Error + Send + Sync>::is::<Cancelled>) {
             return Self::Cancelled;
         }
         StoreError::from(error).into()

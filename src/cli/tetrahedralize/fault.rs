@@ -6,12 +6,13 @@ use std::fmt::Write as _;
 use super::input::Input;
 use super::numbers::FileNumbers;
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::stop::NOTHING_KEPT;
 use crate::tet::{Names, TetError};
 
 /// The message and exit code for an error; `from` names the input.
 pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
     if *error == TetError::Cancelled {
-        return Failure::stopped("stopped; nothing is kept, and no file is touched");
+        return Failure::stopped(NOTHING_KEPT);
     }
     let asked = Asked { numbers: &input.numbers, triangles: Cell::new(false), points: Cell::new(false) };
     let mut message = format!("{from}: {}", error.clone().renamed(&asked));

@@ -62,9 +62,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         report.repaired = watch.time("repair", || input.repair(plan.plc));
     }
     let stop = Stop::listen(plan.quiet)?;
-    let made = pool.install(|| make(&plan, &input, &watch, stop));
+    let made = pool.install(|| make(&plan, &input, &watch, stop.clone()));
     watch.leave();
     let made = made.map_err(|e| fault::failure(&e, &from, &input))?;
+    stop.keep();
     if let (Some(made), Some(target)) = (made, target) {
         fill_report(&mut report, &made, &input, &plan, args);
         input.leave_out(&made.summary.left_out.segments);
