@@ -33,11 +33,11 @@ fn wait_for(child: &mut Child, what: &str, is_there: impl Fn() -> bool) {
     }
 }
 
-/// Whether a process has a way of its own to take SIGINT: before that nobody listens.
+/// Whether a process has ways of its own to take SIGINT and SIGTERM: before that nobody listens.
 fn listens(id: u32) -> bool {
     let status = fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
     let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap_or("0");
-    u64::from_str_radix(caught.trim(), 16).is_ok_and(|mask| mask & 2 != 0)
+    u64::from_str_radix(caught.trim(), 16).is_ok_and(|mask| mask & 0x4002 == 0x4002)
 }
 
 /// What it says in the end, and how long it took to come to it.
@@ -158,6 +158,7 @@ fn the_second_signal_ends_it_at_once() {
         let mut child = start("tetrahedralize", &[&surface, Path::new("-o"), &out], &["--size", "0.02"]);
         let id = child.id();
         wait_for(&mut child, "listening", || listens(id));
+        std::thread::sleep(Duration::from_millis(100));
         signal(&child, first);
         signal(&child, second);
         let (output, took) = ended(child);

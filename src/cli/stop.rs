@@ -35,7 +35,8 @@ impl Stop {
         let stop = Self { asked: Arc::default(), keeps: Arc::default() };
         // SIGHUP stays as it is: a run under `nohup` goes on when its terminal is closed.
         for signal in [SIGINT, SIGTERM] {
-            stop.listen_to(signal, quiet).map_err(|e| Failure::stage(format!("Ctrl-C cannot be heard: {e}")))?;
+            let listens = stop.listen_to(signal).and_then(|()| stop.answer(signal, quiet));
+            listens.map_err(|e| Failure::stage(format!("Ctrl-C cannot be heard: {e}")))?;
         }
         Ok(stop)
     }
@@ -51,9 +52,8 @@ impl Stop {
     }
 
     /// In this order: the second signal finds the flag that the first one has set.
-    fn listen_to(&self, signal: i32, quiet: bool) -> io::Result<()> {
+    fn listen_to(&self, signal: i32) -> io::Result<()> {
         flag::register_conditional_shutdown(signal, i32::from(Exit::Stopped.code()), Arc::clone(&self.asked))?;
-        self.answer(signal, quiet)?;
         flag::register(signal, Arc::clone(&self.asked)).map(drop)
     }
 
@@ -63,9 +63,10 @@ impl Stop {
         use std::io::Read;
         let (mut heard, told) = std::os::unix::net::UnixStream::pair()?;
         low_level::pipe::register(signal, told)?;
-        let keeps = Arc::clone(&self.keeps);
+        let Self { asked, keeps } = self.clone();
         let wait = move || {
-            if heard.read_exact(&mut [0]).is_err() {
+            // A signal may have come before the thread.
+            if !asked.load(Ordering::SeqCst) && heard.read_exact(&mut [0]).is_err() {
                 return;
             }
             if !quiet {
