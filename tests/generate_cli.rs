@@ -1,16 +1,14 @@
 //! `generate` as it is run, and what the other verbs make of its networks.
 
+mod common;
+
+use common::program::{json, program};
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn run(arguments: &[&str], output: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_anastomesh")).args(arguments).arg(output).output().expect("the program runs")
-}
-
-fn json(output: &Output) -> Value {
-    let text = String::from_utf8_lossy(&output.stdout);
-    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text} {}", String::from_utf8_lossy(&output.stderr)))
+    program().args(arguments).arg(output).output().expect("the program runs")
 }
 
 #[test]
@@ -39,7 +37,7 @@ fn a_grown_network_is_read_and_refined() {
         assert_eq!((&info["nodes"], &info["terminals"]), (&grown["nodes"], &Value::from(3001)));
         assert_eq!((&info["components"], &info["loops"]), (&Value::from(1), &Value::from(0)));
         assert_eq!(info["radius"]["max"], grown["root_radius"]);
-        let refined = Command::new(env!("CARGO_BIN_EXE_anastomesh"))
+        let refined = program()
             .args(["refine", "--json"])
             .arg(&path)
             .arg("-o")

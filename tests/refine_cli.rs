@@ -3,12 +3,12 @@
 mod common;
 
 use common::fixture;
-use serde_json::Value;
+use common::program::{json, program};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn run(arguments: &[&str], paths: &[(&str, &Path)]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_anastomesh"));
+    let mut command = program();
     command.args(arguments);
     for (option, path) in paths {
         if option.is_empty() {
@@ -18,11 +18,6 @@ fn run(arguments: &[&str], paths: &[(&str, &Path)]) -> Output {
         };
     }
     command.output().expect("the program runs")
-}
-
-fn json(output: &Output) -> Value {
-    let text = String::from_utf8_lossy(&output.stdout);
-    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text} {}", String::from_utf8_lossy(&output.stderr)))
 }
 
 /// Two forks whose trunks cross at a point, each between terminals of its own.

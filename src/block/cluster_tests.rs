@@ -3,8 +3,8 @@
 use super::fixtures::direction;
 use super::woven::trim_tests::assert_mesh;
 use super::{
-    BlockDump, BlockError, BlockOutcome, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, dump_cluster,
-    dump_connector, dump_free_connector, mesh_cluster, mesh_connector, mesh_free_connector,
+    BlockDump, BlockError, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, Finished, StoredEnd, mesh_cluster,
+    mesh_connector, mesh_free_connector,
 };
 use crate::geometry::{Point3, Section, Tube, Vec3};
 use crate::mesh::TetMesh;
@@ -14,6 +14,7 @@ use crate::partition::{
 };
 use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
 use crate::surface::SharedDisc;
+use crate::tet::Watch;
 
 /// A star of vessels from a node: one per direction, ending in a cut or a terminal at 4 radii.
 fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
@@ -95,12 +96,21 @@ fn bifurcations_are_meshed_and_joined() {
         }
         assert!(worst_ratio(&connector.mesh) > 0.03, "{}", worst_ratio(&connector.mesh));
 
-        let dump = dump_connector(CutId(0), &gap, ends, &params);
-        let again = BlockDump::from_json(&dump.to_json().expect("json")).expect("dump");
+        let dump = BlockDump::of_connector(CutId(0), &gap, ends.map(alone), params, vec![1, 2]);
+        let again = BlockDump::from_json(dump.to_json().expect("json").as_bytes()).expect("dump");
         assert_eq!(again, dump);
-        let Ok(BlockOutcome::Connector(copy)) = again.run() else { panic!("connector runs again") };
+        let copy = again.run(&Watch::NOBODY).expect("connector runs again");
         assert_eq!(copy.mesh, connector.mesh);
     }
+}
+
+/// An end over its own points.
+fn alone(end: ConnectorEnd) -> StoredEnd {
+    let vertices = end.surface.vertices();
+    let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
+    let mut surface = end.surface.clone();
+    surface.triangles.as_flattened_mut().iter_mut().chain(&mut surface.rim).for_each(|v| *v = local(*v));
+    StoredEnd { surface, points: vertices.iter().map(|&v| end.points[v as usize]).collect() }
 }
 
 /// The points of a cluster's end, in the order of the shared disc.
@@ -132,8 +142,8 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
         }
         assert!(worst_ratio(&connector.mesh) > 0.3, "{}", worst_ratio(&connector.mesh));
 
-        let dump = dump_free_connector(CutId(0), &gap, &params).expect("dump");
-        let Ok(BlockOutcome::Connector(copy)) = dump.run() else { panic!("connector runs again") };
+        let dump = BlockDump::of_free_connector(CutId(0), &gap, params, Vec::new());
+        let copy = dump.run(&Watch::NOBODY).expect("connector runs again");
         assert_eq!(copy.mesh, connector.mesh);
     }
 }
@@ -226,11 +236,11 @@ fn a_terminal_that_looks_at_a_thick_vessel_stays_apart_from_it() {
 fn a_dumped_cluster_runs_again_to_the_same_bits() {
     let params = BlockParams { shift: [0.1, 0.2, 0.3], ..BlockParams::default() };
     let (cluster, mesh) = meshed(11, &params);
-    let text = dump_cluster(ClusterId(0), &cluster, &params).to_json().expect("json");
-    let Ok(BlockOutcome::Cluster(copy)) = BlockDump::from_json(&text).expect("dump").run() else {
-        panic!("cluster runs again")
-    };
-    assert_eq!(copy, mesh);
+    let dump = BlockDump::of_cluster(ClusterId(0), &cluster, params, Vec::new(), |node| node.0);
+    let again = BlockDump::from_json(dump.to_json().expect("json").as_bytes()).expect("dump");
+    assert_eq!(again, dump);
+    let copy = again.run(&Watch::NOBODY).expect("cluster runs again");
+    assert_eq!(copy, Finished::of_cluster(mesh, |node| node.0).expect("closed"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The surface of a connector (3.2.3, Fig. 6): two end surfaces turned round, and a regular tube woven between them.
 
-use super::end_surface::EndSurface;
+use super::end_surface::{EndSurface, StoredEnd};
 use super::path::{AxisPath, PathEnd};
 use super::rings::{Rim, RingVertex, rings, strip_count};
 use super::wall::Wall;
@@ -16,6 +16,12 @@ pub struct ConnectorEnd<'a> {
     pub surface: &'a EndSurface,
     /// The cluster's points.
     pub points: &'a [Point3],
+}
+
+impl<'a> From<&'a StoredEnd> for ConnectorEnd<'a> {
+    fn from(end: &'a StoredEnd) -> Self {
+        Self { surface: &end.surface, points: &end.points }
+    }
 }
 
 /// A connector vertex that is a vertex of one of the two clusters.

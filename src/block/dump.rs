@@ -1,141 +1,146 @@
 //! Failing inputs as small self-contained JSON files, and a way to run them again.
 
-use super::cluster::{ClusterMesh, mesh_cluster};
-use super::connector::{ConnectorMesh, FreeEnds, mesh_connector};
+use super::cluster::mesh_cluster_watched;
+use super::connector::{DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
 use super::connector_surface::ConnectorEnd;
-use super::end_surface::EndSurface;
-use super::error::BlockError;
+use super::end_surface::StoredEnd;
+use super::error::{BlockError, NotOnBoundary};
+use super::finished::Finished;
 use super::params::BlockParams;
-use crate::geometry::{Point3, Section, Tube, Vec3};
+use crate::geometry::{Point3, Section, Tube};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
-use crate::skeleton::{BranchId, NodeId};
+use crate::skeleton::{LARGEST, NodeId};
+use crate::tet::Watch;
 use serde::{Deserialize, Serialize};
 
-/// The input of one block.
+/// Number of the format; another one whenever what a dump holds changes its meaning or its names.
+const FORMAT: u32 = 1;
+
+/// The input of one block, as it was first tried. Nodes are numbered as in the network that was read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "block", rename_all = "snake_case")]
-pub enum BlockDump {
+pub struct BlockDump {
+    format: u32,
+    /// The program that wrote it.
+    pub program: String,
+    /// Nodes of the block (the first 20).
+    pub nodes: Vec<u32>,
+    /// Its parameters.
+    pub params: BlockParams,
+    /// What it is made from.
+    pub input: BlockInput,
+}
+
+/// What a block is made from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BlockInput {
     /// A cluster.
-    Cluster(ClusterDump),
-    /// A connector.
-    Connector(Box<ConnectorDump>),
+    Cluster {
+        /// Its number.
+        id: ClusterId,
+        /// Its vessels and ends.
+        cluster: Cluster,
+    },
+    /// A connector between the ends of its two clusters.
+    Connector {
+        /// Number of the cut.
+        id: CutId,
+        /// The cut.
+        cut: Cut,
+        /// The ends that it joins, side 0 first.
+        ends: Box<[StoredEnd; 2]>,
+    },
+    /// A connector that is made without its clusters.
+    FreeConnector {
+        /// Number of the cut.
+        id: CutId,
+        /// The cut.
+        cut: Cut,
+    },
 }
 
-/// A cluster and its parameters.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ClusterDump {
-    cluster: u32,
-    params: BlockParams,
-    nodes: Vec<u32>,
-    tubes: Vec<TubeDump>,
-    ends: Vec<ClusterEndDump>,
+/// A file that is no dump, or none that this program can run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DumpError {
+    /// It ends too early.
+    #[error("it is cut off ({0}): copy it again, or run `mesh` again, which writes it anew")]
+    CutOff(serde_json::Error),
+    /// It is something else.
+    #[error("it is no dump of a block ({0}): give a file of the folder MESH.failed that `mesh` leaves")]
+    Other(serde_json::Error),
+    /// It says nothing of its format.
+    #[error("it does not say of which format it is: run `mesh` again with this version, which writes it anew")]
+    NoFormat,
+    /// Another version of the program wrote it.
+    #[error("it is of format {format} (by {program}), this version reads {FORMAT}: run `mesh` again, or that version")]
+    Format {
+        /// Its format.
+        format: u32,
+        /// The program that wrote it.
+        program: String,
+    },
+    /// A number that no dump has.
+    #[error("{what}, which no block has: the file was changed, run `mesh` again, which writes it anew")]
+    Senseless {
+        /// Which number, and what is wrong with it.
+        what: String,
+    },
 }
 
-/// A cut, its two end surfaces and their parameters.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ConnectorDump {
-    cut: u32,
-    branch: u32,
-    clusters: [u32; 2],
-    ends: [u32; 2],
-    params: BlockParams,
-    path: Vec<SectionDump>,
-    surfaces: [EndSurfaceDump; 2],
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct TubeDump {
-    a: [f64; 3],
-    b: [f64; 3],
-    ra: f64,
-    rb: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct SectionDump {
-    origin: [f64; 3],
-    axis: [f64; 3],
-    radius: f64,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct ClusterEndDump {
-    section: SectionDump,
-    /// Cut and side, or neither.
-    cut: Option<(u32, u8)>,
-    node: Option<u32>,
-    overrun: u32,
-}
-
-/// An end surface over its own points only.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct EndSurfaceDump {
-    section: SectionDump,
-    points: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
-    rim: Vec<u32>,
-}
-
-/// A block that was run again.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BlockOutcome {
-    /// A cluster's mesh.
-    Cluster(ClusterMesh),
-    /// A connector's mesh.
-    Connector(ConnectorMesh),
-}
-
-/// The dump of a cluster.
-pub fn dump_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> BlockDump {
-    let end = |e: &ClusterEnd| ClusterEndDump {
-        section: e.section.into(),
-        cut: if let EndKind::Cut { cut, side } = e.kind { Some((cut.0, side)) } else { None },
-        node: if let EndKind::Terminal(node) = e.kind { Some(node.0) } else { None },
-        overrun: e.overrun,
-    };
-    BlockDump::Cluster(ClusterDump {
-        cluster: id.0,
-        params: *params,
-        nodes: cluster.nodes.iter().map(|n| n.0).collect(),
-        tubes: cluster
-            .tubes
-            .iter()
-            .map(|t| TubeDump { a: t.a.coords.into(), b: t.b.coords.into(), ra: t.ra, rb: t.rb })
-            .collect(),
-        ends: cluster.ends.iter().map(end).collect(),
-    })
-}
-
-/// The dump of a connector.
-pub fn dump_connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], params: &BlockParams) -> BlockDump {
-    let surface = |end: ConnectorEnd| {
-        let vertices = end.surface.vertices();
-        let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
-        EndSurfaceDump {
-            section: end.surface.section.into(),
-            points: vertices.iter().map(|&v| end.points[v as usize].coords.into()).collect(),
-            triangles: end.surface.triangles.iter().map(|t| t.map(local)).collect(),
-            rim: end.surface.rim.iter().map(|&v| local(v)).collect(),
-        }
-    };
-    BlockDump::Connector(Box::new(ConnectorDump {
-        cut: id.0,
-        branch: cut.branch.0,
-        clusters: cut.sides.map(|s| s.0.0),
-        ends: cut.sides.map(|s| s.1),
-        params: *params,
-        path: cut.path.iter().map(|&s| s.into()).collect(),
-        surfaces: ends.map(surface),
-    }))
-}
-
-/// The dump of a connector that is made without its clusters; none when its discs cannot be made.
-pub fn dump_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Option<BlockDump> {
-    let ends = FreeEnds::new(id, cut, params).ok()?;
-    Some(dump_connector(id, cut, ends.both(), params))
+/// What dumps of all versions begin with.
+#[derive(Deserialize)]
+struct Head {
+    format: Option<u32>,
+    #[serde(default)]
+    program: String,
 }
 
 impl BlockDump {
+    /// Of a cluster. `original`: the number of a node in the network as it was read; `nodes`: those to be named.
+    pub fn of_cluster(
+        id: ClusterId,
+        cluster: &Cluster,
+        params: BlockParams,
+        nodes: Vec<u32>,
+        original: impl Fn(NodeId) -> u32,
+    ) -> Self {
+        let original = |node: NodeId| NodeId(original(node));
+        let end = |end: &ClusterEnd| match end.kind {
+            EndKind::Terminal(node) => ClusterEnd { kind: EndKind::Terminal(original(node)), ..end.clone() },
+            EndKind::Cut { .. } => end.clone(),
+        };
+        let cluster = Cluster {
+            nodes: cluster.nodes.iter().map(|&node| original(node)).collect(),
+            tubes: cluster.tubes.clone(),
+            ends: cluster.ends.iter().map(end).collect(),
+        };
+        Self::new(params, nodes, BlockInput::Cluster { id, cluster })
+    }
+
+    /// Of a connector between the ends of its two clusters.
+    pub fn of_connector(id: CutId, cut: &Cut, ends: [StoredEnd; 2], params: BlockParams, nodes: Vec<u32>) -> Self {
+        Self::new(params, nodes, BlockInput::Connector { id, cut: cut.clone(), ends: Box::new(ends) })
+    }
+
+    /// Of a connector that is made without its clusters.
+    pub fn of_free_connector(id: CutId, cut: &Cut, params: BlockParams, nodes: Vec<u32>) -> Self {
+        Self::new(params, nodes, BlockInput::FreeConnector { id, cut: cut.clone() })
+    }
+
+    fn new(params: BlockParams, nodes: Vec<u32>, input: BlockInput) -> Self {
+        let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
+        Self { format: FORMAT, program, nodes, params, input }
+    }
+
+    /// `cluster 12` or `connector 7`.
+    pub fn name(&self) -> String {
+        match &self.input {
+            BlockInput::Cluster { id, .. } => format!("cluster {}", id.0),
+            BlockInput::Connector { id, .. } | BlockInput::FreeConnector { id, .. } => format!("connector {}", id.0),
+        }
+    }
+
     /// As JSON; numbers survive bit for bit.
     ///
     /// # Errors
@@ -147,77 +152,108 @@ impl BlockDump {
     /// From JSON.
     ///
     /// # Errors
-    /// Text that is no dump.
-    pub fn from_json(text: &str) -> Result<Self, serde_json::Error> {
-        serde_json::from_str(text)
+    /// Text that is no dump, or one that no run can have written.
+    pub fn from_json(text: &[u8]) -> Result<Self, DumpError> {
+        let fault = |e: serde_json::Error| if e.is_eof() { DumpError::CutOff(e) } else { DumpError::Other(e) };
+        // The format is looked at first: what else another version writes cannot be known.
+        match serde_json::from_slice(text).map_err(fault)? {
+            Head { format: None, .. } => Err(DumpError::NoFormat),
+            Head { format: Some(FORMAT), .. } => {
+                let dump: Self = serde_json::from_slice(text).map_err(fault)?;
+                dump.check().map_err(|what| DumpError::Senseless { what })?;
+                Ok(dump)
+            }
+            Head { format: Some(format), program } => Err(DumpError::Format { format, program }),
+        }
+    }
+
+    /// Whether a block can have these numbers: what follows relies on it.
+    fn check(&self) -> Result<(), String> {
+        self.params.check().map_err(|e| e.to_string())?;
+        if self.params.first_division >= DIVISIONS {
+            return Err(format!("first_division is {}", self.params.first_division));
+        }
+        match &self.input {
+            BlockInput::Cluster { cluster, .. } => check_cluster(cluster),
+            BlockInput::FreeConnector { cut, .. } => cut.path.iter().try_for_each(check_section),
+            BlockInput::Connector { cut, ends, .. } => {
+                cut.path.iter().try_for_each(check_section)?;
+                ends.iter().try_for_each(check_end)
+            }
+        }
     }
 
     /// Runs the block again.
     ///
     /// # Errors
     /// The block's.
-    pub fn run(&self) -> Result<BlockOutcome, BlockError> {
-        match self {
-            Self::Cluster(d) => mesh_cluster(ClusterId(d.cluster), &d.cluster(), &d.params).map(BlockOutcome::Cluster),
-            Self::Connector(d) => d.run().map(BlockOutcome::Connector),
+    pub fn run(&self, watch: &Watch) -> Result<Finished, BlockError> {
+        let params = &self.params;
+        let (mesh, ends) = match &self.input {
+            BlockInput::Cluster { id, cluster } => {
+                let mesh = mesh_cluster_watched(*id, cluster, params, watch)?;
+                return Finished::of_cluster(mesh, |node| node.0).map_err(|source| self.not_closed(source));
+            }
+            BlockInput::Connector { id, cut, ends } => {
+                let mesh = mesh_connector(*id, cut, ends.each_ref().map(ConnectorEnd::from), params)?;
+                (mesh, ends.each_ref().map(|end| end.surface.clone()))
+            }
+            BlockInput::FreeConnector { id, cut } => {
+                let mesh = mesh_free_connector(*id, cut, params)?;
+                let no_disc = || BlockError::Connector { cut: *id, at: [f64::NAN; 3], attempts: Vec::new() };
+                (mesh, shared_ends(*id, cut, params).ok_or_else(no_disc)?)
+            }
+        };
+        Finished::of_connector(mesh, ends.each_ref()).map_err(|source| self.not_closed(source))
+    }
+
+    fn not_closed(&self, source: NotOnBoundary) -> BlockError {
+        BlockError::Faces { block: self.name(), source }
+    }
+}
+
+fn check_cluster(cluster: &Cluster) -> Result<(), String> {
+    for Tube { a, b, ra, rb } in &cluster.tubes {
+        check_point(a)?;
+        check_point(b)?;
+        check_radius(*ra)?;
+        check_radius(*rb)?;
+    }
+    for end in &cluster.ends {
+        check_section(&end.section)?;
+        match end.kind {
+            EndKind::Cut { side: 2.., .. } => return Err("an end has a side other than 0 and 1".into()),
+            _ if end.overrun as usize >= cluster.tubes.len() => {
+                return Err(format!("an end names tube {} of {}", end.overrun, cluster.tubes.len()));
+            }
+            _ => {}
         }
     }
+    Ok(())
 }
 
-impl ClusterDump {
-    /// The cluster.
-    pub fn cluster(&self) -> Cluster {
-        Cluster {
-            nodes: self.nodes.iter().map(|&n| NodeId(n)).collect(),
-            tubes: self
-                .tubes
-                .iter()
-                .map(|t| Tube { a: Point3::from(t.a), b: Point3::from(t.b), ra: t.ra, rb: t.rb })
-                .collect(),
-            ends: self.ends.iter().map(ClusterEndDump::end).collect(),
-        }
+fn check_end(end: &StoredEnd) -> Result<(), String> {
+    let StoredEnd { surface, points } = end;
+    check_section(&surface.section)?;
+    points.iter().try_for_each(check_point)?;
+    match surface.triangles.as_flattened().iter().chain(&surface.rim).find(|&&v| v as usize >= points.len()) {
+        Some(v) => Err(format!("an end names point {v} of {}", points.len())),
+        None => Ok(()),
     }
 }
 
-impl ClusterEndDump {
-    fn end(&self) -> ClusterEnd {
-        let kind = match self.cut {
-            Some((cut, side)) => EndKind::Cut { cut: CutId(cut), side },
-            None => EndKind::Terminal(NodeId(self.node.unwrap_or(u32::MAX))),
-        };
-        ClusterEnd { section: self.section.into(), kind, overrun: self.overrun }
-    }
+fn check_section(section: &Section) -> Result<(), String> {
+    check_point(&section.origin)?;
+    check_radius(section.radius)?;
+    let length = section.axis.norm();
+    if (length - 1.0).abs() < 1e-6 { Ok(()) } else { Err(format!("an axis has the length {length}")) }
 }
 
-impl ConnectorDump {
-    fn run(&self) -> Result<ConnectorMesh, BlockError> {
-        let cut = Cut {
-            branch: BranchId(self.branch),
-            sides: [0, 1].map(|i| (ClusterId(self.clusters[i]), self.ends[i])),
-            path: self.path.iter().map(|&s| s.into()).collect(),
-        };
-        let points: [Vec<Point3>; 2] =
-            [0, 1].map(|i| self.surfaces[i].points.iter().map(|&p| Point3::from(p)).collect());
-        let surfaces = [0, 1].map(|i| EndSurface {
-            cut: CutId(self.cut),
-            side: i as u8,
-            section: self.surfaces[i].section.into(),
-            triangles: self.surfaces[i].triangles.clone(),
-            rim: self.surfaces[i].rim.clone(),
-        });
-        let ends = [0, 1].map(|i| ConnectorEnd { surface: &surfaces[i], points: &points[i] });
-        mesh_connector(CutId(self.cut), &cut, ends, &self.params)
-    }
+fn check_point(point: &Point3) -> Result<(), String> {
+    // Not the other way round: NaN is no coordinate, either.
+    if point.coords.amax() <= LARGEST { Ok(()) } else { Err(format!("a point lies at {point}")) }
 }
 
-impl From<Section> for SectionDump {
-    fn from(s: Section) -> Self {
-        Self { origin: s.origin.coords.into(), axis: s.axis.into(), radius: s.radius }
-    }
-}
-
-impl From<SectionDump> for Section {
-    fn from(s: SectionDump) -> Self {
-        Self { origin: Point3::from(s.origin), axis: Vec3::from(s.axis), radius: s.radius }
-    }
+fn check_radius(radius: f64) -> Result<(), String> {
+    if radius > 0.0 && radius <= LARGEST { Ok(()) } else { Err(format!("a radius is {radius}")) }
 }

@@ -16,7 +16,7 @@ pub struct CutEnd {
 }
 
 /// The triangles exposed at a cut.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EndSurface {
     /// The cut.
     pub cut: CutId,
@@ -28,6 +28,15 @@ pub struct EndSurface {
     pub triangles: Vec<[u32; 3]>,
     /// The boundary loop, counter-clockwise about the section's axis, starting at its smallest vertex.
     pub rim: Vec<u32>,
+}
+
+/// An end surface over its own points alone.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct StoredEnd {
+    /// The surface.
+    pub surface: EndSurface,
+    /// Its points.
+    pub points: Vec<Point3>,
 }
 
 /// What an end surface violates.

@@ -148,6 +148,22 @@ pub struct NotOnBoundary {
 }
 
 impl BlockError {
+    /// What was being done, for people.
+    pub fn stage(&self) -> &'static str {
+        match self {
+            Self::Parameter { .. } => "parameters",
+            Self::Surface { .. } | Self::Genus { .. } => "wall",
+            Self::Cap { .. } => "caps",
+            Self::Tetrahedra { .. } => "tetrahedra",
+            Self::End { .. } => "trimmed ends",
+            Self::Faces { .. } | Self::Flat { .. } => "check",
+            Self::Connector { attempts, .. } => match attempts.last().map(|attempt| &attempt.failure) {
+                Some(ConnectorFailure::Tetrahedra(_)) => "tetrahedra",
+                Some(ConnectorFailure::Surface(_)) | None => "wall",
+            },
+        }
+    }
+
     /// Of a cluster that fails at a cut; `end` is the index among all its ends.
     pub(super) fn at_end(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> Self {
         Self::End { cluster, end, cut: cut.cut, at: cut.section.origin.coords.into(), failure }

@@ -6,8 +6,8 @@ use rustc_hash::FxHashMap;
 
 use super::cluster::ClusterMesh;
 use super::connector::ConnectorMesh;
-use super::end_surface::{EndSurface, disc_rim};
-use crate::geometry::{Point3, Section};
+use super::end_surface::{EndSurface, StoredEnd, disc_rim};
+use crate::geometry::Section;
 use crate::mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
 use crate::mesh::check::parts::{Certificate, PartView, certify_with};
 use crate::mesh::{Cap, TetMesh};
@@ -139,19 +139,13 @@ impl Finished {
     }
 
     /// A joint as an end surface over its own points alone; none if it is no disc.
-    pub fn end_surface(
-        &self,
-        joint: usize,
-        cut: CutId,
-        side: u8,
-        section: Section,
-    ) -> Option<(EndSurface, Vec<Point3>)> {
+    pub fn end_surface(&self, joint: usize, cut: CutId, side: u8, section: Section) -> Option<StoredEnd> {
         let FinishedJoint { vertices, faces } = self.joints.get(joint)?;
         let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
         let triangles: Vec<[u32; 3]> = self.triangles(faces).into_iter().map(|t| t.map(local)).collect();
         let rim = disc_rim(&triangles)?;
         let points = vertices.iter().map(|&v| self.mesh.points[v as usize]).collect();
-        Some((EndSurface { cut, side, section, triangles, rim }, points))
+        Some(StoredEnd { surface: EndSurface { cut, side, section, triangles, rim }, points })
     }
 }
 

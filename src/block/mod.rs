@@ -4,6 +4,7 @@
 //! exposes at a cut is an [`EndSurface`]. A connector is a tube between two end surfaces, which it takes over vertex
 //! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
 
+mod alone;
 mod cluster;
 mod connector;
 mod connector_surface;
@@ -24,10 +25,8 @@ pub(crate) use cluster::mesh_cluster_watched;
 pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
 pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
-pub use dump::{
-    BlockDump, BlockOutcome, ClusterDump, ConnectorDump, dump_cluster, dump_connector, dump_free_connector,
-};
-pub use end_surface::{CutEnd, EndFault, EndSurface};
+pub use dump::{BlockDump, BlockInput, DumpError};
+pub use end_surface::{CutEnd, EndFault, EndSurface, StoredEnd};
 pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
 pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
 pub use params::{BlockParams, EndStyle};

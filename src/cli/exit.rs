@@ -17,18 +17,29 @@ pub enum Exit {
     StageFailed,
     /// A fault of the program.
     Bug,
+    /// Somebody asked it to stop.
+    Stopped,
+}
+
+impl Exit {
+    /// Its number.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Fine => 0,
+            Self::GateNotMet => 1,
+            Self::Usage => 2,
+            Self::BadInput => 3,
+            Self::StageFailed => 4,
+            Self::Bug => 70,
+            // As shells have it for what Ctrl-C ended.
+            Self::Stopped => 130,
+        }
+    }
 }
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
-        ExitCode::from(match exit {
-            Exit::Fine => 0,
-            Exit::GateNotMet => 1,
-            Exit::Usage => 2,
-            Exit::BadInput => 3,
-            Exit::StageFailed => 4,
-            Exit::Bug => 70,
-        })
+        exit.code().into()
     }
 }
 
@@ -50,6 +61,11 @@ impl Failure {
     /// A stage failed.
     pub fn stage(message: impl Into<String>) -> Self {
         Self { exit: Exit::StageFailed, message: message.into() }
+    }
+
+    /// Somebody asked to stop.
+    pub fn stopped(message: impl Into<String>) -> Self {
+        Self { exit: Exit::Stopped, message: message.into() }
     }
 
     /// The command line is wrong in a way that only the input shows.

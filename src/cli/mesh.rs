@@ -11,6 +11,7 @@ use super::network::NetworkArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::room::{self, BlockPlace, size};
+use super::stop::{self, Stop};
 use crate::io::network::ensure_network_writable;
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
@@ -117,14 +118,17 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
     let network = args.network.read()?;
-    let bars = Bars::new(args.common.quiet);
+    let stop = Stop::listen(args.common.quiet)?;
+    let bars = Bars::new(args.common.quiet, stop.clone());
     for remark in network.remarks() {
         bars.note(&remark);
     }
     let pool = super::thread_pool(args.common.threads)?;
-    let refined = pool.install(|| args.refined(&network.skeleton))?;
+    let refined = pool.install(|| args.refined(&network.skeleton, &stop))?;
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
     let refinement = refined.as_ref().map(|r| &r.report);
+    // Blocks are kept as soon as they are done.
+    stop.keep();
     pool.install(|| {
         if plan.smooths_joints() {
             args.run_in_memory(skeleton, &plan, refinement, &bars)
@@ -192,9 +196,12 @@ impl Args {
         let store = place.open(read, || self.options(plan))?;
         let kept = store.bytes_on_disk();
         let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, &self.output);
-        if self.work_dir.is_some() {
-            // Whoever stops the program cannot be told afterwards.
-            bars.note(&format!("it may be stopped at any time: {}", self.how_to_go_on()));
+        if let Some(dir) = &self.work_dir {
+            // Whoever kills the program cannot be told afterwards.
+            let dir = dir.display();
+            bars.note(&format!(
+                "finished blocks are kept in {dir}: the same command goes on there if this run is stopped"
+            ));
         }
         let mut clock = Clock::default();
         let result = pipeline::mesh_into(&store, network, plan, &fits, bars, &mut clock);
@@ -226,7 +233,8 @@ impl Args {
         let memory = (self.memory / 4) as usize;
         let write = || write_mesh_within(memory, &self.output, mesh, &notes);
         let written = clock.time(bars, Stage::Write, 0, write);
-        written.map_err(|e| Failure::input(e.to_string()))?;
+        // Passes over the blocks end when the run is to end.
+        written.map_err(|e| if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) })?;
         report.stages = clock.stages();
         self.print(plan, refinement, &report, Some(check))?;
         Ok(match () {
@@ -246,21 +254,24 @@ impl Args {
                     report.failed.len()
                 )),
             },
-            RunError::Cancelled => Failure::stage(format!("stopped; {}", self.how_to_go_on())),
+            RunError::Cancelled => self.stopped(),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
             RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),
             _ => Failure::stage(error.to_string()),
         }
     }
 
-    /// What becomes of a run that is stopped.
-    fn how_to_go_on(&self) -> String {
-        match &self.work_dir {
+    /// What is left of a run that was stopped, and how it goes on.
+    fn stopped(&self) -> Failure {
+        Failure::stopped(match &self.work_dir {
             Some(dir) => {
-                format!("finished blocks are kept in {}, and the same command goes on from there", dir.display())
+                let (dir, command) = (dir.display(), stop::command_line());
+                format!("stopped; finished blocks are kept in {dir}. Go on from there with\n  {command}")
             }
-            None => "nothing is left of it; with --work-dir DIR the same command goes on from finished blocks".into(),
-        }
+            None => {
+                "stopped; nothing is kept. With --work-dir DIR finished blocks are, and the same command goes on".into()
+            }
+        })
     }
 
     fn notes(&self, expectation: Expectation) -> MeshNotes {
@@ -276,10 +287,11 @@ impl Args {
     }
 
     /// The network refined, if that was asked for.
-    fn refined(&self, skeleton: &Skeleton) -> Result<Option<Refined>, Failure> {
+    fn refined(&self, skeleton: &Skeleton, stop: &Stop) -> Result<Option<Refined>, Failure> {
         let Some(iterations) = self.refine else { return Ok(None) };
-        let refined = super::refine::moved(skeleton, &self.how.params(iterations), self.common.quiet)?;
+        let refined = super::refine::moved(skeleton, &self.how.params(iterations), self.common.quiet, stop)?;
         if let Some(path) = &self.refined {
+            stop.keep();
             super::refine::write(path, &refined)?;
         }
         if !self.common.quiet && !self.common.json {

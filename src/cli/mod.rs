@@ -2,27 +2,31 @@
 
 mod check;
 mod common;
+mod completions;
 mod dual;
 mod exit;
 mod generate;
 mod info;
+mod man;
 mod mesh;
 mod network;
 mod progress;
 mod refine;
+mod replay;
 mod room;
+mod stop;
 mod tetrahedralize;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Command, CommandFactory, Parser, Subcommand};
 use exit::{Exit, Failure};
 
 /// From the skeleton of a vascular network to one valid tetrahedral volume mesh.
 #[derive(Debug, Parser)]
 #[command(name = "anastomesh", version, propagate_version = true, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 fine, 1 a gate is not met (the mesh is not valid), 2 usage, 3 bad input, \
-                        4 a stage failed, 70 a fault of the program.")]
+                        4 a stage failed, 70 a fault of the program, 130 stopped by Ctrl-C.")]
 struct Args {
     #[command(subcommand)]
     verb: Verb,
@@ -42,8 +46,14 @@ enum Verb {
     Tetrahedralize(tetrahedralize::Args),
     /// Verify a volume mesh line by line
     Check(check::Args),
+    /// Make a block again that failed, from what `mesh` left of it
+    Replay(replay::Args),
     /// Print what a network holds
     Info(info::Args),
+    /// Print what a shell needs to complete this command line
+    Completions(completions::Args),
+    /// Print a page of the manual
+    Man(man::Args),
 }
 
 /// Runs the program on the process's arguments.
@@ -64,7 +74,10 @@ pub fn main() -> ExitCode {
         Verb::Generate(args) => generate::run(args),
         Verb::Tetrahedralize(args) => tetrahedralize::run(args),
         Verb::Check(args) => check::run(args),
+        Verb::Replay(args) => replay::run(args),
         Verb::Info(args) => info::run(args),
+        Verb::Completions(args) => completions::run(args, definition()),
+        Verb::Man(args) => man::run(args, &definition()),
     });
     match result {
         Ok(Ok(exit)) => exit.into(),
@@ -74,6 +87,13 @@ pub fn main() -> ExitCode {
         }
         Err(_) => Exit::Bug.into(),
     }
+}
+
+/// The command line, with the options that every verb has.
+fn definition() -> Command {
+    let mut definition = Args::command();
+    definition.build();
+    definition
 }
 
 /// As many threads as were asked for, or as there are cores.
@@ -92,15 +112,21 @@ fn install_panic_note() {
     }));
 }
 
-/// Prints a result for people or, with `--json`, for programs. A closed pipe is the reader's decision, not an error.
+/// Prints a result for people or, with `--json`, for programs.
 fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
-    use std::io::Write;
     let out = if json {
         serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?
     } else {
         text()
     };
-    match writeln!(std::io::stdout().lock(), "{}", out.trim_end()) {
+    print_bytes(format!("{}\n", out.trim_end()).as_bytes())
+}
+
+/// Writes to standard output. A closed pipe is the reader's decision, not an error.
+fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::input(format!("standard output: {e}"))),
         _ => Ok(()),
     }

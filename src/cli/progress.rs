@@ -5,6 +5,7 @@ use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::stop::Stop;
 use crate::pipeline::{Observer, Stage};
 
 /// Whether bars are shown: on a terminal only.
@@ -31,12 +32,13 @@ pub struct Bars {
     shown: bool,
     quiet: bool,
     current: Mutex<Option<ProgressBar>>,
+    stop: Stop,
 }
 
 impl Bars {
     /// `quiet` suppresses the notes as well.
-    pub fn new(quiet: bool) -> Self {
-        Self { shown: shows_bars(quiet), quiet, current: Mutex::new(None) }
+    pub fn new(quiet: bool, stop: Stop) -> Self {
+        Self { shown: shows_bars(quiet), quiet, current: Mutex::new(None), stop }
     }
 
     fn current(&self) -> Option<ProgressBar> {
@@ -77,5 +79,9 @@ impl Observer for Bars {
             Some(bar) => bar.suspend(|| eprintln!("{message}")),
             None => eprintln!("{message}"),
         }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.stop.is_asked()
     }
 }

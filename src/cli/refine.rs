@@ -9,6 +9,7 @@ use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::{shows_bars, stage_bar};
+use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
 use crate::io::write_text;
 use crate::refine::{
@@ -140,18 +141,13 @@ struct Output<'a> {
 }
 
 /// A bar on standard error, on a terminal only.
-pub(super) struct Bar {
+struct Steps<'a> {
     shown: bool,
     bar: Option<ProgressBar>,
+    stop: &'a Stop,
 }
 
-impl Bar {
-    pub(super) fn new(quiet: bool) -> Self {
-        Self { shown: shows_bars(quiet), bar: None }
-    }
-}
-
-impl Progress for Bar {
+impl Progress for Steps<'_> {
     fn step(&mut self, iteration: usize, of: usize, _: Option<&Sample>) {
         if !self.shown {
             return;
@@ -162,14 +158,19 @@ impl Progress for Bar {
             bar.finish_and_clear();
         }
     }
+
+    fn is_cancelled(&self) -> bool {
+        self.stop.is_asked()
+    }
 }
 
 /// Refines a skeleton, with a bar.
-pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool) -> Result<Refined, Failure> {
-    let refined = refine::refine(skeleton, params, &mut Bar::new(quiet));
+pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool, stop: &Stop) -> Result<Refined, Failure> {
+    let mut steps = Steps { shown: shows_bars(quiet), bar: None, stop };
+    let refined = refine::refine(skeleton, params, &mut steps);
     refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
-        RefineError::Cancelled => Failure::stage("stopped; nothing is left of it"),
+        RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
         _ => Failure::usage(e.to_string()),
     })
 }
@@ -185,7 +186,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
     let pool = super::thread_pool(args.common.threads)?;
-    let refined = pool.install(|| moved(&network.skeleton, &params, args.common.quiet))?;
+    let stop = Stop::listen(args.common.quiet)?;
+    let refined = pool.install(|| moved(&network.skeleton, &params, args.common.quiet, &stop))?;
+    stop.keep();
     write(&args.output, &refined)?;
     let report = &refined.report;
     for (path, text) in [(&args.metrics, csv as fn(&RefineReport) -> String), (&args.plot, |r| svg(&panels(r)))] {

@@ -3,7 +3,7 @@
 use super::{Point3, Vec3};
 
 /// A straight piece of vessel: an axis from `a` to `b` with radius `ra` at `a` and `rb` at `b`, linear in between.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Tube {
     /// Start of the axis.
     pub a: Point3,
@@ -43,7 +43,7 @@ impl Tube {
 }
 
 /// A plane across a vessel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Section {
     /// Where the vessel's axis meets the plane.
     pub origin: Point3,

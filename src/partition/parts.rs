@@ -6,11 +6,11 @@ use crate::geometry::{Section, Tube};
 use crate::skeleton::{BranchId, NodeId};
 
 /// Index of a cluster.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct ClusterId(pub u32);
 
 /// Index of a cut.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct CutId(pub u32);
 
 /// The network cut into clusters.
@@ -92,7 +92,7 @@ pub enum PartitionWarning {
 }
 
 /// Branches that are meshed together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cluster {
     /// Nodes inside the cluster.
     pub nodes: Vec<NodeId>,
@@ -104,7 +104,7 @@ pub struct Cluster {
 }
 
 /// A plane at which a cluster ends.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClusterEnd {
     /// The plane; its axis points out of the cluster.
     pub section: Section,
@@ -115,7 +115,8 @@ pub struct ClusterEnd {
 }
 
 /// What a cluster ends in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum EndKind {
     /// A cut; `side` says which of the cut's two sides this cluster is.
     Cut {
@@ -129,7 +130,7 @@ pub enum EndKind {
 }
 
 /// A place where a vessel is cut and later joined by a connector.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cut {
     /// The branch that is cut.
     pub branch: BranchId,

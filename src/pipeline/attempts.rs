@@ -2,9 +2,8 @@
 
 use super::plan::{JointStyle, MeshPlan};
 use crate::block::{
-    BlockDump, BlockError, BlockParams, ConnectorAttempt, ConnectorEnd, ConnectorMesh, DIVISIONS, EndStyle, EndSurface,
-    Finished, dump_cluster, dump_connector, dump_free_connector, mesh_cluster_watched, mesh_connector,
-    mesh_free_connector, shared_ends,
+    BlockError, BlockParams, ConnectorAttempt, ConnectorEnd, ConnectorMesh, DIVISIONS, EndStyle, EndSurface, Finished,
+    mesh_cluster_watched, mesh_connector, mesh_free_connector, shared_ends,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
 use crate::skeleton::NodeId;
@@ -219,21 +218,6 @@ fn divided(
     });
     tried.failures.extend(before);
     tried
-}
-
-/// The input of a cluster as it is first tried.
-pub fn cluster_input(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> BlockDump {
-    dump_cluster(id, cluster, &plan.block_params())
-}
-
-/// The input of a connector as it is first tried.
-pub fn connector_input(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> BlockDump {
-    dump_connector(id, cut, ends, &plan.block_params())
-}
-
-/// The input of a connector that is made without its clusters; none when it has no path or its discs cannot be made.
-pub fn free_connector_input(id: CutId, cut: &Cut, plan: &MeshPlan) -> Option<BlockDump> {
-    dump_free_connector(id, cut, &plan.block_params())
 }
 
 #[cfg(test)]

@@ -2,14 +2,13 @@
 
 use std::io;
 
-use super::attempts;
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{Made, Workshop};
 use super::observer::Observer;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{BlockCounts, FailedBlock, FusedBlock, RunReport};
-use crate::block::{About, BlockDump, ConnectorEnd};
+use crate::block::{About, BlockDump};
 use crate::partition::{ClusterId, CutId};
 use crate::skeleton::{NodeId, Skeleton};
 
@@ -82,7 +81,9 @@ pub(super) fn describe_blocks(
             });
         }
         if let Err(error) = &blocks.clusters[i] {
-            let input = attempts::cluster_input(ClusterId(i as u32), cluster, shop.plan);
+            let original = |node| skeleton.node(node).original;
+            let params = shop.plan.block_params();
+            let input = BlockDump::of_cluster(ClusterId(i as u32), cluster, params, nodes(), original);
             report.failed.push(FailedBlock {
                 block: format!("cluster {i}"),
                 nodes: nodes(),
@@ -94,16 +95,18 @@ pub(super) fn describe_blocks(
     for (i, (cut, made)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
         let Some(Err(error)) = made else { continue };
         let id = CutId(i as u32);
+        let params = shop.plan.block_params();
+        let nodes = || cut_nodes(skeleton, partition, cut);
         let input = match shop.plan.joint {
-            JointStyle::Woven => shop.stored_ends(partition, id, cut, &blocks.clusters)?.map(|ends| {
-                let end = |side: usize| ConnectorEnd { surface: &ends[side].surface, points: &ends[side].points };
-                attempts::connector_input(id, cut, [end(0), end(1)], shop.plan)
-            }),
-            JointStyle::Disc | JointStyle::None => attempts::free_connector_input(id, cut, shop.plan),
+            JointStyle::Woven => {
+                let ends = shop.stored_ends(partition, id, cut, &blocks.clusters)?;
+                ends.map(|ends| BlockDump::of_connector(id, cut, ends, params, nodes()))
+            }
+            JointStyle::Disc | JointStyle::None => Some(BlockDump::of_free_connector(id, cut, params, nodes())),
         };
         report.failed.push(FailedBlock {
             block: format!("connector {i}"),
-            nodes: cut_nodes(skeleton, partition, cut),
+            nodes: nodes(),
             reason: error.to_string(),
             dump: input.and_then(|input| write_dump(shop.plan, &format!("connector_{i}"), &input)),
         });

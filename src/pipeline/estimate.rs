@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::plan::MeshPlan;
 use super::schedule::Cost;
+use crate::block::{BlockDump, BlockInput, BlockParams};
 use crate::geometry::Tube;
 use crate::partition::{Cluster, Cut, Partition};
 use crate::skeleton::Skeleton;
@@ -56,6 +57,17 @@ impl Estimate {
             let radius = 0.5 * (edge.radii[0] + edge.radii[1]);
             cost(std::iter::once(((b - a).norm(), radius, radius)), plan)
         }))
+    }
+
+    /// Of one block.
+    pub fn of_dump(dump: &BlockDump) -> Self {
+        let BlockParams { rho, voxel_factor, follow, .. } = dump.params;
+        let plan = MeshPlan { rho: rho / voxel_factor, follow, ..MeshPlan::default() };
+        let cost = match &dump.input {
+            BlockInput::Cluster { cluster, .. } => cluster_cost(cluster, &plan),
+            BlockInput::Connector { cut, .. } | BlockInput::FreeConnector { cut, .. } => connector_cost(cut, &plan),
+        };
+        Self::sum(std::iter::once(cost))
     }
 
     fn sum(costs: impl Iterator<Item = Cost>) -> Self {

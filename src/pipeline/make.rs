@@ -5,8 +5,7 @@ use std::io;
 use super::attempts::{self, Tried, Way};
 use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
-use crate::block::{About, BlockError, ConnectorEnd, Cured, EndSurface, Record, Sizes, encode};
-use crate::geometry::Point3;
+use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, Sizes, StoredEnd, encode};
 use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Partition};
 use crate::skeleton::Skeleton;
 use crate::tet::Watch;
@@ -76,8 +75,7 @@ impl Workshop<'_> {
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
-        let both = [0, 1].map(|side: usize| ConnectorEnd { surface: &ends[side].surface, points: &ends[side].points });
-        self.keep(key, attempts::connector(id, cut, both, self.plan))
+        self.keep(key, attempts::connector(id, cut, ends.each_ref().map(ConnectorEnd::from), self.plan))
     }
 
     fn keep(&self, key: Key, Tried { result, failures, way }: Tried) -> Result<Made, StoreError> {
@@ -125,20 +123,10 @@ impl Workshop<'_> {
             let block = Record::open(&self.store.bytes(kept.record))?.block()?;
             let section = partition.clusters[place.part as usize].ends[cut.sides[side].1 as usize].section;
             let end = block.end_surface(place.joint as usize, id, side as u8, section);
-            let (surface, points) = end.ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?;
-            ends.push(StoredEnd { surface, points });
+            ends.push(end.ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?);
         }
         Ok(ends.try_into().ok())
     }
-}
-
-/// An end surface over its own points.
-#[derive(Clone, Debug)]
-pub struct StoredEnd {
-    /// The surface.
-    pub surface: EndSurface,
-    /// Its points.
-    pub points: Vec<Point3>,
 }
 
 /// A joint of a part of the whole.

@@ -18,7 +18,7 @@ use super::routes::Overlapping;
 use super::store::{Store, StoreError};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
-use super::whole::Whole;
+use super::whole::{Cancelled, Whole};
 use crate::mesh::check::parts::PartsCheck;
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
@@ -99,6 +99,9 @@ impl From<RoundsError> for RunError {
 
 impl From<io::Error> for RunError {
     fn from(error: io::Error) -> Self {
+        if error.get_ref().is_some_and(<dyn std::error::Error + Send + Sync>::is::<Cancelled>) {
+            return Self::Cancelled;
+        }
         StoreError::from(error).into()
     }
 }
@@ -126,7 +129,8 @@ pub fn mesh_network(
 
 /// Meshes a cleaned network into a store; the mesh is never in memory as a whole. Joints are not smoothed. Uses the
 /// current rayon pool; the result does not depend on its size. `fits` hears what the run will take before anything is
-/// meshed, and may refuse.
+/// meshed, and may refuse. The observer is also asked by every pass over what comes of it: one that is to stop ends with
+/// an error of the kind `Other`.
 ///
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
@@ -135,7 +139,7 @@ pub fn mesh_into<'a>(
     network: &Skeleton,
     plan: &MeshPlan,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
-    observer: &dyn Observer,
+    observer: &'a dyn Observer,
     clock: &mut Clock,
 ) -> Result<Stored<'a>, RunError> {
     // What is in memory for the blocks is not while the whole is checked. In the rare case that blocks meet everything is
@@ -174,7 +178,7 @@ fn join_blocks<'a>(
     store: &'a Store,
     met: &[Meetings],
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
-    observer: &dyn Observer,
+    observer: &'a dyn Observer,
     clock: &mut Clock,
 ) -> Result<Joined<'a>, RunError> {
     plan.validate()?;
@@ -202,7 +206,7 @@ fn join_blocks<'a>(
     if plan.fuse {
         expectation.loops = fused_loops(&blocks, &clusters);
     }
-    let number = || Whole::new(store, &skeleton, &blocks, &terminals);
+    let number = || Whole::new(store, observer, &skeleton, &blocks, &terminals);
     let whole = clock.time(observer, Stage::Merge, 0, number)?;
     Ok(Joined { whole, expectation, overlapping, report })
 }

@@ -259,8 +259,10 @@ fn a_block_that_fails_is_named_and_dumped() {
         let Err(RunError::BlocksFailed(report)) = run(&hair_on_a_trunk(), &plan) else { panic!("must fail") };
         let [failed] = &report.failed[..] else { panic!("one block") };
         assert_eq!(failed.nodes, [0, 1, 2, 3]);
-        let dump = std::fs::read_to_string(failed.dump.as_ref().expect("a dump")).expect("readable");
-        let again = crate::block::BlockDump::from_json(&dump).expect("a dump").run();
+        let dump = std::fs::read(failed.dump.as_ref().expect("a dump")).expect("readable");
+        let again = crate::block::BlockDump::from_json(&dump).expect("a dump");
+        assert_eq!((&again.nodes, again.name()), (&failed.nodes, failed.block.clone()));
+        let again = again.run(&crate::tet::Watch::NOBODY);
         assert_eq!(again.expect_err("fails again").to_string(), failed.reason);
     }
 }

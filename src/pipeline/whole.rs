@@ -7,6 +7,7 @@ use std::io;
 
 use super::blocks::Blocks;
 use super::make::{JointPlace, Kept, joints_of_cut};
+use super::observer::Observer;
 use super::report::MeshSize;
 use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
@@ -24,6 +25,7 @@ use crate::skeleton::Skeleton;
 #[derive(Debug)]
 pub struct Whole<'a> {
     store: &'a Store,
+    listener: Listener<'a>,
     parts: Vec<PartPlan>,
     patches: Vec<Patch>,
     /// Patch of each terminal's cap, ascending by node.
@@ -48,6 +50,20 @@ struct PartPlan {
     joined_to: Option<[JointPlace; 2]>,
 }
 
+/// Who says whether to stop.
+struct Listener<'a>(&'a dyn Observer);
+
+impl std::fmt::Debug for Listener<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("Listener")
+    }
+}
+
+/// The observer ended a pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
 /// More vertices than 32 bits can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the whole mesh has {0} points, more than 32 bits can count; mesh its parts, or give a smaller --rho")]
@@ -60,12 +76,14 @@ impl<'a> Whole<'a> {
     /// When there are too many vertices or a block cannot be read.
     pub fn new(
         store: &'a Store,
+        observer: &'a dyn Observer,
         skeleton: &Skeleton,
         blocks: &Blocks,
         terminals: &TerminalPatches,
     ) -> io::Result<Self> {
         let mut whole = Self {
             store,
+            listener: Listener(observer),
             parts: Vec::with_capacity(blocks.clusters.len() + blocks.connectors.len()),
             patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
             patch_of: Vec::new(),
@@ -110,7 +128,7 @@ impl<'a> Whole<'a> {
 
     fn add_open_faces(&mut self) -> io::Result<()> {
         for place in &self.open {
-            let joints = Record::open(&self.record(self.parts[place.part as usize]))?.joints()?;
+            let joints = Record::open(&self.record(self.parts[place.part as usize])?)?.joints()?;
             self.counts.boundary += joints.get(place.joint as usize).map_or(0, |joint| joint.faces.len());
         }
         Ok(())
@@ -130,8 +148,12 @@ impl<'a> Whole<'a> {
         Ok(())
     }
 
-    fn record(&self, part: PartPlan) -> StoredBytes<'a> {
-        self.store.bytes(part.kept.record)
+    /// The bytes of a part. Every pass comes here for each part, so this is where it is asked whether to stop.
+    fn record(&self, part: PartPlan) -> io::Result<StoredBytes<'a>> {
+        if self.listener.0.is_cancelled() {
+            return Err(io::Error::other(Cancelled));
+        }
+        Ok(self.store.bytes(part.kept.record))
     }
 
     /// Numbers of the vertices that a part shares with earlier ones.
@@ -139,7 +161,7 @@ impl<'a> Whole<'a> {
         let mut shared = Vec::with_capacity(part.kept.sizes.shared as usize);
         for place in part.joined_to.iter().flatten() {
             let cluster = self.parts[place.part as usize];
-            let joints = Record::open(&self.record(cluster))?.joints()?;
+            let joints = Record::open(&self.record(cluster)?)?.joints()?;
             // Clusters share nothing, so all of their vertices are their own.
             let vertices = joints.get(place.joint as usize).map_or(&[][..], |joint| &joint.vertices);
             shared.extend(vertices.iter().map(|v| cluster.first_point + v));
@@ -204,7 +226,7 @@ impl<'a> Whole<'a> {
     pub fn joint_vertices(&self) -> io::Result<Vec<Vec<u32>>> {
         let mut all = Vec::with_capacity(self.joined.len());
         for &part in self.parts.iter().filter(|part| part.joined_to.is_some()) {
-            let joints = Record::open(&self.record(part))?.joints()?;
+            let joints = Record::open(&self.record(part)?)?.joints()?;
             let numbers = self.numbers(part)?;
             all.extend(joints.iter().map(|joint| joint.vertices.iter().map(|&v| numbers[v as usize]).collect()));
         }
@@ -227,14 +249,14 @@ impl MeshSource for Whole<'_> {
 
     fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
         let part = self.parts[part as usize];
-        let points = Record::open(&self.record(part))?.points()?.split_off(part.kept.sizes.shared as usize);
+        let points = Record::open(&self.record(part)?)?.points()?.split_off(part.kept.sizes.shared as usize);
         Ok(points.into())
     }
 
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
         let part = self.parts[part as usize];
         let numbers = self.numbers(part)?;
-        let mut tets = Record::open(&self.record(part))?.tets()?;
+        let mut tets = Record::open(&self.record(part)?)?.tets()?;
         tets.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
         let blocks = vec![part.block; tets.len()].into();
         Ok(TetPiece { tets: tets.into(), blocks })
@@ -243,7 +265,7 @@ impl MeshSource for Whole<'_> {
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
         let plan = self.parts[part as usize];
         let numbers = self.numbers(plan)?;
-        let bytes = self.record(plan);
+        let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
         let tets = record.tets()?;
         let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(part, &record)?.into_iter().unzip();
@@ -260,7 +282,7 @@ impl MeshSource for Whole<'_> {
 
     fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
         let plan = self.parts[part as usize];
-        let faces = self.outer_faces(part, &Record::open(&self.record(plan))?)?;
+        let faces = self.outer_faces(part, &Record::open(&self.record(plan)?)?)?;
         let patches = faces.iter().map(|(_, patch)| *patch).collect();
         Ok(LabelPiece { count: faces.len(), patches, blocks: vec![plan.block; faces.len()].into() })
     }
@@ -272,12 +294,12 @@ impl Parts for Whole<'_> {
     }
 
     fn certificate(&self, part: u32) -> io::Result<Certificate> {
-        Ok(Record::open(&self.record(self.parts[part as usize]))?.notes()?.0)
+        Ok(Record::open(&self.record(self.parts[part as usize])?)?.notes()?.0)
     }
 
     fn wall(&self, part: u32) -> io::Result<WallPiece> {
         let plan = self.parts[part as usize];
-        let bytes = self.record(plan);
+        let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
         let faces: Vec<u32> = self.outer_faces(part, &record)?.into_iter().map(|(face, _)| face).collect();
         let (points, tets, numbers) = (record.points()?, record.tets()?, self.numbers(plan)?);
@@ -298,7 +320,7 @@ impl Parts for Whole<'_> {
 
     fn joint(&self, part: u32, joint: u32) -> io::Result<JointFaces> {
         let plan = self.parts[part as usize];
-        let bytes = self.record(plan);
+        let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
         let FinishedJoint { vertices, faces } = record
             .joints()?

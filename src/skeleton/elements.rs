@@ -3,7 +3,7 @@
 use crate::geometry::{Point3, Tube};
 
 /// Index of a node in its skeleton.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct NodeId(pub u32);
 
 /// Index of an edge in its skeleton.
@@ -11,7 +11,7 @@ pub struct NodeId(pub u32);
 pub struct EdgeId(pub u32);
 
 /// Index of a branch: a maximal chain of edges through nodes of valence 2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct BranchId(pub u32);
 
 /// A node: a point on the axis of a vessel.

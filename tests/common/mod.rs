@@ -2,6 +2,9 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 pub mod oracle;
+#[cfg(feature = "cli")]
+pub mod program;
+pub mod surfaces;
 
 use anastomesh::io::network::{NetworkOptions, read_network};
 use anastomesh::pipeline::{Clock, MeshPlan, Meshed, RunError, Silent, mesh_network};

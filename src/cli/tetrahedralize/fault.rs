@@ -6,10 +6,14 @@ use std::fmt::Write as _;
 use super::input::Input;
 use super::numbers::FileNumbers;
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::stop::NOTHING_KEPT;
 use crate::tet::{Names, TetError};
 
 /// The message and exit code for an error; `from` names the input.
 pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
+    if *error == TetError::Cancelled {
+        return Failure::stopped(NOTHING_KEPT);
+    }
     let asked = Asked { numbers: &input.numbers, triangles: Cell::new(false), points: Cell::new(false) };
     let mut message = format!("{from}: {}", error.clone().renamed(&asked));
     message.push_str(&place(error, input));
@@ -66,11 +70,9 @@ fn place(error: &TetError, input: &Input) -> String {
 fn exit(error: &TetError) -> Exit {
     match error {
         TetError::BadOption { .. } | TetError::Unsupported { .. } => Exit::Usage,
-        TetError::NotRecovered { .. }
-        | TetError::NotCertified(_)
-        | TetError::Broken(_)
-        | TetError::Cancelled
-        | TetError::TooLarge { .. } => Exit::StageFailed,
+        TetError::NotRecovered { .. } | TetError::NotCertified(_) | TetError::Broken(_) | TetError::TooLarge { .. } => {
+            Exit::StageFailed
+        }
         _ => Exit::BadInput,
     }
 }

@@ -15,6 +15,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::exit::{Exit, Failure};
+use super::stop::Stop;
 use crate::mesh::quality::TetQuality;
 use crate::report::tetrahedralize::{
     BoundResult, InputSize, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
@@ -60,9 +61,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if plan.repair {
         report.repaired = watch.time("repair", || input.repair(plan.plc));
     }
-    let made = pool.install(|| make(&plan, &input, &watch));
+    let stop = Stop::listen(plan.quiet)?;
+    let made = pool.install(|| make(&plan, &input, &watch, stop.clone()));
     watch.leave();
     let made = made.map_err(|e| fault::failure(&e, &from, &input))?;
+    stop.keep();
     if let (Some(made), Some(target)) = (made, target) {
         fill_report(&mut report, &made, &input, &plan, args);
         input.leave_out(&made.summary.left_out.segments);
@@ -77,9 +80,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 /// The mesh; none when the input is only checked.
-fn make(plan: &TetPlan, input: &Input, watch: &Arc<Watch>) -> Result<Option<Tetrahedralization>, TetError> {
+fn make(plan: &TetPlan, input: &Input, watch: &Arc<Watch>, stop: Stop) -> Result<Option<Tetrahedralization>, TetError> {
     let told = Arc::clone(watch);
     let tetrahedralizer = plan.tetrahedralizer().on_progress(move |progress| told.progress(progress));
+    let tetrahedralizer = tetrahedralizer.cancel(move || stop.is_asked());
     if plan.check_only && !input.only_points {
         return tetrahedralizer.check(&input.plc).map(|()| None);
     }

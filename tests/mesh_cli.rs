@@ -1,63 +1,13 @@
-//! The program as it is run: verbs, exit codes, messages, files.
+//! `mesh` and `info` as they are run, and what is common to all verbs: exit codes, messages, files.
 
 mod common;
 
-use anastomesh::io::volume::{read_mesh, write_mesh};
+use anastomesh::io::volume::read_mesh;
+use common::program::*;
 use common::{fixture, shared};
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use tempfile::TempDir;
-
-const FINE: i32 = 0;
-const GATE_NOT_MET: i32 = 1;
-const USAGE: i32 = 2;
-const BAD_INPUT: i32 = 3;
-const STAGE_FAILED: i32 = 4;
-
-fn run(verb: &str, paths: &[&Path], options: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_anastomesh"));
-    command.arg(verb).args(paths).args(options).output().expect("the program runs")
-}
-
-fn mesh(network: &Path, out: &Path, options: &[&str]) -> Output {
-    run("mesh", &[network, Path::new("--output"), out], options)
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("no signal")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("text")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("text")
-}
-
-#[track_caller]
-fn assert_code(output: &Output, expected: i32) {
-    assert_eq!(code(output), expected, "{}\n{}", stdout(output), stderr(output));
-}
-
-fn json(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", stdout(output)))
-}
-
-fn folder() -> TempDir {
-    tempfile::tempdir().expect("a temporary folder")
-}
-
-/// Names of what lies in a folder.
-fn entries(folder: &Path) -> Vec<String> {
-    let list = fs::read_dir(folder).expect("a folder");
-    let mut names: Vec<String> =
-        list.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-    names.sort_unstable();
-    names
-}
+use std::path::Path;
 
 // ---- What works -----------------------------------------------------------------------------------------------------
 
@@ -191,18 +141,6 @@ fn overlapping_vessels_are_meshed_and_named() {
 }
 
 // ---- Bad input ------------------------------------------------------------------------------------------------------
-
-/// One message, that names the path and holds all of `needles`.
-#[track_caller]
-fn assert_message(output: &Output, path: &Path, needles: &[&str]) {
-    let said = stderr(output);
-    assert_eq!(said.lines().count(), 1, "{said}");
-    assert!(said.starts_with(&format!("anastomesh: {}: ", path.display())), "{said}");
-    for needle in needles {
-        assert!(said.contains(needle), "'{needle}' is not in: {said}");
-    }
-    assert!(output.stdout.is_empty(), "{}", stdout(output));
-}
 
 /// All verbs refuse the network, and what lies at the output path stays as it is.
 #[track_caller]
@@ -419,88 +357,11 @@ fn verbs_help_and_version() {
     let unknown = run("weave", &[], &[]);
     assert_code(&unknown, USAGE);
     assert!(stderr(&unknown).contains("weave"));
-    assert_code(&Command::new(env!("CARGO_BIN_EXE_anastomesh")).output().expect("the program runs"), USAGE);
+    assert_code(&program().output().expect("the program runs"), USAGE);
     assert_code(&run("mesh", &[&fixture("tree_30.vtp")], &[]), USAGE);
 }
 
-// ---- Meshes that are not sound --------------------------------------------------------------------------------------
-
-/// The fixture's mesh, made once per test.
-fn tree_mesh(folder: &TempDir, name: &str) -> PathBuf {
-    let out = folder.path().join(name);
-    assert_code(&mesh(&fixture("tree_30.vtp"), &out, &["-q", "--rho", "2.5"]), FINE);
-    out
-}
-
-#[test]
-fn check_refuses_what_is_no_mesh() {
-    let folder = folder();
-    let refused = |path: &Path, needles: &[&str]| {
-        let output = run("check", &[path], &["--json"]);
-        assert_code(&output, BAD_INPUT);
-        assert_message(&output, path, needles);
-    };
-    refused(&folder.path().join("missing.vtu"), &["No such file"]);
-    refused(folder.path(), &["directory"]);
-    for name in ["mesh.vtu", "mesh.msh"] {
-        let path = tree_mesh(&folder, name);
-        let whole = fs::read(&path).expect("the mesh");
-        let end = whole.trim_ascii_end().len();
-        for length in [1, end / 100, end / 10, end / 2, end * 9 / 10, end * 99 / 100] {
-            fs::write(&path, &whole[..length]).expect("a file");
-            refused(&path, &[]);
-        }
-        fs::write(&path, "").expect("a file");
-        refused(&path, &["empty"]);
-        fs::write(&path, "It was the best of times.\n").expect("a file");
-        refused(&path, &[]);
-        let noise: Vec<u8> = (0..4096_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
-        fs::write(&path, noise).expect("a file");
-        refused(&path, &[]);
-    }
-    let path = folder.path().join("mesh.stl");
-    fs::write(&path, "solid\n").expect("a file");
-    refused(&path, &["extension", ".vtu, .pvtu, .msh"]);
-    // A network is no mesh.
-    let network = folder.path().join("network.vtu");
-    fs::copy(fixture("tree_30.vtp"), &network).expect("a copy");
-    refused(&network, &["PolyData", "UnstructuredGrid"]);
-}
-
-#[test]
-fn check_finds_what_is_broken() {
-    let folder = folder();
-    let path = tree_mesh(&folder, "mesh.vtu");
-    let sound = read_mesh(&path).expect("a mesh");
-    let fails = |broken: &anastomesh::mesh::VolumeMesh, statement: &str| {
-        for name in ["broken.vtu", "broken.msh"] {
-            let path = folder.path().join(name);
-            write_mesh(&path, broken, &sound.notes).expect("a file");
-            let output = run("check", &[&path], &[]);
-            assert_code(&output, GATE_NOT_MET);
-            let said = stdout(&output);
-            assert!(said.contains(&format!("  FAIL {statement}: ")) && said.ends_with("NOT valid\n"), "{said}");
-            let verdict = &json(&run("check", &[&path], &["--json"]))["verdict"];
-            assert_eq!(verdict, "invalid");
-        }
-    };
-    let mut inverted = sound.volume.clone();
-    inverted.mesh.tets[100].swap(0, 1);
-    fails(&inverted, "every tetrahedron is positive");
-    let mut holed = sound.volume.clone();
-    holed.mesh.tets.remove(100);
-    holed.tet_block.remove(100);
-    fails(&holed, "the labelled triangles are the boundary");
-    let mut mislabelled = sound.volume.clone();
-    let cap = mislabelled.boundary_patch.iter().position(|&p| p == 2).expect("an inlet");
-    mislabelled.boundary_patch[cap] = 3;
-    fails(&mislabelled, "every cap is one disc");
-}
-
 // ---- Blocks that fail -----------------------------------------------------------------------------------------------
-
-/// A good vessel, and one that is so thin for its length that its wall cannot be stored.
-const HOPELESS: &str = "1 1 0 0 0 1 -1\n2 1 0 0 9 1 1\n3 1 50 0 0 1e-7 -1\n4 1 50 0 9 1 3\n";
 
 #[test]
 fn a_block_that_fails_ends_the_run_with_its_input_kept() {

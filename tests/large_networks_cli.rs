@@ -2,38 +2,21 @@
 
 mod common;
 
+use common::program::{BAD_INPUT, FINE, USAGE, assert_code, assert_says, program};
 use common::{fixture, shared};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
-const FINE: i32 = 0;
-const USAGE: i32 = 2;
-const BAD_INPUT: i32 = 3;
-
 fn command(network: &Path, out: &Path, options: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_anastomesh"));
+    let mut command = program();
     command.arg("mesh").arg(network).arg("-o").arg(out).arg("-q").args(options);
     command
 }
 
 fn run(network: &Path, out: &Path, options: &[&str]) -> Output {
     command(network, out, options).output().expect("the program runs")
-}
-
-#[track_caller]
-fn assert_code(output: &Output, expected: i32) {
-    assert_eq!(output.status.code(), Some(expected), "{}", String::from_utf8_lossy(&output.stderr));
-}
-
-#[track_caller]
-fn assert_says(output: &Output, code: i32, words: &[&str]) {
-    assert_code(output, code);
-    let text = String::from_utf8_lossy(&output.stderr);
-    for word in words {
-        assert!(text.contains(word), "'{word}' in: {text}");
-    }
 }
 
 /// The fixture, or a larger network where it is there.
@@ -184,8 +167,7 @@ fn a_full_disk_is_an_error_that_says_so() {
 
 /// The report of the verb check, without its figures of quality (percentiles of blocks are known to a bin).
 fn checked(mesh: &Path, options: &[&str]) -> (i32, serde_json::Value) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_anastomesh"));
-    let output = command.arg("check").arg(mesh).arg("--json").args(options).output().expect("the program runs");
+    let output = program().arg("check").arg(mesh).arg("--json").args(options).output().expect("the program runs");
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
     let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     report["quality"] = serde_json::Value::Null;

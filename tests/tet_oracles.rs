@@ -1,14 +1,14 @@
 //! The tetrahedralizer against CGAL and TetGen: the answers they gave once, which `fixtures/oracle` keeps, and where the
 //! programs are there, the ones they give now.
 
-#[path = "differential/delaunay.rs"]
+#[path = "tet_oracles/delaunay.rs"]
 mod delaunay;
 #[allow(dead_code, reason = "each test binary uses its own part")]
 #[path = "common/oracle.rs"]
 mod oracle;
-#[path = "differential/plc.rs"]
+#[path = "tet_oracles/plc.rs"]
 mod plc;
-#[path = "differential/recorded.rs"]
+#[path = "tet_oracles/recorded.rs"]
 mod recorded;
-#[path = "differential/tetgen.rs"]
+#[path = "tet_oracles/tetgen.rs"]
 mod tetgen;

@@ -1,0 +1,30 @@
+//! A finished block as a mesh of its own.
+
+use super::finished::Finished;
+use crate::mesh::adjacency::face_vertices;
+use crate::mesh::{Patch, VolumeMesh, WALL};
+
+impl Finished {
+    /// The block alone, its joints and caps labelled: `wall`, `joint_0`, …, then `terminal_N` for the terminal N.
+    pub fn into_volume(self) -> VolumeMesh {
+        let tets = &self.mesh.tets;
+        let wall = (self.wall, Patch { id: WALL, name: "wall".into(), cap: None });
+        let mut labelled = vec![wall];
+        for (i, joint) in self.joints.into_iter().enumerate() {
+            labelled.push((joint.faces, Patch { id: 0, name: format!("joint_{i}"), cap: None }));
+        }
+        for cap in self.caps {
+            let patch = Patch { id: 0, name: format!("terminal_{}", cap.node.0), cap: Some(cap.disc(cap.node.0)) };
+            labelled.push((cap.faces, patch));
+        }
+        let mut volume = VolumeMesh { tet_block: vec![0; tets.len()], ..VolumeMesh::default() };
+        for (id, (faces, patch)) in (WALL..).zip(labelled) {
+            volume.boundary.extend(faces.iter().map(|&face| face_vertices(tets, face)));
+            volume.boundary_patch.resize(volume.boundary.len(), id);
+            volume.patches.push(Patch { id, ..patch });
+        }
+        volume.boundary_block = vec![0; volume.boundary.len()];
+        volume.mesh = self.mesh;
+        volume
+    }
+}

@@ -1,0 +1,134 @@
+//! `anastomesh replay`: makes a block again that failed, from its dump.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::common::Common;
+use super::exit::{Exit, Failure};
+use super::room::size;
+use super::stop::{NOTHING_KEPT, Stop};
+use crate::block::{BlockDump, BlockError, Finished};
+use crate::io::volume::{MeshNotes, ensure_writable, write_mesh};
+use crate::mesh::quality::TetQuality;
+use crate::pipeline::{Estimate, TooLarge};
+use crate::tet::{TetError, Watch};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The input of a block that failed: a file of the folder MESH.failed that `mesh` leaves
+    #[arg(value_name = "DUMP.json")]
+    dump: PathBuf,
+    /// Where the block's mesh goes if it comes out: .vtu, .pvtu, .msh, .mesh, or .ele
+    #[arg(short, long, value_name = "MESH")]
+    output: Option<PathBuf>,
+    /// Memory that may be used, such as 2GiB or 500MB
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
+    memory: u64,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Output<'a> {
+    program: &'static str,
+    /// The program that wrote the dump.
+    written_by: &'a str,
+    block: String,
+    nodes: &'a [u32],
+    /// None when it came out.
+    failed: Option<Failed>,
+    mesh: Option<Made>,
+}
+
+/// Where it failed.
+#[derive(Serialize)]
+struct Failed {
+    stage: &'static str,
+    reason: String,
+}
+
+/// What came out.
+#[derive(Serialize)]
+struct Made {
+    points: usize,
+    tets: usize,
+    quality: TetQuality,
+    file: Option<String>,
+}
+
+/// Makes the block again.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let path = args.dump.display();
+    let refused = |why: &dyn std::fmt::Display| Failure::input(format!("{path}: {why}"));
+    if let Some(output) = &args.output {
+        ensure_writable(output).map_err(|e| Failure::input(e.to_string()))?;
+    }
+    let text = std::fs::read(&args.dump).map_err(|e| refused(&format!("cannot be read: {e}")))?;
+    let dump = BlockDump::from_json(&text).map_err(|e| refused(&e))?;
+    let estimate = Estimate::of_dump(&dump);
+    if estimate.largest_block_bytes > args.memory {
+        return Err(refused(&TooLarge::Block { estimate, memory: args.memory }));
+    }
+    let pool = super::thread_pool(args.common.threads)?;
+    let stop = Stop::listen(args.common.quiet)?;
+    let ask = || stop.is_asked();
+    match pool.install(|| dump.run(&Watch::until(&ask))) {
+        Err(BlockError::Tetrahedra { source: TetError::Cancelled, .. }) => Err(Failure::stopped(NOTHING_KEPT)),
+        Err(error) => args.fails_again(&dump, &error),
+        Ok(block) => {
+            stop.keep();
+            args.comes_out(&dump, block)
+        }
+    }
+}
+
+impl Args {
+    fn fails_again(&self, dump: &BlockDump, error: &BlockError) -> Result<Exit, Failure> {
+        let (stage, reason) = (error.stage(), error.to_string());
+        if self.common.json {
+            self.print(dump, Some(Failed { stage, reason }), None)?;
+            return Ok(Exit::StageFailed);
+        }
+        let (block, nodes) = (dump.name(), &dump.nodes);
+        Err(Failure::stage(format!("{block} (nodes {nodes:?}) fails at the stage '{stage}': {reason}")))
+    }
+
+    fn comes_out(&self, dump: &BlockDump, block: Finished) -> Result<Exit, Failure> {
+        let volume = block.into_volume();
+        let mesh = &volume.mesh;
+        let file = self.output.as_ref().map(|path| path.display().to_string());
+        let made = Made { points: mesh.points.len(), tets: mesh.tets.len(), quality: TetQuality::of(mesh), file };
+        if let Some(path) = &self.output {
+            let notes = MeshNotes {
+                expectation: None,
+                generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
+                options: format!("replay of {}", dump.name()),
+                regions: false,
+            };
+            write_mesh(path, &volume, &notes).map_err(|e| Failure::input(e.to_string()))?;
+        }
+        if !self.common.quiet || self.common.json {
+            self.print(dump, None, Some(made))?;
+        }
+        Ok(Exit::Fine)
+    }
+
+    fn print(&self, dump: &BlockDump, failed: Option<Failed>, mesh: Option<Made>) -> Result<(), Failure> {
+        if self.common.json {
+            let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
+            let (written_by, block, nodes) = (dump.program.as_str(), dump.name(), dump.nodes.as_slice());
+            return super::print(true, &Output { program, written_by, block, nodes, failed, mesh }, String::new);
+        }
+        if let Some(Made { points, tets, file, .. }) = mesh {
+            let then = match file {
+                Some(file) => format!("written to {file}"),
+                None => "-o MESH writes it".into(),
+            };
+            let (block, nodes) = (dump.name(), &dump.nodes);
+            eprintln!("{block} (nodes {nodes:?}) comes out: {tets} tetrahedra, {points} points; {then}");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,82 @@
+//! `check` as it is run: what is no mesh, and meshes that are not sound.
+
+mod common;
+
+use anastomesh::io::volume::{read_mesh, write_mesh};
+use common::fixture;
+use common::program::*;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// The fixture's mesh, made once per test.
+fn tree_mesh(folder: &TempDir, name: &str) -> PathBuf {
+    let out = folder.path().join(name);
+    assert_code(&mesh(&fixture("tree_30.vtp"), &out, &["-q", "--rho", "2.5"]), FINE);
+    out
+}
+
+#[test]
+fn check_refuses_what_is_no_mesh() {
+    let folder = folder();
+    let refused = |path: &Path, needles: &[&str]| {
+        let output = run("check", &[path], &["--json"]);
+        assert_code(&output, BAD_INPUT);
+        assert_message(&output, path, needles);
+    };
+    refused(&folder.path().join("missing.vtu"), &["No such file"]);
+    refused(folder.path(), &["directory"]);
+    for name in ["mesh.vtu", "mesh.msh"] {
+        let path = tree_mesh(&folder, name);
+        let whole = fs::read(&path).expect("the mesh");
+        let end = whole.trim_ascii_end().len();
+        for length in [1, end / 100, end / 10, end / 2, end * 9 / 10, end * 99 / 100] {
+            fs::write(&path, &whole[..length]).expect("a file");
+            refused(&path, &[]);
+        }
+        fs::write(&path, "").expect("a file");
+        refused(&path, &["empty"]);
+        fs::write(&path, "It was the best of times.\n").expect("a file");
+        refused(&path, &[]);
+        let noise: Vec<u8> = (0..4096_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        fs::write(&path, noise).expect("a file");
+        refused(&path, &[]);
+    }
+    let path = folder.path().join("mesh.stl");
+    fs::write(&path, "solid\n").expect("a file");
+    refused(&path, &["extension", ".vtu, .pvtu, .msh"]);
+    // A network is no mesh.
+    let network = folder.path().join("network.vtu");
+    fs::copy(fixture("tree_30.vtp"), &network).expect("a copy");
+    refused(&network, &["PolyData", "UnstructuredGrid"]);
+}
+
+#[test]
+fn check_finds_what_is_broken() {
+    let folder = folder();
+    let path = tree_mesh(&folder, "mesh.vtu");
+    let sound = read_mesh(&path).expect("a mesh");
+    let fails = |broken: &anastomesh::mesh::VolumeMesh, statement: &str| {
+        for name in ["broken.vtu", "broken.msh"] {
+            let path = folder.path().join(name);
+            write_mesh(&path, broken, &sound.notes).expect("a file");
+            let output = run("check", &[&path], &[]);
+            assert_code(&output, GATE_NOT_MET);
+            let said = stdout(&output);
+            assert!(said.contains(&format!("  FAIL {statement}: ")) && said.ends_with("NOT valid\n"), "{said}");
+            let verdict = &json(&run("check", &[&path], &["--json"]))["verdict"];
+            assert_eq!(verdict, "invalid");
+        }
+    };
+    let mut inverted = sound.volume.clone();
+    inverted.mesh.tets[100].swap(0, 1);
+    fails(&inverted, "every tetrahedron is positive");
+    let mut holed = sound.volume.clone();
+    holed.mesh.tets.remove(100);
+    holed.tet_block.remove(100);
+    fails(&holed, "the labelled triangles are the boundary");
+    let mut mislabelled = sound.volume.clone();
+    let cap = mislabelled.boundary_patch.iter().position(|&p| p == 2).expect("an inlet");
+    mislabelled.boundary_patch[cap] = 3;
+    fails(&mislabelled, "every cap is one disc");
+}

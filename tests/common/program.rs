@@ -1,0 +1,114 @@
+//! The program, run as a person runs it, and what it answers.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+pub const FINE: i32 = 0;
+pub const GATE_NOT_MET: i32 = 1;
+pub const USAGE: i32 = 2;
+pub const BAD_INPUT: i32 = 3;
+pub const STAGE_FAILED: i32 = 4;
+pub const STOPPED: i32 = 130;
+
+/// The program, with nothing said to it yet.
+pub fn program() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_anastomesh"))
+}
+
+/// What a verb answers to these paths and options.
+pub fn run(verb: &str, paths: &[&Path], options: &[&str]) -> Output {
+    program().arg(verb).args(paths).args(options).output().expect("the program runs")
+}
+
+/// Meshes a network.
+pub fn mesh(network: &Path, out: &Path, options: &[&str]) -> Output {
+    run("mesh", &[network, Path::new("--output"), out], options)
+}
+
+/// Fills a surface.
+pub fn fill(surface: &Path, out: &Path, options: &[&str]) -> Output {
+    run("tetrahedralize", &[surface, Path::new("--output"), out], options)
+}
+
+/// A good vessel, and one that is so thin for its length that its wall cannot be stored.
+pub const HOPELESS: &str = "1 1 0 0 0 1 -1\n2 1 0 0 9 1 1\n3 1 50 0 0 1e-7 -1\n4 1 50 0 9 1 3\n";
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("text")
+}
+
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("text")
+}
+
+#[track_caller]
+pub fn assert_code(output: &Output, expected: i32) {
+    let out = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(expected), "{out}\n{}", stderr(output));
+}
+
+/// Holds the exit code and that the message has these words.
+#[track_caller]
+pub fn assert_says(output: &Output, code: i32, words: &[&str]) {
+    assert_code(output, code);
+    let text = stderr(output);
+    for word in words {
+        assert!(text.contains(word), "'{word}' in: {text}");
+    }
+}
+
+/// One message, that names the path and holds all of `needles`.
+#[track_caller]
+pub fn assert_message(output: &Output, path: &Path, needles: &[&str]) {
+    let said = stderr(output);
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(said.starts_with(&format!("anastomesh: {}: ", path.display())), "{said}");
+    for needle in needles {
+        assert!(said.contains(needle), "'{needle}' is not in: {said}");
+    }
+    assert!(output.stdout.is_empty(), "{}", stdout(output));
+}
+
+/// What it prints with `--json`.
+#[track_caller]
+pub fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}\n{}", stdout(output), stderr(output)))
+}
+
+pub fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// Names of what lies in a folder.
+pub fn entries(folder: &Path) -> Vec<String> {
+    let list = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        list.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort_unstable();
+    names
+}
+
+/// `tetrahedralize`, not yet run.
+pub fn command(input: &Path, out: Option<&Path>, options: &[&str]) -> Command {
+    let mut command = program();
+    command.arg("tetrahedralize").arg(input);
+    if let Some(out) = out {
+        command.arg("--output").arg(out);
+    }
+    command.args(options);
+    command
+}
+
+/// The report of a run that ends well.
+#[track_caller]
+pub fn report(input: &Path, out: &Path, options: &[&str]) -> Value {
+    let mut all = vec!["--json"];
+    all.extend(options);
+    let output = fill(input, out, &all);
+    assert_code(&output, FINE);
+    assert!(output.stderr.is_empty(), "{}", stderr(&output));
+    json(&output)
+}

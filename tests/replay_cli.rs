@@ -1,0 +1,153 @@
+//! `replay` as it is run: blocks that fail again, blocks that come out, and files that are no dumps.
+
+mod common;
+
+use common::program::*;
+use serde_json::{Value, json as value};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The dump that a network with a hopeless vessel leaves.
+fn failing(folder: &Path) -> PathBuf {
+    let network = folder.join("hopeless.swc");
+    fs::write(&network, HOPELESS).expect("a file");
+    assert_code(&mesh(&network, &folder.join("out.vtu"), &["-q"]), STAGE_FAILED);
+    let dumps = folder.join("out.vtu.failed");
+    let [name] = &entries(&dumps)[..] else { panic!("one dump") };
+    dumps.join(name)
+}
+
+/// The same with a vessel that can be meshed, or with other changes.
+fn changed(dump: &Path, name: &str, change: impl FnOnce(&mut Value)) -> PathBuf {
+    let mut content = serde_json::from_slice(&fs::read(dump).expect("the dump")).expect("JSON");
+    change(&mut content);
+    let path = dump.with_file_name(name);
+    fs::write(&path, content.to_string()).expect("a file");
+    path
+}
+
+fn thicken(content: &mut Value) {
+    let cluster = &mut content["input"]["cluster"]["cluster"];
+    for tube in 0..3 {
+        cluster["tubes"][tube]["ra"] = 1.0.into();
+        cluster["tubes"][tube]["rb"] = 1.0.into();
+    }
+    cluster["tubes"][1]["b"] = value!([50.0, 0.0, -1.0]);
+    cluster["ends"][0]["section"]["radius"] = 1.0.into();
+}
+
+#[test]
+fn a_block_fails_again_in_the_same_place() {
+    let folder = folder();
+    let dump = failing(folder.path());
+    let out = folder.path().join("block.vtu");
+    let again = run("replay", &[&dump, Path::new("-o"), &out], &[]);
+    assert_says(&again, STAGE_FAILED, &["cluster 1 (nodes [2, 3])", "'wall'", "grid cells, more than the limit"]);
+    assert!(!out.exists());
+    let again = run("replay", &[&dump], &["--json"]);
+    assert_code(&again, STAGE_FAILED);
+    let said = json(&again);
+    assert_eq!((&said["block"], &said["nodes"]), (&"cluster 1".into(), &value!([2, 3])));
+    assert_eq!((&said["failed"]["stage"], &said["mesh"]), (&"wall".into(), &Value::Null));
+    assert!(said["written_by"].as_str().is_some_and(|by| by.starts_with("anastomesh ")));
+}
+
+#[test]
+fn a_block_that_comes_out_is_written_on_request() {
+    let folder = folder();
+    let dump = changed(&failing(folder.path()), "thick.json", thicken);
+    assert_says(&run("replay", &[&dump], &[]), FINE, &["comes out", "tetrahedra", "-o MESH"]);
+    for name in ["block.vtu", "block.msh"] {
+        let out = folder.path().join(name);
+        let made = run("replay", &[&dump, Path::new("-o"), &out], &["--json"]);
+        assert_code(&made, FINE);
+        assert!(json(&made)["mesh"]["tets"].as_u64() > Some(100) && json(&made)["failed"].is_null());
+        let patches = anastomesh::io::volume::read_mesh(&out).expect("a mesh").volume.patches;
+        assert_eq!(patches.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["wall", "terminal_2", "terminal_3"]);
+        let checked = run("check", &[&out], &[]);
+        assert_code(&checked, FINE);
+    }
+}
+
+#[test]
+fn a_connector_without_its_clusters_is_made_again() {
+    let folder = folder();
+    let section = |z: f64| value!({"origin": [0.0, 0.0, z], "axis": [0.0, 0.0, 1.0], "radius": 1.0});
+    let cut = value!({"branch": 0, "sides": [[0, 0], [1, 0]], "path": [section(0.0), section(3.0)]});
+    let first = failing(folder.path());
+    let dump = |name: &str, cut: Value| {
+        changed(&first, name, |content| {
+            content["input"] = value!({"free_connector": {"id": 7, "cut": cut}});
+        })
+    };
+    let out = folder.path().join("block.vtu");
+    let good = dump("good.json", cut.clone());
+    assert_says(&run("replay", &[&good, Path::new("-o"), &out], &[]), FINE, &["connector 7"]);
+    assert_code(&run("check", &[&out], &[]), FINE);
+    for path in [value!([]), value!([section(0.0)]), value!([section(0.0), section(0.0)])] {
+        let mut short = cut.clone();
+        short["path"] = path;
+        assert_says(&run("replay", &[&dump("short.json", short)], &[]), STAGE_FAILED, &["connector 7", "'wall'"]);
+    }
+}
+
+#[test]
+fn what_is_no_dump_is_refused_with_what_to_do() {
+    let folder = folder();
+    let dump = failing(folder.path());
+    let whole = fs::read(&dump).expect("the dump");
+    let other = folder.path().join("other.json");
+    let refused = |path: &Path, words: &[&str]| {
+        let refused = run("replay", &[path], &[]);
+        assert_code(&refused, BAD_INPUT);
+        assert_message(&refused, path, words);
+    };
+    for length in [0, 1, whole.len() / 3, whole.len() - 1] {
+        fs::write(&other, &whole[..length]).expect("a file");
+        refused(&other, &["cut off", "run `mesh` again"]);
+    }
+    for text in [&b"[1, 2]"[..], b"It was the best of times", b"\xff\xfe", b"{\"format\": \"new\"}", b"7"] {
+        fs::write(&other, text).expect("a file");
+        refused(&other, &["no dump of a block", "MESH.failed"]);
+    }
+    refused(&folder.path().join("missing.json"), &["cannot be read"]);
+    refused(folder.path(), &["cannot be read"]);
+    let without =
+        changed(&dump, "without.json", |content| drop(content.as_object_mut().expect("a map").remove("format")));
+    refused(&without, &["does not say of which format"]);
+    let newer = changed(&dump, "newer.json", |content| {
+        content["format"] = 99.into();
+        content["program"] = "anastomesh 9.9".into();
+        content["input"] = Value::Null;
+    });
+    refused(&newer, &["format 99", "anastomesh 9.9", "run `mesh` again"]);
+}
+
+#[test]
+fn numbers_that_no_block_has_are_refused() {
+    let folder = folder();
+    let dump = failing(folder.path());
+    let refused = |pointer: &str, number: Value, words: &[&str]| {
+        let path = changed(&dump, "absurd.json", |content| {
+            thicken(content);
+            *content.pointer_mut(pointer).expect("a place") = number;
+        });
+        let refused = run("replay", &[&path], &[]);
+        assert_code(&refused, BAD_INPUT);
+        assert_message(&refused, &path, words);
+    };
+    let cluster = "/input/cluster/cluster";
+    refused("/params/rho", (-3.0).into(), &["rho", "which no block has"]);
+    refused("/params/rho", 1e9.into(), &["--memory"]);
+    refused("/params/voxel_factor", 1e-9.into(), &["--memory"]);
+    refused("/params/first_division", 1000.into(), &["first_division"]);
+    refused(&format!("{cluster}/tubes/0/ra"), 0.0.into(), &["a radius is 0"]);
+    refused(&format!("{cluster}/tubes/0/ra"), Value::Null, &["no dump of a block"]);
+    refused(&format!("{cluster}/tubes/0/a"), value!([1e300, 0.0, 0.0]), &["a point lies at"]);
+    refused(&format!("{cluster}/ends/0/section/axis"), value!([0.0, 0.0, 0.0]), &["an axis has the length 0"]);
+    refused(&format!("{cluster}/ends/0/overrun"), 77.into(), &["tube 77 of 3"]);
+    refused(&format!("{cluster}/ends/0/kind"), value!({"cut": {"cut": 0, "side": 2}}), &["side"]);
+    // What is no fault of the file is the block's: a stage says so.
+    let path = changed(&dump, "empty.json", |content| content["input"]["cluster"]["cluster"]["tubes"] = value!([]));
+    assert_code(&run("replay", &[&path], &[]), BAD_INPUT);
+}

@@ -1,0 +1,183 @@
+//! Runs that somebody stops: real signals to the real program.
+#![cfg(target_os = "linux")]
+
+mod common;
+
+use common::fixture;
+use common::program::*;
+use common::surfaces::{save, sphere};
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// The program, its answer caught.
+fn start(verb: &str, paths: &[&Path], options: &[&str]) -> Child {
+    let mut command = program();
+    command.arg(verb).args(paths).args(options).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.spawn().expect("the program runs")
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill runs");
+    assert!(sent.success());
+}
+
+/// Waits until something is there, for as long as the program runs.
+fn wait_for(child: &mut Child, what: &str, is_there: impl Fn() -> bool) {
+    let start = Instant::now();
+    while !is_there() {
+        assert!(child.try_wait().expect("a child").is_none(), "it ended before {what}");
+        assert!(start.elapsed() < Duration::from_secs(60), "no {what}");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Whether a process has ways of its own to take SIGINT and SIGTERM: before that nobody listens.
+fn listens(id: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap_or("0");
+    u64::from_str_radix(caught.trim(), 16).is_ok_and(|mask| mask & 0x4002 == 0x4002)
+}
+
+/// What it says in the end, and how long it took to come to it.
+fn ended(child: Child) -> (Output, Duration) {
+    let start = Instant::now();
+    let output = child.wait_with_output().expect("it ends");
+    (output, start.elapsed())
+}
+
+/// Blocks of a mesh that takes some time.
+fn fine(folder: &Path, work: &Path) -> Child {
+    let (network, out) = (fixture("tree_30.vtp"), folder.join("a.vtu"));
+    let paths = [&*network, Path::new("-o"), &out, Path::new("--work-dir"), work];
+    start("mesh", &paths, &["--rho", "9", "--memory", "20GiB", "-j", "1"])
+}
+
+#[test]
+fn a_mesh_that_is_stopped_leaves_its_blocks_and_says_how_it_goes_on() {
+    for name in ["-INT", "-TERM"] {
+        let folder = folder();
+        let work = folder.path().join("my work");
+        let blocks = work.join("anastomesh.blocks");
+        let mut child = fine(folder.path(), &work);
+        let length = || fs::metadata(&blocks).map_or(0, |data| data.len());
+        wait_for(&mut child, "a finished block", || length() > 0);
+        signal(&child, name);
+        let (output, took) = ended(child);
+        assert_says(
+            &output,
+            STOPPED,
+            &["stopping; Ctrl-C again", "finished blocks are kept in", "Go on from there with"],
+        );
+        let said = stderr(&output);
+        assert!(
+            said.trim_end().ends_with(&format!("--work-dir '{}' --rho 9 --memory 20GiB -j 1", work.display())),
+            "{said}"
+        );
+        assert_eq!(entries(folder.path()), ["my work"]);
+        assert!(took < Duration::from_secs(20), "{took:?}");
+        let kept = length();
+        // The same command goes on: what is kept is not made again.
+        let last = said.lines().last().expect("a command").trim();
+        let mut again = Command::new("sh");
+        let again = again.args(["-c", &format!("exec {last} -q --json")]).output().expect("a shell");
+        assert_code(&again, FINE);
+        assert!(length() > kept);
+        assert_eq!(entries(folder.path()), ["a.vtu", "my work"]);
+        if name == "-INT" {
+            let whole = folder.path().join("b.vtu");
+            assert_code(&mesh(&fixture("tree_30.vtp"), &whole, &["--rho", "9", "--memory", "20GiB", "-q"]), FINE);
+            assert!(fs::read(whole).expect("a mesh") == fs::read(folder.path().join("a.vtu")).expect("a mesh"));
+        }
+    }
+}
+
+/// Starts, waits until Ctrl-C is heard and a moment longer, and stops it.
+fn stopped(verb: &str, paths: &[&Path], options: &[&str]) -> Output {
+    let mut child = start(verb, paths, options);
+    let id = child.id();
+    wait_for(&mut child, "listening", || listens(id));
+    std::thread::sleep(Duration::from_millis(300));
+    signal(&child, "-INT");
+    let (output, took) = ended(child);
+    assert!(took < Duration::from_secs(20), "{took:?}");
+    output
+}
+
+#[test]
+fn without_a_work_directory_nothing_is_left() {
+    let folder = folder();
+    let out = folder.path().join("a.vtu");
+    fs::write(&out, "an earlier mesh").expect("written");
+    let paths = [&*fixture("tree_30.vtp"), Path::new("-o"), &*out];
+    let fine = ["--rho", "9", "--memory", "20GiB"];
+    for joint in ["disc", "woven"] {
+        let output = stopped("mesh", &paths, &[&fine[..], &["--joint", joint]].concat());
+        assert_says(&output, STOPPED, &["nothing is kept", "--work-dir"]);
+        assert_eq!(entries(folder.path()), ["a.vtu"]);
+        assert_eq!(fs::read(&out).expect("there"), b"an earlier mesh");
+    }
+}
+
+#[test]
+fn a_tetrahedralization_that_is_stopped_leaves_nothing() {
+    let folder = folder();
+    let surface = save(&folder, "s.off", &sphere(40));
+    for name in ["a.vtu", "a.ele"] {
+        let out = folder.path().join(name);
+        let output = stopped("tetrahedralize", &[&surface, Path::new("-o"), &out], &["--size", "0.02"]);
+        assert_says(&output, STOPPED, &["stopping; Ctrl-C again", "nothing is kept"]);
+        assert_eq!(entries(folder.path()), ["s.off"]);
+    }
+    let quiet = stopped(
+        "tetrahedralize",
+        &[&surface, Path::new("-o"), &folder.path().join("a.vtu")],
+        &["--size", "0.02", "-q"],
+    );
+    assert_eq!(stderr(&quiet), "anastomesh: stopped; nothing is kept, and no file is touched\n");
+}
+
+#[test]
+fn a_refinement_that_is_stopped_leaves_nothing() {
+    let folder = folder();
+    let network = folder.path().join("net.vtp");
+    assert_code(&run("generate", &[Path::new("-o"), &network], &["--terminals", "3000", "-q"]), FINE);
+    let out = folder.path().join("out.vtp");
+    let output = stopped("refine", &[&network, Path::new("-o"), &out], &["--every", "1"]);
+    assert_says(&output, STOPPED, &["nothing is kept, and no file is touched"]);
+    assert_eq!(entries(folder.path()), ["net.vtp"]);
+}
+
+#[test]
+fn the_second_signal_ends_it_at_once() {
+    let folder = folder();
+    let surface = save(&folder, "s.off", &sphere(40));
+    let out = folder.path().join("a.vtu");
+    for (first, second) in [("-INT", "-INT"), ("-TERM", "-INT")] {
+        let mut child = start("tetrahedralize", &[&surface, Path::new("-o"), &out], &["--size", "0.02"]);
+        let id = child.id();
+        wait_for(&mut child, "listening", || listens(id));
+        std::thread::sleep(Duration::from_millis(100));
+        signal(&child, first);
+        signal(&child, second);
+        let (output, took) = ended(child);
+        assert_code(&output, STOPPED);
+        assert!(took < Duration::from_secs(2) && !stderr(&output).contains("nothing is kept"), "{took:?}");
+        assert!(!out.exists());
+    }
+}
+
+/// A verb that does not ask does not listen, either: the signal ends it as it ends any program.
+#[test]
+fn other_verbs_end_as_any_program_does() {
+    use std::os::unix::process::ExitStatusExt;
+    let folder = folder();
+    let out = folder.path().join("net.vtp");
+    let child = start("generate", &[Path::new("-o"), &out], &["--terminals", "1000000"]);
+    std::thread::sleep(Duration::from_millis(300));
+    signal(&child, "-INT");
+    let (output, _) = ended(child);
+    assert_eq!(output.status.signal(), Some(2));
+    assert!(!out.exists());
+}
