@@ -11,7 +11,7 @@ use super::room::{Apex, LEVELS, Room};
 use super::sectors::{Sector, refill};
 use super::space::Space;
 use super::wider::Wider;
-use crate::geometry::{Point3, Vec3, unit_normal};
+use crate::geometry::{Point3, unit_normal};
 use crate::tet::error::TetError;
 use crate::tet::input::SurfaceEdges;
 use crate::tet::progress::Watch;
