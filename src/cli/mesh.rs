@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::common::Common;
+use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::Bars;
@@ -121,7 +121,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     for remark in network.remarks() {
         bars.note(&remark);
     }
-    let pool = super::thread_pool(args.common.threads)?;
+    let pool = thread_pool(args.common.threads)?;
     let refined = pool.install(|| args.refined(&network.skeleton))?;
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
     let refinement = refined.as_ref().map(|r| &r.report);
@@ -297,7 +297,7 @@ impl Args {
     ) -> Result<(), Failure> {
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            return super::print(true, &Output { program, plan, refine, run, check }, String::new);
+            return print(true, &Output { program, plan, refine, run, check }, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {

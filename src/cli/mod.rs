@@ -76,13 +76,6 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// As many threads as were asked for, or as there are cores.
-fn thread_pool(threads: Option<std::num::NonZeroUsize>) -> Result<rayon::ThreadPool, Failure> {
-    // 0 lets rayon take as many as there are cores.
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, Into::into));
-    builder.build().map_err(|e| Failure::stage(format!("the threads cannot be started: {e}")))
-}
-
 /// A panic is always a fault of the program: say so beside the usual message.
 fn install_panic_note() {
     let usual = std::panic::take_hook();
@@ -90,18 +83,4 @@ fn install_panic_note() {
         usual(info);
         eprintln!("anastomesh: this is a fault of the program; please report it with the input and the options");
     }));
-}
-
-/// Prints a result for people or, with `--json`, for programs. A closed pipe is the reader's decision, not an error.
-fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
-    use std::io::Write;
-    let out = if json {
-        serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?
-    } else {
-        text()
-    };
-    match writeln!(std::io::stdout().lock(), "{}", out.trim_end()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::input(format!("standard output: {e}"))),
-        _ => Ok(()),
-    }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::common::Common;
+use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::{shows_bars, stage_bar};
@@ -184,7 +184,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         }
     }
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
-    let pool = super::thread_pool(args.common.threads)?;
+    let pool = thread_pool(args.common.threads)?;
     let refined = pool.install(|| moved(&network.skeleton, &params, args.common.quiet))?;
     write(&args.output, &refined)?;
     let report = &refined.report;
@@ -195,7 +195,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-        super::print(true, &Output { program, parameters: &params, report }, String::new)?;
+        print(true, &Output { program, parameters: &params, report }, String::new)?;
     } else if !args.common.quiet {
         eprint!("{}", text(report));
     }

@@ -1,8 +1,8 @@
 //! The certificate: what has to hold before a mesh may be called the tetrahedralization of a surface.
 
 use super::complex::{face_key, face_of};
-use super::outside::LeftOut;
 use super::plc::InputKind;
+use super::plc::LeftOut;
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
 use crate::mesh::adjacency::{face_vertices, tet_adjacency};

@@ -72,8 +72,7 @@ pub use complex::Complex;
 pub use error::{Obstacle, Stuck, TetError};
 pub use names::Names;
 pub use options::{Boundary, Interior, Refinement, Sizing, TetOptions};
-pub use outside::LeftOut;
-pub use plc::{InputKind, Plc, Region};
+pub use plc::{InputKind, LeftOut, Plc, Region};
 pub use progress::{Cancel, Progress, Stage, Watch};
 pub use recover::RecoverySummary;
 
