@@ -2,10 +2,8 @@
 
 mod common;
 
-use anastomesh::geometry::Point3;
-use anastomesh::io::surface::write_surface;
-use anastomesh::io::volume::{MeshFormat, read_mesh, read_mesh_from};
-use anastomesh::mesh::TriMesh;
+use anastomesh::io::{MeshFormat, read_mesh, read_mesh_from, write_surface};
+use anastomesh::{Point3, TriMesh};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;

@@ -170,12 +170,11 @@ impl Args {
             let refused = TooLarge::Whole { estimate, why, instead, bytes, memory: plan.memory };
             return Err(Failure::input(refused.to_string()));
         }
-        let mut clock = Clock::default();
-        let result = pipeline::mesh_network(network, plan, bars, &mut clock);
+        let result = pipeline::mesh_network(network, plan, bars);
         let result = result.map_err(|e| self.explain(e, plan, refinement))?;
         let done =
             Done { mesh: &result.mesh, expectation: result.expectation, check: &result.check, report: result.report };
-        self.finish(done, plan, refinement, bars, clock)
+        self.finish(done, plan, refinement, bars)
     }
 
     /// Blocks go to where they are kept, and the mesh from there to its file.
@@ -196,12 +195,11 @@ impl Args {
             // Whoever stops the program cannot be told afterwards.
             bars.note(&format!("it may be stopped at any time: {}", self.how_to_go_on()));
         }
-        let mut clock = Clock::default();
-        let result = pipeline::mesh_into(&store, network, plan, &fits, bars, &mut clock);
+        let result = pipeline::mesh_into(&store, network, plan, &fits, bars);
         let result = result.map_err(|e| self.explain(e, plan, refinement))?;
         let done =
             Done { mesh: &result.whole, expectation: result.expectation, check: &result.check, report: result.report };
-        self.finish(done, plan, refinement, bars, clock)
+        self.finish(done, plan, refinement, bars)
     }
 
     /// Everything that the mesh depends on, beside the network.
@@ -219,15 +217,15 @@ impl Args {
         plan: &MeshPlan,
         refinement: Option<&RefineReport>,
         bars: &Bars,
-        mut clock: Clock,
     ) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
         let notes = self.notes(expectation);
         let memory = (self.memory / 4) as usize;
         let write = || write_mesh_within(memory, &self.output, mesh, &notes);
+        let mut clock = Clock::default();
         let written = clock.time(bars, Stage::Write, 0, write);
         written.map_err(|e| Failure::input(e.to_string()))?;
-        report.stages = clock.stages();
+        report.stages.extend(clock.stages());
         self.print(plan, refinement, &report, Some(check))?;
         Ok(match () {
             () if !report.failed.is_empty() => Exit::StageFailed,
@@ -283,7 +281,7 @@ impl Args {
             super::refine::write(path, &refined)?;
         }
         if !self.common.quiet && !self.common.json {
-            eprint!("{}", crate::report::refine::text(&refined.report));
+            eprint!("{}", refined.report);
         }
         Ok(Some(refined))
     }
@@ -301,9 +299,9 @@ impl Args {
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
-            eprint!("{}", crate::report::mesh::text(run));
+            eprint!("{run}");
             if let Some(check) = check {
-                eprint!("{}", crate::report::check::text(check));
+                eprint!("{check}");
             }
         }
         Ok(())

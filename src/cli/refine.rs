@@ -15,7 +15,7 @@ use crate::refine::{
     self, Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, Sample,
 };
 use crate::report::plot::svg;
-use crate::report::refine::{csv, panels, text};
+use crate::report::refine::{csv, panels};
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -197,7 +197,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
         print(true, &Output { program, parameters: &params, report }, String::new)?;
     } else if !args.common.quiet {
-        eprint!("{}", text(report));
+        eprint!("{report}");
     }
     let gate = params.residual == Residual::Shrink && report.residual.left > 0;
     Ok(if gate { Exit::GateNotMet } else { Exit::Fine })

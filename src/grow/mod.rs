@@ -21,7 +21,7 @@ mod tests;
 mod tree;
 
 pub use dual::{Dual, dual};
-pub use morphometry::{Morphometry, OrderFigures, Published, RAT_KIDNEY};
+pub use morphometry::{Morphometry, RAT_KIDNEY};
 
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 use organ::Shape;

@@ -94,7 +94,7 @@ impl spade::HasPosition for Vertex {
 /// Corners are joined in a ring; a segment on which further points of the facet lie is split there.
 ///
 /// # Errors
-/// [`FacetError`]: segments cross, points coincide, or there is nothing inside.
+/// `FacetError`: segments cross, points coincide, or there is nothing inside.
 pub fn triangulate(points: &[Point3], polygons: &[Vec<u32>], holes: &[Point3]) -> Result<FacetTriangles, FacetError> {
     let corners = polygons.iter().flatten();
     if let Some(&point) = corners.clone().find(|&&v| v as usize >= points.len()) {

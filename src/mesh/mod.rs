@@ -13,7 +13,9 @@ pub(crate) mod shapes;
 pub mod smooth;
 pub mod source;
 
-pub use bounds::{Bounds, REGULAR_DIHEDRAL};
+pub use bounds::Bounds;
+#[cfg(any(test, feature = "cli"))]
+pub use bounds::REGULAR_DIHEDRAL;
 pub(crate) use keep::Kept;
 pub(crate) use keys::{face_key, tet_key};
 

@@ -58,7 +58,4 @@ pub trait Observer: Sync {
 }
 
 /// Listens to nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Silent;
-
-impl Observer for Silent {}
+impl Observer for () {}

@@ -107,18 +107,14 @@ impl From<io::Error> for RunError {
 ///
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
-pub fn mesh_network(
-    network: &Skeleton,
-    plan: &MeshPlan,
-    observer: &dyn Observer,
-    clock: &mut Clock,
-) -> Result<Meshed, RunError> {
+pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, observer: &dyn Observer) -> Result<Meshed, RunError> {
     let store = Store::in_memory();
+    let clock = &mut Clock::default();
     if plan.smooths_joints() {
         return join_blocks(network, plan, &store, &[], &|_| Ok(()), observer, clock)?.smoothed(observer, clock);
     }
     let Stored { whole, expectation, check, mut report } =
-        mesh_into(&store, network, plan, &|_| Ok(()), observer, clock)?;
+        mesh_timed(&store, network, plan, &|_| Ok(()), observer, clock)?;
     let mesh = clock.time(observer, Stage::Merge, 0, || gather(&whole))?;
     report.stages = clock.stages();
     Ok(Meshed { mesh, expectation, check, report })
@@ -131,6 +127,16 @@ pub fn mesh_network(
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
 pub fn mesh_into<'a>(
+    store: &'a Store,
+    network: &Skeleton,
+    plan: &MeshPlan,
+    fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
+    observer: &dyn Observer,
+) -> Result<Stored<'a>, RunError> {
+    mesh_timed(store, network, plan, fits, observer, &mut Clock::default())
+}
+
+fn mesh_timed<'a>(
     store: &'a Store,
     network: &Skeleton,
     plan: &MeshPlan,

@@ -21,9 +21,9 @@ pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
 pub use params::{Crowded, RefineError, RefineParams, Residual};
 pub use progress::{Displacement, Progress, Sample};
-pub use residual::{ResidualPair, ResidualReport, Treatment};
+pub use residual::{ResidualReport, Treatment};
 
-pub use split::{SplitNode, SplitReport, split};
+pub use split::split;
 
 use crate::geometry::Point3;
 use crate::skeleton::Skeleton;

@@ -47,7 +47,7 @@ pub struct Skeleton {
 
 impl Skeleton {
     /// The straight piece of vessel that an edge stands for.
-    pub fn tube(&self, edge: EdgeId) -> Tube {
+    pub(crate) fn tube(&self, edge: EdgeId) -> Tube {
         let e = &self.edges[edge.0 as usize];
         Tube {
             a: self.nodes[e.nodes[0].0 as usize].position,

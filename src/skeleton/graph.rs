@@ -112,7 +112,7 @@ impl Skeleton {
     }
 
     /// The connected pieces.
-    pub fn components(&self, adjacency: &Adjacency) -> Components {
+    pub(crate) fn components(&self, adjacency: &Adjacency) -> Components {
         const NONE: u32 = u32::MAX;
         let mut of_node = vec![NONE; self.nodes.len()];
         let mut list: Vec<Component> = Vec::new();
@@ -167,14 +167,14 @@ impl Skeleton {
     }
 
     /// Length of an edge.
-    pub fn length(&self, id: EdgeId) -> f64 {
+    pub(crate) fn length(&self, id: EdgeId) -> f64 {
         let [a, b] = self.edge(id).nodes;
         (self.node(b).position - self.node(a).position).norm()
     }
 
     /// The inlet of each component: its terminal of largest radius (the smallest id among equals); none for a component
     /// without terminals.
-    pub fn roots(&self, adjacency: &Adjacency, components: &Components) -> Vec<Option<NodeId>> {
+    pub(crate) fn roots(&self, adjacency: &Adjacency, components: &Components) -> Vec<Option<NodeId>> {
         let mut roots: Vec<Option<NodeId>> = vec![None; components.list.len()];
         for node in adjacency.terminals() {
             let root = &mut roots[components.of_node[node.index()] as usize];

@@ -183,8 +183,7 @@ impl Tetrahedralizer {
         Watch::new(self.on_progress.as_deref(), self.cancel.as_deref())
     }
 
-    /// Makes a mesh of a complex. Success means that it has passed the certificate
-    /// ([`super::certify::certify_facets`]): each triangle of the input that bounds or lies in what is filled is a face
+    /// Makes a mesh of a complex. Success means that it has passed the certificate: each triangle of the input that bounds or lies in what is filled is a face
     /// of it.
     ///
     /// # Errors

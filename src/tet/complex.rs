@@ -117,17 +117,6 @@ pub fn face_of(v: &[u32; 4], i: usize) -> [u32; 3] {
     TET_FACES[i].map(|k| v[k])
 }
 
-/// An even permutation of `v` that puts the ghost vertex, if any, last.
-#[inline]
-pub fn ghost_last(v: [u32; 4]) -> [u32; 4] {
-    match v.iter().position(|&x| x == GHOST) {
-        Some(0) => [v[1], v[3], v[2], v[0]],
-        Some(1) => [v[0], v[2], v[3], v[1]],
-        Some(2) => [v[1], v[0], v[3], v[2]],
-        _ => v,
-    }
-}
-
 impl Complex {
     /// A complex of points without tetrahedra.
     pub fn new(points: Vec<Point3>) -> Self {

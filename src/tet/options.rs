@@ -155,13 +155,6 @@ impl TetOptions {
         self
     }
 
-    /// With or without improvement.
-    #[must_use]
-    pub fn optimize(mut self, optimize: bool) -> Self {
-        self.optimize = optimize;
-        self
-    }
-
     /// With or without the certificate.
     #[must_use]
     pub fn certify(mut self, certify: bool) -> Self {

@@ -39,6 +39,7 @@ pub fn write_tree(path: &Path, tree: &Skeleton, arrays: &[NetworkArray]) -> Resu
 ///
 /// # Errors
 /// When the name has another extension than `.vtp`, or its folder does not exist.
+#[cfg(feature = "cli")]
 pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
     ensure_vtp(path)?;
     ensure_folder(path)
@@ -48,6 +49,7 @@ pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
 ///
 /// # Errors
 /// When the name has another extension than `.vtp` or `.swc`, or its folder does not exist.
+#[cfg(feature = "cli")]
 pub fn ensure_tree_writable(path: &Path) -> Result<(), NetworkFileError> {
     if is_swc(path) { ensure_folder(path) } else { ensure_network_writable(path) }
 }
@@ -68,6 +70,7 @@ fn ensure_vtp(path: &Path) -> Result<(), NetworkFileError> {
 }
 
 /// Checks that a file can be made at a path.
+#[cfg(feature = "cli")]
 fn ensure_folder(path: &Path) -> Result<(), NetworkFileError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() || !folder.is_dir() {

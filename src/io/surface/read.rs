@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// Reads a surface from a file, in the format that its extension names. Triangles and points keep their order; nothing
 /// is joined, dropped or turned over (only STL, which stores no common points, has its equal corners joined). A face with
-/// more than three corners becomes triangles in its place ([`crate::mesh::facets`]).
+/// more than three corners becomes triangles in its place.
 ///
 /// # Errors
 /// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.

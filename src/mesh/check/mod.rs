@@ -17,8 +17,7 @@ mod surfaces;
 mod tests;
 
 pub use result::{
-    CheckReport, Counts, Expectation, Intersection, KEPT_OFFENDERS, Line, LineResult, Offender, OffenderKind, Outcome,
-    Skipped, Verdict,
+    CheckReport, Counts, Expectation, Line, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict,
 };
 
 use super::adjacency::{TetAdjacency, face_vertices, tet_adjacency};

@@ -57,11 +57,6 @@ impl KeyMaker {
         self.float(s.radius);
     }
 
-    /// Another key.
-    pub fn key(&mut self, key: Key) {
-        self.0.update(&key.0.to_le_bytes());
-    }
-
     /// The key.
     pub fn finish(&self) -> Key {
         Key(self.0.digest128())

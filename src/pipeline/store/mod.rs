@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use rustc_hash::FxHashMap;
 
-pub use error::{Difference, StoreError};
+pub use error::StoreError;
 pub use key::{Key, KeyMaker};
 use log::LogFile;
 pub use manifest::Manifest;

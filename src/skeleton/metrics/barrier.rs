@@ -69,11 +69,6 @@ pub(crate) fn paper_unit(skeleton: &Skeleton) -> f64 {
 }
 
 impl Barrier {
-    /// A barrier of the given support for a skeleton.
-    pub fn new(skeleton: &Skeleton, support: f64) -> Self {
-        Self { support, unit: paper_unit(skeleton) }
-    }
-
     /// The kernel and its derivative by the distance.
     fn kernel(&self, d: f64, h: f64) -> (f64, f64) {
         let (b, slope) = spline(2.0 * d / h);

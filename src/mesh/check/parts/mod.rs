@@ -53,8 +53,8 @@ mod whole;
 #[cfg(test)]
 mod tests;
 
-pub use certificate::{certify, certify_with};
-pub use pieces::{PiecesError, Unfit, check_pieces};
+pub use certificate::certify_with;
+pub use pieces::{PiecesError, check_pieces};
 pub use whole::check_parts;
 
 use super::nested::Enclosed;
@@ -119,31 +119,6 @@ impl Certificate {
     /// The smallest radius ratio of the tetrahedra.
     pub fn worst_ratio(&self) -> f64 {
         self.quality.min()
-    }
-
-    /// The lines that do not hold, in the part's own numbers.
-    pub fn faults(&self) -> &[Fault] {
-        &self.faults
-    }
-
-    /// Number of points.
-    pub fn points(&self) -> u32 {
-        self.points
-    }
-
-    /// Number of tetrahedra.
-    pub fn tets(&self) -> u32 {
-        self.tets
-    }
-
-    /// Number of boundary faces that are in no joint.
-    pub fn wall_faces(&self) -> u32 {
-        self.wall_faces
-    }
-
-    /// Volume of the tetrahedra.
-    pub fn volume(&self) -> f64 {
-        self.volume
     }
 }
 
