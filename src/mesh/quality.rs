@@ -163,6 +163,14 @@ pub fn triangle_min_angle(a: &Point3, b: &Point3, c: &Point3) -> f64 {
 }
 
 /// Shape of all tetrahedra of a mesh.
+///
+/// ```
+/// use anastomesh::{Point3, TetMesh, check::TetQuality};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let quality = TetQuality::of(&TetMesh { points, tets: vec![[0, 1, 2, 3]] });
+/// assert!(quality.min > 0.6 && (quality.dihedral_max - 90.0).abs() < 1e-9);
+/// ```
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct TetQuality {
     /// Number of tetrahedra.

@@ -105,6 +105,18 @@ impl From<io::Error> for RunError {
 
 /// Meshes a cleaned network in memory. Uses the current rayon pool; the result does not depend on its size.
 ///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::{MeshPlan, clean, mesh_network};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let made = mesh_network(&network, &MeshPlan::default(), &())?;
+/// assert!(made.check.is_valid(), "{}", made.check);
+/// assert_eq!(made.mesh.patches[0].name, "wall");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
 pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, observer: &dyn Observer) -> Result<Meshed, RunError> {
@@ -123,6 +135,20 @@ pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, observer: &dyn Observer
 /// Meshes a cleaned network into a store; the mesh is never in memory as a whole. Joints are not smoothed. Uses the
 /// current rayon pool; the result does not depend on its size. `fits` hears what the run will take before anything is
 /// meshed, and may refuse.
+///
+/// ```
+/// use anastomesh::io::{MeshNotes, NetworkOptions, read_network, write_mesh};
+/// use anastomesh::network::{MeshPlan, Store, clean, mesh_into};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let folder = tempfile::tempdir()?;
+/// let store = Store::in_passing(folder.path())?;
+/// let made = mesh_into(&store, &network, &MeshPlan::default(), &|_| Ok(()), &())?;
+/// assert!(made.check.is_valid());
+/// write_mesh(&folder.path().join("tree.vtu"), &made.whole, &MeshNotes::default())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.

@@ -85,6 +85,18 @@ pub struct RefineReport {
 /// The result depends on nothing but the arguments, and not on the unit of length. Memory grows with the number of
 /// edges.
 ///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::{RefineParams, clean, refine};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let refined = refine(&network, &RefineParams::default(), &mut ())?;
+/// assert_eq!(refined.report.result.overlaps, 0);
+/// assert_eq!(refined.origin.len(), refined.skeleton.nodes.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// When a parameter is out of its range, or the skeleton does not satisfy `Skeleton::check`.
 pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progress) -> Result<Refined, RefineError> {

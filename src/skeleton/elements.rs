@@ -37,6 +37,16 @@ pub struct Edge {
 }
 
 /// A vessel skeleton. Several components and loops are legal.
+///
+/// ```
+/// use anastomesh::Point3;
+/// use anastomesh::network::{Edge, Node, NodeId, Skeleton};
+///
+/// let node = |z: f64, original| Node { position: Point3::new(0.0, 0.0, z), radius: 1.0, original };
+/// let edges = vec![Edge { nodes: [NodeId(0), NodeId(1)], radii: [1.0; 2] }];
+/// let vessel = Skeleton { nodes: vec![node(0.0, 0), node(9.0, 1)], edges };
+/// assert!(vessel.check().is_ok());
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Skeleton {
     /// Nodes, by `NodeId`.

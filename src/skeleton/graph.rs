@@ -38,6 +38,17 @@ impl Edge {
 }
 
 /// The edges at each node, in ascending order. An edge from a node to itself is listed twice.
+///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::clean;
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let adjacency = network.adjacency();
+/// assert!(adjacency.terminals().iter().all(|&node| adjacency.edges(node).len() == 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Adjacency {
     /// Where each node's edges start in `edges`; one more than there are nodes.

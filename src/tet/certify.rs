@@ -88,6 +88,17 @@ pub enum CertifyError {
 /// by the exact predicate; interior faces are shared by two tetrahedra on opposite sides; the boundary is the surface,
 /// triangle for triangle, with the same orientation; the volumes agree to rounding.
 ///
+/// ```
+/// use anastomesh::tet::{Plc, Tetrahedralizer, certify};
+///
+/// let surface = anastomesh::io::read_surface("fixtures/torus.off".as_ref())?;
+/// let mut made = Tetrahedralizer::new().run(&Plc::from(&surface))?;
+/// assert!(certify(&made.mesh, &surface).is_ok());
+/// made.mesh.tets.pop();
+/// assert!(certify(&made.mesh, &surface).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// The first of these that does not hold.
 pub fn certify(mesh: &TetMesh, surface: &TriMesh) -> Result<(), CertifyError> {

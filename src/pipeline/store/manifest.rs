@@ -19,6 +19,23 @@ const LOCK: &str = "anastomesh.lock";
 const BLOCKS: &str = "anastomesh.blocks";
 
 /// What a work directory belongs to.
+///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::{Manifest, MeshPlan, Store, clean, mesh_into};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let folder = tempfile::tempdir()?;
+/// let run = || -> Result<usize, Box<dyn std::error::Error>> {
+///     let options = serde_json::json!({ "mesh": MeshPlan::default() });
+///     let store = Store::in_folder(folder.path(), &Manifest::new(&network, options), false)?;
+///     Ok(mesh_into(&store, &network, &MeshPlan::default(), &|_| Ok(()), &())?.report.mesh.tets)
+/// };
+/// // The second run finds all blocks.
+/// assert_eq!(run()?, run()?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     format: u32,
