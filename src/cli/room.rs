@@ -63,7 +63,7 @@ const GATHERED_PER_TET: f64 = 60.0;
 const KEPT_IN_MEMORY: u64 = 8;
 
 impl BlockPlace {
-    /// Chooses.
+    /// A work directory where one is given, else memory for what is small, else a file beside the output.
     pub fn choose(work_dir: Option<&Path>, restart: bool, output: &Path, estimate: &Estimate, memory: u64) -> Self {
         match work_dir {
             Some(path) => Self::Folder { path: path.to_path_buf(), restart },

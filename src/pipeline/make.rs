@@ -23,14 +23,11 @@ pub struct Kept {
 /// A block, or why there is none.
 pub type Made = Result<Kept, BlockError>;
 
-/// Makes blocks.
+/// What every block of a run is made from, and the store that takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Workshop<'a> {
-    /// The network.
     pub skeleton: &'a Skeleton,
-    /// How.
     pub plan: &'a MeshPlan,
-    /// Where they go.
     pub store: &'a Store,
 }
 
@@ -135,9 +132,7 @@ impl Workshop<'_> {
 /// An end surface over its own points.
 #[derive(Clone, Debug)]
 pub struct StoredEnd {
-    /// The surface.
     pub surface: EndSurface,
-    /// Its points.
     pub points: Vec<Point3>,
 }
 
@@ -146,7 +141,6 @@ pub struct StoredEnd {
 pub struct JointPlace {
     /// The part: clusters by their ids, then connectors.
     pub part: u32,
-    /// Which of its joints.
     pub joint: u32,
 }
 

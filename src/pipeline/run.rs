@@ -32,7 +32,7 @@ use crate::stitch::label::LabelError;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Meshed {
-    /// The mesh.
+    /// The mesh of the network, its boundary labelled.
     pub mesh: VolumeMesh,
     /// What the network asks of it.
     pub expectation: Expectation,

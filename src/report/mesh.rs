@@ -3,7 +3,7 @@
 use crate::pipeline::RunReport;
 use std::fmt;
 
-/// Lines for people.
+/// For people: blocks, retries, failures, sizes and times.
 impl fmt::Display for RunReport {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let (b, m) = (&self.blocks, &self.mesh);

@@ -14,7 +14,7 @@ type Row = (&'static str, fn(&Figures) -> String);
 /// Pairs that are spelt out for people.
 const LISTED: usize = 50;
 
-/// For people.
+/// A summary and a table of figures for people.
 impl fmt::Display for RefineReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(&text(self))

@@ -123,7 +123,6 @@ pub struct Branches {
 }
 
 impl Skeleton {
-    /// The branches.
     pub(crate) fn branches(&self, adjacency: &Adjacency) -> Branches {
         const NONE: (BranchId, u32) = (BranchId(u32::MAX), 0);
         // Rings come on top; of the others each has two ends.

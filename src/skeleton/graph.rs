@@ -177,7 +177,6 @@ impl Skeleton {
         (0..self.edges.len() as u32).map(EdgeId)
     }
 
-    /// Length of an edge.
     pub(crate) fn length(&self, id: EdgeId) -> f64 {
         let [a, b] = self.edge(id).nodes;
         (self.node(b).position - self.node(a).position).norm()

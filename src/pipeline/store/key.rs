@@ -41,7 +41,6 @@ impl KeyMaker {
         self.0.update(&x.to_bits().to_le_bytes());
     }
 
-    /// A point.
     pub fn point(&mut self, p: &Point3) {
         p.iter().for_each(|&x| self.float(x));
     }
@@ -50,14 +49,12 @@ impl KeyMaker {
         v.iter().for_each(|&x| self.float(x));
     }
 
-    /// A section.
     pub fn section(&mut self, s: &Section) {
         self.point(&s.origin);
         self.vector(&s.axis);
         self.float(s.radius);
     }
 
-    /// The key.
     pub fn finish(&self) -> Key {
         Key(self.0.digest128())
     }

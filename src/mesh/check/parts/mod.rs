@@ -79,7 +79,6 @@ pub struct PartView<'a> {
 /// A line that a part breaks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fault {
-    /// Which line.
     pub line: Line,
     /// Number of offenders.
     pub count: u64,
@@ -157,7 +156,6 @@ struct HeldCap {
 /// The boundary faces of the whole that one part has: wall, caps, and joints that are joined to nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WallPiece {
-    /// Points.
     pub points: Vec<Point3>,
     /// Their ids in the whole.
     pub vertices: Vec<u32>,
@@ -168,7 +166,6 @@ pub struct WallPiece {
 /// A joint as one of its parts has it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointFaces {
-    /// Points.
     pub points: Vec<Point3>,
     /// Their ids in the whole.
     pub vertices: Vec<u32>,
