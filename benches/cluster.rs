@@ -1,8 +1,9 @@
 //! One bifurcation cluster at three resolutions, end surfaces trimmed and closed by discs.
 
-use anastomesh::block::{BlockParams, EndStyle, mesh_cluster};
-use anastomesh::geometry::{Point3, Section, Tube, Vec3};
-use anastomesh::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind};
+use anastomesh::testing::{
+    BlockParams, Cluster, ClusterEnd, ClusterId, CutId, EndKind, EndStyle, Section, Tube, mesh_cluster,
+};
+use anastomesh::{Point3, Vec3};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 

@@ -1,7 +1,7 @@
 //! The wall of a bifurcation, from tubes to relaxed triangles, at the usual resolutions.
 
-use anastomesh::geometry::{Point3, Tube};
-use anastomesh::surface::{SurfaceParams, vessel_surface};
+use anastomesh::Point3;
+use anastomesh::testing::{SurfaceParams, Tube, vessel_surface};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn tube(a: [f64; 3], b: [f64; 3], r: f64) -> Tube {

@@ -1,8 +1,8 @@
 //! Delaunay tetrahedralization of random points, and a torus from surface to improved mesh.
 
-use anastomesh::geometry::Point3;
-use anastomesh::mesh::TriMesh;
-use anastomesh::tet::{Interior, TetOptions, delaunay::delaunay, tetrahedralize};
+use anastomesh::testing::delaunay;
+use anastomesh::tet::{Effort, Interior, Plc, Tetrahedralizer};
+use anastomesh::{Point3, TriMesh};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -50,14 +50,15 @@ fn surface(c: &mut Criterion) {
     let mut group = c.benchmark_group("tetrahedralize");
     group.sample_size(10);
     let s = torus(120, 42);
-    let options = TetOptions::default();
+    let plc = Plc::from(&s);
+    let options = Tetrahedralizer::new().effort(Effort::Fast);
     group.throughput(Throughput::Elements(s.triangles.len() as u64));
     for (name, options) in [
         ("torus, no interior points", options.clone().interior(Interior::None).optimize(false)),
         ("torus, lattice", options.clone().optimize(false)),
         ("torus, lattice, improved", options),
     ] {
-        group.bench_function(name, |b| b.iter(|| tetrahedralize(black_box(&s), &options).map(|m| m.tets.len())));
+        group.bench_function(name, |b| b.iter(|| options.run(black_box(&plc)).map(|made| made.mesh.tets.len())));
     }
     group.finish();
 }

@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use anastomesh::geometry::{Point3, Tube, Vec3};
-use anastomesh::surface::Field;
+use anastomesh::testing::{Field, Tube};
+use anastomesh::{Point3, Vec3};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn tube(a: [f64; 3], b: [f64; 3], r: f64) -> Tube {

@@ -1,9 +1,8 @@
 //! A whole network, from skeleton to checked mesh: a subtree of a real kidney where the shared data is there, else the
 //! fixture. On as many threads as there are cores, or `RAYON_NUM_THREADS`.
 
-use anastomesh::io::network::{NetworkOptions, read_network};
-use anastomesh::pipeline::{Clock, MeshPlan, Silent, mesh_network};
-use anastomesh::skeleton::{Skeleton, clean};
+use anastomesh::io::{NetworkOptions, read_network};
+use anastomesh::network::{MeshPlan, Skeleton, clean, mesh_network};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -25,7 +24,7 @@ fn pipeline(c: &mut Criterion) {
     for rho in [3.0, 4.0, 5.0] {
         let mut plan = MeshPlan::default();
         plan.rho = rho;
-        let run = || mesh_network(black_box(&network), &plan, &Silent, &mut Clock::default());
+        let run = || mesh_network(black_box(&network), &plan, &());
         let meshed = run().unwrap_or_else(|error| panic!("{name}, rho {rho}: {error}"));
         group.throughput(Throughput::Elements(meshed.report.mesh.tets as u64));
         group.bench_function(format!("{name}, rho {rho}"), |b| b.iter(run));

@@ -1,25 +1,36 @@
-//! Delaunay tetrahedralization of the points of a `.node` file of TetGen's, timed: reading is left out.
+//! Delaunay tetrahedralization of the points of a `.node` file of TetGen's, timed: reading and checking are left out.
 //!
 //! ```sh
 //! RAYON_NUM_THREADS=1 cargo run --release --example delaunay -- points.node
 //! ```
 
 use anastomesh::io::tetgen::read_nodes;
-use anastomesh::tet::delaunay::delaunay;
+use anastomesh::tet::{Progress, Stage, Tetrahedralizer};
 use std::error::Error;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("which .node file?")?;
     let points = read_nodes(path.as_ref())?.points;
-    let (wall, user) = (Instant::now(), user_seconds());
-    let complex = delaunay(&points)?;
-    let (wall, user) = (wall.elapsed().as_secs_f64(), user_seconds().zip(user).map(|(end, start)| end - start));
-    let tets = complex.real_tets().count();
-    println!("{} points, {tets} tetrahedra", points.len());
-    println!("wall {wall:.3} s");
-    if let Some(user) = user {
-        println!("user {user:.2} s");
+    // When the stage began and ended, by the clock and in seconds of work.
+    let times = Arc::new(Mutex::new(Vec::new()));
+    let seen = Arc::clone(&times);
+    let note = move |progress: Progress| {
+        if progress.stage == Stage::Delaunay
+            && let Ok(mut seen) = seen.lock()
+        {
+            seen.push((Instant::now(), user_seconds()));
+        }
+    };
+    let made = Tetrahedralizer::new().on_progress(note).delaunay(&points)?;
+    println!("{} points, {} tetrahedra", points.len(), made.mesh.tets.len());
+    let times = times.lock().map_err(|_| "the times are lost")?;
+    if let [(begin, user), .., (end, user_at_end)] = times[..] {
+        println!("wall {:.3} s", (end - begin).as_secs_f64());
+        if let Some((end, start)) = user_at_end.zip(user) {
+            println!("user {:.2} s", end - start);
+        }
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use anastomesh::io::volume::{read_mesh, write_mesh};
+use anastomesh::io::{read_mesh, write_mesh};
 use common::fixture;
 use common::program::*;
 use std::fs;
@@ -56,7 +56,7 @@ fn check_finds_what_is_broken() {
     let folder = folder();
     let path = tree_mesh(&folder, "mesh.vtu");
     let sound = read_mesh(&path).expect("a mesh");
-    let fails = |broken: &anastomesh::mesh::VolumeMesh, statement: &str| {
+    let fails = |broken: &anastomesh::VolumeMesh, statement: &str| {
         for name in ["broken.vtu", "broken.msh"] {
             let path = folder.path().join(name);
             write_mesh(&path, broken, &sound.notes).expect("a file");

@@ -2,11 +2,10 @@
 
 mod common;
 
-use anastomesh::geometry::{Point3, Tube, point_tube};
-use anastomesh::mesh::check::{CheckReport, Line, Outcome};
-use anastomesh::pipeline::{JointStyle, MeshPlan, Meshed, RunReport};
-use anastomesh::report::check::text;
-use anastomesh::skeleton::{Edge, EdgeId, Skeleton};
+use anastomesh::Point3;
+use anastomesh::check::{CheckReport, Line, Outcome};
+use anastomesh::network::{Edge, JointStyle, MeshPlan, Meshed, RunReport, Skeleton};
+use anastomesh::testing::{Tube, point_tube};
 use common::{mesh, mesh_by, network, shared};
 
 /// Triangles of the wall of `subtree_289_clear` that another implementation of the method makes at ρ = 3.
@@ -15,7 +14,7 @@ const WALL_OF_BASELINE: usize = 227_134;
 fn kidney(name: &str, rho: f64) -> Option<Meshed> {
     let path = shared()?.join("data/kidney").join(name);
     let meshed = mesh(&network(&path), rho);
-    print!("{name}, rho {rho}\n{}{}", anastomesh::report::mesh::text(&meshed.report), text(&meshed.check));
+    print!("{name}, rho {rho}\n{}{}", meshed.report, meshed.check);
     Some(meshed)
 }
 
@@ -34,7 +33,7 @@ fn assert_quality(check: &CheckReport) {
 }
 
 fn assert_clear(Meshed { report, check, .. }: &Meshed) {
-    assert!(check.is_valid(), "{}", text(check));
+    assert!(check.is_valid(), "{}", check);
     assert_eq!(report.failed, []);
     assert_eq!(report.unconnected, [[[0; 2]; 2]; 0], "no vessels meet in this network");
     assert_few_retries(report);
@@ -94,7 +93,7 @@ fn subtree_989_is_sound_but_for_its_overlaps() {
     assert_eq!(report.failed, []);
     assert!(report.blocks.clusters >= 380, "{} clusters", report.blocks.clusters);
     let failing: Vec<Line> = check.failed().map(|line| line.line).collect();
-    assert_eq!(failing, [Line::NoSelfIntersection, Line::Loops, Line::CapPerTerminal], "{}", text(&check));
+    assert_eq!(failing, [Line::NoSelfIntersection, Line::Loops, Line::CapPerTerminal], "{}", check);
     let unchecked: Vec<Line> =
         check.lines.iter().filter(|l| matches!(l.outcome, Outcome::NotChecked(_))).map(|l| l.line).collect();
     assert_eq!(unchecked, [Line::NoDuplicatePoints], "points of walls that meet are looked for where they meet");
@@ -126,6 +125,7 @@ fn tube(network: &Skeleton, nodes: [u32; 2]) -> Tube {
         let original = edge.nodes.map(|n| network.node(n).original);
         original == nodes || [original[1], original[0]] == nodes
     };
-    let edge = network.edges.iter().position(is_it).expect("an edge of the file");
-    network.tube(EdgeId(edge as u32))
+    let edge = network.edges.iter().find(|edge| is_it(edge)).expect("an edge of the file");
+    let [a, b] = edge.nodes.map(|n| network.node(n).position);
+    Tube { a, b, ra: edge.radii[0], rb: edge.radii[1] }
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use anastomesh::io::volume::read_mesh;
+use anastomesh::io::read_mesh;
 use common::program::*;
 use common::{fixture, shared};
 use serde_json::Value;
@@ -28,7 +28,7 @@ fn the_fixture_becomes_a_valid_mesh_in_both_formats() {
     let [vtu, msh] = ["tree.vtu", "tree.msh"].map(|name| read_mesh(&folder.path().join(name)).expect("a mesh"));
     assert_eq!(vtu.volume.mesh, msh.volume.mesh);
     assert_eq!(vtu.volume.boundary_patch, msh.volume.boundary_patch);
-    let names = |file: &anastomesh::io::volume::MeshFile| -> Vec<String> {
+    let names = |file: &anastomesh::io::MeshFile| -> Vec<String> {
         file.volume.patches.iter().map(|p| p.name.clone()).collect()
     };
     assert_eq!(names(&vtu), names(&msh));
@@ -81,7 +81,7 @@ fn reports_are_json_on_request() {
     assert_code(&checked, FINE);
     let checked = json(&checked);
     assert_eq!(checked["verdict"], "valid");
-    assert_eq!(checked["lines"].as_array().map(Vec::len), Some(anastomesh::mesh::check::Line::ALL.len()));
+    assert_eq!(checked["lines"].as_array().map(Vec::len), Some(anastomesh::check::Line::ALL.len()));
     assert_eq!(checked["counts"]["tets"], run_report["mesh"]["tets"]);
     // What was checked block by block is what is in the file; sums of floats depend on their order, and blocks keep a
     // histogram from which the percentile is read.

@@ -2,10 +2,9 @@
 
 mod common;
 
-use anastomesh::io::network::{NetworkOptions, read_network};
-use anastomesh::report::info::NetworkInfo;
-use anastomesh::skeleton::{Skeleton, clean};
-use anastomesh::{refine, skeleton::CleanReport};
+use anastomesh::io::{NetworkOptions, read_network};
+use anastomesh::network::{CleanReport, NetworkInfo, Skeleton, clean};
+use anastomesh::testing::split;
 use std::path::Path;
 
 fn read(path: &Path, radius_array: Option<&str>) -> (Skeleton, CleanReport) {
@@ -24,7 +23,7 @@ fn every_network_is_read_cleaned_and_split() {
             if matches!(path.extension().and_then(|e| e.to_str()), Some("swc" | "vtp")) {
                 let (skeleton, _) = read(&path, None);
                 assert_eq!(skeleton.check(), Ok(()), "{}", path.display());
-                let (after, report) = refine::split(&skeleton);
+                let (after, report) = split(&skeleton);
                 assert_eq!(after.check(), Ok(()), "{}", path.display());
                 let adjacency = after.adjacency();
                 assert!(after.node_ids().all(|n| adjacency.valence(n) <= 3), "{}", path.display());

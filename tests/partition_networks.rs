@@ -4,9 +4,9 @@ mod common;
 
 use std::path::Path;
 
-use anastomesh::io::network::{NetworkOptions, read_network};
-use anastomesh::partition::{PartitionParams, PartitionSummary, check_partition, partition};
-use anastomesh::skeleton::clean;
+use anastomesh::io::{NetworkOptions, read_network};
+use anastomesh::network::clean;
+use anastomesh::testing::{PartitionParams, PartitionSummary, check_partition, partition};
 
 fn cut_up(path: &Path) -> Option<PartitionSummary> {
     let file = read_network(path, &NetworkOptions::default()).ok()?;

@@ -62,7 +62,7 @@ fn a_block_that_comes_out_is_written_on_request() {
         let made = run("replay", &[&dump, Path::new("-o"), &out], &["--json"]);
         assert_code(&made, FINE);
         assert!(json(&made)["mesh"]["tets"].as_u64() > Some(100) && json(&made)["failed"].is_null());
-        let patches = anastomesh::io::volume::read_mesh(&out).expect("a mesh").volume.patches;
+        let patches = anastomesh::io::read_mesh(&out).expect("a mesh").volume.patches;
         assert_eq!(patches.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["wall", "terminal_2", "terminal_3"]);
         let checked = run("check", &[&out], &[]);
         assert_code(&checked, FINE);

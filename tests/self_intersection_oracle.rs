@@ -2,7 +2,8 @@
 
 mod common;
 
-use anastomesh::geometry::{Improper, Point3, Vec3, self_contacts, self_intersections};
+use anastomesh::testing::{Improper, self_contacts, self_intersections};
+use anastomesh::{Point3, Vec3};
 use common::oracle::{self, Random};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

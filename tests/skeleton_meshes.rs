@@ -2,15 +2,14 @@
 
 mod common;
 
-use anastomesh::mesh::check::{Line, Outcome};
-use anastomesh::pipeline::Meshed;
-use anastomesh::report::check::text;
+use anastomesh::check::{Line, Outcome};
+use anastomesh::network::Meshed;
 use common::{mesh, network, shared};
 
 fn skeleton(name: &str) -> Option<Meshed> {
     let path = shared()?.join("data/skeletons").join(name);
     let meshed = mesh(&network(&path), 3.0);
-    print!("{name}\n{}{}", anastomesh::report::mesh::text(&meshed.report), text(&meshed.check));
+    print!("{name}\n{}{}", meshed.report, meshed.check);
     Some(meshed)
 }
 
@@ -26,7 +25,7 @@ fn assert_valid_or_explained(Meshed { report, check, .. }: &Meshed) {
         Line::LabelsMatchBoundary,
     ];
     assert_eq!(report.failed, []);
-    assert!(check.is_valid() || !report.overlaps.is_empty() || !report.unconnected.is_empty(), "{}", text(check));
+    assert!(check.is_valid() || !report.overlaps.is_empty() || !report.unconnected.is_empty(), "{}", check);
     for line in SOUND {
         assert_eq!(check.line(line).map(|l| l.outcome), Some(Outcome::Pass), "{}", line.statement());
     }
@@ -35,7 +34,7 @@ fn assert_valid_or_explained(Meshed { report, check, .. }: &Meshed) {
 #[test]
 fn a_main_artery_is_valid() {
     let Some(meshed) = skeleton("kidney_xu_main_artery.vtp") else { return };
-    assert!(meshed.check.is_valid(), "{}", text(&meshed.check));
+    assert!(meshed.check.is_valid(), "{}", meshed.check);
 }
 
 #[test]

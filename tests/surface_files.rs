@@ -2,8 +2,8 @@
 
 mod common;
 
-use anastomesh::io::surface::{read_surface, write_surface};
-use anastomesh::mesh::TriMesh;
+use anastomesh::TriMesh;
+use anastomesh::io::{read_surface, write_surface};
 
 /// Triangles by the bits of their corners' coordinates (−0 as 0): what remains of a surface in STL.
 fn places(mesh: &TriMesh) -> Vec<[[u64; 3]; 3]> {

@@ -2,9 +2,8 @@
 
 mod common;
 
-use anastomesh::geometry::Point3;
-use anastomesh::io::volume::{MeshFormat, read_mesh, read_mesh_from};
-use anastomesh::mesh::TriMesh;
+use anastomesh::io::{MeshFormat, read_mesh, read_mesh_from};
+use anastomesh::{Point3, TriMesh};
 use common::program::*;
 use common::surfaces::*;
 use std::fmt::Write as _;

@@ -2,9 +2,9 @@
 
 mod common;
 
-use anastomesh::geometry::Point3;
-use anastomesh::io::volume::read_mesh;
-use anastomesh::mesh::TriMesh;
+use anastomesh::Point3;
+use anastomesh::TriMesh;
+use anastomesh::io::read_mesh;
 use common::program::*;
 use common::surfaces::*;
 use serde_json::Value;

@@ -2,12 +2,9 @@
 
 mod common;
 
-use anastomesh::geometry::{Point3, Vec3};
-use anastomesh::mesh::check::Line;
-use anastomesh::mesh::{VolumeMesh, WALL};
-use anastomesh::pipeline::Meshed;
-use anastomesh::report::check::text;
-use anastomesh::skeleton::{Edge, Node, NodeId, Skeleton};
+use anastomesh::check::Line;
+use anastomesh::network::{Edge, Meshed, Node, NodeId, Skeleton};
+use anastomesh::{Point3, Vec3, VolumeMesh, WALL};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
@@ -42,7 +39,7 @@ fn straight(length: f64, pieces: u32, radii: [f64; 2]) -> Skeleton {
 
 fn valid_mesh(network: &Skeleton, rho: f64) -> Meshed {
     let meshed = common::mesh(network, rho);
-    assert!(meshed.check.is_valid(), "rho {rho}\n{}", text(&meshed.check));
+    assert!(meshed.check.is_valid(), "rho {rho}\n{}", meshed.check);
     assert_eq!(meshed.report.retries, [], "rho {rho}");
     meshed
 }

@@ -2,8 +2,9 @@
 //! Delaunay tetrahedralization, or a typed error that is true.
 #![no_main]
 
-use anastomesh::geometry::{Point3, predicates::insphere};
-use anastomesh::tet::{TetError, delaunay::delaunay};
+use anastomesh::Point3;
+use anastomesh::tet::TetError;
+use anastomesh::testing::{delaunay, insphere};
 use libfuzzer_sys::fuzz_target;
 use std::collections::HashSet;
 

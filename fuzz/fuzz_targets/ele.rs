@@ -2,7 +2,7 @@
 #![no_main]
 
 use anastomesh::io::tetgen::read_mesh_from;
-use anastomesh::mesh::check::check_volume;
+use anastomesh::check::check_volume;
 use libfuzzer_sys::fuzz_target;
 
 const NODE: &[u8] = b"6 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n6 -1 0 0\n";

@@ -3,7 +3,7 @@
 //! has the certificate.
 #![no_main]
 
-use anastomesh::geometry::Point3;
+use anastomesh::Point3;
 use anastomesh::tet::{Boundary, InputKind, Interior, Plc, Refinement, Stuck, TetError, Tetrahedralizer};
 use libfuzzer_sys::fuzz_target;
 

@@ -2,7 +2,7 @@
 #![no_main]
 
 use anastomesh::io::tetgen::{Plc, PlcFormat};
-use anastomesh::mesh::facets::triangulate;
+use anastomesh::testing::triangulate;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -2,9 +2,9 @@
 //! valid surface, seen whole from the origin. It is filled, and the mesh has the certificate.
 #![no_main]
 
-use anastomesh::geometry::{Point3, predicates::orient3d};
-use anastomesh::mesh::TriMesh;
 use anastomesh::tet::{Interior, Plc, Tetrahedralizer};
+use anastomesh::testing::orient3d;
+use anastomesh::{Point3, TriMesh};
 use libfuzzer_sys::fuzz_target;
 use std::collections::BTreeMap;
 

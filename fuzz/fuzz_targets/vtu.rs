@@ -1,8 +1,8 @@
 //! Whatever the bytes: a mesh or an error; a mesh can be checked, and one that is sound comes back from what is written.
 #![no_main]
 
-use anastomesh::io::volume::{MeshFormat, read_mesh_from, write_mesh_to};
-use anastomesh::mesh::check::{check_tets, check_volume};
+use anastomesh::io::{MeshFormat, read_mesh_from, write_mesh_to};
+use anastomesh::check::{check_tets, check_volume};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

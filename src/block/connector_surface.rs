@@ -12,7 +12,6 @@ use std::f64::consts::TAU;
 /// One side of a connector: an end surface and the points of the cluster that it belongs to.
 #[derive(Clone, Copy, Debug)]
 pub struct ConnectorEnd<'a> {
-    /// The end surface.
     pub surface: &'a EndSurface,
     /// The cluster's points.
     pub points: &'a [Point3],

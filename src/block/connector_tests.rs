@@ -1,11 +1,12 @@
 //! Connector surfaces between synthetic and trimmed end surfaces.
 
+use super::connector_surface::{ConnectorEnd, ConnectorSurface, Division, connector_surface};
+use super::end_surface::{CutEnd, EndSurface};
 use super::fixtures::{direction, jitter, lattice_tube, neighbours, section};
 use super::rings::chord_factor;
+use super::weave::weave;
 use super::woven::trim_tests::closed_euler;
-use super::{
-    ConnectorEnd, ConnectorSurface, CutEnd, Division, EndSurface, TrimOptions, connector_surface, trim, weave,
-};
+use super::woven::{TrimOptions, trim};
 use crate::geometry::{Point3, Section, Tube, Vec3};
 use crate::mesh::TriMesh;
 use crate::mesh::quality::triangle_min_angle;

@@ -7,7 +7,6 @@ use crate::surface::SharedDisc;
 /// A cut end to trim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutEnd {
-    /// The cut.
     pub cut: CutId,
     /// Which side of the cut the cluster is.
     pub side: u8,
@@ -18,7 +17,6 @@ pub struct CutEnd {
 /// The triangles exposed at a cut.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EndSurface {
-    /// The cut.
     pub cut: CutId,
     /// Which side of the cut this is.
     pub side: u8,

@@ -36,16 +36,10 @@ pub enum FlattenFailure {
 pub enum BlockError {
     /// A parameter makes no sense.
     #[error("block parameter {name} = {value} is out of range")]
-    Parameter {
-        /// Its name.
-        name: &'static str,
-        /// What it was.
-        value: f64,
-    },
+    Parameter { name: &'static str, value: f64 },
     /// The wall could not be made.
     #[error("cluster {}: {source}", cluster.0)]
     Surface {
-        /// The cluster.
         cluster: ClusterId,
         /// Why.
         source: SurfaceError,
@@ -53,7 +47,6 @@ pub enum BlockError {
     /// The wall has other handles than the skeleton has loops: neighbours fused, or a loop closed over.
     #[error("cluster {}: the wall has {handles} handles, the skeleton {loops} loops", cluster.0)]
     Genus {
-        /// The cluster.
         cluster: ClusterId,
         /// Genus of the wall.
         handles: i64,
@@ -63,7 +56,6 @@ pub enum BlockError {
     /// A terminal could not be capped.
     #[error("cluster {}: {source}", cluster.0)]
     Cap {
-        /// The cluster.
         cluster: ClusterId,
         /// Which end, and why.
         source: CapError,
@@ -71,7 +63,6 @@ pub enum BlockError {
     /// A cluster's surface could not be filled.
     #[error("cluster {}: {source}", cluster.0)]
     Tetrahedra {
-        /// The cluster.
         cluster: ClusterId,
         /// Why.
         source: TetError,
@@ -79,7 +70,6 @@ pub enum BlockError {
     /// Trimming or flattening failed at one end of a cluster.
     #[error("cluster {}, cut {}: {failure} near {at:?}", cluster.0, cut.0)]
     End {
-        /// The cluster.
         cluster: ClusterId,
         /// Index of the end in `Cluster::ends`.
         end: u32,
@@ -109,7 +99,6 @@ pub enum BlockError {
     /// No way of building a connector works.
     #[error("connector of cut {} near {at:?}: {}", cut.0, attempts.last().map_or_else(String::new, |a| a.failure.to_string()))]
     Connector {
-        /// The cut.
         cut: CutId,
         /// Middle of the cut's path.
         at: [f64; 3],

@@ -38,7 +38,6 @@ pub struct Finished {
 pub struct FinishedJoint {
     /// Its vertices, ascending; the other block has them in the same order.
     pub vertices: Vec<u32>,
-    /// Its faces.
     pub faces: Vec<u32>,
 }
 
@@ -49,7 +48,6 @@ pub struct FinishedCap {
     pub node: NodeId,
     /// The plane; its axis points out of the mesh.
     pub section: Section,
-    /// Its faces.
     pub faces: Vec<u32>,
 }
 

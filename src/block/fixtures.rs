@@ -123,7 +123,6 @@ pub(super) fn direction(seed: u64) -> Vec3 {
     Vec3::new(jitter(seed, 11), jitter(seed, 12), jitter(seed, 13) + 1e-6).normalize()
 }
 
-/// A section.
 pub(super) fn section(origin: Point3, axis: Vec3, radius: f64) -> Section {
     Section { origin, axis, radius }
 }

@@ -22,18 +22,15 @@ mod weave;
 mod woven;
 
 pub(crate) use cluster::mesh_cluster_watched;
-pub use cluster::{CapFaces, ClusterMesh, cluster_surface, mesh_cluster};
+pub use cluster::{CapFaces, ClusterMesh, mesh_cluster};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
-pub use connector_surface::{ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface};
-pub use dump::{BlockDump, BlockInput, DumpError};
-pub use end_surface::{CutEnd, EndFault, EndSurface, StoredEnd};
-pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
-pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
+pub use connector_surface::ConnectorEnd;
+pub use dump::{BlockDump, BlockInput};
+pub use end_surface::{EndSurface, StoredEnd};
+pub use error::{BlockError, ConnectorAttempt};
+pub use finished::{About, Cured, Finished, FinishedJoint};
 pub use params::{BlockParams, EndStyle};
-pub use path::AxisPath;
 pub use record::{Bytes, Record, Sizes, encode};
-pub use weave::{WeaveCost, weave};
-pub use woven::{TrimOptions, Trimmed, trim};
 
 #[cfg(test)]
 mod cluster_tests;
@@ -41,3 +38,5 @@ mod cluster_tests;
 mod connector_tests;
 #[cfg(test)]
 mod fixtures;
+#[cfg(test)]
+mod joint_tests;

@@ -13,7 +13,7 @@ pub enum EndStyle {
     /// filled, and nothing that is meshed is thrown away.
     #[default]
     Disc,
-    /// As `Disc`, but the disc is the one that the vessel alone gives ([`crate::surface::SharedDisc`]), so that the neighbour need
+    /// As `Disc`, but the disc is the one that the vessel alone gives (`SharedDisc`), so that the neighbour need
     /// not be known.
     Shared,
     /// Tetrahedra beyond the plane are taken off and what that exposes is made flat (3.2.2).
@@ -34,7 +34,7 @@ pub struct BlockParams {
     pub shift: [f64; 3],
     /// Kernel width σ / r of the convolution. For retries: thinner kernels fuse less.
     pub kappa: f64,
-    /// Which division of a connector's tube is tried first, 0 to [`DIVISIONS`](super::DIVISIONS) − 1. For retries.
+    /// Which division of a connector's tube is tried first, 0 to `DIVISIONS` − 1. For retries.
     #[serde(default)]
     pub first_division: usize,
     /// How clusters end at cuts.

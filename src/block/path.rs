@@ -32,7 +32,6 @@ pub struct Place {
     pub radius: f64,
 }
 
-/// Which end of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
     /// Arc length 0.

@@ -31,13 +31,11 @@ pub struct Sizes {
     pub tets: u32,
     /// Faces of the wall.
     pub wall: u32,
-    /// Joints.
     pub joints: u32,
     /// Vertices of all joints.
     pub joint_vertices: u32,
     /// Faces of all joints.
     pub joint_faces: u32,
-    /// Caps.
     pub caps: u32,
     /// Faces of all caps.
     pub cap_faces: u32,

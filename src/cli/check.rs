@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::common::print;
 use super::exit::{Exit, Failure};
 use super::room;
 use crate::io::volume::{MeshFormat, read_mesh};
@@ -34,7 +35,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         Some(report) => report,
         None => as_a_whole(args)?,
     };
-    super::print(args.json, &report, || crate::report::check::text(&report))?;
+    print(args.json, &report, || report.to_string())?;
     Ok(if report.verdict == Verdict::Invalid { Exit::GateNotMet } else { Exit::Fine })
 }
 

@@ -1,5 +1,7 @@
-//! The options of every verb that works for a while.
+//! The options of every verb that works for a while, and what several verbs do alike.
 
+use super::exit::Failure;
+use std::io::Write as _;
 use std::num::NonZeroUsize;
 
 /// How a verb works and what it says of it.
@@ -14,4 +16,30 @@ pub struct Common {
     /// Print nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// As many threads as were asked for, or as there are cores.
+pub fn thread_pool(threads: Option<NonZeroUsize>) -> Result<rayon::ThreadPool, Failure> {
+    // 0 lets rayon take as many as there are cores.
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, Into::into));
+    builder.build().map_err(|e| Failure::stage(format!("the threads cannot be started: {e}")))
+}
+
+/// Prints a result for people or, with `--json`, for programs.
+pub fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
+    let out = if json {
+        serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?
+    } else {
+        text()
+    };
+    print_bytes(format!("{}\n", out.trim_end()).as_bytes())
+}
+
+/// Writes to standard output. A closed pipe is the reader's decision, not an error.
+pub fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::input(format!("standard output: {e}"))),
+        _ => Ok(()),
+    }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::common::print;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use crate::grow::dual;
@@ -55,7 +56,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let arrays = [NetworkArray::NodeInts("OriginalNode", originals), NetworkArray::NodeInts("Tree", both.tree)];
     write_network(&args.output, &both.skeleton, &arrays).map_err(|e| Failure::input(e.to_string()))?;
     if args.json {
-        super::print(true, &grown, String::new)?;
+        print(true, &grown, String::new)?;
     } else if !args.quiet {
         eprintln!(
             "{} nodes, {} edges, {} shared terminals; `anastomesh refine` separates the two trees",

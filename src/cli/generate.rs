@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::common::Common;
+use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use crate::grow::{GenerateParams, Morphometry, Organ, RAT_KIDNEY, generate};
 use crate::io::network::{ensure_tree_writable, write_tree};
@@ -80,7 +80,7 @@ impl Args {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_tree_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     let params = args.params();
-    let pool = super::thread_pool(args.common.threads)?;
+    let pool = thread_pool(args.common.threads)?;
     let network = pool.install(|| generate(&params)).map_err(|e| Failure::usage(e.to_string()))?;
     write_tree(&args.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;
     if args.common.quiet && !args.common.json {
@@ -97,7 +97,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         morphometry: &morphometry,
     };
     if args.common.json {
-        super::print(true, &grown, String::new)?;
+        print(true, &grown, String::new)?;
     } else {
         eprint!("{}", text(&grown));
     }

@@ -1,5 +1,6 @@
 //! `anastomesh info`: what a network holds.
 
+use super::common::print;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use crate::report::info::NetworkInfo;
@@ -18,6 +19,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let network = args.network.read()?;
     let notes = network.notes.iter().map(ToString::to_string).collect();
     let info = NetworkInfo::new(&network.skeleton, network.cleaned, notes);
-    super::print(args.json, &info, || info.to_string())?;
+    print(args.json, &info, || info.to_string())?;
     Ok(Exit::Fine)
 }

@@ -15,7 +15,7 @@ pub struct Args {
 /// Prints a page.
 pub fn run(args: &Args, command: &Command) -> Result<Exit, Failure> {
     let page = page(command, args.verb.as_deref());
-    super::print_bytes(&page?)?;
+    super::common::print_bytes(&page?)?;
     Ok(Exit::Fine)
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::common::Common;
+use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::Bars;
@@ -123,7 +123,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     for remark in network.remarks() {
         bars.note(&remark);
     }
-    let pool = super::thread_pool(args.common.threads)?;
+    let pool = thread_pool(args.common.threads)?;
     let refined = pool.install(|| args.refined(&network.skeleton, &stop))?;
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
     let refinement = refined.as_ref().map(|r| &r.report);
@@ -174,12 +174,11 @@ impl Args {
             let refused = TooLarge::Whole { estimate, why, instead, bytes, memory: plan.memory };
             return Err(Failure::input(refused.to_string()));
         }
-        let mut clock = Clock::default();
-        let result = pipeline::mesh_network(network, plan, bars, &mut clock);
+        let result = pipeline::mesh_network(network, plan, bars);
         let result = result.map_err(|e| self.explain(e, plan, refinement))?;
         let done =
             Done { mesh: &result.mesh, expectation: result.expectation, check: &result.check, report: result.report };
-        self.finish(done, plan, refinement, bars, clock)
+        self.finish(done, plan, refinement, bars)
     }
 
     /// Blocks go to where they are kept, and the mesh from there to its file.
@@ -203,12 +202,11 @@ impl Args {
                 "finished blocks are kept in {dir}: the same command goes on there if this run is stopped"
             ));
         }
-        let mut clock = Clock::default();
-        let result = pipeline::mesh_into(&store, network, plan, &fits, bars, &mut clock);
+        let result = pipeline::mesh_into(&store, network, plan, &fits, bars);
         let result = result.map_err(|e| self.explain(e, plan, refinement))?;
         let done =
             Done { mesh: &result.whole, expectation: result.expectation, check: &result.check, report: result.report };
-        self.finish(done, plan, refinement, bars, clock)
+        self.finish(done, plan, refinement, bars)
     }
 
     /// Everything that the mesh depends on, beside the network.
@@ -226,16 +224,16 @@ impl Args {
         plan: &MeshPlan,
         refinement: Option<&RefineReport>,
         bars: &Bars,
-        mut clock: Clock,
     ) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
         let notes = self.notes(expectation);
         let memory = (self.memory / 4) as usize;
         let write = || write_mesh_within(memory, &self.output, mesh, &notes);
+        let mut clock = Clock::default();
         let written = clock.time(bars, Stage::Write, 0, write);
         // Passes over the blocks end when the run is to end.
         written.map_err(|e| if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) })?;
-        report.stages = clock.stages();
+        report.stages.extend(clock.stages());
         self.print(plan, refinement, &report, Some(check))?;
         Ok(match () {
             () if !report.failed.is_empty() => Exit::StageFailed,
@@ -295,7 +293,7 @@ impl Args {
             super::refine::write(path, &refined)?;
         }
         if !self.common.quiet && !self.common.json {
-            eprint!("{}", crate::report::refine::text(&refined.report));
+            eprint!("{}", refined.report);
         }
         Ok(Some(refined))
     }
@@ -309,13 +307,13 @@ impl Args {
     ) -> Result<(), Failure> {
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            return super::print(true, &Output { program, plan, refine, run, check }, String::new);
+            return print(true, &Output { program, plan, refine, run, check }, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
-            eprint!("{}", crate::report::mesh::text(run));
+            eprint!("{run}");
             if let Some(check) = check {
-                eprint!("{}", crate::report::check::text(check));
+                eprint!("{check}");
             }
         }
         Ok(())

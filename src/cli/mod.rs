@@ -96,13 +96,6 @@ fn definition() -> Command {
     definition
 }
 
-/// As many threads as were asked for, or as there are cores.
-fn thread_pool(threads: Option<std::num::NonZeroUsize>) -> Result<rayon::ThreadPool, Failure> {
-    // 0 lets rayon take as many as there are cores.
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, Into::into));
-    builder.build().map_err(|e| Failure::stage(format!("the threads cannot be started: {e}")))
-}
-
 /// A panic is always a fault of the program: say so beside the usual message.
 fn install_panic_note() {
     let usual = std::panic::take_hook();
@@ -110,24 +103,4 @@ fn install_panic_note() {
         usual(info);
         eprintln!("anastomesh: this is a fault of the program; please report it with the input and the options");
     }));
-}
-
-/// Prints a result for people or, with `--json`, for programs.
-fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
-    let out = if json {
-        serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?
-    } else {
-        text()
-    };
-    print_bytes(format!("{}\n", out.trim_end()).as_bytes())
-}
-
-/// Writes to standard output. A closed pipe is the reader's decision, not an error.
-fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
-    use std::io::Write;
-    let mut out = std::io::stdout().lock();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::input(format!("standard output: {e}"))),
-        _ => Ok(()),
-    }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::common::Common;
+use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
 use super::progress::{shows_bars, stage_bar};
@@ -16,7 +16,7 @@ use crate::refine::{
     self, Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, Sample,
 };
 use crate::report::plot::svg;
-use crate::report::refine::{csv, panels, text};
+use crate::report::refine::{csv, panels};
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -185,7 +185,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         }
     }
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
-    let pool = super::thread_pool(args.common.threads)?;
+    let pool = thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
     let refined = pool.install(|| moved(&network.skeleton, &params, args.common.quiet, &stop))?;
     stop.keep();
@@ -198,9 +198,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-        super::print(true, &Output { program, parameters: &params, report }, String::new)?;
+        print(true, &Output { program, parameters: &params, report }, String::new)?;
     } else if !args.common.quiet {
-        eprint!("{}", text(report));
+        eprint!("{report}");
     }
     let gate = params.residual == Residual::Shrink && report.residual.left > 0;
     Ok(if gate { Exit::GateNotMet } else { Exit::Fine })

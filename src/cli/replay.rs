@@ -71,7 +71,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if estimate.largest_block_bytes > args.memory {
         return Err(refused(&TooLarge::Block { estimate, memory: args.memory }));
     }
-    let pool = super::thread_pool(args.common.threads)?;
+    let pool = super::common::thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
     let ask = || stop.is_asked();
     match pool.install(|| dump.run(&Watch::until(&ask))) {
@@ -119,7 +119,11 @@ impl Args {
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
             let (written_by, block, nodes) = (dump.program.as_str(), dump.name(), dump.nodes.as_slice());
-            return super::print(true, &Output { program, written_by, block, nodes, failed, mesh }, String::new);
+            return super::common::print(
+                true,
+                &Output { program, written_by, block, nodes, failed, mesh },
+                String::new,
+            );
         }
         if let Some(Made { points, tets, file, .. }) = mesh {
             let then = match file {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::exit::Failure;
 use crate::io::volume::MeshFormat;
-use crate::pipeline::store::{KeyMaker, Manifest, Store};
 use crate::pipeline::{Estimate, MeshPlan, TooLarge};
+use crate::pipeline::{Manifest, Store};
 use crate::skeleton::Skeleton;
 
 /// Reads a size such as `2GiB`, `500M` or `1.5 GB`.
@@ -63,7 +63,7 @@ const GATHERED_PER_TET: f64 = 60.0;
 const KEPT_IN_MEMORY: u64 = 8;
 
 impl BlockPlace {
-    /// Chooses.
+    /// A work directory where one is given, else memory for what is small, else a file beside the output.
     pub fn choose(work_dir: Option<&Path>, restart: bool, output: &Path, estimate: &Estimate, memory: u64) -> Self {
         match work_dir {
             Some(path) => Self::Folder { path: path.to_path_buf(), restart },
@@ -77,9 +77,7 @@ impl BlockPlace {
         match self {
             Self::Memory => Ok(Store::in_memory()),
             Self::Passing(folder) => Store::in_passing(folder),
-            Self::Folder { path, restart } => {
-                Store::in_folder(path, &Manifest::new(fingerprint(network), options()), *restart)
-            }
+            Self::Folder { path, restart } => Store::in_folder(path, &Manifest::new(network, options()), *restart),
         }
         .map_err(|e| Failure::input(e.to_string()))
     }
@@ -98,23 +96,6 @@ pub fn folder_of(file: &Path) -> PathBuf {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
         _ => PathBuf::from("."),
     }
-}
-
-/// A key of all that a network holds.
-fn fingerprint(network: &Skeleton) -> crate::pipeline::store::Key {
-    let mut key = KeyMaker::new("network");
-    key.count(network.nodes.len());
-    for node in &network.nodes {
-        key.point(&node.position);
-        key.float(node.radius);
-        key.id(node.original);
-    }
-    key.count(network.edges.len());
-    for edge in &network.edges {
-        edge.nodes.iter().for_each(|node| key.id(node.0));
-        edge.radii.iter().for_each(|&radius| key.float(radius));
-    }
-    key.finish()
 }
 
 /// Refuses what the memory that is allowed, or the room on the disks, cannot hold. `kept`: bytes of blocks that an earlier run

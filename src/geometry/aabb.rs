@@ -59,11 +59,6 @@ impl Aabb {
             & (other.min.z <= self.max.z)
     }
 
-    /// Whether the box holds `p`.
-    pub fn contains(&self, p: &Point3) -> bool {
-        (0..3).all(|i| self.min[i] <= p[i] && p[i] <= self.max[i])
-    }
-
     /// Twice the centre: enough to order boxes by.
     pub(super) fn doubled_centre(&self) -> [f64; 3] {
         [self.min.x + self.max.x, self.min.y + self.max.y, self.min.z + self.max.z]

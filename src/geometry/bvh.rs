@@ -68,16 +68,6 @@ impl Bvh {
         Self { nodes, items, boxes }
     }
 
-    /// Number of boxes.
-    pub fn len(&self) -> usize {
-        self.items.len()
-    }
-
-    /// Whether there is no box.
-    pub fn is_empty(&self) -> bool {
-        self.items.is_empty()
-    }
-
     /// Calls `found` for every box that overlaps `aabb`.
     pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
         let mut stack = [0_u32; STACK];
@@ -262,6 +252,6 @@ mod tests {
         tree.query(&unit, |i| found.push(i));
         found.sort_unstable();
         assert_eq!(found, [1, 3, 4]);
-        assert_eq!(tree.len(), 6);
+        assert_eq!(tree.items.len(), 6);
     }
 }

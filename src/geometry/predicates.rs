@@ -101,13 +101,6 @@ pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     robust::orient2d(at(a), at(b), at(c))
 }
 
-/// Positive when `d` lies inside the circle through the counter-clockwise `a, b, c`, zero on it.
-#[inline]
-pub fn incircle(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
-    let at = |p: [f64; 2]| Coord { x: p[0], y: p[1] };
-    robust::incircle(at(a), at(b), at(c), at(d))
-}
-
 /// Whether three points of space lie on one line: their shadows on all three coordinate planes do.
 pub fn collinear(a: &Point3, b: &Point3, c: &Point3) -> bool {
     [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| orient2d([a[i], a[j]], [b[i], b[j]], [c[i], c[j]]) == 0.0)
@@ -223,6 +216,5 @@ mod tests {
         assert!(insphere(&o, &x, &y, &z, &p(2.0, 2.0, 2.0)) < 0.0);
         assert!(insphere(&o, &x, &y, &z, &p(1.0, 1.0, 1.0)) == 0.0);
         assert!(orient2d([0., 0.], [1., 0.], [0., 1.]) > 0.0);
-        assert!(incircle([0., 0.], [1., 0.], [0., 1.], [0.5, 0.5]) > 0.0);
     }
 }

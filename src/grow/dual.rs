@@ -27,6 +27,15 @@ pub struct Dual {
 /// Grows the second tree. Copies get the number (`original`) of their node plus one more than the largest there is.
 ///
 /// A network with loops is legal: every vessel gets a companion. The root of a component is its thickest terminal.
+///
+/// ```
+/// use anastomesh::network::{GenerateParams, Organ, dual, generate};
+///
+/// let tree = generate(&GenerateParams::new(Organ::Ellipsoid, 20))?;
+/// let both = dual(&tree);
+/// assert_eq!(both.tree.iter().filter(|&&of| of == 2).count(), 20);
+/// # Ok::<(), anastomesh::network::GenerateError>(())
+/// ```
 pub fn dual(skeleton: &Skeleton) -> Dual {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);

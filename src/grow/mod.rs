@@ -21,7 +21,7 @@ mod tests;
 mod tree;
 
 pub use dual::{Dual, dual};
-pub use morphometry::{Morphometry, OrderFigures, Published, RAT_KIDNEY};
+pub use morphometry::{Morphometry, RAT_KIDNEY};
 
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 use organ::Shape;
@@ -73,6 +73,15 @@ impl GenerateParams {
 
 /// Grows a network: a tree of `2n` nodes and `2n − 1` straight vessels, the inlet being node 0. Lengths in µm; each edge
 /// has one radius, a node that of the vessel that leads to it. The same for a seed, whatever the number of threads.
+///
+/// ```
+/// use anastomesh::network::{GenerateParams, Organ, generate};
+///
+/// let tree = generate(&GenerateParams::new(Organ::Ellipsoid, 50))?;
+/// assert_eq!((tree.nodes.len(), tree.edges.len()), (100, 99));
+/// assert_eq!(tree.adjacency().terminals().len(), 51);
+/// # Ok::<(), anastomesh::network::GenerateError>(())
+/// ```
 ///
 /// # Errors
 /// When the parameters make no sense.

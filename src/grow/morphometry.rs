@@ -54,6 +54,15 @@ pub struct OrderFigures {
 }
 
 /// The vessels of a tree, by order.
+///
+/// ```
+/// use anastomesh::network::{GenerateParams, Morphometry, Organ, generate};
+///
+/// let tree = generate(&GenerateParams::new(Organ::Kidney, 50))?;
+/// let orders = Morphometry::of(&tree).orders;
+/// assert!(orders.len() > 2 && orders[0].count > orders[1].count);
+/// # Ok::<(), anastomesh::network::GenerateError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Morphometry {
     /// Figures of each order, 0 first.

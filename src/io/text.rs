@@ -9,7 +9,6 @@ pub enum TextFault {
     /// Something else stands where a number has to be.
     #[error("line {line}: '{text}' stands where {what} has to be: correct it")]
     NotANumber {
-        /// The line.
         line: usize,
         /// What had to be there.
         what: &'static str,
@@ -19,7 +18,6 @@ pub enum TextFault {
     /// A coordinate is infinite or not a number.
     #[error("line {line}: {what} is '{text}'; it must be a finite number: correct it")]
     NotFinite {
-        /// The line.
         line: usize,
         /// What the number is.
         what: &'static str,
@@ -29,7 +27,6 @@ pub enum TextFault {
     /// A number is beyond what its place can hold.
     #[error("line {line}: {what} is {value}, which is too small or too large: correct it")]
     OutOfRange {
-        /// The line.
         line: usize,
         /// What the number is.
         what: &'static str,
@@ -42,21 +39,14 @@ pub enum TextFault {
          correct it, or write or copy the file again if it is cut short"
     )]
     CountTooLarge {
-        /// The line.
         line: usize,
         /// What is counted.
         what: &'static str,
-        /// The count.
         count: i64,
     },
     /// A line ends before everything is in it.
     #[error("line {line} ends before {missing}: complete it")]
-    LineTooShort {
-        /// The line.
-        line: usize,
-        /// What is missing.
-        missing: &'static str,
-    },
+    LineTooShort { line: usize, missing: &'static str },
     /// The file ends before it is complete.
     #[error(
         "line {line}: the file ends before {missing}: a count in it is wrong, or it was not written or copied completely"
@@ -64,15 +54,11 @@ pub enum TextFault {
     CutShort {
         /// The last line.
         line: usize,
-        /// What is missing.
         missing: &'static str,
     },
     /// There is more in the file than it says.
     #[error("line {line} lies behind all that the counts of the file announce: correct the counts or remove it")]
-    Surplus {
-        /// The line.
-        line: usize,
-    },
+    Surplus { line: usize },
 }
 
 /// A place in a text.

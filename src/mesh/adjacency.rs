@@ -1,8 +1,8 @@
 //! Who is next to whom: face neighbours of tetrahedra, the boundary, edge neighbours of triangles, and what lies around
 //! a vertex. Flat arrays of `u32`; a counting sort by the smallest vertex stands in for a hash table.
 
+use super::TET_FACES;
 use super::face_key;
-use super::{TET_FACES, TetMesh};
 
 /// Stands for "nothing there" in neighbour arrays.
 pub const NONE: u32 = u32::MAX;
@@ -60,16 +60,6 @@ impl Incidence {
     #[inline]
     pub fn get(&self, i: u32) -> &[u32] {
         &self.items[self.offsets[i as usize] as usize..self.offsets[i as usize + 1] as usize]
-    }
-
-    /// Number of items that have a list.
-    pub fn len(&self) -> usize {
-        self.offsets.len().saturating_sub(1)
-    }
-
-    /// True when there are no items.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 }
 
@@ -235,7 +225,8 @@ pub fn face_vertices(tets: &[[u32; 4]], handle: u32) -> [u32; 3] {
 }
 
 /// The boundary faces of a mesh, oriented outwards, in ascending order of tetrahedron and face.
-pub fn boundary_faces(mesh: &TetMesh) -> Vec<[u32; 3]> {
+#[cfg(test)]
+pub fn boundary_faces(mesh: &super::TetMesh) -> Vec<[u32; 3]> {
     let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
     adjacency.boundary().map(|handle| face_vertices(&mesh.tets, handle)).collect()
 }
@@ -307,15 +298,15 @@ mod tests {
     fn incidence_lists_are_complete_and_ascending() {
         let mesh = cube_lattice(3);
         let around = Incidence::of_cells(&mesh.tets, mesh.points.len());
-        assert_eq!(around.len(), mesh.points.len());
-        let total: usize = (0..around.len()).map(|v| around.get(v as u32).len()).sum();
+        assert_eq!(around.offsets.len(), mesh.points.len() + 1);
+        let total: usize = (0..mesh.points.len()).map(|v| around.get(v as u32).len()).sum();
         assert_eq!(total, 4 * mesh.tets.len());
-        for v in 0..around.len() as u32 {
+        for v in 0..mesh.points.len() as u32 {
             assert!(around.get(v).is_sorted());
             assert!(around.get(v).iter().all(|&t| mesh.tets[t as usize].contains(&v)));
         }
         let neighbors = Incidence::of_vertices(&mesh.tets, mesh.points.len());
-        for v in 0..neighbors.len() as u32 {
+        for v in 0..mesh.points.len() as u32 {
             assert!(neighbors.get(v).iter().all(|&w| neighbors.get(w).contains(&v)));
         }
     }

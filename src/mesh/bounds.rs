@@ -9,7 +9,7 @@ pub const REGULAR_DIHEDRAL: f64 = 70.528_779_365_509_31;
 pub struct Bounds {
     /// Bound on the circumradius over the shortest edge.
     pub max_radius_edge: Option<f64>,
-    /// Bound on the smallest dihedral angle, in degrees, below [`REGULAR_DIHEDRAL`].
+    /// Bound on the smallest dihedral angle, in degrees, below `REGULAR_DIHEDRAL`.
     pub min_dihedral: Option<f64>,
     /// Bound on the volume.
     pub max_volume: Option<f64>,

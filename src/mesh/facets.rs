@@ -14,7 +14,6 @@ type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 /// Normals shorter than this share of the facet's squared extent say nothing about its plane.
 const NO_NORMAL: f64 = 1e-9;
 
-/// The triangles of a facet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FacetTriangles {
     /// Triangles, turned as the facet's first polygon.
@@ -40,19 +39,13 @@ pub enum FacetError {
     },
     /// Two of its points are at the same place, seen along the axis nearest to its normal.
     #[error("its points {} and {} are at the same place, or one above the other: keep one of them", points[0], points[1])]
-    Coincident {
-        /// The points.
-        points: [u32; 2],
-    },
+    Coincident { points: [u32; 2] },
     /// It encloses nothing.
     #[error("it encloses no area: its corners lie on one line, or its polygons do not close")]
     NoArea,
     /// A coordinate is not finite, or too large or too close to zero for exact arithmetic.
     #[error("the coordinates of its point {point} are not finite or out of the range of exact arithmetic")]
-    OutOfRange {
-        /// The point.
-        point: u32,
-    },
+    OutOfRange { point: u32 },
     /// A polygon names a point that does not exist.
     #[error("it names the point {point}, which does not exist")]
     NoSuchPoint {
@@ -94,7 +87,7 @@ impl spade::HasPosition for Vertex {
 /// Corners are joined in a ring; a segment on which further points of the facet lie is split there.
 ///
 /// # Errors
-/// [`FacetError`]: segments cross, points coincide, or there is nothing inside.
+/// `FacetError`: segments cross, points coincide, or there is nothing inside.
 pub fn triangulate(points: &[Point3], polygons: &[Vec<u32>], holes: &[Point3]) -> Result<FacetTriangles, FacetError> {
     let corners = polygons.iter().flatten();
     if let Some(&point) = corners.clone().find(|&&v| v as usize >= points.len()) {

@@ -13,13 +13,23 @@ pub(crate) mod shapes;
 pub mod smooth;
 pub mod source;
 
-pub use bounds::{Bounds, REGULAR_DIHEDRAL};
+pub use bounds::Bounds;
+#[cfg(any(test, feature = "cli"))]
+pub use bounds::REGULAR_DIHEDRAL;
 pub(crate) use keep::Kept;
 pub(crate) use keys::{face_key, tet_key};
 
 use crate::geometry::Point3;
 
 /// A triangle surface. A closed surface is oriented outwards: seen from outside, vertices run counter-clockwise.
+///
+/// ```
+/// use anastomesh::{Point3, TriMesh};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let surface = TriMesh { points, triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] };
+/// assert!(anastomesh::tet::repair(&surface).report.turned_triangles == 0);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriMesh {
     /// Vertex positions.
@@ -42,6 +52,16 @@ impl TriMesh {
 
 /// A tetrahedral mesh. Tetrahedra `[a, b, c, d]` are positive: `orient3d(a, b, c, d) > 0`, that is
 /// `det(b − a, c − a, d − a) > 0`.
+///
+/// ```
+/// use anastomesh::{Point3, TetMesh, check::check_tets};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let mut mesh = TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+/// assert_eq!(check_tets(&mesh, None).failed().count(), 0);
+/// mesh.tets[0].swap(0, 1);
+/// assert_ne!(check_tets(&mesh, None).failed().count(), 0);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TetMesh {
     /// Vertex positions.
@@ -55,6 +75,15 @@ pub struct TetMesh {
 pub const TET_FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// A tetrahedral mesh whose boundary is labelled: what the pipeline makes and the writers write.
+///
+/// ```
+/// let file = anastomesh::io::read_mesh_from(MESH.as_bytes(), anastomesh::io::MeshFormat::Medit)?;
+/// assert_eq!((file.volume.mesh.tets.len(), file.volume.boundary_patch.len()), (1, 4));
+/// assert_eq!(file.volume.patches[0].name, "wall");
+/// # const MESH: &str = "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n\
+/// #     Tetrahedra 1\n1 2 3 4 1\nTriangles 4\n1 3 2 1\n1 2 4 1\n2 3 4 1\n3 1 4 1\nEnd\n";
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VolumeMesh {
     /// Points and tetrahedra.

@@ -1,6 +1,6 @@
 //! Shape of tetrahedra and triangles: radius ratio, dihedral and corner angles, and their distribution over a mesh.
 
-use super::{TET_FACES, TetMesh, TriMesh};
+use super::{TET_FACES, TetMesh};
 use crate::geometry::{Point3, Vec3};
 
 /// Number of equal bins over [0, 1] in `TetQuality::histogram`.
@@ -52,6 +52,7 @@ impl Spokes {
 }
 
 /// The six dihedral angles in radians, in the order of `TET_EDGES`; each in [0, π].
+#[cfg(test)]
 pub fn dihedral_angles(corners: [&Point3; 4]) -> [f64; 6] {
     dihedral_sides(corners).map(|[opposite, adjacent]| opposite.atan2(adjacent))
 }
@@ -152,17 +153,8 @@ pub fn triangle_area_vector(a: &Point3, b: &Point3, c: &Point3) -> Vec3 {
     (b - a).cross(&(c - a)) * 0.5
 }
 
-/// Area of a triangle.
-pub fn triangle_area(a: &Point3, b: &Point3, c: &Point3) -> f64 {
-    triangle_area_vector(a, b, c).norm()
-}
-
-/// Unit normal of a triangle (counter-clockwise seen from where it points to); none when its area is zero.
-pub fn triangle_normal(a: &Point3, b: &Point3, c: &Point3) -> Option<Vec3> {
-    triangle_area_vector(a, b, c).try_normalize(0.0)
-}
-
 /// Smallest corner angle of a triangle in radians.
+#[cfg(test)]
 pub fn triangle_min_angle(a: &Point3, b: &Point3, c: &Point3) -> f64 {
     let (ab, bc, ca) = (b - a, c - b, a - c);
     let area = ab.cross(&ca).norm();
@@ -171,6 +163,14 @@ pub fn triangle_min_angle(a: &Point3, b: &Point3, c: &Point3) -> f64 {
 }
 
 /// Shape of all tetrahedra of a mesh.
+///
+/// ```
+/// use anastomesh::{Point3, TetMesh, check::TetQuality};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let quality = TetQuality::of(&TetMesh { points, tets: vec![[0, 1, 2, 3]] });
+/// assert!(quality.min > 0.6 && (quality.dihedral_max - 90.0).abs() < 1e-9);
+/// ```
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct TetQuality {
     /// Number of tetrahedra.
@@ -342,41 +342,6 @@ impl QualitySum {
     }
 }
 
-/// Shape of all triangles of a surface.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct TriQuality {
-    /// Number of triangles.
-    pub triangles: usize,
-    /// Total area.
-    pub area: f64,
-    /// Mean over the triangles of the smallest angle, degrees.
-    pub mean_min_angle: f64,
-    /// First percentile of the smallest angle, degrees.
-    pub percentile_1: f64,
-    /// Smallest angle, degrees.
-    pub min_angle: f64,
-}
-
-impl TriQuality {
-    /// Measures a surface. One without triangles has zeros everywhere.
-    pub fn of(mesh: &TriMesh) -> Self {
-        let mut area = 0.0;
-        let mut angles: Vec<f64> = Vec::with_capacity(mesh.triangles.len());
-        for t in &mesh.triangles {
-            let [a, b, c] = t.map(|v| &mesh.points[v as usize]);
-            area += triangle_area(a, b, c);
-            angles.push(triangle_min_angle(a, b, c).to_degrees());
-        }
-        Self {
-            triangles: angles.len(),
-            area,
-            mean_min_angle: angles.iter().sum::<f64>() / angles.len().max(1) as f64,
-            percentile_1: percentile(&mut angles, 0.01),
-            min_angle: angles.iter().copied().reduce(f64::min).unwrap_or(0.0),
-        }
-    }
-}
-
 /// The `share`-quantile, linear between the two nearest ranks; 0 for no values. Reorders `values`.
 fn percentile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
@@ -451,9 +416,7 @@ mod tests {
     fn triangle_angles() {
         let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 3.0_f64.sqrt(), 0.0]].map(Point3::from);
         assert!((triangle_min_angle(&a, &b, &c).to_degrees() - 30.0).abs() < 1e-12);
-        assert!((triangle_area(&a, &b, &c) - 3.0_f64.sqrt() / 2.0).abs() < 1e-14);
-        assert_eq!(triangle_normal(&a, &b, &c), Some(Vec3::z()));
-        assert_eq!(triangle_normal(&a, &a, &c), None);
+        assert!((triangle_area_vector(&a, &b, &c) - Vec3::z() * (3.0_f64.sqrt() / 2.0)).norm() < 1e-14);
     }
 
     proptest! {

@@ -60,6 +60,16 @@ pub struct Repaired {
 
 /// Repairs a surface that is to bound a volume. Of triangles that are there twice one stays; where two lie back to back
 /// neither, unless the surface needs it to be closed. Coordinates that are not finite are left alone.
+///
+/// ```
+/// use anastomesh::{Point3, TriMesh};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// // The last triangle is turned the wrong way.
+/// let surface = TriMesh { points, triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 2, 3]] };
+/// let repaired = anastomesh::tet::repair(&surface);
+/// assert_eq!((repaired.report.turned_triangles, repaired.surface.triangles[3]), (1, [0, 3, 2]));
+/// ```
 pub fn repair(surface: &TriMesh) -> Repaired {
     repaired(surface, true)
 }

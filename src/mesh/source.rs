@@ -12,7 +12,6 @@ use crate::geometry::Point3;
 /// How much a mesh holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SourceCounts {
-    /// Points.
     pub points: usize,
     /// Tetrahedra.
     pub tets: usize,

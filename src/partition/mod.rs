@@ -17,10 +17,12 @@ use crate::skeleton::course::Course;
 use crate::skeleton::cuttability::BranchEnd;
 use crate::skeleton::{BranchId, Skeleton};
 
-pub use check::{PartitionFlaw, check_partition};
+pub use check::check_partition;
 pub use params::{PartitionError, PartitionParams};
-pub use parts::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, Piece, UncutReason};
-pub use summary::{PartitionSummary, UncutCounts};
+#[cfg(test)]
+pub(crate) use parts::PartitionWarning;
+pub use parts::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, Piece};
+pub use summary::PartitionSummary;
 
 /// Cuts a skeleton into clusters and connectors (3.2.1 of the paper, read for graphs with loops).
 ///

@@ -34,9 +34,7 @@ pub struct Partition {
 /// A piece of a branch in a cluster.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// The cluster.
     pub cluster: ClusterId,
-    /// The branch.
     pub branch: BranchId,
     /// Arc lengths between which it lies.
     pub arc: [f64; 2],
@@ -71,7 +69,6 @@ pub enum UncutReason {
 pub enum PartitionWarning {
     /// A terminal's overrun was shortened, as a vessel is in its way.
     ShortOverrun {
-        /// The cluster.
         cluster: ClusterId,
         /// The terminal.
         node: NodeId,
@@ -82,7 +79,6 @@ pub enum PartitionWarning {
     },
     /// A terminal lies within or too close to another vessel of its cluster: its cap may fail.
     CapNotClear {
-        /// The cluster.
         cluster: ClusterId,
         /// The terminal.
         node: NodeId,

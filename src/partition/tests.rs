@@ -4,6 +4,8 @@
 
 use proptest::prelude::*;
 
+use super::check::PartitionFlaw;
+use super::parts::{PartitionWarning, UncutReason};
 use super::*;
 use crate::geometry::{Point3, Tube, Vec3, point_segment, segment_segment};
 use crate::skeleton::{Edge, Node, NodeId};

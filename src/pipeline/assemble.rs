@@ -27,7 +27,6 @@ impl Assembly {
         Ok(Self { volume: gather(whole)?, joints })
     }
 
-    /// Smooths the joints.
     pub fn smooth(&mut self) -> JointReport {
         let VolumeMesh { mesh, tet_block, boundary, boundary_patch, .. } = &mut self.volume;
         let mut frozen = vec![false; mesh.points.len()];

@@ -146,13 +146,11 @@ fn gibibytes(bytes: u64) -> String {
     }
 }
 
-/// Of one cluster.
 pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     let thin = cluster.tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
     cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan)
 }
 
-/// Of one connector.
 pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
     let pieces = cut.path.windows(2).map(|pair| {
         let radius = 0.5 * (pair[0].radius + pair[1].radius);

@@ -22,14 +22,11 @@ pub struct Kept {
 /// A block, or why there is none.
 pub type Made = Result<Kept, BlockError>;
 
-/// Makes blocks.
+/// What every block of a run is made from, and the store that takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Workshop<'a> {
-    /// The network.
     pub skeleton: &'a Skeleton,
-    /// How.
     pub plan: &'a MeshPlan,
-    /// Where they go.
     pub store: &'a Store,
 }
 
@@ -134,7 +131,6 @@ impl Workshop<'_> {
 pub struct JointPlace {
     /// The part: clusters by their ids, then connectors.
     pub part: u32,
-    /// Which of its joints.
     pub joint: u32,
 }
 

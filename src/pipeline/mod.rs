@@ -15,7 +15,7 @@ mod rounds;
 mod routes;
 mod run;
 mod schedule;
-pub mod store;
+mod store;
 mod terminals;
 #[cfg(test)]
 mod tests;
@@ -23,10 +23,10 @@ mod timing;
 mod whole;
 
 pub use estimate::{Estimate, TooLarge};
-pub use observer::{Observer, Silent, Stage};
-pub use plan::{JointStyle, MeshPlan, PlanError};
-pub use report::{BlockCounts, FailedBlock, FusedBlock, Meeting, MeshSize, Retry, RunReport};
+pub use observer::{Observer, Stage};
+pub use plan::{JointStyle, MeshPlan};
+pub use report::RunReport;
 pub use run::{Meshed, RunError, Stored, mesh_into, mesh_network};
-pub use terminals::{NotATerminal, TerminalPatches, assign as assign_patches};
-pub use timing::{BlockTimes, Clock, StageTime};
-pub use whole::Whole;
+pub use store::{Manifest, Store};
+#[cfg(feature = "cli")]
+pub use timing::Clock;

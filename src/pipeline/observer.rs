@@ -42,6 +42,18 @@ impl Stage {
 }
 
 /// Listens to a run. Called from several threads.
+///
+/// ```
+/// use anastomesh::network::{Observer, Stage};
+///
+/// struct Stages;
+///
+/// impl Observer for Stages {
+///     fn begin(&self, stage: Stage, _: u64) {
+///         println!("{}", stage.name());
+///     }
+/// }
+/// ```
 pub trait Observer: Sync {
     /// A stage begins; `total` is the sum of what `advance` will say, 0 when it will say nothing.
     fn begin(&self, _stage: Stage, _total: u64) {}
@@ -58,7 +70,4 @@ pub trait Observer: Sync {
 }
 
 /// Listens to nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Silent;
-
-impl Observer for Silent {}
+impl Observer for () {}

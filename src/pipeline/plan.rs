@@ -20,6 +20,14 @@ pub enum JointStyle {
 }
 
 /// Parameters of a run of the mesher.
+///
+/// ```
+/// let mut plan = anastomesh::network::MeshPlan::default();
+/// plan.rho = 2.0;
+/// assert!(plan.validate().is_err());
+/// plan.rho = 4.0;
+/// assert!(plan.validate().is_ok());
+/// ```
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct MeshPlan {

@@ -44,14 +44,12 @@ pub struct FusedBlock {
     pub uncapped: Vec<u32>,
 }
 
-/// Counts of the blocks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BlockCounts {
     /// Number of clusters.
     pub clusters: usize,
     /// Number of connectors.
     pub connectors: usize,
-    /// Nodes in the largest cluster.
     pub largest_cluster_nodes: usize,
 }
 
@@ -66,7 +64,6 @@ pub struct Meeting {
     pub radii: f64,
 }
 
-/// Size of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MeshSize {
     /// Number of tetrahedra.

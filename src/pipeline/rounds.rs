@@ -28,11 +28,8 @@ const ROUNDS: usize = 6;
 pub struct Run<'a> {
     /// Vessels of the network that overlap.
     pub overlaps: &'a Overlaps,
-    /// Makes the blocks.
     pub shop: Workshop<'a>,
-    /// Hears of it.
     pub observer: &'a dyn Observer,
-    /// Measures it.
     pub clock: &'a mut Clock,
 }
 

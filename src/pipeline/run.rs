@@ -32,7 +32,7 @@ use crate::stitch::label::LabelError;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Meshed {
-    /// The mesh.
+    /// The mesh of the network, its boundary labelled.
     pub mesh: VolumeMesh,
     /// What the network asks of it.
     pub expectation: Expectation,
@@ -108,20 +108,28 @@ impl From<io::Error> for RunError {
 
 /// Meshes a cleaned network in memory. Uses the current rayon pool; the result does not depend on its size.
 ///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::{MeshPlan, clean, mesh_network};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let made = mesh_network(&network, &MeshPlan::default(), &())?;
+/// assert!(made.check.is_valid(), "{}", made.check);
+/// assert_eq!(made.mesh.patches[0].name, "wall");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
-pub fn mesh_network(
-    network: &Skeleton,
-    plan: &MeshPlan,
-    observer: &dyn Observer,
-    clock: &mut Clock,
-) -> Result<Meshed, RunError> {
+pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, observer: &dyn Observer) -> Result<Meshed, RunError> {
     let store = Store::in_memory();
+    let clock = &mut Clock::default();
     if plan.smooths_joints() {
         return join_blocks(network, plan, &store, &[], &|_| Ok(()), observer, clock)?.smoothed(observer, clock);
     }
     let Stored { whole, expectation, check, mut report } =
-        mesh_into(&store, network, plan, &|_| Ok(()), observer, clock)?;
+        mesh_timed(&store, network, plan, &|_| Ok(()), observer, clock)?;
     let mesh = clock.time(observer, Stage::Merge, 0, || gather(&whole))?;
     report.stages = clock.stages();
     Ok(Meshed { mesh, expectation, check, report })
@@ -132,9 +140,33 @@ pub fn mesh_network(
 /// meshed, and may refuse. The observer is also asked by every pass over what comes of it: one that is to stop ends with
 /// an error of the kind `Other`.
 ///
+/// ```
+/// use anastomesh::io::{MeshNotes, NetworkOptions, read_network, write_mesh};
+/// use anastomesh::network::{MeshPlan, Store, clean, mesh_into};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let folder = tempfile::tempdir()?;
+/// let store = Store::in_passing(folder.path())?;
+/// let made = mesh_into(&store, &network, &MeshPlan::default(), &|_| Ok(()), &())?;
+/// assert!(made.check.is_valid());
+/// write_mesh(&folder.path().join("tree.vtu"), &made.whole, &MeshNotes::default())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
 pub fn mesh_into<'a>(
+    store: &'a Store,
+    network: &Skeleton,
+    plan: &MeshPlan,
+    fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
+    observer: &'a dyn Observer,
+) -> Result<Stored<'a>, RunError> {
+    mesh_timed(store, network, plan, fits, observer, &mut Clock::default())
+}
+
+fn mesh_timed<'a>(
     store: &'a Store,
     network: &Skeleton,
     plan: &MeshPlan,

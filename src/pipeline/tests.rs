@@ -23,7 +23,7 @@ fn skeleton(nodes: &[[f64; 4]], edges: &[[u32; 2]]) -> Skeleton {
 }
 
 fn run(network: &Skeleton, plan: &MeshPlan) -> Result<Meshed, RunError> {
-    mesh_network(network, plan, &Silent, &mut Clock::default())
+    mesh_network(network, plan, &())
 }
 
 /// Two junctions with room for a cut between them.
@@ -152,11 +152,11 @@ fn finished_blocks_come_back_from_their_bytes() {
 fn blocks_on_disk_make_the_same_mesh_and_are_found_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let plan = MeshPlan::default();
-    let manifest = store::Manifest::new(store::KeyMaker::new("test").finish(), serde_json::Value::Null);
+    let manifest = store::Manifest::new(&uneven(), serde_json::Value::Null);
     let in_memory = run(&uneven(), &plan).expect("meshed");
     for again in [false, true] {
         let store = store::Store::in_folder(folder.path(), &manifest, false).expect("a work directory");
-        let stored = mesh_into(&store, &uneven(), &plan, &|_| Ok(()), &Silent, &mut Clock::default()).expect("meshed");
+        let stored = mesh_into(&store, &uneven(), &plan, &|_| Ok(()), &()).expect("meshed");
         assert_eq!(gather(&stored.whole).expect("read"), in_memory.mesh);
         assert_eq!(stored.check, in_memory.check);
         assert_eq!(stored.report.mesh, in_memory.report.mesh);
@@ -172,7 +172,7 @@ fn what_does_not_fit_is_refused_before_anything_is_meshed() {
         assert!(estimate.largest_block_tets > 1e9 && estimate.largest_block_tets < estimate.tets);
         Err(TooLarge::Block { estimate: *estimate, memory: 1 << 31 })
     };
-    let refused = mesh_into(&store, &uneven(), &plan, &fits, &Silent, &mut Clock::default()).expect_err("too large");
+    let refused = mesh_into(&store, &uneven(), &plan, &fits, &()).expect_err("too large");
     assert!(matches!(refused, RunError::TooLarge(_)), "{refused}");
 }
 
@@ -306,16 +306,16 @@ fn a_run_that_is_told_to_stop_stops_and_goes_on_later() {
     let network = h(12.0);
     let plan = MeshPlan::default();
     let run = |store: &Store, observer: &dyn Observer| {
-        let stored = mesh_into(store, &network, &plan, &|_| Ok(()), observer, &mut Clock::default())?;
+        let stored = mesh_into(store, &network, &plan, &|_| Ok(()), observer)?;
         Ok::<_, RunError>((gather(&stored.whole)?, stored.report.retries))
     };
-    let whole = run(&Store::in_memory(), &Silent).expect("a mesh");
+    let whole = run(&Store::in_memory(), &()).expect("a mesh");
     let store = Store::in_memory();
     for after in [0, 1, 2] {
         let stopped = run(&store, &Stops { after, blocks: AtomicUsize::new(0) });
         assert!(matches!(stopped, Err(RunError::Cancelled)), "after {after} blocks");
     }
-    assert!(run(&store, &Silent).expect("a mesh") == whole, "what was stopped leaves no trace");
+    assert!(run(&store, &()).expect("a mesh") == whole, "what was stopped leaves no trace");
 }
 
 /// Says to stop at once.
@@ -333,7 +333,7 @@ impl Progress for Never {
 fn smoothing_and_refinement_stop_as_well() {
     let plan = MeshPlan { joint: JointStyle::Woven, ..MeshPlan::default() };
     let stops = Stops { after: 1, blocks: AtomicUsize::new(0) };
-    let stopped = mesh_network(&h(12.0), &plan, &stops, &mut Clock::default());
+    let stopped = mesh_network(&h(12.0), &plan, &stops);
     assert!(matches!(stopped, Err(RunError::Cancelled)));
     let refined = refine(&h(12.0), &RefineParams::default(), &mut Never);
     assert!(matches!(refined, Err(RefineError::Cancelled)));

@@ -7,7 +7,6 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Figures {
-    /// The metrics.
     pub metrics: Metrics,
     /// Overlapping pairs of edges.
     pub overlaps: usize,
@@ -102,12 +101,10 @@ impl Metric {
 }
 
 impl Figures {
-    /// Of a skeleton.
     pub fn of(skeleton: &Skeleton) -> Self {
         Self::with_overlaps(skeleton).0
     }
 
-    /// Of a skeleton, and its overlaps.
     pub(super) fn with_overlaps(skeleton: &Skeleton) -> (Self, Overlaps) {
         let adjacency = skeleton.adjacency();
         let overlaps = skeleton.overlaps(&adjacency);

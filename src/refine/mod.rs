@@ -21,9 +21,9 @@ pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
 pub use params::{Crowded, RefineError, RefineParams, Residual};
 pub use progress::{Displacement, Progress, Sample};
-pub use residual::{ResidualPair, ResidualReport, Treatment};
+pub use residual::{ResidualReport, Treatment};
 
-pub use split::{SplitNode, SplitReport, split};
+pub use split::split;
 
 use crate::geometry::Point3;
 use crate::skeleton::Skeleton;
@@ -84,6 +84,18 @@ pub struct RefineReport {
 ///
 /// The result depends on nothing but the arguments, and not on the unit of length. Memory grows with the number of
 /// edges.
+///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::{RefineParams, clean, refine};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let refined = refine(&network, &RefineParams::default(), &mut ())?;
+/// assert_eq!(refined.report.result.overlaps, 0);
+/// assert_eq!(refined.origin.len(), refined.skeleton.nodes.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// When a parameter is out of its range, or the skeleton does not satisfy `Skeleton::check`.

@@ -11,7 +11,6 @@ pub struct Sample {
     pub iteration: usize,
     /// Displacement of the nodes.
     pub displacement: Displacement,
-    /// The metrics.
     pub metrics: Metrics,
     /// Pairs of vessels pushed apart in this iteration, and vessels lengthened or opened.
     pub asked: usize,
@@ -20,9 +19,7 @@ pub struct Sample {
 /// How far nodes have moved, in the unit of the skeleton.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Displacement {
-    /// Mean.
     pub mean: f64,
-    /// Median.
     pub median: f64,
     /// 95th percentile.
     pub p95: f64,

@@ -33,7 +33,6 @@ pub(super) struct Moved {
     pub unit: f64,
 }
 
-/// One state.
 pub(super) struct State {
     pub skeleton: Skeleton,
     pub origin: Vec<Point3>,

@@ -7,7 +7,6 @@ use serde::Serialize;
 /// How often the shift is halved when it would make an edge too short.
 const HALVINGS: u32 = 8;
 
-/// A node that was split.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SplitNode {
     /// The node; it keeps its id and moves upstream.

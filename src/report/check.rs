@@ -1,38 +1,36 @@
 //! What a check found, for people; its JSON form is `CheckReport` itself.
 
 use crate::mesh::check::{CheckReport, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict};
-use std::fmt::Write as _;
+use std::fmt;
 
-/// A check as text: a line per line of the definition, the first offenders below those that fail, sizes and shape, and
-/// the verdict at the end.
-pub fn text(report: &CheckReport) -> String {
-    let mut out = String::new();
-    for line in &report.lines {
-        write_line(&mut out, line);
-    }
-    let counts = &report.counts;
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        out,
-        "\n{} tetrahedra, {} points, {} boundary faces, {} caps, {} component{}, volume {:.6e}",
-        counts.tets,
-        counts.points,
-        counts.boundary_faces,
-        counts.caps,
-        counts.components,
-        if counts.components == 1 { "" } else { "s" },
-        counts.volume,
-    );
-    if let Some(quality) = &report.quality {
-        let _ = writeln!(
+/// For people: a line per line of the definition, the first offenders below those that fail, sizes and shape, and the
+/// verdict at the end.
+impl fmt::Display for CheckReport {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        for line in &self.lines {
+            write_line(out, line)?;
+        }
+        let counts = &self.counts;
+        writeln!(
             out,
-            "radius ratio: mean {:.4}, 1st percentile {:.4}, min {:.4}; dihedral angles {:.2}° to {:.2}°",
-            quality.mean, quality.percentile_1, quality.min, quality.dihedral_min, quality.dihedral_max,
-        );
+            "\n{} tetrahedra, {} points, {} boundary faces, {} caps, {} component{}, volume {:.6e}",
+            counts.tets,
+            counts.points,
+            counts.boundary_faces,
+            counts.caps,
+            counts.components,
+            if counts.components == 1 { "" } else { "s" },
+            counts.volume,
+        )?;
+        if let Some(quality) = &self.quality {
+            writeln!(
+                out,
+                "radius ratio: mean {:.4}, 1st percentile {:.4}, min {:.4}; dihedral angles {:.2}° to {:.2}°",
+                quality.mean, quality.percentile_1, quality.min, quality.dihedral_min, quality.dihedral_max,
+            )?;
+        }
+        writeln!(out, "{}", verdict(self.verdict))
     }
-    out.push_str(verdict(report.verdict));
-    out.push('\n');
-    out
 }
 
 fn verdict(verdict: Verdict) -> &'static str {
@@ -43,20 +41,21 @@ fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-fn write_line(out: &mut String, result: &LineResult) {
+fn write_line(out: &mut fmt::Formatter, result: &LineResult) -> fmt::Result {
     let statement = result.line.statement();
-    let _ = match result.outcome {
+    match result.outcome {
         Outcome::Pass => writeln!(out, "  ok   {statement}"),
         Outcome::NotChecked(why) => writeln!(out, "  -    {statement}: not checked, {}", reason(why)),
         Outcome::Fail => writeln!(out, "  FAIL {statement}: {}", extent(result)),
-    };
+    }?;
     for offender in &result.offenders {
-        let _ = writeln!(out, "         {}", describe(offender));
+        writeln!(out, "         {}", describe(offender))?;
     }
     let hidden = result.count - result.offenders.len() as u64;
     if hidden > 0 {
-        let _ = writeln!(out, "         and {hidden} more");
+        writeln!(out, "         and {hidden} more")?;
     }
+    Ok(())
 }
 
 fn reason(why: Skipped) -> String {
@@ -98,26 +97,20 @@ fn describe(offender: &Offender) -> String {
         OffenderKind::Patch => "patch",
         OffenderKind::Node => "node",
     };
-    let mut text = String::from(kind);
-    for (i, id) in offender.ids.iter().enumerate() {
-        let separator = if offender.kind == OffenderKind::FacePair && i == 3 { " and " } else { " " };
-        let _ = write!(text, "{separator}{id}");
-    }
-    if let Some([x, y, z]) = offender.position {
-        let _ = write!(text, " at ({x}, {y}, {z})");
-    }
-    text
+    let separator = |i| if offender.kind == OffenderKind::FacePair && i == 3 { " and " } else { " " };
+    let ids: String = offender.ids.iter().enumerate().map(|(i, id)| format!("{}{id}", separator(i))).collect();
+    let place = offender.position.map_or_else(String::new, |[x, y, z]| format!(" at ({x}, {y}, {z})"));
+    format!("{kind}{ids}{place}")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::mesh::TetMesh;
     use crate::mesh::check::{Expectation, check_tets};
     use crate::mesh::shapes::cube_lattice;
 
     fn text_of(mesh: &TetMesh) -> String {
-        text(&check_tets(mesh, Some(&Expectation { loops: vec![0], terminals: Vec::new() })))
+        check_tets(mesh, Some(&Expectation { loops: vec![0], terminals: Vec::new() })).to_string()
     }
 
     #[test]

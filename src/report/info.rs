@@ -88,6 +88,17 @@ impl fmt::Display for UnitGuess {
 }
 
 /// What a network holds. Lengths are in the network's unit.
+///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::{NetworkInfo, clean};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, cleaned) = clean(&file.skeleton)?;
+/// let info = NetworkInfo::new(&network, cleaned, Vec::new());
+/// assert_eq!((info.loops, info.overlaps.pairs.len()), (0, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NetworkInfo {
     /// What the reader decided.

@@ -3,6 +3,8 @@
 pub mod check;
 pub mod info;
 pub mod mesh;
+#[cfg(feature = "cli")]
 pub mod plot;
 pub mod refine;
+#[cfg(feature = "cli")]
 pub mod tetrahedralize;

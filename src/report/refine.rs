@@ -1,9 +1,12 @@
 //! What `refine` says of a refinement: text for people, a table, the panels of a plot.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 
+#[cfg(feature = "cli")]
 use super::plot::{Panel, Series};
-use crate::refine::{Figures, RefineReport, Sample, Treatment};
+#[cfg(feature = "cli")]
+use crate::refine::Sample;
+use crate::refine::{Figures, RefineReport, Treatment};
 
 /// A line of the table of figures: its name and what it shows of a state.
 type Row = (&'static str, fn(&Figures) -> String);
@@ -11,8 +14,14 @@ type Row = (&'static str, fn(&Figures) -> String);
 /// Pairs that are spelt out for people.
 const LISTED: usize = 50;
 
-/// The report for people.
-pub fn text(report: &RefineReport) -> String {
+/// A summary and a table of figures for people.
+impl fmt::Display for RefineReport {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&text(self))
+    }
+}
+
+fn text(report: &RefineReport) -> String {
     let mut out = String::new();
     let d = &report.displacement;
     // Writing to a string cannot fail.
@@ -129,6 +138,7 @@ fn residual_text(report: &RefineReport, out: &mut String) {
 }
 
 /// The metrics over the iterations as a table.
+#[cfg(feature = "cli")]
 pub fn csv(report: &RefineReport) -> String {
     let mut out = String::from(
         "iteration,displacement_mean,displacement_median,displacement_p95,displacement_p99,displacement_max,\
@@ -157,6 +167,7 @@ pub fn csv(report: &RefineReport) -> String {
 }
 
 /// The four panels of the paper's Fig. 11.
+#[cfg(feature = "cli")]
 pub fn panels(report: &RefineReport) -> Vec<Panel> {
     let line = |label: &str, value: fn(&Sample) -> f64| Series {
         label: label.into(),

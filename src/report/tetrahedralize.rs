@@ -7,7 +7,6 @@ use crate::mesh::{TET_FACES, TetMesh};
 use serde::Serialize;
 use std::fmt::Write as _;
 
-/// Size of the input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct InputSize {
     /// Number of points.
@@ -93,7 +92,6 @@ impl LeftOut {
 /// A region of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RegionSize {
-    /// Its id.
     pub id: i32,
     /// Number of tetrahedra.
     pub tets: usize,
@@ -171,13 +169,11 @@ pub struct StageSeconds {
 /// Everything that a tetrahedralization has to say.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TetReport {
-    /// Size of the input.
     pub input: InputSize,
     /// What is odd about the file, as a list of sentences.
     pub notes: Vec<String>,
     /// What was mended in it, as a list of sentences.
     pub repaired: Vec<String>,
-    /// Size of the mesh.
     pub mesh: OutputSize,
     /// What it does not have of the input.
     pub left_out: LeftOut,

@@ -4,7 +4,7 @@
 //! branch as a whole, measured by arc length.
 
 use super::{Adjacency, BranchId, EdgeId, NodeId, Skeleton};
-use crate::geometry::{Point3, Section, Tube};
+use crate::geometry::{Point3, Tube};
 
 impl BranchId {
     /// As an index into `Branches::list`.
@@ -47,6 +47,7 @@ impl Branch {
     }
 
     /// Whether it returns to where it started.
+    #[cfg(test)]
     pub fn is_closed(&self) -> bool {
         let [a, b] = self.ends();
         a == b
@@ -90,15 +91,15 @@ impl Branch {
     }
 
     /// The plane across the vessel at arc length `s`; its axis is the direction of the edge there.
-    pub fn section(&self, skeleton: &Skeleton, s: f64) -> Section {
+    #[cfg(test)]
+    pub fn section(&self, skeleton: &Skeleton, s: f64) -> crate::geometry::Section {
         let place = self.locate(s);
         let tube = self.tube(skeleton, place.piece);
-        Section { origin: tube.point(place.t), axis: (tube.b - tube.a).normalize(), radius: tube.radius(place.t) }
-    }
-
-    /// Smallest radius along the way.
-    pub fn min_radius(&self, skeleton: &Skeleton) -> f64 {
-        self.tubes(skeleton).map(|t| t.min_radius()).fold(f64::INFINITY, f64::min)
+        crate::geometry::Section {
+            origin: tube.point(place.t),
+            axis: (tube.b - tube.a).normalize(),
+            radius: tube.radius(place.t),
+        }
     }
 
     /// Mean radius along the way, weighted by length.
@@ -122,8 +123,7 @@ pub struct Branches {
 }
 
 impl Skeleton {
-    /// The branches.
-    pub fn branches(&self, adjacency: &Adjacency) -> Branches {
+    pub(crate) fn branches(&self, adjacency: &Adjacency) -> Branches {
         const NONE: (BranchId, u32) = (BranchId(u32::MAX), 0);
         // Rings come on top; of the others each has two ends.
         let ends: usize = self.node_ids().map(|node| adjacency.valence(node)).filter(|&valence| valence != 2).sum();

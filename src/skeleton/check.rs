@@ -47,7 +47,7 @@ impl Skeleton {
     ///
     /// # Errors
     /// The first violation.
-    pub fn check_numbers(&self) -> Result<(), SkeletonError> {
+    pub(crate) fn check_numbers(&self) -> Result<(), SkeletonError> {
         for node in &self.nodes {
             if !node.position.iter().all(|x| x.abs() < LARGEST) {
                 return Err(SkeletonError::BadPosition { original: node.original, position: node.position });

@@ -54,6 +54,19 @@ impl CleanReport {
 /// surface blends the two. Centrelines of which every line runs from the inlet to one outlet become one graph as far as
 /// their points coincide.
 ///
+/// ```
+/// use anastomesh::Point3;
+/// use anastomesh::network::{Edge, Node, NodeId, Skeleton, clean};
+///
+/// let node = |z: f64, original| Node { position: Point3::new(0.0, 0.0, z), radius: 1.0, original };
+/// let edge = |a, b| Edge { nodes: [NodeId(a), NodeId(b)], radii: [1.0; 2] };
+/// // The third node is where the second is.
+/// let raw = Skeleton { nodes: vec![node(0.0, 0), node(9.0, 1), node(9.0, 2), node(20.0, 3)], edges: vec![edge(0, 1), edge(2, 3)] };
+/// let (network, report) = clean(&raw)?;
+/// assert_eq!((network.nodes.len(), report.coincident), (3, vec![(2, 1)]));
+/// # Ok::<(), anastomesh::network::SkeletonError>(())
+/// ```
+///
 /// # Errors
 /// When a number cannot be used, an edge names a node that does not exist, or no edge remains.
 pub fn clean(raw: &Skeleton) -> Result<(Skeleton, CleanReport), SkeletonError> {

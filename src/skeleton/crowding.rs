@@ -18,12 +18,12 @@ pub struct CrowdedTerminals {
 impl Skeleton {
     /// Pairs of terminals closer than the sum of their radii, in ascending order. Terminals at one point are one node
     /// after cleaning.
-    pub fn crowded_terminals(&self, adjacency: &Adjacency) -> Vec<CrowdedTerminals> {
+    pub(crate) fn crowded_terminals(&self, adjacency: &Adjacency) -> Vec<CrowdedTerminals> {
         self.crowded_among(&adjacency.terminals())
     }
 
     /// The same among the given nodes, which are at different points.
-    pub fn crowded_among(&self, terminals: &[NodeId]) -> Vec<CrowdedTerminals> {
+    pub(crate) fn crowded_among(&self, terminals: &[NodeId]) -> Vec<CrowdedTerminals> {
         let places: Vec<[f64; 3]> = terminals.iter().map(|&n| self.node(n).position.into()).collect();
         // Only a tree of nothing, or of coordinates that are not numbers, cannot be built.
         let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&places) else { return Vec::new() };

@@ -91,7 +91,6 @@ pub(crate) struct CutWindow {
     pub straight: Vec<[f64; 2]>,
 }
 
-/// What a branch ends in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BranchEnd {
     Junction,

@@ -37,6 +37,16 @@ pub struct Edge {
 }
 
 /// A vessel skeleton. Several components and loops are legal.
+///
+/// ```
+/// use anastomesh::Point3;
+/// use anastomesh::network::{Edge, Node, NodeId, Skeleton};
+///
+/// let node = |z: f64, original| Node { position: Point3::new(0.0, 0.0, z), radius: 1.0, original };
+/// let edges = vec![Edge { nodes: [NodeId(0), NodeId(1)], radii: [1.0; 2] }];
+/// let vessel = Skeleton { nodes: vec![node(0.0, 0), node(9.0, 1)], edges };
+/// assert!(vessel.check().is_ok());
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Skeleton {
     /// Nodes, by `NodeId`.
@@ -47,7 +57,7 @@ pub struct Skeleton {
 
 impl Skeleton {
     /// The straight piece of vessel that an edge stands for.
-    pub fn tube(&self, edge: EdgeId) -> Tube {
+    pub(crate) fn tube(&self, edge: EdgeId) -> Tube {
         let e = &self.edges[edge.0 as usize];
         Tube {
             a: self.nodes[e.nodes[0].0 as usize].position,

@@ -38,6 +38,17 @@ impl Edge {
 }
 
 /// The edges at each node, in ascending order. An edge from a node to itself is listed twice.
+///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::clean;
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let adjacency = network.adjacency();
+/// assert!(adjacency.terminals().iter().all(|&node| adjacency.edges(node).len() == 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Adjacency {
     /// Where each node's edges start in `edges`; one more than there are nodes.
@@ -112,7 +123,7 @@ impl Skeleton {
     }
 
     /// The connected pieces.
-    pub fn components(&self, adjacency: &Adjacency) -> Components {
+    pub(crate) fn components(&self, adjacency: &Adjacency) -> Components {
         const NONE: u32 = u32::MAX;
         let mut of_node = vec![NONE; self.nodes.len()];
         let mut list: Vec<Component> = Vec::new();
@@ -166,15 +177,14 @@ impl Skeleton {
         (0..self.edges.len() as u32).map(EdgeId)
     }
 
-    /// Length of an edge.
-    pub fn length(&self, id: EdgeId) -> f64 {
+    pub(crate) fn length(&self, id: EdgeId) -> f64 {
         let [a, b] = self.edge(id).nodes;
         (self.node(b).position - self.node(a).position).norm()
     }
 
     /// The inlet of each component: its terminal of largest radius (the smallest id among equals); none for a component
     /// without terminals.
-    pub fn roots(&self, adjacency: &Adjacency, components: &Components) -> Vec<Option<NodeId>> {
+    pub(crate) fn roots(&self, adjacency: &Adjacency, components: &Components) -> Vec<Option<NodeId>> {
         let mut roots: Vec<Option<NodeId>> = vec![None; components.list.len()];
         for node in adjacency.terminals() {
             let root = &mut roots[components.of_node[node.index()] as usize];

@@ -18,14 +18,14 @@ pub mod resolution;
 mod tests;
 mod walk;
 
-pub use branch::{Branch, Branches, Place};
+pub use branch::{Branch, Branches};
 pub use clean::{CleanReport, clean};
 pub use crowding::CrowdedTerminals;
 pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, separation};
 pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};
 pub use error::{LARGEST, SkeletonError};
-pub use graph::{Adjacency, Component, Components};
-pub use metrics::{Barrier, FOLD, Metrics, NARROW, PairGradient, Share};
+pub use graph::{Adjacency, Component};
+pub use metrics::{Barrier, Metrics, NARROW, Share};
 pub use overlap::{Overlap, Overlaps};
 
 pub(crate) use metrics::paper_unit;

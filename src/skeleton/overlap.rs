@@ -60,7 +60,7 @@ impl Overlap {
 
 impl Skeleton {
     /// Finds the vessels that overlap.
-    pub fn overlaps(&self, adjacency: &Adjacency) -> Overlaps {
+    pub(crate) fn overlaps(&self, adjacency: &Adjacency) -> Overlaps {
         let boxes: Vec<Aabb> = self.edge_ids().map(|e| tube_box(&self.tube(e))).collect();
         let tree = Bvh::new(&boxes);
         let mut candidates: Vec<[EdgeId; 2]> = Vec::new();

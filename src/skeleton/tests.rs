@@ -1,3 +1,4 @@
+use super::branch::Place;
 use super::*;
 use crate::geometry::Point3;
 use proptest::prelude::*;

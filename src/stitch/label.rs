@@ -9,7 +9,6 @@ use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL};
 /// The faces of one patch other than the wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatchFaces {
-    /// The patch.
     pub patch: Patch,
     /// Its faces, vertices in any order.
     pub faces: Vec<[u32; 3]>,
@@ -24,13 +23,11 @@ pub enum LabelError {
     NotOnBoundary {
         /// The patch's id.
         patch: i32,
-        /// The face.
         face: [u32; 3],
     },
     /// A face belongs to two patches.
     #[error("face {face:?} belongs to patch {first} and to patch {second}")]
     Twice {
-        /// The face.
         face: [u32; 3],
         /// One patch's id.
         first: i32,

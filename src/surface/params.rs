@@ -65,18 +65,12 @@ pub enum SurfaceError {
     },
     /// A parameter is out of its range.
     #[error("{name} = {value} is out of range")]
-    InvalidParameter {
-        /// Its name.
-        name: &'static str,
-        /// What it was.
-        value: f64,
-    },
+    InvalidParameter { name: &'static str, value: f64 },
     /// The wall would cross too many cells.
     #[error("the wall crosses about {cells:.3e} grid cells, more than the limit of {limit}")]
     TooLarge {
         /// Estimated or counted cells.
         cells: f64,
-        /// The limit.
         limit: usize,
     },
     /// The grid is too coarse to see a tube.

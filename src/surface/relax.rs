@@ -32,7 +32,6 @@ pub(crate) enum Hold {
 
 /// What is worked on, and where.
 pub(crate) struct Relaxation<'a, L> {
-    /// The surface.
     pub surface: &'a mut HalfEdges,
     /// The level set that its vertices lie on.
     pub level: &'a mut L,

@@ -7,7 +7,8 @@ use super::error::TetError;
 use super::fill::fill;
 use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
-use super::outside::{LeftOut, without};
+use super::outside::without;
+use super::plc::LeftOut;
 use super::plc::{InputKind, Plc};
 use super::progress::{Cancel, OnProgress, Progress, Stage, Watch};
 use super::recover::RecoverySummary;
@@ -22,6 +23,15 @@ use std::sync::Arc;
 /// example.
 ///
 /// It can be cloned, sent to other threads and used again; runs share nothing.
+///
+/// ```
+/// use anastomesh::tet::{Interior, Plc, Tetrahedralizer};
+///
+/// let surface = anastomesh::io::read_surface("fixtures/torus.off".as_ref())?;
+/// let made = Tetrahedralizer::new().interior(Interior::None).optimize(false).run(&Plc::from(&surface))?;
+/// assert_eq!(made.faces, surface.triangles);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone)]
 pub struct Tetrahedralizer {
     kind: InputKind,
@@ -182,8 +192,7 @@ impl Tetrahedralizer {
         Watch::new(self.on_progress.as_deref(), self.cancel.as_deref())
     }
 
-    /// Makes a mesh of a complex. Success means that it has passed the certificate
-    /// ([`super::certify::certify_facets`]): each triangle of the input that bounds or lies in what is filled is a face
+    /// Makes a mesh of a complex. Success means that it has passed the certificate: each triangle of the input that bounds or lies in what is filled is a face
     /// of it.
     ///
     /// # Errors
@@ -246,6 +255,16 @@ impl Tetrahedralizer {
     /// triangle is there twice, no two triangles meet but in common vertices and edges, and no further point lies in a
     /// triangle. Segments are not tested against triangles.
     ///
+    /// ```
+    /// use anastomesh::tet::{Plc, TetError, Tetrahedralizer};
+    ///
+    /// let mut surface = anastomesh::io::read_surface("fixtures/torus.off".as_ref())?;
+    /// surface.triangles.pop();
+    /// let fault = Tetrahedralizer::new().check(&Plc::from(surface));
+    /// assert!(matches!(fault, Err(TetError::Open { edges: 3, .. })), "{fault:?}");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// The first fault, with the ids of the offenders.
     pub fn check(&self, plc: &Plc) -> Result<(), TetError> {
@@ -262,6 +281,15 @@ impl Tetrahedralizer {
     }
 
     /// The Delaunay tetrahedralization of points. `faces` are those of the convex hull.
+    ///
+    /// ```
+    /// use anastomesh::Point3;
+    ///
+    /// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+    /// let made = anastomesh::tet::Tetrahedralizer::new().delaunay(&points)?;
+    /// assert_eq!((made.mesh.tets.len(), made.faces.len()), (1, 4));
+    /// # Ok::<(), anastomesh::tet::TetError>(())
+    /// ```
     ///
     /// # Errors
     /// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`],

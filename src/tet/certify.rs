@@ -1,8 +1,8 @@
 //! The certificate: what has to hold before a mesh may be called the tetrahedralization of a surface.
 
 use super::complex::{face_key, face_of};
-use super::outside::LeftOut;
 use super::plc::InputKind;
+use super::plc::LeftOut;
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
 use crate::mesh::adjacency::{face_vertices, tet_adjacency};
@@ -87,6 +87,17 @@ pub enum CertifyError {
 /// Proves that `mesh` fills `surface`: its points begin with the surface's, bit for bit; every tetrahedron is positive
 /// by the exact predicate; interior faces are shared by two tetrahedra on opposite sides; the boundary is the surface,
 /// triangle for triangle, with the same orientation; the volumes agree to rounding.
+///
+/// ```
+/// use anastomesh::tet::{Plc, Tetrahedralizer, certify};
+///
+/// let surface = anastomesh::io::read_surface("fixtures/torus.off".as_ref())?;
+/// let mut made = Tetrahedralizer::new().run(&Plc::from(&surface))?;
+/// assert!(certify(&made.mesh, &surface).is_ok());
+/// made.mesh.tets.pop();
+/// assert!(certify(&made.mesh, &surface).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// The first of these that does not hold.

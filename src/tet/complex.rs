@@ -37,7 +37,6 @@ pub enum ComplexError {
     BadVertices {
         /// The tetrahedron.
         tet: u32,
-        /// Its vertices.
         vertices: [u32; 4],
     },
     /// A tetrahedron that is flat or inverted by the exact predicate.
@@ -45,7 +44,6 @@ pub enum ComplexError {
     NotPositive {
         /// The tetrahedron.
         tet: u32,
-        /// Its vertices.
         vertices: [u32; 4],
     },
     /// A face that more than two tetrahedra share, or two on the same side of it.
@@ -64,10 +62,7 @@ pub enum ComplexError {
     },
     /// The tetrahedron kept for a vertex does not contain it.
     #[error("the tetrahedron kept for vertex {vertex} does not contain it")]
-    BadVertexTet {
-        /// The vertex.
-        vertex: u32,
-    },
+    BadVertexTet { vertex: u32 },
 }
 
 /// A tetrahedron: its vertices, and across each of them the half-face glued to the opposite face. One half of a cache
@@ -115,17 +110,6 @@ struct FaceRecord {
 #[inline]
 pub fn face_of(v: &[u32; 4], i: usize) -> [u32; 3] {
     TET_FACES[i].map(|k| v[k])
-}
-
-/// An even permutation of `v` that puts the ghost vertex, if any, last.
-#[inline]
-pub fn ghost_last(v: [u32; 4]) -> [u32; 4] {
-    match v.iter().position(|&x| x == GHOST) {
-        Some(0) => [v[1], v[3], v[2], v[0]],
-        Some(1) => [v[0], v[2], v[3], v[1]],
-        Some(2) => [v[1], v[0], v[3], v[2]],
-        _ => v,
-    }
 }
 
 impl Complex {

@@ -33,41 +33,17 @@ pub struct Flipper {
     stack: Vec<(usize, usize)>,
 }
 
-/// Scores a tetrahedron by validity alone: for flips that have to be possible, not good.
-pub fn valid(c: &Complex, v: &[u32; 4]) -> Option<f64> {
-    (c.orient(v) > 0.0).then_some(1.0)
-}
-
 impl Flipper {
     /// Slots of the tetrahedra that the last successful flip created.
     pub fn created(&self) -> &[u32] {
         &self.created
     }
 
-    /// Slots of the tetrahedra that the last successful flip removed. Some of them may be in use again.
-    pub fn removed(&self) -> &[u32] {
-        &self.old
-    }
-
-    /// The ring of the last edge that removal was tried on.
-    pub fn ring(&self) -> &EdgeRing {
-        &self.ring
-    }
-
-    /// 2-3 flip: exchanges the face for the edge between the two apices.
-    ///
-    /// # Errors
-    /// [`Refusal::Frozen`] on a frozen or boundary face, [`Refusal::NotValid`] where the two tetrahedra are not convex.
-    pub fn flip_face(&mut self, c: &mut Complex, half: u32) -> Result<(), Refusal> {
-        self.plan_face(c, half, valid)?;
-        self.commit(c)
-    }
-
-    /// Plans the 2-3 flip of a face without making it; returns the smallest score of the three new tetrahedra.
+    /// Plans the 2-3 flip of a face, which exchanges it for the edge between the two apices, without making it; returns the smallest score of the three new tetrahedra.
     /// `score` must be `None` for a tetrahedron that is not positive.
     ///
     /// # Errors
-    /// As [`Flipper::flip_face`].
+    /// [`Refusal::Frozen`] on a frozen or boundary face, [`Refusal::NotValid`] where the two tetrahedra are not convex.
     pub fn plan_face(
         &mut self,
         c: &Complex,
@@ -91,15 +67,6 @@ impl Flipper {
             self.new.push(v);
         }
         Ok(worst)
-    }
-
-    /// Removes the edge `a, b` of tetrahedron `t` by whatever valid triangulation of its ring.
-    ///
-    /// # Errors
-    /// See [`Refusal`].
-    pub fn remove_edge(&mut self, c: &mut Complex, t: u32, a: u32, b: u32) -> Result<(), Refusal> {
-        self.plan_edge(c, t, a, b, MAX_RING, valid)?;
-        self.commit(c)
     }
 
     /// Plans the removal of edge `a, b` of tetrahedron `t` without making it: of all triangulations of the ring the
@@ -248,6 +215,23 @@ mod tests {
         let c = Complex::from_mesh(points, &tets).unwrap();
         c.sanity_check().unwrap();
         c
+    }
+
+    /// For flips that have to be possible, not good.
+    fn valid(c: &Complex, v: &[u32; 4]) -> Option<f64> {
+        (c.orient(v) > 0.0).then_some(1.0)
+    }
+
+    impl Flipper {
+        fn flip_face(&mut self, c: &mut Complex, half: u32) -> Result<(), Refusal> {
+            self.plan_face(c, half, valid)?;
+            self.commit(c)
+        }
+
+        fn remove_edge(&mut self, c: &mut Complex, t: u32, a: u32, b: u32) -> Result<(), Refusal> {
+            self.plan_edge(c, t, a, b, MAX_RING, valid)?;
+            self.commit(c)
+        }
     }
 
     fn volume(c: &Complex) -> f64 {

@@ -7,7 +7,7 @@
 //! A box with a wall across it, of which both halves are filled and told apart:
 //!
 //! ```
-//! use anastomesh::geometry::Point3;
+//! use anastomesh::Point3;
 //! use anastomesh::tet::{InputKind, Interior, Plc, Region, Tetrahedralizer};
 //!
 //! let mut plc = Plc::default();
@@ -42,40 +42,43 @@
 
 mod builder;
 mod carve;
-pub mod certify;
-pub mod complex;
+pub(crate) mod certify;
+pub(crate) mod complex;
 mod conform;
 mod contacts;
-pub mod delaunay;
-pub mod error;
+pub(crate) mod delaunay;
+pub(crate) mod error;
 mod fill;
-pub mod flips;
+pub(crate) mod flips;
 mod input;
-pub mod lattice;
+pub(crate) mod lattice;
 mod names;
-pub mod optimize;
+pub(crate) mod optimize;
 mod options;
 mod outside;
 mod plc;
 mod progress;
 mod recover;
-pub mod refine;
+pub(crate) mod refine;
 mod regions;
 mod request;
 mod sized;
 mod split;
-pub mod star;
+pub(crate) mod star;
 mod survey;
 
+pub use crate::mesh::Bounds;
+pub use crate::mesh::repair::{Repaired, repair, repair_facets};
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
-pub use complex::Complex;
+pub use certify::{CertifyError, certify};
 pub use error::{Obstacle, Stuck, TetError};
 pub use names::Names;
-pub use options::{Boundary, Interior, Refinement, Sizing, TetOptions};
-pub use outside::LeftOut;
-pub use plc::{InputKind, Plc, Region};
-pub use progress::{Cancel, Progress, Stage, Watch};
-pub use recover::RecoverySummary;
+pub use optimize::Effort;
+pub(crate) use options::TetOptions;
+pub use options::{Boundary, Interior, Refinement, Sizing};
+pub use plc::{InputKind, LeftOut, Plc, Region};
+pub(crate) use progress::Watch;
+pub use progress::{Progress, Stage};
 
 use crate::mesh::{TetMesh, TriMesh};
 use certify::Place;
@@ -87,7 +90,7 @@ use certify::Place;
 ///
 /// # Errors
 /// [`TetError`]: what is wrong with the surface, or what could not be recovered.
-pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh, TetError> {
+pub(crate) fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh, TetError> {
     tetrahedralize_watched(surface, options, &Watch::NOBODY)
 }
 

@@ -36,6 +36,14 @@ pub enum Interior {
 }
 
 /// How long edges are to be, in the unit of the surface.
+///
+/// ```
+/// use anastomesh::tet::Sizing;
+/// use std::sync::Arc;
+///
+/// let finer_below = Sizing::Function(Arc::new(|p| if p.z < 0.0 { 0.1 } else { 0.2 }));
+/// assert_eq!(format!("{finer_below:?}"), "Function");
+/// ```
 #[derive(Clone, Default)]
 pub enum Sizing {
     /// As the surface has them nearby.
@@ -61,6 +69,16 @@ impl std::fmt::Debug for Sizing {
 }
 
 /// When a tetrahedron is split. Each bound that is set holds for all tetrahedra, as far as the boundary allows.
+///
+/// ```
+/// use anastomesh::tet::{Plc, Refinement, Tetrahedralizer};
+///
+/// let surface = anastomesh::io::read_surface("fixtures/torus.off".as_ref())?;
+/// let fine = Refinement::default().max_radius_edge(2.0).max_points(5000);
+/// let made = Tetrahedralizer::new().refine(Some(fine)).run(&Plc::from(surface))?;
+/// assert!(made.summary.refine.is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Refinement {
@@ -152,13 +170,6 @@ impl TetOptions {
     #[must_use]
     pub fn effort(mut self, effort: Effort) -> Self {
         self.effort = effort;
-        self
-    }
-
-    /// With or without improvement.
-    #[must_use]
-    pub fn optimize(mut self, optimize: bool) -> Self {
-        self.optimize = optimize;
         self
     }
 

@@ -4,26 +4,12 @@
 use super::carve::Sides;
 use super::complex::Complex;
 use super::error::{NAMED, TetError};
+use super::plc::LeftOut;
 use super::star::{EdgeRing, Star};
 use crate::mesh::TriMesh;
 use std::borrow::Cow;
 
-/// Triangles and segments of an input that the mesh does not have, because both of their sides lie outside or in a hole.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct LeftOut {
-    /// The triangles, ascending.
-    pub triangles: Vec<u32>,
-    /// The segments as indices into [`super::Plc::edges`], ascending.
-    pub segments: Vec<u32>,
-}
-
 impl LeftOut {
-    /// Whether the mesh has all of the input.
-    pub fn is_empty(&self) -> bool {
-        self.triangles.is_empty() && self.segments.is_empty()
-    }
-
     /// Finds what lies outside in a complex that has all of the input.
     ///
     /// # Errors

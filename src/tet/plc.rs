@@ -59,3 +59,20 @@ pub enum InputKind {
     /// that cannot be reached from infinity or from a hole without crossing a facet is filled.
     Plc,
 }
+
+/// Triangles and segments of an input that the mesh does not have, because both of their sides lie outside or in a hole.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LeftOut {
+    /// The triangles, ascending.
+    pub triangles: Vec<u32>,
+    /// The segments as indices into [`Plc::edges`], ascending.
+    pub segments: Vec<u32>,
+}
+
+impl LeftOut {
+    /// Whether the mesh has all of the input.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty() && self.segments.is_empty()
+    }
+}

@@ -47,7 +47,6 @@ pub struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// Nobody watches.
     pub const NOBODY: Watch<'static> = Watch { on_progress: None, cancel: None };
 
     /// Nobody looks on, but this is asked, often, whether to stop.

@@ -4,7 +4,7 @@ use super::certify::Place;
 use super::input::SurfaceEdges;
 use super::optimize::{Effort, OptimizeReport};
 use super::options::{Interior, Refinement, Sizing};
-use super::outside::LeftOut;
+use super::plc::LeftOut;
 use super::plc::{InputKind, Region};
 use super::progress::Watch;
 use super::recover::RecoverySummary;

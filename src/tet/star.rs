@@ -45,11 +45,6 @@ impl EdgeRing {
         self.tets.len()
     }
 
-    /// Whether nothing was collected.
-    pub fn is_empty(&self) -> bool {
-        self.tets.is_empty()
-    }
-
     /// Whether the edge lies on the boundary.
     pub fn touches_ghost(&self) -> bool {
         self.rim.contains(&GHOST)

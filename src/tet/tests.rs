@@ -1,3 +1,4 @@
+use super::complex::Complex;
 use super::*;
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::quality::TetQuality;
@@ -113,7 +114,7 @@ fn fills(s: &TriMesh) -> TetMesh {
     let mut last = TetMesh::default();
     for interior in [Interior::None, Interior::Lattice { cell: None, clearance: None }] {
         for optimize in [false, true] {
-            let options = TetOptions::default().interior(interior.clone()).optimize(optimize);
+            let options = TetOptions { interior: interior.clone(), optimize, ..TetOptions::default() };
             last = tetrahedralize(s, &options).unwrap();
             certify::certify(&last, s).unwrap();
             Complex::from_mesh(last.points.clone(), &last.tets).unwrap().sanity_check().unwrap();
@@ -283,7 +284,8 @@ fn lattice_points_keep_inside_and_off_the_wall() {
 fn points_given_are_used_and_points_outside_are_dropped() {
     let s = sphere_surface(2);
     let given = vec![Point3::new(0.1, 0.0, 0.0), Point3::new(9.0, 0.0, 0.0), Point3::new(0.0, 0.3, 0.2)];
-    let options = TetOptions::default().interior(Interior::Points(given.clone())).optimize(false);
+    let interior = Interior::Points(given.clone());
+    let options = TetOptions { interior, optimize: false, ..TetOptions::default() };
     let mesh = tetrahedralize(&s, &options).unwrap();
     assert_eq!(mesh.points[s.points.len()..], [given[0], given[2]]);
     let twice = vec![given[0], given[2], given[0]];
@@ -298,7 +300,7 @@ fn points_given_are_used_and_points_outside_are_dropped() {
 fn the_certificate_finds_every_kind_of_fault() {
     use certify::{CertifyError, certify};
     let s = sphere_surface(1);
-    let mesh = tetrahedralize(&s, &TetOptions::default().optimize(false)).unwrap();
+    let mesh = tetrahedralize(&s, &TetOptions { optimize: false, ..TetOptions::default() }).unwrap();
     certify(&mesh, &s).unwrap();
     let mut moved = mesh.clone();
     moved.points[3].x = moved.points[3].x.next_up();

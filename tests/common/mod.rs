@@ -6,9 +6,8 @@ pub mod oracle;
 pub mod program;
 pub mod surfaces;
 
-use anastomesh::io::network::{NetworkOptions, read_network};
-use anastomesh::pipeline::{Clock, MeshPlan, Meshed, RunError, Silent, mesh_network};
-use anastomesh::skeleton::{Skeleton, clean};
+use anastomesh::io::{NetworkOptions, read_network};
+use anastomesh::network::{MeshPlan, Meshed, RunError, Skeleton, clean, mesh_network};
 use std::path::{Path, PathBuf};
 
 /// The folder of real networks and surfaces beside the checkout, which a user's clone does not have.
@@ -45,9 +44,9 @@ pub fn mesh(network: &Skeleton, rho: f64) -> Meshed {
 }
 
 pub fn mesh_by(network: &Skeleton, plan: &MeshPlan) -> Meshed {
-    match mesh_network(network, plan, &Silent, &mut Clock::default()) {
+    match mesh_network(network, plan, &()) {
         Ok(meshed) => meshed,
-        Err(RunError::BlocksFailed(report)) => panic!("blocks failed\n{}", anastomesh::report::mesh::text(&report)),
+        Err(RunError::BlocksFailed(report)) => panic!("blocks failed\n{}", report),
         Err(error) => panic!("{error}"),
     }
 }

@@ -1,8 +1,8 @@
 //! Surfaces and complexes that tests fill, and files of them.
 
-use anastomesh::geometry::Point3;
-use anastomesh::io::surface::write_surface;
-use anastomesh::mesh::TriMesh;
+use anastomesh::Point3;
+use anastomesh::TriMesh;
+use anastomesh::io::write_surface;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;

@@ -3,9 +3,9 @@
 
 use super::oracle::{self, Random};
 use super::{recorded, tetgen};
-use anastomesh::geometry::Point3;
-use anastomesh::mesh::adjacency::boundary_faces;
-use anastomesh::tet::delaunay::delaunay;
+use anastomesh::Point3;
+use anastomesh::testing::delaunay;
+use anastomesh::tet::Tetrahedralizer;
 use std::fmt::Write as _;
 
 const FILE: &str = "delaunay.txt";
@@ -76,13 +76,20 @@ fn compare(case: &str, points: &[Point3]) {
 type Hull = (usize, f64);
 
 fn our_hull(points: &[Point3]) -> Hull {
-    let mesh = delaunay(points).expect("points in general position").into_mesh();
-    (boundary_faces(&mesh).len(), tetgen::volume(&mesh))
+    let made = Tetrahedralizer::new().delaunay(points).expect("points in general position");
+    (made.faces.len(), tetgen::volume(&made.mesh))
 }
 
 fn their_hull(points: &[Point3]) -> Option<Hull> {
     let theirs = tetgen::run("-Q", "node", tetgen::points_section(points))?;
-    Some((boundary_faces(&theirs.mesh).len(), tetgen::volume(&theirs.mesh)))
+    let mut faces = std::collections::HashMap::new();
+    for &[a, b, c, d] in &theirs.mesh.tets {
+        for mut face in [[a, b, c], [a, b, d], [a, c, d], [b, c, d]] {
+            face.sort_unstable();
+            *faces.entry(face).or_insert(0) += 1;
+        }
+    }
+    Some((faces.values().filter(|&&tets| tets == 1).count(), tetgen::volume(&theirs.mesh)))
 }
 
 fn compare_hulls(case: &str, points: &[Point3]) {

@@ -2,8 +2,8 @@
 
 use super::tetgen::{points_section, volume};
 use super::{recorded, tetgen};
-use anastomesh::geometry::{Point3, Vec3};
 use anastomesh::tet::{InputKind, Interior, Plc, Tetrahedralizer};
+use anastomesh::{Point3, Vec3};
 use std::fmt::Write as _;
 
 const FILE: &str = "plc.txt";

@@ -1,8 +1,7 @@
 //! TetGen, run on a file in a folder of its own.
 
 use super::oracle;
-use anastomesh::geometry::Point3;
-use anastomesh::mesh::TetMesh;
+use anastomesh::{Point3, TetMesh};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};

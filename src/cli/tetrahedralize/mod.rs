@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::common;
 use super::exit::{Exit, Failure};
 use super::stop::Stop;
 use crate::mesh::quality::TetQuality;
@@ -49,7 +50,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             eprintln!("{note}");
         }
     }
-    let pool = super::thread_pool(args.common.threads)?;
+    let pool = common::thread_pool(args.common.threads)?;
     let watch = Arc::new(Watch::new(plan.quiet));
     let mut input = watch.time("read", || Input::read(&args.input, format, &plan))?;
     target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
@@ -163,7 +164,7 @@ fn left_out(made: &Tetrahedralization, input: &Input) -> LeftOut {
 fn print(args: &Args, plan: &TetPlan, report: &TetReport) -> Result<(), Failure> {
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-        return super::print(true, &Output { program, plan, report }, String::new);
+        return common::print(true, &Output { program, plan, report }, String::new);
     }
     if plan.check_only {
         if !plan.quiet {

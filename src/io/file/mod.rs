@@ -6,7 +6,6 @@ mod whole;
 
 pub(super) use atomic::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
 pub use error::FileError;
+#[cfg(feature = "cli")]
 pub use whole::write_text;
-pub(super) use whole::{
-    Writing, by_extension, ensure_sound, extension, read_bytes, unsound, write_all_whole, write_whole,
-};
+pub(super) use whole::{Writing, by_extension, ensure_sound, extension, read_bytes, write_all_whole, write_whole};

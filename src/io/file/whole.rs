@@ -29,6 +29,7 @@ pub(in crate::io) fn write_whole(path: &Path, write: impl FnOnce(&mut AtomicFile
 ///
 /// # Errors
 /// What the operating system reports.
+#[cfg(feature = "cli")]
 pub fn write_text(path: &Path, text: &str) -> io::Result<()> {
     write_whole(path, |file| file.write_all(text.as_bytes()))
 }

@@ -87,6 +87,19 @@ pub enum NetworkArray {
 
 /// The arrays that a refined network carries: `OriginalNode`, the node of the input that each node was, and
 /// `Displacement`, how it moved from `origin`.
+///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network, refinement_arrays, write_network};
+/// use anastomesh::network::{RefineParams, clean, refine};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let refined = refine(&network, &RefineParams::default(), &mut ())?;
+/// let folder = tempfile::tempdir()?;
+/// let arrays = refinement_arrays(&refined.skeleton, &refined.origin);
+/// write_network(&folder.path().join("refined.vtp"), &refined.skeleton, &arrays)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn refinement_arrays(skeleton: &Skeleton, origin: &[Point3]) -> Vec<NetworkArray> {
     let moved = skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).into());
     vec![

@@ -11,9 +11,9 @@ mod vtp;
 mod write;
 
 pub use content::{NetworkArray, NetworkFile, NetworkNote, NetworkOptions, refinement_arrays};
-pub use error::{NetworkFault, NetworkFileError};
+pub use error::NetworkFileError;
 pub use format::NetworkFormat;
 pub use read::{read_network, read_network_from};
-pub use swc::SwcError;
-pub use vtp::VtpError;
-pub use write::{ensure_network_writable, ensure_tree_writable, write_network, write_tree};
+#[cfg(feature = "cli")]
+pub use write::{ensure_network_writable, ensure_tree_writable};
+pub use write::{write_network, write_tree};

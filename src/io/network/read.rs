@@ -9,6 +9,14 @@ use std::path::Path;
 
 /// Reads a network file; the extension gives the format.
 ///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// assert_eq!(file.skeleton.nodes.len(), 30);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// When the file cannot be read, or is no usable network.
 pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile, NetworkFileError> {
@@ -20,6 +28,15 @@ pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile
 }
 
 /// Reads a network from the bytes of a file.
+///
+/// ```
+/// use anastomesh::io::{NetworkFormat, NetworkOptions, read_network_from};
+///
+/// let swc = b"1 2 0 0 0 1.5 -1\n2 2 0 0 9 1.5 1\n";
+/// let file = read_network_from(swc, NetworkFormat::Swc, &NetworkOptions::default())?;
+/// assert_eq!((file.skeleton.nodes.len(), file.skeleton.nodes[1].radius), (2, 1.5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// When the bytes are no usable network.

@@ -1,4 +1,7 @@
+use super::error::NetworkFault;
+use super::swc::SwcError;
 use super::vtp;
+use super::vtp::VtpError;
 use super::*;
 use crate::io::file::FileError;
 use crate::io::vtk_xml::VtkError;

@@ -14,6 +14,17 @@ use std::path::Path;
 /// Points carry `Radius`, lines (one per edge) `EdgeRadius`, the mean of the radii at their ends, and `EndRadii`, both of
 /// them; the reader prefers the latter.
 ///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network, write_network};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("tree.vtp");
+/// write_network(&path, &file.skeleton, &[])?;
+/// assert_eq!(read_network(&path, &NetworkOptions::default())?.skeleton.edges.len(), file.skeleton.edges.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// When the name has another extension, or the file cannot be written.
 pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> Result<(), NetworkFileError> {
@@ -23,6 +34,15 @@ pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) 
 
 /// Writes a tree whose edges lead away from its root, by the extension of the name: `.vtp` (as `write_network`), or
 /// `.swc`, which keeps the radii of the nodes but not those of the edges. Whole or not at all.
+///
+/// ```
+/// use anastomesh::network::{GenerateParams, Organ, generate};
+///
+/// let tree = generate(&GenerateParams::new(Organ::Ellipsoid, 20))?;
+/// let folder = tempfile::tempdir()?;
+/// anastomesh::io::write_tree(&folder.path().join("tree.swc"), &tree, &[])?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// When the name has another extension, the file cannot be written, or two edges of an SWC file lead to one node.
@@ -39,6 +59,7 @@ pub fn write_tree(path: &Path, tree: &Skeleton, arrays: &[NetworkArray]) -> Resu
 ///
 /// # Errors
 /// When the name has another extension than `.vtp`, or its folder does not exist.
+#[cfg(feature = "cli")]
 pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
     ensure_vtp(path)?;
     ensure_folder(path)
@@ -48,6 +69,7 @@ pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
 ///
 /// # Errors
 /// When the name has another extension than `.vtp` or `.swc`, or its folder does not exist.
+#[cfg(feature = "cli")]
 pub fn ensure_tree_writable(path: &Path) -> Result<(), NetworkFileError> {
     if is_swc(path) { ensure_folder(path) } else { ensure_network_writable(path) }
 }
@@ -68,6 +90,7 @@ fn ensure_vtp(path: &Path) -> Result<(), NetworkFileError> {
 }
 
 /// Checks that a file can be made at a path.
+#[cfg(feature = "cli")]
 fn ensure_folder(path: &Path) -> Result<(), NetworkFileError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() || !folder.is_dir() {

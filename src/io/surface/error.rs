@@ -101,17 +101,13 @@ pub enum SurfaceFault {
     },
     /// Something that every such file has is not there.
     #[error("{what} is missing: write the file again")]
-    Missing {
-        /// What.
-        what: &'static str,
-    },
+    Missing { what: &'static str },
     /// A binary file does not have the length that its counts say.
     #[error(
         "the counts of the file announce at least {announced} bytes, it has {found}: \
          it was not written or copied completely, or its counts are wrong"
     )]
     Length {
-        /// What is announced.
         announced: u64,
         /// How long it is.
         found: u64,

@@ -13,8 +13,8 @@ mod stl;
 mod tests;
 mod write;
 
-pub use content::{SurfaceContent, SurfaceNote};
-pub use error::{Place, SurfaceFault, SurfaceFileError};
+pub use content::SurfaceContent;
+pub use error::SurfaceFileError;
 pub use format::SurfaceFormat;
 pub use read::{read_content_as, read_content_from, read_surface, read_surface_from};
 pub use write::write_surface;

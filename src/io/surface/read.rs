@@ -10,7 +10,13 @@ use std::path::Path;
 
 /// Reads a surface from a file, in the format that its extension names. Triangles and points keep their order; nothing
 /// is joined, dropped or turned over (only STL, which stores no common points, has its equal corners joined). A face with
-/// more than three corners becomes triangles in its place ([`crate::mesh::facets`]).
+/// more than three corners becomes triangles in its place.
+///
+/// ```
+/// let torus = anastomesh::io::read_surface("fixtures/torus.off".as_ref())?;
+/// assert_eq!(torus.triangles.len(), 2 * torus.points.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
@@ -27,6 +33,14 @@ pub fn read_content_as(path: &Path, format: SurfaceFormat) -> Result<SurfaceCont
 }
 
 /// Reads a surface from the bytes of a file.
+///
+/// ```
+/// use anastomesh::io::{SurfaceFormat, read_surface_from};
+///
+/// let off = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 1 2\n";
+/// assert_eq!(read_surface_from(off, SurfaceFormat::Off)?.triangles.len(), 3, "the square is cut in two");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// When the bytes are no such file, or it is incomplete.

@@ -1,5 +1,7 @@
 //! Every format: what is written comes back, files by other hands are read, and no file makes a panic.
 
+use super::content::SurfaceNote;
+use super::error::{Place, SurfaceFault};
 use super::write::write_format;
 use super::*;
 use crate::geometry::Point3;

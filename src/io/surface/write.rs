@@ -12,6 +12,17 @@ use std::path::Path;
 /// coordinate comes back bit for bit: PLY is written in binary with doubles, and STL in binary only when every
 /// coordinate fits into the 32-bit floats of that variant, otherwise as text.
 ///
+/// ```
+/// use anastomesh::io::{read_surface, write_surface};
+///
+/// let torus = read_surface("fixtures/torus.off".as_ref())?;
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("torus.ply");
+/// write_surface(&path, &torus)?;
+/// assert_eq!(read_surface(&path)?, torus);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// `UnknownFormat`, `BadMesh` when a triangle names a point that does not exist, or `Write` with the reason.
 pub fn write_surface(path: &Path, mesh: &TriMesh) -> Result<(), SurfaceFileError> {

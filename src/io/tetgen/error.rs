@@ -16,18 +16,12 @@ pub enum TetgenFault {
     Text(#[from] TextFault),
     /// Points are not in space.
     #[error("line {line}: the points have the dimension {dimension}; it has to be 3")]
-    Dimension {
-        /// The line.
-        line: usize,
-        /// The dimension.
-        dimension: i64,
-    },
+    Dimension { line: usize, dimension: i64 },
     /// The numbers of the points do not run on from 0 or 1.
     #[error(
         "line {line}: the point has the number {found} instead of {expected}; points are numbered from 0 or from 1"
     )]
     BadNumber {
-        /// The line.
         line: usize,
         /// Its number.
         found: i64,
@@ -37,9 +31,7 @@ pub enum TetgenFault {
     /// A polygon names a point that does not exist.
     #[error("line {line}: facet {facet} names the point {index}, but there are {points} points, the first is {first}")]
     BadIndex {
-        /// The line.
         line: usize,
-        /// The facet.
         facet: usize,
         /// What it names.
         index: i64,
@@ -50,16 +42,10 @@ pub enum TetgenFault {
     },
     /// A polygon has no corners, or a facet no polygons.
     #[error("line {line}: facet {facet} has nothing in it: remove it")]
-    EmptyFacet {
-        /// The line.
-        line: usize,
-        /// The facet.
-        facet: usize,
-    },
+    EmptyFacet { line: usize, facet: usize },
     /// A tetrahedron or face of a mesh names a point that does not exist.
     #[error("line {line}: {kind} {cell} names the point {index}, but there are {points} points, the first is {first}")]
     BadCell {
-        /// The line.
         line: usize,
         /// What names it.
         kind: &'static str,
@@ -75,7 +61,6 @@ pub enum TetgenFault {
     /// Tetrahedra have more points than their corners.
     #[error("line {line}: tetrahedra have {corners} points; only those of 4 are read: write the mesh without -o2")]
     Order {
-        /// The line.
         line: usize,
         /// How many points they have.
         corners: i64,

@@ -25,9 +25,8 @@ pub enum Extent {
 /// The files of a mesh (tetrahedra positive, as those of `TetGen` are): `.node`, `.ele`, and as asked `.face`, `.edge`, `.neigh`.
 ///
 /// ```
-/// use anastomesh::geometry::Point3;
 /// use anastomesh::io::tetgen::{Extent, MeshFamily};
-/// use anastomesh::mesh::TetMesh;
+/// use anastomesh::{Point3, TetMesh};
 ///
 /// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
 /// let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3]] };

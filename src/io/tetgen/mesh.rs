@@ -32,7 +32,7 @@ pub fn read_mesh(base: &Path) -> Result<VolumeMesh, TetgenFileError> {
     Ok(assemble(nodes, cells, listed))
 }
 
-/// As [`read_mesh`], from the bytes of the files; no bytes stand for a `.face` file that is not there.
+/// Reads a mesh as [`crate::io::read_mesh`] does, from the bytes of the files; no bytes stand for a `.face` file that is not there.
 ///
 /// # Errors
 /// What is wrong with one of them.

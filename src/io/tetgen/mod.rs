@@ -11,9 +11,11 @@ mod plc_read;
 #[cfg(test)]
 mod tests;
 
-pub use error::{TetgenFault, TetgenFileError};
+pub(crate) use error::TetgenFault;
+pub use error::TetgenFileError;
 pub use family::{Extent, MeshFamily};
-pub use mesh::{read_mesh, read_mesh_from};
+pub(crate) use mesh::read_mesh;
+pub use mesh::read_mesh_from;
 pub use nodes::{Nodes, read_nodes, read_nodes_as};
 pub use plc::{Facet, Plc, PlcFormat, Region};
 pub use plc_read::{read_plc, read_plc_as};

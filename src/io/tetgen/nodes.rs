@@ -7,6 +7,12 @@ use crate::io::text::Words;
 use std::path::Path;
 
 /// The points of a `.node` file.
+///
+/// ```
+/// let nodes = anastomesh::io::tetgen::Nodes::parse(b"2 3 0 0\n1 0 0 0\n2 1 0 0\n")?;
+/// assert_eq!((nodes.points.len(), nodes.first), (2, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Nodes {
     /// Positions.

@@ -18,11 +18,10 @@ mod vtu;
 mod write;
 
 pub use content::{MeshFile, MeshNotes};
-pub use error::{MeshFault, MeshFileError};
+pub use error::MeshFileError;
 pub use format::MeshFormat;
-pub use medit::{MeditFault, write_medit};
-pub use msh::MshFault;
-pub use pvtu::PvtuFault;
 pub use read::{read_mesh, read_mesh_from};
-pub use vtu::{VtuFault, VtuPieces, VtuPiecesError};
-pub use write::{ensure_writable, write_mesh, write_mesh_to, write_mesh_within};
+pub use vtu::{VtuPieces, VtuPiecesError};
+#[cfg(feature = "cli")]
+pub use write::write_mesh_within;
+pub use write::{ensure_writable, write_mesh, write_mesh_to};

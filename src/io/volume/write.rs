@@ -25,6 +25,20 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
 /// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all. The bytes depend
 /// on the mesh and the notes alone. No format but `TetGen`'s holds a mesh that is read in passes: see the writers of each.
 ///
+/// ```
+/// use anastomesh::io::{MeshNotes, read_mesh, write_mesh};
+/// use anastomesh::{Point3, TetMesh, VolumeMesh};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+/// let volume = VolumeMesh { mesh, tet_block: vec![0], ..VolumeMesh::default() };
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("one.vtu");
+/// write_mesh(&path, &volume, &MeshNotes::default())?;
+/// assert_eq!(read_mesh(&path)?.volume.mesh, volume.mesh);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Result<(), MeshFileError> {
@@ -69,6 +83,19 @@ fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError>
 }
 
 /// Writes a mesh to a stream, such as standard output; the file is put together in memory first.
+///
+/// ```
+/// use anastomesh::io::{MeshFormat, MeshNotes, read_mesh_from, write_mesh_to};
+/// use anastomesh::{Point3, TetMesh, VolumeMesh};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+/// let volume = VolumeMesh { mesh, tet_block: vec![0], ..VolumeMesh::default() };
+/// let mut bytes = Vec::new();
+/// write_mesh_to(&mut bytes, MeshFormat::Msh, &volume, &MeshNotes::default())?;
+/// assert_eq!(read_mesh_from(&bytes, MeshFormat::Msh)?.volume.mesh, volume.mesh);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// What the stream reports.

@@ -9,7 +9,6 @@ pub(in crate::io) enum Values {
     Int(Vec<i64>),
 }
 
-/// An array.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::io) struct DataArray {
     /// Values per point or cell.

@@ -155,7 +155,6 @@ impl<'a> VtkXml<'a> {
             .map(|c| (self.attribute(c, "Name").unwrap_or_default(), c))
     }
 
-    /// The text in an element.
     pub(super) fn text(&self, element: ElementId) -> &str {
         &self.elements[element.0].text
     }

@@ -42,27 +42,16 @@ pub enum VtkError {
     /// It is a VTK file of another kind.
     #[error("a VTK file of type '{found}', but '{wanted}' is needed here")]
     WrongFileType {
-        /// What it is.
         found: String,
         /// What was expected.
         wanted: &'static str,
     },
     /// An attribute of `VTKFile` has a value that is not supported.
     #[error("{attribute}=\"{value}\" is not supported; save the file with zlib compression or none")]
-    UnknownLayout {
-        /// The attribute.
-        attribute: &'static str,
-        /// Its value.
-        value: String,
-    },
+    UnknownLayout { attribute: &'static str, value: String },
     /// A number of points, cells, … is no number.
     #[error("{attribute}=\"{value}\" is not a count")]
-    BadCount {
-        /// The attribute.
-        attribute: &'static str,
-        /// Its value.
-        value: String,
-    },
+    BadCount { attribute: &'static str, value: String },
     /// `AppendedData` has an encoding other than raw and base64.
     #[error("the encoding of <AppendedData> is neither raw nor base64")]
     BadAppendedData,
@@ -79,7 +68,6 @@ pub enum VtkError {
     UnknownFormat {
         /// Name of the array.
         array: String,
-        /// Its format.
         format: String,
     },
     /// An array's offset is missing, no number, or beyond the end of the appended data.

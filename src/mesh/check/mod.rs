@@ -17,8 +17,7 @@ mod surfaces;
 mod tests;
 
 pub use result::{
-    CheckReport, Counts, Expectation, Intersection, KEPT_OFFENDERS, Line, LineResult, Offender, OffenderKind, Outcome,
-    Skipped, Verdict,
+    CheckReport, Counts, Expectation, Line, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict,
 };
 
 use super::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
@@ -27,6 +26,20 @@ use super::{TetMesh, VolumeMesh};
 use surface::Boundary;
 
 /// Checks a labelled mesh.
+///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::check::check_volume;
+/// use anastomesh::network::{MeshPlan, clean, mesh_network};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let made = mesh_network(&network, &MeshPlan::default(), &())?;
+/// let report = check_volume(&made.mesh, Some(&made.expectation));
+/// assert!(report.is_valid(), "{report}");
+/// assert_eq!(report.counts.caps, network.adjacency().terminals().len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> CheckReport {
     Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(None)
 }
@@ -41,6 +54,17 @@ pub fn check_volume_with(
 }
 
 /// Checks a mesh without labels; the lines about labels are not checked.
+///
+/// ```
+/// use anastomesh::check::{Line, Outcome, Verdict, check_tets};
+/// use anastomesh::{Point3, TetMesh};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let report = check_tets(&TetMesh { points, tets: vec![[1, 0, 2, 3]] }, None);
+/// assert_eq!(report.verdict, Verdict::Invalid);
+/// let inverted = report.line(Line::PositiveTets).expect("it is always looked at");
+/// assert_eq!((inverted.outcome, inverted.count), (Outcome::Fail, 1));
+/// ```
 pub fn check_tets(mesh: &TetMesh, expectation: Option<&Expectation>) -> CheckReport {
     Check { mesh, volume: None, expectation }.run(None)
 }

@@ -160,7 +160,6 @@ pub enum Outcome {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OffenderKind {
-    /// One point.
     Point,
     /// Two points.
     Edge,
@@ -172,7 +171,6 @@ pub enum OffenderKind {
     Face,
     /// Six points: two faces.
     FacePair,
-    /// A patch.
     Patch,
     /// A node of the network.
     Node,
@@ -199,10 +197,8 @@ impl Offender {
 /// Offenders that are kept per line.
 pub const KEPT_OFFENDERS: usize = 10;
 
-/// One line of the result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LineResult {
-    /// Which line.
     pub line: Line,
     /// How it came out.
     pub outcome: Outcome,

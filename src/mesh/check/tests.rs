@@ -1,5 +1,6 @@
 //! Every line fails on a mesh in which its fault was planted, and none on a sound one.
 
+use super::result::KEPT_OFFENDERS;
 use super::*;
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::adjacency::boundary_faces;

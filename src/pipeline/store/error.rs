@@ -55,14 +55,7 @@ pub enum Difference {
     /// Another network.
     Network,
     /// Another option.
-    Option {
-        /// Its name.
-        name: String,
-        /// What it was.
-        was: String,
-        /// What it is.
-        is: String,
-    },
+    Option { name: String, was: String, is: String },
 }
 
 fn advice(source: &io::Error) -> &'static str {

@@ -41,7 +41,6 @@ impl KeyMaker {
         self.0.update(&x.to_bits().to_le_bytes());
     }
 
-    /// A point.
     pub fn point(&mut self, p: &Point3) {
         p.iter().for_each(|&x| self.float(x));
     }
@@ -50,19 +49,12 @@ impl KeyMaker {
         v.iter().for_each(|&x| self.float(x));
     }
 
-    /// A section.
     pub fn section(&mut self, s: &Section) {
         self.point(&s.origin);
         self.vector(&s.axis);
         self.float(s.radius);
     }
 
-    /// Another key.
-    pub fn key(&mut self, key: Key) {
-        self.0.update(&key.0.to_le_bytes());
-    }
-
-    /// The key.
     pub fn finish(&self) -> Key {
         Key(self.0.digest128())
     }

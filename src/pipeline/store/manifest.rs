@@ -7,8 +7,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::error::{Difference, StoreError};
-use super::key::Key;
+use super::key::{Key, KeyMaker};
 use super::log::LogFile;
+use crate::skeleton::Skeleton;
 
 /// Version of what is in a work directory.
 const FORMAT: u32 = 2;
@@ -18,6 +19,23 @@ const LOCK: &str = "anastomesh.lock";
 const BLOCKS: &str = "anastomesh.blocks";
 
 /// What a work directory belongs to.
+///
+/// ```
+/// use anastomesh::io::{NetworkOptions, read_network};
+/// use anastomesh::network::{Manifest, MeshPlan, Store, clean, mesh_into};
+///
+/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// let (network, _) = clean(&file.skeleton)?;
+/// let folder = tempfile::tempdir()?;
+/// let run = || -> Result<usize, Box<dyn std::error::Error>> {
+///     let options = serde_json::json!({ "mesh": MeshPlan::default() });
+///     let store = Store::in_folder(folder.path(), &Manifest::new(&network, options), false)?;
+///     Ok(mesh_into(&store, &network, &MeshPlan::default(), &|_| Ok(()), &())?.report.mesh.tets)
+/// };
+/// // The second run finds all blocks.
+/// assert_eq!(run()?, run()?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     format: u32,
@@ -27,10 +45,10 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// `network`: a key of the network as it was read; `options`: an object with everything that the mesh depends on.
-    pub fn new(network: Key, options: serde_json::Value) -> Self {
+    /// Of a network as it was read; `options` is an object with everything else that the mesh depends on.
+    pub fn new(network: &Skeleton, options: serde_json::Value) -> Self {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
-        Self { format: FORMAT, program, network: format!("{:032x}", network.0), options }
+        Self { format: FORMAT, program, network: format!("{:032x}", fingerprint(network).0), options }
     }
 
     fn difference(&self, before: &Self) -> Option<Difference> {
@@ -42,6 +60,23 @@ impl Manifest {
         }
         first_difference("", &before.options, &self.options)
     }
+}
+
+/// A key of all that a network holds.
+fn fingerprint(network: &Skeleton) -> Key {
+    let mut key = KeyMaker::new("network");
+    key.count(network.nodes.len());
+    for node in &network.nodes {
+        key.point(&node.position);
+        key.float(node.radius);
+        key.id(node.original);
+    }
+    key.count(network.edges.len());
+    for edge in &network.edges {
+        edge.nodes.iter().for_each(|node| key.id(node.0));
+        edge.radii.iter().for_each(|&radius| key.float(radius));
+    }
+    key.finish()
 }
 
 /// The first place in which two values differ.

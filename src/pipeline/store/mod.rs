@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use rustc_hash::FxHashMap;
 
-pub use error::{Difference, StoreError};
+pub use error::StoreError;
 pub use key::{Key, KeyMaker};
 use log::LogFile;
 pub use manifest::Manifest;
@@ -70,7 +70,7 @@ impl Store {
     }
 
     /// The record under a key.
-    pub fn find(&self, key: Key) -> Option<RecordId> {
+    pub(crate) fn find(&self, key: Key) -> Option<RecordId> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&key).copied()
     }
 
@@ -78,7 +78,7 @@ impl Store {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn keep(&self, key: Key, bytes: Vec<u8>) -> Result<RecordId, StoreError> {
+    pub(crate) fn keep(&self, key: Key, bytes: Vec<u8>) -> Result<RecordId, StoreError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let Entry::Vacant(slot) = known.entry(key) else {
             drop(known);
@@ -106,7 +106,7 @@ impl Store {
     }
 
     /// The bytes of a record.
-    pub fn bytes(&self, id: RecordId) -> StoredBytes<'_> {
+    pub(crate) fn bytes(&self, id: RecordId) -> StoredBytes<'_> {
         StoredBytes { store: self, id }
     }
 }

@@ -3,7 +3,10 @@
 use std::fs;
 use std::io::Write;
 
+use super::error::Difference;
 use super::*;
+use crate::geometry::Point3;
+use crate::skeleton::{Node, Skeleton};
 
 fn key(i: u32) -> Key {
     let mut maker = KeyMaker::new("test");
@@ -12,7 +15,7 @@ fn key(i: u32) -> Key {
 }
 
 fn manifest(rho: f64) -> Manifest {
-    Manifest::new(key(77), serde_json::json!({ "mesh": { "rho": rho }, "refine": null }))
+    Manifest::new(&Skeleton::default(), serde_json::json!({ "mesh": { "rho": rho }, "refine": null }))
 }
 
 fn record(i: u32) -> Vec<u8> {
@@ -99,7 +102,9 @@ fn another_network_option_or_version_is_refused_or_starts_over() {
     let StoreError::Other { difference, .. } = &refused else { panic!("{refused}") };
     let (name, was, is) = ("mesh.rho".to_owned(), "3.0".to_owned(), "4.0".to_owned());
     assert_eq!(*difference, Difference::Option { name, was, is });
-    let network = Manifest::new(key(78), serde_json::json!({ "mesh": { "rho": 3.0 }, "refine": null }));
+    let node = Node { position: Point3::origin(), radius: 1.0, original: 0 };
+    let other = Skeleton { nodes: vec![node], edges: Vec::new() };
+    let network = Manifest::new(&other, serde_json::json!({ "mesh": { "rho": 3.0 }, "refine": null }));
     let refused = Store::in_folder(folder.path(), &network, false).expect_err("another network");
     assert!(matches!(refused, StoreError::Other { difference: Difference::Network, .. }));
     assert_holds(&open(folder.path()), 3);

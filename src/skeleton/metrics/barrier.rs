@@ -23,7 +23,6 @@ const GAUSS: [(f64, f64); 6] = [
 /// The potential of a pair and its derivatives by the ends of the first and of the second edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairGradient {
-    /// The potential.
     pub potential: f64,
     /// Its derivatives by a, b of the first tube, then of the second.
     pub by_end: [Vec3; 4],
@@ -69,11 +68,6 @@ pub(crate) fn paper_unit(skeleton: &Skeleton) -> f64 {
 }
 
 impl Barrier {
-    /// A barrier of the given support for a skeleton.
-    pub fn new(skeleton: &Skeleton, support: f64) -> Self {
-        Self { support, unit: paper_unit(skeleton) }
-    }
-
     /// The kernel and its derivative by the distance.
     fn kernel(&self, d: f64, h: f64) -> (f64, f64) {
         let (b, slope) = spline(2.0 * d / h);

@@ -2,8 +2,8 @@
 
 mod barrier;
 
+pub use barrier::Barrier;
 pub(crate) use barrier::paper_unit;
-pub use barrier::{Barrier, PairGradient};
 
 use super::course::Course;
 use super::cuttability::{BranchEnd, CUT_DISTANCE, CutRules, Cuttability, separation};
@@ -60,7 +60,7 @@ pub struct Metrics {
 
 impl Skeleton {
     /// Measures the skeleton.
-    pub fn metrics(&self, adjacency: &Adjacency, branches: &Branches) -> Metrics {
+    pub(crate) fn metrics(&self, adjacency: &Adjacency, branches: &Branches) -> Metrics {
         let mut m = Metrics { barrier: Barrier::default().potential(self), ..Metrics::default() };
         self.measure_edges(adjacency, &mut m);
         self.measure_angles(adjacency, &mut m);
@@ -124,7 +124,7 @@ impl Skeleton {
     }
 
     /// Angle between two edges that leave `node`, in radians.
-    pub fn angle(&self, node: NodeId, edges: [EdgeId; 2]) -> f64 {
+    pub(crate) fn angle(&self, node: NodeId, edges: [EdgeId; 2]) -> f64 {
         let [u, v] = edges.map(|e| self.node(self.edge(e).other(node)).position - self.node(node).position);
         u.cross(&v).norm().atan2(u.dot(&v))
     }

@@ -20,7 +20,6 @@ use crate::geometry::Point3;
 use crate::geometry::predicates::in_exact_range;
 use order::brio;
 pub(super) use order::hash;
-pub use perturb::in_sphere_perturbed;
 use sequence::insert_all;
 
 /// The Delaunay tetrahedralization of points, with ghosts around their convex hull. Vertices are numbered as the
@@ -55,5 +54,7 @@ fn validate(points: &[Point3]) -> Result<(), TetError> {
     }
 }
 
+#[cfg(test)]
+mod properties;
 #[cfg(test)]
 mod tests;

@@ -1,15 +1,14 @@
 //! The in-sphere test without ties.
 
 use crate::geometry::Point3;
-use crate::geometry::predicates::{insphere, insphere_exact, orient3d};
+use crate::geometry::predicates::{insphere_exact, orient3d};
 use std::cmp::Ordering;
 
-/// Whether `e` lies inside the sphere through the positive tetrahedron `p`. When all five lie on one sphere, the lift
-/// of each is raised by an infinitesimal, larger by orders of magnitude the later the point comes in lexicographic
-/// order; points must be distinct. Exact.
+/// As [`in_sphere_close`], for any points.
 #[inline]
+#[cfg(test)]
 pub fn in_sphere_perturbed(p: [&Point3; 4], e: &Point3) -> bool {
-    let s = insphere(p[0], p[1], p[2], p[3], e);
+    let s = crate::geometry::predicates::insphere(p[0], p[1], p[2], p[3], e);
     if s == 0.0 { tie(p, e) } else { s > 0.0 }
 }
 
@@ -37,7 +36,10 @@ fn tie(p: [&Point3; 4], e: &Point3) -> bool {
     false
 }
 
-/// As [`in_sphere_perturbed`], for points whose determinant no filter tells from zero.
+/// Whether `e` lies inside the sphere through the positive tetrahedron `p`. When all five lie on one sphere, the lift
+/// of each is raised by an infinitesimal, larger by orders of magnitude the later the point comes in lexicographic
+/// order; points must be distinct. Exact; for
+/// points whose determinant no filter tells from zero.
 pub(super) fn in_sphere_close(p: [&Point3; 4], e: &Point3) -> bool {
     let s = insphere_exact(p[0], p[1], p[2], p[3], e);
     if s == 0.0 { tie(p, e) } else { s > 0.0 }

@@ -1,3 +1,4 @@
+use super::perturb::in_sphere_perturbed;
 use super::*;
 use crate::geometry::predicates::{insphere, orient3d};
 use proptest::prelude::*;

@@ -13,7 +13,6 @@ const BAND: f64 = 1.4;
 /// Points of different lattices are at least so far apart, in cubes of the coarser one; those of one are 0.87 apart.
 const APART: f64 = 0.62;
 
-/// Most bands.
 const MOST_BANDS: usize = 12;
 
 /// Points of body-centred cubic lattices inside the closed `surface`, with cubes of side `cell` and at least `clearance`

@@ -130,7 +130,7 @@ mod tests {
                     t.swap(0, 1);
                 }
             }
-            let c = crate::tet::Complex::from_mesh(points, &tets).unwrap();
+            let c = crate::tet::complex::Complex::from_mesh(points, &tets).unwrap();
             let mut improver = Improver::new(c, &OptimizeOptions { fixed_points: 5, ..OptimizeOptions::full() });
             assert_eq!((flat(&improver), improver.dissolve_flat(), flat(&improver)), (1, 0, 0));
             improver.c.sanity_check().unwrap();

@@ -1,8 +1,10 @@
 //! The state of an improvement and its plan: which passes, in which order.
 
 use super::allowance::Allowance;
+use super::options::{Effort, OptimizeOptions, OptimizeReport};
+use super::reconnect::Reconnection;
 use super::star_energy::StarEnergy;
-use super::{Effort, OptimizeOptions, OptimizeReport, strain};
+use super::strain::{EASED, strain};
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::{Complex, NONE};
 use crate::tet::flips::Flipper;
@@ -10,9 +12,6 @@ use crate::tet::star::{EdgeRing, Star};
 
 /// Stands for a radius ratio that is out of date.
 pub(super) const STALE: f64 = f64::NAN;
-
-/// Fall of the strain from which a change is worth making.
-pub(super) const EASED: f64 = 0.02;
 
 /// Buffers of the cavity operations.
 #[derive(Clone, Debug, Default)]
@@ -52,7 +51,7 @@ pub struct Improver {
     pub(super) star: Star,
     pub(super) energy: StarEnergy,
     pub(super) cavity: Cavity,
-    pub(super) reconnection: super::reconnect::Reconnection,
+    pub(super) reconnection: Reconnection,
     /// Counts attempts made in vain.
     pub(super) epoch: u32,
     /// The epoch in which something around a vertex changed last.
@@ -79,7 +78,7 @@ impl Improver {
             star: Star::default(),
             energy: StarEnergy::default(),
             cavity: Cavity::default(),
-            reconnection: super::reconnect::Reconnection::default(),
+            reconnection: Reconnection::default(),
             epoch: 0,
             changed: Vec::new(),
             tried: Vec::new(),

@@ -12,6 +12,7 @@ mod flipping;
 mod improver;
 mod options;
 mod reconnect;
+mod reconnecting;
 mod smoothing;
 mod star_energy;
 mod strain;
@@ -19,8 +20,7 @@ mod thorough;
 
 pub use improver::Improver;
 pub use options::{Effort, OptimizeOptions, OptimizeReport};
-use strain::ratio_of_strain;
-pub(super) use strain::{score, strain};
+pub(super) use strain::score;
 
 use super::complex::{Complex, ComplexError};
 use crate::mesh::TetMesh;

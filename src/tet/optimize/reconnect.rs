@@ -7,8 +7,7 @@
 //! not test for intersections; volume and enclosed vertices merely prune it.
 
 use super::allowance::Allowance;
-use super::improver::EASED;
-use super::{Improver, ratio_of_strain, strain};
+use super::strain::{EASED, ratio_of_strain, strain};
 use crate::geometry::predicates::orient3d;
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::Complex;
@@ -71,17 +70,19 @@ impl FrontFace {
 
 /// Where the search takes place.
 #[derive(Clone, Copy)]
-struct Room<'a> {
-    c: &'a Complex,
-    allowance: &'a Allowance,
+pub(super) struct Room<'a> {
+    pub c: &'a Complex,
+    pub allowance: &'a Allowance,
 }
 
 /// The search; keeps its buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Reconnection {
-    tets: Vec<u32>,
+    /// The tetrahedra of the cavity.
+    pub tets: Vec<u32>,
     halves: Vec<u32>,
-    vertices: Vec<u32>,
+    /// The vertices of the cavity.
+    pub vertices: Vec<u32>,
     table: Vec<Entry>,
     /// Faces of three local vertices, of either orientation.
     faces: Vec<FrontFace>,
@@ -90,8 +91,10 @@ pub(super) struct Reconnection {
     place: Vec<u8>,
     stack: Vec<[u8; 4]>,
     best: Vec<[u8; 4]>,
-    new: Vec<[u32; 4]>,
-    created: Vec<u32>,
+    /// The tetrahedra that were found to take its place.
+    pub new: Vec<[u32; 4]>,
+    /// Room for what they become.
+    pub created: Vec<u32>,
     /// Prints of the cavities that were searched.
     searched: FxHashSet<u64>,
     /// Radius ratio, as a part of what is allowed, that each new tetrahedron must exceed.
@@ -110,46 +113,32 @@ pub(super) struct Reconnection {
     loose: u16,
 }
 
-impl Improver {
-    /// Reconnects a cavity of up to `size` tetrahedra around `t`; false when nothing better was found within `nodes`
-    /// steps of the search.
-    pub(super) fn reconnect(&mut self, t: u32, size: usize, nodes: usize) -> bool {
-        let mut r = std::mem::take(&mut self.reconnection);
-        let done = self.reconnect_with(&mut r, t, size, nodes);
-        self.reconnection = r;
-        done
-    }
-
-    fn reconnect_with(&mut self, r: &mut Reconnection, t: u32, size: usize, nodes: usize) -> bool {
-        r.choose_cavity(&self.c, t, size);
-        if r.tets.len() < 3 || !r.outline(&self.c) || r.is_known(&self.c, nodes) {
-            return false;
-        }
-        r.limit = self.strain_of(&r.tets) - EASED;
-        r.enough = r.limit * GOOD;
-        // A tetrahedron with more strain than all of the old ones is of no use.
-        r.floor = ratio_of_strain(r.limit) * 0.99;
-        r.nodes = nodes;
-        r.least = self.report.worst_before;
-        r.search(Room { c: &self.c, allowance: &self.allowance });
-        if r.best.is_empty() {
-            return false;
-        }
-        r.new.clear();
-        let vertices = &r.vertices;
-        r.new.extend(r.best.iter().map(|t| t.map(|v| vertices[v as usize])));
-        let fixed = |v: &u32| self.options.keep_points || !self.movable[*v as usize];
-        let all = r.vertices.iter().filter(|v| fixed(v)).all(|v| r.new.iter().any(|t| t.contains(v)));
-        let positive = r.new.iter().all(|v| self.score(v).is_some());
-        if !all || !positive || !self.eases(&r.tets, &r.new) || !self.c.replace(&r.tets, &r.new, &mut r.created) {
-            return false;
-        }
-        self.remeasure(&r.created);
-        true
-    }
-}
-
 impl Reconnection {
+    /// Looks for better tetrahedra in a cavity of up to `size` around `t`; false when none are found within `nodes` steps
+    /// of the search. None of them is below the radius ratio `least`.
+    pub(super) fn find(
+        &mut self,
+        room: Room,
+        [t, size, nodes]: [usize; 3],
+        least: f64,
+        strain_of: impl Fn(&[u32]) -> f64,
+    ) -> bool {
+        self.choose_cavity(room.c, t as u32, size);
+        if self.tets.len() < 3 || !self.outline(room.c) || self.is_known(room.c, nodes) {
+            return false;
+        }
+        self.limit = strain_of(&self.tets) - EASED;
+        self.enough = self.limit * GOOD;
+        // A tetrahedron with more strain than all of the old ones is of no use.
+        self.floor = ratio_of_strain(self.limit) * 0.99;
+        self.nodes = nodes;
+        self.least = least;
+        self.search(room);
+        self.new.clear();
+        self.new.extend(self.best.iter().map(|t| t.map(|v| self.vertices[v as usize])));
+        !self.new.is_empty()
+    }
+
     /// Grows a cavity around `t`, always by the tetrahedron that shares most vertices with it, so that few vertices
     /// have many tetrahedra. Frozen faces are not crossed.
     fn choose_cavity(&mut self, c: &Complex, t: u32, size: usize) {

@@ -9,6 +9,9 @@ const STRAINED: f64 = 0.5;
 /// How much the worst weigh more than their number.
 const STEEPER: f64 = 0.5;
 
+/// Fall of the strain from which a change is worth making.
+pub(super) const EASED: f64 = 0.02;
+
 /// Radius ratio of a tetrahedron of real vertices, if it is positive by the exact predicate.
 #[inline]
 pub(in crate::tet) fn score(c: &Complex, v: &[u32; 4]) -> Option<f64> {

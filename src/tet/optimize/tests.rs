@@ -1,3 +1,4 @@
+use super::strain::{ratio_of_strain, strain};
 use super::*;
 use crate::mesh::adjacency::{boundary_faces, vertices_of};
 use crate::mesh::quality::TetQuality;

@@ -11,7 +11,6 @@ const ROUNDS: usize = 8;
 const CAVITIES: [(usize, usize); 2] = [(8, 150), (20, 400)];
 /// Radius ratio below which a tetrahedron is spared by making those on needles worse.
 const VERY_BAD: f64 = 0.2;
-/// Rounds of that.
 const LAST_ROUNDS: usize = 3;
 /// What moving must gain to count.
 const GAIN: f64 = 1.1;

@@ -12,6 +12,7 @@ pub(super) mod exact;
 mod flat;
 mod march;
 mod rule;
+mod steiner;
 
 use super::complex::Complex;
 use super::error::{Obstacle, TetError};

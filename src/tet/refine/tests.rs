@@ -129,7 +129,8 @@ mod insertion {
     #[test]
     fn shape_is_bounded_where_the_boundary_allows_and_frozen_faces_stay() {
         let s = sphere_surface(3);
-        let options = crate::tet::TetOptions::default().interior(crate::tet::Interior::None).optimize(false);
+        let options =
+            crate::tet::TetOptions { optimize: false, ..Default::default() }.interior(crate::tet::Interior::None);
         let mesh = crate::tet::tetrahedralize(&s, &options).unwrap();
         let mut c = Complex::from_mesh(mesh.points, &mesh.tets).unwrap();
         let before = TetQuality::of(&c.clone().into_mesh());

@@ -114,6 +114,7 @@ impl SizeTree {
     }
 
     /// Whether all cubes have one size.
+    #[cfg(test)]
     pub fn is_uniform(&self) -> bool {
         self.splits == 0
     }

@@ -9,7 +9,6 @@ pub enum SwcError {
     /// A row has too few columns.
     #[error("line {line} has {found} columns; a row of an SWC file has seven: id, type, x, y, z, radius, parent")]
     TooFewColumns {
-        /// The line.
         line: usize,
         /// How many columns it has.
         found: usize,
@@ -17,9 +16,7 @@ pub enum SwcError {
     /// A column holds no number.
     #[error("line {line}: the {column} is '{text}', not a number; columns are id, type, x, y, z, radius, parent")]
     NotANumber {
-        /// The line.
         line: usize,
-        /// The column.
         column: &'static str,
         /// What is there.
         text: String,
@@ -29,11 +26,9 @@ pub enum SwcError {
         "line {line}: node {id} has the {column} {value}; coordinates must be finite and below {LARGEST:e}: correct it"
     )]
     BadCoordinate {
-        /// The line.
         line: usize,
         /// The node's id.
         id: i64,
-        /// The column.
         column: &'static str,
         /// What is there.
         value: f64,
@@ -43,7 +38,6 @@ pub enum SwcError {
         "line {line}: node {id} has the radius {radius}; radii must be finite and above zero: give it the radius of its vessel"
     )]
     BadRadius {
-        /// The line.
         line: usize,
         /// The node's id.
         id: i64,
@@ -53,9 +47,7 @@ pub enum SwcError {
     /// Two rows have one id.
     #[error("line {line}: node {id} was given in line {first} already; ids must differ")]
     RepeatedId {
-        /// The line.
         line: usize,
-        /// The id.
         id: i64,
         /// The line that had it first.
         first: usize,
@@ -63,7 +55,6 @@ pub enum SwcError {
     /// A node is its own parent.
     #[error("line {line}: node {id} is its own parent; a root has the parent -1")]
     SelfParent {
-        /// The line.
         line: usize,
         /// The node's id.
         id: i64,
@@ -71,11 +62,9 @@ pub enum SwcError {
     /// A node's parent does not exist.
     #[error("line {line}: node {id} has the parent {parent}, which is in no row; a root has the parent -1")]
     UnknownParent {
-        /// The line.
         line: usize,
         /// The node's id.
         id: i64,
-        /// Its parent.
         parent: i64,
     },
     /// There are only comments.

@@ -12,7 +12,6 @@ struct Row {
     parent: i64,
 }
 
-/// Reads a file.
 pub(in crate::io::network) fn read(bytes: &[u8]) -> Result<NetworkFile, SwcError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     // Files from old Macs end their lines by a carriage return alone.

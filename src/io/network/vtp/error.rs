@@ -11,10 +11,7 @@ pub enum VtpError {
     File(#[from] VtkError),
     /// An element that every VTP file has is missing.
     #[error("there is no <{element}> in the file")]
-    MissingElement {
-        /// The element.
-        element: &'static str,
-    },
+    MissingElement { element: &'static str },
     /// The points are no triples.
     #[error("the points have {components} coordinates; three are needed")]
     BadPoints {
@@ -24,7 +21,6 @@ pub enum VtpError {
     /// An array has not as many values as there are points or cells.
     #[error("array '{array}' has {found} values, but the file announces {expected}: was it written completely?")]
     WrongLength {
-        /// The array.
         array: String,
         /// How many values it should have.
         expected: usize,
@@ -33,19 +29,14 @@ pub enum VtpError {
     },
     /// Connectivity or offsets of the lines are no integers.
     #[error("array '{array}' of the lines holds no integers")]
-    NotIntegers {
-        /// The array.
-        array: &'static str,
-    },
+    NotIntegers { array: &'static str },
     /// The offsets of the lines do not ascend, or go beyond the connectivity.
     #[error(
         "line {line} (from 0) ends at offset {offset}, which is out of order or beyond the {length} indices there are: \
          correct the offsets"
     )]
     BadOffset {
-        /// The line.
         line: usize,
-        /// Its offset.
         offset: i64,
         /// Number of indices.
         length: usize,
@@ -55,7 +46,6 @@ pub enum VtpError {
         "line {line} (from 0) names point {point}, but there are only {points} points (from 0): correct the connectivity"
     )]
     UnknownPoint {
-        /// The line.
         line: usize,
         /// What it names.
         point: i64,

@@ -8,7 +8,6 @@ use crate::io::network::content::{NetworkFile, NetworkNote, NetworkOptions};
 use crate::io::vtk_xml::{ElementId, VtkXml};
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 
-/// Reads a file.
 pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtpError> {
     let document = VtkXml::parse(bytes, "PolyData")?;
     let poly = document.child(VtkXml::ROOT, "PolyData").ok_or(VtpError::MissingElement { element: "PolyData" })?;

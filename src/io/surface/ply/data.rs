@@ -91,7 +91,6 @@ impl<'a> Data<'a> {
         if value.is_finite() { Ok(value) } else { Err(SurfaceFault::NotFinite { point, byte }) }
     }
 
-    /// The count of a list.
     pub(super) fn list_count(&mut self, kind: Scalar) -> Result<i64, SurfaceFault> {
         let place = self.place();
         let count = self.integer(kind)?;

@@ -12,23 +12,16 @@ pub enum MeditFault {
     /// The file does not begin as every such file does.
     #[error("line {line}: '{found}' stands where MeshVersionFormatted has to be; is it a Medit text file?")]
     NotMedit {
-        /// The line.
         line: usize,
         /// What is there.
         found: String,
     },
     /// Points are not in space.
     #[error("line {line}: the mesh has the dimension {dimension}; it has to be 3")]
-    Dimension {
-        /// The line.
-        line: usize,
-        /// The dimension.
-        dimension: i64,
-    },
+    Dimension { line: usize, dimension: i64 },
     /// There are cells that are neither tetrahedra nor triangles.
     #[error("line {line}: there are {kind}; only tetrahedra and triangles are supported")]
     UnsupportedCells {
-        /// The line.
         line: usize,
         /// Their keyword.
         kind: String,
@@ -36,7 +29,6 @@ pub enum MeditFault {
     /// A list comes a second time.
     #[error("line {line}: a second list of {kind}; there may be one")]
     Repeated {
-        /// The line.
         line: usize,
         /// Its keyword.
         kind: &'static str,

@@ -10,4 +10,3 @@ mod write;
 pub use error::MeditFault;
 pub(super) use read::read;
 pub(super) use write::write;
-pub use write::write_medit;

@@ -1,40 +1,8 @@
 //! Writes Medit files.
 
-use super::error::MeditFault;
 use super::names::{TETRAHEDRA, TRIANGLES, VERTICES};
-use crate::io::file::{FileError, unsound, write_whole};
 use crate::mesh::source::MeshSource;
 use std::io::{self, Write};
-use std::path::Path;
-
-/// Writes a mesh to a file, which appears whole or not at all.
-///
-/// # Errors
-/// `BadMesh` when a cell names a point that does not exist, or `Write` with the reason.
-pub fn write_medit(path: &Path, mesh: &dyn MeshSource) -> Result<(), FileError<MeditFault>> {
-    if let Some(cell) = unsound_cell(mesh).map_err(FileError::write(path))? {
-        return Err(FileError::BadMesh { path: path.to_path_buf(), cell });
-    }
-    write_whole(path, |out| write(out, mesh)).map_err(FileError::write(path))
-}
-
-/// The first cell, in its list, that names a point that does not exist.
-fn unsound_cell(mesh: &dyn MeshSource) -> io::Result<Option<usize>> {
-    let points = mesh.counts().points;
-    let (mut found, mut before) = (None, 0);
-    mesh.each_tets(|piece| {
-        found = found.or_else(|| unsound(&piece.tets, points).map(|cell| before + cell));
-        before += piece.tets.len();
-        Ok(())
-    })?;
-    before = 0;
-    mesh.each_faces(|piece| {
-        found = found.or_else(|| unsound(&piece.faces, points).map(|cell| before + cell));
-        before += piece.faces.len();
-        Ok(())
-    })?;
-    Ok(found)
-}
 
 /// Writes a mesh to a stream: blocks and patches become references; points have the reference 0. Memory does not grow
 /// with the mesh, which is read in one pass.

@@ -21,16 +21,10 @@ pub enum MshFault {
     },
     /// Two nodes have the same tag.
     #[error("two nodes have the tag {tag}")]
-    RepeatedTag {
-        /// The tag.
-        tag: u64,
-    },
+    RepeatedTag { tag: u64 },
     /// A version of the format that is not read.
     #[error("version {version} of the format is not supported; Gmsh writes 4.1 with -format msh41")]
-    UnsupportedVersion {
-        /// The version.
-        version: String,
-    },
+    UnsupportedVersion { version: String },
     /// There are elements that are neither tetrahedra nor triangles.
     #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]
     UnsupportedCell {

@@ -206,7 +206,6 @@ fn by_region(mesh: &VolumeMesh) -> Vec<(i32, u32)> {
     tets
 }
 
-/// The faces of one patch.
 fn write_faces(out: &mut impl Write, mesh: &dyn MeshSource, patch: i32) -> io::Result<()> {
     let mut tag = mesh.counts().tets;
     mesh.each_faces(|piece| {

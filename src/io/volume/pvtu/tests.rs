@@ -2,8 +2,9 @@
 
 use super::error::PvtuFault;
 use super::write::{Pieces, write};
+use crate::io::volume::error::MeshFault;
 use crate::io::volume::fixtures::{Cut, labelled_tube};
-use crate::io::volume::{MeshFault, MeshFileError, MeshNotes, ensure_writable, read_mesh, write_mesh};
+use crate::io::volume::{MeshFileError, MeshNotes, ensure_writable, read_mesh, write_mesh};
 use crate::mesh::VolumeMesh;
 use std::fs;
 use std::io;

@@ -6,7 +6,7 @@ use crate::geometry::DisjointSets;
 use crate::geometry::predicates::{in_exact_range, orient3d};
 use crate::geometry::{Aabb, Point3};
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::{NONE, TetAdjacency, face_vertices, tet_adjacency};
+use crate::mesh::adjacency::{NONE, TetAdjacency, face_vertices};
 use crate::mesh::check::cells;
 use crate::mesh::check::labels;
 use crate::mesh::check::nested::{Enclosed, enclosed};
@@ -28,12 +28,7 @@ enum Owner {
 }
 
 /// Checks a part alone; see the [module](super) for what that says of the whole. Sequential: the thread that made a part
-/// certifies it.
-pub fn certify(part: &PartView) -> Certificate {
-    certify_with(part, || tet_adjacency(&part.mesh.tets, part.mesh.points.len()))
-}
-
-/// As [`certify`], for callers who have called [`tet_adjacency`] on the part's mesh already.
+/// certifies it. `adjacency` gives what [`tet_adjacency`](crate::mesh::adjacency::tet_adjacency) says of the part's mesh.
 pub fn certify_with(part: &PartView, adjacency: impl FnOnce() -> TetAdjacency) -> Certificate {
     let mesh = part.mesh;
     let mut certificate = Certificate {

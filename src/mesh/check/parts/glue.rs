@@ -14,7 +14,6 @@ use std::ops::Range;
 /// Certificates that are read at a time.
 const READ: usize = 4096;
 
-/// A part.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     bounds: Aabb,

@@ -53,8 +53,8 @@ mod whole;
 #[cfg(test)]
 mod tests;
 
-pub use certificate::{certify, certify_with};
-pub use pieces::{PiecesError, Unfit, check_pieces};
+pub use certificate::certify_with;
+pub use pieces::{PiecesError, check_pieces};
 pub use whole::check_parts;
 
 use super::nested::Enclosed;
@@ -79,7 +79,6 @@ pub struct PartView<'a> {
 /// A line that a part breaks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fault {
-    /// Which line.
     pub line: Line,
     /// Number of offenders.
     pub count: u64,
@@ -120,31 +119,6 @@ impl Certificate {
     pub fn worst_ratio(&self) -> f64 {
         self.quality.min()
     }
-
-    /// The lines that do not hold, in the part's own numbers.
-    pub fn faults(&self) -> &[Fault] {
-        &self.faults
-    }
-
-    /// Number of points.
-    pub fn points(&self) -> u32 {
-        self.points
-    }
-
-    /// Number of tetrahedra.
-    pub fn tets(&self) -> u32 {
-        self.tets
-    }
-
-    /// Number of boundary faces that are in no joint.
-    pub fn wall_faces(&self) -> u32 {
-        self.wall_faces
-    }
-
-    /// Volume of the tetrahedra.
-    pub fn volume(&self) -> f64 {
-        self.volume
-    }
 }
 
 /// A boundary surface of a part.
@@ -182,7 +156,6 @@ struct HeldCap {
 /// The boundary faces of the whole that one part has: wall, caps, and joints that are joined to nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WallPiece {
-    /// Points.
     pub points: Vec<Point3>,
     /// Their ids in the whole.
     pub vertices: Vec<u32>,
@@ -193,7 +166,6 @@ pub struct WallPiece {
 /// A joint as one of its parts has it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointFaces {
-    /// Points.
     pub points: Vec<Point3>,
     /// Their ids in the whole.
     pub vertices: Vec<u32>,

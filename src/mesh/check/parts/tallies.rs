@@ -48,7 +48,6 @@ impl Tallies {
         lines.iter().copied().find(|&line| self.fails(line))
     }
 
-    /// The result of a line.
     pub(super) fn take(&mut self, line: Line) -> LineResult {
         let Some((mut count, mut offenders)) = self.0.remove(&line) else { return Tally::new(line).done() };
         count -= tidy(&mut offenders);

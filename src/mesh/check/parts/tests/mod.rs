@@ -37,7 +37,8 @@ struct Cut {
 
 impl Piece {
     fn certificate(&self) -> Certificate {
-        certify(&PartView { mesh: &self.mesh, joints: &self.joints, caps: &self.caps })
+        let view = PartView { mesh: &self.mesh, joints: &self.joints, caps: &self.caps };
+        certify_with(&view, || tet_adjacency(&self.mesh.tets, self.mesh.points.len()))
     }
 
     /// Some of its faces, with points and ids of their own.

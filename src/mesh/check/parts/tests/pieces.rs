@@ -1,6 +1,7 @@
 //! Meshes that are read in pieces: joints are found, and what cannot be a part is refused.
 
 use super::*;
+use crate::mesh::check::parts::pieces::Unfit;
 use crate::mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece};
 use std::borrow::Cow;
 

@@ -2,13 +2,14 @@
 
 use std::collections::{HashMap, HashSet};
 
-use anastomesh::geometry::Point3;
-use anastomesh::mesh::adjacency::boundary_faces;
-use anastomesh::mesh::quality::TetQuality;
-use anastomesh::mesh::{TetMesh, TriMesh};
-use anastomesh::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
-use anastomesh::tet::optimize::{OptimizeOptions, optimize};
-use anastomesh::tet::{Complex, TetOptions, tetrahedralize};
+use crate::geometry::Point3;
+use crate::mesh::adjacency::boundary_faces;
+use crate::mesh::quality::TetQuality;
+use crate::mesh::{TetMesh, TriMesh};
+use crate::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
+use crate::tet::complex::Complex;
+use crate::tet::optimize::{OptimizeOptions, optimize};
+use crate::tet::{TetOptions, tetrahedralize};
 
 const SIDES: u32 = 14;
 const LAYERS: u32 = 8;

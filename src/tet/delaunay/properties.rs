@@ -1,10 +1,10 @@
 //! The Delaunay kernel against rational arithmetic, on points that are degenerate on purpose: on grids, spheres, lines
 //! and planes, given twice, and moved by single units in the last place.
 
-use anastomesh::geometry::Point3;
-use anastomesh::tet::TetError;
-use anastomesh::tet::complex::{Complex, GHOST};
-use anastomesh::tet::delaunay::delaunay;
+use super::delaunay;
+use crate::geometry::Point3;
+use crate::tet::complex::{Complex, GHOST};
+use crate::tet::error::TetError;
 use num_rational::BigRational;
 use proptest::prelude::*;
 use std::cmp::Ordering;

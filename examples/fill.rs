@@ -1,0 +1,65 @@
+//! A surface filled, and its tetrahedra used: the mean temperature of a body whose temperature grows linearly along x.
+//!
+//! ```sh
+//! cargo run --release --example fill
+//! ```
+
+use anastomesh::check::{TetQuality, check_tets};
+use anastomesh::tet::{Plc, Refinement, Sizing, Tetrahedralizer};
+use anastomesh::{Point3, TriMesh};
+use std::error::Error;
+
+/// A cube whose sides are `n` by `n` squares, each cut in two.
+fn cube(n: u32) -> TriMesh {
+    let mut soup = TriMesh::default();
+    for axis in 0..3 {
+        for side in [0, n] {
+            for (u, v) in (0..n).flat_map(|u| (0..n).map(move |v| (u, v))) {
+                let corner = |u: u32, v: u32| {
+                    let mut place = [0.0; 3];
+                    place[axis] = f64::from(side);
+                    place[(axis + 1) % 3] = f64::from(u);
+                    place[(axis + 2) % 3] = f64::from(v);
+                    Point3::from(place) / f64::from(n)
+                };
+                let first = soup.points.len() as u32;
+                soup.points.extend([corner(u, v), corner(u + 1, v), corner(u + 1, v + 1), corner(u, v + 1)]);
+                let turned = if side == 0 { [[0, 2, 1], [0, 3, 2]] } else { [[0, 1, 2], [0, 2, 3]] };
+                soup.triangles.extend(turned.map(|t| t.map(|corner| first + corner)));
+            }
+        }
+    }
+    // The squares' corners are there up to six times: one of each stays.
+    anastomesh::tet::repair(&soup).surface
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let surface = cube(4);
+    let made = Tetrahedralizer::new()
+        .refine(Some(Refinement::default().max_radius_edge(2.0)))
+        .sizing(Sizing::Constant(0.25))
+        .run(&Plc::from(&surface))?;
+    // The surface is there as it was: points with their numbers, triangles in their order.
+    assert_eq!(made.mesh.points[..surface.points.len()], surface.points);
+    assert_eq!(made.faces, surface.triangles);
+    assert!(check_tets(&made.mesh, None).failed().next().is_none());
+
+    let (mut volume, mut heat) = (0.0, 0.0);
+    for tet in &made.mesh.tets {
+        let [a, b, c, d] = tet.map(|v| made.mesh.points[v as usize]);
+        let share = (b - a).cross(&(c - a)).dot(&(d - a)) / 6.0;
+        let temperature = 20.0 + 10.0 * (a.x + b.x + c.x + d.x) / 4.0;
+        volume += share;
+        heat += share * temperature;
+    }
+    let quality = TetQuality::of(&made.mesh);
+    println!("{} tetrahedra, mean radius ratio {:.3}", made.mesh.tets.len(), quality.mean);
+    println!("mean temperature {:.3}", heat / volume);
+    assert!((volume - 1.0).abs() < 1e-12 && (heat / volume - 25.0).abs() < 1e-9);
+    Ok(())
+}
+
+#[test]
+fn it_runs() {
+    main().unwrap();
+}
