@@ -33,7 +33,7 @@ fn assert_quality(check: &CheckReport) {
 }
 
 fn assert_clear(Meshed { report, check, .. }: &Meshed) {
-    assert!(check.is_valid(), "{}", check);
+    assert!(check.is_valid(), "{check}");
     assert_eq!(report.failed, []);
     assert_eq!(report.unconnected, [[[0; 2]; 2]; 0], "no vessels meet in this network");
     assert_few_retries(report);
@@ -93,7 +93,7 @@ fn subtree_989_is_sound_but_for_its_overlaps() {
     assert_eq!(report.failed, []);
     assert!(report.blocks.clusters >= 380, "{} clusters", report.blocks.clusters);
     let failing: Vec<Line> = check.failed().map(|line| line.line).collect();
-    assert_eq!(failing, [Line::NoSelfIntersection, Line::Loops, Line::CapPerTerminal], "{}", check);
+    assert_eq!(failing, [Line::NoSelfIntersection, Line::Loops, Line::CapPerTerminal], "{check}");
     let unchecked: Vec<Line> =
         check.lines.iter().filter(|l| matches!(l.outcome, Outcome::NotChecked(_))).map(|l| l.line).collect();
     assert_eq!(unchecked, [Line::NoDuplicatePoints], "points of walls that meet are looked for where they meet");

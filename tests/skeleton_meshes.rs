@@ -25,7 +25,7 @@ fn assert_valid_or_explained(Meshed { report, check, .. }: &Meshed) {
         Line::LabelsMatchBoundary,
     ];
     assert_eq!(report.failed, []);
-    assert!(check.is_valid() || !report.overlaps.is_empty() || !report.unconnected.is_empty(), "{}", check);
+    assert!(check.is_valid() || !report.overlaps.is_empty() || !report.unconnected.is_empty(), "{check}");
     for line in SOUND {
         assert_eq!(check.line(line).map(|l| l.outcome), Some(Outcome::Pass), "{}", line.statement());
     }

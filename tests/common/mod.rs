@@ -46,7 +46,7 @@ pub fn mesh(network: &Skeleton, rho: f64) -> Meshed {
 pub fn mesh_by(network: &Skeleton, plan: &MeshPlan) -> Meshed {
     match mesh_network(network, plan, &()) {
         Ok(meshed) => meshed,
-        Err(RunError::BlocksFailed(report)) => panic!("blocks failed\n{}", report),
+        Err(RunError::BlocksFailed(report)) => panic!("blocks failed\n{report}"),
         Err(error) => panic!("{error}"),
     }
 }
