@@ -13,6 +13,7 @@ pub mod io;
 pub mod mesh;
 pub mod partition;
 pub mod pipeline;
+pub mod prepare;
 pub mod refine;
 pub mod report;
 pub mod skeleton;

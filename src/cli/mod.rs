@@ -8,6 +8,7 @@ mod generate;
 mod info;
 mod mesh;
 mod network;
+mod prepare;
 mod progress;
 mod refine;
 mod room;
@@ -32,6 +33,8 @@ struct Args {
 enum Verb {
     /// Mesh a network: skeleton in, labelled tetrahedral mesh out
     Mesh(mesh::Args),
+    /// Make a measured network one graph: doubled lines merged, spurs off, radii filled, points as needed
+    Prepare(prepare::Args),
     /// Move the nodes of a network until its vessels do not overlap and can be cut
     Refine(refine::Args),
     /// Grow a second tree that shares the terminals of the first, as veins do with arteries
@@ -59,6 +62,7 @@ pub fn main() -> ExitCode {
     };
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
+        Verb::Prepare(args) => prepare::run(args),
         Verb::Refine(args) => refine::run(args),
         Verb::Dual(args) => dual::run(args),
         Verb::Generate(args) => generate::run(args),

@@ -4,5 +4,6 @@ pub mod check;
 pub mod info;
 pub mod mesh;
 pub mod plot;
+pub mod prepare;
 pub mod refine;
 pub mod tetrahedralize;
