@@ -38,9 +38,11 @@ pub struct JoinedReport {
 
 /// Joins branch points within one lumen and closes loops within their own.
 pub(super) fn join(skeleton: &Skeleton) -> Result<(Skeleton, JoinedReport), SkeletonError> {
-    let (joined, nodes) = join_nodes(skeleton)?;
-    let (closed, loops) = close_loops(&joined)?;
-    Ok((closed, JoinedReport { nodes, loops }))
+    let (closed, mut loops) = close_loops(skeleton)?;
+    let (joined, nodes) = join_nodes(&closed)?;
+    let (result, more) = close_loops(&joined)?;
+    loops.extend(more);
+    Ok((result, JoinedReport { nodes, loops }))
 }
 
 /// Contracts branches between branch points that are no longer than the lumen at either end is wide, the shortest first.
@@ -60,7 +62,7 @@ fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), Skele
     let mut is_target = vec![false; skeleton.nodes.len()];
     let mut report = Vec::new();
     let mut gone = vec![false; skeleton.edges.len()];
-    for (distance, index) in short {
+    for &(distance, index) in &short {
         let branch = &branches.list[index];
         let [a, b] = branch.ends();
         // The wider stays where it is.
@@ -81,6 +83,14 @@ fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), Skele
     }
     if report.is_empty() {
         return Ok((skeleton.clone(), report));
+    }
+    // Another short branch between the two has become a loop within the lumen; folded up it would be a spur.
+    for (_, index) in short {
+        let branch = &branches.list[index];
+        let [a, b] = branch.ends().map(|n| into[n.index()]);
+        if a == b {
+            branch.edges.iter().for_each(|e| gone[e.index()] = true);
+        }
     }
     let renamed = |e: &Edge| Edge { nodes: e.nodes.map(|n| into[n.index()]), radii: e.radii };
     let edges = skeleton.edge_ids().filter(|e| !gone[e.index()]).map(|e| renamed(skeleton.edge(e))).collect();

@@ -13,8 +13,6 @@ mod radii;
 mod report;
 mod resample;
 mod spurs;
-#[cfg(test)]
-mod tests;
 
 pub use directed::directed;
 pub use islands::Island;

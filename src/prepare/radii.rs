@@ -52,7 +52,7 @@ pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), Skel
             *slot = Some(slot.unwrap_or(0.0_f64).max(node.radius));
         }
     }
-    let filled = places.filled(radii);
+    let filled = places.filled(&radii);
     let Some(filled) = filled else {
         // Nothing to fill from: the caller's own check names the node, or there is none.
         return Ok((network, Vec::new()));
@@ -144,11 +144,11 @@ impl Places {
     }
 
     /// A radius for each place; none when there is no good one.
-    fn filled(&self, known: Vec<Option<f64>>) -> Option<Vec<f64>> {
+    fn filled(&self, known: &[Option<f64>]) -> Option<Vec<f64>> {
         let mut all: Vec<f64> = known.iter().flatten().copied().collect();
         all.sort_unstable_by(f64::total_cmp);
         let median = *all.get(all.len() / 2)?;
-        let mut radii: Vec<Option<f64>> = self.nearest(&known);
+        let mut radii: Vec<Option<f64>> = self.nearest(known);
         let missing: Vec<usize> = (0..self.count).filter(|&i| known[i].is_none()).collect();
         for &place in &missing {
             radii[place].get_or_insert(median);

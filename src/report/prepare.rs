@@ -4,6 +4,9 @@ use std::fmt::Write as _;
 
 use crate::prepare::{Fault, PrepareReport, Size, SpurReason};
 
+/// A line of the table of sizes.
+type Row = (&'static str, fn(&Size) -> usize);
+
 /// Cases of one cure that are spelt out for people.
 const LISTED: usize = 20;
 
@@ -55,6 +58,8 @@ pub fn text(report: &PrepareReport) -> String {
 }
 
 fn merged(report: &PrepareReport, out: &mut String) {
+    let met = report.merge.met.iter().map(|[a, b]| format!("{a} and {b}"));
+    list(out, "pairs of tips at one place but for rounding made one (--keep-doubles)", met);
     let stretches = report.merge.merged.iter().map(|m| {
         let partings: String =
             m.partings.iter().map(|p| format!("; parts at {}, leaves the tube at {}", p.branches, p.leaves)).collect();
@@ -86,7 +91,7 @@ fn list(out: &mut String, what: &str, cases: impl ExactSizeIterator<Item = Strin
 
 fn sizes(report: &PrepareReport, out: &mut String) {
     let _ = writeln!(out, "{:16}{:>10}{:>10}{:>10}", "", "given", "read", "result");
-    let rows: [(&str, fn(&Size) -> usize); 6] = [
+    let rows: [Row; 6] = [
         ("nodes", |s| s.nodes),
         ("edges", |s| s.edges),
         ("tips", |s| s.tips),

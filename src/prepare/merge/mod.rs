@@ -7,13 +7,14 @@
 //! lines that run together the longest stays; the others begin where they part from it.
 
 mod line;
+mod meet;
 mod runs;
 
 use crate::geometry::Point3;
 use crate::skeleton::{Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
 use line::{Line, lines_of};
 use rayon::prelude::*;
-use runs::{Foot, Kept, Run, runs};
+use runs::{Course, Foot, Kept, Run, runs};
 use serde::Serialize;
 
 /// A node within this share of a radius from the end of an edge is put there.
@@ -48,6 +49,8 @@ pub struct Merged {
 pub struct MergeReport {
     /// Lines there were: branches, broken where they turn back.
     pub lines: usize,
+    /// Tips that lay at one place but for rounding and were made one.
+    pub met: Vec<[u32; 2]>,
     /// Stretches that were taken away.
     pub merged: Vec<Merged>,
     /// Whether so many lines lay upon each other that the rest was left as it was.
@@ -56,21 +59,31 @@ pub struct MergeReport {
 
 /// Merges lines that run together. The result satisfies `Skeleton::check`.
 pub(super) fn merge(skeleton: &Skeleton) -> Result<(Skeleton, MergeReport), SkeletonError> {
+    let (skeleton, met) = meet::join(skeleton)?;
+    let skeleton = &skeleton;
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
     let parts: Vec<Vec<Line>> = branches.list.par_iter().map(|b| lines_of(skeleton, b)).collect();
     let mut lines: Vec<Line> = parts.into_iter().flatten().collect();
     // A stable sort: the earlier of equals comes first.
     lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
-    let mut report = MergeReport { lines: lines.len(), ..MergeReport::default() };
+    let mut report = MergeReport { lines: lines.len(), met, ..MergeReport::default() };
     let mut kept = Kept::new(skeleton);
     let mut changes = Changes::new(skeleton);
     for line in &lines {
         let feet = kept.feet(line);
+        let along = kept.along(line);
         let points: Vec<Point3> = line.nodes.iter().map(|&n| skeleton.node(n).position).collect();
         let open = [0, line.last()].map(|i| adjacency.valence(line.nodes[i]) == 1);
-        let found: Vec<Run> = runs(line, &feet, open, &points);
-        found.iter().for_each(|run| changes.apply(line, &feet, open, run));
+        let found: Vec<Run> = runs(&Course { line, feet: &feet, along: &along, points: &points }, open);
+        for run in &found {
+            changes.apply(line, &feet, open, run);
+            for at in [run.first, run.last] {
+                if let Some(foot) = &feet[at] {
+                    kept.attach(line.nodes[at], foot);
+                }
+            }
+        }
         report.merged.extend(found.iter().map(|run| told(skeleton, line, &feet, run)));
         kept.keep(line, &found);
     }
@@ -106,8 +119,13 @@ struct Changes<'a> {
     feet: Vec<(EdgeId, f64, NodeId)>,
 }
 
-/// Nodes that became others, at most, from one to the next.
-const CHAIN: usize = 64;
+/// What a node became in the end. A node becomes another one only when that one is nothing else, so the ways end.
+fn last(onto: &[NodeId], mut node: NodeId) -> NodeId {
+    while onto[node.index()] != node {
+        node = onto[node.index()];
+    }
+    node
+}
 
 impl<'a> Changes<'a> {
     fn new(skeleton: &'a Skeleton) -> Self {
@@ -141,7 +159,8 @@ impl<'a> Changes<'a> {
                 // A node at the end of an edge becomes that end.
                 let off = [t * tube.length() / tube.ra, (1.0 - t) * tube.length() / tube.rb];
                 if let Some(end) = off.iter().position(|&off| off < NEAR) {
-                    onto[node.index()] = self.skeleton.edge(id).nodes[end];
+                    let [of, end] = [node, self.skeleton.edge(id).nodes[end]].map(|n| last(&onto, n));
+                    onto[of.index()] = end;
                     continue;
                 }
                 let radius = tube.radius(t);
@@ -151,9 +170,8 @@ impl<'a> Changes<'a> {
             }
             edges.push(edge);
         }
-        let last = |n: NodeId| (0..CHAIN).fold(n, |n, _| onto[n.index()]);
         for edge in &mut edges {
-            edge.nodes = edge.nodes.map(last);
+            edge.nodes = edge.nodes.map(|n| last(&onto, n));
         }
         Skeleton { nodes, edges }
     }
