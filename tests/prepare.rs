@@ -40,7 +40,7 @@ fn done(s: &Skeleton, params: &PrepareParams) -> Prepared {
 /// A line that leaves the x axis at 20 along a parabola.
 fn parted(step: f64, bend: f64) -> Vec<[f64; 3]> {
     let x = |i: i32| f64::from(i) * step;
-    (0..).map(x).take_while(|&x| x <= 40.0).map(|x| [x, bend * (x - 20.0).max(0.0).powi(2), 0.0]).collect()
+    (0..1000).map(x).take_while(|&x| x <= 40.0).map(|x| [x, bend * (x - 20.0).max(0.0).powi(2), 0.0]).collect()
 }
 
 #[test]
@@ -196,8 +196,7 @@ fn furthest(from: &Skeleton, of: &Skeleton) -> f64 {
 }
 
 fn read(path: &Path) -> Skeleton {
-    let mut options = NetworkOptions::default();
-    options.any_radii = true;
+    let options = NetworkOptions { any_radii: true, ..NetworkOptions::default() };
     read_network(path, &options).unwrap_or_else(|e| panic!("{e}")).skeleton
 }
 
