@@ -21,6 +21,7 @@ pub mod io;
 mod mesh;
 mod partition;
 mod pipeline;
+mod prepare;
 mod refine;
 mod report;
 mod skeleton;
@@ -39,6 +40,7 @@ pub mod network {
         Estimate, JointStyle, Manifest, MeshPlan, Meshed, Observer, RunError, RunReport, Stage, Store, Stored,
         TooLarge, mesh_into, mesh_network,
     };
+    pub use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare};
     pub use crate::refine::{
         Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };
@@ -58,11 +60,14 @@ pub mod check {
 pub mod testing {
     pub use crate::block::{BlockParams, ClusterMesh, EndStyle, mesh_cluster};
     pub use crate::geometry::predicates::{insphere, orient3d};
-    pub use crate::geometry::{Improper, Section, Tube, point_tube, self_contacts, self_intersections};
+    pub use crate::geometry::{
+        Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,
+    };
     pub use crate::mesh::facets::triangulate;
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
+    pub use crate::prepare::{Fault, SpurReason};
     pub use crate::refine::split;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
     pub use crate::tet::delaunay::delaunay;

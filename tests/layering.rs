@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Rooms by floor; a room may import from rooms with a smaller number, and from itself.
-const FLOORS: [(&str, u32); 15] = [
+const FLOORS: [(&str, u32); 16] = [
     ("main", 8),
     ("cli", 7),
     ("report", 6),
@@ -15,6 +15,7 @@ const FLOORS: [(&str, u32); 15] = [
     ("stitch", 3),
     ("io", 3),
     ("refine", 3),
+    ("prepare", 3),
     ("grow", 3),
     ("partition", 3),
     ("mesh", 2),

@@ -10,6 +10,7 @@ mod info;
 mod man;
 mod mesh;
 mod network;
+mod prepare;
 mod progress;
 mod refine;
 mod replay;
@@ -36,6 +37,8 @@ struct Args {
 enum Verb {
     /// Mesh a network: skeleton in, labelled tetrahedral mesh out
     Mesh(mesh::Args),
+    /// Make a measured network one graph: doubled lines merged, spurs off, radii filled, points as needed
+    Prepare(prepare::Args),
     /// Move the nodes of a network until its vessels do not overlap and can be cut
     Refine(refine::Args),
     /// Grow a second tree that shares the terminals of the first, as veins do with arteries
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
     };
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
+        Verb::Prepare(args) => prepare::run(args),
         Verb::Refine(args) => refine::run(args),
         Verb::Dual(args) => dual::run(args),
         Verb::Generate(args) => generate::run(args),

@@ -31,7 +31,7 @@ pub struct Network {
 impl NetworkArgs {
     /// Reads and cleans the network.
     pub fn read(&self) -> Result<Network, Failure> {
-        let options = NetworkOptions { radius_array: self.radius_array.clone() };
+        let options = NetworkOptions { radius_array: self.radius_array.clone(), ..NetworkOptions::default() };
         let file = read_network(&self.network, &options).map_err(|e| Failure::input(e.to_string()))?;
         let (skeleton, cleaned) =
             clean(&file.skeleton).map_err(|e| Failure::input(format!("{}: {e}", self.network.display())))?;

@@ -23,9 +23,7 @@ pub(crate) use angle::turn;
 pub use bvh::Bvh;
 pub(crate) use convex::minimise_convex;
 pub(crate) use disjoint_sets::DisjointSets;
-#[cfg(test)]
-pub(crate) use distance::point_segment;
-pub use distance::{point_triangle, point_tube, segment_segment, tube_tube};
+pub use distance::{point_segment, point_triangle, point_tube, segment_segment, tube_tube};
 pub use normal::unit_normal;
 pub(crate) use place::place_key;
 pub use ray::crossing;

@@ -5,6 +5,7 @@ pub mod info;
 pub mod mesh;
 #[cfg(feature = "cli")]
 pub mod plot;
+pub mod prepare;
 pub mod refine;
 #[cfg(feature = "cli")]
 pub mod tetrahedralize;

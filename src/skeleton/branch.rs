@@ -47,7 +47,6 @@ impl Branch {
     }
 
     /// Whether it returns to where it started.
-    #[cfg(test)]
     pub fn is_closed(&self) -> bool {
         let [a, b] = self.ends();
         a == b

@@ -10,6 +10,9 @@ use std::fmt;
 pub struct NetworkOptions {
     /// Name of the array (on points, cells or both) that holds the radius; by default it is found by its name.
     pub radius_array: Option<String>,
+    /// Read radii that cannot be used (zero, negative, infinite, no number) as they stand, for `prepare` to fill; by
+    /// default they are an error.
+    pub any_radii: bool,
 }
 
 /// A network as it stands in its file: `skeleton::clean` makes it usable.

@@ -46,9 +46,11 @@ pub fn read_network_from(
     options: &NetworkOptions,
 ) -> Result<NetworkFile, NetworkFault> {
     let network = match format {
-        NetworkFormat::Swc => swc::read(bytes)?,
+        NetworkFormat::Swc => swc::read(bytes, options)?,
         NetworkFormat::Vtp => vtp::read(bytes, options)?,
     };
-    network.skeleton.check_numbers()?;
+    if !options.any_radii {
+        network.skeleton.check_numbers()?;
+    }
     Ok(network)
 }

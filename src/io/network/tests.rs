@@ -107,7 +107,10 @@ impl Vtp {
     }
 
     fn read(&self, array: Option<&str>) -> Result<NetworkFile, VtpError> {
-        vtp::read(self.text().as_bytes(), &NetworkOptions { radius_array: array.map(str::to_owned) })
+        vtp::read(
+            self.text().as_bytes(),
+            &NetworkOptions { radius_array: array.map(str::to_owned), ..NetworkOptions::default() },
+        )
     }
 }
 

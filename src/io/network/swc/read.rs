@@ -2,7 +2,7 @@
 
 use super::error::SwcError;
 use crate::geometry::Point3;
-use crate::io::network::content::NetworkFile;
+use crate::io::network::content::{NetworkFile, NetworkOptions};
 use crate::skeleton::{Edge, LARGEST, Node, NodeId, Skeleton};
 use rustc_hash::FxHashMap;
 
@@ -12,7 +12,7 @@ struct Row {
     parent: i64,
 }
 
-pub(in crate::io::network) fn read(bytes: &[u8]) -> Result<NetworkFile, SwcError> {
+pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, SwcError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     // Files from old Macs end their lines by a carriage return alone.
     let newline = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
@@ -25,7 +25,7 @@ pub(in crate::io::network) fn read(bytes: &[u8]) -> Result<NetworkFile, SwcError
         if data.trim().is_empty() {
             continue;
         }
-        let (row, mut node) = parse_row(i + 1, data)?;
+        let (row, mut node) = parse_row(i + 1, data, options)?;
         node.original = nodes.len() as u32;
         if let Some(before) = index.insert(row.id, node.original) {
             return Err(SwcError::RepeatedId { line: row.line, id: row.id, first: rows[before as usize].line });
@@ -58,7 +58,7 @@ fn join_parents(rows: &[Row], nodes: &[Node], index: &FxHashMap<i64, u32>) -> Re
     Ok(edges)
 }
 
-fn parse_row(line: usize, data: &str) -> Result<(Row, Node), SwcError> {
+fn parse_row(line: usize, data: &str, options: &NetworkOptions) -> Result<(Row, Node), SwcError> {
     let mut words = [""; 7];
     let mut found = 0;
     // More columns than seven are legal; they hold other properties.
@@ -80,7 +80,8 @@ fn parse_row(line: usize, data: &str) -> Result<(Row, Node), SwcError> {
         position[axis] = value;
     }
     let radius = number(line, "radius", words[5])?;
-    if radius.is_nan() || radius <= 0.0 || radius >= LARGEST {
+    let usable = radius > 0.0 && radius < LARGEST;
+    if !usable && !options.any_radii {
         return Err(SwcError::BadRadius { line, id, radius });
     }
     let parent = integer(line, "parent", words[6])?;

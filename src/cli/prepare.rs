@@ -1,0 +1,107 @@
+//! `anastomesh prepare`: makes a measured network one graph of one line per vessel.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::common::Common;
+use super::exit::{Exit, Failure};
+use super::network::NetworkArgs;
+use crate::io::network::{NetworkArray, NetworkNote, NetworkOptions, ensure_tree_writable, read_network, write_tree};
+use crate::prepare::{PrepareParams, PrepareReport, directed, prepare};
+use crate::report::prepare::text;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    network: NetworkArgs,
+    /// Where the prepared network goes: .vtp, with the arrays `OriginalNode`, `Radius` and `EdgeRadius`, or .swc (a tree)
+    #[arg(short, long, value_name = "NETWORK")]
+    output: PathBuf,
+    /// No cure at all: the network as every verb reads it
+    #[arg(long, conflicts_with_all = ["drop_islands"])]
+    as_is: bool,
+    /// Leave radii that are absurd, and refuse those that are zero or missing
+    #[arg(long)]
+    keep_radii: bool,
+    /// Leave lines that run together
+    #[arg(long)]
+    keep_doubles: bool,
+    /// Leave spurs
+    #[arg(long)]
+    keep_spurs: bool,
+    /// Leave branch points beside each other in one lumen, and loops within it
+    #[arg(long)]
+    keep_joints: bool,
+    /// Leave points as they are
+    #[arg(long)]
+    keep_points: bool,
+    /// Drop components of fewer nodes than this
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    drop_islands: usize,
+    /// How far a resampled axis may be from the given one, in radii
+    #[arg(long, value_name = "R", default_value_t = PrepareParams::default().axis_tolerance, value_parser = share)]
+    axis_tolerance: f64,
+    /// How much a resampled radius may differ from the given one, as a share of it
+    #[arg(long, value_name = "SHARE", default_value_t = PrepareParams::default().radius_tolerance, value_parser = share)]
+    radius_tolerance: f64,
+    #[command(flatten)]
+    common: Common,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|e| format!("{e}"))?;
+    if (0.0..1.0).contains(&value) { Ok(value) } else { Err("from 0 to below 1".into()) }
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Output<'a> {
+    program: &'static str,
+    notes: &'a [NetworkNote],
+    parameters: &'a PrepareParams,
+    report: &'a PrepareReport,
+}
+
+impl Args {
+    fn params(&self) -> PrepareParams {
+        let mut params = if self.as_is { PrepareParams::as_is() } else { PrepareParams::default() };
+        params.radii &= !self.keep_radii;
+        params.merge &= !self.keep_doubles;
+        params.spurs &= !self.keep_spurs;
+        params.join &= !self.keep_joints;
+        params.resample &= !self.keep_points;
+        params.drop_islands = self.drop_islands;
+        params.axis_tolerance = self.axis_tolerance;
+        params.radius_tolerance = self.radius_tolerance;
+        params
+    }
+}
+
+/// Prepares a network and writes it.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    ensure_tree_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    let params = args.params();
+    let path = &args.network.network;
+    let options = NetworkOptions { radius_array: args.network.radius_array.clone(), any_radii: params.radii };
+    let file = read_network(path, &options).map_err(|e| Failure::input(e.to_string()))?;
+    let pool = super::common::thread_pool(args.common.threads)?;
+    let prepared = pool.install(|| prepare(&file.skeleton, &params));
+    let prepared = prepared.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
+    // Only a tree whose edges lead away from its root can be written as SWC.
+    let network = directed(&prepared.skeleton);
+    let originals = network.nodes.iter().map(|n| n.original).collect();
+    write_tree(&args.output, &network, &[NetworkArray::NodeInts("OriginalNode", originals)])
+        .map_err(|e| Failure::input(e.to_string()))?;
+    if args.common.json {
+        let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
+        let output = Output { program, notes: &file.notes, parameters: &params, report: &prepared.report };
+        super::common::print(true, &output, String::new)?;
+    } else if !args.common.quiet {
+        for note in &file.notes {
+            eprintln!("{note}");
+        }
+        eprint!("{}", text(&prepared.report));
+    }
+    Ok(Exit::Fine)
+}

@@ -1,0 +1,33 @@
+//! Components too small to matter.
+
+use crate::skeleton::{Skeleton, SkeletonError, clean};
+use serde::Serialize;
+
+/// A component that was dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Island {
+    /// Its first node.
+    pub node: u32,
+    /// How many it had.
+    pub nodes: usize,
+    /// Length of its vessels, in the unit of the network.
+    pub length: f64,
+}
+
+/// Drops components of fewer nodes than `smallest`.
+pub(super) fn drop(skeleton: &Skeleton, smallest: usize) -> Result<(Skeleton, Vec<Island>), SkeletonError> {
+    let components = skeleton.components(&skeleton.adjacency());
+    let small = components.list.iter().filter(|c| c.nodes.len() < smallest);
+    let islands: Vec<Island> = small
+        .map(|c| Island {
+            node: skeleton.node(c.nodes[0]).original,
+            nodes: c.nodes.len(),
+            length: c.edges.iter().map(|&e| skeleton.length(e)).sum(),
+        })
+        .collect();
+    let large = |node: crate::skeleton::NodeId| {
+        components.list[components.of_node[node.index()] as usize].nodes.len() >= smallest
+    };
+    let edges = skeleton.edges.iter().filter(|e| large(e.nodes[0])).copied().collect();
+    Ok((clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?.0, islands))
+}

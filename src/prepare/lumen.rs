@@ -1,0 +1,172 @@
+//! Branch points beside each other in one lumen, and loops that enclose nothing but lumen.
+
+use crate::geometry::point_segment;
+use crate::skeleton::{Adjacency, Branch, Branches, Edge, NodeId, Skeleton, SkeletonError, clean};
+use rustc_hash::FxHashMap;
+use serde::Serialize;
+
+/// A branch point that was joined to another one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct JoinedNodes {
+    /// The node that went.
+    pub node: u32,
+    /// The node that it became.
+    pub into: u32,
+    /// Their distance, in the unit of the network.
+    pub distance: f64,
+    /// Radius of the lumen, the smaller of those of the two.
+    pub radius: f64,
+}
+
+/// A loop that was closed, by taking away a branch that lay within the lumen of another or of its own branch point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ClosedLoop {
+    /// Ends of the branch.
+    pub nodes: [u32; 2],
+    /// Its length, in the unit of the network.
+    pub length: f64,
+}
+
+/// What joining did.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct JoinedReport {
+    /// Branch points that were joined to others.
+    pub nodes: Vec<JoinedNodes>,
+    /// Loops that were closed.
+    pub loops: Vec<ClosedLoop>,
+}
+
+/// Joins branch points within one lumen and closes loops within their own.
+pub(super) fn join(skeleton: &Skeleton) -> Result<(Skeleton, JoinedReport), SkeletonError> {
+    let (closed, mut loops) = close_loops(skeleton)?;
+    let (joined, nodes) = join_nodes(&closed)?;
+    let (result, more) = close_loops(&joined)?;
+    loops.extend(more);
+    Ok((result, JoinedReport { nodes, loops }))
+}
+
+/// Contracts branches between branch points that are no longer than the lumen at either end is wide, the shortest first.
+/// No node moves further than a radius, so that a vessel with a side branch in each radius is not drawn into a point.
+fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), SkeletonError> {
+    let adjacency = skeleton.adjacency();
+    let branches = skeleton.branches(&adjacency);
+    let radius = |n: NodeId| thickness(skeleton, &adjacency, n);
+    let between = |b: &Branch| b.ends().iter().all(|&n| adjacency.valence(n) > 2) && !b.is_closed();
+    let mut short: Vec<(f64, usize)> = (branches.list.iter().enumerate())
+        .filter(|(_, b)| between(b) && b.length() <= b.ends().map(radius).into_iter().fold(f64::INFINITY, f64::min))
+        .map(|(i, b)| (b.length(), i))
+        .collect();
+    short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    // A node that others became becomes none itself: so none moves twice.
+    let mut into: Vec<NodeId> = skeleton.node_ids().collect();
+    let mut is_target = vec![false; skeleton.nodes.len()];
+    let mut report = Vec::new();
+    let mut gone = vec![false; skeleton.edges.len()];
+    for &(distance, index) in &short {
+        let branch = &branches.list[index];
+        let [a, b] = branch.ends();
+        // The wider stays where it is.
+        let pair = if radius(b) > radius(a) { [b, a] } else { [a, b] };
+        let free = |n: NodeId| into[n.index()] == n && !is_target[n.index()];
+        let Some([stays, goes]) =
+            [pair, [pair[1], pair[0]]].into_iter().find(|p| into[p[0].index()] == p[0] && free(p[1]))
+        else {
+            continue;
+        };
+        into[goes.index()] = stays;
+        is_target[stays.index()] = true;
+        for edge in &branch.edges {
+            gone[edge.index()] = true;
+        }
+        let [node, target] = [goes, stays].map(|n| skeleton.node(n).original);
+        report.push(JoinedNodes { node, into: target, distance, radius: radius(a).min(radius(b)) });
+    }
+    if report.is_empty() {
+        return Ok((skeleton.clone(), report));
+    }
+    // Another short branch between the two has become a loop within the lumen; folded up it would be a spur.
+    for (_, index) in short {
+        let branch = &branches.list[index];
+        let [a, b] = branch.ends().map(|n| into[n.index()]);
+        if a == b {
+            branch.edges.iter().for_each(|e| gone[e.index()] = true);
+        }
+    }
+    let renamed = |e: &Edge| Edge { nodes: e.nodes.map(|n| into[n.index()]), radii: e.radii };
+    let edges = skeleton.edge_ids().filter(|e| !gone[e.index()]).map(|e| renamed(skeleton.edge(e))).collect();
+    Ok((clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?.0, report))
+}
+
+/// Radius of the second thickest vessel at a node: that of the lumen which a thick side branch and its trunk share.
+fn thickness(skeleton: &Skeleton, adjacency: &Adjacency, node: NodeId) -> f64 {
+    let (mut first, mut second) = (0.0_f64, 0.0_f64);
+    for &id in adjacency.edges(node) {
+        let radius = skeleton.edge(id).radii[skeleton.edge(id).end(node)];
+        (first, second) = if radius > first { (radius, first) } else { (first, second.max(radius)) };
+    }
+    second
+}
+
+/// Takes away branches that return to their branch point within its lumen, and of two between the same branch points the
+/// one that lies within the other.
+fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), SkeletonError> {
+    let adjacency = skeleton.adjacency();
+    let branches = skeleton.branches(&adjacency);
+    let mut gone = vec![false; branches.list.len()];
+    let mut beside: FxHashMap<[NodeId; 2], Vec<usize>> = FxHashMap::default();
+    for (i, branch) in branches.list.iter().enumerate() {
+        let [a, b] = branch.ends();
+        if a != b {
+            beside.entry([a.min(b), a.max(b)]).or_default().push(i);
+        } else if adjacency.valence(a) > 2 {
+            let center = skeleton.node(a);
+            let radius = thickness(skeleton, &adjacency, a);
+            gone[i] = branch.nodes.iter().all(|&n| (skeleton.node(n).position - center.position).norm() < radius);
+        }
+    }
+    let mut groups: Vec<Vec<usize>> = beside.into_values().filter(|group| group.len() > 1).collect();
+    groups.sort_unstable();
+    for mut group in groups {
+        // The thickest stays; the others are held against those that stay.
+        let radius = |i: usize| branches.list[i].mean_radius(skeleton);
+        group.sort_by(|&i, &j| radius(j).total_cmp(&radius(i)).then(i.cmp(&j)));
+        let mut kept: Vec<usize> = Vec::new();
+        for i in group {
+            gone[i] = kept.iter().any(|&k| within(skeleton, &branches, i, k));
+            if !gone[i] && kept.len() < MOST_BESIDE {
+                kept.push(i);
+            }
+        }
+    }
+    let ends = |i: usize| branches.list[i].ends().map(|n| skeleton.node(n).original);
+    let lost = (0..gone.len()).filter(|&i| gone[i]);
+    let loops: Vec<_> = lost.map(|i| ClosedLoop { nodes: ends(i), length: branches.list[i].length() }).collect();
+    if loops.is_empty() {
+        return Ok((skeleton.clone(), loops));
+    }
+    let stays = |e: &crate::skeleton::EdgeId| !gone[branches.of_edge[e.index()].0.index()];
+    let edges = skeleton.edge_ids().filter(stays).map(|e| *skeleton.edge(e)).collect();
+    Ok((clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?.0, loops))
+}
+
+/// Branches between the same two branch points that others are held against, at most.
+const MOST_BESIDE: usize = 8;
+/// Pairs of points and edges that are looked at to find whether one branch lies within another, at most.
+const MOST_LOOKS: usize = 1_000_000;
+
+/// Whether all nodes of branch `i` lie within the tubes of branch `k`; no where they have too many points to tell: a loop
+/// within a lumen is short.
+fn within(skeleton: &Skeleton, branches: &Branches, i: usize, k: usize) -> bool {
+    let (inner, outer) = (&branches.list[i], &branches.list[k]);
+    let tubes: Vec<_> = outer.tubes(skeleton).collect();
+    if inner.nodes.len().saturating_mul(tubes.len()) > MOST_LOOKS {
+        return false;
+    }
+    inner.nodes.iter().all(|&n| {
+        let point = skeleton.node(n).position;
+        tubes.iter().any(|tube| {
+            let (t, distance) = point_segment(&point, &tube.a, &tube.b);
+            distance < tube.radius(t)
+        })
+    })
+}

@@ -1,0 +1,44 @@
+//! Tips that lie at one place but for rounding: a line that was cut into tracts, each written with its own numbers.
+
+use crate::geometry::{Aabb, Bvh, DisjointSets};
+use crate::skeleton::{Edge, NodeId, Skeleton, SkeletonError, clean};
+
+/// Tips as close as this, in radii of the thinner, are one place.
+const ONE_PLACE: f64 = 0.01;
+
+/// Pairs of tips at most: more than any network has that is not all in one place.
+const MOST_PAIRS: usize = 10_000_000;
+
+/// Makes them one, in pairs: of three and more at one place each meets the nearest to it in the order of their distance.
+pub(super) fn join(skeleton: &Skeleton) -> Result<(Skeleton, Vec<[u32; 2]>), SkeletonError> {
+    let tips = skeleton.adjacency().terminals();
+    let reach = |n: NodeId| ONE_PLACE * skeleton.node(n).radius;
+    let boxes: Vec<Aabb> =
+        tips.iter().map(|&n| Aabb::of_points([&skeleton.node(n).position]).grown(0.5 * reach(n))).collect();
+    let mut pairs: Vec<(f64, NodeId, NodeId)> = Vec::new();
+    Bvh::new(&boxes).self_pairs(|i, j| {
+        let [a, b] = [tips[i as usize], tips[j as usize]];
+        let distance = (skeleton.node(a).position - skeleton.node(b).position).norm();
+        if distance <= reach(a).min(reach(b)) && pairs.len() < MOST_PAIRS {
+            pairs.push((distance, a.min(b), a.max(b)));
+        }
+    });
+    pairs.sort_by(|p, q| p.0.total_cmp(&q.0).then((p.1, p.2).cmp(&(q.1, q.2))));
+    let mut sets = DisjointSets::new(skeleton.nodes.len());
+    let mut taken = vec![false; skeleton.nodes.len()];
+    let mut met = Vec::new();
+    for (_, a, b) in pairs {
+        if !taken[a.index()] && !taken[b.index()] {
+            sets.join(a.0, b.0);
+            (taken[a.index()], taken[b.index()]) = (true, true);
+            met.push([a, b]);
+        }
+    }
+    if met.is_empty() {
+        return Ok((skeleton.clone(), Vec::new()));
+    }
+    let renamed = |e: &Edge| Edge { nodes: e.nodes.map(|n| NodeId(sets.find(n.0))), radii: e.radii };
+    let edges = skeleton.edges.iter().map(renamed).collect();
+    let (result, _) = clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?;
+    Ok((result, met.into_iter().map(|pair| pair.map(|n| skeleton.node(n).original)).collect()))
+}

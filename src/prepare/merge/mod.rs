@@ -1,0 +1,178 @@
+//! Lines of one vessel merged into one.
+//!
+//! Centrelines come as one line from the inlet to each outlet (VMTK), so that the trunk is there as often as it has
+//! outlets; networks that were put together have doubles. Two lines run together while each lies within the radius of the
+//! other and they have the same direction; they part where one leaves the tube of the other (Antiga, Steinman, 'Robust
+//! and objective decomposition and mapping of bifurcating vessels', IEEE Transactions on Medical Imaging 23, 2004). Of
+//! lines that run together the longest stays; the others begin where they part from it.
+
+mod line;
+mod meet;
+mod runs;
+
+use crate::geometry::Point3;
+use crate::skeleton::{Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
+use line::{Line, lines_of};
+use rayon::prelude::*;
+use runs::{Course, Foot, Kept, Run, runs};
+use serde::Serialize;
+
+/// A node within this share of a radius from the end of an edge is put there.
+const NEAR: f64 = 1e-3;
+
+/// A place at which a line leaves the tube of another one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Parting {
+    /// The last node of the line that lies within the other's tube: VMTK's branching point, to the length of an edge.
+    pub leaves: u32,
+    /// The node at which it parts from the other one in the graph: where the trunk ends.
+    pub branches: u32,
+}
+
+/// A stretch of a line that ran together with another one and was taken away.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Merged {
+    /// First and last node of the stretch.
+    pub nodes: [u32; 2],
+    /// Two nodes of the edge of the other line beside its first node.
+    pub with: [u32; 2],
+    /// Length of the stretch, in the unit of the network.
+    pub length: f64,
+    /// Largest distance of the two lines over the stretch, in radii.
+    pub apart: f64,
+    /// Where it parts from the other line: none where it ends with it.
+    pub partings: Vec<Parting>,
+}
+
+/// What merging did.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct MergeReport {
+    /// Lines there were: branches, broken where they turn back.
+    pub lines: usize,
+    /// Tips that lay at one place but for rounding and were made one.
+    pub met: Vec<[u32; 2]>,
+    /// Stretches that were taken away.
+    pub merged: Vec<Merged>,
+    /// Whether so many lines lay upon each other that the rest was left as it was.
+    pub gave_up: bool,
+}
+
+/// Merges lines that run together. The result satisfies `Skeleton::check`.
+pub(super) fn merge(skeleton: &Skeleton) -> Result<(Skeleton, MergeReport), SkeletonError> {
+    let (skeleton, met) = meet::join(skeleton)?;
+    let skeleton = &skeleton;
+    let adjacency = skeleton.adjacency();
+    let branches = skeleton.branches(&adjacency);
+    let parts: Vec<Vec<Line>> = branches.list.par_iter().map(|b| lines_of(skeleton, b)).collect();
+    let mut lines: Vec<Line> = parts.into_iter().flatten().collect();
+    // A stable sort: the earlier of equals comes first.
+    lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    let mut report = MergeReport { lines: lines.len(), met, ..MergeReport::default() };
+    let mut kept = Kept::new(skeleton);
+    let mut changes = Changes::new(skeleton);
+    for line in &lines {
+        let feet = kept.feet(line);
+        let along = kept.along(line);
+        let points: Vec<Point3> = line.nodes.iter().map(|&n| skeleton.node(n).position).collect();
+        let open = [0, line.last()].map(|i| adjacency.valence(line.nodes[i]) == 1);
+        let found: Vec<Run> = runs(&Course { line, feet: &feet, along: &along, points: &points }, open);
+        for run in &found {
+            changes.apply(line, &feet, open, run);
+            for at in [run.first, run.last] {
+                if let Some(foot) = &feet[at] {
+                    kept.attach(line.nodes[at], foot);
+                }
+            }
+        }
+        report.merged.extend(found.iter().map(|run| told(skeleton, line, &feet, run)));
+        kept.keep(line, &found);
+    }
+    report.gave_up = kept.gave_up();
+    if report.merged.is_empty() {
+        return Ok((skeleton.clone(), report));
+    }
+    Ok((clean(&changes.applied())?.0, report))
+}
+
+/// A run in the words of the report.
+fn told(skeleton: &Skeleton, line: &Line, feet: &[Option<Foot>], run: &Run) -> Merged {
+    let name = |i: usize| skeleton.node(line.nodes[i]).original;
+    let within = || (run.first..=run.last).filter_map(|i| feet[i].map(|f| (i, f)));
+    let beside = within().next().map_or([line.nodes[run.first]; 2], |(_, f)| skeleton.edge(f.edge).nodes);
+    let partings = run.parts.iter().zip([run.first, run.last]);
+    Merged {
+        nodes: [run.first, run.last].map(name),
+        with: beside.map(|n| skeleton.node(n).original),
+        length: line.arc[run.last] - line.arc[run.first],
+        apart: within().map(|(i, f)| f.distance / line.radii[i]).fold(0.0, f64::max),
+        partings: partings
+            .filter_map(|(leaves, at)| Some(Parting { leaves: name((*leaves)?), branches: name(at) }))
+            .collect(),
+    }
+}
+
+/// What becomes of the graph.
+struct Changes<'a> {
+    skeleton: &'a Skeleton,
+    gone: Vec<bool>,
+    /// Nodes to be put onto edges.
+    feet: Vec<(EdgeId, f64, NodeId)>,
+}
+
+/// What a node became in the end. A node becomes another one only when that one is nothing else, so the ways end.
+fn last(onto: &[NodeId], mut node: NodeId) -> NodeId {
+    while onto[node.index()] != node {
+        node = onto[node.index()];
+    }
+    node
+}
+
+impl<'a> Changes<'a> {
+    fn new(skeleton: &'a Skeleton) -> Self {
+        Self { skeleton, gone: vec![false; skeleton.edges.len()], feet: Vec::new() }
+    }
+
+    /// Takes a run away and joins the ends of its line to the line that it ran with, but for tips, which go with it.
+    fn apply(&mut self, line: &Line, feet: &[Option<Foot>], open: [bool; 2], run: &Run) {
+        let tips = [open[0] && run.first == 0, open[1] && run.last == line.last()];
+        for (at, tip) in [run.first, run.last].into_iter().zip(tips) {
+            if let (Some(foot), false) = (feet[at], tip) {
+                self.feet.push((foot.edge, foot.t, line.nodes[at]));
+            }
+        }
+        for &edge in &line.edges[run.first..run.last] {
+            self.gone[edge.index()] = true;
+        }
+    }
+
+    /// The graph without what is gone, edges split where nodes were put onto them.
+    fn applied(mut self) -> Skeleton {
+        self.feet.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let mut nodes: Vec<Node> = self.skeleton.nodes.clone();
+        let mut onto: Vec<NodeId> = self.skeleton.node_ids().collect();
+        let mut edges: Vec<Edge> = Vec::with_capacity(self.skeleton.edges.len() + self.feet.len());
+        let mut feet = self.feet.iter().peekable();
+        for id in self.skeleton.edge_ids().filter(|id| !self.gone[id.index()]) {
+            let mut edge = *self.skeleton.edge(id);
+            let tube = self.skeleton.tube(id);
+            while let Some(&(_, t, node)) = feet.next_if(|f| f.0 == id) {
+                // A node at the end of an edge becomes that end.
+                let off = [t * tube.length() / tube.ra, (1.0 - t) * tube.length() / tube.rb];
+                if let Some(end) = off.iter().position(|&off| off < NEAR) {
+                    let [of, end] = [node, self.skeleton.edge(id).nodes[end]].map(|n| last(&onto, n));
+                    onto[of.index()] = end;
+                    continue;
+                }
+                let radius = tube.radius(t);
+                nodes[node.index()] = Node { position: tube.point(t), radius, original: nodes[node.index()].original };
+                edges.push(Edge { nodes: [edge.nodes[0], node], radii: [edge.radii[0], radius] });
+                edge = Edge { nodes: [node, edge.nodes[1]], radii: [radius, edge.radii[1]] };
+            }
+            edges.push(edge);
+        }
+        for edge in &mut edges {
+            edge.nodes = edge.nodes.map(|n| last(&onto, n));
+        }
+        Skeleton { nodes, edges }
+    }
+}

@@ -1,0 +1,243 @@
+//! Where a line runs together with those that are kept, and how much of it goes.
+
+use super::line::Line;
+use crate::geometry::{Aabb, Bvh, DisjointSets, Point3, Vec3, point_segment};
+use crate::skeleton::{EdgeId, NodeId, Skeleton};
+
+/// Vessels that enclose less than 45 degrees have the same direction.
+const SAME_WAY: f64 = 0.707;
+/// Lines as close as this, in radii, have one axis.
+const SAME_AXIS: f64 = 0.1;
+/// How far upstream of where VMTK ends a vessel its two lines are looked at for one axis, in radii.
+const UPSTREAM: f64 = 3.0;
+/// Runs shorter than this, in radii, that do not take a whole line are left: every fork begins so.
+const SHORTEST: f64 = 1.0;
+/// Between nodes a line is looked at in steps of so many radii, and in so many at most.
+const STEP: f64 = 0.5;
+const MOST_STEPS: f64 = 64.0;
+/// Edges looked at, at most: more than any network has that is not all in one place.
+const MOST_LOOKS: usize = 300_000_000;
+
+/// A place on a line that is kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Foot {
+    pub edge: EdgeId,
+    /// Parameter in [0, 1] along the edge.
+    pub t: f64,
+    /// Distance of the line that asked.
+    pub distance: f64,
+    /// Whether the line of the foot ends there.
+    pub at_end: bool,
+    /// The connected piece of what is kept, when asked.
+    pub piece: u32,
+}
+
+/// A stretch of a line that goes, by its first and last node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Run {
+    pub first: usize,
+    pub last: usize,
+    /// The nodes at which the line leaves the tube, where the run does not reach the line's end.
+    pub parts: [Option<usize>; 2],
+}
+
+/// The search for lines that are kept.
+pub(super) struct Kept<'a> {
+    skeleton: &'a Skeleton,
+    tree: Bvh,
+    tangents: Vec<Vec3>,
+    /// Whether an edge belongs to a line that is kept, and at which of its ends the line ends.
+    state: Vec<Option<[bool; 2]>>,
+    /// Nodes that what is kept connects.
+    pieces: DisjointSets,
+    looks: usize,
+}
+
+impl<'a> Kept<'a> {
+    pub(super) fn new(skeleton: &'a Skeleton) -> Self {
+        let boxes = skeleton.edge_ids().map(|e| {
+            let tube = skeleton.tube(e);
+            Aabb::of_points([&tube.a, &tube.b]).grown(tube.max_radius())
+        });
+        let tree = Bvh::new(&boxes.collect::<Vec<_>>());
+        let edges = skeleton.edges.len();
+        Self {
+            skeleton,
+            tree,
+            tangents: vec![Vec3::zeros(); edges],
+            state: vec![None; edges],
+            pieces: DisjointSets::new(skeleton.nodes.len()),
+            looks: 0,
+        }
+    }
+
+    /// Whether so many edges lay upon each other that the search was given up.
+    pub(super) fn gave_up(&self) -> bool {
+        self.looks >= MOST_LOOKS
+    }
+
+    /// Keeps a line but for its runs.
+    pub(super) fn keep(&mut self, line: &Line, runs: &[Run]) {
+        let gone = |piece: usize| runs.iter().any(|r| r.first <= piece && piece < r.last);
+        for (piece, &edge) in line.edges.iter().enumerate().filter(|(piece, _)| !gone(*piece)) {
+            let ends = [piece == 0 || gone(piece - 1), piece + 1 == line.edges.len() || gone(piece + 1)];
+            let forwards = self.skeleton.edge(edge).nodes[0] == line.nodes[piece];
+            self.state[edge.index()] = Some(if forwards { ends } else { [ends[1], ends[0]] });
+            self.tangents[edge.index()] = line.tangents[piece];
+            let [a, b] = self.skeleton.edge(edge).nodes;
+            self.pieces.join(a.0, b.0);
+        }
+    }
+
+    /// The place closest to a point of a line, on a line that is kept, runs the same way there and is within the radius of
+    /// this one as this is within that one's.
+    fn foot(&mut self, point: &Point3, radius: f64, tangent: &Vec3) -> Option<Foot> {
+        let Self { skeleton, tree, tangents, state, pieces, looks } = self;
+        let mut best: Option<Foot> = None;
+        if *looks >= MOST_LOOKS {
+            return None;
+        }
+        tree.query(&Aabb::of_points([point]), |id| {
+            *looks += 1;
+            let Some(ends) = state[id as usize] else { return };
+            if tangents[id as usize].dot(tangent).abs() < SAME_WAY {
+                return;
+            }
+            let tube = skeleton.tube(EdgeId(id));
+            let (t, distance) = point_segment(point, &tube.a, &tube.b);
+            let at_end = t <= 0.0 && ends[0] || t >= 1.0 && ends[1];
+            // Where a line goes on, another one begins at its end: that is no double.
+            let key = |f: &Foot| (f.distance, f.edge.0);
+            let foot = Foot { edge: EdgeId(id), t, distance, at_end: at_end && distance > 0.0, piece: 0 };
+            if distance < radius.min(tube.radius(t)) && best.is_none_or(|b| key(&foot) < key(&b)) {
+                best = Some(foot);
+            }
+        });
+        best.map(|foot| Foot { piece: pieces.root(skeleton.edge(foot.edge).nodes[0].0), ..foot })
+    }
+
+    /// A node of a line is put onto one that is kept.
+    pub(super) fn attach(&mut self, node: NodeId, foot: &Foot) {
+        self.pieces.join(node.0, self.skeleton.edge(foot.edge).nodes[0].0);
+    }
+
+    /// Of each edge of a line, whether the points between its nodes have feet too: the nodes of a short vessel between two
+    /// others always do.
+    pub(super) fn along(&mut self, line: &Line) -> Vec<bool> {
+        let mut along = Vec::with_capacity(line.edges.len());
+        for piece in 0..line.edges.len() {
+            let [a, b] = [piece, piece + 1].map(|i| self.skeleton.node(line.nodes[i]).position);
+            let [ra, rb] = [line.radii[piece], line.radii[piece + 1]];
+            let count = ((b - a).norm() / (STEP * ra.min(rb))).ceil().min(MOST_STEPS);
+            let between = |k: usize| k as f64 / count;
+            along.push((1..count as usize).all(|k| {
+                let t = between(k);
+                self.foot(&(a + (b - a) * t), ra + (rb - ra) * t, &line.tangents[piece]).is_some_and(|f| !f.at_end)
+            }));
+        }
+        along
+    }
+
+    /// The feet of all nodes of a line.
+    pub(super) fn feet(&mut self, line: &Line) -> Vec<Option<Foot>> {
+        let feet = (0..line.nodes.len()).map(|i| {
+            let point = self.skeleton.node(line.nodes[i]).position;
+            self.foot(&point, line.radii[i], &line.tangents[i])
+        });
+        feet.collect()
+    }
+}
+
+/// A line and where it runs with others.
+pub(super) struct Course<'a> {
+    pub line: &'a Line,
+    /// Of each node.
+    pub feet: &'a [Option<Foot>],
+    /// Of each edge, whether it runs with others between its nodes.
+    pub along: &'a [bool],
+    /// Of each node.
+    pub points: &'a [Point3],
+}
+
+/// The stretches of a line that go. `open` says which of its ends are tips.
+pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<Run> {
+    let Course { line, feet, along, .. } = course;
+    let inside = |i: usize| feet[i].is_some_and(|f| !f.at_end);
+    let mut together: Vec<[usize; 2]> = Vec::new();
+    let piece = |i: usize| feet[i].map(|f| f.piece);
+    for i in (0..feet.len()).filter(|&i| inside(i)) {
+        // Where noise lifts a line out of the tube for less than a radius it runs on.
+        let on = |last: usize| if last + 1 == i { along[last] } else { line.arc[i] - line.arc[last] < line.radii[i] };
+        match together.last_mut() {
+            // A line that leads from one piece of what is kept to another one connects them.
+            Some([_, last]) if piece(*last) == piece(i) && on(*last) => *last = i,
+            _ => together.push([i, i]),
+        }
+    }
+    together.iter().filter_map(|&ends| course.run(to_tips(line, ends, open), open)).collect()
+}
+
+/// A run that comes within a radius of a tip takes it along: lines of one vessel do not end at the very same place.
+fn to_tips(line: &Line, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [usize; 2] {
+    if first == last {
+        return [first, last];
+    }
+    if open[0] && line.arc[first] <= line.radii[0] {
+        first = 0;
+    }
+    if open[1] && line.length() - line.arc[last] <= line.radii[line.last()] {
+        last = line.last();
+    }
+    [first, last]
+}
+
+impl Course<'_> {
+    /// What of a run goes, once the places where the line parts are found.
+    fn run(&self, [first, last]: [usize; 2], open: [bool; 2]) -> Option<Run> {
+        let line = self.line;
+        let radius = line.radii[first].max(line.radii[last]);
+        let [from, to] =
+            [self.end(first, last, first == 0, open[0])?, self.end(last, first, last == line.last(), open[1])?];
+        let whole = from == 0 && to == line.last();
+        if to <= from || line.arc[to] - line.arc[from] < SHORTEST * radius && !whole {
+            return None;
+        }
+        Some(Run { first: from, last: to, parts: [(from > 0).then_some(first), (to < line.last()).then_some(last)] })
+    }
+
+    /// Where a run ends at one side: where the two vessels part, or with the line. `at_end`: it reaches the line's end.
+    fn end(&self, exit: usize, start: usize, at_end: bool, open: bool) -> Option<usize> {
+        let apart = || self.feet[exit].map_or(f64::INFINITY, |f| f.distance / self.line.radii[exit]);
+        if at_end && (open || apart() <= SAME_AXIS) {
+            return Some(exit);
+        }
+        self.parting(start, exit, at_end)
+    }
+
+    /// Where the vessel of two lines ends of which one leaves the other's tube at the last of `[start, exit]`.
+    ///
+    /// Antiga and Steinman (2004) end a vessel where the inscribed sphere touches the point at which the line of one branch
+    /// leaves the tube of the other: one sphere upstream of it. Upstream of that, the last node counts at which the two
+    /// lines have one axis, so that no axis is bent; the closest, where there is none. A line that goes on beyond a branch
+    /// point (`inside`) has not left the tube yet.
+    fn parting(&self, start: usize, exit: usize, inside: bool) -> Option<usize> {
+        let Self { line, feet, points, .. } = self;
+        let steps = start.abs_diff(exit);
+        let at = |k: usize| if exit > start { exit - k } else { exit + k };
+        let touches = |i: usize| (points[i] - points[exit]).norm() >= line.radii[i];
+        let sphere = if inside { 0 } else { (0..=steps).find(|&k| touches(at(k)))? };
+        let reach = |k: usize| (line.arc[at(k)] - line.arc[at(sphere)]).abs() <= UPSTREAM * line.radii[at(sphere)];
+        let mut best: Option<(f64, usize)> = None;
+        for k in (sphere..=steps).take_while(|&k| reach(k)) {
+            let Some(foot) = feet[at(k)].filter(|f| !f.at_end) else { continue };
+            let apart = foot.distance / line.radii[at(k)];
+            if apart <= SAME_AXIS {
+                return Some(at(k));
+            }
+            if best.is_none_or(|b| apart < b.0) {
+                best = Some((apart, at(k)));
+            }
+        }
+        best.map(|b| b.1)
+    }
+}

@@ -1,0 +1,118 @@
+//! Floor 3: a measured network made one graph of one line per vessel.
+//!
+//! What users hold is not what a mesh needs: the same vessel drawn several times (one line from the inlet to each
+//! outlet), radii of zero, points a hundredth of a radius apart, tips that segmentation left, branch points beside each
+//! other in one lumen. Each has a cure here, with a switch of its own and a list of all that it changed. None moves an
+//! axis that stays by more than its bound.
+
+mod directed;
+mod islands;
+mod lumen;
+mod merge;
+mod radii;
+mod report;
+mod resample;
+mod spurs;
+
+pub use directed::directed;
+pub use islands::Island;
+pub use lumen::JoinedReport;
+pub use merge::MergeReport;
+pub use radii::{Fault, FilledRadius};
+pub use report::{PrepareReport, Size};
+pub use resample::ResampleReport;
+pub use spurs::{Spur, SpurReason};
+
+use crate::skeleton::{Skeleton, SkeletonError, clean};
+
+/// Which cures are applied, and their bounds. Lengths are in radii of the vessel concerned.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct PrepareParams {
+    /// Fill radii that are zero, missing or absurd from their neighbours.
+    pub radii: bool,
+    /// Merge lines that run together.
+    pub merge: bool,
+    /// Take spurs off.
+    pub spurs: bool,
+    /// Join branch points within one lumen and close loops within their own.
+    pub join: bool,
+    /// Drop components of fewer nodes than this (0: none).
+    pub drop_islands: usize,
+    /// Resample polylines.
+    pub resample: bool,
+    /// How far a resampled axis may be from the given one, in radii.
+    pub axis_tolerance: f64,
+    /// How much a resampled radius may differ from the given one, as a share of it.
+    pub radius_tolerance: f64,
+}
+
+impl Default for PrepareParams {
+    fn default() -> Self {
+        Self { radii: true, merge: true, spurs: true, join: true, resample: true, ..Self::as_is() }
+    }
+}
+
+impl PrepareParams {
+    /// No cure at all: the network is only cleaned, as every verb does.
+    pub fn as_is() -> Self {
+        Self {
+            radii: false,
+            merge: false,
+            spurs: false,
+            join: false,
+            drop_islands: 0,
+            resample: false,
+            axis_tolerance: 0.05,
+            radius_tolerance: 0.02,
+        }
+    }
+}
+
+/// A prepared network and what was done to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prepared {
+    /// The network; satisfies `Skeleton::check`. `Node::original` are nodes of the input.
+    pub skeleton: Skeleton,
+    /// What was done.
+    pub report: PrepareReport,
+}
+
+/// Makes a network as it was read fit for refinement and meshing.
+///
+/// The order is that in which one cure needs another: radii first, for they say what lies in what; then lines become
+/// one graph, of which spurs, branch points and islands are judged; at last the lines are resampled, so that all before
+/// saw the axis as it was given.
+///
+/// # Errors
+/// When a number cannot be used (with `radii`, only positions and networks without any usable radius), an edge names a
+/// node that does not exist, or no vessel remains.
+pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, SkeletonError> {
+    let mut report = PrepareReport { given: Size::of(raw), ..PrepareReport::default() };
+    let filled;
+    let mut source = raw;
+    if params.radii {
+        (filled, report.radii) = radii::fill(raw)?;
+        source = &filled;
+    }
+    let (mut skeleton, cleaned) = clean(source)?;
+    report.cleaned = cleaned;
+    report.read = Size::of(&skeleton);
+    if params.merge {
+        (skeleton, report.merge) = merge::merge(&skeleton)?;
+    }
+    if params.spurs {
+        (skeleton, report.spurs) = spurs::take_off(&skeleton)?;
+    }
+    if params.join {
+        (skeleton, report.joined) = lumen::join(&skeleton)?;
+    }
+    if params.drop_islands > 0 {
+        (skeleton, report.islands) = islands::drop(&skeleton, params.drop_islands)?;
+    }
+    if params.resample {
+        (skeleton, report.resample) = resample::resample(&skeleton, params.axis_tolerance, params.radius_tolerance)?;
+    }
+    report.result = Size::of(&skeleton);
+    Ok(Prepared { skeleton, report })
+}

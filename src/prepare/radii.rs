@@ -1,0 +1,217 @@
+//! Radii that cannot be true, filled from their neighbours.
+
+use crate::geometry::{DisjointSets, place_key};
+use crate::skeleton::{LARGEST, NodeId, Skeleton, SkeletonError};
+use rustc_hash::FxHashMap;
+use serde::Serialize;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// A radius this many times that of all its neighbours, or as many times smaller, is absurd.
+const ABSURD: f64 = 10.0;
+/// Sweeps by which filled radii are evened out: a run of so many nodes becomes linear.
+const SWEEPS: usize = 50;
+
+/// What is wrong with a radius.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fault {
+    /// It is zero, negative, infinite or no number.
+    Missing,
+    /// It is ten times that of all its neighbours, or a tenth.
+    Absurd,
+}
+
+/// A radius that was filled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FilledRadius {
+    /// The node.
+    pub node: u32,
+    /// What was there; none when it was no finite number.
+    pub given: Option<f64>,
+    /// What it is now, in the unit of the network.
+    pub filled: f64,
+    /// What was wrong.
+    pub fault: Fault,
+}
+
+/// The network with usable radii, and the nodes whose radius was filled: between those of the nodes around it that are
+/// good, in proportion to their distance along the vessel. What has no good one in its component gets the median of all.
+///
+/// # Errors
+/// When an edge names no node, a position is no number, or no radius is good.
+pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), SkeletonError> {
+    check_all_but_radii(raw)?;
+    let mut network = raw.clone();
+    let places = Places::of(raw);
+    let faults: Vec<Option<Fault>> = places.faults(raw);
+    let mut radii: Vec<Option<f64>> = vec![None; places.count];
+    for (i, node) in raw.nodes.iter().enumerate() {
+        if faults[i].is_none() {
+            let slot = &mut radii[places.of_node[i] as usize];
+            *slot = Some(slot.unwrap_or(0.0_f64).max(node.radius));
+        }
+    }
+    let filled = places.filled(&radii);
+    let Some(filled) = filled else {
+        // Nothing to fill from: the caller's own check names the node, or there is none.
+        return Ok((network, Vec::new()));
+    };
+    let mut report = Vec::new();
+    for (i, fault) in faults.iter().enumerate() {
+        let Some(fault) = *fault else { continue };
+        let (given, radius) = (raw.nodes[i].radius, filled[places.of_node[i] as usize]);
+        network.nodes[i].radius = radius;
+        let given = given.is_finite().then_some(given);
+        report.push(FilledRadius { node: raw.nodes[i].original, given, filled: radius, fault });
+    }
+    for edge in &mut network.edges {
+        for end in 0..2 {
+            let node = edge.nodes[end].index();
+            // An edge that has its radius from its node follows it.
+            let same = edge.radii[end] == raw.nodes[node].radius;
+            if !good(edge.radii[end]) || faults[node].is_some() && same {
+                edge.radii[end] = filled[places.of_node[node] as usize];
+            }
+        }
+    }
+    Ok((network, report))
+}
+
+fn good(radius: f64) -> bool {
+    radius > 0.0 && radius < LARGEST
+}
+
+fn check_all_but_radii(raw: &Skeleton) -> Result<(), SkeletonError> {
+    let mut sound = raw.clone();
+    for radius in sound.nodes.iter_mut().map(|n| &mut n.radius).chain(sound.edges.iter_mut().flat_map(|e| &mut e.radii))
+    {
+        *radius = 1.0;
+    }
+    sound.check_numbers()
+}
+
+/// Nodes at one place are one: many files hold each vessel with points of its own.
+struct Places {
+    of_node: Vec<u32>,
+    count: usize,
+    /// The places beside each, with the distance.
+    beside: Vec<Vec<(u32, f64)>>,
+}
+
+impl Places {
+    fn of(raw: &Skeleton) -> Self {
+        let mut sets = DisjointSets::new(raw.nodes.len());
+        let mut first: FxHashMap<_, u32> = FxHashMap::default();
+        for (i, node) in (0..).zip(&raw.nodes) {
+            sets.join(*first.entry(place_key(&node.position)).or_insert(i), i);
+        }
+        let of_node = sets.numbered();
+        let count = of_node.iter().max().map_or(0, |&m| m as usize + 1);
+        let mut beside = vec![Vec::new(); count];
+        for edge in &raw.edges {
+            let [a, b] = edge.nodes.map(NodeId::index);
+            let length = (raw.nodes[a].position - raw.nodes[b].position).norm();
+            let [p, q] = [of_node[a], of_node[b]];
+            if p != q {
+                beside[p as usize].push((q, length));
+                beside[q as usize].push((p, length));
+            }
+        }
+        Self { of_node, count, beside }
+    }
+
+    /// What is wrong with the radius of each node.
+    fn faults(&self, raw: &Skeleton) -> Vec<Option<Fault>> {
+        let mut at = vec![0.0_f64; self.count];
+        for (node, &place) in raw.nodes.iter().zip(&self.of_node) {
+            if good(node.radius) {
+                at[place as usize] = at[place as usize].max(node.radius);
+            }
+        }
+        // Of an inner node of a vessel, of which both neighbours agree, it can be told.
+        let absurd = |place: u32| {
+            let [(p, _), (q, _)] = self.beside[place as usize][..] else { return false };
+            let [r, a, b] = [place, p, q].map(|i| at[i as usize]);
+            a > 0.0 && b > 0.0 && a.max(b) <= 2.0 * a.min(b) && (r > ABSURD * a.max(b) || r * ABSURD < a.min(b))
+        };
+        let fault = |(node, &place): (&crate::skeleton::Node, &u32)| match node.radius {
+            r if !good(r) => Some(Fault::Missing),
+            _ if absurd(place) => Some(Fault::Absurd),
+            _ => None,
+        };
+        raw.nodes.iter().zip(&self.of_node).map(fault).collect()
+    }
+
+    /// A radius for each place; none when there is no good one.
+    fn filled(&self, known: &[Option<f64>]) -> Option<Vec<f64>> {
+        let mut all: Vec<f64> = known.iter().flatten().copied().collect();
+        all.sort_unstable_by(f64::total_cmp);
+        let median = *all.get(all.len() / 2)?;
+        let mut radii: Vec<Option<f64>> = self.nearest(known);
+        let missing: Vec<usize> = (0..self.count).filter(|&i| known[i].is_none()).collect();
+        for &place in &missing {
+            radii[place].get_or_insert(median);
+        }
+        let mut radii: Vec<f64> = radii.into_iter().flatten().collect();
+        for sweep in 0..SWEEPS {
+            // To and fro, so that it does not matter at which end a run begins.
+            for k in 0..missing.len() {
+                let place = missing[if sweep % 2 == 0 { k } else { missing.len() - 1 - k }];
+                radii[place] = self.mean(place, &radii).unwrap_or(radii[place]);
+            }
+        }
+        Some(radii)
+    }
+
+    /// Mean of the radii beside a place, weighted by nearness.
+    fn mean(&self, place: usize, radii: &[f64]) -> Option<f64> {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for &(other, length) in &self.beside[place] {
+            let weight = 1.0 / length.max(f64::MIN_POSITIVE * 1e20);
+            sum += weight * radii[other as usize];
+            weights += weight;
+        }
+        let mean = sum / weights;
+        good(mean).then_some(mean)
+    }
+
+    /// The nearest known radius along the vessels.
+    fn nearest(&self, known: &[Option<f64>]) -> Vec<Option<f64>> {
+        let mut radii = vec![None; self.count];
+        let sources = (0..).zip(known).filter_map(|(place, r)| Some(Reached { distance: 0.0, place, radius: (*r)? }));
+        let mut heap: BinaryHeap<Reached> = sources.collect();
+        while let Some(Reached { distance, place, radius }) = heap.pop() {
+            if radii[place as usize].is_some() {
+                continue;
+            }
+            radii[place as usize] = Some(radius);
+            let further = self.beside[place as usize].iter().filter(|(next, _)| radii[*next as usize].is_none());
+            heap.extend(further.map(|&(next, length)| Reached { distance: distance + length, place: next, radius }));
+        }
+        radii
+    }
+}
+
+/// The smallest distance comes first out of a heap; the smallest place among equals.
+#[derive(PartialEq)]
+struct Reached {
+    distance: f64,
+    place: u32,
+    radius: f64,
+}
+
+impl Eq for Reached {}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_distance = other.distance.total_cmp(&self.distance).then(other.place.cmp(&self.place));
+        by_distance.then(other.radius.total_cmp(&self.radius))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}

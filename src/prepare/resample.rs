@@ -1,0 +1,141 @@
+//! Polylines with as many points as their shape needs.
+//!
+//! Of each branch those points stay between which straight tapering tubes follow it: every point left out lies within a
+//! share of its radius of the chord (so the axis does, for a tube is convex), and its radius within a share of the
+//! chord's there. Chords are found by doubling and bisection, so that the work is linear in the points but for a
+//! logarithm, whatever the chords' lengths.
+
+use crate::geometry::{Point3, point_segment};
+use crate::skeleton::{Branch, Edge, NodeId, Skeleton, SkeletonError, clean};
+use rustc_hash::FxHashSet;
+use serde::Serialize;
+
+/// What resampling did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ResampleReport {
+    /// Nodes before.
+    pub before: usize,
+    /// Nodes after.
+    pub after: usize,
+    /// Largest distance of a given point from the new axis, in radii.
+    pub furthest: f64,
+    /// Largest difference of a radius, as a share of it.
+    pub radius: f64,
+}
+
+/// Resamples all branches.
+pub(super) fn resample(
+    skeleton: &Skeleton,
+    axis: f64,
+    radius: f64,
+) -> Result<(Skeleton, ResampleReport), SkeletonError> {
+    let branches = skeleton.branches(&skeleton.adjacency());
+    let mut report = ResampleReport { before: skeleton.nodes.len(), ..ResampleReport::default() };
+    let mut edges = Vec::new();
+    let mut joined: FxHashSet<[NodeId; 2]> = FxHashSet::default();
+    for branch in &branches.list {
+        let line = Line::new(skeleton, branch);
+        let mut stay = line.simplified([axis, radius]);
+        if branch.is_closed() {
+            stay = at_least(stay, branch.nodes.len(), 4);
+        } else if stay.len() == 2 {
+            let [a, b] = branch.ends();
+            if !joined.insert([a.min(b), a.max(b)]) {
+                // Two vessels between the same two branch points.
+                stay = at_least(stay, branch.nodes.len(), 3);
+            }
+        }
+        for ends in stay.windows(2) {
+            let worst = line.worst(ends[0], ends[1]);
+            report.furthest = report.furthest.max(worst[0]);
+            report.radius = report.radius.max(worst[1]);
+            edges.push(Edge {
+                nodes: [branch.nodes[ends[0]], branch.nodes[ends[1]]],
+                radii: [line.radii[ends[0]], line.radii[ends[1]]],
+            });
+        }
+    }
+    let (result, _) = clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?;
+    report.after = result.nodes.len();
+    Ok((result, report))
+}
+
+/// More points, evenly by their number, so that at least so many stay; `stay` where there are not as many.
+fn at_least(stay: Vec<usize>, points: usize, count: usize) -> Vec<usize> {
+    if stay.len() >= count || points < count {
+        return if stay.len() >= count { stay } else { (0..points).collect() };
+    }
+    let mut more: Vec<usize> = (0..count).map(|i| i * (points - 1) / (count - 1)).chain(stay).collect();
+    more.sort_unstable();
+    more.dedup();
+    more
+}
+
+struct Line {
+    points: Vec<Point3>,
+    radii: Vec<f64>,
+}
+
+impl Line {
+    fn new(skeleton: &Skeleton, branch: &Branch) -> Self {
+        let points = branch.nodes.iter().map(|&n| skeleton.node(n).position).collect();
+        let mut radii: Vec<f64> = branch.tubes(skeleton).map(|t| t.ra).collect();
+        radii.extend(branch.tubes(skeleton).last().map(|t| t.rb));
+        Self { points, radii }
+    }
+
+    /// Largest distance of the points between two from their chord, in radii, and of their radii from the chord's.
+    fn worst(&self, a: usize, b: usize) -> [f64; 2] {
+        let mut worst = [0.0_f64; 2];
+        for i in a + 1..b {
+            let [off, radius] = self.off(a, b, i);
+            worst = [worst[0].max(off), worst[1].max(radius)];
+        }
+        worst
+    }
+
+    fn off(&self, a: usize, b: usize, i: usize) -> [f64; 2] {
+        let (t, distance) = point_segment(&self.points[i], &self.points[a], &self.points[b]);
+        let radius = self.radii[a] + (self.radii[b] - self.radii[a]) * t;
+        [distance / self.radii[i], (radius - self.radii[i]).abs() / self.radii[i]]
+    }
+
+    fn follows(&self, a: usize, b: usize, bounds: [f64; 2]) -> bool {
+        let within = |i: usize| {
+            let off = self.off(a, b, i);
+            off[0] <= bounds[0] && off[1] <= bounds[1]
+        };
+        self.points[a] != self.points[b] && (a + 1..b).all(within)
+    }
+
+    /// The points that stay, the ends among them.
+    fn simplified(&self, bounds: [f64; 2]) -> Vec<usize> {
+        let last = self.points.len() - 1;
+        let mut stay = vec![0];
+        let mut at = 0;
+        while at < last {
+            let (mut good, mut step) = (at + 1, 2);
+            let mut bad = last + 1;
+            while good < last && bad > last {
+                let next = (at + step).min(last);
+                if self.follows(at, next, bounds) {
+                    good = next;
+                    step *= 2;
+                } else {
+                    bad = next;
+                }
+            }
+            while good + 1 < bad && bad <= last {
+                let middle = good.midpoint(bad);
+                if self.follows(at, middle, bounds) {
+                    good = middle;
+                } else {
+                    bad = middle;
+                }
+            }
+            stay.push(good);
+            at = good;
+        }
+        stay
+    }
+}

@@ -1,0 +1,132 @@
+//! Tips that segmentation left: no vessel, but a hair on one.
+
+use crate::geometry::point_segment;
+use crate::skeleton::{Adjacency, Branch, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean};
+use serde::Serialize;
+
+/// A branch that ends inside a vessel of its branch point is a spur up to this length, in radii of that vessel.
+const LONGEST: f64 = 4.0;
+
+/// Why a branch is no vessel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SpurReason {
+    /// It is no longer than the radius of the vessel that it leaves.
+    Short,
+    /// Its tip lies within a vessel of its branch point.
+    Inside,
+}
+
+/// A branch that was taken off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spur {
+    /// Its tip.
+    pub tip: u32,
+    /// The branch point that it left.
+    pub from: u32,
+    /// Its length, in the unit of the network.
+    pub length: f64,
+    /// Radius of the vessel that it left.
+    pub radius: f64,
+    /// Why.
+    pub reason: SpurReason,
+}
+
+/// Takes spurs off, the shortest of each branch point, until none is left: when one is gone the others may be parts of one
+/// vessel.
+pub(super) fn take_off(skeleton: &Skeleton) -> Result<(Skeleton, Vec<Spur>), SkeletonError> {
+    let (mut current, mut all) = (skeleton.clone(), Vec::new());
+    // A branch point of n tips needs n rounds; more than so many belong to no vessel.
+    for _ in 0..100 {
+        let adjacency = current.adjacency();
+        let branches = current.branches(&adjacency);
+        let found = spurs(&current, &adjacency, &branches);
+        if found.is_empty() {
+            break;
+        }
+        let mut gone = vec![false; current.edges.len()];
+        for (id, spur) in found {
+            all.push(spur);
+            for edge in &branches.list[id.index()].edges {
+                gone[edge.index()] = true;
+            }
+        }
+        let edges = current.edge_ids().filter(|e| !gone[e.index()]).map(|e| *current.edge(e)).collect();
+        (current, _) = clean(&Skeleton { nodes: current.nodes, edges })?;
+    }
+    Ok((current, all))
+}
+
+/// The shortest spur of each branch point.
+fn spurs(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches) -> Vec<(BranchId, Spur)> {
+    let mut is_root = vec![false; skeleton.nodes.len()];
+    for root in skeleton.roots(adjacency, &skeleton.components(adjacency)).into_iter().flatten() {
+        is_root[root.index()] = true;
+    }
+    let mut best: Vec<Option<(BranchId, Spur)>> = vec![None; skeleton.nodes.len()];
+    for (id, branch) in (0..).map(BranchId).zip(&branches.list) {
+        let Some((from, tip)) = hangs(adjacency, branch) else { continue };
+        // The inlet stays whatever it looks like.
+        if is_root[tip.index()] {
+            continue;
+        }
+        let Some(spur) = spur(skeleton, adjacency, branches, id, [from, tip]) else { continue };
+        let slot = &mut best[from.index()];
+        if slot.is_none_or(|(_, b)| spur.length < b.length) {
+            *slot = Some((id, spur));
+        }
+    }
+    best.into_iter().flatten().collect()
+}
+
+/// The branch point and the tip of a branch that has both.
+fn hangs(adjacency: &Adjacency, branch: &Branch) -> Option<(NodeId, NodeId)> {
+    let [a, b] = branch.ends();
+    match [a, b].map(|n| adjacency.valence(n)) {
+        [1, v] if v > 2 => Some((b, a)),
+        [v, 1] if v > 2 => Some((a, b)),
+        _ => None,
+    }
+}
+
+fn spur(
+    skeleton: &Skeleton,
+    adjacency: &Adjacency,
+    branches: &Branches,
+    id: BranchId,
+    [from, tip]: [NodeId; 2],
+) -> Option<Spur> {
+    let branch = &branches.list[id.index()];
+    let others = adjacency.edges(from).iter().filter(|e| branches.of_edge[e.index()].0 != id);
+    let radius = others.clone().map(|&e| skeleton.edge(e).radii[skeleton.edge(e).end(from)]).fold(0.0, f64::max);
+    let length = branch.length();
+    let reason = if length <= radius {
+        SpurReason::Short
+    } else if length <= LONGEST * radius && others.clone().any(|e| inside(skeleton, branches, *e, from, tip)) {
+        SpurReason::Inside
+    } else {
+        return None;
+    };
+    let name = |n: NodeId| skeleton.node(n).original;
+    Some(Spur { tip: name(tip), from: name(from), length, radius, reason })
+}
+
+/// Whether a tip lies within the first radii of the branch that leaves `from` by an edge.
+fn inside(skeleton: &Skeleton, branches: &Branches, edge: crate::skeleton::EdgeId, from: NodeId, tip: NodeId) -> bool {
+    let (id, piece) = branches.of_edge[edge.index()];
+    let branch = &branches.list[id.index()];
+    let point = skeleton.node(tip).position;
+    let forwards = branch.nodes[piece as usize] == from;
+    let reach = 2.0 * LONGEST * skeleton.edge(edge).mean_radius();
+    let holds = |k: usize| {
+        let tube = branch.tube(skeleton, k);
+        let (t, distance) = point_segment(&point, &tube.a, &tube.b);
+        distance < tube.radius(t)
+    };
+    let near = |k: usize| (branch.arc[k] - branch.arc[piece as usize]).abs() <= reach;
+    if forwards {
+        (piece as usize..branch.edges.len()).take_while(|&k| near(k)).any(holds)
+    } else {
+        (0..=piece as usize).rev().take_while(|&k| near(k)).any(holds)
+    }
+}

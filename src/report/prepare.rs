@@ -1,0 +1,106 @@
+//! What `prepare` says of its cures: text for people.
+
+use std::fmt::Write as _;
+
+use crate::prepare::{Fault, PrepareReport, Size, SpurReason};
+
+/// A line of the table of sizes.
+type Row = (&'static str, fn(&Size) -> usize);
+
+/// Cases of one cure that are spelt out for people.
+const LISTED: usize = 20;
+
+/// The report for people.
+pub fn text(report: &PrepareReport) -> String {
+    let mut out = String::new();
+    let filled = report.radii.iter().map(|r| {
+        let was = r.given.map_or_else(|| "no number".into(), |g| format!("{g:.4}"));
+        let why = if r.fault == Fault::Absurd { " (its neighbours' are ten times more or less)" } else { "" };
+        format!("{}: {was}, now {:.4}{why}", r.node, r.filled)
+    });
+    list(&mut out, "radii filled from neighbours (--keep-radii)", filled);
+    for (count, what) in report.cleaned.counts() {
+        let _ = writeln!(out, "{count} {what}");
+    }
+    merged(report, &mut out);
+    let spurs = report.spurs.iter().map(|s| {
+        let why = match s.reason {
+            SpurReason::Short => "no longer than its vessel's radius",
+            SpurReason::Inside => "its tip lies within its vessel",
+        };
+        format!("{} from {}: length {:.4}, radius {:.4}: {why}", s.tip, s.from, s.length, s.radius)
+    });
+    list(&mut out, "spurs taken off (--keep-spurs)", spurs);
+    let joined = report
+        .joined
+        .nodes
+        .iter()
+        .map(|j| format!("{} into {}: {:.4} apart, radius {:.4}", j.node, j.into, j.distance, j.radius));
+    list(&mut out, "branch points joined within one lumen (--keep-joints)", joined);
+    let loops = report.joined.loops.iter().map(|l| format!("{} to {}: length {:.4}", l.nodes[0], l.nodes[1], l.length));
+    list(&mut out, "loops closed within their own lumen (--keep-joints)", loops);
+    let islands = report.islands.iter().map(|i| format!("at {}: {} nodes, length {:.4}", i.node, i.nodes, i.length));
+    list(&mut out, "islands dropped (--drop-islands)", islands);
+    let r = &report.resample;
+    if r.before > 0 {
+        let _ = writeln!(
+            out,
+            "resampled: {} nodes to {}; the axis moved by {:.4} radii at most, radii changed by {:.2} % at most \
+             (--keep-points)",
+            r.before,
+            r.after,
+            r.furthest,
+            100.0 * r.radius
+        );
+    }
+    sizes(report, &mut out);
+    out
+}
+
+fn merged(report: &PrepareReport, out: &mut String) {
+    let met = report.merge.met.iter().map(|[a, b]| format!("{a} and {b}"));
+    list(out, "pairs of tips at one place but for rounding made one (--keep-doubles)", met);
+    let stretches = report.merge.merged.iter().map(|m| {
+        let partings: String =
+            m.partings.iter().map(|p| format!("; parts at {}, leaves the tube at {}", p.branches, p.leaves)).collect();
+        format!(
+            "{} to {} ran with {}-{}: length {:.4}, {:.3} radii apart at most{partings}",
+            m.nodes[0], m.nodes[1], m.with[0], m.with[1], m.length, m.apart
+        )
+    });
+    list(out, "stretches that ran together with another line merged (--keep-doubles)", stretches);
+    if report.merge.gave_up {
+        out.push_str("so many lines lie upon each other that not all were looked at\n");
+    }
+}
+
+/// A heading with the number of cases, and the first of them.
+fn list(out: &mut String, what: &str, cases: impl ExactSizeIterator<Item = String>) {
+    let count = cases.len();
+    if count == 0 {
+        return;
+    }
+    let _ = writeln!(out, "{count} {what}");
+    for case in cases.take(LISTED) {
+        let _ = writeln!(out, "  {case}");
+    }
+    if count > LISTED {
+        let _ = writeln!(out, "  and {} more (--json lists all)", count - LISTED);
+    }
+}
+
+fn sizes(report: &PrepareReport, out: &mut String) {
+    let _ = writeln!(out, "{:16}{:>10}{:>10}{:>10}", "", "given", "read", "result");
+    let rows: [Row; 6] = [
+        ("nodes", |s| s.nodes),
+        ("edges", |s| s.edges),
+        ("tips", |s| s.tips),
+        ("branch points", |s| s.branch_points),
+        ("components", |s| s.components),
+        ("loops", |s| s.loops),
+    ];
+    for (name, value) in rows {
+        let [a, b, c] = [&report.given, &report.read, &report.result].map(value);
+        let _ = writeln!(out, "{name:16}{a:>10}{b:>10}{c:>10}");
+    }
+}
