@@ -40,7 +40,7 @@ pub mod network {
         Estimate, JointStyle, Manifest, MeshPlan, Meshed, Observer, RunError, RunReport, Stage, Store, Stored,
         TooLarge, mesh_into, mesh_network,
     };
-    pub use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare};
+    pub use crate::prepare::{PrepareParams, PrepareReport, Prepared, directed, prepare};
     pub use crate::refine::{
         Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };

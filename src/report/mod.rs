@@ -5,6 +5,7 @@ pub mod info;
 pub mod mesh;
 #[cfg(feature = "cli")]
 pub mod plot;
+#[cfg(feature = "cli")]
 pub mod prepare;
 pub mod refine;
 #[cfg(feature = "cli")]
