@@ -11,6 +11,8 @@ use std::collections::BinaryHeap;
 const ABSURD: f64 = 10.0;
 /// Sweeps by which filled radii are evened out: a run of so many nodes becomes linear.
 const SWEEPS: usize = 50;
+/// The least distance that two places have, in the unit of the network: its inverse is a number.
+const APART: f64 = f64::MIN_POSITIVE * 1e20;
 
 /// What is wrong with a radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -39,7 +41,7 @@ pub struct FilledRadius {
 /// good, in proportion to their distance along the vessel. What has no good one in its component gets the median of all.
 ///
 /// # Errors
-/// When an edge names no node, a position is no number, or no radius is good.
+/// When an edge names no node or a position is no number. Where no radius is good nothing is filled.
 pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), SkeletonError> {
     check_all_but_radii(raw)?;
     let mut network = raw.clone();
@@ -168,7 +170,7 @@ impl Places {
     fn mean(&self, place: usize, radii: &[f64]) -> Option<f64> {
         let (mut sum, mut weights) = (0.0, 0.0);
         for &(other, length) in &self.beside[place] {
-            let weight = 1.0 / length.max(f64::MIN_POSITIVE * 1e20);
+            let weight = 1.0 / length.max(APART);
             sum += weight * radii[other as usize];
             weights += weight;
         }

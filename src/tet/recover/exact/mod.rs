@@ -78,10 +78,9 @@ pub(in crate::tet) fn recover_exact(
     (ways, flat): (&[Way], f64),
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
-    let (edges_of, triangles_of) = (missing.edges.to_vec(), missing.triangles.to_vec());
     let segments = Segments::new(edges, surface.points.len());
     let push = Push::new(Space::new(c.clone(), flat), segments, surface.triangles.clone());
-    let start = Start { push, edges: edges_of, triangles: triangles_of };
+    let start = Start { push, edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
     let mut level: Option<Start> = None;
     let mut last = TetError::NotRecovered { edges: start.edges.clone(), triangles: start.triangles.clone() };
     for &way in ways {

@@ -19,7 +19,7 @@ pub(in crate::tet) struct Way {
     /// Chooses the order in which edges are cut.
     pub salt: u64,
     /// Implicit vertices allowed: for each missing edge, and in any case.
-    pub vertices: (usize, usize),
+    vertices: (usize, usize),
 }
 
 impl Way {
