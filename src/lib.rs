@@ -40,9 +40,9 @@ pub mod network {
         Estimate, JointStyle, Manifest, MeshPlan, Meshed, Observer, RunError, RunReport, Stage, Store, Stored,
         TooLarge, mesh_into, mesh_network,
     };
-    pub use crate::prepare::{PrepareParams, PrepareReport, Prepared, directed, prepare};
+    pub use crate::prepare::{PrepareParams, PrepareReport, Prepared, Touching, directed, prepare};
     pub use crate::refine::{
-        Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
+        Crowded, Freedom, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };
     pub use crate::report::info::NetworkInfo;
     pub use crate::skeleton::{Adjacency, CleanReport, Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
@@ -67,7 +67,7 @@ pub mod testing {
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
-    pub use crate::prepare::{Fault, SpurReason};
+    pub use crate::prepare::{Fault, SpurReason, TouchedBy};
     pub use crate::refine::split;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
     pub use crate::tet::delaunay::delaunay;

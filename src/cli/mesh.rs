@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
-use super::network::NetworkArgs;
+use super::network::{NetworkArgs, PreparedNetwork};
+use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::room::{self, BlockPlace, size};
@@ -17,6 +18,7 @@ use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
+use crate::prepare::PrepareReport;
 use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, Observer, RunError, Stage, TooLarge};
 use crate::refine::{RefineReport, Refined};
 use crate::skeleton::Skeleton;
@@ -72,6 +74,8 @@ pub struct Args {
     #[command(flatten)]
     common: Common,
     #[command(flatten)]
+    cures: CureArgs,
+    #[command(flatten)]
     how: RefineArgs,
 }
 
@@ -93,13 +97,21 @@ struct Done<'a> {
     report: RunReport,
 }
 
+/// What was done to the network before it was meshed.
+#[derive(Clone, Copy, Serialize)]
+struct Before<'a> {
+    prepare: &'a PrepareReport,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refine: Option<&'a RefineReport>,
+}
+
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,
     plan: &'a MeshPlan,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    refine: Option<&'a RefineReport>,
+    #[serde(flatten)]
+    before: Before<'a>,
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
 }
@@ -117,23 +129,23 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(path) = &args.refined {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
-    let network = args.network.read()?;
+    let pool = thread_pool(args.common.threads)?;
+    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, stop.clone());
     for remark in network.remarks() {
         bars.note(&remark);
     }
-    let pool = thread_pool(args.common.threads)?;
-    let refined = pool.install(|| args.refined(&network.skeleton, &stop))?;
+    let refined = pool.install(|| args.refined(&network, &stop))?;
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
-    let refinement = refined.as_ref().map(|r| &r.report);
+    let before = Before { prepare: &network.report, refine: refined.as_ref().map(|r| &r.report) };
     // Blocks are kept as soon as they are done.
     stop.keep();
     pool.install(|| {
         if plan.smooths_joints() {
-            args.run_in_memory(skeleton, &plan, refinement, &bars)
+            args.run_in_memory(skeleton, &plan, before, &bars)
         } else {
-            args.run_in_store(&network.skeleton, skeleton, &plan, refinement, &bars)
+            args.run_in_store(&network.skeleton, skeleton, &plan, before, &bars)
         }
     })
 }
@@ -164,7 +176,7 @@ impl Args {
         &self,
         network: &Skeleton,
         plan: &MeshPlan,
-        refinement: Option<&RefineReport>,
+        before: Before,
         bars: &Bars,
     ) -> Result<Exit, Failure> {
         let estimate = Estimate::rough(network, plan);
@@ -175,10 +187,10 @@ impl Args {
             return Err(Failure::input(refused.to_string()));
         }
         let result = pipeline::mesh_network(network, plan, bars);
-        let result = result.map_err(|e| self.explain(e, plan, refinement))?;
+        let result = result.map_err(|e| self.explain(e, plan, before))?;
         let done =
             Done { mesh: &result.mesh, expectation: result.expectation, check: &result.check, report: result.report };
-        self.finish(done, plan, refinement, bars)
+        self.finish(done, plan, before, bars)
     }
 
     /// Blocks go to where they are kept, and the mesh from there to its file.
@@ -187,7 +199,7 @@ impl Args {
         read: &Skeleton,
         network: &Skeleton,
         plan: &MeshPlan,
-        refinement: Option<&RefineReport>,
+        before: Before,
         bars: &Bars,
     ) -> Result<Exit, Failure> {
         let rough = Estimate::rough(network, plan);
@@ -203,10 +215,10 @@ impl Args {
             ));
         }
         let result = pipeline::mesh_into(&store, network, plan, &fits, bars);
-        let result = result.map_err(|e| self.explain(e, plan, refinement))?;
+        let result = result.map_err(|e| self.explain(e, plan, before))?;
         let done =
             Done { mesh: &result.whole, expectation: result.expectation, check: &result.check, report: result.report };
-        self.finish(done, plan, refinement, bars)
+        self.finish(done, plan, before, bars)
     }
 
     /// Everything that the mesh depends on, beside the network.
@@ -222,7 +234,7 @@ impl Args {
         &self,
         done: Done,
         plan: &MeshPlan,
-        refinement: Option<&RefineReport>,
+        before: Before,
         bars: &Bars,
     ) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
@@ -234,7 +246,7 @@ impl Args {
         // Passes over the blocks end when the run is to end.
         written.map_err(|e| if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) })?;
         report.stages.extend(clock.stages());
-        self.print(plan, refinement, &report, Some(check))?;
+        self.print(plan, before, &report, Some(check))?;
         Ok(match () {
             () if !report.failed.is_empty() => Exit::StageFailed,
             () if !check.is_valid() => Exit::GateNotMet,
@@ -243,9 +255,9 @@ impl Args {
     }
 
     /// What went wrong, for people.
-    fn explain(&self, error: RunError, plan: &MeshPlan, refinement: Option<&RefineReport>) -> Failure {
+    fn explain(&self, error: RunError, plan: &MeshPlan, before: Before) -> Failure {
         match error {
-            RunError::BlocksFailed(report) => match self.print(plan, refinement, &report, None) {
+            RunError::BlocksFailed(report) => match self.print(plan, before, &report, None) {
                 Err(failure) => failure,
                 Ok(()) => Failure::stage(format!(
                     "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
@@ -285,9 +297,9 @@ impl Args {
     }
 
     /// The network refined, if that was asked for.
-    fn refined(&self, skeleton: &Skeleton, stop: &Stop) -> Result<Option<Refined>, Failure> {
+    fn refined(&self, network: &PreparedNetwork, stop: &Stop) -> Result<Option<Refined>, Failure> {
         let Some(iterations) = self.refine else { return Ok(None) };
-        let refined = super::refine::moved(skeleton, &self.how.params(iterations), self.common.quiet, stop)?;
+        let refined = super::refine::moved(network, &self.how.params(iterations), self.common.quiet, stop)?;
         if let Some(path) = &self.refined {
             stop.keep();
             super::refine::write(path, &refined)?;
@@ -301,13 +313,13 @@ impl Args {
     fn print(
         &self,
         plan: &MeshPlan,
-        refine: Option<&RefineReport>,
+        before: Before,
         run: &RunReport,
         check: Option<&CheckReport>,
     ) -> Result<(), Failure> {
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            return print(true, &Output { program, plan, refine, run, check }, String::new);
+            return print(true, &Output { program, plan, before, run, check }, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {

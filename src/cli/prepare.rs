@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
-use crate::io::network::{NetworkArray, NetworkNote, NetworkOptions, ensure_tree_writable, read_network, write_tree};
-use crate::prepare::{PrepareParams, PrepareReport, directed, prepare};
+use crate::io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
+use crate::prepare::{PrepareParams, PrepareReport, Touching, directed};
 use crate::report::prepare::text;
 
 #[derive(Debug, clap::Args)]
@@ -18,8 +18,18 @@ pub struct Args {
     /// Where the prepared network goes: .vtp, with the arrays `OriginalNode`, `Radius` and `EdgeRadius`, or .swc (a tree)
     #[arg(short, long, value_name = "NETWORK")]
     output: PathBuf,
-    /// No cure at all: the network as every verb reads it
-    #[arg(long, conflicts_with_all = ["drop_islands"])]
+    #[command(flatten)]
+    cures: CureArgs,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What is done to a network before it is used: arguments of every verb that does.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Preparation")]
+pub struct CureArgs {
+    /// No cure at all: the network as the file has it
+    #[arg(long, conflicts_with_all = ["drop_islands", "touching"])]
     as_is: bool,
     /// Leave radii that are absurd, and refuse those that are zero or missing
     #[arg(long)]
@@ -36,6 +46,9 @@ pub struct Args {
     /// Leave points as they are
     #[arg(long)]
     keep_points: bool,
+    /// What to do with tips that end in or on another vessel
+    #[arg(long, value_enum, default_value_t = TouchingArg::Retract)]
+    touching: TouchingArg,
     /// Drop components of fewer nodes than this
     #[arg(long, value_name = "N", default_value_t = 0)]
     drop_islands: usize,
@@ -45,8 +58,17 @@ pub struct Args {
     /// How much a resampled radius may differ from the given one, as a share of it
     #[arg(long, value_name = "SHARE", default_value_t = PrepareParams::default().radius_tolerance, value_parser = share)]
     radius_tolerance: f64,
-    #[command(flatten)]
-    common: Common,
+}
+
+/// What to do with tips that end in or on another vessel.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum TouchingArg {
+    /// Join them to it
+    Join,
+    /// Draw them back until a cap has room
+    Retract,
+    /// Leave them
+    Keep,
 }
 
 fn share(text: &str) -> Result<f64, String> {
@@ -63,14 +85,22 @@ struct Output<'a> {
     report: &'a PrepareReport,
 }
 
-impl Args {
-    fn params(&self) -> PrepareParams {
+impl CureArgs {
+    /// The cures, with `only_measured` but for grown networks.
+    pub fn params(&self, only_measured: bool) -> PrepareParams {
         let mut params = if self.as_is { PrepareParams::as_is() } else { PrepareParams::default() };
+        params.only_measured = only_measured;
         params.radii &= !self.keep_radii;
         params.merge &= !self.keep_doubles;
         params.spurs &= !self.keep_spurs;
         params.join &= !self.keep_joints;
         params.resample &= !self.keep_points;
+        params.touching = match self.touching {
+            _ if self.as_is => Touching::Keep,
+            TouchingArg::Join => Touching::Join,
+            TouchingArg::Retract => Touching::Retract,
+            TouchingArg::Keep => Touching::Keep,
+        };
         params.drop_islands = self.drop_islands;
         params.axis_tolerance = self.axis_tolerance;
         params.radius_tolerance = self.radius_tolerance;
@@ -81,13 +111,9 @@ impl Args {
 /// Prepares a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_tree_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
-    let params = args.params();
-    let path = &args.network.network;
-    let options = NetworkOptions { radius_array: args.network.radius_array.clone(), any_radii: params.radii };
-    let file = read_network(path, &options).map_err(|e| Failure::input(e.to_string()))?;
+    let params = args.cures.params(false);
     let pool = super::common::thread_pool(args.common.threads)?;
-    let prepared = pool.install(|| prepare(&file.skeleton, &params));
-    let prepared = prepared.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
+    let prepared = pool.install(|| args.network.prepared(&params))?;
     // Only a tree whose edges lead away from its root can be written as SWC.
     let network = directed(&prepared.skeleton);
     let originals = network.nodes.iter().map(|n| n.original).collect();
@@ -95,10 +121,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         .map_err(|e| Failure::input(e.to_string()))?;
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-        let output = Output { program, notes: &file.notes, parameters: &params, report: &prepared.report };
+        let output = Output { program, notes: &prepared.notes, parameters: &params, report: &prepared.report };
         super::common::print(true, &output, String::new)?;
     } else if !args.common.quiet {
-        for note in &file.notes {
+        for note in &prepared.notes {
             eprintln!("{note}");
         }
         eprint!("{}", text(&prepared.report));

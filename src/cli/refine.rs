@@ -7,17 +7,18 @@ use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
-use super::network::NetworkArgs;
+use super::network::{NetworkArgs, PreparedNetwork};
+use super::prepare::CureArgs;
 use super::progress::{shows_bars, stage_bar};
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
 use crate::io::write_text;
 use crate::refine::{
-    self, Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, Sample,
+    self, Crowded, Freedom, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, Sample,
 };
 use crate::report::plot::svg;
 use crate::report::refine::{csv, panels};
-use crate::skeleton::Skeleton;
+use crate::prepare::PrepareReport;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -32,6 +33,8 @@ pub struct Args {
     /// Measure the metrics every so many iterations, and after each of the first ten (0: at both ends only)
     #[arg(long, value_name = "N", default_value_t = RefineParams::default().every)]
     every: usize,
+    #[command(flatten)]
+    cures: CureArgs,
     #[command(flatten)]
     how: RefineArgs,
     /// Write the metrics over the iterations as a table
@@ -60,6 +63,10 @@ pub struct RefineArgs {
     /// How far the axes of two vessels are to be apart, in sums of their radii
     #[arg(long, value_name = "FACTOR", default_value_t = RefineParams::default().clearance, allow_negative_numbers = true)]
     clearance: f64,
+    /// How far a node may go, in its radii: nothing moves but what overlaps (default: in a network whose vessels are
+    /// polylines 1, further only where an overlap is not parted by that; in others as far as room for cuts asks)
+    #[arg(long, value_name = "R", allow_negative_numbers = true)]
+    max_move: Option<f64>,
     /// Let terminals and roots move this far, in the unit of the network
     #[arg(long, value_name = "R", default_value_t = 0.0, allow_negative_numbers = true)]
     free_terminals: f64,
@@ -116,6 +123,7 @@ impl RefineArgs {
             angle_rate: self.angle_rate,
             clearance: self.clearance,
             free_terminals: self.free_terminals,
+            freedom: self.max_move.map_or(Freedom::Auto, Freedom::Radii),
             crowded: match self.crowded_terminals {
                 CrowdedArg::Keep => Crowded::Keep,
                 CrowdedArg::Part => Crowded::Part,
@@ -137,6 +145,7 @@ impl RefineArgs {
 struct Output<'a> {
     program: &'static str,
     parameters: &'a RefineParams,
+    prepare: &'a PrepareReport,
     report: &'a RefineReport,
 }
 
@@ -164,10 +173,20 @@ impl Progress for Steps<'_> {
     }
 }
 
-/// Refines a skeleton, with a bar.
-pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool, stop: &Stop) -> Result<Refined, Failure> {
+/// Refines a network, with a bar.
+pub(super) fn moved(
+    network: &PreparedNetwork,
+    params: &RefineParams,
+    quiet: bool,
+    stop: &Stop,
+) -> Result<Refined, Failure> {
     let mut steps = Steps { shown: shows_bars(quiet), bar: None, stop };
-    let refined = refine::refine(skeleton, params, &mut steps);
+    let mut params = params.clone();
+    // Polylines that were resampled do not look measured any more.
+    if params.freedom == Freedom::Auto {
+        params.freedom = if network.report.measured { Freedom::Measured } else { Freedom::Grown };
+    }
+    let refined = refine::refine(&network.skeleton, &params, &mut steps);
     refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
         RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
@@ -178,16 +197,16 @@ pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool, sto
 /// Refines a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
-    let network = args.network.read()?;
+    let pool = thread_pool(args.common.threads)?;
+    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     if !args.common.quiet {
         for remark in network.remarks() {
             eprintln!("{remark}");
         }
     }
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
-    let pool = thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
-    let refined = pool.install(|| moved(&network.skeleton, &params, args.common.quiet, &stop))?;
+    let refined = pool.install(|| moved(&network, &params, args.common.quiet, &stop))?;
     stop.keep();
     write(&args.output, &refined)?;
     let report = &refined.report;
@@ -198,7 +217,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-        print(true, &Output { program, parameters: &params, report }, String::new)?;
+        print(true, &Output { program, parameters: &params, prepare: &network.report, report }, String::new)?;
     } else if !args.common.quiet {
         eprint!("{report}");
     }

@@ -13,6 +13,7 @@ mod radii;
 mod report;
 mod resample;
 mod spurs;
+mod touching;
 
 pub use directed::directed;
 pub use islands::Island;
@@ -22,6 +23,7 @@ pub use radii::{Fault, FilledRadius};
 pub use report::{PrepareReport, Size};
 pub use resample::ResampleReport;
 pub use spurs::{Spur, SpurReason};
+pub use touching::{TouchedBy, Touching, TouchingTip};
 
 use crate::skeleton::{Skeleton, SkeletonError, clean};
 
@@ -29,6 +31,9 @@ use crate::skeleton::{Skeleton, SkeletonError, clean};
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PrepareParams {
+    /// Apply no cure but that of the radii to a network that was grown: of which the vessels have no points of their own
+    /// between branch points.
+    pub only_measured: bool,
     /// Fill radii that are zero, missing or absurd from their neighbours.
     pub radii: bool,
     /// Merge lines that run together.
@@ -37,6 +42,8 @@ pub struct PrepareParams {
     pub spurs: bool,
     /// Join branch points within one lumen and close loops within their own.
     pub join: bool,
+    /// What is done about tips that end in or on another vessel.
+    pub touching: Touching,
     /// Drop components of fewer nodes than this (0: none).
     pub drop_islands: usize,
     /// Resample polylines.
@@ -49,7 +56,8 @@ pub struct PrepareParams {
 
 impl Default for PrepareParams {
     fn default() -> Self {
-        Self { radii: true, merge: true, spurs: true, join: true, resample: true, ..Self::as_is() }
+        let touching = Touching::Retract;
+        Self { radii: true, merge: true, spurs: true, join: true, touching, resample: true, ..Self::as_is() }
     }
 }
 
@@ -57,10 +65,12 @@ impl PrepareParams {
     /// No cure at all: the network is only cleaned, as every verb does.
     pub fn as_is() -> Self {
         Self {
+            only_measured: false,
             radii: false,
             merge: false,
             spurs: false,
             join: false,
+            touching: Touching::Keep,
             drop_islands: 0,
             resample: false,
             axis_tolerance: 0.05,
@@ -98,6 +108,9 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
     let (mut skeleton, cleaned) = clean(source)?;
     report.cleaned = cleaned;
     report.read = Size::of(&skeleton);
+    report.measured = skeleton.is_measured();
+    let grown = params.only_measured && !report.measured;
+    let params = &if grown { PrepareParams { drop_islands: params.drop_islands, ..PrepareParams::as_is() } } else { params.clone() };
     if params.merge {
         (skeleton, report.merge) = merge::merge(&skeleton)?;
     }
@@ -107,6 +120,7 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
     if params.join {
         (skeleton, report.joined) = lumen::join(&skeleton)?;
     }
+    (skeleton, report.touching) = touching::treat(&skeleton, params.touching)?;
     if params.drop_islands > 0 {
         (skeleton, report.islands) = islands::drop(&skeleton, params.drop_islands)?;
     }

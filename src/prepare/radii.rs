@@ -9,6 +9,11 @@ use std::collections::BinaryHeap;
 
 /// A radius this many times that of all its neighbours, or as many times smaller, is absurd.
 const ABSURD: f64 = 10.0;
+/// Over so many radii of a wider place a vessel that goes on does not narrow to a tenth and widen again, nor end in a point:
+/// that is where a distance map had nothing to measure.
+const WINDOW: f64 = 4.0;
+/// Places looked at to either side of one, at most.
+const MOST_BESIDE: usize = 256;
 /// Sweeps by which filled radii are evened out: a run of so many nodes becomes linear.
 const SWEEPS: usize = 50;
 /// The least distance that two places have, in the unit of the network: its inverse is a number.
@@ -20,7 +25,8 @@ const APART: f64 = f64::MIN_POSITIVE * 1e20;
 pub enum Fault {
     /// It is zero, negative, infinite or no number.
     Missing,
-    /// It is ten times that of all its neighbours, or a tenth.
+    /// It is ten times that of all its neighbours, or less than a tenth of what the vessel has to both sides near by, or at
+    /// the one side of a tip.
     Absurd,
 }
 
@@ -139,10 +145,33 @@ impl Places {
         };
         let fault = |(node, &place): (&crate::skeleton::Node, &u32)| match node.radius {
             r if !good(r) => Some(Fault::Missing),
-            _ if absurd(place) => Some(Fault::Absurd),
+            _ if absurd(place) || self.is_dip(place, &at) => Some(Fault::Absurd),
             _ => None,
         };
         raw.nodes.iter().zip(&self.of_node).map(fault).collect()
+    }
+
+    /// Whether the vessel is ten times as wide to both sides of a place, near by for that width.
+    fn is_dip(&self, place: u32, radii: &[f64]) -> bool {
+        let beside = &self.beside[place as usize];
+        (1..=2).contains(&beside.len())
+            && beside.iter().all(|&(next, length)| self.widens(place, next, length, radii))
+    }
+
+    /// Whether the vessel that leaves a place towards `next` becomes ten times as wide, near by for that width.
+    fn widens(&self, place: u32, mut next: u32, mut arc: f64, radii: &[f64]) -> bool {
+        let (own, mut last) = (radii[place as usize], place);
+        for _ in 0..MOST_BESIDE {
+            let radius = radii[next as usize];
+            if radius > ABSURD * own && arc <= WINDOW * radius {
+                return true;
+            }
+            let [p, q] = self.beside[next as usize][..] else { return false };
+            let (onward, length) = if p.0 == last { q } else { p };
+            arc += length;
+            (last, next) = (next, onward);
+        }
+        false
     }
 
     /// A radius for each place; none when there is no good one.

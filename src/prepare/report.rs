@@ -1,6 +1,6 @@
 //! What was done to a network.
 
-use super::{FilledRadius, Island, JoinedReport, MergeReport, ResampleReport, Spur};
+use super::{FilledRadius, Island, JoinedReport, MergeReport, ResampleReport, Spur, TouchingTip};
 use crate::skeleton::{CleanReport, Skeleton};
 use serde::Serialize;
 
@@ -39,6 +39,14 @@ impl Size {
     }
 }
 
+impl PrepareReport {
+    /// Whether anything was done.
+    pub fn changed(&self) -> bool {
+        let Self { given, measured, result, .. } = *self;
+        *self != Self { given, read: given, measured, result, ..Self::default() }
+    }
+}
+
 /// What was done to a network. Nodes are numbered as in the input, from 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PrepareReport {
@@ -46,6 +54,8 @@ pub struct PrepareReport {
     pub given: Size,
     /// When read and cleaned, before any cure but that of the radii.
     pub read: Size,
+    /// Whether the network was measured: its vessels are polylines.
+    pub measured: bool,
     /// In the end.
     pub result: Size,
     /// Radii that were filled, by node.
@@ -58,6 +68,8 @@ pub struct PrepareReport {
     pub spurs: Vec<Spur>,
     /// Branch points joined, loops closed.
     pub joined: JoinedReport,
+    /// Tips that end in or on another vessel.
+    pub touching: Vec<TouchingTip>,
     /// Components that were dropped.
     pub islands: Vec<Island>,
     /// What resampling did.

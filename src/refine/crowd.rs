@@ -1,7 +1,6 @@
 //! Terminals that are too close to each other for two caps, or for the loop through two that two trees share: listed,
 //! moved apart, or merged on request.
 
-use super::frame::find_folds;
 use super::params::{Crowded, RefineParams};
 use crate::skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
 use serde::Serialize;
@@ -29,16 +28,18 @@ pub struct CrowdedPair {
     pub moved: [f64; 2],
 }
 
-/// Lists crowded terminals and treats them as `params.crowded` says. Nodes that a merger removes are removed from
+/// Lists crowded terminals and treats them as `params.crowded` says; with `folds` also nodes at which a vessel turns back,
+/// which are terminals that two trees share, or noise in a polyline. Nodes that a merger removes are removed from
 /// `origin`, too.
 pub(super) fn treat(
     skeleton: &mut Skeleton,
     origin: &mut Vec<crate::geometry::Point3>,
     params: &RefineParams,
+    folds: bool,
 ) -> Vec<CrowdedPair> {
     let adjacency = skeleton.adjacency();
-    let folds = find_folds(skeleton, &adjacency);
-    let is_end = |n: &NodeId| adjacency.valence(*n) == 1 || folds[n.index()];
+    let folds = folds.then(|| skeleton.folds(&adjacency));
+    let is_end = |n: &NodeId| adjacency.valence(*n) == 1 || folds.as_ref().is_some_and(|folds| folds[n.index()]);
     let ends: Vec<NodeId> = skeleton.node_ids().filter(is_end).collect();
     let found = skeleton.crowded_among(&ends);
     let is_free = |pair: &CrowdedTerminals| pair.nodes.iter().all(|n| adjacency.valence(*n) == 1);

@@ -54,7 +54,7 @@ impl Frame {
     /// `furthest` is how far a node may go, `free_terminals` how far a terminal may.
     pub fn new(skeleton: Skeleton, free_terminals: f64, furthest: f64, unit: f64) -> Self {
         let adjacency = skeleton.adjacency();
-        let is_fold = find_folds(&skeleton, &adjacency);
+        let is_fold = skeleton.folds(&adjacency);
         let mut leash = vec![furthest; skeleton.nodes.len()];
         let mut mobility = Vec::with_capacity(skeleton.nodes.len());
         for node in skeleton.node_ids() {
@@ -86,6 +86,22 @@ impl Frame {
         frame.kept = frame.skeleton.edge_ids().map(|e| frame.keep(e)).collect();
         frame.chains = frame.find_chains();
         frame
+    }
+
+    /// Holds every node until it is let loose. Terminals stay as free as they are.
+    pub fn hold(&mut self) {
+        for node in self.skeleton.node_ids().filter(|&n| self.adjacency.valence(n) > 1) {
+            self.leash[node.index()] = 0.0;
+            self.mobility[node.index()] = 0.0;
+        }
+    }
+
+    /// Lets a node go so far from its origin, unless it is a terminal.
+    pub fn loosen(&mut self, node: NodeId, way: f64) {
+        if self.adjacency.valence(node) > 1 {
+            self.leash[node.index()] = way.min(self.furthest);
+            self.mobility[node.index()] = readiness(self.skeleton.node(node).radius, self.unit);
+        }
     }
 
     fn keep(&self, edge: EdgeId) -> f64 {
@@ -137,7 +153,7 @@ impl Frame {
     /// Finds again who is joined to whom and where vessels turn back, after nodes were put in or moved.
     pub fn rejoin(&mut self) {
         self.adjacency = self.skeleton.adjacency();
-        for (fold, now) in self.is_fold.iter_mut().zip(find_folds(&self.skeleton, &self.adjacency)) {
+        for (fold, now) in self.is_fold.iter_mut().zip(self.skeleton.folds(&self.adjacency)) {
             *fold |= now;
         }
         self.chains = self.find_chains();
@@ -185,13 +201,4 @@ impl Frame {
 /// thick one cannot, and what the thick one has to go is little for its size.
 fn readiness(radius: f64, unit: f64) -> f64 {
     (radius / unit).sqrt()
-}
-
-/// Nodes of valence 2 at which the vessel turns back.
-pub(super) fn find_folds(skeleton: &Skeleton, adjacency: &Adjacency) -> Vec<bool> {
-    let folds = skeleton.node_ids().map(|n| match adjacency.edges(n) {
-        &[e, f] => skeleton.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
-        _ => false,
-    });
-    folds.collect()
 }

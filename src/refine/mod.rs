@@ -6,6 +6,7 @@ mod crowd;
 mod figures;
 mod forces;
 mod frame;
+mod leash;
 mod params;
 mod progress;
 mod push;
@@ -19,7 +20,7 @@ mod tests;
 
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
-pub use params::{Crowded, RefineError, RefineParams, Residual};
+pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
 pub use progress::{Displacement, Progress, Sample};
 pub use residual::{ResidualReport, Treatment};
 
@@ -27,6 +28,7 @@ pub use split::split;
 
 use crate::geometry::Point3;
 use crate::skeleton::Skeleton;
+use leash::Leashes;
 use serde::Serialize;
 
 /// A refined skeleton.
@@ -102,12 +104,14 @@ pub struct RefineReport {
 pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progress) -> Result<Refined, RefineError> {
     params.check()?;
     given.check()?;
+    let leashes = Leashes::of(params.freedom, given);
+    let params = &if leashes.is_some() { unlike_grown(params) } else { params.clone() };
     let given_figures = Figures::of(given);
     let (mut start, splits) = split(given);
     let mut origin: Vec<Point3> = start.nodes.iter().map(|n| n.position).collect();
-    let crowded = crowd::treat(&mut start, &mut origin, params);
+    let crowded = crowd::treat(&mut start, &mut origin, params, leashes.is_none());
     let split_figures = Figures::of(&start);
-    let moved = solve::solve(&start, &given_figures, params, progress)?;
+    let moved = solve::solve(&start, &given_figures, params, leashes, progress)?;
     let chosen = moved.best.as_ref().map(|best| best.iteration);
     let bends = moved.best.as_ref().map_or(0, |best| best.bends);
     let (mut skeleton, mut origin) = match moved.best {
@@ -136,6 +140,13 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progre
         history: moved.history,
     };
     Ok(Refined { skeleton, origin, report })
+}
+
+/// In polylines pieces that follow each other count as far pairs: nothing that is to be held.
+fn unlike_grown(params: &RefineParams) -> RefineParams {
+    let mut params = params.clone();
+    params.hold.retain(|&metric| metric != Metric::FarPairs);
+    params
 }
 
 /// Treats what is left; undone when shrinking made it worse than the input in what is to be held.

@@ -33,6 +33,22 @@ pub enum Crowded {
     Merge,
 }
 
+/// How freely the nodes of a network move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Freedom {
+    /// As in a measured network where vessels are polylines, else as in a grown one.
+    #[default]
+    Auto,
+    /// Nothing moves but what overlaps, by a radius of the node; further only where an overlap is not parted by that.
+    Measured,
+    /// Nothing moves but what overlaps, by so many radii of the node at most.
+    Radii(f64),
+    /// As the paper has it: vessels are lengthened and opened, too, so that they can be cut.
+    Grown,
+}
+
 /// How a skeleton is refined. Lengths are in the paper's unit (`unit` of the report: the length in which the median
 /// radius of an edge is 0.448) or in radii, so that the unit of the file makes no difference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -53,6 +69,8 @@ pub struct RefineParams {
     pub free_terminals: f64,
     /// How far any node may go from where it was, in the paper's unit.
     pub furthest: f64,
+    /// How freely nodes move.
+    pub freedom: Freedom,
     /// Vessels that are stuck get a bend: a new node of valence 2.
     pub bends: bool,
     /// What is done about terminals that are too close to each other.
@@ -80,6 +98,7 @@ impl Default for RefineParams {
             clearance: 1.2,
             free_terminals: 0.0,
             furthest: 21.0,
+            freedom: Freedom::Auto,
             bends: true,
             crowded: Crowded::Part,
             hold: vec![Metric::Overlaps, Metric::FarPairs],
@@ -127,7 +146,11 @@ impl RefineParams {
             ("the largest shrinking", self.shrink, 0.0, 0.3, "from 0 to 0.3"),
             ("rho", self.rho, 2.5, 64.0, "from 2.5 to 64"),
         ];
-        for (name, value, low, high, expected) in all {
+        let way = match self.freedom {
+            Freedom::Radii(radii) => Some(("the way that a node may go", radii, 0.0, f64::MAX, at_least_0)),
+            _ => None,
+        };
+        for (name, value, low, high, expected) in all.into_iter().chain(way) {
             if !(low..=high).contains(&value) {
                 return Err(RefineError::Parameter { name, value, expected });
             }

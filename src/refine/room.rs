@@ -27,6 +27,15 @@ pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
     all
 }
 
+/// What pieces of polylines ask for that have become shorter.
+pub(super) fn lengths(frame: &Frame) -> Vec<Push> {
+    let mut out = Vec::new();
+    for &edge in frame.chains.iter().filter(|chain| chain.edges.len() > 1).flat_map(|chain| &chain.edges) {
+        keep_length(frame, edge, &mut out);
+    }
+    out
+}
+
 /// The length that a vessel needs: to leave the others at its junctions and have room for a cut or a cap; at least what
 /// equation 11 asks. None for a loop at one node.
 pub(super) fn need(frame: &Frame, chain: &Chain) -> Option<f64> {

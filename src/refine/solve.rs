@@ -5,6 +5,7 @@ use super::contact::Contacts;
 use super::figures::Figures;
 use super::forces::{self, Rates};
 use super::frame::Frame;
+use super::leash::Leashes;
 use super::params::{RefineError, RefineParams};
 use super::progress::{Displacement, Progress, Sample};
 use super::push::Push;
@@ -49,16 +50,21 @@ pub(super) fn solve(
     skeleton: &Skeleton,
     given: &Figures,
     params: &RefineParams,
+    leashes: Option<Leashes>,
     progress: &mut dyn Progress,
 ) -> Result<Moved, RefineError> {
-    let mut solver = Solver::new(skeleton, params);
+    let mut solver = Solver::new(skeleton, params, leashes);
     let start = solver.sample(0, 0);
     progress.step(0, params.iterations, Some(&start));
     let mut history = vec![start];
-    let with_forces = (params.forces * params.iterations as f64).round() as usize;
+    let with_forces = if leashes.is_some() { 0.0 } else { params.forces * params.iterations as f64 }.round() as usize;
     let between = ((BENDS * params.iterations as f64).round() as usize).max(1);
     let mut best = Best { given: *given, score: None, improved: 0, state: None };
-    best.offer(&solver, 0);
+    let overlaps = best.offer(&solver, 0);
+    if !solver.loosen(&overlaps) {
+        progress.step(params.iterations, params.iterations, None);
+        return Ok(Moved { best: best.state, history, unit: solver.unit });
+    }
     for iteration in 1..=params.iterations {
         if progress.is_cancelled() {
             return Err(RefineError::Cancelled);
@@ -106,7 +112,7 @@ impl Best {
     /// Keeps the solver's state if it is better than what there is, and not worse than the input in what is to be held.
     fn offer(&mut self, solver: &Solver, iteration: usize) -> Overlaps {
         let (figures, overlaps) = Figures::with_overlaps(&solver.frame.skeleton);
-        let score = figures.score();
+        let score = if solver.leashes.is_some() { [figures.overlaps, 0, 0, 0] } else { figures.score() };
         let held = figures.worse_than(&self.given, &solver.params.hold).is_empty();
         if held && self.score.is_none_or(|best| score <= best) {
             if self.score != Some(score) {
@@ -132,6 +138,8 @@ impl Best {
 
 struct Solver<'a> {
     params: &'a RefineParams,
+    /// How far nodes may go where nothing is to move but what overlaps.
+    leashes: Option<Leashes>,
     frame: Frame,
     unit: f64,
     contacts: Contacts,
@@ -143,11 +151,15 @@ struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(skeleton: &Skeleton, params: &'a RefineParams) -> Self {
+    fn new(skeleton: &Skeleton, params: &'a RefineParams, leashes: Option<Leashes>) -> Self {
         let unit = paper_unit(skeleton);
-        let frame = Frame::new(skeleton.clone(), params.free_terminals, params.furthest * unit, unit);
+        let mut frame = Frame::new(skeleton.clone(), params.free_terminals, params.furthest * unit, unit);
+        if leashes.is_some() {
+            frame.hold();
+        }
         let mut solver = Self {
             params,
+            leashes,
             frame,
             unit,
             contacts: Contacts::default(),
@@ -192,7 +204,8 @@ impl<'a> Solver<'a> {
             add(&forces::pushes(&self.frame, &self.contacts, &barrier, rates));
         }
         let contacts = self.contacts.pushes(&self.frame, self.params.clearance);
-        let room = room::pushes(&self.frame);
+        // Where nothing is to move but what overlaps, no vessel is lengthened or opened for the sake of a cut.
+        let room = if self.leashes.is_some() { room::lengths(&self.frame) } else { room::pushes(&self.frame) };
         add(&contacts);
         add(&room);
         for (sum, &count) in sum.iter_mut().zip(&count) {
@@ -233,8 +246,16 @@ impl<'a> Solver<'a> {
         let bends = if self.params.bends { add_bends(&mut self.frame, overlaps) } else { 0 };
         self.bends += bends;
         self.frame.rejoin();
+        self.loosen(overlaps);
         self.restart();
         bends
+    }
+
+    /// Lets loose what overlaps, where nothing else is to move; false when nothing is to move at all.
+    fn loosen(&mut self, overlaps: &Overlaps) -> bool {
+        let Some(leashes) = self.leashes else { return true };
+        leashes.loosen(&mut self.frame, overlaps);
+        !overlaps.pairs.is_empty()
     }
 
     fn sample(&self, iteration: usize, asked: usize) -> Sample {

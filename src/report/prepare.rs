@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::prepare::{Fault, PrepareReport, Size, SpurReason};
+use crate::prepare::{Fault, PrepareReport, Size, SpurReason, TouchedBy};
 
 /// A line of the table of sizes.
 type Row = (&'static str, fn(&Size) -> usize);
@@ -39,6 +39,16 @@ pub fn text(report: &PrepareReport) -> String {
     list(&mut out, "branch points joined within one lumen (--keep-joints)", joined);
     let loops = report.joined.loops.iter().map(|l| format!("{} to {}: length {:.4}", l.nodes[0], l.nodes[1], l.length));
     list(&mut out, "loops closed within their own lumen (--keep-joints)", loops);
+    let tips = report.touching.iter().map(|t| {
+        let done = match t.done {
+            TouchedBy::Retracted { by } => format!("drawn back by {by:.4}"),
+            TouchedBy::Joined => "joined".into(),
+            TouchedBy::Removed => "taken off, as no room for a cap is left on its vessel".into(),
+            TouchedBy::Left => "left, as its vessel runs along the other".into(),
+        };
+        format!("{} at {}-{}: {done}", t.tip, t.with[0], t.with[1])
+    });
+    list(&mut out, "tips that end in or on another vessel (--touching)", tips);
     let islands = report.islands.iter().map(|i| format!("at {}: {} nodes, length {:.4}", i.node, i.nodes, i.length));
     list(&mut out, "islands dropped (--drop-islands)", islands);
     let r = &report.resample;

@@ -11,6 +11,7 @@ mod error;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod graph;
+mod measured;
 mod metrics;
 mod overlap;
 pub mod resolution;

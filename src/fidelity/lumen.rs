@@ -1,0 +1,106 @@
+//! Volume of the given lumen: of the union of its tubes.
+//!
+//! Each tube is sampled; a sample that lies in n tubes counts for 1/n of its share, so that what tubes have in common is
+//! counted once. At inner nodes a ball fills the wedge between tubes that meet at an angle.
+
+use super::Tubes;
+use crate::geometry::{Aabb, Point3, Section, point_segment};
+use crate::skeleton::{Adjacency, EdgeId, NodeId, Skeleton};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Samples over all tubes, about, and bounds of those in each.
+const SAMPLES: usize = 1 << 20;
+const LEAST: usize = 8;
+const MOST: usize = 512;
+
+/// Steps of the additive recurrence that fills a cube evenly (Roberts 2018): powers of the inverse of the root of
+/// x⁴ = x + 1.
+const EVEN: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_700_477_901_970_3];
+
+/// Volume of the union of the tubes and of the balls at the inner nodes of a network.
+pub(super) fn volume(network: &Skeleton, tubes: &Tubes) -> f64 {
+    let adjacency = network.adjacency();
+    let lumen = Lumen { network, tubes, adjacency: &adjacency };
+    let count = (SAMPLES / network.edges.len().max(1)).clamp(LEAST, MOST);
+    let edges: Vec<EdgeId> = network.edge_ids().collect();
+    let nodes: Vec<NodeId> = network.node_ids().filter(|&n| adjacency.valence(n) > 1).collect();
+    let of_tubes: Vec<f64> = edges.par_iter().with_min_len(64).map(|&e| lumen.of_tube(e, count)).collect();
+    let of_balls: Vec<f64> = nodes.par_iter().with_min_len(64).map(|&n| lumen.of_ball(n, count)).collect();
+    of_tubes.iter().sum::<f64>() + of_balls.iter().sum::<f64>()
+}
+
+struct Lumen<'a> {
+    network: &'a Skeleton,
+    tubes: &'a Tubes,
+    adjacency: &'a Adjacency,
+}
+
+impl Lumen<'_> {
+    /// What a tube adds: its volume, less what is counted for others.
+    fn of_tube(&self, edge: EdgeId, count: usize) -> f64 {
+        let tube = self.network.tube(edge);
+        let (length, [ra, rb]) = (tube.length(), [tube.ra, tube.rb]);
+        let Some(axis) = (tube.b - tube.a).try_normalize(0.0) else { return 0.0 };
+        let (u, w) = Section { origin: tube.a, axis, radius: ra }.frame();
+        let mut sum = 0.0;
+        for [x, y, z] in evenly(count) {
+            // Evenly along the axis and over each section; a sample stands for its section's area.
+            let radius = tube.radius(x);
+            let (r, angle) = (radius * y.sqrt(), TAU * z);
+            let point = tube.point(x) + u * (r * angle.cos()) + w * (r * angle.sin());
+            sum += radius * radius / self.holders(&point, ra.max(rb));
+        }
+        PI * length * sum / count as f64
+    }
+
+    fn of_ball(&self, node: NodeId, count: usize) -> f64 {
+        let (center, radius) = (self.network.node(node).position, self.ball(node));
+        let mut sum = 0.0;
+        for [x, y, z] in evenly(count) {
+            let (r, height, angle) = (radius * x.cbrt(), 2.0 * y - 1.0, TAU * z);
+            let across = (1.0 - height * height).sqrt();
+            let way = crate::geometry::Vec3::new(across * angle.cos(), across * angle.sin(), height);
+            sum += 1.0 / self.holders(&(center + way * r), radius);
+        }
+        4.0 / 3.0 * PI * radius.powi(3) * sum / count as f64
+    }
+
+    /// Radius of the ball at an inner node: of its second thickest vessel, which is the thickest that needs a ball.
+    fn ball(&self, node: NodeId) -> f64 {
+        let radii = self.adjacency.edges(node).iter().map(|&e| self.network.edge(e).radii[self.network.edge(e).end(node)]);
+        let (mut first, mut second) = (0.0_f64, 0.0_f64);
+        for r in radii {
+            (first, second) = if r > first { (r, first) } else { (first, second.max(r)) };
+        }
+        second
+    }
+
+    /// How many tubes and balls hold a point, 1 at least.
+    fn holders(&self, point: &Point3, reach: f64) -> f64 {
+        let mut count = 0_u32;
+        let mut balls: [NodeId; 32] = [NodeId(u32::MAX); 32];
+        let mut seen = 0;
+        self.tubes.tree.query(&Aabb::of_points([point]).grown(1e-3 * reach), |id| {
+            let edge = EdgeId(id);
+            let tube = &self.tubes.list[id as usize];
+            let (t, distance) = point_segment(point, &tube.a, &tube.b);
+            // Between its end planes: beyond them there are balls.
+            let between = (point - tube.a).dot(&(tube.b - tube.a)) >= 0.0 && (point - tube.b).dot(&(tube.a - tube.b)) >= 0.0;
+            count += u32::from(between && distance <= tube.radius(t));
+            for node in self.network.edge(edge).nodes {
+                if seen < balls.len() && self.adjacency.valence(node) > 1 && !balls[..seen].contains(&node) {
+                    (balls[seen], seen) = (node, seen + 1);
+                    let off = (point - self.network.node(node).position).norm();
+                    count += u32::from(off <= self.ball(node));
+                }
+            }
+        });
+        f64::from(count.max(1))
+    }
+}
+
+/// Points that fill the unit cube evenly.
+fn evenly(count: usize) -> impl Iterator<Item = [f64; 3]> {
+    (0..count).map(|i| EVEN.map(|step| (0.5 + step * (i + 1) as f64).fract()))
+}

@@ -1,0 +1,128 @@
+//! Floor 3: whether a mesh is that of the network it was made for.
+//!
+//! A mesh may be sound and yet not this network's: an axis bent out of shape, a lumen that swelled, a wall that is
+//! nowhere near the radius. So the network as it was given is held against the network that was meshed (its axis, its
+//! volume) and against the wall.
+
+mod axis;
+mod lumen;
+mod wall;
+
+use crate::geometry::{Aabb, Bvh, Point3, Tube, point_segment};
+use crate::mesh::source::MeshSource;
+use crate::skeleton::{EdgeId, Skeleton};
+use serde::Serialize;
+use std::io;
+
+pub use axis::{Displaced, Displacements};
+
+/// How a quantity is spread over what was looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// How many places were looked at.
+    pub count: usize,
+    /// The median.
+    pub median: f64,
+    /// The 99th percentile.
+    pub p99: f64,
+    /// The largest.
+    pub worst: f64,
+}
+
+impl Spread {
+    fn of(mut values: Vec<f64>) -> Self {
+        values.sort_unstable_by(f64::total_cmp);
+        let Some(last) = values.len().checked_sub(1) else { return Self::default() };
+        let at = |share: f64| values[(share * last as f64).round() as usize];
+        Self { count: values.len(), median: at(0.5), p99: at(0.99), worst: at(1.0) }
+    }
+}
+
+/// What a mesh keeps of its network.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Fidelity {
+    /// From the given axis to the axis that was meshed, in radii of the given vessel.
+    pub axis: Displacements,
+    /// Distance of the wall from the given tubes, as a share of the radius: |d − r| / r at points of the wall.
+    pub wall: Spread,
+    /// Volume of the given lumen: the union of its tubes, by sampling.
+    pub lumen: f64,
+    /// Volume of the mesh.
+    pub volume: f64,
+}
+
+impl Fidelity {
+    /// Holds a mesh against its network.
+    ///
+    /// `given`: the network as it was read, with usable radii. `meshed`: the one that was meshed. `volume`: that of the
+    /// mesh.
+    ///
+    /// # Errors
+    /// When the mesh cannot be read.
+    pub fn of(given: &Skeleton, meshed: &Skeleton, mesh: &dyn MeshSource, volume: f64) -> io::Result<Self> {
+        let tubes = Tubes::of(given);
+        let axis = Displacements::of(given, &Tubes::of(meshed));
+        Ok(Self { axis, wall: wall::spread(&tubes, mesh)?, lumen: lumen::volume(given, &tubes), volume })
+    }
+
+    /// Volume of the mesh over that of the given lumen, less 1.
+    pub fn swelling(&self) -> f64 {
+        if self.lumen > 0.0 { self.volume / self.lumen - 1.0 } else { 0.0 }
+    }
+}
+
+/// The tubes of a network, to be found by place.
+struct Tubes {
+    list: Vec<Tube>,
+    tree: Bvh,
+    /// A length in which the network is large: no place of it is further from another one.
+    extent: f64,
+}
+
+/// What is nearest to a place.
+#[derive(Clone, Copy)]
+struct Nearest {
+    edge: EdgeId,
+    /// Distance of the axis.
+    distance: f64,
+    /// Radius there.
+    radius: f64,
+}
+
+impl Tubes {
+    fn of(skeleton: &Skeleton) -> Self {
+        let list: Vec<Tube> = skeleton.edge_ids().map(|e| skeleton.tube(e)).collect();
+        let boxes: Vec<Aabb> = list.iter().map(|t| Aabb::of_points([&t.a, &t.b]).grown(t.max_radius())).collect();
+        let all = boxes.iter().fold(Aabb::EMPTY, |sum, aabb| sum.union(aabb));
+        Self { tree: Bvh::new(&boxes), list, extent: (all.max - all.min).norm() }
+    }
+
+    /// The tube of which `measure` (distance of the axis, radius) is least among those near a place; `reach` is how far
+    /// off it is looked for first.
+    fn nearest(&self, place: &Point3, reach: f64, measure: impl Fn(f64, f64) -> f64) -> Option<Nearest> {
+        let mut reach = reach.max(f64::MIN_POSITIVE);
+        loop {
+            let mut best: Option<(f64, Nearest)> = None;
+            self.tree.query(&Aabb::of_points([place]).grown(reach), |id| {
+                let tube = &self.list[id as usize];
+                let (t, distance) = point_segment(place, &tube.a, &tube.b);
+                let found = Nearest { edge: EdgeId(id), distance, radius: tube.radius(t) };
+                let value = measure(distance, found.radius);
+                if best.is_none_or(|(b, n)| value < b || value <= b && found.edge < n.edge) {
+                    best = Some((value, found));
+                }
+            });
+            // What lies outside of the box is further from every tube's wall than its half.
+            if let Some((value, nearest)) = best
+                && value <= reach
+            {
+                return Some(nearest);
+            }
+            if reach > 2.0 * self.extent {
+                return best.map(|(_, nearest)| nearest);
+            }
+            reach *= 2.0;
+        }
+    }
+}

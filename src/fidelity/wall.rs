@@ -1,0 +1,44 @@
+//! The wall held against the given tubes.
+
+use super::{Spread, Tubes};
+use crate::geometry::Point3;
+use crate::mesh::WALL;
+use crate::mesh::source::MeshSource;
+use rayon::prelude::*;
+use std::io;
+
+/// Parts that are read, at most, and points of the wall that are looked at, about.
+const PARTS: u32 = 2_000;
+const POINTS: usize = 200_000;
+
+/// |d − r| / r at points of the wall, d the distance from the axis of the tube whose wall is nearest.
+pub(super) fn spread(tubes: &Tubes, mesh: &dyn MeshSource) -> io::Result<Spread> {
+    // The first of every so many parts, and of them each so many points: evenly over the mesh.
+    let stride = mesh.parts().div_ceil(PARTS).max(1);
+    let looked_at = mesh.counts().points / stride as usize;
+    let every = looked_at.div_ceil(POINTS).max(1);
+    let parts: Vec<u32> = (0..mesh.parts()).step_by(stride as usize).collect();
+    let found: Vec<Vec<f64>> =
+        parts.par_iter().map(|&part| of_part(tubes, mesh, part, every)).collect::<io::Result<_>>()?;
+    Ok(Spread::of(found.concat()))
+}
+
+fn of_part(tubes: &Tubes, mesh: &dyn MeshSource, part: u32, every: usize) -> io::Result<Vec<f64>> {
+    let boundary = mesh.boundary(part)?;
+    let mut ids: Vec<u32> = Vec::new();
+    for (i, face) in boundary.faces.iter().enumerate() {
+        if boundary.patches.get(i).is_none_or(|&patch| patch == WALL) {
+            ids.extend(face);
+        }
+    }
+    ids.sort_unstable();
+    ids.dedup();
+    let ids: Vec<u32> = ids.into_iter().step_by(every).collect();
+    let points: Vec<Point3> = mesh.points_of(&ids)?;
+    Ok(points.iter().filter_map(|p| error(tubes, p)).collect())
+}
+
+fn error(tubes: &Tubes, point: &Point3) -> Option<f64> {
+    let near = tubes.nearest(point, 0.0, |distance, radius| distance - radius)?;
+    Some((near.distance - near.radius).abs() / near.radius)
+}

@@ -1,0 +1,302 @@
+//! Tips that end in or on another vessel: no cap has room there.
+
+use crate::geometry::{Aabb, Bvh, Point3, point_segment};
+use crate::skeleton::{Adjacency, BranchId, Branches, Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
+use serde::Serialize;
+
+/// What is done about a tip that touches another vessel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Touching {
+    /// It stays.
+    Keep,
+    /// It is drawn back along its own vessel until its cap has room.
+    #[default]
+    Retract,
+    /// It is joined to the other vessel.
+    Join,
+}
+
+/// What became of a tip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "done", rename_all = "snake_case")]
+pub enum TouchedBy {
+    /// It was drawn back by this much, in the unit of the network.
+    Retracted {
+        /// How far.
+        by: f64,
+    },
+    /// It was joined to the other vessel.
+    Joined,
+    /// Its vessel had no room for a cap anywhere, and is gone.
+    Removed,
+    /// It stays: its vessel runs along the other one for longer than a tip does.
+    Left,
+}
+
+/// A tip that touches another vessel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TouchingTip {
+    /// The tip.
+    pub tip: u32,
+    /// The nodes of the edge that it touches.
+    pub with: [u32; 2],
+    /// What was done.
+    #[serde(flatten)]
+    pub done: TouchedBy,
+}
+
+/// A cap has room this far from the axis of another vessel, in sums of the radii: closer, walls fuse.
+const CLEAR: f64 = 1.15;
+/// How far a tip is drawn back at most, in sums of the radii.
+const FURTHEST: f64 = 4.0;
+/// What is left of a vessel that is drawn back, in radii of the branch point that it leaves; less is a spur.
+const LEFT: f64 = 2.0;
+/// Steps in which a tip is drawn back, in its radii.
+const STEP: f64 = 0.25;
+/// Points closer than this along the skeleton, in radii, belong to one place: a tip does not touch its own vessel.
+const OWN: f64 = 6.0;
+
+/// Treats all tips, in the order of their numbers.
+pub(super) fn treat(
+    skeleton: &Skeleton,
+    how: Touching,
+) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
+    if how == Touching::Keep {
+        return Ok((skeleton.clone(), Vec::new()));
+    }
+    let mut work = Work::new(skeleton);
+    let mut found = Vec::new();
+    for tip in work.adjacency.terminals() {
+        if let Some(done) = work.tip(tip, how) {
+            found.push(done);
+        }
+    }
+    if found.iter().all(|f| f.done == TouchedBy::Left) {
+        return Ok((skeleton.clone(), found));
+    }
+    Ok((clean(&work.result())?.0, found))
+}
+
+/// The network while tips are treated. Vessels only become shorter, so that boxes hold what they held.
+struct Work<'a> {
+    given: &'a Skeleton,
+    adjacency: Adjacency,
+    branches: Branches,
+    tree: Bvh,
+    nodes: Vec<Node>,
+    gone: Vec<bool>,
+    /// Edges that join a tip to a place on another edge.
+    joints: Vec<(NodeId, EdgeId, f64)>,
+}
+
+/// A branch from a tip of it on, as far as it is there.
+struct Way {
+    tip: NodeId,
+    branch: BranchId,
+    edges: Vec<EdgeId>,
+    length: f64,
+    /// The branch point at its other end, if it has one.
+    from: Option<NodeId>,
+}
+
+/// Where along its vessel a tip is looked at.
+struct Stand {
+    /// How far from the tip.
+    arc: f64,
+    /// Index of the edge, counted from the tip.
+    piece: usize,
+    point: Point3,
+    radius: f64,
+}
+
+impl<'a> Work<'a> {
+    fn new(given: &'a Skeleton) -> Self {
+        let boxes = given.edge_ids().map(|e| {
+            let tube = given.tube(e);
+            Aabb::of_points([&tube.a, &tube.b]).grown(CLEAR * tube.max_radius())
+        });
+        let adjacency = given.adjacency();
+        let branches = given.branches(&adjacency);
+        let tree = Bvh::new(&boxes.collect::<Vec<_>>());
+        Self {
+            given,
+            adjacency,
+            branches,
+            tree,
+            nodes: given.nodes.clone(),
+            gone: vec![false; given.edges.len()],
+            joints: Vec::new(),
+        }
+    }
+
+    fn tip(&mut self, tip: NodeId, how: Touching) -> Option<TouchingTip> {
+        let way = self.way(tip)?;
+        let first = self.given.edge(way.edges[0]);
+        let radius = first.radii[first.end(tip)];
+        let at_tip = Stand { arc: 0.0, piece: 0, point: self.given.node(tip).position, radius };
+        let (with, other) = self.in_the_way(&way, &at_tip)?;
+        let name = |n: NodeId| self.given.node(n).original;
+        let names = self.given.edge(with).nodes.map(name);
+        let done = match how {
+            Touching::Join => self.join(tip, with),
+            _ => self.retract(&way, radius + other),
+        };
+        Some(TouchingTip { tip: name(tip), with: names, done })
+    }
+
+    /// The way from a tip; none when nothing is left of its branch.
+    fn way(&self, tip: NodeId) -> Option<Way> {
+        let (id, _) = self.branches.of_edge[self.adjacency.edges(tip).first()?.index()];
+        let branch = &self.branches.list[id.index()];
+        let mut edges = branch.edges.clone();
+        let [mut near, mut far] = branch.ends();
+        if near != tip {
+            edges.reverse();
+            (near, far) = (far, near);
+        }
+        // Another tip of the same vessel may have been drawn back.
+        let there = edges.iter().take_while(|e| !self.gone[e.index()]).count();
+        edges.truncate(there);
+        let length = edges.iter().map(|&e| self.given.length(e)).sum();
+        let from = (self.adjacency.valence(far) > 2).then_some(far);
+        (!edges.is_empty() && near == tip).then_some(Way { tip, branch: id, edges, length, from })
+    }
+
+    /// The nearest vessel that leaves no room for a cap at a place of a way, and its radius there.
+    fn in_the_way(&self, way: &Way, stand: &Stand) -> Option<(EdgeId, f64)> {
+        let reach = Aabb::of_points([&stand.point]).grown(CLEAR * stand.radius);
+        let mut nearest: Option<(f64, EdgeId, f64)> = None;
+        self.tree.query(&reach, |id| {
+            let edge = EdgeId(id);
+            if self.gone[edge.index()] {
+                return;
+            }
+            let [a, b] = self.given.edge(edge).nodes.map(|n| self.nodes[n.index()].position);
+            let (t, distance) = point_segment(&stand.point, &a, &b);
+            let radii = self.given.edge(edge).radii;
+            let radius = radii[0] + (radii[1] - radii[0]) * t;
+            let gap = distance - CLEAR * (stand.radius + radius);
+            let is_nearer = nearest.is_none_or(|(g, e, _)| gap < g || gap <= g && edge < e);
+            if gap < 0.0 && is_nearer && !self.is_own(way, stand, edge, radius) {
+                nearest = Some((gap, edge, radius));
+            }
+        });
+        nearest.map(|(_, edge, radius)| (edge, radius))
+    }
+
+    /// Whether an edge belongs to the place where a way is looked at: it is near along the branch, or about the branch point
+    /// that it comes from.
+    fn is_own(&self, way: &Way, stand: &Stand, edge: EdgeId, radius: f64) -> bool {
+        let near = OWN * stand.radius.max(radius);
+        if self.branches.of_edge[edge.index()].0 == way.branch {
+            let before: f64 = way.edges.iter().take_while(|&&e| e != edge).map(|&e| self.given.length(e)).sum();
+            return (before - stand.arc).abs() <= near + self.given.length(edge);
+        }
+        let ends = self.given.edge(edge).nodes;
+        way.from.is_some_and(|from| {
+            let at = self.given.node(from).position;
+            let off = ends.map(|n| (self.given.node(n).position - at).norm());
+            ends.contains(&from) || way.length - stand.arc + off[0].min(off[1]) <= near
+        })
+    }
+
+    fn join(&mut self, tip: NodeId, with: EdgeId) -> TouchedBy {
+        let [a, b] = self.given.edge(with).nodes.map(|n| self.nodes[n.index()].position);
+        let (t, _) = point_segment(&self.given.node(tip).position, &a, &b);
+        self.joints.push((tip, with, t));
+        TouchedBy::Joined
+    }
+
+    /// Draws a tip back to the first place where a cap has room.
+    fn retract(&mut self, way: &Way, radii: f64) -> TouchedBy {
+        let last = way.edges[way.edges.len() - 1];
+        let keep = LEFT * self.given.tube(last).max_radius();
+        for stand in self.stands(way) {
+            if stand.arc > way.length - keep {
+                break;
+            }
+            if stand.arc > FURTHEST * radii {
+                return TouchedBy::Left;
+            }
+            if self.in_the_way(way, &stand).is_none() {
+                self.cut(way, &stand);
+                return TouchedBy::Retracted { by: stand.arc };
+            }
+        }
+        // Nothing of a vessel that hangs on another one is left but a spur; one that hangs on nothing is no spur.
+        if way.from.is_none() || way.length > FURTHEST * radii + keep {
+            return TouchedBy::Left;
+        }
+        way.edges.iter().for_each(|e| self.gone[e.index()] = true);
+        TouchedBy::Removed
+    }
+
+    /// Places along a way, from its tip on.
+    fn stands(&self, way: &Way) -> Vec<Stand> {
+        let mut stands = Vec::new();
+        let (mut arc, mut node) = (0.0, way.tip);
+        for (piece, &id) in way.edges.iter().enumerate() {
+            let edge = self.given.edge(id);
+            let [from, to] = [edge.end(node), 1 - edge.end(node)];
+            let [p, q] = [from, to].map(|i| self.given.node(edge.nodes[i]).position);
+            let [r, s] = [from, to].map(|i| edge.radii[i]);
+            let length = (q - p).norm();
+            let count = (length / (STEP * r.min(s))).ceil().clamp(1.0, 256.0);
+            stands.extend((0..count as usize).map(|k| {
+                let t = k as f64 / count;
+                Stand { arc: arc + t * length, piece, point: p + (q - p) * t, radius: r + (s - r) * t }
+            }));
+            arc += length;
+            node = edge.other(node);
+        }
+        stands
+    }
+
+    /// Takes away what of a way lies before a place and puts its tip there.
+    fn cut(&mut self, way: &Way, stand: &Stand) {
+        let mut node = way.tip;
+        for &edge in &way.edges[..stand.piece] {
+            self.gone[edge.index()] = true;
+            node = self.given.edge(edge).other(node);
+        }
+        // The node before the place becomes the tip, and keeps the number of the tip that was.
+        let original = self.nodes[way.tip.index()].original;
+        self.nodes[node.index()] = Node { position: stand.point, radius: stand.radius, original };
+    }
+
+    /// The network with all changes.
+    fn result(self) -> Skeleton {
+        let mut skeleton = Skeleton { nodes: self.nodes, edges: Vec::new() };
+        let mut joints = self.joints;
+        joints.sort_by(|a, b| a.1.cmp(&b.1).then(a.2.total_cmp(&b.2)).then(a.0.cmp(&b.0)));
+        let mut joints = joints.into_iter().peekable();
+        for id in self.given.edge_ids() {
+            let mut edge = *self.given.edge(id);
+            for (radius, node) in edge.radii.iter_mut().zip(edge.nodes) {
+                // Where a tip was drawn back the edge has the radius of the place.
+                if skeleton.node(node).position != self.given.node(node).position {
+                    *radius = skeleton.node(node).radius;
+                }
+            }
+            let [a, b] = edge.nodes.map(|n| skeleton.node(n).position);
+            let radii = edge.radii;
+            // Tips that are joined to this edge, in order along it.
+            while let Some((tip, _, t)) = joints.next_if(|j| j.1 == id) {
+                let radius = radii[0] + (radii[1] - radii[0]) * t;
+                let foot = NodeId(skeleton.nodes.len() as u32);
+                let original = skeleton.node(edge.nodes[usize::from(t > 0.5)]).original;
+                skeleton.nodes.push(Node { position: a + (b - a) * t, radius, original });
+                let own = skeleton.node(tip).radius;
+                skeleton.edges.push(Edge { nodes: [tip, foot], radii: [own; 2] });
+                skeleton.edges.push(Edge { nodes: [edge.nodes[0], foot], radii: [edge.radii[0], radius] });
+                edge = Edge { nodes: [foot, edge.nodes[1]], radii: [radius, edge.radii[1]] };
+            }
+            if !self.gone[id.index()] {
+                skeleton.edges.push(edge);
+            }
+        }
+        skeleton
+    }
+}

@@ -1,0 +1,84 @@
+//! How far the nodes of a measured network may go: nothing moves but what overlaps, and that no further than it has to.
+
+use super::frame::Frame;
+use super::params::Freedom;
+use crate::skeleton::{NodeId, Overlaps, Skeleton};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// How far a node of a polyline may go, in its radii, unless an overlap demands more.
+const USUAL: f64 = 1.0;
+/// Along the skeleton vessels give way this far from where they overlap, in sums of the radii there.
+const REACH: f64 = 4.0;
+/// The furthest that an overlap can demand, in sums of its radii: a vessel that crosses another one's axis has to go one.
+const DEMANDED: f64 = 2.0;
+
+/// How far nodes may go.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leashes {
+    /// At first, in radii of the node.
+    radii: f64,
+    /// Whether vessels that still overlap may go further.
+    grows: bool,
+}
+
+impl Leashes {
+    /// What is asked for; none where nodes are as free as the paper has them.
+    pub(super) fn of(freedom: Freedom, given: &Skeleton) -> Option<Self> {
+        let measured = Self { radii: USUAL, grows: true };
+        match freedom {
+            Freedom::Auto => given.is_measured().then_some(measured),
+            Freedom::Measured => Some(measured),
+            Freedom::Radii(radii) => Some(Self { radii, grows: false }),
+            Freedom::Grown => None,
+        }
+    }
+
+    /// Lets the nodes near overlaps go: at first by so many of their radii, then twice as far each time.
+    pub(super) fn loosen(self, frame: &mut Frame, overlaps: &Overlaps) {
+        let mut seen = vec![false; frame.origin.len()];
+        let mut heap: BinaryHeap<Reached> = BinaryHeap::new();
+        for overlap in &overlaps.pairs {
+            let reached = |node| Reached { left: REACH * overlap.radii, demanded: DEMANDED * overlap.radii, node };
+            heap.extend(overlap.nodes.into_iter().flatten().map(reached));
+        }
+        while let Some(Reached { left, demanded, node }) = heap.pop() {
+            if std::mem::replace(&mut seen[node.index()], true) {
+                continue;
+            }
+            let usual = self.radii * frame.skeleton.node(node).radius;
+            let further = if self.grows { (2.0 * frame.leash[node.index()]).min(demanded) } else { 0.0 };
+            frame.loosen(node, usual.max(further));
+            for &edge in frame.adjacency.edges(node) {
+                let left = left - frame.skeleton.length(edge);
+                let next = frame.skeleton.edge(edge).other(node);
+                if left > 0.0 && !seen[next.index()] {
+                    heap.push(Reached { left, demanded, node: next });
+                }
+            }
+        }
+    }
+}
+
+/// The node with most way left comes first out of a heap.
+#[derive(PartialEq)]
+struct Reached {
+    left: f64,
+    demanded: f64,
+    node: NodeId,
+}
+
+impl Eq for Reached {}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_way = self.left.total_cmp(&other.left).then(other.node.cmp(&self.node));
+        by_way.then(self.demanded.total_cmp(&other.demanded))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
