@@ -25,9 +25,9 @@ mod prepare;
 mod refine;
 mod report;
 mod skeleton;
-mod stitch;
 mod surface;
 pub mod tet;
+mod woven;
 
 pub use geometry::{Point3, Vec3};
 pub use mesh::source::MeshSource;

@@ -11,7 +11,7 @@ use super::stop::{NOTHING_KEPT, Stop};
 use crate::block::{BlockDump, BlockError, Finished};
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh};
 use crate::mesh::quality::TetQuality;
-use crate::pipeline::{Estimate, TooLarge};
+use crate::pipeline::{Estimate, TooLarge, replay};
 use crate::tet::{TetError, Watch};
 
 #[derive(Debug, clap::Args)]
@@ -74,7 +74,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = super::common::thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
     let ask = || stop.is_asked();
-    match pool.install(|| dump.run(&Watch::until(&ask))) {
+    match pool.install(|| replay(&dump, &Watch::until(&ask))) {
         Err(BlockError::Tetrahedra { source: TetError::Cancelled, .. }) => Err(Failure::stopped(NOTHING_KEPT)),
         Err(error) => args.fails_again(&dump, &error),
         Ok(block) => {

@@ -1,7 +1,6 @@
-//! Floor 5: the plan run over all blocks.
+//! Floor 6: the plan run over all blocks.
 
 mod apart;
-mod assemble;
 mod attempts;
 mod blocks;
 mod cures;
@@ -9,6 +8,7 @@ mod describe;
 mod estimate;
 mod make;
 mod observer;
+mod once;
 mod plan;
 mod report;
 mod rounds;
@@ -23,6 +23,8 @@ mod timing;
 mod whole;
 
 pub use estimate::{Estimate, TooLarge};
+#[cfg(feature = "cli")]
+pub use once::replay;
 pub use observer::{Observer, Stage};
 pub use plan::{JointStyle, MeshPlan};
 pub use report::RunReport;

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::io;
 
 use super::apart::{Meetings, hopeful};
-use super::assemble::Assembly;
 use super::attempts::Way;
 use super::blocks::Blocks;
 use super::describe::{Clusters, announce, describe_blocks};
@@ -26,7 +25,7 @@ use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::PartitionError;
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
-use crate::stitch::label::LabelError;
+use crate::woven::{Assembly, LabelError};
 
 /// A mesh in memory, what it has to be, what was found, what was done.
 #[derive(Debug)]
@@ -263,7 +262,7 @@ impl<'a> Joined<'a> {
     fn smoothed(self, observer: &dyn Observer, clock: &mut Clock) -> Result<Meshed, RunError> {
         let Self { whole, expectation, mut report, .. } = self;
         ask(observer)?;
-        let mut assembly = clock.time(observer, Stage::Merge, 0, || Assembly::new(&whole))?;
+        let mut assembly = clock.time(observer, Stage::Merge, 0, || Assembly::new(&whole, whole.joint_vertices()?))?;
         report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
         let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
         ask(observer)?;

@@ -262,7 +262,7 @@ fn a_block_that_fails_is_named_and_dumped() {
         let dump = std::fs::read(failed.dump.as_ref().expect("a dump")).expect("readable");
         let again = crate::block::BlockDump::from_json(&dump).expect("a dump");
         assert_eq!((&again.nodes, again.name()), (&failed.nodes, failed.block.clone()));
-        let again = again.run(&crate::tet::Watch::NOBODY);
+        let again = super::once::replay(&again, &crate::tet::Watch::NOBODY);
         assert_eq!(again.expect_err("fails again").to_string(), failed.reason);
     }
 }

@@ -6,7 +6,7 @@ use crate::geometry::Point3;
 use crate::mesh::adjacency::boundary_faces;
 use crate::mesh::quality::TetQuality;
 use crate::mesh::{TetMesh, TriMesh};
-use crate::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
+use super::joints::{Joint, JointOptions, JointReport, smooth_joints};
 use crate::tet::complex::Complex;
 use crate::tet::optimize::{OptimizeOptions, optimize};
 use crate::tet::{TetOptions, tetrahedralize};

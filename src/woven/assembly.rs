@@ -2,12 +2,11 @@
 
 use std::io;
 
-use super::whole::Whole;
+use super::joints::{Joint, JointOptions, JointReport, smooth_joints};
+use super::label::{LabelError, PatchFaces, label};
 use crate::mesh::adjacency::TetAdjacency;
-use crate::mesh::source::gather;
+use crate::mesh::source::{MeshSource, gather};
 use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL};
-use crate::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
-use crate::stitch::label::{LabelError, PatchFaces, label};
 use crate::tet::optimize::{Effort, OptimizeOptions, optimize};
 
 /// The blocks in one mesh, and what of it the joints' smoothing needs.
@@ -18,12 +17,12 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// Puts the blocks together.
+    /// Puts the blocks together. `joints`: the vertices of each.
     ///
     /// # Errors
     /// When a block cannot be read.
-    pub fn new(whole: &Whole) -> io::Result<Self> {
-        let joints = whole.joint_vertices()?.into_iter().map(|vertices| Joint { vertices }).collect();
+    pub fn new(whole: &dyn MeshSource, joints: Vec<Vec<u32>>) -> io::Result<Self> {
+        let joints = joints.into_iter().map(|vertices| Joint { vertices }).collect();
         Ok(Self { volume: gather(whole)?, joints })
     }
 
