@@ -22,6 +22,7 @@ mod mesh;
 mod partition;
 mod pipeline;
 mod prepare;
+mod progress;
 mod refine;
 mod report;
 mod skeleton;
@@ -31,18 +32,19 @@ mod woven;
 
 pub use geometry::{Point3, Vec3};
 pub use mesh::source::MeshSource;
+pub use progress::{Progress, Stage};
 pub use mesh::{Cap, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 
 /// Vessel networks: made usable, moved apart, grown, and meshed.
 pub mod network {
     pub use crate::grow::{Dual, GenerateError, GenerateParams, Morphometry, Organ, RAT_KIDNEY, dual, generate};
     pub use crate::pipeline::{
-        Estimate, JointStyle, Manifest, MeshPlan, Meshed, Observer, RunError, RunReport, Stage, Store, Stored,
+        Estimate, JointStyle, Manifest, MeshPlan, Meshed, RunError, RunReport, Store, Stored,
         TooLarge, mesh_into, mesh_network,
     };
     pub use crate::prepare::{PrepareParams, PrepareReport, Prepared, directed, prepare};
     pub use crate::refine::{
-        Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
+        Crowded, Metric, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };
     pub use crate::report::info::NetworkInfo;
     pub use crate::skeleton::{Adjacency, CleanReport, Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
@@ -71,6 +73,18 @@ pub mod testing {
     pub use crate::refine::split;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
     pub use crate::tet::delaunay::delaunay;
+
+    /// A cluster with trimmed ends.
+    ///
+    /// # Errors
+    /// The block's.
+    pub fn mesh_trimmed(
+        id: ClusterId,
+        cluster: &Cluster,
+        params: &BlockParams,
+    ) -> Result<ClusterMesh, crate::block::BlockError> {
+        crate::woven::mesh_trimmed(id, cluster, params, &crate::tet::Watch::NOBODY)
+    }
 }
 
 /// The examples of the README are tests.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Rooms by floor; a room may import from rooms with a smaller number, and from itself.
-const FLOORS: [(&str, u32); 16] = [
+const FLOORS: [(&str, u32); 17] = [
     ("main", 9),
     ("cli", 8),
     ("report", 7),
@@ -21,6 +21,7 @@ const FLOORS: [(&str, u32); 16] = [
     ("mesh", 2),
     ("skeleton", 2),
     ("geometry", 1),
+    ("progress", 1),
 ];
 
 fn floor(room: &str) -> Option<u32> {

@@ -17,7 +17,8 @@ use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
-use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, Observer, RunError, Stage, TooLarge};
+use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, RunError, TooLarge};
+use crate::progress::{Progress, Stage};
 use crate::refine::{RefineReport, Refined};
 use crate::skeleton::Skeleton;
 

@@ -2,19 +2,16 @@
 
 use std::path::PathBuf;
 
-use indicatif::ProgressBar;
 use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
-use super::progress::{shows_bars, stage_bar};
+use super::progress::Bars;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
 use crate::io::write_text;
-use crate::refine::{
-    self, Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, Sample,
-};
+use crate::refine::{self, Crowded, Metric, RefineError, RefineParams, RefineReport, Refined, Residual};
 use crate::report::plot::svg;
 use crate::report::refine::{csv, panels};
 use crate::skeleton::Skeleton;
@@ -140,34 +137,9 @@ struct Output<'a> {
     report: &'a RefineReport,
 }
 
-/// A bar on standard error, on a terminal only.
-struct Steps<'a> {
-    shown: bool,
-    bar: Option<ProgressBar>,
-    stop: &'a Stop,
-}
-
-impl Progress for Steps<'_> {
-    fn step(&mut self, iteration: usize, of: usize, _: Option<&Sample>) {
-        if !self.shown {
-            return;
-        }
-        let bar = self.bar.get_or_insert_with(|| stage_bar("refine", of as u64));
-        bar.set_position(iteration as u64);
-        if iteration == of {
-            bar.finish_and_clear();
-        }
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.stop.is_asked()
-    }
-}
-
 /// Refines a skeleton, with a bar.
 pub(super) fn moved(skeleton: &Skeleton, params: &RefineParams, quiet: bool, stop: &Stop) -> Result<Refined, Failure> {
-    let mut steps = Steps { shown: shows_bars(quiet), bar: None, stop };
-    let refined = refine::refine(skeleton, params, &mut steps);
+    let refined = refine::refine(skeleton, params, &Bars::new(quiet, stop.clone()));
     refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
         RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),

@@ -7,7 +7,6 @@ mod cures;
 mod describe;
 mod estimate;
 mod make;
-mod observer;
 mod once;
 mod plan;
 mod report;
@@ -25,7 +24,6 @@ mod whole;
 pub use estimate::{Estimate, TooLarge};
 #[cfg(feature = "cli")]
 pub use once::replay;
-pub use observer::{Observer, Stage};
 pub use plan::{JointStyle, MeshPlan};
 pub use report::RunReport;
 pub use run::{Meshed, RunError, Stored, mesh_into, mesh_network};

@@ -7,7 +7,7 @@ use std::io;
 
 use super::blocks::Blocks;
 use super::make::{JointPlace, Kept, joints_of_cut};
-use super::observer::Observer;
+use crate::progress::Progress;
 use super::report::MeshSize;
 use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
@@ -51,7 +51,7 @@ struct PartPlan {
 }
 
 /// Who says whether to stop.
-struct Listener<'a>(&'a dyn Observer);
+struct Listener<'a>(&'a dyn Progress);
 
 impl std::fmt::Debug for Listener<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
@@ -59,7 +59,7 @@ impl std::fmt::Debug for Listener<'_> {
     }
 }
 
-/// The observer ended a pass.
+/// A pass was told to end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
@@ -76,14 +76,14 @@ impl<'a> Whole<'a> {
     /// When there are too many vertices or a block cannot be read.
     pub fn new(
         store: &'a Store,
-        observer: &'a dyn Observer,
+        progress: &'a dyn Progress,
         skeleton: &Skeleton,
         blocks: &Blocks,
         terminals: &TerminalPatches,
     ) -> io::Result<Self> {
         let mut whole = Self {
             store,
-            listener: Listener(observer),
+            listener: Listener(progress),
             parts: Vec::with_capacity(blocks.clusters.len() + blocks.connectors.len()),
             patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
             patch_of: Vec::new(),

@@ -6,8 +6,8 @@ mod crowd;
 mod figures;
 mod forces;
 mod frame;
+mod history;
 mod params;
-mod progress;
 mod push;
 mod residual;
 mod room;
@@ -20,12 +20,13 @@ mod tests;
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
 pub use params::{Crowded, RefineError, RefineParams, Residual};
-pub use progress::{Displacement, Progress, Sample};
+pub use history::{Displacement, Sample};
 pub use residual::{ResidualReport, Treatment};
 
 pub use split::split;
 
 use crate::geometry::Point3;
+use crate::progress::Progress;
 use crate::skeleton::Skeleton;
 use serde::Serialize;
 
@@ -91,7 +92,7 @@ pub struct RefineReport {
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
 /// let (network, _) = clean(&file.skeleton)?;
-/// let refined = refine(&network, &RefineParams::default(), &mut ())?;
+/// let refined = refine(&network, &RefineParams::default(), &())?;
 /// assert_eq!(refined.report.result.overlaps, 0);
 /// assert_eq!(refined.origin.len(), refined.skeleton.nodes.len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -99,7 +100,7 @@ pub struct RefineReport {
 ///
 /// # Errors
 /// When a parameter is out of its range, or the skeleton does not satisfy `Skeleton::check`.
-pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progress) -> Result<Refined, RefineError> {
+pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) -> Result<Refined, RefineError> {
     params.check()?;
     given.check()?;
     let given_figures = Figures::of(given);

@@ -6,7 +6,8 @@ use super::figures::Figures;
 use super::forces::{self, Rates};
 use super::frame::Frame;
 use super::params::{RefineError, RefineParams};
-use super::progress::{Displacement, Progress, Sample};
+use super::history::{Displacement, Sample};
+use crate::progress::{Progress, Stage};
 use super::push::Push;
 use super::{room, shape};
 use crate::geometry::{Point3, Vec3};
@@ -49,11 +50,12 @@ pub(super) fn solve(
     skeleton: &Skeleton,
     given: &Figures,
     params: &RefineParams,
-    progress: &mut dyn Progress,
+    progress: &dyn Progress,
 ) -> Result<Moved, RefineError> {
     let mut solver = Solver::new(skeleton, params);
     let start = solver.sample(0, 0);
-    progress.step(0, params.iterations, Some(&start));
+    let at = |iteration| progress.at(Stage::Move, iteration as u64, params.iterations as u64);
+    at(0);
     let mut history = vec![start];
     let with_forces = (params.forces * params.iterations as f64).round() as usize;
     let between = ((BENDS * params.iterations as f64).round() as usize).max(1);
@@ -79,12 +81,9 @@ pub(super) fn solve(
         }
         // Most happens at the beginning.
         if last || (params.every > 0 && (iteration % params.every == 0 || iteration < params.every.min(EARLY))) {
-            let sample = solver.sample(iteration, asked);
-            progress.step(if last { params.iterations } else { iteration }, params.iterations, Some(&sample));
-            history.push(sample);
-        } else {
-            progress.step(iteration, params.iterations, None);
+            history.push(solver.sample(iteration, asked));
         }
+        at(if last { params.iterations } else { iteration });
         if last {
             break;
         }

@@ -78,7 +78,6 @@ pub(crate) use options::TetOptions;
 pub use options::{Boundary, Interior, Refinement, Sizing};
 pub use plc::{InputKind, LeftOut, Plc, Region};
 pub(crate) use progress::Watch;
-pub use progress::{Progress, Stage};
 
 use crate::mesh::{TetMesh, TriMesh};
 use certify::Place;

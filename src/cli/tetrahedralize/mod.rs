@@ -26,7 +26,7 @@ pub use args::Args;
 use format::{InputFormat, Target, is_stream};
 use input::Input;
 use plan::TetPlan;
-use watch::{Watch, peak_memory};
+use watch::{Listener, Watch, peak_memory};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -82,9 +82,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// The mesh; none when the input is only checked.
 fn make(plan: &TetPlan, input: &Input, watch: &Arc<Watch>, stop: Stop) -> Result<Option<Tetrahedralization>, TetError> {
-    let told = Arc::clone(watch);
-    let tetrahedralizer = plan.tetrahedralizer().on_progress(move |progress| told.progress(progress));
-    let tetrahedralizer = tetrahedralizer.cancel(move || stop.is_asked());
+    let tetrahedralizer = plan.tetrahedralizer().progress(Listener(Arc::clone(watch), stop));
     if plan.check_only && !input.only_points {
         return tetrahedralizer.check(&input.plc).map(|()| None);
     }

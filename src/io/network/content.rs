@@ -97,7 +97,7 @@ pub enum NetworkArray {
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
 /// let (network, _) = clean(&file.skeleton)?;
-/// let refined = refine(&network, &RefineParams::default(), &mut ())?;
+/// let refined = refine(&network, &RefineParams::default(), &())?;
 /// let folder = tempfile::tempdir()?;
 /// let arrays = refinement_arrays(&refined.skeleton, &refined.origin);
 /// write_network(&folder.path().join("refined.vtp"), &refined.skeleton, &arrays)?;
