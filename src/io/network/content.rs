@@ -92,7 +92,8 @@ pub enum NetworkArray {
 /// `Displacement`, how it moved from `origin`.
 ///
 /// ```
-/// use anastomesh::io::{NetworkOptions, read_network, refinement_arrays, write_network};
+/// use anastomesh::io::{NetworkOptions, read_network, write_network};
+/// use anastomesh::testing::refinement_arrays;
 /// use anastomesh::network::{RefineParams, clean, refine};
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;

@@ -85,7 +85,8 @@ fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError>
 /// Writes a mesh to a stream, such as standard output; the file is put together in memory first.
 ///
 /// ```
-/// use anastomesh::io::{MeshFormat, MeshNotes, read_mesh_from, write_mesh_to};
+/// use anastomesh::io::MeshNotes;
+/// use anastomesh::testing::{MeshFormat, read_mesh_from, write_mesh_to};
 /// use anastomesh::{Point3, TetMesh, VolumeMesh};
 ///
 /// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
