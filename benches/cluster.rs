@@ -32,9 +32,13 @@ fn bench(c: &mut Criterion) {
             let make = if ends == EndStyle::Open { mesh_trimmed } else { mesh_cluster };
             let mesh = make(ClusterId(0), &cluster, &params).expect("the cluster is meshed");
             group.throughput(Throughput::Elements(mesh.mesh.tets.len() as u64));
-            group.bench_with_input(BenchmarkId::new(if ends == EndStyle::Open { "trimmed" } else { "disc" }, rho), &params, |b, params| {
-                b.iter(|| make(ClusterId(0), black_box(&cluster), params));
-            });
+            group.bench_with_input(
+                BenchmarkId::new(if ends == EndStyle::Open { "trimmed" } else { "disc" }, rho),
+                &params,
+                |b, params| {
+                    b.iter(|| make(ClusterId(0), black_box(&cluster), params));
+                },
+            );
         }
     }
     group.finish();

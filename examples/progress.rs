@@ -4,10 +4,10 @@
 //! cargo run --release --example progress
 //! ```
 
-use anastomesh::{Point3, Progress, Stage};
 use anastomesh::io::{NetworkOptions, read_network, read_surface};
 use anastomesh::network::{MeshPlan, RunError, clean, mesh_network};
 use anastomesh::tet::{Plc, TetError, Tetrahedralizer};
+use anastomesh::{Point3, Progress, Stage};
 use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;

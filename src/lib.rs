@@ -35,8 +35,8 @@ mod woven;
 
 pub use geometry::{Point3, Vec3};
 pub use mesh::source::MeshSource;
-pub use progress::{Progress, Stage};
 pub use mesh::{Cap, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
+pub use progress::{Progress, Stage};
 
 /// Vessel networks: made usable, moved apart, and meshed.
 pub mod network {
@@ -44,9 +44,7 @@ pub mod network {
         JointStyle, Manifest, MeshPlan, Meshed, RunError, RunReport, Store, Stored, mesh_into, mesh_network,
     };
     pub use crate::prepare::{PrepareParams, Prepared, prepare};
-    pub use crate::refine::{
-        Crowded, Metric, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
-    };
+    pub use crate::refine::{Crowded, Metric, RefineError, RefineParams, RefineReport, Refined, Residual, refine};
     pub use crate::skeleton::{CleanReport, Edge, Node, NodeId, Skeleton, SkeletonError, clean};
 }
 
@@ -61,14 +59,14 @@ pub mod check {
 pub mod testing {
     pub use crate::block::{BlockParams, ClusterMesh, EndStyle, mesh_cluster};
     pub use crate::geometry::predicates::{insphere, orient3d};
+    pub use crate::geometry::{
+        Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,
+    };
     pub use crate::grow::{Dual, GenerateParams, Morphometry, Organ, RAT_KIDNEY, dual, generate};
     pub use crate::io::network::{NetworkFormat, read_network_from, refinement_arrays};
     pub use crate::io::surface::{SurfaceFormat, read_surface_from};
     pub use crate::io::volume::{MeshFormat, read_mesh_from, write_mesh_to};
     pub use crate::mesh::Bounds;
-    pub use crate::geometry::{
-        Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,
-    };
     pub use crate::mesh::facets::triangulate;
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,

@@ -1,5 +1,7 @@
 //! Floor 1: how whatever takes long tells how far it is, and is told to stop.
 
+use std::io;
+
 /// What is being done. Not everything comes in every run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -110,3 +112,20 @@ pub trait Progress: Sync {
 }
 
 impl Progress for () {}
+
+/// A run was told to stop, where that is told by an [`io::Error`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub(crate) struct Cancelled;
+
+impl Cancelled {
+    /// Whether this is why something failed.
+    pub(crate) fn is_in(error: &io::Error) -> bool {
+        error.get_ref().is_some_and(<dyn std::error::Error + Send + Sync>::is::<Self>)
+    }
+}
+
+/// Whether to go on.
+pub(crate) fn ask(progress: &dyn Progress) -> io::Result<()> {
+    if progress.is_cancelled() { Err(io::Error::other(Cancelled)) } else { Ok(()) }
+}

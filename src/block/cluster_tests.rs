@@ -3,9 +3,7 @@
 use super::fixtures::{assert_mesh, bifurcation, cut, direction, facing, star, worst_ratio};
 use super::{BlockError, BlockParams, ClusterMesh, EndStyle, mesh_cluster, mesh_free_connector};
 use crate::geometry::{Point3, Section, Tube, Vec3};
-use crate::partition::{
-    Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionWarning, partition,
-};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionWarning, partition};
 use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
 use crate::surface::SharedDisc;
 

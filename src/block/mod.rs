@@ -20,20 +20,20 @@ mod shape;
 mod strip;
 mod wall;
 
-pub(crate) use cluster::{cut_ends, mesh_cluster_watched};
 pub use cluster::{CapFaces, ClusterMesh, mesh_cluster};
+pub(crate) use cluster::{cut_ends, mesh_cluster_watched};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
 pub use connector_surface::ConnectorEnd;
 #[cfg(test)]
 pub(crate) use connector_surface::{Division, connector_surface};
 pub use dump::{BlockDump, BlockInput};
-pub(crate) use end_surface::{Plane, cross, crossing, disc_rim};
 pub use end_surface::{CutEnd, EndSurface, StoredEnd};
+pub(crate) use end_surface::{Plane, cross, crossing, disc_rim};
 pub use error::{BlockError, ConnectorAttempt, FlattenFailure};
-pub(crate) use shape::{tet_ratio, triangle_ratio};
 pub use finished::{About, Cured, Finished, FinishedJoint};
 pub use params::{BlockParams, EndStyle};
 pub use record::{Bytes, Record, Sizes, encode};
+pub(crate) use shape::{tet_ratio, triangle_ratio};
 
 #[cfg(test)]
 mod cluster_tests;

@@ -229,7 +229,7 @@ impl Args {
         let Done { mesh, expectation, check, mut report } = done;
         let notes = self.notes(expectation);
         let memory = (self.memory / 4) as usize;
-        let write = || write_mesh_within(memory, &self.output, mesh, &notes);
+        let write = || write_mesh_within(Some(memory), &self.output, mesh, &notes, bars);
         let mut clock = Clock::default();
         let written = clock.time(bars, Stage::Write, 0, write);
         // Passes over the blocks end when the run is to end.

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::common::Common;
 use super::exit::{Exit, Failure};
-use super::room::size;
 use super::progress::Bars;
+use super::room::size;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::block::{BlockDump, BlockError, Finished};
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh};

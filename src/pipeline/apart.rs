@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use super::attempts::Way;
 use super::blocks::{Blocks, original_nodes};
 use super::estimate::cluster_cost;
-use crate::progress::Stage;
 use super::report::Retry;
 use super::rounds::{RoundsError, Run};
 use super::routes::{Overlapping, tangled_clusters};
 use crate::partition::ClusterId;
+use crate::progress::Stage;
 use crate::tet::Watch;
 
 /// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.

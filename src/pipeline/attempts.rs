@@ -170,9 +170,7 @@ pub fn cluster(
     watch: &Watch,
 ) -> Tried {
     let name = format!("cluster {}", id.0);
-    first_good(&name, attempts(plan, overlapping, first), |params| {
-        once::cluster(id, cluster, params, &original, watch)
-    })
+    first_good(&name, attempts(plan, overlapping, first), |params| once::cluster(id, cluster, params, &original, watch))
 }
 
 /// Meshes a connector between the ends of its two clusters.
@@ -186,11 +184,7 @@ pub fn free_connector(id: CutId, cut: &Cut, plan: &MeshPlan) -> Tried {
 }
 
 /// A connector, its tube divided in one way after the other.
-fn divided(
-    id: CutId,
-    plan: &MeshPlan,
-    mut make: impl FnMut(&BlockParams) -> Result<Connector, BlockError>,
-) -> Tried {
+fn divided(id: CutId, plan: &MeshPlan, mut make: impl FnMut(&BlockParams) -> Result<Connector, BlockError>) -> Tried {
     let way = |first_division| Attempt {
         name: "other division of the tube".into(),
         params: BlockParams { first_division, ..plan.block_params() },

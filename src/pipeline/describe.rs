@@ -5,11 +5,11 @@ use std::io;
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{Made, Workshop};
-use crate::progress::Progress;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{BlockCounts, FailedBlock, FusedBlock, RunReport};
 use crate::block::{About, BlockDump};
 use crate::partition::{ClusterId, CutId};
+use crate::progress::Progress;
 use crate::skeleton::{NodeId, Skeleton};
 
 /// How many overlapping pairs are spelt out for people.

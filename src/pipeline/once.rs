@@ -1,8 +1,8 @@
 //! One block, made once with given parameters.
 
 use crate::block::{
-    BlockDump, BlockError, BlockInput, BlockParams, ConnectorAttempt, ConnectorEnd, ConnectorMesh, EndStyle, EndSurface,
-    Finished, mesh_cluster_watched, mesh_connector, mesh_free_connector, shared_ends,
+    BlockDump, BlockError, BlockInput, BlockParams, ConnectorAttempt, ConnectorEnd, ConnectorMesh, EndStyle,
+    EndSurface, Finished, mesh_cluster_watched, mesh_connector, mesh_free_connector, shared_ends,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
 use crate::skeleton::NodeId;
@@ -29,12 +29,7 @@ pub fn cluster(
 pub type Connector = (Finished, Vec<ConnectorAttempt>);
 
 /// A connector between the ends that its clusters have.
-pub fn connector(
-    id: CutId,
-    cut: &Cut,
-    ends: [ConnectorEnd; 2],
-    params: &BlockParams,
-) -> Result<Connector, BlockError> {
+pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], params: &BlockParams) -> Result<Connector, BlockError> {
     finished(id, mesh_connector(id, cut, ends, params)?, ends.map(|end| end.surface))
 }
 

@@ -10,7 +10,6 @@ use super::attempts::Way;
 use super::cures::{Cure, cure, partition_params};
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::{Kept, Made, Workshop};
-use crate::progress::{Progress, Stage};
 use super::plan::JointStyle;
 use super::report::Retry;
 use super::routes::{branch_pairs, tangled_clusters};
@@ -19,6 +18,7 @@ use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
 use crate::block::Cured;
 use crate::partition::{self, ClusterId, Cut, CutId, Partition, PartitionError};
+use crate::progress::{Progress, Stage};
 use crate::skeleton::{BranchId, Overlaps};
 use crate::tet::Watch;
 

@@ -9,7 +9,6 @@ use super::blocks::Blocks;
 use super::describe::{Clusters, announce, describe_blocks};
 use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
-use crate::progress::{Progress, Stage};
 use super::plan::{JointStyle, MeshPlan, PlanError};
 use super::report::{Meeting, MeshSize, RunReport};
 use super::rounds::{RoundsError, Run};
@@ -17,12 +16,13 @@ use super::routes::Overlapping;
 use super::store::{Store, StoreError};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
-use super::whole::{Cancelled, Whole};
+use super::whole::Whole;
 use crate::mesh::check::parts::PartsCheck;
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::PartitionError;
+use crate::progress::{Cancelled, Progress, Stage, ask};
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 use crate::woven::{Assembly, LabelError};
@@ -98,7 +98,7 @@ impl From<RoundsError> for RunError {
 
 impl From<io::Error> for RunError {
     fn from(error: io::Error) -> Self {
-        if error.get_ref().is_some_and(<dyn std::error::Error + Send + Sync>::is::<Cancelled>) {
+        if Cancelled::is_in(&error) {
             return Self::Cancelled;
         }
         StoreError::from(error).into()
@@ -189,11 +189,6 @@ fn mesh_timed<'a>(
     }
 }
 
-/// Whether to go on.
-fn ask(progress: &dyn Progress) -> Result<(), RunError> {
-    if progress.is_cancelled() { Err(RunError::Cancelled) } else { Ok(()) }
-}
-
 /// Blocks that are done and numbered, before anybody has looked at the whole.
 struct Joined<'a> {
     whole: Whole<'a>,
@@ -263,7 +258,8 @@ impl<'a> Joined<'a> {
         let Self { whole, expectation, mut report, .. } = self;
         ask(progress)?;
         let mut assembly = clock.time(progress, Stage::Merge, 0, || Assembly::new(&whole, whole.joint_vertices()?))?;
-        report.joints = Some(clock.time(progress, Stage::Joints, 0, || assembly.smooth()));
+        report.joints = Some(clock.time(progress, Stage::Joints, 0, || assembly.smooth(progress)));
+        ask(progress)?;
         let (mesh, neighbors) = clock.time(progress, Stage::Merge, 0, || assembly.label())?;
         ask(progress)?;
         let check = || check_volume_with(&mesh, neighbors, Some(&expectation));

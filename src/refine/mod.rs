@@ -19,8 +19,8 @@ mod tests;
 
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
-pub use params::{Crowded, RefineError, RefineParams, Residual};
 pub use history::{Displacement, Sample};
+pub use params::{Crowded, RefineError, RefineParams, Residual};
 pub use residual::{ResidualReport, Treatment};
 
 pub use split::split;

@@ -5,12 +5,12 @@ use super::contact::Contacts;
 use super::figures::Figures;
 use super::forces::{self, Rates};
 use super::frame::Frame;
-use super::params::{RefineError, RefineParams};
 use super::history::{Displacement, Sample};
-use crate::progress::{Progress, Stage};
+use super::params::{RefineError, RefineParams};
 use super::push::Push;
 use super::{room, shape};
 use crate::geometry::{Point3, Vec3};
+use crate::progress::{Progress, Stage};
 use crate::skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
 
 /// How much of what is asked of a node by several conditions at once it does: their sum over the number to this power.

@@ -288,7 +288,7 @@ impl Tetrahedralizer {
     pub fn delaunay(&self, points: &[Point3]) -> Result<Tetrahedralization, TetError> {
         let watch = self.watch();
         watch.report(Stage::Delaunay, 0, 1)?;
-        let complex = delaunay::delaunay(points)?;
+        let complex = delaunay::delaunay_watched(points, &watch)?;
         watch.report(Stage::Delaunay, 1, 1)?;
         watch.report(Stage::Certify, 0, 1)?;
         let faces = hull(&complex);

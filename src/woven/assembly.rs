@@ -7,6 +7,7 @@ use super::label::{LabelError, PatchFaces, label};
 use crate::mesh::adjacency::TetAdjacency;
 use crate::mesh::source::{MeshSource, gather};
 use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL};
+use crate::progress::Progress;
 use crate::tet::optimize::{Effort, OptimizeOptions, optimize};
 
 /// The blocks in one mesh, and what of it the joints' smoothing needs.
@@ -26,7 +27,8 @@ impl Assembly {
         Ok(Self { volume: gather(whole)?, joints })
     }
 
-    pub fn smooth(&mut self) -> JointReport {
+    /// Smooths the joints; leaves those that are left when it is told to stop.
+    pub fn smooth(&mut self, progress: &dyn Progress) -> JointReport {
         let VolumeMesh { mesh, tet_block, boundary, boundary_patch, .. } = &mut self.volume;
         let mut frozen = vec![false; mesh.points.len()];
         let caps = boundary.iter().zip(&*boundary_patch).filter(|(_, patch)| **patch != WALL);
@@ -34,6 +36,9 @@ impl Assembly {
             frozen[v as usize] = true;
         }
         let improve = |mesh: &mut TetMesh, fixed: usize| {
+            if progress.is_cancelled() {
+                return false;
+            }
             let options = OptimizeOptions {
                 fixed_points: fixed,
                 keep_points: true,

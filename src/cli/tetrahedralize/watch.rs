@@ -83,6 +83,7 @@ impl State {
 }
 
 /// What the tetrahedralizer tells goes to a watch, what it asks to a signal.
+#[derive(Clone)]
 pub struct Listener(pub Arc<Watch>, pub Stop);
 
 impl Progress for Listener {
