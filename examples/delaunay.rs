@@ -5,27 +5,33 @@
 //! ```
 
 use anastomesh::io::tetgen::read_nodes;
-use anastomesh::tet::{Progress, Stage, Tetrahedralizer};
+use anastomesh::tet::Tetrahedralizer;
+use anastomesh::{Progress, Stage};
 use std::error::Error;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args().nth(1).ok_or("which .node file?")?;
-    let points = read_nodes(path.as_ref())?.points;
-    // When the stage began and ended, by the clock and in seconds of work.
-    let times = Arc::new(Mutex::new(Vec::new()));
-    let seen = Arc::clone(&times);
-    let note = move |progress: Progress| {
-        if progress.stage == Stage::Delaunay
-            && let Ok(mut seen) = seen.lock()
+/// When the stage began and ended, by the clock and in seconds of work.
+#[derive(Clone, Default)]
+struct Times(Arc<Mutex<Vec<(Instant, Option<f64>)>>>);
+
+impl Progress for Times {
+    fn at(&self, stage: Stage, _: u64, _: u64) {
+        if stage == Stage::Delaunay
+            && let Ok(mut seen) = self.0.lock()
         {
             seen.push((Instant::now(), user_seconds()));
         }
-    };
-    let made = Tetrahedralizer::new().on_progress(note).delaunay(&points)?;
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let path = std::env::args().nth(1).ok_or("which .node file?")?;
+    let points = read_nodes(path.as_ref())?.points;
+    let times = Times::default();
+    let made = Tetrahedralizer::new().progress(times.clone()).delaunay(&points)?;
     println!("{} points, {} tetrahedra", points.len(), made.mesh.tets.len());
-    let times = times.lock().map_err(|_| "the times are lost")?;
+    let times = times.0.lock().map_err(|_| "the times are lost")?;
     if let [(begin, user), .., (end, user_at_end)] = times[..] {
         println!("wall {:.3} s", (end - begin).as_secs_f64());
         if let Some((end, start)) = user_at_end.zip(user) {

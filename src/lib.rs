@@ -11,10 +11,14 @@
 //! Points, surfaces and meshes are the plain types of this page. Loops run in the current thread pool of `rayon`; results
 //! do not depend on its size. `ARCHITECTURE.md` describes the rooms inside.
 
+// Without the command line, what only it uses is not used at all.
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
+
 mod block;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
+mod fidelity;
 mod geometry;
 mod grow;
 pub mod io;
@@ -22,35 +26,33 @@ mod mesh;
 mod partition;
 mod pipeline;
 mod prepare;
+mod progress;
 mod refine;
 mod report;
 mod skeleton;
-mod stitch;
 mod surface;
 pub mod tet;
+mod woven;
 
 pub use geometry::{Point3, Vec3};
 pub use mesh::source::MeshSource;
 pub use mesh::{Cap, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
+pub use progress::{Progress, Stage};
 
-/// Vessel networks: made usable, moved apart, grown, and meshed.
+/// Vessel networks: made usable, moved apart, and meshed.
 pub mod network {
-    pub use crate::grow::{Dual, GenerateError, GenerateParams, Morphometry, Organ, RAT_KIDNEY, dual, generate};
     pub use crate::pipeline::{
-        Estimate, JointStyle, Manifest, MeshPlan, Meshed, Observer, RunError, RunReport, Stage, Store, Stored,
-        TooLarge, mesh_into, mesh_network,
+        JointStyle, Manifest, MeshPlan, Meshed, RunError, RunReport, Store, Stored, mesh_into, mesh_network,
     };
-    pub use crate::prepare::{PrepareParams, PrepareReport, Prepared, Touching, directed, prepare};
+    pub use crate::prepare::{PrepareParams, Prepared, Touching, prepare};
     pub use crate::refine::{
-        Crowded, Freedom, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
+        Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };
-    pub use crate::report::info::NetworkInfo;
-    pub use crate::skeleton::{Adjacency, CleanReport, Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
+    pub use crate::skeleton::{CleanReport, Edge, Node, NodeId, Skeleton, SkeletonError, clean};
 }
 
 /// Whether a mesh is valid, line by line, and how well its tetrahedra are shaped.
 pub mod check {
-    pub use crate::mesh::check::parts::{PiecesError, check_pieces};
     pub use crate::mesh::check::{CheckReport, Expectation, Line, Outcome, Verdict, check_tets, check_volume};
     pub use crate::mesh::quality::TetQuality;
 }
@@ -63,14 +65,33 @@ pub mod testing {
     pub use crate::geometry::{
         Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,
     };
+    pub use crate::grow::{Dual, GenerateParams, Morphometry, Organ, RAT_KIDNEY, dual, generate};
+    pub use crate::io::network::{NetworkFormat, read_network_from, refinement_arrays};
+    pub use crate::io::surface::{SurfaceFormat, read_surface_from};
+    pub use crate::io::volume::{MeshFormat, read_mesh_from, write_mesh_to};
+    pub use crate::mesh::Bounds;
     pub use crate::mesh::facets::triangulate;
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
     pub use crate::prepare::{Fault, SpurReason, TouchedBy};
     pub use crate::refine::split;
+    pub use crate::report::info::NetworkInfo;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
     pub use crate::tet::delaunay::delaunay;
+    pub use crate::tet::error::Stuck;
+
+    /// A cluster with trimmed ends.
+    ///
+    /// # Errors
+    /// The block's.
+    pub fn mesh_trimmed(
+        id: ClusterId,
+        cluster: &Cluster,
+        params: &BlockParams,
+    ) -> Result<ClusterMesh, crate::block::BlockError> {
+        crate::woven::mesh_trimmed(id, cluster, params, &crate::tet::Watch::NOBODY)
+    }
 }
 
 /// The examples of the README are tests.

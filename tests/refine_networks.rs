@@ -4,10 +4,11 @@
 mod common;
 
 use anastomesh::Point3;
-use anastomesh::network::{Crowded, RefineParams, Refined, Residual, Skeleton, dual, refine};
+use anastomesh::network::{Crowded, RefineParams, Refined, Residual, Skeleton, refine};
+use anastomesh::testing::dual;
 
 fn refined(skeleton: &Skeleton, params: &RefineParams) -> Refined {
-    let refined = refine(skeleton, params, &mut ()).expect("a cleaned network can be refined");
+    let refined = refine(skeleton, params, &()).expect("a cleaned network can be refined");
     assert_eq!(refined.skeleton.check(), Ok(()));
     // Terminals stay where they are, but for those that leave no room for two caps.
     let adjacency = refined.skeleton.adjacency();

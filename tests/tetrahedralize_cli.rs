@@ -2,7 +2,9 @@
 
 mod common;
 
-use anastomesh::io::{MeshFormat, read_mesh, read_mesh_from};
+use anastomesh::io::read_mesh;
+
+use anastomesh::testing::{MeshFormat, read_mesh_from};
 use anastomesh::{Point3, TriMesh};
 use common::program::*;
 use common::surfaces::*;

@@ -1,7 +1,7 @@
 //! Whatever the bytes: a mesh or an error; a mesh can be checked, and one that is sound comes back from what is written.
 #![no_main]
 
-use anastomesh::io::{MeshFormat, read_mesh_from, write_mesh_to};
+use anastomesh::testing::{MeshFormat, read_mesh_from, write_mesh_to};
 use anastomesh::check::{check_tets, check_volume};
 use libfuzzer_sys::fuzz_target;
 

@@ -4,7 +4,8 @@
 #![no_main]
 
 use anastomesh::Point3;
-use anastomesh::tet::{Boundary, InputKind, Interior, Plc, Refinement, Stuck, TetError, Tetrahedralizer};
+use anastomesh::tet::{Boundary, InputKind, Interior, Plc, Refinement, TetError, Tetrahedralizer};
+use anastomesh::testing::Stuck;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,7 +1,7 @@
 //! Whatever the bytes: a surface whose triangles name points that exist, or an error.
 #![no_main]
 
-use anastomesh::io::{SurfaceFormat, read_surface_from};
+use anastomesh::testing::{SurfaceFormat, read_surface_from};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

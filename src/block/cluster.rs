@@ -3,10 +3,8 @@
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::params::{BlockParams, EndStyle, filling};
-use super::woven::{TrimOptions, Trimmed, trim};
 use crate::geometry::{DisjointSets, Section, Tube, place_key};
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::tet_adjacency;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::{
@@ -32,7 +30,8 @@ pub struct CapFaces {
 pub struct ClusterMesh {
     /// Points and tetrahedra.
     pub mesh: TetMesh,
-    /// One end surface per cut end, in the order of `Cluster::ends`, by which it is found: the cut may be renumbered.
+    /// One end surface per cut end, in the order of `Cluster::ends`, by which it is found: the cut may be renumbered. None
+    /// with [`EndStyle::Open`].
     pub ends: Vec<EndSurface>,
     /// One cap per terminal, in the order of `Cluster::ends`.
     pub caps: Vec<CapFaces>,
@@ -80,7 +79,7 @@ pub(crate) fn mesh_cluster_watched(
     let mut out =
         ClusterMesh { mesh: filled, caps, uncapped, voxel, edge, surface_triangles, handles, loops, ends: Vec::new() };
     match params.ends {
-        EndStyle::Trimmed => trim_cluster(id, cluster, params, &mut out)?,
+        EndStyle::Open => {}
         EndStyle::Disc => out.ends = disc_ends(id, cluster, &surface, &out.mesh)?,
         EndStyle::Shared => {
             out.ends = disc_ends(id, cluster, &surface, &out.mesh)?;
@@ -151,7 +150,7 @@ fn disc_of_end(section: &Section, kind: EndKind, rho: f64) -> Option<SharedDisc>
 
 /// The ends that are closed by discs, with their indices in `Cluster::ends`.
 fn capped_ends(cluster: &Cluster, style: EndStyle) -> impl Iterator<Item = (u32, &ClusterEnd)> {
-    let closed = move |e: &ClusterEnd| style != EndStyle::Trimmed || matches!(e.kind, EndKind::Terminal(_));
+    let closed = move |e: &ClusterEnd| style != EndStyle::Open || matches!(e.kind, EndKind::Terminal(_));
     (0..).zip(&cluster.ends).filter(move |(_, e)| closed(e))
 }
 
@@ -212,7 +211,7 @@ fn uncapped(cluster: &Cluster, caps: &[CapFaces]) -> Vec<NodeId> {
 }
 
 /// The cut ends with their indices in `Cluster::ends`.
-fn cut_ends(cluster: &Cluster) -> Vec<(u32, CutEnd)> {
+pub(crate) fn cut_ends(cluster: &Cluster) -> Vec<(u32, CutEnd)> {
     (0..)
         .zip(&cluster.ends)
         .filter_map(|(i, end)| match end.kind {
@@ -220,33 +219,6 @@ fn cut_ends(cluster: &Cluster) -> Vec<(u32, CutEnd)> {
             EndKind::Terminal(_) => None,
         })
         .collect()
-}
-
-fn trim_cluster(
-    id: ClusterId,
-    cluster: &Cluster,
-    params: &BlockParams,
-    out: &mut ClusterMesh,
-) -> Result<(), BlockError> {
-    let (index, ends): (Vec<u32>, Vec<CutEnd>) = cut_ends(cluster).into_iter().unzip();
-    if ends.is_empty() {
-        return Ok(());
-    }
-    let neighbours = tet_adjacency(&out.mesh.tets, out.mesh.points.len()).neighbors;
-    let mut frozen: Vec<u32> = out.caps.iter().flat_map(|c| c.triangles.iter().flatten().copied()).collect();
-    frozen.sort_unstable();
-    frozen.dedup();
-    let options = TrimOptions { edge: out.edge, relax: params.relax_ends, depth: params.depth };
-    let Trimmed { mesh, renumbered, ends: surfaces } = trim(&out.mesh, &neighbours, &ends, &frozen, &options)
-        .map_err(|(i, failure)| BlockError::at_end(id, index[i], &ends[i], failure))?;
-    for cap in &mut out.caps {
-        for v in cap.triangles.iter_mut().flatten() {
-            *v = renumbered[*v as usize];
-        }
-    }
-    out.mesh = mesh;
-    out.ends = surfaces;
-    Ok(())
 }
 
 /// End surfaces that are discs of the surface.

@@ -1,61 +1,11 @@
-//! Whole blocks: clusters from tubes, connectors between their end surfaces, dumps.
+//! Whole blocks: clusters from tubes, connectors between their end surfaces.
 
-use super::fixtures::direction;
-use super::woven::trim_tests::assert_mesh;
-use super::{
-    BlockDump, BlockError, BlockParams, ClusterMesh, ConnectorEnd, EndStyle, Finished, StoredEnd, mesh_cluster,
-    mesh_connector, mesh_free_connector,
-};
+use super::fixtures::{assert_mesh, bifurcation, cut, direction, facing, star, worst_ratio};
+use super::{BlockError, BlockParams, ClusterMesh, EndStyle, mesh_cluster, mesh_free_connector};
 use crate::geometry::{Point3, Section, Tube, Vec3};
-use crate::mesh::TetMesh;
-use crate::mesh::quality::radius_ratio;
-use crate::partition::{
-    Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, PartitionParams, PartitionWarning, partition,
-};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionWarning, partition};
 use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
 use crate::surface::SharedDisc;
-use crate::tet::Watch;
-
-/// A star of vessels from a node: one per direction, ending in a cut or a terminal at 4 radii.
-fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
-    let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
-    for &(axis, radius, kind) in arms {
-        let origin = center + axis * 4.0;
-        cluster.tubes.push(Tube { a: center, b: origin, ra: radius, rb: radius });
-        cluster.tubes.push(Tube { a: origin, b: origin + axis * (1.7 * radius), ra: radius, rb: radius });
-        let overrun = cluster.tubes.len() as u32 - 1;
-        cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius }, kind, overrun });
-    }
-    cluster
-}
-
-fn cut(cut: u32, side: u8) -> EndKind {
-    EndKind::Cut { cut: CutId(cut), side }
-}
-
-/// A bifurcation turned by `seed`; end 0 is side 0 of cut 0.
-fn bifurcation(seed: u64) -> Cluster {
-    let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
-    let arm = |x: f64, z: f64| turn * Vec3::new(x, 0.1, z).normalize();
-    star(
-        Point3::origin(),
-        &[
-            (arm(0.0, 1.0), 1.0, cut(0, 0)),
-            (arm(0.8, -0.7), 0.8, EndKind::Terminal(NodeId(1))),
-            (arm(-0.8, -0.6), 0.7, cut(1, 0)),
-        ],
-    )
-}
-
-fn worst_ratio(mesh: &TetMesh) -> f64 {
-    mesh.tets
-        .iter()
-        .map(|t| {
-            let p = t.map(|v| mesh.points[v as usize]);
-            radius_ratio(&p[0], &p[1], &p[2], &p[3])
-        })
-        .fold(1.0, f64::min)
-}
 
 fn meshed(seed: u64, params: &BlockParams) -> (Cluster, ClusterMesh) {
     let cluster = bifurcation(seed);
@@ -71,48 +21,6 @@ fn meshed(seed: u64, params: &BlockParams) -> (Cluster, ClusterMesh) {
     (cluster, mesh)
 }
 
-#[test]
-fn bifurcations_are_meshed_and_joined() {
-    for seed in 0..6 {
-        let style = if seed % 3 == 2 { EndStyle::Disc } else { EndStyle::Trimmed };
-        let params = BlockParams { ends: style, ..BlockParams::with_rho(3.0 + (seed % 2) as f64) };
-        let (cluster, lower) = meshed(seed, &params);
-        // A second cluster opposite to the first one's cut 0, three radii away.
-        let first = cluster.ends[0].section;
-        let center = first.origin + first.axis * 7.0;
-        let facing = star(center, &[(-first.axis, 1.0, cut(0, 1)), (first.axis, 1.0, EndKind::Terminal(NodeId(3)))]);
-        let upper = mesh_cluster(ClusterId(1), &facing, &params).expect("facing cluster");
-        let path = vec![first, Section { origin: facing.ends[0].section.origin, ..first }];
-        let gap = Cut { branch: BranchId(0), sides: [(ClusterId(0), 0), (ClusterId(1), 0)], path };
-        let ends = [
-            ConnectorEnd { surface: &lower.ends[0], points: &lower.mesh.points },
-            ConnectorEnd { surface: &upper.ends[0], points: &upper.mesh.points },
-        ];
-        let connector = mesh_connector(CutId(0), &gap, ends, &params).expect("connector");
-        assert_mesh(&connector.mesh, 2);
-        assert!(connector.failed.is_empty());
-        for (p, v) in connector.mesh.points.iter().zip(&connector.shared) {
-            assert_eq!(*p, ends[v.side as usize].points[v.vertex as usize]);
-        }
-        assert!(worst_ratio(&connector.mesh) > 0.03, "{}", worst_ratio(&connector.mesh));
-
-        let dump = BlockDump::of_connector(CutId(0), &gap, ends.map(alone), params, vec![1, 2]);
-        let again = BlockDump::from_json(dump.to_json().expect("json").as_bytes()).expect("dump");
-        assert_eq!(again, dump);
-        let copy = again.run(&Watch::NOBODY).expect("connector runs again");
-        assert_eq!(copy.mesh, connector.mesh);
-    }
-}
-
-/// An end over its own points.
-fn alone(end: ConnectorEnd) -> StoredEnd {
-    let vertices = end.surface.vertices();
-    let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
-    let mut surface = end.surface.clone();
-    surface.triangles.as_flattened_mut().iter_mut().chain(&mut surface.rim).for_each(|v| *v = local(*v));
-    StoredEnd { surface, points: vertices.iter().map(|&v| end.points[v as usize]).collect() }
-}
-
 /// The points of a cluster's end, in the order of the shared disc.
 fn end_points(mesh: &ClusterMesh, end: usize) -> Vec<Point3> {
     mesh.ends[end].vertices().iter().map(|&v| mesh.mesh.points[v as usize]).collect()
@@ -124,15 +32,11 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
         let rho = 3.0 + (seed % 3) as f64;
         let params = BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(rho) };
         let (cluster, lower) = meshed(seed, &params);
-        let first = cluster.ends[0].section;
-        let center = first.origin + first.axis * 7.0;
-        let facing = star(center, &[(-first.axis, 1.0, cut(0, 1)), (first.axis, 1.0, EndKind::Terminal(NodeId(3)))]);
+        let (facing, gap) = facing(&cluster);
         // However the neighbour was made, its disc is the same.
         let finer = BlockParams { voxel_factor: 0.75, shift: [0.3, -0.2, 0.1], follow: 0.5, ..params };
         let upper = [params, finer].map(|p| mesh_cluster(ClusterId(1), &facing, &p).expect("facing cluster"));
         assert_eq!(end_points(&upper[0], 0), end_points(&upper[1], 0));
-        let path = vec![first, Section { origin: facing.ends[0].section.origin, ..first }];
-        let gap = Cut { branch: BranchId(0), sides: [(ClusterId(0), 0), (ClusterId(1), 0)], path };
         let connector = mesh_free_connector(CutId(0), &gap, &params).expect("connector");
         assert_mesh(&connector.mesh, 2);
         let sides = [end_points(&lower, 0), end_points(&upper[1], 0)];
@@ -141,10 +45,6 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
             assert_eq!(*p, sides[v.side as usize][v.vertex as usize]);
         }
         assert!(worst_ratio(&connector.mesh) > 0.3, "{}", worst_ratio(&connector.mesh));
-
-        let dump = BlockDump::of_free_connector(CutId(0), &gap, params, Vec::new());
-        let copy = dump.run(&Watch::NOBODY).expect("connector runs again");
-        assert_eq!(copy.mesh, connector.mesh);
     }
 }
 
@@ -230,17 +130,6 @@ fn a_terminal_that_looks_at_a_thick_vessel_stays_apart_from_it() {
     let mesh = mesh_cluster(ClusterId(0), &partition.clusters[0], &BlockParams::default()).expect("a cluster");
     assert_eq!((mesh.handles, mesh.caps.len()), (0, 3));
     assert_mesh(&mesh.mesh, 2);
-}
-
-#[test]
-fn a_dumped_cluster_runs_again_to_the_same_bits() {
-    let params = BlockParams { shift: [0.1, 0.2, 0.3], ..BlockParams::default() };
-    let (cluster, mesh) = meshed(11, &params);
-    let dump = BlockDump::of_cluster(ClusterId(0), &cluster, params, Vec::new(), |node| node.0);
-    let again = BlockDump::from_json(dump.to_json().expect("json").as_bytes()).expect("dump");
-    assert_eq!(again, dump);
-    let copy = again.run(&Watch::NOBODY).expect("cluster runs again");
-    assert_eq!(copy, Finished::of_cluster(mesh, |node| node.0).expect("closed"));
 }
 
 #[test]

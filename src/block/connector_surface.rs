@@ -1,10 +1,10 @@
-//! The surface of a connector (3.2.3, Fig. 6): two end surfaces turned round, and a regular tube woven between them.
+//! The surface of a connector (3.2.3, Fig. 6): two end surfaces turned round, and a regular tube between them.
 
 use super::end_surface::{EndSurface, StoredEnd};
 use super::path::{AxisPath, PathEnd};
 use super::rings::{Rim, RingVertex, rings, strip_count};
+use super::strip::best_strip;
 use super::wall::Wall;
-use super::weave::weave;
 use crate::geometry::{Point3, Section};
 use crate::mesh::TriMesh;
 use std::f64::consts::TAU;
@@ -71,7 +71,7 @@ pub enum ConnectorFault {
 pub enum Division {
     /// Rings at this multiple of the usual density.
     Rings(f64),
-    /// No rings: the rims are woven to each other.
+    /// No rings: the rims are joined to each other.
     Direct,
 }
 
@@ -153,7 +153,7 @@ fn build_wall(
     let mut triangles = Vec::new();
     for (k, pair) in cycles.windows(2).enumerate() {
         let place = path.at(0.5 * (pair[0].1 + pair[1].1));
-        let strip = weave(&points, &pair[0].0, &pair[1].0, place.origin, place.axis);
+        let strip = best_strip(&points, &pair[0].0, &pair[1].0, place.origin, place.axis);
         triangles.extend(strip.ok_or(ConnectorFault::Fold(k as u32))?.0);
     }
     let mut wall = Wall::new(path, points, triangles, first_free, vertices);

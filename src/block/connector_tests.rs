@@ -1,15 +1,11 @@
-//! Connector surfaces between synthetic and trimmed end surfaces.
+//! Connector surfaces between synthetic end surfaces.
 
 use super::connector_surface::{ConnectorEnd, ConnectorSurface, Division, connector_surface};
-use super::end_surface::{CutEnd, EndSurface};
-use super::fixtures::{direction, jitter, lattice_tube, neighbours, section};
+use super::end_surface::EndSurface;
+use super::fixtures::{assert_taken_over, flipped, jitter, section, straight, volume, wall_angle};
 use super::rings::chord_factor;
-use super::weave::weave;
-use super::woven::trim_tests::closed_euler;
-use super::woven::{TrimOptions, trim};
-use crate::geometry::{Point3, Section, Tube, Vec3};
-use crate::mesh::TriMesh;
-use crate::mesh::quality::triangle_min_angle;
+use super::strip::best_strip;
+use crate::geometry::{Point3, Section, Vec3};
 use crate::partition::CutId;
 
 /// A fan-shaped end surface: `n` rim vertices of a circle, raised and turned by up to `noise` steps.
@@ -29,10 +25,6 @@ fn fan(at: &Section, side: u8, n: usize, noise: f64, seed: u64) -> (EndSurface, 
     (surface, points)
 }
 
-fn flipped(s: &Section) -> Section {
-    Section { axis: -s.axis, ..*s }
-}
-
 fn join(path: &[Section], counts: [usize; 2], noise: f64, seed: u64) -> ConnectorSurface {
     let a = fan(&path[0], 0, counts[0], noise, seed);
     let b = fan(&flipped(&path[path.len() - 1]), 1, counts[1], noise, seed + 1);
@@ -40,43 +32,6 @@ fn join(path: &[Section], counts: [usize; 2], noise: f64, seed: u64) -> Connecto
     let out = connector_surface(path, ends, Division::Rings(1.0)).expect("connector");
     assert_taken_over(&out, ends);
     out
-}
-
-/// End triangles and vertices bit for bit.
-fn assert_taken_over(out: &ConnectorSurface, ends: [ConnectorEnd; 2]) {
-    for (p, v) in out.surface.points.iter().zip(&out.shared) {
-        assert_eq!(*p, ends[v.side as usize].points[v.vertex as usize]);
-    }
-    let mut k = 0;
-    for (side, end) in ends.iter().enumerate() {
-        for t in &end.surface.triangles {
-            let copy = out.surface.triangles[k].map(|v| out.shared[v as usize]);
-            assert!(copy.iter().all(|v| usize::from(v.side) == side));
-            assert_eq!(copy.map(|v| v.vertex), [t[0], t[2], t[1]]);
-            k += 1;
-        }
-    }
-    assert_eq!(k, out.end_triangles as usize);
-    assert_eq!(closed_euler(&out.surface.triangles), Some(2));
-    assert!(volume(&out.surface) > 0.0);
-}
-
-fn volume(s: &TriMesh) -> f64 {
-    let p = |v: u32| s.points[v as usize].coords;
-    s.triangles.iter().map(|t| p(t[0]).dot(&p(t[1]).cross(&p(t[2]))) / 6.0).sum()
-}
-
-/// Smallest angle of the wall's triangles in degrees.
-fn wall_angle(c: &ConnectorSurface) -> f64 {
-    let p = |v: u32| &c.surface.points[v as usize];
-    let wall = &c.surface.triangles[c.end_triangles as usize..];
-    wall.iter().map(|t| triangle_min_angle(p(t[0]), p(t[1]), p(t[2])).to_degrees()).fold(180.0, f64::min)
-}
-
-fn straight(seed: u64, length: f64, r: [f64; 2]) -> Vec<Section> {
-    let axis = direction(seed);
-    let o = Point3::new(jitter(seed, 1), jitter(seed, 2), jitter(seed, 3));
-    vec![section(o, axis, r[0]), section(o + axis * length, axis, r[1])]
 }
 
 #[test]
@@ -126,44 +81,14 @@ fn bent_and_tapered_paths_are_followed() {
 }
 
 #[test]
-fn a_window_too_short_for_rings_is_woven_directly() {
+fn a_window_too_short_for_rings_has_one_strip() {
     let out = join(&straight(5, 0.4, [1.0, 1.0]), [12, 12], 0.2, 5);
     assert_eq!(out.rings, 0);
 }
 
 #[test]
-fn trimmed_tubes_are_joined() {
-    let (mut worst, mut joined) = (180.0f64, 0);
-    for seed in 0..24 {
-        let rho = 3.0 + (seed % 3) as f64;
-        let h = 2.0 / rho;
-        let path = straight(seed, 3.0, [1.0, 1.0]);
-        let axis = path[0].axis;
-        let tube = |a: Point3, b: Point3| Tube { a, b, ra: 1.0, rb: 1.0 };
-        let lower = lattice_tube(&tube(path[0].origin - axis * 4.0, path[0].origin + axis * 1.5), h, 0.2, seed);
-        let upper = lattice_tube(&tube(path[1].origin - axis * 1.5, path[1].origin + axis * 4.0), h, 0.2, seed + 1);
-        let options = TrimOptions { edge: h, relax: true, depth: 2.0 };
-        let cut = |side, section| CutEnd { cut: CutId(0), side, section };
-        let a = trim(&lower, &neighbours(&lower), &[cut(0, path[0])], &[], &options);
-        let b = trim(&upper, &neighbours(&upper), &[cut(1, flipped(&path[1]))], &[], &options);
-        let (Ok(a), Ok(b)) = (a, b) else { continue };
-        let ends = [
-            ConnectorEnd { surface: &a.ends[0], points: &a.mesh.points },
-            ConnectorEnd { surface: &b.ends[0], points: &b.mesh.points },
-        ];
-        let Ok(out) = connector_surface(&path, ends, Division::Rings(1.0)) else { continue };
-        assert_taken_over(&out, ends);
-        joined += 1;
-        worst = worst.min(wall_angle(&out));
-    }
-    assert!(joined >= 22, "{joined}");
-    // Staircase rims, far worse than those of a contoured wall.
-    assert!(worst > 8.0, "{worst}");
-}
-
-#[test]
-fn weaving_needs_two_loops() {
+fn strips_need_two_loops() {
     let points = vec![Point3::origin(); 3];
-    assert!(weave(&points, &[0, 1], &[0, 1, 2], Point3::origin(), Vec3::z()).is_none());
-    assert!(weave(&points, &[0, 1, 2], &[0, 1, 2], Point3::origin(), Vec3::z()).is_none());
+    assert!(best_strip(&points, &[0, 1], &[0, 1, 2], Point3::origin(), Vec3::z()).is_none());
+    assert!(best_strip(&points, &[0, 1, 2], &[0, 1, 2], Point3::origin(), Vec3::z()).is_none());
 }

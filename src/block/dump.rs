@@ -1,16 +1,11 @@
-//! Failing inputs as small self-contained JSON files, and a way to run them again.
+//! Failing inputs as small self-contained JSON files.
 
-use super::cluster::mesh_cluster_watched;
-use super::connector::{DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
-use super::connector_surface::ConnectorEnd;
+use super::connector::DIVISIONS;
 use super::end_surface::StoredEnd;
-use super::error::{BlockError, NotOnBoundary};
-use super::finished::Finished;
 use super::params::BlockParams;
 use crate::geometry::{Point3, Section, Tube};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
 use crate::skeleton::{LARGEST, NodeId};
-use crate::tet::Watch;
 use serde::{Deserialize, Serialize};
 
 /// Number of the format; another one whenever what a dump holds changes its meaning or its names.
@@ -181,34 +176,6 @@ impl BlockDump {
                 ends.iter().try_for_each(check_end)
             }
         }
-    }
-
-    /// Runs the block again.
-    ///
-    /// # Errors
-    /// The block's.
-    pub fn run(&self, watch: &Watch) -> Result<Finished, BlockError> {
-        let params = &self.params;
-        let (mesh, ends) = match &self.input {
-            BlockInput::Cluster { id, cluster } => {
-                let mesh = mesh_cluster_watched(*id, cluster, params, watch)?;
-                return Finished::of_cluster(mesh, |node| node.0).map_err(|source| self.not_closed(source));
-            }
-            BlockInput::Connector { id, cut, ends } => {
-                let mesh = mesh_connector(*id, cut, ends.each_ref().map(ConnectorEnd::from), params)?;
-                (mesh, ends.each_ref().map(|end| end.surface.clone()))
-            }
-            BlockInput::FreeConnector { id, cut } => {
-                let mesh = mesh_free_connector(*id, cut, params)?;
-                let no_disc = || BlockError::Connector { cut: *id, at: [f64::NAN; 3], attempts: Vec::new() };
-                (mesh, shared_ends(*id, cut, params).ok_or_else(no_disc)?)
-            }
-        };
-        Finished::of_connector(mesh, ends.each_ref()).map_err(|source| self.not_closed(source))
-    }
-
-    fn not_closed(&self, source: NotOnBoundary) -> BlockError {
-        BlockError::Faces { block: self.name(), source }
     }
 }
 

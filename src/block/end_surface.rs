@@ -1,10 +1,10 @@
-//! End surface: the disc of triangles that trimming exposes at a cut (3.2.2), and what has to hold for it.
+//! End surface: the disc of triangles in which a block ends at a cut (3.2.2), and what has to hold for it.
 
 use crate::geometry::{Point3, Section};
 use crate::partition::CutId;
 use crate::surface::SharedDisc;
 
-/// A cut end to trim.
+/// Where a cluster ends at a cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutEnd {
     pub cut: CutId,
@@ -14,7 +14,7 @@ pub struct CutEnd {
     pub section: Section,
 }
 
-/// The triangles exposed at a cut.
+/// The triangles at a cut.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EndSurface {
     pub cut: CutId,
@@ -54,7 +54,7 @@ pub enum EndFault {
 
 /// Plane coordinates of points in a section's frame, on an integer grid so fine that snapping is invisible and so
 /// coarse that `cross` is exact.
-pub(super) struct Plane {
+pub(crate) struct Plane {
     section: Section,
     u: crate::geometry::Vec3,
     w: crate::geometry::Vec3,
@@ -66,12 +66,12 @@ const GRID: f64 = (1u64 << 25) as f64;
 
 impl Plane {
     /// `extent`: a bound on the distance from the axis of the points that will be projected.
-    pub(super) fn new(section: &Section, extent: f64) -> Self {
+    pub(crate) fn new(section: &Section, extent: f64) -> Self {
         let (u, w) = section.frame();
         Self { section: *section, u, w, scale: GRID / extent }
     }
 
-    pub(super) fn snap(&self, p: &Point3) -> [i64; 2] {
+    pub(crate) fn snap(&self, p: &Point3) -> [i64; 2] {
         let d = p - self.section.origin;
         let grid = |x: f64| (x * self.scale).round().clamp(-2.0 * GRID, 2.0 * GRID) as i64;
         [grid(d.dot(&self.u)), grid(d.dot(&self.w))]
@@ -79,7 +79,7 @@ impl Plane {
 }
 
 /// Twice the signed area of a triangle of grid points, exact.
-pub(super) fn cross(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
+pub(crate) fn cross(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
@@ -97,7 +97,7 @@ fn segments_meet(a: [i64; 2], b: [i64; 2], c: [i64; 2], d: [i64; 2]) -> bool {
 }
 
 /// The first pair of edges of a closed polygon that meet elsewhere than in a common end point.
-pub(super) fn crossing(polygon: &[[i64; 2]]) -> Option<(u32, u32)> {
+pub(crate) fn crossing(polygon: &[[i64; 2]]) -> Option<(u32, u32)> {
     let n = polygon.len();
     for i in 0..n {
         let (a, b) = (polygon[i], polygon[(i + 1) % n]);
@@ -128,7 +128,7 @@ fn folds_back(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> bool {
 
 /// The boundary loop of an oriented triangle set, if the set is one disc: no directed edge twice, one simple loop,
 /// Euler number 1, connected. Starts at its smallest vertex.
-pub(super) fn disc_rim(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
+pub(crate) fn disc_rim(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
     let mut edges: Vec<(u32, u32)> = Vec::with_capacity(3 * triangles.len());
     for t in triangles {
         edges.extend([(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);

@@ -67,7 +67,7 @@ pub enum BlockError {
         /// Why.
         source: TetError,
     },
-    /// Trimming or flattening failed at one end of a cluster.
+    /// A cluster has no sound end at a cut.
     #[error("cluster {}, cut {}: {failure} near {at:?}", cluster.0, cut.0)]
     End {
         cluster: ClusterId,
@@ -120,7 +120,7 @@ pub struct ConnectorAttempt {
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConnectorFailure {
-    /// The surface could not be woven.
+    /// The surface could not be made.
     #[error(transparent)]
     Surface(ConnectorFault),
     /// The surface could not be filled.
@@ -144,7 +144,7 @@ impl BlockError {
             Self::Surface { .. } | Self::Genus { .. } => "wall",
             Self::Cap { .. } => "caps",
             Self::Tetrahedra { .. } => "tetrahedra",
-            Self::End { .. } => "trimmed ends",
+            Self::End { .. } => "ends",
             Self::Faces { .. } | Self::Flat { .. } => "check",
             Self::Connector { attempts, .. } => match attempts.last().map(|attempt| &attempt.failure) {
                 Some(ConnectorFailure::Tetrahedra(_)) => "tetrahedra",
@@ -154,7 +154,7 @@ impl BlockError {
     }
 
     /// Of a cluster that fails at a cut; `end` is the index among all its ends.
-    pub(super) fn at_end(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> Self {
+    pub(crate) fn at_end(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> Self {
         Self::End { cluster, end, cut: cut.cut, at: cut.section.origin.coords.into(), failure }
     }
 }

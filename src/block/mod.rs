@@ -1,7 +1,7 @@
 //! Floor 4: one block, cluster or connector, from its piece of skeleton to tetrahedra (3.2.2 and 3.2.3 of the paper).
 //!
-//! A cluster is contoured, closed at its terminals, filled with tetrahedra and trimmed at its cuts; what trimming
-//! exposes at a cut is an [`EndSurface`]. A connector is a tube between two end surfaces, which it takes over vertex
+//! A cluster is contoured, closed by discs at its terminals and cuts, and filled with tetrahedra; the disc at a cut is an
+//! [`EndSurface`]. A connector is a tube between two end surfaces, which it takes over vertex
 //! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
 
 mod alone;
@@ -17,26 +17,27 @@ mod path;
 mod record;
 mod rings;
 mod shape;
+mod strip;
 mod wall;
-mod weave;
-mod woven;
 
-pub(crate) use cluster::mesh_cluster_watched;
 pub use cluster::{CapFaces, ClusterMesh, mesh_cluster};
+pub(crate) use cluster::{cut_ends, mesh_cluster_watched};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};
 pub use connector_surface::ConnectorEnd;
+#[cfg(test)]
+pub(crate) use connector_surface::{Division, connector_surface};
 pub use dump::{BlockDump, BlockInput};
-pub use end_surface::{EndSurface, StoredEnd};
-pub use error::{BlockError, ConnectorAttempt};
+pub use end_surface::{CutEnd, EndSurface, StoredEnd};
+pub(crate) use end_surface::{Plane, cross, crossing, disc_rim};
+pub use error::{BlockError, ConnectorAttempt, FlattenFailure};
 pub use finished::{About, Cured, Finished, FinishedJoint};
 pub use params::{BlockParams, EndStyle};
 pub use record::{Bytes, Record, Sizes, encode};
+pub(crate) use shape::{tet_ratio, triangle_ratio};
 
 #[cfg(test)]
 mod cluster_tests;
 #[cfg(test)]
 mod connector_tests;
 #[cfg(test)]
-mod fixtures;
-#[cfg(test)]
-mod joint_tests;
+pub(crate) mod fixtures;

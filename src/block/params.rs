@@ -16,8 +16,8 @@ pub enum EndStyle {
     /// As `Disc`, but the disc is the one that the vessel alone gives (`SharedDisc`), so that the neighbour need
     /// not be known.
     Shared,
-    /// Tetrahedra beyond the plane are taken off and what that exposes is made flat (3.2.2).
-    Trimmed,
+    /// It does not: the vessel goes on beyond the plane and ends round. What lies there is for the caller to take off.
+    Open,
 }
 
 /// Parameters of a block.

@@ -4,7 +4,7 @@ use crate::geometry::{Point3, Vec3};
 use crate::mesh::quality::radius_ratio;
 
 /// Radius ratio of a triangle, 2 r / R of in- and circumcircle, in [0, 1]; 1 for the equilateral one.
-pub(super) fn triangle_ratio(p: &[Point3; 3]) -> f64 {
+pub(crate) fn triangle_ratio(p: &[Point3; 3]) -> f64 {
     let (a, b, c) = ((p[1] - p[2]).norm(), (p[2] - p[0]).norm(), (p[0] - p[1]).norm());
     // Written without the area: 2 r / R = (b+c−a)(c+a−b)(a+b−c) / abc.
     let abc = a * b * c;
@@ -24,6 +24,6 @@ pub(super) fn facing_ratio(p: &[Point3; 3], outward: &Vec3) -> f64 {
 }
 
 /// Radius ratio of a tetrahedron, in [−1, 1]; negative for an inverted one.
-pub(super) fn tet_ratio(p: &[Point3; 4]) -> f64 {
+pub(crate) fn tet_ratio(p: &[Point3; 4]) -> f64 {
     radius_ratio(&p[0], &p[1], &p[2], &p[3])
 }

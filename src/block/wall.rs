@@ -1,4 +1,4 @@
-//! The wall of a connector after weaving: edge flips and sliding of ring vertices until shapes stop improving.
+//! The wall of a connector once its strips are chosen: edge flips and sliding of ring vertices until shapes stop improving.
 
 use super::path::AxisPath;
 use super::rings::RingVertex;
@@ -30,7 +30,7 @@ pub(super) struct Wall<'a> {
 }
 
 impl<'a> Wall<'a> {
-    /// A woven wall.
+    /// A wall of strips.
     pub(super) fn new(
         path: &'a AxisPath,
         points: Vec<Point3>,

@@ -18,8 +18,9 @@ use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
+use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, RunError, TooLarge};
 use crate::prepare::PrepareReport;
-use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, Observer, RunError, Stage, TooLarge};
+use crate::progress::{Progress, Stage};
 use crate::refine::{RefineReport, Refined};
 use crate::skeleton::Skeleton;
 
@@ -240,7 +241,7 @@ impl Args {
         let Done { mesh, expectation, check, mut report } = done;
         let notes = self.notes(expectation);
         let memory = (self.memory / 4) as usize;
-        let write = || write_mesh_within(memory, &self.output, mesh, &notes);
+        let write = || write_mesh_within(Some(memory), &self.output, mesh, &notes, bars);
         let mut clock = Clock::default();
         let written = clock.time(bars, Stage::Write, 0, write);
         // Passes over the blocks end when the run is to end.

@@ -1,4 +1,4 @@
-//! Floor 6: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
+//! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
 mod check;
 mod common;

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::stop::Stop;
-use crate::pipeline::{Observer, Stage};
+use crate::progress::{Progress, Stage};
 
 /// Whether bars are shown: on a terminal only.
 pub fn shows_bars(quiet: bool) -> bool {
@@ -31,7 +31,7 @@ pub fn stage_bar(stage: &'static str, steps: u64) -> ProgressBar {
 pub struct Bars {
     shown: bool,
     quiet: bool,
-    current: Mutex<Option<ProgressBar>>,
+    current: Mutex<Option<(Stage, ProgressBar)>>,
     stop: Stop,
 }
 
@@ -42,31 +42,25 @@ impl Bars {
     }
 
     fn current(&self) -> Option<ProgressBar> {
-        self.current.lock().ok().and_then(|bar| bar.clone())
+        self.current.lock().ok()?.as_ref().map(|(_, bar)| bar.clone())
     }
 }
 
-impl Observer for Bars {
-    fn begin(&self, stage: Stage, total: u64) {
-        if !self.shown {
+impl Progress for Bars {
+    fn at(&self, stage: Stage, done: u64, total: u64) {
+        let Ok(mut current) = self.current.lock() else { return };
+        let is_over = done > 0 && done == total;
+        if !self.shown || (is_over && current.is_none()) {
             return;
         }
-        let bar = stage_bar(stage.name(), total);
-        if let Ok(mut current) = self.current.lock() {
-            *current = Some(bar);
+        if current.as_ref().is_none_or(|(at, _)| *at != stage) {
+            *current = Some((stage, stage_bar(stage.name(), total)));
         }
-    }
-
-    fn advance(&self, amount: u64) {
-        if let Some(bar) = self.current() {
-            bar.inc(amount);
+        if let Some((_, bar)) = current.as_ref() {
+            // Threads may tell in another order than that in which they count.
+            bar.set_position(done.max(bar.position()));
         }
-    }
-
-    fn end(&self, _stage: Stage) {
-        if let Ok(mut current) = self.current.lock()
-            && let Some(bar) = current.take()
-        {
+        if is_over && let Some((_, bar)) = current.take() {
             bar.finish_and_clear();
         }
     }

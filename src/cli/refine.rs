@@ -2,23 +2,20 @@
 
 use std::path::PathBuf;
 
-use indicatif::ProgressBar;
 use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::prepare::CureArgs;
-use super::progress::{shows_bars, stage_bar};
+use super::progress::Bars;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
 use crate::io::write_text;
-use crate::refine::{
-    self, Crowded, Freedom, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, Sample,
-};
+use crate::refine::{self, Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual};
+use crate::prepare::PrepareReport;
 use crate::report::plot::svg;
 use crate::report::refine::{csv, panels};
-use crate::prepare::PrepareReport;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -149,30 +146,6 @@ struct Output<'a> {
     report: &'a RefineReport,
 }
 
-/// A bar on standard error, on a terminal only.
-struct Steps<'a> {
-    shown: bool,
-    bar: Option<ProgressBar>,
-    stop: &'a Stop,
-}
-
-impl Progress for Steps<'_> {
-    fn step(&mut self, iteration: usize, of: usize, _: Option<&Sample>) {
-        if !self.shown {
-            return;
-        }
-        let bar = self.bar.get_or_insert_with(|| stage_bar("refine", of as u64));
-        bar.set_position(iteration as u64);
-        if iteration == of {
-            bar.finish_and_clear();
-        }
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.stop.is_asked()
-    }
-}
-
 /// Refines a network, with a bar.
 pub(super) fn moved(
     network: &PreparedNetwork,
@@ -180,13 +153,12 @@ pub(super) fn moved(
     quiet: bool,
     stop: &Stop,
 ) -> Result<Refined, Failure> {
-    let mut steps = Steps { shown: shows_bars(quiet), bar: None, stop };
     let mut params = params.clone();
     // Polylines that were resampled do not look measured any more.
     if params.freedom == Freedom::Auto {
         params.freedom = if network.report.measured { Freedom::Measured } else { Freedom::Grown };
     }
-    let refined = refine::refine(&network.skeleton, &params, &mut steps);
+    let refined = refine::refine(&network.skeleton, &params, &Bars::new(quiet, stop.clone()));
     refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
         RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),

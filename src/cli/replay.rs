@@ -6,12 +6,13 @@ use serde::Serialize;
 
 use super::common::Common;
 use super::exit::{Exit, Failure};
+use super::progress::Bars;
 use super::room::size;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::block::{BlockDump, BlockError, Finished};
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh};
 use crate::mesh::quality::TetQuality;
-use crate::pipeline::{Estimate, TooLarge};
+use crate::pipeline::{Estimate, TooLarge, replay};
 use crate::tet::{TetError, Watch};
 
 #[derive(Debug, clap::Args)]
@@ -73,8 +74,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pool = super::common::thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
-    let ask = || stop.is_asked();
-    match pool.install(|| dump.run(&Watch::until(&ask))) {
+    let bars = Bars::new(true, stop.clone());
+    match pool.install(|| replay(&dump, &Watch::asking(&bars))) {
         Err(BlockError::Tetrahedra { source: TetError::Cancelled, .. }) => Err(Failure::stopped(NOTHING_KEPT)),
         Err(error) => args.fails_again(&dump, &error),
         Ok(block) => {

@@ -75,12 +75,12 @@ impl GenerateParams {
 /// has one radius, a node that of the vessel that leads to it. The same for a seed, whatever the number of threads.
 ///
 /// ```
-/// use anastomesh::network::{GenerateParams, Organ, generate};
+/// use anastomesh::testing::{GenerateParams, Organ, generate};
 ///
 /// let tree = generate(&GenerateParams::new(Organ::Ellipsoid, 50))?;
 /// assert_eq!((tree.nodes.len(), tree.edges.len()), (100, 99));
 /// assert_eq!(tree.adjacency().terminals().len(), 51);
-/// # Ok::<(), anastomesh::network::GenerateError>(())
+/// # Ok::<(), anastomesh::testing::GenerateError>(())
 /// ```
 ///
 /// # Errors

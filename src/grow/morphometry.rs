@@ -56,12 +56,12 @@ pub struct OrderFigures {
 /// The vessels of a tree, by order.
 ///
 /// ```
-/// use anastomesh::network::{GenerateParams, Morphometry, Organ, generate};
+/// use anastomesh::testing::{GenerateParams, Morphometry, Organ, generate};
 ///
 /// let tree = generate(&GenerateParams::new(Organ::Kidney, 50))?;
 /// let orders = Morphometry::of(&tree).orders;
 /// assert!(orders.len() > 2 && orders[0].count > orders[1].count);
-/// # Ok::<(), anastomesh::network::GenerateError>(())
+/// # Ok::<(), anastomesh::testing::GenerateError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Morphometry {

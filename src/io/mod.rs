@@ -19,23 +19,14 @@ mod file;
 pub(crate) mod network;
 mod patches;
 pub(crate) mod surface;
+#[doc(hidden)]
 pub mod tetgen;
 mod text;
 pub(crate) mod volume;
 mod vtk_xml;
 
-pub use file::FileError;
 #[cfg(feature = "cli")]
 pub(crate) use file::write_text;
-pub use network::{
-    NetworkArray, NetworkFile, NetworkFileError, NetworkFormat, NetworkNote, NetworkOptions, read_network,
-    read_network_from, refinement_arrays, write_network, write_tree,
-};
-pub use surface::{
-    SurfaceContent, SurfaceFileError, SurfaceFormat, read_content_as, read_content_from, read_surface,
-    read_surface_from, write_surface,
-};
-pub use volume::{
-    MeshFile, MeshFileError, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, ensure_writable, read_mesh,
-    read_mesh_from, write_mesh, write_mesh_to,
-};
+pub use network::{NetworkArray, NetworkFile, NetworkFileError, NetworkOptions, read_network, write_network};
+pub use surface::{SurfaceFileError, read_surface, write_surface};
+pub use volume::{MeshFile, MeshFileError, MeshNotes, read_mesh, write_mesh};

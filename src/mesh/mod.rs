@@ -77,7 +77,7 @@ pub const TET_FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 
 /// A tetrahedral mesh whose boundary is labelled: what the pipeline makes and the writers write.
 ///
 /// ```
-/// let file = anastomesh::io::read_mesh_from(MESH.as_bytes(), anastomesh::io::MeshFormat::Medit)?;
+/// let file = anastomesh::testing::read_mesh_from(MESH.as_bytes(), anastomesh::testing::MeshFormat::Medit)?;
 /// assert_eq!((file.volume.mesh.tets.len(), file.volume.boundary_patch.len()), (1, 4));
 /// assert_eq!(file.volume.patches[0].name, "wall");
 /// # const MESH: &str = "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n\

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use super::attempts::Way;
 use super::blocks::{Blocks, original_nodes};
 use super::estimate::cluster_cost;
-use super::observer::Stage;
 use super::report::Retry;
 use super::rounds::{RoundsError, Run};
 use super::routes::{Overlapping, tangled_clusters};
 use crate::partition::ClusterId;
+use crate::progress::Stage;
 use crate::tet::Watch;
 
 /// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
@@ -27,7 +27,7 @@ impl Run<'_> {
     /// not come out so is left as it is.
     ///
     /// # Errors
-    /// When the store fails, or the observer says to stop.
+    /// When the store fails, or the run is told to stop.
     pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: Way) -> Result<(), RoundsError> {
         let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
         let mut again: BTreeMap<u32, u32> = BTreeMap::new();
@@ -40,9 +40,8 @@ impl Run<'_> {
         let again = &again[..clusters];
         let tangled = tangled_clusters(shop.skeleton, partition, self.overlaps);
         let costs: Vec<_> = again.iter().map(|(i, _)| cluster_cost(&partition.clusters[*i], plan)).collect();
-        let observer = self.observer;
-        let stop = move || observer.is_cancelled();
-        let watch = Watch::until(&stop);
+        let progress = self.progress;
+        let watch = Watch::asking(progress);
         let make = |k: usize| {
             let i = again[k].0;
             shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], way, &watch)

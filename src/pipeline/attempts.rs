@@ -1,10 +1,8 @@
 //! The parameters with which a block is tried, one after the other, before its cuts are touched.
 
+use super::once::{self, Connector};
 use super::plan::{JointStyle, MeshPlan};
-use crate::block::{
-    BlockError, BlockParams, ConnectorAttempt, ConnectorEnd, ConnectorMesh, DIVISIONS, EndStyle, EndSurface, Finished,
-    mesh_cluster_watched, mesh_connector, mesh_free_connector, shared_ends,
-};
+use crate::block::{BlockError, BlockParams, ConnectorEnd, DIVISIONS, EndStyle, Finished};
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
 use crate::skeleton::NodeId;
 use crate::tet::Watch;
@@ -83,7 +81,7 @@ impl Way {
             Self::Shifted => shifted,
             Self::Narrower => narrower,
             Self::Other => match plan.joint {
-                JointStyle::Woven => BlockParams { ends: EndStyle::Trimmed, ..usual },
+                JointStyle::Woven => BlockParams { ends: EndStyle::Open, ..usual },
                 JointStyle::Disc | JointStyle::None => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.35, ..usual },
             },
             Self::FinerShifted => finer(shifted),
@@ -172,49 +170,32 @@ pub fn cluster(
     watch: &Watch,
 ) -> Tried {
     let name = format!("cluster {}", id.0);
-    first_good(&name, attempts(plan, overlapping, first), |params| {
-        let mesh = mesh_cluster_watched(id, cluster, params, watch)?;
-        Finished::of_cluster(mesh, &original).map_err(|source| BlockError::Faces { block: name.clone(), source })
-    })
+    first_good(&name, attempts(plan, overlapping, first), |params| once::cluster(id, cluster, params, &original, watch))
 }
 
 /// Meshes a connector between the ends of its two clusters.
 pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan) -> Tried {
-    divided(id, plan, |params| Ok((mesh_connector(id, cut, ends, params)?, ends.map(|end| end.surface.clone()))))
+    divided(id, plan, |params| once::connector(id, cut, ends, params))
 }
 
 /// The same for a connector that is made without its clusters.
 pub fn free_connector(id: CutId, cut: &Cut, plan: &MeshPlan) -> Tried {
-    let no_disc = || BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: Vec::new() };
-    divided(id, plan, |params| {
-        let mesh = mesh_free_connector(id, cut, params)?;
-        Ok((mesh, shared_ends(id, cut, params).ok_or_else(no_disc)?))
-    })
+    divided(id, plan, |params| once::free_connector(id, cut, params))
 }
 
 /// A connector, its tube divided in one way after the other.
-fn divided(
-    id: CutId,
-    plan: &MeshPlan,
-    mut make: impl FnMut(&BlockParams) -> Result<(ConnectorMesh, [EndSurface; 2]), BlockError>,
-) -> Tried {
-    let name = format!("connector {}", id.0);
+fn divided(id: CutId, plan: &MeshPlan, mut make: impl FnMut(&BlockParams) -> Result<Connector, BlockError>) -> Tried {
     let way = |first_division| Attempt {
         name: "other division of the tube".into(),
         params: BlockParams { first_division, ..plan.block_params() },
     };
     let mut before: Vec<BlockError> = Vec::new();
-    let mut tried = first_good(&name, (0..DIVISIONS).map(way).collect(), |params| {
-        let (mesh, ends) = make(params)?;
+    let mut tried = first_good(&format!("connector {}", id.0), (0..DIVISIONS).map(way).collect(), |params| {
+        let (made, divisions) = make(params)?;
         // A division that fails gives way to the next one at once.
-        let failed = |attempt: &ConnectorAttempt| BlockError::Connector {
-            cut: id,
-            at: [f64::NAN; 3],
-            attempts: vec![attempt.clone()],
-        };
-        before.extend(mesh.failed.iter().map(failed));
-        let faces = |source| BlockError::Faces { block: name.clone(), source };
-        Finished::of_connector(mesh, ends.each_ref()).map_err(faces)
+        let failed = |attempt| BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: vec![attempt] };
+        before.extend(divisions.into_iter().map(failed));
+        Ok(made)
     });
     tried.failures.extend(before);
     tried

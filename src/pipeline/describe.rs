@@ -5,36 +5,36 @@ use std::io;
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{Made, Workshop};
-use super::observer::Observer;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{BlockCounts, FailedBlock, FusedBlock, RunReport};
 use crate::block::{About, BlockDump};
 use crate::partition::{ClusterId, CutId};
+use crate::progress::Progress;
 use crate::skeleton::{NodeId, Skeleton};
 
 /// How many overlapping pairs are spelt out for people.
 const LISTED: usize = 50;
 
-pub(super) fn announce(report: &RunReport, observer: &dyn Observer) {
+pub(super) fn announce(report: &RunReport, progress: &dyn Progress) {
     let more = |n: usize| {
         if n > LISTED {
-            observer.note(&format!("  and {} more (--json lists all)", n - LISTED));
+            progress.note(&format!("  and {} more (--json lists all)", n - LISTED));
         }
     };
     let n = report.overlaps.len();
     if n > 0 {
-        observer.note(&format!("{n} pairs of vessels overlap; the wall may meet itself there (edges by their nodes):"));
+        progress.note(&format!("{n} pairs of vessels overlap; the wall may meet itself there (edges by their nodes):"));
         for o in report.overlaps.iter().take(LISTED) {
             let [[a, b], [c, d]] = o.edges;
-            observer.note(&format!("  {a}-{b} and {c}-{d}: distance {:.4}, radii {:.4}", o.distance, o.radii));
+            progress.note(&format!("  {a}-{b} and {c}-{d}: distance {:.4}, radii {:.4}", o.distance, o.radii));
         }
         more(n);
     }
     let n = report.unconnected.len();
     if n > 0 {
-        observer.note(&format!("{n} pairs of edges that share no node meet (neighbours along a vessel included):"));
+        progress.note(&format!("{n} pairs of edges that share no node meet (neighbours along a vessel included):"));
         for [[a, b], [c, d]] in report.unconnected.iter().take(LISTED) {
-            observer.note(&format!("  {a}-{b} and {c}-{d}"));
+            progress.note(&format!("  {a}-{b} and {c}-{d}"));
         }
         more(n);
     }

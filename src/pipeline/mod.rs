@@ -1,14 +1,13 @@
-//! Floor 5: the plan run over all blocks.
+//! Floor 6: the plan run over all blocks.
 
 mod apart;
-mod assemble;
 mod attempts;
 mod blocks;
 mod cures;
 mod describe;
 mod estimate;
 mod make;
-mod observer;
+mod once;
 mod plan;
 mod report;
 mod rounds;
@@ -23,7 +22,8 @@ mod timing;
 mod whole;
 
 pub use estimate::{Estimate, TooLarge};
-pub use observer::{Observer, Stage};
+#[cfg(feature = "cli")]
+pub use once::replay;
 pub use plan::{JointStyle, MeshPlan};
 pub use report::RunReport;
 pub use run::{Meshed, RunError, Stored, mesh_into, mesh_network};

@@ -93,7 +93,7 @@ pub struct RunReport {
     /// The partition in figures.
     pub partition: Option<crate::partition::PartitionSummary>,
     /// The joints.
-    pub joints: Option<crate::stitch::joints::JointReport>,
+    pub joints: Option<crate::woven::JointReport>,
     /// Blocks that needed another try.
     pub retries: Vec<Retry>,
     /// Clusters in which overlapping vessels changed the topology.

@@ -4,12 +4,12 @@
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::attempts::Way;
 use super::cures::{Cure, cure, partition_params};
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::{Kept, Made, Workshop};
-use super::observer::{Observer, Stage};
 use super::plan::JointStyle;
 use super::report::Retry;
 use super::routes::{branch_pairs, tangled_clusters};
@@ -18,6 +18,7 @@ use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
 use crate::block::Cured;
 use crate::partition::{self, ClusterId, Cut, CutId, Partition, PartitionError};
+use crate::progress::{Progress, Stage};
 use crate::skeleton::{BranchId, Overlaps};
 use crate::tet::Watch;
 
@@ -29,7 +30,7 @@ pub struct Run<'a> {
     /// Vessels of the network that overlap.
     pub overlaps: &'a Overlaps,
     pub shop: Workshop<'a>,
-    pub observer: &'a dyn Observer,
+    pub progress: &'a dyn Progress,
     pub clock: &'a mut Clock,
 }
 
@@ -46,7 +47,7 @@ pub enum RoundsError {
     /// The machine is too small for it.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// The observer said so.
+    /// It was told to stop.
     #[error("cancelled")]
     Cancelled,
 }
@@ -76,7 +77,7 @@ impl Run<'_> {
         loop {
             let params = partition_params(self.shop.skeleton, plan, &cures, &together);
             let cut = || partition::partition(self.shop.skeleton, &params);
-            let partition = self.clock.time(self.observer, Stage::Partition, 0, cut)?;
+            let partition = self.clock.time(self.progress, Stage::Partition, 0, cut)?;
             if round == 0 {
                 fits(&Estimate::of(&partition, plan))?;
             }
@@ -99,9 +100,8 @@ impl Run<'_> {
         let count = partition.clusters.len();
         let mut costs: Vec<Cost> = partition.clusters.iter().map(|c| cluster_cost(c, plan)).collect();
         costs.extend(partition.cuts.iter().map(|cut| connector_cost(cut, plan)));
-        let observer = self.observer;
-        let stop = move || observer.is_cancelled();
-        let watch = Watch::until(&stop);
+        let progress = self.progress;
+        let watch = Watch::asking(progress);
         let cluster =
             |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], Way::Usual, &watch);
         if plan.joint != JointStyle::Woven {
@@ -127,7 +127,7 @@ impl Run<'_> {
         Ok((clusters, connectors))
     }
 
-    /// One stage over blocks: what became of them, and their seconds. Ends early when the observer says so: blocks that
+    /// One stage over blocks: what became of them, and their seconds. Ends early when it is told to: blocks that
     /// failed because of that are no failures.
     pub(super) fn timed<T: Send>(
         &mut self,
@@ -135,18 +135,20 @@ impl Run<'_> {
         costs: &[Cost],
         work: impl Fn(usize) -> Result<T, StoreError> + Sync,
     ) -> Result<(Vec<T>, Vec<f64>), RoundsError> {
-        let (observer, memory) = (self.observer, self.shop.plan.memory);
+        let (progress, memory) = (self.progress, self.shop.plan.memory);
         let weight = |cost: &Cost| 1 + cost.tets as u64;
-        let ask = || if observer.is_cancelled() { Err(RoundsError::Cancelled) } else { Ok(()) };
+        let ask = || if progress.is_cancelled() { Err(RoundsError::Cancelled) } else { Ok(()) };
+        let (done, total) = (AtomicU64::new(0), costs.iter().map(weight).sum());
         let step = |i: usize| {
             ask()?;
             let made = work(i)?;
             ask()?;
-            observer.advance(weight(&costs[i]));
+            let weight = weight(&costs[i]);
+            progress.at(stage, done.fetch_add(weight, Ordering::Relaxed) + weight, total);
             Ok::<_, RoundsError>(made)
         };
         let run = || costliest_first(costs, memory, step);
-        Ok(self.clock.time(observer, stage, costs.iter().map(weight).sum(), run)?.into_iter().unzip())
+        Ok(self.clock.time(progress, stage, total, run)?.into_iter().unzip())
     }
 }
 

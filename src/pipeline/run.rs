@@ -4,13 +4,11 @@ use std::collections::BTreeMap;
 use std::io;
 
 use super::apart::{Meetings, hopeful};
-use super::assemble::Assembly;
 use super::attempts::Way;
 use super::blocks::Blocks;
 use super::describe::{Clusters, announce, describe_blocks};
 use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
-use super::observer::{Observer, Stage};
 use super::plan::{JointStyle, MeshPlan, PlanError};
 use super::report::{Meeting, MeshSize, RunReport};
 use super::rounds::{RoundsError, Run};
@@ -18,15 +16,16 @@ use super::routes::Overlapping;
 use super::store::{Store, StoreError};
 use super::terminals::{self, NotATerminal};
 use super::timing::Clock;
-use super::whole::{Cancelled, Whole};
+use super::whole::Whole;
 use crate::mesh::check::parts::PartsCheck;
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::PartitionError;
+use crate::progress::{Cancelled, Progress, Stage, ask};
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
-use crate::stitch::label::LabelError;
+use crate::woven::{Assembly, LabelError};
 
 /// A mesh in memory, what it has to be, what was found, what was done.
 #[derive(Debug)]
@@ -81,7 +80,7 @@ pub enum RunError {
     /// Caps are not where they should be: a fault of the program.
     #[error("{0}; this is a fault of the program")]
     Label(#[from] LabelError),
-    /// The observer said so. Blocks that were finished are in the store.
+    /// It was told to stop. Blocks that were finished are in the store.
     #[error("cancelled")]
     Cancelled,
 }
@@ -99,7 +98,7 @@ impl From<RoundsError> for RunError {
 
 impl From<io::Error> for RunError {
     fn from(error: io::Error) -> Self {
-        if error.get_ref().is_some_and(<dyn std::error::Error + Send + Sync>::is::<Cancelled>) {
+        if Cancelled::is_in(&error) {
             return Self::Cancelled;
         }
         StoreError::from(error).into()
@@ -122,22 +121,22 @@ impl From<io::Error> for RunError {
 ///
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
-pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, observer: &dyn Observer) -> Result<Meshed, RunError> {
+pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress) -> Result<Meshed, RunError> {
     let store = Store::in_memory();
     let clock = &mut Clock::default();
     if plan.smooths_joints() {
-        return join_blocks(network, plan, &store, &[], &|_| Ok(()), observer, clock)?.smoothed(observer, clock);
+        return join_blocks(network, plan, &store, &[], &|_| Ok(()), progress, clock)?.smoothed(progress, clock);
     }
     let Stored { whole, expectation, check, mut report } =
-        mesh_timed(&store, network, plan, &|_| Ok(()), observer, clock)?;
-    let mesh = clock.time(observer, Stage::Merge, 0, || gather(&whole))?;
+        mesh_timed(&store, network, plan, &|_| Ok(()), progress, clock)?;
+    let mesh = clock.time(progress, Stage::Merge, 0, || gather(&whole))?;
     report.stages = clock.stages();
     Ok(Meshed { mesh, expectation, check, report })
 }
 
 /// Meshes a cleaned network into a store; the mesh is never in memory as a whole. Joints are not smoothed. Uses the
 /// current rayon pool; the result does not depend on its size. `fits` hears what the run will take before anything is
-/// meshed, and may refuse. The observer is also asked by every pass over what comes of it: one that is to stop ends with
+/// meshed, and may refuse. `progress` is also asked by every pass over what comes of it: one that is to stop ends with
 /// an error of the kind `Other`.
 ///
 /// ```
@@ -161,9 +160,9 @@ pub fn mesh_into<'a>(
     network: &Skeleton,
     plan: &MeshPlan,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
-    observer: &'a dyn Observer,
+    progress: &'a dyn Progress,
 ) -> Result<Stored<'a>, RunError> {
-    mesh_timed(store, network, plan, fits, observer, &mut Clock::default())
+    mesh_timed(store, network, plan, fits, progress, &mut Clock::default())
 }
 
 fn mesh_timed<'a>(
@@ -171,7 +170,7 @@ fn mesh_timed<'a>(
     network: &Skeleton,
     plan: &MeshPlan,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
-    observer: &'a dyn Observer,
+    progress: &'a dyn Progress,
     clock: &mut Clock,
 ) -> Result<Stored<'a>, RunError> {
     // What is in memory for the blocks is not while the whole is checked. In the rare case that blocks meet everything is
@@ -179,20 +178,15 @@ fn mesh_timed<'a>(
     let tries = if plan.joint == JointStyle::Woven { 0 } else { Way::APART.len() };
     let mut met = Vec::new();
     loop {
-        let joined = join_blocks(network, plan, store, &met, fits, observer, clock)?;
-        ask(observer)?;
-        let (stored, meetings) = joined.checked(plan, observer, clock)?;
-        ask(observer)?;
+        let joined = join_blocks(network, plan, store, &met, fits, progress, clock)?;
+        ask(progress)?;
+        let (stored, meetings) = joined.checked(plan, progress, clock)?;
+        ask(progress)?;
         if meetings.is_empty() || met.len() == tries {
             return Ok(stored);
         }
         met.push(meetings);
     }
-}
-
-/// Whether to go on.
-fn ask(observer: &dyn Observer) -> Result<(), RunError> {
-    if observer.is_cancelled() { Err(RunError::Cancelled) } else { Ok(()) }
 }
 
 /// Blocks that are done and numbered, before anybody has looked at the whole.
@@ -210,18 +204,18 @@ fn join_blocks<'a>(
     store: &'a Store,
     met: &[Meetings],
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
-    observer: &'a dyn Observer,
+    progress: &'a dyn Progress,
     clock: &mut Clock,
 ) -> Result<Joined<'a>, RunError> {
     plan.validate()?;
     let mut report = RunReport::default();
-    let (skeleton, overlaps) = clock.time(observer, Stage::Prepare, 0, || prepare(network, &mut report));
+    let (skeleton, overlaps) = clock.time(progress, Stage::Prepare, 0, || prepare(network, &mut report));
     let terminals = terminals::assign(&skeleton, &plan.roots)?;
     if met.is_empty() {
-        announce(&report, observer);
+        announce(&report, progress);
     }
     let shop = Workshop { skeleton: &skeleton, plan, store };
-    let mut run = Run { overlaps: &overlaps, shop, observer, clock };
+    let mut run = Run { overlaps: &overlaps, shop, progress, clock };
     let mut blocks = run.build(if met.is_empty() { fits } else { &|_| Ok(()) })?;
     for (way, meetings) in Way::APART.into_iter().zip(met) {
         run.set_apart(&mut blocks, meetings, way)?;
@@ -238,8 +232,8 @@ fn join_blocks<'a>(
     if plan.fuse {
         expectation.loops = fused_loops(&blocks, &clusters);
     }
-    let number = || Whole::new(store, observer, &skeleton, &blocks, &terminals);
-    let whole = clock.time(observer, Stage::Merge, 0, number)?;
+    let number = || Whole::new(store, progress, &skeleton, &blocks, &terminals);
+    let whole = clock.time(progress, Stage::Merge, 0, number)?;
     Ok(Joined { whole, expectation, overlapping, report })
 }
 
@@ -248,27 +242,28 @@ impl<'a> Joined<'a> {
     fn checked(
         self,
         plan: &MeshPlan,
-        observer: &dyn Observer,
+        progress: &dyn Progress,
         clock: &mut Clock,
     ) -> io::Result<(Stored<'a>, Meetings)> {
         let Self { whole, expectation, overlapping, mut report } = self;
         let check = || whole.check(&expectation, plan.memory);
-        let PartsCheck { report: check, meeting } = clock.time(observer, Stage::Check, 0, check)?;
+        let PartsCheck { report: check, meeting } = clock.time(progress, Stage::Check, 0, check)?;
         report.mesh = whole.size();
         report.stages = clock.stages();
         let meetings = hopeful(meeting, report.blocks.clusters, &overlapping);
         Ok((Stored { whole, expectation, check, report }, meetings))
     }
 
-    fn smoothed(self, observer: &dyn Observer, clock: &mut Clock) -> Result<Meshed, RunError> {
+    fn smoothed(self, progress: &dyn Progress, clock: &mut Clock) -> Result<Meshed, RunError> {
         let Self { whole, expectation, mut report, .. } = self;
-        ask(observer)?;
-        let mut assembly = clock.time(observer, Stage::Merge, 0, || Assembly::new(&whole))?;
-        report.joints = Some(clock.time(observer, Stage::Joints, 0, || assembly.smooth()));
-        let (mesh, neighbors) = clock.time(observer, Stage::Merge, 0, || assembly.label())?;
-        ask(observer)?;
+        ask(progress)?;
+        let mut assembly = clock.time(progress, Stage::Merge, 0, || Assembly::new(&whole, whole.joint_vertices()?))?;
+        report.joints = Some(clock.time(progress, Stage::Joints, 0, || assembly.smooth(progress)));
+        ask(progress)?;
+        let (mesh, neighbors) = clock.time(progress, Stage::Merge, 0, || assembly.label())?;
+        ask(progress)?;
         let check = || check_volume_with(&mesh, neighbors, Some(&expectation));
-        let check = clock.time(observer, Stage::Check, 0, check);
+        let check = clock.time(progress, Stage::Check, 0, check);
         report.mesh = mesh_size(&mesh)?;
         report.stages = clock.stages();
         Ok(Meshed { mesh, expectation, check, report })

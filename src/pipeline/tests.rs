@@ -8,7 +8,8 @@ use crate::mesh::WALL;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::source::gather;
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
-use crate::refine::{Figures, Progress, RefineError, RefineParams, Sample, refine};
+use crate::progress::{Progress, Stage};
+use crate::refine::{Figures, RefineError, RefineParams, refine};
 use crate::skeleton::fixtures::tangle;
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -262,7 +263,7 @@ fn a_block_that_fails_is_named_and_dumped() {
         let dump = std::fs::read(failed.dump.as_ref().expect("a dump")).expect("readable");
         let again = crate::block::BlockDump::from_json(&dump).expect("a dump");
         assert_eq!((&again.nodes, again.name()), (&failed.nodes, failed.block.clone()));
-        let again = again.run(&crate::tet::Watch::NOBODY);
+        let again = super::once::replay(&again, &crate::tet::Watch::NOBODY);
         assert_eq!(again.expect_err("fails again").to_string(), failed.reason);
     }
 }
@@ -291,9 +292,10 @@ struct Stops {
     blocks: AtomicUsize,
 }
 
-impl Observer for Stops {
-    fn advance(&self, _: u64) {
-        self.blocks.fetch_add(1, Ordering::Relaxed);
+impl Progress for Stops {
+    fn at(&self, stage: Stage, done: u64, _: u64) {
+        let is_block = done > 0 && matches!(stage, Stage::Blocks | Stage::Clusters | Stage::Connectors);
+        self.blocks.fetch_add(usize::from(is_block), Ordering::Relaxed);
     }
 
     fn is_cancelled(&self) -> bool {
@@ -305,8 +307,8 @@ impl Observer for Stops {
 fn a_run_that_is_told_to_stop_stops_and_goes_on_later() {
     let network = h(12.0);
     let plan = MeshPlan::default();
-    let run = |store: &Store, observer: &dyn Observer| {
-        let stored = mesh_into(store, &network, &plan, &|_| Ok(()), observer)?;
+    let run = |store: &Store, progress: &dyn Progress| {
+        let stored = mesh_into(store, &network, &plan, &|_| Ok(()), progress)?;
         Ok::<_, RunError>((gather(&stored.whole)?, stored.report.retries))
     };
     let whole = run(&Store::in_memory(), &()).expect("a mesh");
@@ -322,8 +324,6 @@ fn a_run_that_is_told_to_stop_stops_and_goes_on_later() {
 struct Never;
 
 impl Progress for Never {
-    fn step(&mut self, _: usize, _: usize, _: Option<&Sample>) {}
-
     fn is_cancelled(&self) -> bool {
         true
     }
@@ -335,13 +335,13 @@ fn smoothing_and_refinement_stop_as_well() {
     let stops = Stops { after: 1, blocks: AtomicUsize::new(0) };
     let stopped = mesh_network(&h(12.0), &plan, &stops);
     assert!(matches!(stopped, Err(RunError::Cancelled)));
-    let refined = refine(&h(12.0), &RefineParams::default(), &mut Never);
+    let refined = refine(&h(12.0), &RefineParams::default(), &Never);
     assert!(matches!(refined, Err(RefineError::Cancelled)));
 }
 
 #[test]
 fn refinement_separates_two_trees_that_share_their_terminals() {
-    let run = |s: &Skeleton| refine(s, &RefineParams::default(), &mut ()).expect("refined");
+    let run = |s: &Skeleton| refine(s, &RefineParams::default(), &()).expect("refined");
     let grown = dual(&run(&tangle(4, 3)).skeleton).skeleton;
     let refined = run(&grown);
     let before = Figures::of(&grown);

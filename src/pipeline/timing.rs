@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::observer::{Observer, Stage};
+use crate::progress::{Progress, Stage};
 use serde::Serialize;
 
 /// Seconds of wall time per stage.
@@ -21,13 +21,13 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Runs a stage, telling the observer of its begin and end.
-    pub fn time<T>(&mut self, observer: &dyn Observer, stage: Stage, steps: u64, run: impl FnOnce() -> T) -> T {
-        observer.begin(stage, steps);
+    /// Runs a stage, and tells that it begins and ends.
+    pub fn time<T>(&mut self, progress: &dyn Progress, stage: Stage, steps: u64, run: impl FnOnce() -> T) -> T {
+        progress.at(stage, 0, steps);
         let start = Instant::now();
         let result = run();
         let seconds = start.elapsed().as_secs_f64();
-        observer.end(stage);
+        progress.at(stage, steps.max(1), steps.max(1));
         match self.spent.iter_mut().find(|(s, _)| *s == stage) {
             Some((_, sum)) => *sum += seconds,
             None => self.spent.push((stage, seconds)),

@@ -7,7 +7,6 @@ use std::io;
 
 use super::blocks::Blocks;
 use super::make::{JointPlace, Kept, joints_of_cut};
-use super::observer::Observer;
 use super::report::MeshSize;
 use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
@@ -18,6 +17,7 @@ use crate::mesh::check::Expectation;
 use crate::mesh::check::parts::{Certificate, JointFaces, Parts, PartsCheck, WallPiece, check_parts};
 use crate::mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
 use crate::mesh::{Patch, WALL};
+use crate::progress::{Progress, ask};
 use crate::skeleton::Skeleton;
 
 /// The whole mesh: parts in order, clusters by their ids, then connectors. A vertex that two parts have is numbered by the
@@ -51,18 +51,13 @@ struct PartPlan {
 }
 
 /// Who says whether to stop.
-struct Listener<'a>(&'a dyn Observer);
+struct Listener<'a>(&'a dyn Progress);
 
 impl std::fmt::Debug for Listener<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str("Listener")
     }
 }
-
-/// The observer ended a pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("cancelled")]
-pub struct Cancelled;
 
 /// More vertices than 32 bits can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -76,14 +71,14 @@ impl<'a> Whole<'a> {
     /// When there are too many vertices or a block cannot be read.
     pub fn new(
         store: &'a Store,
-        observer: &'a dyn Observer,
+        progress: &'a dyn Progress,
         skeleton: &Skeleton,
         blocks: &Blocks,
         terminals: &TerminalPatches,
     ) -> io::Result<Self> {
         let mut whole = Self {
             store,
-            listener: Listener(observer),
+            listener: Listener(progress),
             parts: Vec::with_capacity(blocks.clusters.len() + blocks.connectors.len()),
             patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
             patch_of: Vec::new(),
@@ -150,9 +145,7 @@ impl<'a> Whole<'a> {
 
     /// The bytes of a part. Every pass comes here for each part, so this is where it is asked whether to stop.
     fn record(&self, part: PartPlan) -> io::Result<StoredBytes<'a>> {
-        if self.listener.0.is_cancelled() {
-            return Err(io::Error::other(Cancelled));
-        }
+        ask(self.listener.0)?;
         Ok(self.store.bytes(part.kept.record))
     }
 

@@ -6,9 +6,9 @@ mod crowd;
 mod figures;
 mod forces;
 mod frame;
+mod history;
 mod leash;
 mod params;
-mod progress;
 mod push;
 mod residual;
 mod room;
@@ -20,13 +20,14 @@ mod tests;
 
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
+pub use history::{Displacement, Sample};
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
-pub use progress::{Displacement, Progress, Sample};
 pub use residual::{ResidualReport, Treatment};
 
 pub use split::split;
 
 use crate::geometry::Point3;
+use crate::progress::Progress;
 use crate::skeleton::Skeleton;
 use leash::Leashes;
 use serde::Serialize;
@@ -93,7 +94,7 @@ pub struct RefineReport {
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
 /// let (network, _) = clean(&file.skeleton)?;
-/// let refined = refine(&network, &RefineParams::default(), &mut ())?;
+/// let refined = refine(&network, &RefineParams::default(), &())?;
 /// assert_eq!(refined.report.result.overlaps, 0);
 /// assert_eq!(refined.origin.len(), refined.skeleton.nodes.len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -101,7 +102,7 @@ pub struct RefineReport {
 ///
 /// # Errors
 /// When a parameter is out of its range, or the skeleton does not satisfy `Skeleton::check`.
-pub fn refine(given: &Skeleton, params: &RefineParams, progress: &mut dyn Progress) -> Result<Refined, RefineError> {
+pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) -> Result<Refined, RefineError> {
     params.check()?;
     given.check()?;
     let leashes = Leashes::of(params.freedom, given);

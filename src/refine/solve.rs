@@ -5,12 +5,13 @@ use super::contact::Contacts;
 use super::figures::Figures;
 use super::forces::{self, Rates};
 use super::frame::Frame;
+use super::history::{Displacement, Sample};
 use super::leash::Leashes;
 use super::params::{RefineError, RefineParams};
-use super::progress::{Displacement, Progress, Sample};
 use super::push::Push;
 use super::{room, shape};
 use crate::geometry::{Point3, Vec3};
+use crate::progress::{Progress, Stage};
 use crate::skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
 
 /// How much of what is asked of a node by several conditions at once it does: their sum over the number to this power.
@@ -51,18 +52,19 @@ pub(super) fn solve(
     given: &Figures,
     params: &RefineParams,
     leashes: Option<Leashes>,
-    progress: &mut dyn Progress,
+    progress: &dyn Progress,
 ) -> Result<Moved, RefineError> {
     let mut solver = Solver::new(skeleton, params, leashes);
     let start = solver.sample(0, 0);
-    progress.step(0, params.iterations, Some(&start));
+    let at = |iteration| progress.at(Stage::Move, iteration as u64, params.iterations as u64);
+    at(0);
     let mut history = vec![start];
     let with_forces = if leashes.is_some() { 0.0 } else { params.forces * params.iterations as f64 }.round() as usize;
     let between = ((BENDS * params.iterations as f64).round() as usize).max(1);
     let mut best = Best { given: *given, score: None, improved: 0, state: None };
     let overlaps = best.offer(&solver, 0);
     if !solver.loosen(&overlaps) {
-        progress.step(params.iterations, params.iterations, None);
+        at(params.iterations);
         return Ok(Moved { best: best.state, history, unit: solver.unit });
     }
     for iteration in 1..=params.iterations {
@@ -85,12 +87,9 @@ pub(super) fn solve(
         }
         // Most happens at the beginning.
         if last || (params.every > 0 && (iteration % params.every == 0 || iteration < params.every.min(EARLY))) {
-            let sample = solver.sample(iteration, asked);
-            progress.step(if last { params.iterations } else { iteration }, params.iterations, Some(&sample));
-            history.push(sample);
-        } else {
-            progress.step(iteration, params.iterations, None);
+            history.push(solver.sample(iteration, asked));
         }
+        at(if last { params.iterations } else { iteration });
         if last {
             break;
         }

@@ -7,7 +7,7 @@ pub(super) use crate::skeleton::fixtures::{network, tangle};
 use proptest::prelude::*;
 
 pub(super) fn run(s: &Skeleton, params: &RefineParams) -> Refined {
-    let refined = refine(s, params, &mut ()).unwrap();
+    let refined = refine(s, params, &()).unwrap();
     assert_eq!(refined.skeleton.check(), Ok(()));
     assert_eq!(refined.skeleton.nodes.len(), refined.origin.len());
     refined
@@ -201,11 +201,11 @@ fn parameters_out_of_range_are_refused() {
         RefineParams { barrier_rate: -1.0, ..RefineParams::default() },
         RefineParams { free_terminals: f64::INFINITY, ..RefineParams::default() },
     ] {
-        assert!(matches!(refine(&s, &bad, &mut ()), Err(RefineError::Parameter { .. })));
+        assert!(matches!(refine(&s, &bad, &()), Err(RefineError::Parameter { .. })));
     }
     let mut broken = s;
     broken.nodes[0].position.x = f64::NAN;
-    assert!(matches!(refine(&broken, &RefineParams::default(), &mut ()), Err(RefineError::Skeleton(_))));
+    assert!(matches!(refine(&broken, &RefineParams::default(), &()), Err(RefineError::Skeleton(_))));
 }
 
 #[test]

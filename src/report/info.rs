@@ -91,7 +91,8 @@ impl fmt::Display for UnitGuess {
 ///
 /// ```
 /// use anastomesh::io::{NetworkOptions, read_network};
-/// use anastomesh::network::{NetworkInfo, clean};
+/// use anastomesh::network::clean;
+/// use anastomesh::testing::NetworkInfo;
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
 /// let (network, cleaned) = clean(&file.skeleton)?;

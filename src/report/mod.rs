@@ -1,4 +1,4 @@
-//! Floor 6: what the verbs say, for people, in tables and plots; models with a text and a JSON form.
+//! Floor 7: what the verbs say, for people, in tables and plots; models with a text and a JSON form.
 
 pub mod check;
 pub mod info;

@@ -10,7 +10,7 @@ use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
 use super::outside::without;
 use super::plc::LeftOut;
 use super::plc::{InputKind, Plc};
-use super::progress::{Cancel, OnProgress, Progress, Stage, Watch};
+use super::progress::{Progress, Stage, Watch};
 use super::recover::RecoverySummary;
 use super::refine::RefineReport;
 use super::request::Request;
@@ -42,8 +42,7 @@ pub struct Tetrahedralizer {
     optimize: bool,
     effort: Effort,
     strict: bool,
-    on_progress: Option<Arc<OnProgress>>,
-    cancel: Option<Arc<Cancel<'static>>>,
+    progress: Option<Arc<dyn Progress + Send>>,
 }
 
 /// A certified mesh, and what it took.
@@ -99,8 +98,7 @@ impl Default for Tetrahedralizer {
             optimize,
             effort: Effort::Full,
             strict: false,
-            on_progress: None,
-            cancel: None,
+            progress: None,
         }
     }
 }
@@ -169,17 +167,10 @@ impl Tetrahedralizer {
         self
     }
 
-    /// What is told about the progress, on the thread that does the work.
+    /// Who is told about the progress, and asked whether to stop; a run then ends with [`TetError::Cancelled`].
     #[must_use]
-    pub fn on_progress(mut self, tell: impl Fn(Progress) + Send + Sync + 'static) -> Self {
-        self.on_progress = Some(Arc::new(tell));
-        self
-    }
-
-    /// What is asked, often, whether to stop; a run then ends with [`TetError::Cancelled`].
-    #[must_use]
-    pub fn cancel(mut self, stop: impl Fn() -> bool + Send + Sync + 'static) -> Self {
-        self.cancel = Some(Arc::new(stop));
+    pub fn progress(mut self, progress: impl Progress + Send + 'static) -> Self {
+        self.progress = Some(Arc::new(progress));
         self
     }
 
@@ -189,7 +180,7 @@ impl Tetrahedralizer {
     }
 
     fn watch(&self) -> Watch<'_> {
-        Watch::new(self.on_progress.as_deref(), self.cancel.as_deref())
+        self.progress.as_deref().map_or(Watch::NOBODY, |progress| Watch::of(progress))
     }
 
     /// Makes a mesh of a complex. Success means that it has passed the certificate: each triangle of the input that bounds or lies in what is filled is a face
@@ -297,7 +288,7 @@ impl Tetrahedralizer {
     pub fn delaunay(&self, points: &[Point3]) -> Result<Tetrahedralization, TetError> {
         let watch = self.watch();
         watch.report(Stage::Delaunay, 0, 1)?;
-        let complex = delaunay::delaunay(points)?;
+        let complex = delaunay::delaunay_watched(points, &watch)?;
         watch.report(Stage::Delaunay, 1, 1)?;
         watch.report(Stage::Certify, 0, 1)?;
         let faces = hull(&complex);

@@ -37,8 +37,8 @@ pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetE
     let surface = r.surface;
     r.watch.report(Stage::Delaunay, 0, 1)?;
     let points = points(r)?;
-    let mut complex =
-        delaunay::delaunay(&points).map_err(|e| name_interior(e, surface.points.len(), points.len() - 8))?;
+    let mut complex = delaunay::delaunay_watched(&points, r.watch)
+        .map_err(|e| name_interior(e, surface.points.len(), points.len() - 8))?;
     r.watch.report(Stage::Delaunay, 1, 1)?;
     let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, Rule::Positive, r.watch) {
         Ok(summary) => return Ok((complex, summary)),
@@ -97,7 +97,7 @@ fn go_on(
 
 /// Begins anew, and makes nothing that is thinner than `flat`.
 fn anew(r: &Request, points: &[Point3], flat: f64) -> Result<(Complex, RecoverySummary), TetError> {
-    let mut complex = delaunay::delaunay(points)?;
+    let mut complex = delaunay::delaunay_watched(points, r.watch)?;
     match recover::recover(&mut complex, r.surface, r.edges, Rule::Thick(flat), r.watch) {
         Ok(summary) => Ok((complex, summary)),
         Err(TetError::NotRecovered { edges, triangles }) => {

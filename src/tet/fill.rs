@@ -59,7 +59,7 @@ fn labels(r: &Request, carved: &Complex) -> Result<(Vec<i32>, usize), TetError> 
 fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError> {
     r.watch.report(Stage::Optimize, 0, 1)?;
     let options = OptimizeOptions { fixed_points: r.surface.points.len(), ..OptimizeOptions::of(r.effort) };
-    let report = optimize_complex(carved, &options);
+    let report = optimize_complex(carved, &options, r.watch);
     r.watch.report(Stage::Optimize, 1, 1)?;
     Ok(report)
 }

@@ -67,18 +67,17 @@ mod split;
 pub(crate) mod star;
 mod survey;
 
-pub use crate::mesh::Bounds;
-pub use crate::mesh::repair::{Repaired, repair, repair_facets};
-pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
+pub use crate::mesh::repair::{Repaired, repair};
+pub use builder::{Tetrahedralization, Tetrahedralizer};
 pub use certify::{CertifyError, certify};
-pub use error::{Obstacle, Stuck, TetError};
-pub use names::Names;
+pub use error::TetError;
+pub(crate) use names::Names;
 pub use optimize::Effort;
 pub(crate) use options::TetOptions;
 pub use options::{Boundary, Interior, Refinement, Sizing};
-pub use plc::{InputKind, LeftOut, Plc, Region};
+pub(crate) use plc::LeftOut;
+pub use plc::{InputKind, Plc, Region};
 pub(crate) use progress::Watch;
-pub use progress::{Progress, Stage};
 
 use crate::mesh::{TetMesh, TriMesh};
 use certify::Place;

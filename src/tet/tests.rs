@@ -1,4 +1,5 @@
 use super::complex::Complex;
+use super::error::{Obstacle, Stuck};
 use super::*;
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::quality::TetQuality;

@@ -26,7 +26,7 @@ pub use args::Args;
 use format::{InputFormat, Target, is_stream};
 use input::Input;
 use plan::TetPlan;
-use watch::{Watch, peak_memory};
+use watch::{Listener, Watch, peak_memory};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -63,7 +63,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         report.repaired = watch.time("repair", || input.repair(plan.plc));
     }
     let stop = Stop::listen(plan.quiet)?;
-    let made = pool.install(|| make(&plan, &input, &watch, stop.clone()));
+    let listener = Listener(Arc::clone(&watch), stop.clone());
+    let made = pool.install(|| make(&plan, &input, listener.clone()));
     watch.leave();
     let made = made.map_err(|e| fault::failure(&e, &from, &input))?;
     stop.keep();
@@ -71,7 +72,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         fill_report(&mut report, &made, &input, &plan, args);
         input.leave_out(&made.summary.left_out.segments);
         let volume = output::volume(made, &input);
-        let written = watch.time("write", || pool.install(|| output::write(&target, &volume, &input, &plan)))?;
+        let written =
+            watch.time("write", || pool.install(|| output::write(&target, &volume, &input, &plan, &listener)))?;
         report.files = written.iter().map(|path| path.display().to_string()).collect();
     }
     report.stages = watch.stages();
@@ -81,10 +83,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 /// The mesh; none when the input is only checked.
-fn make(plan: &TetPlan, input: &Input, watch: &Arc<Watch>, stop: Stop) -> Result<Option<Tetrahedralization>, TetError> {
-    let told = Arc::clone(watch);
-    let tetrahedralizer = plan.tetrahedralizer().on_progress(move |progress| told.progress(progress));
-    let tetrahedralizer = tetrahedralizer.cancel(move || stop.is_asked());
+fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetrahedralization>, TetError> {
+    let tetrahedralizer = plan.tetrahedralizer().progress(listener);
     if plan.check_only && !input.only_points {
         return tetrahedralizer.check(&input.plc).map(|()| None);
     }

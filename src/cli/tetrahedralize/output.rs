@@ -7,9 +7,11 @@ use super::format::Target;
 use super::input::Input;
 use super::plan::{TetPlan, Wanted};
 use crate::cli::exit::Failure;
+use crate::cli::stop::NOTHING_KEPT;
 use crate::io::tetgen::{Extent, MeshFamily};
-use crate::io::volume::{MeshNotes, write_mesh, write_mesh_to};
+use crate::io::volume::{MeshNotes, write_mesh_to, write_mesh_within};
 use crate::mesh::{Patch, TET_FACES, VolumeMesh};
+use crate::progress::Progress;
 use crate::tet::Tetrahedralization;
 use rustc_hash::FxHashMap;
 
@@ -59,20 +61,30 @@ fn set_boundary_blocks(volume: &mut VolumeMesh) {
 }
 
 /// Writes the mesh; returns the files.
-pub fn write(target: &Target, volume: &VolumeMesh, input: &Input, plan: &TetPlan) -> Result<Vec<PathBuf>, Failure> {
+pub fn write(
+    target: &Target,
+    volume: &VolumeMesh,
+    input: &Input,
+    plan: &TetPlan,
+    progress: &dyn Progress,
+) -> Result<Vec<PathBuf>, Failure> {
     let regions = volume.tet_block.iter().any(|&region| region != 0);
     let generator = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
     // What the bytes depend on, and nothing else: neither threads nor paths.
     let options = serde_json::to_string(plan).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
     let notes = MeshNotes { expectation: None, generator, options: format!("tetrahedralize {options}"), regions };
+    let failed = |e: &dyn std::error::Error| match progress.is_cancelled() {
+        true => Failure::stopped(NOTHING_KEPT),
+        false => Failure::input(e.to_string()),
+    };
     match target {
         Target::File(path) => {
-            write_mesh(path, volume, &notes).map_err(|e| Failure::input(e.to_string()))?;
+            write_mesh_within(None, path, volume, &notes, progress).map_err(|e| failed(&e))?;
             Ok(vec![path.clone()])
         }
         Target::Family(base) => {
-            let family = family(volume, input, plan, regions);
-            family.write(base).map_err(|e| Failure::input(e.to_string()))
+            let family = family(volume, input, plan, regions).progress(progress);
+            family.write(base).map_err(|e| failed(&e))
         }
         Target::Stream(format) => {
             let mut out = std::io::stdout().lock();

@@ -1,13 +1,14 @@
 //! Progress and time per stage.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use indicatif::ProgressBar;
 
 use crate::cli::progress::{shows_bars, stage_bar};
+use crate::cli::stop::Stop;
+use crate::progress::{Progress, Stage};
 use crate::report::tetrahedralize::StageSeconds;
-use crate::tet::{Progress, Stage};
 
 /// Listens to a run: a bar per stage on a terminal, and the time that each takes.
 #[derive(Debug)]
@@ -27,16 +28,6 @@ impl Watch {
     /// No bars when `quiet`, nor without a terminal.
     pub fn new(quiet: bool) -> Self {
         Self { shown: shows_bars(quiet), state: Mutex::default() }
-    }
-
-    /// Takes a step of the tetrahedralizer.
-    pub fn progress(&self, progress: Progress) {
-        self.enter(stage_name(progress.stage), progress.total);
-        if let Ok(state) = self.state.lock()
-            && let Some(bar) = &state.bar
-        {
-            bar.set_position(progress.done);
-        }
     }
 
     /// Runs a stage of the program's own.
@@ -91,15 +82,23 @@ impl State {
     }
 }
 
-fn stage_name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Validate => "validate",
-        Stage::Delaunay => "delaunay",
-        Stage::Recover => "recover",
-        Stage::Carve => "carve",
-        Stage::Refine => "refine",
-        Stage::Optimize => "optimize",
-        Stage::Certify => "certify",
+/// What the tetrahedralizer tells goes to a watch, what it asks to a signal.
+#[derive(Clone)]
+pub struct Listener(pub Arc<Watch>, pub Stop);
+
+impl Progress for Listener {
+    fn at(&self, stage: Stage, done: u64, total: u64) {
+        let Self(watch, _) = self;
+        watch.enter(stage.name(), total);
+        if let Ok(state) = watch.state.lock()
+            && let Some(bar) = &state.bar
+        {
+            bar.set_position(done);
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.1.is_asked()
     }
 }
 

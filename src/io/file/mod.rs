@@ -1,9 +1,11 @@
 //! Between a path and its bytes, whatever the format: what can go wrong, and files that appear whole or not at all.
 
+mod asked;
 mod atomic;
 mod error;
 mod whole;
 
+pub(super) use asked::Asked;
 pub(super) use atomic::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
 pub use error::FileError;
 #[cfg(feature = "cli")]

@@ -1,7 +1,9 @@
 //! Whole files: read, written so that they appear complete or not at all, and known by their extension.
 
+use super::asked::Asked;
 use super::atomic::AtomicFile;
 use super::error::FileError;
+use crate::progress::Progress;
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -38,12 +40,12 @@ pub fn write_text(path: &Path, text: &str) -> io::Result<()> {
 pub(in crate::io) type Writing<'a> = (PathBuf, &'a dyn Fn(&mut dyn Write) -> io::Result<()>);
 
 /// Writes several files that belong together: each is complete before the first of them appears, in the order given.
-pub(in crate::io) fn write_all_whole<F: Error>(files: &[Writing]) -> Result<(), FileError<F>> {
+pub(in crate::io) fn write_all_whole<F: Error>(files: &[Writing], progress: &dyn Progress) -> Result<(), FileError<F>> {
     let mut complete = Vec::with_capacity(files.len());
     for (path, write) in files {
         let make = || {
             let mut file = AtomicFile::create(path)?;
-            write(&mut file)?;
+            write(&mut Asked { out: &mut file, progress })?;
             file.complete()?;
             Ok(file)
         };

@@ -92,12 +92,13 @@ pub enum NetworkArray {
 /// `Displacement`, how it moved from `origin`.
 ///
 /// ```
-/// use anastomesh::io::{NetworkOptions, read_network, refinement_arrays, write_network};
+/// use anastomesh::io::{NetworkOptions, read_network, write_network};
+/// use anastomesh::testing::refinement_arrays;
 /// use anastomesh::network::{RefineParams, clean, refine};
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
 /// let (network, _) = clean(&file.skeleton)?;
-/// let refined = refine(&network, &RefineParams::default(), &mut ())?;
+/// let refined = refine(&network, &RefineParams::default(), &())?;
 /// let folder = tempfile::tempdir()?;
 /// let arrays = refinement_arrays(&refined.skeleton, &refined.origin);
 /// write_network(&folder.path().join("refined.vtp"), &refined.skeleton, &arrays)?;

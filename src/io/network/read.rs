@@ -30,7 +30,8 @@ pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile
 /// Reads a network from the bytes of a file.
 ///
 /// ```
-/// use anastomesh::io::{NetworkFormat, NetworkOptions, read_network_from};
+/// use anastomesh::io::NetworkOptions;
+/// use anastomesh::testing::{NetworkFormat, read_network_from};
 ///
 /// let swc = b"1 2 0 0 0 1.5 -1\n2 2 0 0 9 1.5 1\n";
 /// let file = read_network_from(swc, NetworkFormat::Swc, &NetworkOptions::default())?;

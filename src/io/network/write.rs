@@ -36,11 +36,11 @@ pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) 
 /// `.swc`, which keeps the radii of the nodes but not those of the edges. Whole or not at all.
 ///
 /// ```
-/// use anastomesh::network::{GenerateParams, Organ, generate};
+/// use anastomesh::testing::{GenerateParams, Organ, generate};
 ///
 /// let tree = generate(&GenerateParams::new(Organ::Ellipsoid, 20))?;
 /// let folder = tempfile::tempdir()?;
-/// anastomesh::io::write_tree(&folder.path().join("tree.swc"), &tree, &[])?;
+/// anastomesh::testing::write_tree(&folder.path().join("tree.swc"), &tree, &[])?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -35,7 +35,7 @@ pub fn read_content_as(path: &Path, format: SurfaceFormat) -> Result<SurfaceCont
 /// Reads a surface from the bytes of a file.
 ///
 /// ```
-/// use anastomesh::io::{SurfaceFormat, read_surface_from};
+/// use anastomesh::testing::{SurfaceFormat, read_surface_from};
 ///
 /// let off = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 1 2\n";
 /// assert_eq!(read_surface_from(off, SurfaceFormat::Off)?.triangles.len(), 3, "the square is cut in two");

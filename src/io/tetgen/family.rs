@@ -4,6 +4,7 @@ use super::error::TetgenFileError;
 use crate::io::file::{Writing, ensure_sound, extension, write_all_whole};
 use crate::mesh::adjacency::{Incidence, NONE, tet_adjacency};
 use crate::mesh::{TET_FACES, TetMesh, VolumeMesh};
+use crate::progress::Progress;
 use rustc_hash::FxHashMap;
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -35,7 +36,7 @@ pub enum Extent {
 /// assert_eq!(std::fs::read_to_string(written.last().unwrap())?, "1 4 0\n1 1 2 3 4\n");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct MeshFamily<'a> {
     mesh: &'a TetMesh,
     boundary: Option<(&'a [[u32; 3]], &'a [i32])>,
@@ -47,6 +48,7 @@ pub struct MeshFamily<'a> {
     edges: Extent,
     neighbors: bool,
     first: u32,
+    progress: &'a dyn Progress,
 }
 
 impl<'a> MeshFamily<'a> {
@@ -68,6 +70,7 @@ impl<'a> MeshFamily<'a> {
             edges: Extent::Boundary,
             neighbors: true,
             first: 0,
+            progress: &(),
         }
     }
 
@@ -141,6 +144,13 @@ impl<'a> MeshFamily<'a> {
         self
     }
 
+    /// Who is asked whether to stop.
+    #[must_use]
+    pub fn progress(mut self, progress: &'a dyn Progress) -> Self {
+        self.progress = progress;
+        self
+    }
+
     /// Writes the files `base.node` and so on; `base` may have the extension of any of them. They appear whole or not
     /// at all, `.ele` last, when all of them are complete. Returns their paths in this order.
     ///
@@ -169,7 +179,7 @@ impl<'a> MeshFamily<'a> {
             files.push((member(base, "neigh"), &neighbors));
         }
         files.push((member(base, "ele"), &tets));
-        write_all_whole(&files)?;
+        write_all_whole(&files, self.progress)?;
         Ok(files.into_iter().map(|(path, _)| path).collect())
     }
 

@@ -5,9 +5,10 @@ use super::error::MeshFileError;
 use super::format::MeshFormat;
 use super::pvtu::{PieceFolder, Pieces};
 use super::{medit, msh, pvtu, vtu};
-use crate::io::file::{AtomicFile, FileError, write_whole};
+use crate::io::file::{Asked, AtomicFile, FileError, write_whole};
 use crate::io::tetgen::MeshFamily;
 use crate::mesh::source::{MeshSource, gather};
+use crate::progress::Progress;
 use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
 
@@ -42,29 +43,34 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Result<(), MeshFileError> {
-    write_mesh_within(Pieces::default().memory, path, mesh, notes)
+    write_mesh_within(None, path, mesh, notes, &())
 }
 
-/// As [`write_mesh`], holding about so many bytes of a mesh in pieces at a time; the other formats take less.
+/// As [`write_mesh`], holding about so many bytes of a mesh in pieces at a time, if that is said; the other formats take less. Ends, and
+/// leaves nothing, when it is told to.
 ///
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn write_mesh_within(
-    memory: usize,
+    memory: Option<usize>,
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
+    progress: &dyn Progress,
 ) -> Result<(), MeshFileError> {
     let written = match MeshFormat::of(path)? {
-        MeshFormat::Tetgen => return write_family(path, mesh),
-        MeshFormat::Pvtu => pvtu::write(path, mesh, notes, Pieces { memory, ..Pieces::default() }),
-        format => write_whole(path, |file| write_format(file, format, mesh, notes)),
+        MeshFormat::Tetgen => return write_family(path, mesh, progress),
+        MeshFormat::Pvtu => {
+            let usual = Pieces::default();
+            pvtu::write(path, mesh, notes, Pieces { memory: memory.unwrap_or(usual.memory), ..usual }, progress)
+        }
+        format => write_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
     };
     written.map_err(FileError::write(path))
 }
 
 /// The neighbours of tetrahedra are not found in passes: this format holds the mesh in memory.
-fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError> {
+fn write_family(path: &Path, mesh: &dyn MeshSource, progress: &dyn Progress) -> Result<(), MeshFileError> {
     let gathered;
     let volume = if let Some(volume) = mesh.whole() {
         volume
@@ -72,7 +78,7 @@ fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError>
         gathered = gather(mesh).map_err(FileError::write(path))?;
         &gathered
     };
-    match MeshFamily::of_volume(volume).write(path) {
+    match MeshFamily::of_volume(volume).progress(progress).write(path) {
         Ok(_) => Ok(()),
         Err(FileError::BadMesh { path, cell }) => {
             let source = io::Error::new(io::ErrorKind::InvalidInput, format!("cell {cell} names no point"));
@@ -85,7 +91,8 @@ fn write_family(path: &Path, mesh: &dyn MeshSource) -> Result<(), MeshFileError>
 /// Writes a mesh to a stream, such as standard output; the file is put together in memory first.
 ///
 /// ```
-/// use anastomesh::io::{MeshFormat, MeshNotes, read_mesh_from, write_mesh_to};
+/// use anastomesh::io::MeshNotes;
+/// use anastomesh::testing::{MeshFormat, read_mesh_from, write_mesh_to};
 /// use anastomesh::{Point3, TetMesh, VolumeMesh};
 ///
 /// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];

@@ -16,6 +16,7 @@ mod sequence;
 
 use super::complex::Complex;
 use super::error::TetError;
+use super::progress::Watch;
 use crate::geometry::Point3;
 use crate::geometry::predicates::in_exact_range;
 use order::brio;
@@ -28,14 +29,22 @@ use sequence::insert_all;
 /// # Errors
 /// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`].
 pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
+    delaunay_watched(points, &Watch::NOBODY)
+}
+
+/// As [`delaunay`], watched.
+///
+/// # Errors
+/// As there; [`TetError::Cancelled`] when the watch says so.
+pub(super) fn delaunay_watched(points: &[Point3], watch: &Watch) -> Result<Complex, TetError> {
     validate(points)?;
     if points.len() >= parallel::SPLIT_FROM
-        && let Some((cells, vertex_tet)) = parallel::tetrahedralize(points)
+        && let Some((cells, vertex_tet)) = parallel::tetrahedralize(points, watch)
     {
         return Ok(Complex::from_cells(points.to_vec(), cells, Vec::new(), vertex_tet));
     }
     let order = brio(points);
-    let inserter = insert_all(points, &order)?;
+    let inserter = insert_all(points, &order, watch)?;
     let (cells, free, vertex_tet) = inserter.finish(&order);
     Ok(Complex::from_cells(points.to_vec(), cells, free, vertex_tet))
 }

@@ -9,6 +9,7 @@ use super::order::{brio_of_sorted, hilbert};
 use super::sequence::insert_all;
 use crate::geometry::Point3;
 use crate::tet::complex::{Cell, GHOST, NONE};
+use crate::tet::progress::Watch;
 use rayon::prelude::*;
 
 /// Sets of as many points are cut in two. Merging adds a seventh to the work, whether or not there are threads that
@@ -23,16 +24,17 @@ const SAMPLE: usize = 16_000;
 const CROSSING: f64 = 0.45;
 
 /// The tetrahedra of points, ghosts included, without unused slots, and for each point one that has it; none when they
-/// are better tetrahedralized at one piece, or when something is wrong with them.
-pub(super) fn tetrahedralize(points: &[Point3]) -> Option<(Vec<Cell>, Vec<u32>)> {
-    in_parts(points, SPLIT_FROM)
+/// are better tetrahedralized at one piece, when something is wrong with them, or when the
+/// watch says to stop.
+pub(super) fn tetrahedralize(points: &[Point3], watch: &Watch) -> Option<(Vec<Cell>, Vec<u32>)> {
+    in_parts(points, SPLIT_FROM, watch)
 }
 
 /// As [`tetrahedralize`], with a bound on the parts' size.
-pub(super) fn in_parts(points: &[Point3], from: usize) -> Option<(Vec<Cell>, Vec<u32>)> {
+pub(super) fn in_parts(points: &[Point3], from: usize, watch: &Watch) -> Option<(Vec<Cell>, Vec<u32>)> {
     let order = hilbert(points);
     let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
-    let mut cells = split(&sorted, from)?;
+    let mut cells = split(&sorted, from, watch)?;
     drop(sorted);
     let mut vertex_tet = vec![NONE; points.len()];
     for (&v, t) in order.iter().zip(vertex_tets(&cells, points.len())) {
@@ -48,31 +50,31 @@ fn rename(cells: &mut [Cell], names: &[u32]) {
 }
 
 /// As [`in_parts`], of points along the Hilbert curve.
-fn split(points: &[Point3], from: usize) -> Option<Vec<Cell>> {
+fn split(points: &[Point3], from: usize, watch: &Watch) -> Option<Vec<Cell>> {
     let cut = middle(points)?;
-    if !worth_while(points, cut) {
+    if !worth_while(points, cut, watch) {
         return None;
     }
     let sides: [Vec<u32>; 2] = {
         let below = |&i: &u32| points[i as usize][cut.axis] < cut.at;
         (0..points.len() as u32).partition(below).into()
     };
-    let (low, high) = rayon::join(|| part(points, &sides[0], from), || part(points, &sides[1], from));
+    let (low, high) = rayon::join(|| part(points, &sides[0], from, watch), || part(points, &sides[1], from, watch));
     let halves = [Half::new(points, low?, cut, true), Half::new(points, high?, cut, false)];
-    merge(points, halves, |ids| part(points, ids, from))
+    merge(points, halves, |ids| part(points, ids, from, watch))
 }
 
 /// The tetrahedra of some of the points.
-fn part(points: &[Point3], ids: &[u32], from: usize) -> Option<Vec<Cell>> {
+fn part(points: &[Point3], ids: &[u32], from: usize, watch: &Watch) -> Option<Vec<Cell>> {
     let own: Vec<Point3> = ids.iter().map(|&i| points[i as usize]).collect();
     if own.len() >= from
-        && let Some(mut cells) = split(&own, from)
+        && let Some(mut cells) = split(&own, from, watch)
     {
         rename(&mut cells, ids);
         return Some(cells);
     }
     let mut order = brio_of_sorted(own.len());
-    let inserter = insert_all(&own, &order).ok()?;
+    let inserter = insert_all(&own, &order, watch).ok()?;
     drop(own);
     for i in &mut order {
         *i = ids[*i as usize];
@@ -94,12 +96,12 @@ fn middle(points: &[Point3]) -> Option<Cut> {
 }
 
 /// Whether most of the tetrahedra of a sample keep to one side of the cut.
-fn worth_while(points: &[Point3], cut: Cut) -> bool {
+fn worth_while(points: &[Point3], cut: Cut, watch: &Watch) -> bool {
     let every = (points.len() / SAMPLE).max(1) as u64;
     let sample: Vec<Point3> =
         (0..).zip(points).filter(|&(i, _)| hash(i).is_multiple_of(every)).map(|(_, &p)| p).collect();
     let order = brio_of_sorted(sample.len());
-    let Ok(inserter) = insert_all(&sample, &order) else { return false };
+    let Ok(inserter) = insert_all(&sample, &order, watch) else { return false };
     let (cells, _) = inserter.into_cells(&order);
     let count = cells.len() as f64;
     let low = Half::new(&sample, cells, cut, true);

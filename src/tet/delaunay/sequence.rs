@@ -4,9 +4,16 @@ use super::insert::Inserter;
 use crate::geometry::Point3;
 use crate::geometry::predicates::{collinear, orient3d};
 use crate::tet::error::{NAMED, TetError};
+use crate::tet::progress::Watch;
+
+/// Points between two questions whether to stop: some milliseconds.
+const ASKED_EVERY: u32 = 1024;
 
 /// All points inserted in this order: vertex `v` of the inserter is the point `order[v]`.
-pub(super) fn insert_all(points: &[Point3], order: &[u32]) -> Result<Inserter, TetError> {
+///
+/// # Errors
+/// [`TetError::Flat`], [`TetError::DuplicatePoints`], [`TetError::Cancelled`].
+pub(super) fn insert_all(points: &[Point3], order: &[u32], watch: &Watch) -> Result<Inserter, TetError> {
     let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
     let seed = seed_tet(&sorted).ok_or(TetError::Flat)?;
     let mut inserter = Inserter::new(&sorted);
@@ -14,6 +21,9 @@ pub(super) fn insert_all(points: &[Point3], order: &[u32]) -> Result<Inserter, T
     inserter.start(seed);
     let mut duplicates: Vec<(u32, u32)> = Vec::new();
     for v in 0..order.len() as u32 {
+        if v.is_multiple_of(ASKED_EVERY) {
+            watch.ask()?;
+        }
         if !seed.contains(&v)
             && let Err(twin) = inserter.insert(v)
         {

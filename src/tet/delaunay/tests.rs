@@ -170,8 +170,9 @@ fn parts_merge_to_the_whole() {
         let whole = delaunay(&points).unwrap();
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let (cells, vertex_tet) =
-                pool.install(|| parallel::in_parts(&points, points.len() / parts)).expect("worth while");
+            let (cells, vertex_tet) = pool
+                .install(|| parallel::in_parts(&points, points.len() / parts, &Watch::NOBODY))
+                .expect("worth while");
             Complex::from_cells(points.clone(), cells, Vec::new(), vertex_tet)
         };
         let merged = run(1);
@@ -190,5 +191,5 @@ fn parts_merge_to_the_whole() {
 fn points_on_a_sphere_stay_in_one_piece() {
     let points: Vec<Point3> = random_points(3000).iter().map(|p| p * 2.0 - nalgebra::Vector3::repeat(1.0)).collect();
     let on_sphere: Vec<Point3> = points.iter().map(|p| Point3::from(p.coords.normalize())).collect();
-    assert!(parallel::in_parts(&on_sphere, 1000).is_none());
+    assert!(parallel::in_parts(&on_sphere, 1000, &Watch::NOBODY).is_none());
 }

@@ -17,7 +17,7 @@ const LEAP: f64 = 3.0;
 /// Rounds over the stubborn tetrahedra.
 const ROUNDS: usize = 4;
 
-impl Improver {
+impl Improver<'_> {
     /// Inserts and contracts vertices where tetrahedra are below the stubborn limit, the worst first.
     pub(super) fn treat_stubborn(&mut self) {
         for _ in 0..ROUNDS {

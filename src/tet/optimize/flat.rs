@@ -19,7 +19,7 @@ const CAVITY: (usize, usize) = (20, 5000);
 /// Layers of tetrahedra around a flat one in which a vertex is tried.
 const LAYERS: usize = 3;
 
-impl Improver {
+impl Improver<'_> {
     /// Takes flat and thin tetrahedra out, but for those of which the surface has all faces. Returns how many flat ones
     /// are left.
     pub(super) fn dissolve_flat(&mut self) -> usize {
@@ -86,7 +86,7 @@ mod tests {
 
     /// The Delaunay tetrahedralization of a turned lattice, the eight corners of each cube of which lie on a sphere but for
     /// rounding, and of points around it.
-    fn turned_lattice(n: u32) -> Improver {
+    fn turned_lattice(n: u32) -> Improver<'static> {
         let turn = Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(Vector3::new(1.0, 2.0, 3.0)), 0.7);
         let all = (0..n).flat_map(|i| (0..n).flat_map(move |j| (0..n).map(move |k| [i, j, k])));
         let middle = Vector3::repeat(0.5 * f64::from(n - 1));

@@ -19,7 +19,7 @@ enum Candidate {
     Edge(u32, u32),
 }
 
-impl Improver {
+impl Improver<'_> {
     /// Removes faces and edges of tetrahedra below a radius ratio, the worst first; returns the number of changes.
     pub(super) fn flip_below(&mut self, below: f64) -> usize {
         let mut total = 0;

@@ -8,7 +8,11 @@ use super::strain::{EASED, strain};
 use crate::mesh::quality::radius_ratio;
 use crate::tet::complex::{Complex, NONE};
 use crate::tet::flips::Flipper;
+use crate::tet::progress::Watch;
 use crate::tet::star::{EdgeRing, Star};
+
+/// Attempts between two questions whether to stop: some milliseconds.
+const ASKED_EVERY: usize = 256;
 
 /// Stands for a radius ratio that is out of date.
 pub(super) const STALE: f64 = f64::NAN;
@@ -29,7 +33,7 @@ pub(super) struct Cavity {
 
 /// A complex under improvement, with the radius ratio of each tetrahedron at hand.
 #[derive(Debug)]
-pub struct Improver {
+pub struct Improver<'a> {
     pub(super) c: Complex,
     /// Radius ratio by slot; of no meaning for ghosts and dead slots, and `STALE` where it is out of date.
     pub(super) quality: Vec<f64>,
@@ -59,9 +63,10 @@ pub struct Improver {
     /// The epoch after which a slot was tried in vain; 0: never.
     pub(super) tried: Vec<u32>,
     worst_first: Vec<(f64, u32)>,
+    watch: Watch<'a>,
 }
 
-impl Improver {
+impl<'a> Improver<'a> {
     /// Takes a complex to improve.
     pub fn new(c: Complex, options: &OptimizeOptions) -> Self {
         let mut improver = Self {
@@ -83,11 +88,17 @@ impl Improver {
             changed: Vec::new(),
             tried: Vec::new(),
             worst_first: Vec::new(),
+            watch: Watch::NOBODY,
             c,
         };
         improver.budget = options.attempts_per_tet.saturating_mul(improver.c.slots());
         improver.report.worst_before = improver.measure();
         improver
+    }
+
+    /// Ends the passes early when the watch says so.
+    pub fn watched(self, watch: Watch<'a>) -> Self {
+        Self { watch, ..self }
     }
 
     /// Runs all passes.
@@ -137,9 +148,12 @@ impl Improver {
         (self.c, self.report)
     }
 
-    /// Takes one attempt from the budget; false when none is left.
+    /// Takes one attempt from the budget; false when none is left, as when the run is to stop.
     #[inline]
     pub(super) fn spend(&mut self) -> bool {
+        if self.budget.is_multiple_of(ASKED_EVERY) && self.watch.ask().is_err() {
+            self.budget = 0;
+        }
         let left = self.budget > 0;
         self.budget = self.budget.saturating_sub(1);
         left

@@ -23,6 +23,7 @@ pub use options::{Effort, OptimizeOptions, OptimizeReport};
 pub(super) use strain::score;
 
 use super::complex::{Complex, ComplexError};
+use super::progress::Watch;
 use crate::mesh::TetMesh;
 
 /// Improves a mesh; its boundary faces and fixed points stay. Points that are not fixed may be moved, added, removed
@@ -33,16 +34,17 @@ use crate::mesh::TetMesh;
 pub fn optimize(mesh: &mut TetMesh, options: &OptimizeOptions) -> Result<OptimizeReport, ComplexError> {
     let count = mesh.points.len();
     let mut complex = Complex::from_mesh(mesh.points.clone(), &mesh.tets)?;
-    let report = optimize_complex(&mut complex, options);
+    let report = optimize_complex(&mut complex, options, &Watch::NOBODY);
     *mesh = complex.into_mesh();
     let kept = if options.keep_points { count } else { options.fixed_points };
     mesh.drop_unused_points(kept);
     Ok(report)
 }
 
-/// Improves a complex in place, ghosts, frozen faces and all. Points that are no longer used stay in the list.
-pub fn optimize_complex(complex: &mut Complex, options: &OptimizeOptions) -> OptimizeReport {
-    let mut improver = Improver::new(std::mem::take(complex), options);
+/// Improves a complex in place, ghosts, frozen faces and all. Points that are no longer used stay in the list. Ends early,
+/// with what it has come to, when the watch says so.
+pub fn optimize_complex(complex: &mut Complex, options: &OptimizeOptions, watch: &Watch) -> OptimizeReport {
+    let mut improver = Improver::new(std::mem::take(complex), options).watched(*watch);
     improver.run();
     let (improved, report) = improver.finish();
     *complex = improved;

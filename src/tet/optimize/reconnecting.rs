@@ -3,7 +3,7 @@
 use super::Improver;
 use super::reconnect::{Reconnection, Room};
 
-impl Improver {
+impl Improver<'_> {
     /// Reconnects a cavity of up to `size` tetrahedra around `t`; false when nothing better was found within `nodes`
     /// steps of the search.
     pub(super) fn reconnect(&mut self, t: u32, size: usize, nodes: usize) -> bool {

@@ -32,7 +32,7 @@ const LEAST_EASE: f64 = 0.002;
 /// Fall of the strain by a move from which it is worth trying again what was tried in vain around it.
 const NEWS: f64 = 0.1;
 
-impl Improver {
+impl Improver<'_> {
     /// Smooths every movable vertex around which a tetrahedron has a radius ratio below `below`; returns the number
     /// of vertices moved. Vertices go in ascending order, each seeing where the ones before it have gone.
     pub(super) fn smooth_stars_below(&mut self, below: f64) -> usize {

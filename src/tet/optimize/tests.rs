@@ -246,7 +246,8 @@ fn frozen_faces_inside_stay() {
     for &h in &inner {
         complex.freeze(h);
     }
-    optimize_complex(&mut complex, &OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::default() });
+    let options = OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::default() };
+    optimize_complex(&mut complex, &options, &Watch::NOBODY);
     complex.sanity_check().unwrap();
     let faces: Vec<_> = complex
         .real_tets()

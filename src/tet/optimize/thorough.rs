@@ -52,7 +52,7 @@ impl Purse {
     }
 }
 
-impl Improver {
+impl Improver<'_> {
     /// Treats all tetrahedra below the stubborn limit, the worst first, but for those on needles that are about as good
     /// as the needle allows.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {

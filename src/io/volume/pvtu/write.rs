@@ -2,12 +2,13 @@
 
 use super::folder::PieceFolder;
 use super::plan::Plan;
-use crate::io::file::{AtomicFile, write_whole};
+use crate::io::file::{Asked, AtomicFile, write_whole};
 use crate::io::volume::bits::Bits;
 use crate::io::volume::content::MeshNotes;
 use crate::io::volume::vtu::{GLOBAL_IDS, Grid};
 use crate::mesh::VolumeMesh;
 use crate::mesh::source::MeshSource;
+use crate::progress::Progress;
 use rayon::prelude::*;
 use std::io::{self, Write};
 use std::path::Path;
@@ -40,14 +41,24 @@ pub(in crate::io::volume) fn write(
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     pieces: Pieces,
+    progress: &dyn Progress,
 ) -> io::Result<()> {
     let mut index = AtomicFile::create(path)?;
     let folder = PieceFolder::create(path)?;
     let plan = Plan::of(mesh, pieces.tets)?;
     let room = pieces.memory / bytes_of_piece(mesh, pieces.tets).max(1);
     let points = mesh.counts().points;
-    Writer { mesh, notes, plan: &plan, folder: &folder, room, piece: Bits::new(points), used: Bits::new(points) }
-        .write()?;
+    Writer {
+        mesh,
+        notes,
+        plan: &plan,
+        folder: &folder,
+        room,
+        progress,
+        piece: Bits::new(points),
+        used: Bits::new(points),
+    }
+    .write()?;
     write_index(&mut index, plan.ends.len(), &folder)?;
     folder.commit(index, path)
 }
@@ -84,6 +95,7 @@ struct Writer<'a> {
     folder: &'a PieceFolder,
     /// How many pieces may be held.
     room: usize,
+    progress: &'a dyn Progress,
     /// The points of the piece under way.
     piece: Bits,
     /// The points of all pieces so far.
@@ -227,6 +239,6 @@ impl Writer<'_> {
             piece.volume.patches = self.mesh.patches().to_vec();
         }
         let grid = Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids) };
-        write_whole(&self.folder.piece(number), |file| grid.write(file))
+        write_whole(&self.folder.piece(number), |out| grid.write(&mut Asked { out, progress: self.progress }))
     }
 }

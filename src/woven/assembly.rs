@@ -2,12 +2,12 @@
 
 use std::io;
 
-use super::whole::Whole;
+use super::joints::{Joint, JointOptions, JointReport, smooth_joints};
+use super::label::{LabelError, PatchFaces, label};
 use crate::mesh::adjacency::TetAdjacency;
-use crate::mesh::source::gather;
+use crate::mesh::source::{MeshSource, gather};
 use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL};
-use crate::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
-use crate::stitch::label::{LabelError, PatchFaces, label};
+use crate::progress::Progress;
 use crate::tet::optimize::{Effort, OptimizeOptions, optimize};
 
 /// The blocks in one mesh, and what of it the joints' smoothing needs.
@@ -18,16 +18,17 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// Puts the blocks together.
+    /// Puts the blocks together. `joints`: the vertices of each.
     ///
     /// # Errors
     /// When a block cannot be read.
-    pub fn new(whole: &Whole) -> io::Result<Self> {
-        let joints = whole.joint_vertices()?.into_iter().map(|vertices| Joint { vertices }).collect();
+    pub fn new(whole: &dyn MeshSource, joints: Vec<Vec<u32>>) -> io::Result<Self> {
+        let joints = joints.into_iter().map(|vertices| Joint { vertices }).collect();
         Ok(Self { volume: gather(whole)?, joints })
     }
 
-    pub fn smooth(&mut self) -> JointReport {
+    /// Smooths the joints; leaves those that are left when it is told to stop.
+    pub fn smooth(&mut self, progress: &dyn Progress) -> JointReport {
         let VolumeMesh { mesh, tet_block, boundary, boundary_patch, .. } = &mut self.volume;
         let mut frozen = vec![false; mesh.points.len()];
         let caps = boundary.iter().zip(&*boundary_patch).filter(|(_, patch)| **patch != WALL);
@@ -35,6 +36,9 @@ impl Assembly {
             frozen[v as usize] = true;
         }
         let improve = |mesh: &mut TetMesh, fixed: usize| {
+            if progress.is_cancelled() {
+                return false;
+            }
             let options = OptimizeOptions {
                 fixed_points: fixed,
                 keep_points: true,

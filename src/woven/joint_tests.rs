@@ -2,11 +2,11 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::joints::{Joint, JointOptions, JointReport, smooth_joints};
 use crate::geometry::Point3;
 use crate::mesh::adjacency::boundary_faces;
 use crate::mesh::quality::TetQuality;
 use crate::mesh::{TetMesh, TriMesh};
-use crate::stitch::joints::{Joint, JointOptions, JointReport, smooth_joints};
 use crate::tet::complex::Complex;
 use crate::tet::optimize::{OptimizeOptions, optimize};
 use crate::tet::{TetOptions, tetrahedralize};

@@ -1,4 +1,4 @@
-//! Telling a caller how far a refinement is, and being told to stop.
+//! How far the nodes of a network have moved, and what that has brought.
 
 use crate::geometry::Point3;
 use crate::skeleton::{Metrics, Skeleton};
@@ -46,19 +46,4 @@ impl Displacement {
             max: at(1.0),
         }
     }
-}
-
-/// Who is told about progress.
-pub trait Progress {
-    /// An iteration is done, of at most `of`; `sample` is there when the metrics were measured.
-    fn step(&mut self, iteration: usize, of: usize, sample: Option<&Sample>);
-
-    /// Asked before each iteration: whether to stop.
-    fn is_cancelled(&self) -> bool {
-        false
-    }
-}
-
-impl Progress for () {
-    fn step(&mut self, _: usize, _: usize, _: Option<&Sample>) {}
 }

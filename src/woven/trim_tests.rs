@@ -1,14 +1,12 @@
 //! Trimming on tubes filled with a lattice.
 
 use super::trim::{TrimOptions, Trimmed, trim};
-use crate::block::end_surface::CutEnd;
-use crate::block::error::FlattenFailure;
-use crate::block::fixtures::{direction, jitter, lattice_tube, lattice_tubes, neighbours, section};
-use crate::block::shape::{tet_ratio, triangle_ratio};
+use crate::block::fixtures::{
+    assert_mesh, boundary, closed_euler, direction, jitter, lattice_tube, lattice_tubes, neighbours, section,
+};
+use crate::block::{CutEnd, FlattenFailure, tet_ratio, triangle_ratio};
 use crate::geometry::{Point3, Tube, Vec3};
-use crate::mesh::{TET_FACES, TetMesh};
 use crate::partition::CutId;
-use rustc_hash::FxHashMap;
 
 fn cut_end(cut: u32, side: u8, origin: Point3, axis: Vec3, radius: f64) -> CutEnd {
     CutEnd { cut: CutId(cut), side, section: section(origin, axis, radius) }
@@ -16,60 +14,6 @@ fn cut_end(cut: u32, side: u8, origin: Point3, axis: Vec3, radius: f64) -> CutEn
 
 fn options(edge: f64, relax: bool) -> TrimOptions {
     TrimOptions { edge, relax, depth: 2.0 }
-}
-
-/// Positive tetrahedra, face-connected, boundary a closed manifold with single fans.
-pub(in crate::block) fn assert_mesh(mesh: &TetMesh, euler: i64) {
-    for t in &mesh.tets {
-        assert!(tet_ratio(&t.map(|v| mesh.points[v as usize])) > 0.0, "inverted");
-    }
-    let nb = neighbours(mesh);
-    let mut seen = vec![false; mesh.tets.len()];
-    let mut stack = vec![0u32];
-    while let Some(t) = stack.pop() {
-        if !std::mem::replace(&mut seen[t as usize], true) {
-            stack.extend(nb[t as usize].iter().filter(|&&n| n != u32::MAX).map(|n| n / 4));
-        }
-    }
-    assert!(seen.iter().all(|&s| s), "not connected");
-    assert_eq!(closed_euler(&boundary(mesh)), Some(euler));
-}
-
-fn boundary(mesh: &TetMesh) -> Vec<[u32; 3]> {
-    let nb = neighbours(mesh);
-    (0..mesh.tets.len())
-        .flat_map(|t| (0..4).map(move |i| (t, i)))
-        .filter(|&(t, i)| nb[t][i] == u32::MAX)
-        .map(|(t, i)| TET_FACES[i].map(|k| mesh.tets[t][k]))
-        .collect()
-}
-
-/// The Euler number of a closed oriented 2-manifold; `None` if the triangles are not one.
-pub(in crate::block) fn closed_euler(triangles: &[[u32; 3]]) -> Option<i64> {
-    let mut links: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-    let mut valence: FxHashMap<u32, u32> = FxHashMap::default();
-    for t in triangles {
-        for k in 0..3 {
-            if links.insert((t[k], t[(k + 1) % 3]), t[(k + 2) % 3]).is_some() {
-                return None;
-            }
-            *valence.entry(t[k]).or_default() += 1;
-        }
-    }
-    for t in triangles {
-        for k in 0..3 {
-            let (v, start) = (t[k], t[(k + 1) % 3]);
-            let (mut at, mut count) = (*links.get(&(v, start))?, 1);
-            while at != start {
-                at = *links.get(&(v, at))?;
-                count += 1;
-            }
-            if count != valence[&v] {
-                return None;
-            }
-        }
-    }
-    Some(valence.len() as i64 - links.len() as i64 / 2 + triangles.len() as i64)
 }
 
 /// Whether the wall was a manifold before trimming (a staircase need not be), and the outcome.

@@ -5,10 +5,10 @@ use crate::geometry::{Point3, Vec3};
 use crate::surface::strip::{Step, cheapest};
 
 /// Cost of a strip: Σ (radius ratio)⁻³, dominated by its worst triangle.
-pub type WeaveCost = f64;
+pub type StripCost = f64;
 
 /// A strip of this cost per triangle is taken without looking for a better start: a mean radius ratio of about 0.87.
-const GOOD: WeaveCost = 1.5;
+const GOOD: StripCost = 1.5;
 
 /// Radius ratio up to which a triangle counts as degenerate: its cost would be that of a fold.
 const FLATTEST: f64 = 1e-3;
@@ -16,16 +16,16 @@ const FLATTEST: f64 = 1e-3;
 /// A folded or degenerate triangle costs this much: no strip of sound ones costs more.
 const FOLD: f64 = 1e9;
 
-/// Weaves two loops, both counter-clockwise about `axis`, `upper` on the side to which it points. `center` is a point on
+/// Joins two loops, both counter-clockwise about `axis`, `upper` on the side to which it points. `center` is a point on
 /// the axis between them. Triangles face away from the axis. `None` when every strip folds or a loop has fewer than
 /// three vertices.
-pub fn weave(
+pub fn best_strip(
     points: &[Point3],
     lower: &[u32],
     upper: &[u32],
     center: Point3,
     axis: Vec3,
-) -> Option<(Vec<[u32; 3]>, WeaveCost)> {
+) -> Option<(Vec<[u32; 3]>, StripCost)> {
     if lower.len() < 3 || upper.len() < 3 {
         return None;
     }

@@ -3,9 +3,7 @@
 use super::flatten::{Attempt, Flat, flatten};
 use super::region::{Ground, Reach, Region, WALL};
 use super::relax::Relaxation;
-use crate::block::end_surface::{CutEnd, EndSurface};
-use crate::block::error::FlattenFailure;
-use crate::block::shape::triangle_ratio;
+use crate::block::{CutEnd, EndSurface, FlattenFailure, cross, triangle_ratio};
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
 use crate::mesh::{Kept, TetMesh};
@@ -156,7 +154,7 @@ fn score(region: &Region, points: &[Point3], flat: &Flat, h: f64) -> f64 {
     let backwards = (0..n)
         .filter(|&i| {
             let (a, b) = (flat.rim[i], flat.rim[(i + 1) % n]);
-            crate::block::end_surface::cross([0, 0], region.flat[a as usize], region.flat[b as usize]) <= 0
+            cross([0, 0], region.flat[a as usize], region.flat[b as usize]) <= 0
         })
         .count();
     let (low, high) = flat.rim.iter().fold((f64::MAX, f64::MIN), |(l, u), &v| {

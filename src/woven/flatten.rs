@@ -4,8 +4,7 @@
 //! once (the degree of the projection is one), so overlap need not be searched triangle against triangle.
 
 use super::region::{OUTSIDE, Region, WALL};
-use crate::block::end_surface::{cross, crossing, disc_rim};
-use crate::block::error::FlattenFailure;
+use crate::block::{FlattenFailure, cross, crossing, disc_rim};
 use crate::geometry::Point3;
 use crate::mesh::TET_FACES;
 

@@ -1,7 +1,6 @@
 //! The part of a cluster's mesh round one cut: everything trimming may look at, renumbered.
 
-use crate::block::end_surface::Plane;
-
+use crate::block::Plane;
 use crate::geometry::{Point3, Section};
 
 /// Neighbour entries of a tetrahedron that has no neighbour in the region.

@@ -5,7 +5,7 @@
 //! than it has to be. This is where a seam's needles would otherwise come from.
 
 use super::region::{OUTSIDE, Region, WALL};
-use crate::block::shape::{tet_ratio, triangle_ratio};
+use crate::block::{tet_ratio, triangle_ratio};
 use crate::geometry::turn;
 use crate::geometry::{Point3, Section, Vec3};
 use crate::mesh::TET_FACES;
