@@ -3,6 +3,7 @@
 use crate::skeleton::resolution::{FOLLOW, RHO};
 use std::path::PathBuf;
 
+use rustc_hash::FxHashSet;
 use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
@@ -13,6 +14,7 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::room::{self, BlockPlace, size};
 use super::stop::{self, Stop};
+use crate::fidelity::{Displaced, Fidelity};
 use crate::io::network::ensure_network_writable;
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
@@ -21,7 +23,8 @@ use crate::pipeline::RunReport;
 use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, RunError, TooLarge};
 use crate::prepare::PrepareReport;
 use crate::progress::{Progress, Stage};
-use crate::refine::{RefineReport, Refined};
+use crate::refine::{RefineReport, Refined, split};
+use crate::report::fidelity::displaced;
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -66,6 +69,13 @@ pub struct Args {
     /// the terminal of largest radius)
     #[arg(long, value_name = "NODE")]
     root: Vec<u32>,
+    /// How far the meshed axis may be from the given one, in radii: more is exit code 1 (default: 1 in a network whose vessels
+    /// are polylines, but where an overlap demands more; no bound in others)
+    #[arg(long, value_name = "R")]
+    max_displacement: Option<f64>,
+    /// Say so where the axis is further off, and exit as if it were not
+    #[arg(long)]
+    allow_displaced: bool,
     /// Leave out blocks that fail, say so, and exit 4 all the same
     #[arg(long)]
     keep_going: bool,
@@ -87,6 +97,9 @@ enum Joint {
     None,
 }
 
+/// How far a measured axis may be from where it was given, in radii, unless an overlap demands more.
+const FURTHEST: f64 = 1.0;
+
 /// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
 const HELD_PER_TET: f64 = 150.0;
 
@@ -101,9 +114,23 @@ struct Done<'a> {
 /// What was done to the network before it was meshed.
 #[derive(Clone, Copy, Serialize)]
 struct Before<'a> {
+    #[serde(skip)]
+    given: &'a Skeleton,
+    #[serde(skip)]
+    meshed: &'a Skeleton,
     prepare: &'a PrepareReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     refine: Option<&'a RefineReport>,
+}
+
+impl Before<'_> {
+    /// Nodes that may be far from where they were: an overlap demanded it, or a tip was drawn back from another vessel.
+    fn demanded(&self) -> FxHashSet<u32> {
+        let moved = self.refine.into_iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
+        let crowded = self.refine.into_iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
+        let tips = self.prepare.touching.iter().map(|tip| tip.tip);
+        moved.chain(crowded).chain(tips).collect()
+    }
 }
 
 /// What `--json` prints.
@@ -115,6 +142,7 @@ struct Output<'a> {
     before: Before<'a>,
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
+    fidelity: Option<&'a Fidelity>,
 }
 
 /// Meshes a network and writes the mesh.
@@ -139,7 +167,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let refined = pool.install(|| args.refined(&network, &stop))?;
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
-    let before = Before { prepare: &network.report, refine: refined.as_ref().map(|r| &r.report) };
+    let refinement = refined.as_ref().map(|r| &r.report);
+    let meshed = &split(skeleton).0;
+    let before = Before { given: &network.given, meshed, prepare: &network.report, refine: refinement };
     // Blocks are kept as soon as they are done.
     stop.keep();
     pool.install(|| {
@@ -230,29 +260,40 @@ impl Args {
         serde_json::json!({ "mesh": plan, "refine": refine })
     }
 
-    /// Writes the mesh and says what was done.
-    fn finish(
-        &self,
-        done: Done,
-        plan: &MeshPlan,
-        before: Before,
-        bars: &Bars,
-    ) -> Result<Exit, Failure> {
+    /// Writes the mesh, holds it against its network and says what was done.
+    fn finish(&self, done: Done, plan: &MeshPlan, before: Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
         let notes = self.notes(expectation);
         let memory = (self.memory / 4) as usize;
-        let write = || write_mesh_within(Some(memory), &self.output, mesh, &notes, bars);
-        let mut clock = Clock::default();
-        let written = clock.time(bars, Stage::Write, 0, write);
         // Passes over the blocks end when the run is to end.
-        written.map_err(|e| if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) })?;
+        let failed =
+            |e: &dyn std::fmt::Display| if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) };
+        let mut clock = Clock::default();
+        let compare = || Fidelity::of(before.given, before.meshed, mesh, check.counts.volume);
+        let fidelity = clock.time(bars, Stage::Check, 0, compare).map_err(|e| failed(&e))?;
+        let write = || write_mesh_within(Some(memory), &self.output, mesh, &notes, bars);
+        clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
         report.stages.extend(clock.stages());
-        self.print(plan, before, &report, Some(check))?;
+        self.print(plan, before, &report, Some((check, &fidelity)))?;
+        let unfaithful = self.unfaithful(&fidelity, before);
+        if let Some(words) = &unfaithful {
+            eprint!("{words}");
+        }
         Ok(match () {
             () if !report.failed.is_empty() => Exit::StageFailed,
             () if !check.is_valid() => Exit::GateNotMet,
+            () if unfaithful.is_some() && !self.allow_displaced => Exit::GateNotMet,
             () => Exit::Fine,
         })
+    }
+
+    /// Places of the network that are further from what was meshed than they may be, in words; none when there are none.
+    fn unfaithful(&self, fidelity: &Fidelity, before: Before) -> Option<String> {
+        let bound = self.max_displacement.or(before.prepare.measured.then_some(FURTHEST))?;
+        let excused = before.demanded();
+        let excused = |d: &&Displaced| self.max_displacement.is_none() && d.meshed.iter().any(|n| excused.contains(n));
+        let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound).filter(|d| !excused(d));
+        displaced(&far.copied().collect::<Vec<_>>(), bound)
     }
 
     /// What went wrong, for people.
@@ -316,17 +357,21 @@ impl Args {
         plan: &MeshPlan,
         before: Before,
         run: &RunReport,
-        check: Option<&CheckReport>,
+        found: Option<(&CheckReport, &Fidelity)>,
     ) -> Result<(), Failure> {
+        let (check, fidelity) = found.unzip();
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            return print(true, &Output { program, plan, before, run, check }, String::new);
+            return print(true, &Output { program, plan, before, run, check, fidelity }, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
             eprint!("{run}");
             if let Some(check) = check {
                 eprint!("{check}");
+            }
+            if let Some(fidelity) = fidelity {
+                eprint!("{fidelity}");
             }
         }
         Ok(())

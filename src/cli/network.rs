@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::exit::Failure;
 use crate::io::network::{NetworkNote, NetworkOptions, read_network};
-use crate::prepare::{PrepareParams, PrepareReport, prepare};
+use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare};
 use crate::report::prepare::text;
 use crate::skeleton::{CleanReport, Skeleton, clean};
 
@@ -33,7 +33,7 @@ pub struct Network {
 /// A network ready for use, and what was done so that it is.
 #[derive(Debug)]
 pub struct PreparedNetwork {
-    /// As the file has it.
+    /// As the file has it, cleaned and with usable radii.
     pub given: Skeleton,
     /// The prepared skeleton.
     pub skeleton: Skeleton,
@@ -50,8 +50,8 @@ impl NetworkArgs {
         let file = read_network(&self.network, &options).map_err(|e| Failure::input(e.to_string()))?;
         let prepared = prepare(&file.skeleton, params);
         let prepared = prepared.map_err(|e| Failure::input(format!("{}: {e}", self.network.display())))?;
-        let (skeleton, report) = (prepared.skeleton, prepared.report);
-        Ok(PreparedNetwork { given: file.skeleton, skeleton, notes: file.notes, report })
+        let Prepared { skeleton, given, report } = prepared;
+        Ok(PreparedNetwork { given, skeleton, notes: file.notes, report })
     }
 
     /// Reads and cleans the network.

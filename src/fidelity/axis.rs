@@ -1,7 +1,6 @@
 //! The given axis held against the one that was meshed.
 
 use super::{Spread, Tubes};
-use crate::geometry::Point3;
 use crate::skeleton::{EdgeId, Skeleton};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -10,8 +9,9 @@ use serde::Serialize;
 const STEP: f64 = 1.0;
 /// and in so many of an edge at most.
 const MOST_STEPS: f64 = 16.0;
-/// Places that are named.
-const NAMED: usize = 10;
+/// Places further off than this, in radii, are kept, and so many of them at most.
+const FAR: f64 = 0.5;
+const MOST_KEPT: usize = 10_000;
 
 /// A place of the given axis that is far from the one that was meshed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -20,6 +20,8 @@ pub struct Displaced {
     pub node: u32,
     /// Where it is.
     pub place: [f64; 3],
+    /// The nodes of the edge that was meshed nearest to it.
+    pub meshed: [u32; 2],
     /// How far the meshed axis is from there, in radii.
     pub radii: f64,
 }
@@ -34,30 +36,33 @@ pub struct Displacements {
     pub given_length: f64,
     /// Length of the axis that was meshed.
     pub meshed_length: f64,
-    /// The places that are furthest off, one of each edge.
+    /// Places half a radius off and more, the furthest of each edge, the furthest first; ten thousand at most.
+    #[serde(skip)]
     pub furthest: Vec<Displaced>,
 }
 
 impl Displacements {
-    pub(super) fn of(given: &Skeleton, meshed: &Tubes) -> Self {
+    pub(super) fn of(given: &Skeleton, meshed: &Skeleton) -> Self {
+        let tubes = Tubes::of(meshed);
         let edges: Vec<EdgeId> = given.edge_ids().collect();
         let found: Vec<(Vec<f64>, Option<Displaced>)> =
-            edges.par_iter().with_min_len(64).map(|&edge| along(given, edge, meshed)).collect();
+            edges.par_iter().with_min_len(64).map(|&edge| along(given, edge, meshed, &tubes)).collect();
         let mut furthest: Vec<Displaced> = found.iter().filter_map(|(_, worst)| *worst).collect();
         // A stable sort: the earlier of equals comes first.
         furthest.sort_by(|a, b| b.radii.total_cmp(&a.radii));
-        furthest.truncate(NAMED);
+        furthest.retain(|d| d.radii > FAR);
+        furthest.truncate(MOST_KEPT);
         Self {
             spread: Spread::of(found.into_iter().flat_map(|(values, _)| values).collect()),
             given_length: edges.iter().map(|&e| given.length(e)).sum(),
-            meshed_length: meshed.list.iter().map(crate::geometry::Tube::length).sum(),
+            meshed_length: tubes.list.iter().map(crate::geometry::Tube::length).sum(),
             furthest,
         }
     }
 }
 
 /// The displacements along one edge, and the largest of them.
-fn along(given: &Skeleton, edge: EdgeId, meshed: &Tubes) -> (Vec<f64>, Option<Displaced>) {
+fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (Vec<f64>, Option<Displaced>) {
     let tube = given.tube(edge);
     let count = (tube.length() / (STEP * tube.min_radius())).ceil().clamp(1.0, MOST_STEPS);
     let ends = given.edge(edge).nodes.map(|n| given.node(n).original);
@@ -65,16 +70,15 @@ fn along(given: &Skeleton, edge: EdgeId, meshed: &Tubes) -> (Vec<f64>, Option<Di
     let values = (0..=count as usize).map(|k| {
         let t = k as f64 / count;
         let (place, radius) = (tube.point(t), tube.radius(t));
-        let radii = off(&place, radius, meshed);
+        // In radii of the thicker: what lies within a thicker vessel, as a spur did that was taken off, is in its lumen.
+        let off = |distance: f64, meshed: f64| distance * (radius / meshed).min(1.0);
+        let Some(near) = tubes.nearest(&place, radius, off) else { return f64::INFINITY };
+        let radii = off(near.distance, near.radius) / radius;
         if worst.is_none_or(|w| radii > w.radii) {
-            worst = Some(Displaced { node: ends[usize::from(t > 0.5)], place: place.into(), radii });
+            let beside = meshed.edge(near.edge).nodes.map(|n| meshed.node(n).original);
+            worst = Some(Displaced { node: ends[usize::from(t > 0.5)], place: place.into(), meshed: beside, radii });
         }
         radii
     });
     (values.collect(), worst)
-}
-
-/// Distance of the meshed axis from a place, in radii; 0 for a place within the vessel that took this one in.
-fn off(place: &Point3, radius: f64, meshed: &Tubes) -> f64 {
-    meshed.nearest(place, radius, |distance, _| distance).map_or(f64::INFINITY, |near| near.distance / radius)
 }

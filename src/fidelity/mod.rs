@@ -62,7 +62,7 @@ impl Fidelity {
     /// When the mesh cannot be read.
     pub fn of(given: &Skeleton, meshed: &Skeleton, mesh: &dyn MeshSource, volume: f64) -> io::Result<Self> {
         let tubes = Tubes::of(given);
-        let axis = Displacements::of(given, &Tubes::of(meshed));
+        let axis = Displacements::of(given, meshed);
         Ok(Self { axis, wall: wall::spread(&tubes, mesh)?, lumen: lumen::volume(given, &tubes), volume })
     }
 
@@ -78,6 +78,8 @@ struct Tubes {
     tree: Bvh,
     /// A length in which the network is large: no place of it is further from another one.
     extent: f64,
+    /// The median radius.
+    typical: f64,
 }
 
 /// What is nearest to a place.
@@ -95,13 +97,16 @@ impl Tubes {
         let list: Vec<Tube> = skeleton.edge_ids().map(|e| skeleton.tube(e)).collect();
         let boxes: Vec<Aabb> = list.iter().map(|t| Aabb::of_points([&t.a, &t.b]).grown(t.max_radius())).collect();
         let all = boxes.iter().fold(Aabb::EMPTY, |sum, aabb| sum.union(aabb));
-        Self { tree: Bvh::new(&boxes), list, extent: (all.max - all.min).norm() }
+        let mut radii: Vec<f64> = list.iter().map(|t| 0.5 * (t.ra + t.rb)).collect();
+        radii.sort_unstable_by(f64::total_cmp);
+        let typical = radii.get(radii.len() / 2).copied().unwrap_or(1.0);
+        Self { tree: Bvh::new(&boxes), list, extent: (all.max - all.min).norm(), typical }
     }
 
     /// The tube of which `measure` (distance of the axis, radius) is least among those near a place; `reach` is how far
     /// off it is looked for first.
     fn nearest(&self, place: &Point3, reach: f64, measure: impl Fn(f64, f64) -> f64) -> Option<Nearest> {
-        let mut reach = reach.max(f64::MIN_POSITIVE);
+        let mut reach = reach.max(1e-3 * self.typical);
         loop {
             let mut best: Option<(f64, Nearest)> = None;
             self.tree.query(&Aabb::of_points([place]).grown(reach), |id| {

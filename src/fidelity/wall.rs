@@ -39,6 +39,6 @@ fn of_part(tubes: &Tubes, mesh: &dyn MeshSource, part: u32, every: usize) -> io:
 }
 
 fn error(tubes: &Tubes, point: &Point3) -> Option<f64> {
-    let near = tubes.nearest(point, 0.0, |distance, radius| distance - radius)?;
+    let near = tubes.nearest(point, 0.1 * tubes.typical, |distance, radius| distance - radius)?;
     Some((near.distance - near.radius).abs() / near.radius)
 }

@@ -84,6 +84,8 @@ impl PrepareParams {
 pub struct Prepared {
     /// The network; satisfies `Skeleton::check`. `Node::original` are nodes of the input.
     pub skeleton: Skeleton,
+    /// The network as it was read, cleaned and with usable radii: what a mesh is held against.
+    pub given: Skeleton,
     /// What was done.
     pub report: PrepareReport,
 }
@@ -109,6 +111,7 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
     report.cleaned = cleaned;
     report.read = Size::of(&skeleton);
     report.measured = skeleton.is_measured();
+    let given = skeleton.clone();
     let grown = params.only_measured && !report.measured;
     let params = &if grown { PrepareParams { drop_islands: params.drop_islands, ..PrepareParams::as_is() } } else { params.clone() };
     if params.merge {
@@ -128,5 +131,5 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
         (skeleton, report.resample) = resample::resample(&skeleton, params.axis_tolerance, params.radius_tolerance)?;
     }
     report.result = Size::of(&skeleton);
-    Ok(Prepared { skeleton, report })
+    Ok(Prepared { skeleton, given, report })
 }

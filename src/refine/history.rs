@@ -16,7 +16,7 @@ pub struct Sample {
     pub asked: usize,
 }
 
-/// How far nodes have moved, in the unit of the skeleton.
+/// How far nodes have moved, in the unit of the skeleton unless it says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Displacement {
     pub mean: f64,
@@ -32,7 +32,15 @@ pub struct Displacement {
 impl Displacement {
     /// Of the nodes of `skeleton` from where they were.
     pub fn of(skeleton: &Skeleton, origin: &[Point3]) -> Self {
-        let mut far: Vec<f64> = skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).norm()).collect();
+        Self::among(skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).norm()).collect())
+    }
+
+    /// The same in radii of the nodes.
+    pub fn in_radii(skeleton: &Skeleton, origin: &[Point3]) -> Self {
+        Self::among(skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).norm() / n.radius).collect())
+    }
+
+    fn among(mut far: Vec<f64>) -> Self {
         if far.is_empty() {
             return Self::default();
         }

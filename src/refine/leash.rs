@@ -1,7 +1,9 @@
 //! How far the nodes of a measured network may go: nothing moves but what overlaps, and that no further than it has to.
 
+use super::FarNode;
 use super::frame::Frame;
 use super::params::Freedom;
+use crate::geometry::Point3;
 use crate::skeleton::{NodeId, Overlaps, Skeleton};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -32,6 +34,15 @@ impl Leashes {
             Freedom::Radii(radii) => Some(Self { radii, grows: false }),
             Freedom::Grown => None,
         }
+    }
+
+    /// The nodes that moved further than usual, the furthest first.
+    pub(super) fn demanded(self, skeleton: &Skeleton, origin: &[Point3]) -> Vec<FarNode> {
+        let moved = skeleton.nodes.iter().zip(origin);
+        let moved = moved.map(|(n, o)| FarNode { node: n.original, radii: (n.position - o).norm() / n.radius });
+        let mut far: Vec<FarNode> = moved.filter(|n| n.radii > self.radii).collect();
+        far.sort_by(|a, b| b.radii.total_cmp(&a.radii).then(a.node.cmp(&b.node)));
+        far
     }
 
     /// Lets the nodes near overlaps go: at first by so many of their radii, then twice as far each time.

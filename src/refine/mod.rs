@@ -44,6 +44,15 @@ pub struct Refined {
     pub report: RefineReport,
 }
 
+/// A node that moved far.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FarNode {
+    /// The node, as in the input.
+    pub node: u32,
+    /// How far, in its radii.
+    pub radii: f64,
+}
+
 /// What a refinement found and did.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
@@ -71,6 +80,10 @@ pub struct RefineReport {
     pub result: Figures,
     /// How far the nodes moved.
     pub displacement: Displacement,
+    /// How far the nodes moved, in radii of theirs.
+    pub displacement_radii: Displacement,
+    /// Nodes of a measured network that moved further than their radius, as an overlap was not parted by less.
+    pub demanded: Vec<FarNode>,
     /// Terminals that are too close to each other for two caps.
     pub crowded: Vec<CrowdedPair>,
     /// What was left, and what was done about it.
@@ -122,6 +135,8 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
     };
     let at_rest = Figures::of(&skeleton);
     let displacement = Displacement::of(&skeleton, &origin);
+    let displacement_radii = Displacement::in_radii(&skeleton, &origin);
+    let demanded = leashes.map_or_else(Vec::new, |leashes| leashes.demanded(&skeleton, &origin));
     let (residual, result) = treat_residual(&mut skeleton, &mut origin, &at_rest, &given_figures, params);
     let report = RefineReport {
         size_before: [given.nodes.len(), given.edges.len()],
@@ -135,6 +150,8 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
         moved: at_rest,
         result,
         displacement,
+        displacement_radii,
+        demanded,
         crowded,
         residual,
         worse: result.worse_than(&given_figures, &Metric::ALL),

@@ -1,6 +1,7 @@
 //! Floor 7: what the verbs say, for people, in tables and plots; models with a text and a JSON form.
 
 pub mod check;
+pub mod fidelity;
 pub mod info;
 pub mod mesh;
 #[cfg(feature = "cli")]
