@@ -71,7 +71,7 @@ fn reports_are_json_on_request() {
     assert_eq!(made["check"]["verdict"], "valid");
     assert_eq!(made["run"]["network"], serde_json::json!([30, 29]));
     let run_report = &made["run"];
-    for key in ["overlaps", "unconnected", "blocks", "retries", "failed", "mesh", "stages"] {
+    for key in ["overlaps", "blocks", "retries", "failed", "mesh", "stages"] {
         assert!(!run_report[key].is_null(), "no '{key}'");
     }
     let count = |value: &Value| value.as_u64().expect("a count");

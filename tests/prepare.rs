@@ -5,8 +5,8 @@ mod common;
 
 use anastomesh::Point3;
 use anastomesh::io::{NetworkOptions, read_network};
-use anastomesh::network::{Edge, Node, NodeId, PrepareParams, Prepared, Skeleton, prepare};
-use anastomesh::testing::{Aabb, Bvh, Fault, SpurReason, Tube, point_segment};
+use anastomesh::network::{Edge, Node, NodeId, PrepareParams, Prepared, Skeleton, Touching, prepare};
+use anastomesh::testing::{Aabb, Bvh, Fault, SpurReason, TouchedBy, Tube, point_segment};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -144,6 +144,81 @@ fn branch_points_in_one_lumen_are_joined_and_loops_in_it_closed() {
     let made = done(&s, &only(|p| p.join = true));
     assert_eq!((made.report.joined.nodes.len(), made.report.joined.loops.len()), (1, 1));
     assert_eq!((made.report.result.tips, made.report.result.branch_points, made.report.result.loops), (4, 1, 0));
+}
+
+/// A vessel along x with a side branch that comes back to it; another component ends on its flank.
+fn touched() -> Skeleton {
+    let along = |from: [f64; 3], to: [f64; 3]| -> Vec<[f64; 3]> {
+        let at = |i: i32| [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * f64::from(i) / 20.0);
+        (0..=20).map(at).collect()
+    };
+    let mut s = lines(
+        &[
+            along([0.0; 3], [60.0, 0.0, 0.0]),
+            along([50.0, 30.0, 0.0], [50.0, 1.5, 0.0]),
+            along([20.0, 20.0, 5.0], [20.0, 5.0, 5.0]),
+        ],
+        1.0,
+    );
+    for node in &mut s.nodes[..21] {
+        node.radius = 2.0;
+    }
+    for edge in &mut s.edges[..20] {
+        edge.radii = [2.0; 2];
+    }
+    s
+}
+
+#[test]
+fn tips_on_other_vessels_are_drawn_back_or_joined() {
+    let s = touched();
+    let made = done(&s, &only(|p| p.touching = Touching::Retract));
+    let [tip] = made.report.touching[..] else { panic!("{:?}", made.report.touching) };
+    let TouchedBy::Retracted { by } = tip.done else { panic!("{tip:?}") };
+    // Room for the cap: 1.15 times the sum of the radii.
+    assert_eq!(tip.tip, 41);
+    assert!((1.95..2.3).contains(&by), "{by}");
+    assert_eq!((made.report.result.tips, made.report.result.components), (6, 3));
+    let joined = done(&s, &only(|p| p.touching = Touching::Join));
+    assert_eq!((joined.report.result.tips, joined.report.result.components), (5, 2));
+    assert_eq!(joined.report.touching[0].done, TouchedBy::Joined);
+    assert_eq!(done(&s, &PrepareParams::as_is()).report.touching, []);
+    // A second time there is nothing to do.
+    let again = done(&made.skeleton, &only(|p| p.touching = Touching::Retract));
+    assert_eq!(again.report.touching, []);
+}
+
+#[test]
+fn radii_that_vanish_and_come_back_or_end_in_a_point_are_filled() {
+    let radius = |i: i32| match i {
+        10..=12 => 0.02,
+        28 => 0.1,
+        29 => 0.01,
+        30 => 0.001,
+        _ => 2.0,
+    };
+    let mut s = lines(&[(0..=30).map(|i| [f64::from(i), 0.0, 0.0]).collect()], 2.0);
+    for (node, i) in s.nodes.iter_mut().zip(0..) {
+        node.radius = radius(i);
+    }
+    for edge in &mut s.edges {
+        edge.radii = edge.nodes.map(|n| s.nodes[n.0 as usize].radius);
+    }
+    let made = done(&s, &only(|p| p.radii = true));
+    let filled: Vec<u32> = made.report.radii.iter().map(|r| r.node).collect();
+    assert_eq!(filled, [10, 11, 12, 28, 29, 30]);
+    assert!(made.skeleton.nodes.iter().all(|n| (n.radius - 2.0).abs() < 1e-9), "{:?}", made.report.radii);
+}
+
+#[test]
+fn grown_networks_are_left_alone() {
+    let s = lines(&[vec![[0.0; 3], [20.0, 0.0, 0.0]], vec![[10.0, 1.0, 0.0], [10.0, 20.0, 0.0]]], 1.0);
+    let mut params = PrepareParams::default();
+    params.only_measured = true;
+    let made = done(&s, &params);
+    assert!(!made.report.measured && !made.report.changed());
+    assert_eq!(made.skeleton, s);
+    assert!(done(&touched(), &PrepareParams::default()).report.measured);
 }
 
 #[test]

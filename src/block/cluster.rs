@@ -2,6 +2,7 @@
 
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
+use super::faithful::Astray;
 use super::params::{BlockParams, EndStyle, filling};
 use crate::geometry::{DisjointSets, Section, Tube, place_key};
 use crate::mesh::TetMesh;
@@ -37,6 +38,8 @@ pub struct ClusterMesh {
     pub caps: Vec<CapFaces>,
     /// Terminals without a cap: their tips lie in another vessel (only with [`BlockParams::allow_fused`]).
     pub uncapped: Vec<NodeId>,
+    /// What the wall does not keep of the vessels (only with [`BlockParams::allow_fused`]).
+    pub astray: Astray,
     /// Cell edge of the contouring grid.
     pub voxel: f64,
     /// Mean edge length of the wall.
@@ -67,7 +70,7 @@ pub(crate) fn mesh_cluster_watched(
     params: &BlockParams,
     watch: &Watch,
 ) -> Result<ClusterMesh, BlockError> {
-    let (surface, voxel) = cluster_surface(id, cluster, params)?;
+    let (surface, voxel, astray) = cluster_surface(id, cluster, params)?;
     let edge = surface.mesh.mean_edge();
     let filled = tetrahedralize_watched(&surface.mesh, &filling(&surface.mesh), watch)
         .map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
@@ -77,7 +80,7 @@ pub(crate) fn mesh_cluster_watched(
     let loops = independent_loops(&cluster.tubes);
     let uncapped = uncapped(cluster, &caps);
     let mut out =
-        ClusterMesh { mesh: filled, caps, uncapped, voxel, edge, surface_triangles, handles, loops, ends: Vec::new() };
+        ClusterMesh { mesh: filled, caps, uncapped, astray, voxel, edge, surface_triangles, handles, loops, ends: Vec::new() };
     match params.ends {
         EndStyle::Open => {}
         EndStyle::Disc => out.ends = disc_ends(id, cluster, &surface, &out.mesh)?,
@@ -89,7 +92,7 @@ pub(crate) fn mesh_cluster_watched(
     Ok(out)
 }
 
-/// The closed wall of a cluster with its caps, and the cell edge it was contoured with: what [`mesh_cluster`] fills.
+/// The closed wall of a cluster with its caps, the cell edge it was contoured with, and what it does not keep: what [`mesh_cluster`] fills.
 ///
 /// # Errors
 /// The wall cannot be made, is not of the skeleton's topology, or cannot be capped.
@@ -97,7 +100,7 @@ pub fn cluster_surface(
     id: ClusterId,
     cluster: &Cluster,
     params: &BlockParams,
-) -> Result<(CappedSurface, f64), BlockError> {
+) -> Result<(CappedSurface, f64, Astray), BlockError> {
     params.check()?;
     let thin = smallest_radius(cluster);
     let voxel = 2.0 * thin / params.rho * params.voxel_factor;
@@ -113,6 +116,10 @@ pub fn cluster_surface(
     let (handles, loops) = (1 - euler_characteristic(&wall.mesh) / 2, independent_loops(&cluster.tubes));
     if handles != loops && !params.allow_fused {
         return Err(BlockError::Genus { cluster: id, handles, loops });
+    }
+    let astray = Astray::of(&wall.mesh, cluster);
+    if !params.allow_fused {
+        stays(id, astray)?;
     }
     let mut field = Field::new(&cluster.tubes, params.kappa).map_err(failed)?;
     let mut closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
@@ -137,7 +144,16 @@ pub fn cluster_surface(
     for cap in capped.cap.iter_mut().flatten() {
         *cap = closed[*cap as usize].0;
     }
-    Ok((capped, voxel))
+    Ok((capped, voxel, astray))
+}
+
+/// Whether a wall keeps its vessels.
+fn stays(cluster: ClusterId, astray: Astray) -> Result<(), BlockError> {
+    match astray {
+        Astray { outside: Some(at), .. } => Err(BlockError::Outside { cluster, at: at.into() }),
+        Astray { fused: Some([at, _]), .. } => Err(BlockError::Fused { cluster, at: at.into() }),
+        Astray { outside: None, fused: None } => Ok(()),
+    }
 }
 
 /// The disc that the vessel alone gives at an end of a cluster, if that is a cut.

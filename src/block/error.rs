@@ -53,6 +53,20 @@ pub enum BlockError {
         /// Independent loops of the cluster's tubes.
         loops: i64,
     },
+    /// The wall leaves a vessel's axis out.
+    #[error("cluster {}: the axis of a vessel is not within the wall near {at:?}", cluster.0)]
+    Outside {
+        cluster: ClusterId,
+        /// A place of the axis.
+        at: [f64; 3],
+    },
+    /// Vessels that are far from each other along the skeleton have one lumen, whatever the genus says.
+    #[error("cluster {}: two vessels fused near {at:?}", cluster.0)]
+    Fused {
+        cluster: ClusterId,
+        /// A place on the axis of one of them.
+        at: [f64; 3],
+    },
     /// A terminal could not be capped.
     #[error("cluster {}: {source}", cluster.0)]
     Cap {
@@ -141,7 +155,7 @@ impl BlockError {
     pub fn stage(&self) -> &'static str {
         match self {
             Self::Parameter { .. } => "parameters",
-            Self::Surface { .. } | Self::Genus { .. } => "wall",
+            Self::Surface { .. } | Self::Genus { .. } | Self::Outside { .. } | Self::Fused { .. } => "wall",
             Self::Cap { .. } => "caps",
             Self::Tetrahedra { .. } => "tetrahedra",
             Self::End { .. } => "ends",

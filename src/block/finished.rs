@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::cluster::ClusterMesh;
 use super::connector::ConnectorMesh;
+use super::faithful::Astray;
 use super::end_surface::{EndSurface, StoredEnd, disc_rim};
 use crate::geometry::Section;
 use crate::mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
@@ -64,6 +65,8 @@ impl FinishedCap {
 pub struct About {
     /// Terminals without a cap: their tips lie in another vessel.
     pub uncapped: Vec<u32>,
+    /// What the wall does not keep of the vessels.
+    pub astray: Astray,
     /// Genus of a cluster's wall.
     pub handles: i64,
     /// Independent loops of its skeleton.
@@ -87,14 +90,15 @@ impl Finished {
     /// # Errors
     /// When an end or a cap is not on the boundary.
     pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
-        let ClusterMesh { mesh, ends, caps, uncapped, handles, loops, .. } = cluster;
+        let ClusterMesh { mesh, ends, caps, uncapped, astray, handles, loops, .. } = cluster;
         let mut faces = Faces::new(&mesh);
         let joints = ends.iter().map(|end| faces.joint(&end.triangles)).collect::<Result<_, _>>()?;
         let cap = |cap: &super::CapFaces| {
             Ok(FinishedCap { node: cap.node, section: cap.section, faces: faces.take(&cap.triangles)? })
         };
         let caps = caps.iter().map(cap).collect::<Result<_, _>>()?;
-        let about = About { uncapped: uncapped.iter().map(|n| n.0).collect(), handles, loops, ..About::default() };
+        let uncapped = uncapped.iter().map(|n| n.0).collect();
+        let about = About { uncapped, astray, handles, loops, ..About::default() };
         let (wall, adjacency) = faces.rest();
         Ok(Self { mesh, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
     }

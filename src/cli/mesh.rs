@@ -14,7 +14,7 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::room::{self, BlockPlace, size};
 use super::stop::{self, Stop};
-use crate::fidelity::{Displaced, Fidelity};
+use crate::fidelity::{Compared, Displaced, Fidelity};
 use crate::io::network::ensure_network_writable;
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
@@ -115,9 +115,7 @@ struct Done<'a> {
 #[derive(Clone, Copy, Serialize)]
 struct Before<'a> {
     #[serde(skip)]
-    given: &'a Skeleton,
-    #[serde(skip)]
-    meshed: &'a Skeleton,
+    compared: Compared<'a>,
     prepare: &'a PrepareReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     refine: Option<&'a RefineReport>,
@@ -169,7 +167,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
     let refinement = refined.as_ref().map(|r| &r.report);
     let meshed = &split(skeleton).0;
-    let before = Before { given: &network.given, meshed, prepare: &network.report, refine: refinement };
+    let compared = Compared { given: &network.given, outline: &network.outline, meshed };
+    let before = Before { compared, prepare: &network.report, refine: refinement };
     // Blocks are kept as soon as they are done.
     stop.keep();
     pool.install(|| {
@@ -269,7 +268,7 @@ impl Args {
         let failed =
             |e: &dyn std::fmt::Display| if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) };
         let mut clock = Clock::default();
-        let compare = || Fidelity::of(before.given, before.meshed, mesh, check.counts.volume);
+        let compare = || Fidelity::of(before.compared, mesh, check.counts.volume);
         let fidelity = clock.time(bars, Stage::Check, 0, compare).map_err(|e| failed(&e))?;
         let write = || write_mesh_within(Some(memory), &self.output, mesh, &notes, bars);
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
@@ -281,7 +280,7 @@ impl Args {
         }
         Ok(match () {
             () if !report.failed.is_empty() => Exit::StageFailed,
-            () if !check.is_valid() => Exit::GateNotMet,
+            () if !check.is_valid() || !report.keeps_vessels(plan.fuse) => Exit::GateNotMet,
             () if unfaithful.is_some() && !self.allow_displaced => Exit::GateNotMet,
             () => Exit::Fine,
         })

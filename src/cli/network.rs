@@ -35,6 +35,8 @@ pub struct Network {
 pub struct PreparedNetwork {
     /// As the file has it, cleaned and with usable radii.
     pub given: Skeleton,
+    /// The same with as many points as its shape needs.
+    pub outline: Skeleton,
     /// The prepared skeleton.
     pub skeleton: Skeleton,
     /// What the reader decided.
@@ -50,8 +52,8 @@ impl NetworkArgs {
         let file = read_network(&self.network, &options).map_err(|e| Failure::input(e.to_string()))?;
         let prepared = prepare(&file.skeleton, params);
         let prepared = prepared.map_err(|e| Failure::input(format!("{}: {e}", self.network.display())))?;
-        let Prepared { skeleton, given, report } = prepared;
-        Ok(PreparedNetwork { given, skeleton, notes: file.notes, report })
+        let Prepared { skeleton, given, outline, report } = prepared;
+        Ok(PreparedNetwork { given, outline, skeleton, notes: file.notes, report })
     }
 
     /// Reads and cleans the network.

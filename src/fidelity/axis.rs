@@ -65,18 +65,21 @@ impl Displacements {
 fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (Vec<f64>, Option<Displaced>) {
     let tube = given.tube(edge);
     let count = (tube.length() / (STEP * tube.min_radius())).ceil().clamp(1.0, MOST_STEPS);
-    let ends = given.edge(edge).nodes.map(|n| given.node(n).original);
+    let ends = given.edge(edge).nodes.map(|n| given.node(n));
     let mut worst: Option<Displaced> = None;
     let values = (0..=count as usize).map(|k| {
         let t = k as f64 / count;
-        let (place, radius) = (tube.point(t), tube.radius(t));
+        let place = tube.point(t);
+        // At a node of several vessels one lumen is shared, as wide as the node.
+        let shared = ends.iter().filter(|n| (n.position - place).norm() <= n.radius).map(|n| n.radius).fold(0.0, f64::max);
+        let radius = tube.radius(t).max(shared);
         // In radii of the thicker: what lies within a thicker vessel, as a spur did that was taken off, is in its lumen.
         let off = |distance: f64, meshed: f64| distance * (radius / meshed).min(1.0);
         let Some(near) = tubes.nearest(&place, radius, off) else { return f64::INFINITY };
         let radii = off(near.distance, near.radius) / radius;
         if worst.is_none_or(|w| radii > w.radii) {
             let beside = meshed.edge(near.edge).nodes.map(|n| meshed.node(n).original);
-            worst = Some(Displaced { node: ends[usize::from(t > 0.5)], place: place.into(), meshed: beside, radii });
+            worst = Some(Displaced { node: ends[usize::from(t > 0.5)].original, place: place.into(), meshed: beside, radii });
         }
         radii
     });

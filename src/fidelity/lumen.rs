@@ -43,25 +43,25 @@ impl Lumen<'_> {
         let (length, [ra, rb]) = (tube.length(), [tube.ra, tube.rb]);
         let Some(axis) = (tube.b - tube.a).try_normalize(0.0) else { return 0.0 };
         let (u, w) = Section { origin: tube.a, axis, radius: ra }.frame();
-        let mut sum = 0.0;
+        let (mut sum, mut seen) = (0.0, Vec::new());
         for [x, y, z] in evenly(count) {
             // Evenly along the axis and over each section; a sample stands for its section's area.
             let radius = tube.radius(x);
             let (r, angle) = (radius * y.sqrt(), TAU * z);
             let point = tube.point(x) + u * (r * angle.cos()) + w * (r * angle.sin());
-            sum += radius * radius / self.holders(&point, ra.max(rb));
+            sum += radius * radius / self.holders(&point, ra.max(rb), &mut seen);
         }
         PI * length * sum / count as f64
     }
 
     fn of_ball(&self, node: NodeId, count: usize) -> f64 {
         let (center, radius) = (self.network.node(node).position, self.ball(node));
-        let mut sum = 0.0;
+        let (mut sum, mut seen) = (0.0, Vec::new());
         for [x, y, z] in evenly(count) {
             let (r, height, angle) = (radius * x.cbrt(), 2.0 * y - 1.0, TAU * z);
             let across = (1.0 - height * height).sqrt();
             let way = crate::geometry::Vec3::new(across * angle.cos(), across * angle.sin(), height);
-            sum += 1.0 / self.holders(&(center + way * r), radius);
+            sum += 1.0 / self.holders(&(center + way * r), radius, &mut seen);
         }
         4.0 / 3.0 * PI * radius.powi(3) * sum / count as f64
     }
@@ -77,25 +77,23 @@ impl Lumen<'_> {
     }
 
     /// How many tubes and balls hold a point, 1 at least.
-    fn holders(&self, point: &Point3, reach: f64) -> f64 {
+    fn holders(&self, point: &Point3, reach: f64, seen: &mut Vec<NodeId>) -> f64 {
         let mut count = 0_u32;
-        let mut balls: [NodeId; 32] = [NodeId(u32::MAX); 32];
-        let mut seen = 0;
+        seen.clear();
         self.tubes.tree.query(&Aabb::of_points([point]).grown(1e-3 * reach), |id| {
-            let edge = EdgeId(id);
             let tube = &self.tubes.list[id as usize];
             let (t, distance) = point_segment(point, &tube.a, &tube.b);
             // Between its end planes: beyond them there are balls.
-            let between = (point - tube.a).dot(&(tube.b - tube.a)) >= 0.0 && (point - tube.b).dot(&(tube.a - tube.b)) >= 0.0;
+            let axis = tube.b - tube.a;
+            let between = (point - tube.a).dot(&axis) >= 0.0 && (point - tube.b).dot(&axis) <= 0.0;
             count += u32::from(between && distance <= tube.radius(t));
-            for node in self.network.edge(edge).nodes {
-                if seen < balls.len() && self.adjacency.valence(node) > 1 && !balls[..seen].contains(&node) {
-                    (balls[seen], seen) = (node, seen + 1);
-                    let off = (point - self.network.node(node).position).norm();
-                    count += u32::from(off <= self.ball(node));
-                }
-            }
+            let ends = self.network.edge(EdgeId(id)).nodes;
+            seen.extend(ends.iter().filter(|&&n| self.adjacency.valence(n) > 1));
         });
+        seen.sort_unstable();
+        seen.dedup();
+        let holds = |&n: &NodeId| (point - self.network.node(n).position).norm() <= self.ball(n);
+        count += seen.iter().filter(|n| holds(n)).count() as u32;
         f64::from(count.max(1))
     }
 }

@@ -52,18 +52,28 @@ pub struct Fidelity {
     pub volume: f64,
 }
 
+/// The networks that are compared.
+#[derive(Clone, Copy, Debug)]
+pub struct Compared<'a> {
+    /// As it was read, with usable radii.
+    pub given: &'a Skeleton,
+    /// The same with as many points as its shape needs.
+    pub outline: &'a Skeleton,
+    /// What was meshed.
+    pub meshed: &'a Skeleton,
+}
+
 impl Fidelity {
-    /// Holds a mesh against its network.
-    ///
-    /// `given`: the network as it was read, with usable radii. `meshed`: the one that was meshed. `volume`: that of the
-    /// mesh.
+    /// Holds a mesh of so much volume against its network.
     ///
     /// # Errors
     /// When the mesh cannot be read.
-    pub fn of(given: &Skeleton, meshed: &Skeleton, mesh: &dyn MeshSource, volume: f64) -> io::Result<Self> {
-        let tubes = Tubes::of(given);
-        let axis = Displacements::of(given, meshed);
-        Ok(Self { axis, wall: wall::spread(&tubes, mesh)?, lumen: lumen::volume(given, &tubes), volume })
+    pub fn of(networks: Compared, mesh: &dyn MeshSource, volume: f64) -> io::Result<Self> {
+        let Compared { given, outline, meshed } = networks;
+        let outlined = Tubes::of(outline);
+        let wall = wall::spread(&outlined, mesh)?;
+        let lumen = lumen::volume(outline, &outlined);
+        Ok(Self { axis: Displacements::of(given, meshed), wall, lumen, volume })
     }
 
     /// Volume of the mesh over that of the given lumen, less 1.
@@ -129,5 +139,52 @@ impl Tubes {
             }
             reach *= 2.0;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vec3;
+    use crate::skeleton::fixtures::network;
+    use std::f64::consts::PI;
+
+    /// The lumen of some tubes of radius 1.
+    fn lumen_of(points: &[[f64; 3]], edges: &[(u32, u32)]) -> f64 {
+        let network = network(points, 1.0, edges);
+        lumen::volume(&network, &Tubes::of(&network))
+    }
+
+    #[test]
+    fn what_tubes_have_in_common_counts_once() {
+        let tube = lumen_of(&[[0.0; 3], [10.0, 0.0, 0.0]], &[(0, 1)]);
+        assert!((tube / (10.0 * PI) - 1.0).abs() < 1e-9, "{tube}");
+        // Two cylinders that cross at a right angle have 16/3 in common.
+        let crossed = lumen_of(&[[-9.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, -9.0, 0.0], [0.0, 9.0, 0.0]], &[(0, 1), (2, 3)]);
+        assert!((crossed / (36.0 * PI - 16.0 / 3.0) - 1.0).abs() < 0.01, "{crossed}");
+        // The same vessel in many pieces.
+        let points: Vec<[f64; 3]> = (0..=40).map(|i| [0.25 * f64::from(i), 0.0, 0.0]).collect();
+        let edges: Vec<(u32, u32)> = (0..40).map(|i| (i, i + 1)).collect();
+        let pieces = lumen_of(&points, &edges);
+        // The balls at its first and last inner nodes stick out of the ends.
+        assert!((pieces / (10.0 * PI) - 1.0).abs() < 0.06, "{pieces}");
+    }
+
+    #[test]
+    fn an_axis_that_was_moved_is_found_with_its_place() {
+        let points = [[0.0; 3], [10.0, 0.0, 0.0], [20.0, 0.0, 0.0]];
+        let given = network(&points, 1.0, &[(0, 1), (1, 2)]);
+        let mut moved = given.clone();
+        assert!(Displacements::of(&given, &moved).spread.worst <= 0.0);
+        moved.nodes[1].position += Vec3::new(0.0, 3.0, 0.0);
+        let found = Displacements::of(&given, &moved);
+        let first = found.furthest[0];
+        // The nearest place of the bent axis is on the side.
+        assert!((first.radii - 3.0 * 10.0 / 109.0_f64.sqrt()).abs() < 1e-9 && first.node == 1, "{first:?}");
+        // Within a thicker vessel it is in its lumen.
+        let thick = network(&points, 3.5, &[(0, 1), (1, 2)]);
+        let mut beside = given;
+        beside.nodes.iter_mut().for_each(|n| n.position.y = 3.0);
+        assert!(Displacements::of(&beside, &thick).spread.worst < 1.0);
     }
 }

@@ -6,38 +6,40 @@ use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{Made, Workshop};
 use super::plan::{JointStyle, MeshPlan};
-use super::report::{BlockCounts, FailedBlock, FusedBlock, RunReport};
-use crate::block::{About, BlockDump};
+use super::report::{BlockCounts, FailedBlock, FusedBlock, Meeting, RunReport};
+use crate::block::{About, Astray, BlockDump};
 use crate::partition::{ClusterId, CutId};
 use crate::progress::Progress;
 use crate::skeleton::{NodeId, Skeleton};
 
-/// How many overlapping pairs are spelt out for people.
-const LISTED: usize = 50;
+/// How many places where vessels overlap are spelt out for people.
+const LISTED: usize = 3;
 
-pub(super) fn announce(report: &RunReport, progress: &dyn Progress) {
-    let more = |n: usize| {
-        if n > LISTED {
-            progress.note(&format!("  and {} more (--json lists all)", n - LISTED));
-        }
-    };
-    let n = report.overlaps.len();
-    if n > 0 {
-        progress.note(&format!("{n} pairs of vessels overlap; the wall may meet itself there (edges by their nodes):"));
-        for o in report.overlaps.iter().take(LISTED) {
-            let [[a, b], [c, d]] = o.edges;
-            progress.note(&format!("  {a}-{b} and {c}-{d}: distance {:.4}, radii {:.4}", o.distance, o.radii));
-        }
-        more(n);
+/// Says which vessels overlap, the deepest first, each pair of vessels once.
+pub(super) fn announce(report: &RunReport, observer: &dyn Progress) {
+    let mut places: Vec<&Meeting> = report.overlaps.iter().collect();
+    let depth = |m: &Meeting| m.distance / m.radii;
+    let vessels = |m: &Meeting| [m.vessels[0].min(m.vessels[1]), m.vessels[0].max(m.vessels[1])];
+    places.sort_by(|a, b| vessels(a).cmp(&vessels(b)).then(depth(a).total_cmp(&depth(b))));
+    places.dedup_by_key(|m| vessels(m));
+    // A stable sort: the vessels of lower numbers come first among equals.
+    places.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+    if places.is_empty() {
+        return;
     }
-    let n = report.unconnected.len();
-    if n > 0 {
-        progress.note(&format!("{n} pairs of edges that share no node meet (neighbours along a vessel included):"));
-        for [[a, b], [c, d]] in report.unconnected.iter().take(LISTED) {
-            progress.note(&format!("  {a}-{b} and {c}-{d}"));
-        }
-        more(n);
+    let (count, pairs) = (places.len(), report.overlaps.len());
+    observer.note(&format!(
+        "vessels overlap at {count} places ({pairs} pairs of edges; --json lists all); the deepest, edges by their nodes:"
+    ));
+    for m in places.iter().take(LISTED) {
+        let [[a, b], [c, d]] = m.edges;
+        observer.note(&format!("  {a}-{b} and {c}-{d}: {} apart, radii {}", number(m.distance), number(m.radii)));
     }
+}
+
+/// Four digits, however small or large.
+fn number(x: f64) -> String {
+    if (1e-3..1e6).contains(&x.abs()) || x == 0.0 { format!("{x:.4}") } else { format!("{x:.3e}") }
 }
 
 /// What reports say of the clusters, none for those that failed.
@@ -70,7 +72,7 @@ pub(super) fn describe_blocks(
     for (i, (cluster, about)) in partition.clusters.iter().zip(&clusters.0).enumerate() {
         let nodes = || original_nodes(skeleton, cluster.nodes.iter().copied());
         if let Some(about) = about
-            && (about.handles != about.loops || !about.uncapped.is_empty())
+            && (about.handles != about.loops || !about.uncapped.is_empty() || about.astray != Astray::default())
         {
             report.fused.push(FusedBlock {
                 block: format!("cluster {i}"),
@@ -78,6 +80,7 @@ pub(super) fn describe_blocks(
                 handles: about.handles,
                 loops: about.loops,
                 uncapped: original_nodes(skeleton, about.uncapped.iter().map(|&n| NodeId(n))),
+                astray: about.astray,
             });
         }
         if let Err(error) = &blocks.clusters[i] {

@@ -1,6 +1,7 @@
 //! What a run of the mesher did.
 
 use super::timing::{BlockTimes, StageTime};
+use crate::block::Astray;
 use serde::Serialize;
 
 /// A block that did not come out at the first try.
@@ -42,6 +43,9 @@ pub struct FusedBlock {
     pub loops: i64,
     /// Terminals that have no cap because their tip lies in another vessel.
     pub uncapped: Vec<u32>,
+    /// An axis that is not within the wall, vessels that became one lumen: the genus need not tell.
+    #[serde(flatten)]
+    pub astray: Astray,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -58,6 +62,8 @@ pub struct BlockCounts {
 pub struct Meeting {
     /// The two edges, each as a pair of node indices in the file that was read.
     pub edges: [[u32; 2]; 2],
+    /// The vessels that they belong to, by number: pairs of the same two are one meeting, seen edge by edge.
+    pub vessels: [u32; 2],
     /// Smallest distance of their axes.
     pub distance: f64,
     /// Sum of their radii there.
@@ -76,6 +82,14 @@ pub struct MeshSize {
     pub cap_triangles: usize,
 }
 
+impl RunReport {
+    /// Whether the walls keep the vessels: every axis within, and, unless they were to fuse, vessels that are apart as two
+    /// lumens.
+    pub fn keeps_vessels(&self, fuse: bool) -> bool {
+        self.fused.iter().all(|f| f.astray.outside.is_none() && (fuse || f.astray.fused.is_none()))
+    }
+}
+
 /// Everything that a run has to say.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RunReport {
@@ -87,6 +101,7 @@ pub struct RunReport {
     pub overlaps: Vec<Meeting>,
     /// Pairs of edges that share no node and whose tubes meet, neighbours along a vessel included; each edge as a pair of
     /// node indices in the file that was read.
+    #[serde(skip)]
     pub unconnected: Vec<[[u32; 2]; 2]>,
     /// The blocks.
     pub blocks: BlockCounts,

@@ -287,12 +287,15 @@ fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
     report.network = [skeleton.nodes.len(), skeleton.edges.len()];
     report.nodes_split = splits.nodes.len();
     let original = |node: NodeId| skeleton.node(node).original;
+    let adjacency = skeleton.adjacency();
+    let vessel_of = skeleton.branches(&adjacency).of_edge;
     let meeting = |o: &Overlap| Meeting {
         edges: o.edges.map(|e| skeleton.edge(e).nodes.map(original)),
+        vessels: o.edges.map(|e| vessel_of[e.index()].0.0),
         distance: o.distance,
         radii: o.radii,
     };
-    let overlaps = skeleton.overlaps(&skeleton.adjacency());
+    let overlaps = skeleton.overlaps(&adjacency);
     report.overlaps = overlaps.pairs.iter().map(meeting).collect();
     report.unconnected = overlaps.unconnected.iter().map(|e| e.map(|e| skeleton.edge(e).nodes.map(original))).collect();
     (skeleton, overlaps)

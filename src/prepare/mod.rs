@@ -86,6 +86,8 @@ pub struct Prepared {
     pub skeleton: Skeleton,
     /// The network as it was read, cleaned and with usable radii: what a mesh is held against.
     pub given: Skeleton,
+    /// The same with as many points as its shape needs, to find its lumen by.
+    pub outline: Skeleton,
     /// What was done.
     pub report: PrepareReport,
 }
@@ -112,6 +114,12 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
     report.read = Size::of(&skeleton);
     report.measured = skeleton.is_measured();
     let given = skeleton.clone();
+    let defaults = PrepareParams::default();
+    let outline = if report.measured {
+        resample::resample(&given, defaults.axis_tolerance, defaults.radius_tolerance)?.0
+    } else {
+        given.clone()
+    };
     let grown = params.only_measured && !report.measured;
     let params = &if grown { PrepareParams { drop_islands: params.drop_islands, ..PrepareParams::as_is() } } else { params.clone() };
     if params.merge {
@@ -131,5 +139,5 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
         (skeleton, report.resample) = resample::resample(&skeleton, params.axis_tolerance, params.radius_tolerance)?;
     }
     report.result = Size::of(&skeleton);
-    Ok(Prepared { skeleton, given, report })
+    Ok(Prepared { skeleton, given, outline, report })
 }

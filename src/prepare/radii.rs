@@ -99,6 +99,17 @@ fn check_all_but_radii(raw: &Skeleton) -> Result<(), SkeletonError> {
     sound.check_numbers()
 }
 
+/// What a vessel does beyond a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beyond {
+    /// It becomes ten times as wide, near by for that width.
+    Wider,
+    /// It ends.
+    End,
+    /// It goes on as it is.
+    Same,
+}
+
 /// Nodes at one place are one: many files hold each vessel with points of its own.
 struct Places {
     of_node: Vec<u32>,
@@ -151,27 +162,36 @@ impl Places {
         raw.nodes.iter().zip(&self.of_node).map(fault).collect()
     }
 
-    /// Whether the vessel is ten times as wide to both sides of a place, near by for that width.
+    /// Whether the vessel is ten times as wide to both sides of a place, near by for that width, or to one side where it ends
+    /// to the other.
     fn is_dip(&self, place: u32, radii: &[f64]) -> bool {
         let beside = &self.beside[place as usize];
-        (1..=2).contains(&beside.len())
-            && beside.iter().all(|&(next, length)| self.widens(place, next, length, radii))
+        if beside.len() > 2 {
+            return false;
+        }
+        let found: Vec<Beyond> = beside.iter().map(|&(next, length)| self.beyond(place, next, length, radii)).collect();
+        found.contains(&Beyond::Wider) && !found.contains(&Beyond::Same)
     }
 
-    /// Whether the vessel that leaves a place towards `next` becomes ten times as wide, near by for that width.
-    fn widens(&self, place: u32, mut next: u32, mut arc: f64, radii: &[f64]) -> bool {
+    /// What follows where the vessel leaves a place towards `next`.
+    fn beyond(&self, place: u32, mut next: u32, mut arc: f64, radii: &[f64]) -> Beyond {
         let (own, mut last) = (radii[place as usize], place);
         for _ in 0..MOST_BESIDE {
             let radius = radii[next as usize];
             if radius > ABSURD * own && arc <= WINDOW * radius {
-                return true;
+                return Beyond::Wider;
             }
-            let [p, q] = self.beside[next as usize][..] else { return false };
-            let (onward, length) = if p.0 == last { q } else { p };
-            arc += length;
-            (last, next) = (next, onward);
+            match self.beside[next as usize][..] {
+                [_] => return Beyond::End,
+                [p, q] => {
+                    let (onward, length) = if p.0 == last { q } else { p };
+                    arc += length;
+                    (last, next) = (next, onward);
+                }
+                _ => return Beyond::Same,
+            }
         }
-        false
+        Beyond::Same
     }
 
     /// A radius for each place; none when there is no good one.

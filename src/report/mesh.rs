@@ -25,6 +25,16 @@ impl fmt::Display for RunReport {
                 "  overlapping vessels in {} (nodes {:?}): {} handles for {} loops, terminals without a cap {:?}",
                 f.block, f.nodes, f.handles, f.loops, f.uncapped
             )?;
+            if let Some(at) = f.astray.outside {
+                writeln!(out, "    an axis is not within the wall at {:.4} {:.4} {:.4}", at.x, at.y, at.z)?;
+            }
+            if let Some([p, q]) = f.astray.fused {
+                writeln!(
+                    out,
+                    "    one lumen from {:.4} {:.4} {:.4} to {:.4} {:.4} {:.4}, far from each other along the vessels",
+                    p.x, p.y, p.z, q.x, q.y, q.z
+                )?;
+            }
         }
         for failed in &self.failed {
             writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason)?;

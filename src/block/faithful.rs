@@ -1,0 +1,180 @@
+//! Whether a wall is that of its vessels: their axes lie within it, and vessels that are apart are two lumens.
+//!
+//! The genus does not tell: the turns of a tight helix that fuse into a column have none, nor has a wall that leaves half of
+//! a vessel out.
+
+use crate::geometry::predicates::orient3d;
+use crate::geometry::{Point3, Tube, crossing, place_key};
+use crate::mesh::TriMesh;
+use crate::partition::Cluster;
+use crate::skeleton::{Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
+use rustc_hash::FxHashMap;
+
+/// An axis is looked at where so many of its radii lie between two places,
+const STEP: f64 = 2.0;
+/// and at so many places between the ends of a tube at most.
+const MOST: f64 = 8.0;
+/// Vessels further apart than this, in sums of their radii, do not fuse.
+const NEAR: f64 = 1.3;
+/// Far along the vessels, in sums of radii that are wider by that.
+const FAR: f64 = 6.0;
+
+/// What a wall does not keep of its vessels: nothing, if it was not allowed to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Astray {
+    /// A place on an axis that is not within the wall.
+    pub outside: Option<Point3>,
+    /// Two places on axes that are far from each other along the vessels, with no wall between them.
+    pub fused: Option<[Point3; 2]>,
+}
+
+impl Astray {
+    pub(super) fn of(wall: &TriMesh, cluster: &Cluster) -> Self {
+        Self { outside: outside(wall, cluster), fused: fused(wall, cluster) }
+    }
+}
+
+/// The first place on the axes of a cluster's vessels that does not lie within its wall.
+fn outside(wall: &TriMesh, cluster: &Cluster) -> Option<Point3> {
+    let mut places = places(cluster);
+    places.sort_by(|p, q| p.y.total_cmp(&q.y));
+    let mut winding = vec![0_i32; places.len()];
+    let mut on_wall = vec![false; places.len()];
+    for triangle in &wall.triangles {
+        let [a, b, c] = triangle.map(|v| &wall.points[v as usize]);
+        let [low, high] = [a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y)];
+        let first = places.partition_point(|p| p.y < low);
+        for (i, p) in places.iter().enumerate().skip(first).take_while(|(_, p)| p.y <= high) {
+            // Rays go along x.
+            if p.x > a.x.max(b.x).max(c.x) || p.z < a.z.min(b.z).min(c.z) || p.z > a.z.max(b.z).max(c.z) {
+                continue;
+            }
+            match crossing(p, [a, b, c]) {
+                Some(turn) => winding[i] += turn,
+                None => on_wall[i] = true,
+            }
+        }
+    }
+    (0..places.len()).find(|&i| winding[i] != 1 || on_wall[i]).map(|i| places[i])
+}
+
+/// Places on the axes of a cluster, up to its ends.
+fn places(cluster: &Cluster) -> Vec<Point3> {
+    let mut places = Vec::with_capacity(2 * cluster.tubes.len());
+    for tube in inner_tubes(cluster) {
+        let count = (tube.length() / (STEP * tube.min_radius())).ceil().clamp(1.0, MOST);
+        // The start of most tubes is the end of another one.
+        places.extend((1..=count as usize).map(|k| tube.point(k as f64 / count)));
+    }
+    places
+}
+
+fn inner_tubes(cluster: &Cluster) -> impl Iterator<Item = &Tube> {
+    let beyond = |i: u32| cluster.ends.iter().any(|end| end.overrun == i);
+    (0..).zip(&cluster.tubes).filter(move |(i, _)| !beyond(*i)).map(|(_, tube)| tube)
+}
+
+/// Two places on the axes of vessels that overlap, or come near each other far from where they are joined, with no wall
+/// between them. The web in the crotch of a narrow fork is neither.
+fn fused(wall: &TriMesh, cluster: &Cluster) -> Option<[Point3; 2]> {
+    let skeleton = widened(cluster);
+    let adjacency = skeleton.adjacency();
+    let overlaps = skeleton.overlaps(&adjacency);
+    let mut ways = LocalDistances::default();
+    let mut is_far = |o: &Overlap| {
+        let [start, _] = o.nodes[0];
+        ways.search(&skeleton, &adjacency, start, FAR * o.radii);
+        o.nodes[1].iter().all(|&n| ways.of(n).is_infinite())
+    };
+    let mut counts = |o: &&Overlap| NEAR * o.distance < o.radii || is_far(o);
+    let mut pairs = overlaps.pairs.iter().filter(|o| counts(o));
+    pairs.find(|o| !is_parted(wall, &o.points[0], &o.points[1])).map(|o| o.points)
+}
+
+/// The cluster's vessels as a graph, as wide as those that may fuse with them are near.
+fn widened(cluster: &Cluster) -> Skeleton {
+    let mut skeleton = Skeleton::default();
+    let mut nodes: FxHashMap<[u64; 3], NodeId> = FxHashMap::default();
+    for tube in inner_tubes(cluster) {
+        let radii = [tube.ra, tube.rb].map(|r| NEAR * r);
+        let ends = [(&tube.a, radii[0]), (&tube.b, radii[1])].map(|(p, radius)| {
+            *nodes.entry(place_key(p)).or_insert_with(|| {
+                let id = skeleton.nodes.len() as u32;
+                skeleton.nodes.push(Node { position: *p, radius, original: id });
+                NodeId(id)
+            })
+        });
+        skeleton.edges.push(Edge { nodes: ends, radii });
+    }
+    skeleton
+}
+
+/// Whether the wall passes between two places, or touches the way between them.
+fn is_parted(wall: &TriMesh, p: &Point3, q: &Point3) -> bool {
+    let low = p.coords.inf(&q.coords);
+    let high = p.coords.sup(&q.coords);
+    wall.triangles.iter().any(|triangle| {
+        let [a, b, c] = triangle.map(|v| &wall.points[v as usize]);
+        let apart = (0..3).any(|k| {
+            a[k].max(b[k]).max(c[k]) < low[k] || a[k].min(b[k]).min(c[k]) > high[k]
+        });
+        !apart && meets([a, b, c], p, q)
+    })
+}
+
+/// Whether the segment from `p` to `q` meets a triangle.
+fn meets([a, b, c]: [&Point3; 3], p: &Point3, q: &Point3) -> bool {
+    let side = |x: &Point3| orient3d(a, b, c, x);
+    if side(p) * side(q) > 0.0 {
+        return false;
+    }
+    let turns = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
+    turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::partition::{PartitionParams, partition};
+    use crate::skeleton::fixtures::network;
+    use crate::surface::{SurfaceParams, vessel_wall};
+
+    /// A polyline as one cluster.
+    fn cluster(points: &[[f64; 3]]) -> Cluster {
+        let edges: Vec<(u32, u32)> = (1..points.len() as u32).map(|i| (i - 1, i)).collect();
+        let skeleton = network(points, 1.0, &edges);
+        let params = PartitionParams { long: 1e9, ..PartitionParams::default() };
+        partition(&skeleton, &params).expect("a partition").clusters.remove(0)
+    }
+
+    fn wall(cluster: &Cluster) -> TriMesh {
+        vessel_wall(&cluster.tubes, &SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(0.5) }).expect("a wall").mesh
+    }
+
+    /// A helix of radius 2 with turns so far apart, in radii of the vessel.
+    fn helix(pitch: f64) -> Cluster {
+        let point = |i: i32| {
+            let a = f64::from(i) * 0.2;
+            [2.0 * a.cos(), 2.0 * a.sin(), pitch * a / std::f64::consts::TAU]
+        };
+        cluster(&(0..120).map(point).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn turns_that_fuse_are_found() {
+        let wide = helix(4.0);
+        assert_eq!(Astray::of(&wall(&wide), &wide), Astray::default());
+        let tight = helix(1.7);
+        let found = Astray::of(&wall(&tight), &tight);
+        assert!(found.fused.is_some() && found.outside.is_none(), "{found:?}");
+    }
+
+    #[test]
+    fn an_axis_that_leaves_the_wall_is_found() {
+        let straight = cluster(&[[0.0; 3], [10.0, 0.0, 0.0], [20.0, 0.0, 0.0]]);
+        let bent = cluster(&[[0.0; 3], [10.0, 1.5, 0.0], [20.0, 0.0, 0.0]]);
+        assert_eq!(Astray::of(&wall(&straight), &straight), Astray::default());
+        let place = Astray::of(&wall(&straight), &bent).outside.expect("outside");
+        assert!(place.y > 0.9, "{place}");
+    }
+}
