@@ -47,7 +47,7 @@ impl Stage {
     /// Its name for people.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Move => "refine",
+            Self::Move => "move",
             Self::Prepare => "prepare",
             Self::Partition => "partition",
             Self::Clusters => "clusters",
