@@ -13,7 +13,10 @@ use std::time::Instant;
 
 /// When the stage began and ended, by the clock and in seconds of work.
 #[derive(Clone, Default)]
-struct Times(Arc<Mutex<Vec<(Instant, Option<f64>)>>>);
+struct Times(Arc<Mutex<Vec<Moment>>>);
+
+/// Wall clock, and seconds of work where they are known.
+type Moment = (Instant, Option<f64>);
 
 impl Progress for Times {
     fn at(&self, stage: Stage, _: u64, _: u64) {

@@ -7,6 +7,7 @@
 //! | fill a surface with tetrahedra | [`tet::Tetrahedralizer`] |
 //! | check a mesh | [`check::check_volume`], [`check::check_tets`] |
 //! | read and write files | [`io`] |
+//! | follow what takes long, and stop it | [`Progress`] |
 //!
 //! Points, surfaces and meshes are the plain types of this page. Loops run in the current thread pool of `rayon`; results
 //! do not depend on its size. `ARCHITECTURE.md` describes the rooms inside.

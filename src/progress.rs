@@ -47,7 +47,7 @@ impl Stage {
     /// Its name for people.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Move => "refine",
+            Self::Move => "move",
             Self::Prepare => "prepare",
             Self::Partition => "partition",
             Self::Clusters => "clusters",
@@ -128,4 +128,31 @@ impl Cancelled {
 /// Whether to go on.
 pub(crate) fn ask(progress: &dyn Progress) -> io::Result<()> {
     if progress.is_cancelled() { Err(io::Error::other(Cancelled)) } else { Ok(()) }
+}
+
+/// Says to stop once it has been asked so many times.
+#[cfg(test)]
+#[derive(Debug)]
+pub(crate) struct StopsAfter {
+    times: usize,
+    asked: std::sync::atomic::AtomicUsize,
+}
+
+#[cfg(test)]
+impl StopsAfter {
+    pub(crate) fn new(times: usize) -> Self {
+        Self { times, asked: 0.into() }
+    }
+
+    /// How often it has been asked.
+    pub(crate) fn asked(&self) -> usize {
+        self.asked.load(std::sync::atomic::Ordering::Relaxed)
+    }
+}
+
+#[cfg(test)]
+impl Progress for StopsAfter {
+    fn is_cancelled(&self) -> bool {
+        self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed) >= self.times
+    }
 }

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 
 use super::attempts::Way;
 use super::blocks::{Blocks, original_nodes};
+use super::error::RunError;
 use super::estimate::cluster_cost;
 use super::report::Retry;
-use super::rounds::{RoundsError, Run};
+use super::rounds::Run;
 use super::routes::{Overlapping, tangled_clusters};
 use crate::partition::ClusterId;
 use crate::progress::Stage;
@@ -28,7 +29,7 @@ impl Run<'_> {
     ///
     /// # Errors
     /// When the store fails, or the run is told to stop.
-    pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: Way) -> Result<(), RoundsError> {
+    pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: Way) -> Result<(), RunError> {
         let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
         let mut again: BTreeMap<u32, u32> = BTreeMap::new();
         for &[a, b] in meetings {

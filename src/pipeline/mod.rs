@@ -5,6 +5,7 @@ mod attempts;
 mod blocks;
 mod cures;
 mod describe;
+mod error;
 mod estimate;
 mod make;
 mod once;
@@ -21,12 +22,14 @@ mod tests;
 mod timing;
 mod whole;
 
+pub use error::RunError;
 pub use estimate::{Estimate, TooLarge};
 #[cfg(feature = "cli")]
 pub use once::replay;
 pub use plan::{JointStyle, MeshPlan};
 pub use report::RunReport;
-pub use run::{Meshed, RunError, Stored, mesh_into, mesh_network};
+pub use run::{Meshed, Stored, mesh_into, mesh_network};
 pub use store::{Manifest, Store};
 #[cfg(feature = "cli")]
 pub use timing::Clock;
+pub use timing::StageTime;

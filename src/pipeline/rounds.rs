@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::attempts::Way;
 use super::cures::{Cure, cure, partition_params};
+use super::error::RunError;
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::{Kept, Made, Workshop};
 use super::plan::JointStyle;
@@ -17,7 +18,7 @@ use super::schedule::{Cost, costliest_first};
 use super::store::{RecordId, StoreError};
 use super::timing::{BlockTimes, Clock};
 use crate::block::Cured;
-use crate::partition::{self, ClusterId, Cut, CutId, Partition, PartitionError};
+use crate::partition::{self, ClusterId, Cut, CutId, Partition};
 use crate::progress::{Progress, Stage};
 use crate::skeleton::{BranchId, Overlaps};
 use crate::tet::Watch;
@@ -34,30 +35,6 @@ pub struct Run<'a> {
     pub clock: &'a mut Clock,
 }
 
-/// Why there are no blocks.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RoundsError {
-    /// The network cannot be partitioned.
-    #[error(transparent)]
-    Partition(#[from] PartitionError),
-    /// Finished blocks cannot be kept.
-    #[error(transparent)]
-    Store(#[from] StoreError),
-    /// The machine is too small for it.
-    #[error(transparent)]
-    TooLarge(#[from] TooLarge),
-    /// It was told to stop.
-    #[error("cancelled")]
-    Cancelled,
-}
-
-impl From<io::Error> for RoundsError {
-    fn from(error: io::Error) -> Self {
-        StoreError::from(error).into()
-    }
-}
-
 /// Clusters and connectors.
 type Pass = (Vec<Made>, Vec<Option<Made>>);
 
@@ -66,7 +43,7 @@ impl Run<'_> {
     ///
     /// # Errors
     /// When the network cannot be partitioned, or blocks cannot be kept.
-    pub fn build(&mut self, fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>) -> Result<Blocks, RoundsError> {
+    pub fn build(&mut self, fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>) -> Result<Blocks, RunError> {
         let plan = self.shop.plan;
         let mut cures: BTreeMap<BranchId, Cure> = BTreeMap::new();
         let overlapping = self.overlaps.pairs.iter().filter(|_| plan.fuse).map(|o| o.edges);
@@ -94,7 +71,7 @@ impl Run<'_> {
     }
 
     /// All blocks of a partition; none needs another, unless joints are woven.
-    fn pass(&mut self, partition: &Partition, times: &mut BlockTimes) -> Result<Pass, RoundsError> {
+    fn pass(&mut self, partition: &Partition, times: &mut BlockTimes) -> Result<Pass, RunError> {
         let (plan, shop) = (self.shop.plan, self.shop);
         let tangled = tangled_clusters(self.shop.skeleton, partition, self.overlaps);
         let count = partition.clusters.len();
@@ -134,10 +111,10 @@ impl Run<'_> {
         stage: Stage,
         costs: &[Cost],
         work: impl Fn(usize) -> Result<T, StoreError> + Sync,
-    ) -> Result<(Vec<T>, Vec<f64>), RoundsError> {
+    ) -> Result<(Vec<T>, Vec<f64>), RunError> {
         let (progress, memory) = (self.progress, self.shop.plan.memory);
         let weight = |cost: &Cost| 1 + cost.tets as u64;
-        let ask = || if progress.is_cancelled() { Err(RoundsError::Cancelled) } else { Ok(()) };
+        let ask = || if progress.is_cancelled() { Err(RunError::Cancelled) } else { Ok(()) };
         let (done, total) = (AtomicU64::new(0), costs.iter().map(weight).sum());
         let step = |i: usize| {
             ask()?;
@@ -145,7 +122,7 @@ impl Run<'_> {
             ask()?;
             let weight = weight(&costs[i]);
             progress.at(stage, done.fetch_add(weight, Ordering::Relaxed) + weight, total);
-            Ok::<_, RoundsError>(made)
+            Ok::<_, RunError>(made)
         };
         let run = || costliest_first(costs, memory, step);
         Ok(self.clock.time(progress, stage, total, run)?.into_iter().unzip())

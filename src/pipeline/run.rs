@@ -7,25 +7,25 @@ use super::apart::{Meetings, hopeful};
 use super::attempts::Way;
 use super::blocks::Blocks;
 use super::describe::{Clusters, announce, describe_blocks};
+use super::error::RunError;
 use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
-use super::plan::{JointStyle, MeshPlan, PlanError};
+use super::plan::{JointStyle, MeshPlan};
 use super::report::{Meeting, MeshSize, RunReport};
-use super::rounds::{RoundsError, Run};
+use super::rounds::Run;
 use super::routes::Overlapping;
-use super::store::{Store, StoreError};
-use super::terminals::{self, NotATerminal};
+use super::store::Store;
+use super::terminals;
 use super::timing::Clock;
 use super::whole::Whole;
 use crate::mesh::check::parts::PartsCheck;
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
-use crate::partition::PartitionError;
-use crate::progress::{Cancelled, Progress, Stage, ask};
+use crate::progress::{Progress, Stage, ask};
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
-use crate::woven::{Assembly, LabelError};
+use crate::woven::Assembly;
 
 /// A mesh in memory, what it has to be, what was found, what was done.
 #[derive(Debug)]
@@ -53,56 +53,6 @@ pub struct Stored<'a> {
     pub check: CheckReport,
     /// What was done.
     pub report: RunReport,
-}
-
-/// Why there is no mesh.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RunError {
-    /// The plan cannot be run.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// A root that is none.
-    #[error(transparent)]
-    Root(#[from] NotATerminal),
-    /// The network could not be partitioned.
-    #[error(transparent)]
-    Partition(#[from] PartitionError),
-    /// The machine is too small for it.
-    #[error(transparent)]
-    TooLarge(#[from] TooLarge),
-    /// Finished blocks cannot be kept or read.
-    #[error(transparent)]
-    Store(#[from] StoreError),
-    /// Blocks failed to the end; the report lists them.
-    #[error("{} block(s) could not be meshed", .0.failed.len())]
-    BlocksFailed(Box<RunReport>),
-    /// Caps are not where they should be: a fault of the program.
-    #[error("{0}; this is a fault of the program")]
-    Label(#[from] LabelError),
-    /// It was told to stop. Blocks that were finished are in the store.
-    #[error("cancelled")]
-    Cancelled,
-}
-
-impl From<RoundsError> for RunError {
-    fn from(error: RoundsError) -> Self {
-        match error {
-            RoundsError::Partition(error) => error.into(),
-            RoundsError::Store(error) => error.into(),
-            RoundsError::TooLarge(error) => error.into(),
-            RoundsError::Cancelled => Self::Cancelled,
-        }
-    }
-}
-
-impl From<io::Error> for RunError {
-    fn from(error: io::Error) -> Self {
-        if Cancelled::is_in(&error) {
-            return Self::Cancelled;
-        }
-        StoreError::from(error).into()
-    }
 }
 
 /// Meshes a cleaned network in memory. Uses the current rayon pool; the result does not depend on its size.

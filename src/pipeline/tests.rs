@@ -8,7 +8,7 @@ use crate::mesh::WALL;
 use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::source::gather;
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
-use crate::progress::{Progress, Stage};
+use crate::progress::{Progress, Stage, StopsAfter};
 use crate::refine::{Figures, RefineError, RefineParams, refine};
 use crate::skeleton::fixtures::tangle;
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
@@ -320,22 +320,13 @@ fn a_run_that_is_told_to_stop_stops_and_goes_on_later() {
     assert!(run(&store, &()).expect("a mesh") == whole, "what was stopped leaves no trace");
 }
 
-/// Says to stop at once.
-struct Never;
-
-impl Progress for Never {
-    fn is_cancelled(&self) -> bool {
-        true
-    }
-}
-
 #[test]
 fn smoothing_and_refinement_stop_as_well() {
     let plan = MeshPlan { joint: JointStyle::Woven, ..MeshPlan::default() };
     let stops = Stops { after: 1, blocks: AtomicUsize::new(0) };
     let stopped = mesh_network(&h(12.0), &plan, &stops);
     assert!(matches!(stopped, Err(RunError::Cancelled)));
-    let refined = refine(&h(12.0), &RefineParams::default(), &Never);
+    let refined = refine(&h(12.0), &RefineParams::default(), &StopsAfter::new(0));
     assert!(matches!(refined, Err(RefineError::Cancelled)));
 }
 

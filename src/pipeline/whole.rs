@@ -14,7 +14,7 @@ use crate::block::{FinishedJoint, Record};
 use crate::geometry::Point3;
 use crate::mesh::adjacency::face_vertices;
 use crate::mesh::check::Expectation;
-use crate::mesh::check::parts::{Certificate, JointFaces, Parts, PartsCheck, WallPiece, check_parts};
+use crate::mesh::check::parts::{Certificate, FacesApart, Parts, PartsCheck, check_parts};
 use crate::mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
 use crate::mesh::{Patch, WALL};
 use crate::progress::{Progress, ask};
@@ -290,7 +290,7 @@ impl Parts for Whole<'_> {
         Ok(Record::open(&self.record(self.parts[part as usize])?)?.notes()?.0)
     }
 
-    fn wall(&self, part: u32) -> io::Result<WallPiece> {
+    fn wall(&self, part: u32) -> io::Result<FacesApart> {
         let plan = self.parts[part as usize];
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
@@ -300,7 +300,7 @@ impl Parts for Whole<'_> {
         let (faces, vertices) = compact(faces, points.len());
         let at = |&v: &u32| points[v as usize];
         let number = |&v: &u32| numbers[v as usize];
-        Ok(WallPiece {
+        Ok(FacesApart {
             points: vertices.iter().map(at).collect(),
             vertices: vertices.iter().map(number).collect(),
             faces,
@@ -311,7 +311,7 @@ impl Parts for Whole<'_> {
         &self.joined
     }
 
-    fn joint(&self, part: u32, joint: u32) -> io::Result<JointFaces> {
+    fn joint(&self, part: u32, joint: u32) -> io::Result<FacesApart> {
         let plan = self.parts[part as usize];
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
@@ -322,7 +322,7 @@ impl Parts for Whole<'_> {
             .ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?;
         let (points, tets, numbers) = (record.points()?, record.tets()?, self.numbers(plan)?);
         let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
-        Ok(JointFaces {
+        Ok(FacesApart {
             points: vertices.iter().map(|&v| points[v as usize]).collect(),
             vertices: vertices.iter().map(|&v| numbers[v as usize]).collect(),
             faces: faces.iter().map(|&face| face_vertices(&tets, face).map(local)).collect(),

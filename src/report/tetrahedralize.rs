@@ -4,6 +4,7 @@ use crate::geometry::Point3;
 use crate::mesh::quality::{TetQuality, dihedral_range, volume6};
 use crate::mesh::{Bounds, face_key};
 use crate::mesh::{TET_FACES, TetMesh};
+use crate::pipeline::StageTime;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -157,15 +158,6 @@ impl SizeUnmet {
     }
 }
 
-/// Seconds of wall time of a stage.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StageSeconds {
-    /// Name of the stage.
-    pub stage: &'static str,
-    /// Wall time.
-    pub seconds: f64,
-}
-
 /// Everything that a tetrahedralization has to say.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TetReport {
@@ -190,7 +182,7 @@ pub struct TetReport {
     /// What recovery did.
     pub recovery: Recovery,
     /// Wall time per stage.
-    pub stages: Vec<StageSeconds>,
+    pub stages: Vec<StageTime>,
     /// Most memory that was in use, in bytes, where the system tells it.
     pub peak_memory: Option<u64>,
     /// The files that were written.

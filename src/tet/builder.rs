@@ -54,7 +54,7 @@ pub struct Tetrahedralization {
     /// Region of each tetrahedron; empty when there is only one and no seed has given it an id.
     pub regions: Vec<i32>,
     /// The triangles of the input, in their order, or their pieces where they were split, without those that are left
-    /// out ([`Summary::left_out`]). Those on the boundary are oriented outwards; those inside as they came.
+    /// out (`summary.left_out`). Those on the boundary are oriented outwards; those inside as they came.
     pub faces: Vec<[u32; 3]>,
     /// Marker of each of `faces`; empty when the input has none.
     pub face_markers: Vec<i32>,

@@ -29,9 +29,11 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     r.watch.report(Stage::Certify, 0, 1)?;
     let (regions, region_count) = if r.label { labels(r, &carved)? } else { (Vec::new(), 0) };
     let mesh = carved.into_compact_mesh(r.surface.points.len());
+    r.watch.ask()?;
     let mut places = Vec::new();
     if r.certify {
         places = certify_facets(&mesh, &left_out.kept_surface(r.surface), r.kind, &regions)?;
+        r.watch.ask()?;
         certify_segments(&mesh, &segments)?;
         certify_left_out(&mesh, r.surface, r.segments, &left_out)?;
     }
@@ -42,6 +44,7 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
 /// What of a complex is filled, and what of the input lies outside of that.
 fn carved(r: &Request, complex: &Complex) -> Result<(Complex, LeftOut), TetError> {
     let sides = Sides::find(complex, r.surface, r.kind, r.holes)?;
+    r.watch.ask()?;
     let left_out = LeftOut::find(complex, &sides, r.surface, r.segments)?;
     match left_out.as_error() {
         Some(error) if r.strict => Err(error),

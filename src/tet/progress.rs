@@ -41,7 +41,7 @@ impl<'a> Watch<'a> {
     /// [`TetError::Cancelled`] when the caller says so.
     #[inline]
     pub fn ask(&self) -> Result<(), TetError> {
-        if self.who.is_some_and(|who| who.is_cancelled()) { Err(TetError::Cancelled) } else { Ok(()) }
+        if self.who.is_some_and(Progress::is_cancelled) { Err(TetError::Cancelled) } else { Ok(()) }
     }
 }
 

@@ -73,9 +73,8 @@ pub fn write(
     // What the bytes depend on, and nothing else: neither threads nor paths.
     let options = serde_json::to_string(plan).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
     let notes = MeshNotes { expectation: None, generator, options: format!("tetrahedralize {options}"), regions };
-    let failed = |e: &dyn std::error::Error| match progress.is_cancelled() {
-        true => Failure::stopped(NOTHING_KEPT),
-        false => Failure::input(e.to_string()),
+    let failed = |e: &dyn std::error::Error| {
+        if progress.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(e.to_string()) }
     };
     match target {
         Target::File(path) => {

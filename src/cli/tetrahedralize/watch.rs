@@ -7,8 +7,8 @@ use indicatif::ProgressBar;
 
 use crate::cli::progress::{shows_bars, stage_bar};
 use crate::cli::stop::Stop;
+use crate::pipeline::StageTime;
 use crate::progress::{Progress, Stage};
-use crate::report::tetrahedralize::StageSeconds;
 
 /// Listens to a run: a bar per stage on a terminal, and the time that each takes.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub struct Watch {
 
 #[derive(Debug, Default)]
 struct State {
-    spent: Vec<StageSeconds>,
+    spent: Vec<StageTime>,
     current: Option<(&'static str, Instant)>,
     bar: Option<ProgressBar>,
 }
@@ -63,7 +63,7 @@ impl Watch {
     }
 
     /// The stages in the order in which they began.
-    pub fn stages(&self) -> Vec<StageSeconds> {
+    pub fn stages(&self) -> Vec<StageTime> {
         self.state.lock().map(|state| state.spent.clone()).unwrap_or_default()
     }
 }
@@ -77,7 +77,7 @@ impl State {
         let seconds = start.elapsed().as_secs_f64();
         match self.spent.iter_mut().find(|entry| entry.stage == stage) {
             Some(entry) => entry.seconds += seconds,
-            None => self.spent.push(StageSeconds { stage, seconds }),
+            None => self.spent.push(StageTime { stage, seconds }),
         }
     }
 }

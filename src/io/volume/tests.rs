@@ -5,11 +5,12 @@ use super::content::MeshNotes;
 use super::fixtures::{Cut, labelled_tube};
 use super::format::MeshFormat;
 use super::read::read_mesh;
-use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to};
+use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_within};
 use crate::geometry::Point3;
 use crate::io::file::FileError;
 use crate::mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece, gather};
 use crate::mesh::{Patch, VolumeMesh};
+use crate::progress::StopsAfter;
 use proptest::prelude::*;
 use std::borrow::Cow;
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
@@ -247,4 +248,18 @@ fn every_format_reads_what_it_writes() {
         assert!(back.labelled, "{name}");
     }
     assert!(write_mesh_to(&mut Vec::new(), MeshFormat::Tetgen, &volume, &notes).is_err());
+}
+
+#[test]
+fn a_mesh_whose_writing_is_stopped_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let (volume, notes) = labelled_tube(400);
+    for name in ["a.vtu", "a.pvtu", "a.msh", "a.mesh", "a.ele"] {
+        let path = folder.path().join(name);
+        for times in [0, 3] {
+            let error = write_mesh_within(None, &path, &volume, &notes, &StopsAfter::new(times)).unwrap_err();
+            assert!(error.to_string().ends_with("cancelled"), "{error}");
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{name}");
+        }
+    }
 }

@@ -1,6 +1,7 @@
 use super::perturb::in_sphere_perturbed;
 use super::*;
 use crate::geometry::predicates::{insphere, orient3d};
+use crate::progress::StopsAfter;
 use proptest::prelude::*;
 
 fn check_delaunay(points: &[Point3], c: &Complex) {
@@ -192,4 +193,18 @@ fn points_on_a_sphere_stay_in_one_piece() {
     let points: Vec<Point3> = random_points(3000).iter().map(|p| p * 2.0 - nalgebra::Vector3::repeat(1.0)).collect();
     let on_sphere: Vec<Point3> = points.iter().map(|p| Point3::from(p.coords.normalize())).collect();
     assert!(parallel::in_parts(&on_sphere, 1000, &Watch::NOBODY).is_none());
+}
+
+/// Far fewer points are inserted than there are, in one piece and in parts.
+#[test]
+fn whoever_stops_it_is_heard() {
+    let points = random_points(30_000);
+    for times in [0, 1, 5] {
+        let stops = StopsAfter::new(times);
+        assert_eq!(delaunay_watched(&points, &Watch::of(&stops)).err(), Some(TetError::Cancelled));
+        assert_eq!(stops.asked(), times + 1);
+        let stops = StopsAfter::new(times);
+        assert!(parallel::in_parts(&points, 10_000, &Watch::of(&stops)).is_none());
+        assert!(stops.asked() <= times + 4, "asked {} times", stops.asked());
+    }
 }

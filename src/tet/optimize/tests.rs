@@ -3,6 +3,7 @@ use super::*;
 use crate::mesh::adjacency::{boundary_faces, vertices_of};
 use crate::mesh::quality::TetQuality;
 use crate::mesh::shapes::{cube_lattice, perturb, tube_lattice};
+use crate::progress::StopsAfter;
 use proptest::prelude::*;
 
 /// A mesh whose inner points are numbered last and shaken, and the number of its boundary points.
@@ -290,4 +291,23 @@ fn strain_falls_as_shape_improves_and_can_be_turned_back() {
     }
     // One that is very bad weighs more than several that are mediocre.
     assert!(strain(0.013) > 2.0 * strain(0.08) + 2.0 * strain(0.2) && strain(0.01) > 6.0 * strain(0.2));
+}
+
+#[test]
+fn an_improvement_that_is_stopped_tries_no_more() {
+    let (mesh, fixed) = shaken(cube_lattice(8), 0.3, 3);
+    let options = OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::full() };
+    let improved = |times: usize| {
+        let mut complex = Complex::from_mesh(mesh.points.clone(), &mesh.tets).unwrap();
+        let stops = StopsAfter::new(times);
+        let report = optimize_complex(&mut complex, &options, &Watch::of(&stops));
+        complex.sanity_check().unwrap();
+        (report, stops.asked())
+    };
+    let (whole, asked) = improved(usize::MAX);
+    assert!(asked > 4 && !whole.budget_spent);
+    for times in [0, 2] {
+        let (report, _) = improved(times);
+        assert!(report.budget_spent && report.worst_after <= whole.worst_after);
+    }
 }

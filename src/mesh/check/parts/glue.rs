@@ -1,7 +1,7 @@
 //! The parts' certificates, held in a small form and put together.
 
 use super::tallies::Tallies;
-use super::{Certificate, HeldCap, HeldJoint, HeldSurface, Parts, WallPiece, sums};
+use super::{Certificate, FacesApart, HeldCap, HeldJoint, HeldSurface, Parts, sums};
 use crate::geometry::DisjointSets;
 use crate::geometry::{Aabb, Point3};
 use crate::mesh::check::nested::Enclosed;
@@ -170,7 +170,7 @@ impl Held {
 
     /// Whether a wall is the one that was certified. (With a joint that is not on the boundary none is, but that is a
     /// fault already.)
-    pub(super) fn is_wall(&self, part: u32, is_joined: &[bool], wall: &WallPiece) -> bool {
+    pub(super) fn is_wall(&self, part: u32, is_joined: &[bool], wall: &FacesApart) -> bool {
         let (faces, sum) = self.wall(part, is_joined);
         let Some(found) = sum_of(&wall.points, &wall.faces) else { return false };
         let same = faces == wall.faces.len() as u64 && found == sum;

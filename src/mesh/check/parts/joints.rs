@@ -2,7 +2,7 @@
 
 use super::glue::{Held, invalid, sum_of};
 use super::tallies::Tallies;
-use super::{JointFaces, Parts};
+use super::{FacesApart, Parts};
 use crate::geometry::Point3;
 use crate::mesh::check::cells::{centroid, same_turn};
 use crate::mesh::check::result::{Line, Offender, OffenderKind};
@@ -66,7 +66,7 @@ pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io
 }
 
 /// The faces of a joint that is joined more than once.
-fn third_tets(joint: &JointFaces, tallies: &mut Tallies) {
+fn third_tets(joint: &FacesApart, tallies: &mut Tallies) {
     for face in &joint.faces {
         // Both joints may be named: the same faces, turned against each other.
         let mut offender = face_of(joint, *face);
@@ -75,7 +75,7 @@ fn third_tets(joint: &JointFaces, tallies: &mut Tallies) {
     }
 }
 
-fn face_of(joint: &JointFaces, face: [u32; 3]) -> Offender {
+fn face_of(joint: &FacesApart, face: [u32; 3]) -> Offender {
     let ids = face.map(|v| joint.vertices[v as usize]);
     Offender::new(OffenderKind::Face, &ids, Some(centroid(&joint.points, &face)))
 }
@@ -89,7 +89,7 @@ struct Differences {
 
 /// Reads a joint and makes sure that it is the one that was certified. None where a joint is not on the boundary, which
 /// is a fault already.
-fn read(parts: &dyn Parts, held: &Held, (part, joint): (u32, u32)) -> io::Result<Option<JointFaces>> {
+fn read(parts: &dyn Parts, held: &Held, (part, joint): (u32, u32)) -> io::Result<Option<FacesApart>> {
     let read = parts.joint(part, joint)?;
     let sum = sum_of(&read.points, &read.faces).filter(|_| read.points.len() == read.vertices.len());
     let certified = held.joint_number((part, joint)).map(|number| held.joint(number));
@@ -113,14 +113,14 @@ fn compare(parts: &dyn Parts, held: &Held, pair: &[(u32, u32); 2]) -> io::Result
 }
 
 /// The faces by their ids, ascending.
-fn by_ids(joint: &JointFaces) -> Vec<([u32; 3], [u32; 3], [u32; 3])> {
+fn by_ids(joint: &FacesApart) -> Vec<([u32; 3], [u32; 3], [u32; 3])> {
     let ids = |face: &[u32; 3]| face.map(|v| joint.vertices[v as usize]);
     let mut faces: Vec<_> = joint.faces.iter().map(|face| (face_key(ids(face)), ids(face), *face)).collect();
     faces.sort_unstable();
     faces
 }
 
-fn compare_faces(a: &JointFaces, b: &JointFaces, differences: &mut Differences) {
+fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut Differences) {
     let (first, second) = (by_ids(a), by_ids(b));
     let (mut i, mut j, mut same) = (0, 0, 0);
     while i < first.len() || j < second.len() {
@@ -146,8 +146,8 @@ fn compare_faces(a: &JointFaces, b: &JointFaces, differences: &mut Differences) 
 }
 
 /// Ids that both have must have the same points, and stand for one point each.
-fn compare_points(a: &JointFaces, b: &JointFaces, differences: &mut Differences) {
-    let by_id = |joint: &JointFaces| {
+fn compare_points(a: &FacesApart, b: &FacesApart, differences: &mut Differences) {
+    let by_id = |joint: &FacesApart| {
         let mut ids: Vec<(u32, Point3)> = joint.vertices.iter().copied().zip(joint.points.iter().copied()).collect();
         ids.sort_by_key(|entry| entry.0);
         ids

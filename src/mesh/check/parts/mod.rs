@@ -153,19 +153,9 @@ struct HeldCap {
     shape: [bool; 5],
 }
 
-/// The boundary faces of the whole that one part has: wall, caps, and joints that are joined to nothing.
+/// Faces of a part with points of their own.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct WallPiece {
-    pub points: Vec<Point3>,
-    /// Their ids in the whole.
-    pub vertices: Vec<u32>,
-    /// Faces, oriented out of the part, as indices into `points`.
-    pub faces: Vec<[u32; 3]>,
-}
-
-/// A joint as one of its parts has it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct JointFaces {
+pub struct FacesApart {
     pub points: Vec<Point3>,
     /// Their ids in the whole.
     pub vertices: Vec<u32>,
@@ -193,11 +183,11 @@ pub trait Parts: Sync {
     /// What reading fails with.
     fn certificate(&self, part: u32) -> io::Result<Certificate>;
 
-    /// The wall of a part.
+    /// The boundary faces of the whole that a part has: wall, caps, and joints that are joined to nothing.
     ///
     /// # Errors
     /// What reading fails with.
-    fn wall(&self, part: u32) -> io::Result<WallPiece>;
+    fn wall(&self, part: u32) -> io::Result<FacesApart>;
 
     /// Pairs of (part, joint) that are joined.
     fn joined(&self) -> &[[(u32, u32); 2]];
@@ -206,7 +196,7 @@ pub trait Parts: Sync {
     ///
     /// # Errors
     /// What reading fails with.
-    fn joint(&self, part: u32, joint: u32) -> io::Result<JointFaces>;
+    fn joint(&self, part: u32, joint: u32) -> io::Result<FacesApart>;
 
     /// Id in the whole of a part's vertex.
     fn vertex(&self, part: u32, local: u32) -> u32;

@@ -4,7 +4,7 @@
 //! Pieces that cannot be parts, because they touch elsewhere or labels are not what they should be, are [`Unfit`]: the
 //! mesh may be valid or not, and has to be checked as a whole.
 
-use super::{Certificate, JointFaces, PartView, Parts, WallPiece, certify_with, check_parts, sums};
+use super::{Certificate, FacesApart, PartView, Parts, certify_with, check_parts, sums};
 use crate::geometry::DisjointSets;
 use crate::mesh::adjacency::{NONE, face_vertices, tet_adjacency};
 use crate::mesh::check::cells::same_turn;
@@ -283,7 +283,7 @@ impl Parts for Cut<'_> {
         postcard::from_bytes(&self.known[part as usize].certificate).map_err(io::Error::other)
     }
 
-    fn wall(&self, part: u32) -> io::Result<WallPiece> {
+    fn wall(&self, part: u32) -> io::Result<FacesApart> {
         apart(self.pieces, &self.pieces.boundary(part)?.faces)
     }
 
@@ -291,12 +291,11 @@ impl Parts for Cut<'_> {
         &self.joined
     }
 
-    fn joint(&self, part: u32, joint: u32) -> io::Result<JointFaces> {
+    fn joint(&self, part: u32, joint: u32) -> io::Result<FacesApart> {
         let tets = self.pieces.tets(part)?.tets;
         let handles = &self.known[part as usize].joints[joint as usize].faces;
         let faces: Vec<[u32; 3]> = handles.iter().map(|&handle| face_vertices(&tets, handle)).collect();
-        let WallPiece { points, vertices, faces } = apart(self.pieces, &faces)?;
-        Ok(JointFaces { points, vertices, faces })
+        apart(self.pieces, &faces)
     }
 
     fn vertex(&self, part: u32, local: u32) -> u32 {
@@ -316,10 +315,10 @@ impl Parts for Cut<'_> {
 }
 
 /// Faces in the numbers of the whole with points of their own.
-fn apart(pieces: &dyn MeshSource, faces: &[[u32; 3]]) -> io::Result<WallPiece> {
+fn apart(pieces: &dyn MeshSource, faces: &[[u32; 3]]) -> io::Result<FacesApart> {
     let vertices = distinct(faces.as_flattened());
     let points = pieces.points_of(&vertices)?;
     let place = |v: u32| vertices.partition_point(|&x| x < v) as u32;
     let faces = faces.iter().map(|face| face.map(place)).collect();
-    Ok(WallPiece { points, vertices, faces })
+    Ok(FacesApart { points, vertices, faces })
 }

@@ -42,11 +42,11 @@ impl Piece {
     }
 
     /// Some of its faces, with points and ids of their own.
-    fn faces(&self, faces: &[[u32; 3]]) -> WallPiece {
+    fn faces(&self, faces: &[[u32; 3]]) -> FacesApart {
         let mut used: Vec<u32> = faces.as_flattened().to_vec();
         used.sort_unstable();
         used.dedup();
-        WallPiece {
+        FacesApart {
             points: used.iter().map(|&v| self.mesh.points[v as usize]).collect(),
             vertices: used.iter().map(|&v| self.vertices[v as usize]).collect(),
             faces: faces.iter().map(|f| f.map(|v| used.binary_search(&v).unwrap() as u32)).collect(),
@@ -63,7 +63,7 @@ impl Parts for Cut {
         Ok(self.certificates[part as usize].clone())
     }
 
-    fn wall(&self, part: u32) -> io::Result<WallPiece> {
+    fn wall(&self, part: u32) -> io::Result<FacesApart> {
         let piece = &self.pieces[part as usize];
         let is_joined = |j: u32| self.joined.as_flattened().contains(&(part, j));
         let inner: BTreeSet<[u32; 3]> = (0..)
@@ -80,10 +80,9 @@ impl Parts for Cut {
         &self.joined
     }
 
-    fn joint(&self, part: u32, joint: u32) -> io::Result<JointFaces> {
+    fn joint(&self, part: u32, joint: u32) -> io::Result<FacesApart> {
         let piece = &self.pieces[part as usize];
-        let WallPiece { points, vertices, faces } = piece.faces(&piece.joints[joint as usize]);
-        Ok(JointFaces { points, vertices, faces })
+        Ok(piece.faces(&piece.joints[joint as usize]))
     }
 
     fn vertex(&self, part: u32, local: u32) -> u32 {
