@@ -45,6 +45,7 @@ pub mod network {
         Crowded, Metric, Progress, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };
     pub use crate::report::info::NetworkInfo;
+    pub use crate::report::inlets::{Inlet, Inlets, NoTerminal, Why};
     pub use crate::skeleton::{Adjacency, CleanReport, Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
 }
 

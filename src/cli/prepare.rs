@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::network::NetworkArgs;
-use crate::io::network::{NetworkArray, NetworkNote, NetworkOptions, ensure_tree_writable, read_network, write_tree};
+use crate::io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
 use crate::prepare::{PrepareParams, PrepareReport, directed, prepare};
 use crate::report::prepare::text;
 
@@ -83,8 +83,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_tree_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     let params = args.params();
     let path = &args.network.network;
-    let options = NetworkOptions { radius_array: args.network.radius_array.clone(), any_radii: params.radii };
-    let file = read_network(path, &options).map_err(|e| Failure::input(e.to_string()))?;
+    let file = args.network.file(params.radii)?;
     let pool = super::common::thread_pool(args.common.threads)?;
     let prepared = pool.install(|| prepare(&file.skeleton, &params));
     let prepared = prepared.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;

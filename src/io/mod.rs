@@ -28,7 +28,7 @@ pub use file::FileError;
 #[cfg(feature = "cli")]
 pub(crate) use file::write_text;
 pub use network::{
-    NetworkArray, NetworkFile, NetworkFileError, NetworkFormat, NetworkNote, NetworkOptions, read_network,
+    NetworkArray, NetworkFile, NetworkFileError, NetworkFormat, NetworkNote, NetworkOptions, NodeNames, read_network,
     read_network_from, refinement_arrays, write_network, write_tree,
 };
 pub use surface::{

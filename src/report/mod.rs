@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod info;
+pub mod inlets;
 pub mod mesh;
 #[cfg(feature = "cli")]
 pub mod plot;
