@@ -95,7 +95,7 @@ fn a_work_directory_belongs_to_one_network_and_its_options() {
     let other = run(&tree, &path("a.vtu"), &["--work-dir", &work, "--rho", "4"]);
     assert_says(&other, BAD_INPUT, &["mesh.rho was 3.0 and is now 4.0", "--restart"]);
     assert_says(
-        &run(&fixture("tree_30.swc"), &path("b.vtu"), &["--work-dir", &work, "--root", "5"]),
+        &run(&fixture("tree_30.swc"), &path("b.vtu"), &["--work-dir", &work, "--root", "30"]),
         BAD_INPUT,
         &["another"],
     );

@@ -98,11 +98,12 @@ fn reports_are_json_on_request() {
 fn a_root_becomes_the_inlet() {
     let folder = folder();
     let out = folder.path().join("tree.vtu");
-    let last = 29;
+    // Ids of the file count from 1.
+    let before_last = 28;
     assert_code(&mesh(&fixture("tree_30.swc"), &out, &["-q", "--root", "29"]), FINE);
     let patches = read_mesh(&out).expect("a mesh").volume.patches;
     let inlet = patches.iter().find(|p| p.name == "inlet").expect("an inlet");
-    assert_eq!((inlet.id, inlet.cap.map(|c| c.node)), (2, Some(last)));
+    assert_eq!((inlet.id, inlet.cap.map(|c| c.node)), (2, Some(before_last)));
 }
 
 /// Meshes a network with 1, 2 and 7 threads; what the last run said.
@@ -405,4 +406,19 @@ fn blocks_that_fail_are_left_out_on_request() {
         said.contains("FAIL every terminal has its cap") && said.contains("ok   every tetrahedron is positive"),
         "{said}"
     );
+}
+
+#[test]
+fn the_root_of_an_swc_file_is_the_inlet() {
+    let folder = folder();
+    let network = folder.path().join("tree.swc");
+    // The root is thinner than a leaf.
+    fs::write(&network, "7 0 0 0 0 1 -1\n5 0 0 0 12 1 7\n1 0 0 7 24 1.3 5\n3 0 0 -7 24 1 5\n").expect("written");
+    let out = folder.path().join("tree.vtu");
+    let made = mesh(&network, &out, &[]);
+    assert_code(&made, FINE);
+    assert!(stderr(&made).contains("inlet: node 7 at 0 0 0, radius 1 (the root in the file)"), "{}", stderr(&made));
+    let patches = read_mesh(&out).expect("a mesh").volume.patches;
+    let inlet = patches.iter().find(|p| p.name == "inlet").expect("an inlet");
+    assert_eq!(inlet.cap.map(|c| c.node), Some(0));
 }

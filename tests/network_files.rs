@@ -60,3 +60,29 @@ fn overlaps_are_those_that_are_known() {
     let crossings = secomb.overlaps.pairs.iter().filter(|o| !o.shares_node() && o.distance < 1e-3 * o.radii);
     assert_eq!(crossings.count(), 22);
 }
+
+/// File, then nodes, edges, components and loops after cleaning. Counted with VTK, XML and CSV readers of Python and merged
+/// there (benches/README.md), so that nothing of ours made them.
+const COUNTS: [(&str, [usize; 4]); 8] = [
+    ("skeletons/hipct_test.am", [19778, 19777, 1, 0]),
+    ("skeletons/brain_arteries_metres.vtk", [12709, 12708, 1, 0]),
+    ("skeletons/kidney_main_artery.vtk", [22, 21, 1, 0]),
+    ("skeletons/vascpy_diameter_named_radius.vtk", [912, 897, 15, 0]),
+    ("skeletons/vesselvio_vertices.csv", [3197, 3249, 1, 53]),
+    ("measured/opencco_fig6_2D.xml", [1990, 1989, 1, 0]),
+    ("measured/sv1d_left_coronary.in", [92, 91, 1, 0]),
+    ("measured/vascpy_one_loop.vtk", [162, 160, 3, 1]),
+];
+
+#[test]
+fn networks_of_other_formats_have_their_counts() {
+    let Some(data) = common::shared().map(|shared| shared.join("data")) else { return };
+    for (file, counts) in COUNTS {
+        let (skeleton, cleaned) = read(&data.join(file), None);
+        let info = NetworkInfo::new(&skeleton, cleaned, Vec::new());
+        assert_eq!([info.nodes, info.edges, info.components, info.loops], counts, "{file}");
+    }
+    // Either table finds the other.
+    let tables = ["vertices", "edges"].map(|t| read(&data.join(format!("skeletons/vesselvio_{t}.csv")), None).0);
+    assert_eq!(tables[0], tables[1]);
+}

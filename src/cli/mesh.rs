@@ -31,8 +31,8 @@ use crate::skeleton::Skeleton;
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the mesh goes: .vtu, .pvtu (pieces in a folder beside it), .msh (Gmsh 4.1), .mesh (Medit), or .ele (TetGen's
-    /// family of files)
+    /// Where the mesh goes: .vtu, .pvtu (pieces in a folder beside it), .msh (Gmsh 4.1), .msh2 (Gmsh 2.2, text),
+    /// .mesh (Medit), or .ele (TetGen's family of files)
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
     /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
@@ -65,10 +65,11 @@ pub struct Args {
     /// Write the refined network
     #[arg(long, value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
-    /// Node that is an inlet, counted from 0 in the file's order; may be given several times (default: in each component
-    /// the terminal of largest radius)
+    /// Node that is an inlet, as the file calls it (by its id in SWC, tables and graphs; elsewhere counted from 0 in the
+    /// file's order); may be given several times (default: the file's own roots, else in each component the terminal of
+    /// largest radius)
     #[arg(long, value_name = "NODE")]
-    root: Vec<u32>,
+    root: Vec<String>,
     /// How far the meshed axis may be from the given one, in radii: more is exit code 1 (default: 1 in a network whose vessels
     /// are polylines, but where an overlap demands more; no bound in others)
     #[arg(long, value_name = "R")]
@@ -145,7 +146,7 @@ struct Output<'a> {
 
 /// Meshes a network and writes the mesh.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let plan = args.plan();
+    let mut plan = args.plan();
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
     if plan.smooths_joints() && args.work_dir.is_some() {
         return Err(Failure::usage(
@@ -158,9 +159,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pool = thread_pool(args.common.threads)?;
     let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
+    let inlets = network.inlets(&args.root)?;
+    plan.roots.clone_from(&inlets.roots);
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, stop.clone());
-    for remark in network.remarks() {
+    for remark in network.remarks().into_iter().chain(inlets.remarks()) {
         bars.note(&remark);
     }
     let refined = pool.install(|| args.refined(&network, &stop))?;
@@ -194,7 +197,7 @@ impl Args {
             },
             frozen_joints: self.frozen_joints,
             memory: self.memory,
-            roots: self.root.clone(),
+            roots: Vec::new(),
             fuse: self.refine.is_some() && self.how.fuses(),
             keep_going: self.keep_going,
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),

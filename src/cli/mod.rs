@@ -17,6 +17,7 @@ mod replay;
 mod room;
 mod stop;
 mod tetrahedralize;
+mod units;
 
 use std::process::ExitCode;
 

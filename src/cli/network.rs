@@ -3,20 +3,40 @@
 use std::path::PathBuf;
 
 use super::exit::Failure;
-use crate::io::network::{NetworkNote, NetworkOptions, read_network};
+use super::units::Units;
+use crate::io::network::{NetworkFile, NetworkNote, NetworkOptions, NodeNames, read_network};
 use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare};
+use crate::report::inlets::{Inlets, NoTerminal};
 use crate::report::prepare::text;
-use crate::skeleton::{CleanReport, Skeleton, clean};
+use crate::skeleton::{CleanReport, NodeId, Skeleton, clean};
 
 /// Arguments of every verb that reads a network.
 #[derive(Debug, clap::Args)]
 pub struct NetworkArgs {
-    /// The network: SWC, or VTP with lines and a radius array
+    /// The network: .swc; .vtp or .vtk with lines; .am (Amira, text); .csv (nodes and edges); .graphml, .gxl; .net (Pajek);
+    /// .json (node-link); .in (SimVascular 1D)
     #[arg(value_name = "NETWORK")]
     pub network: PathBuf,
-    /// Array that holds the radius, on points or lines (default: found by its name)
+    /// Array, column or attribute that holds the radius, on nodes or vessels (default: found by its name)
     #[arg(long, value_name = "NAME")]
     pub radius_array: Option<String>,
+    /// What the file has for radii are diameters (without this, those that are called so are halved)
+    #[arg(long)]
+    pub diameters: bool,
+    /// Multiply radii alone, as when they are in another unit than the positions
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    pub radius_scale: Option<f64>,
+    /// Multiply positions and radii
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    pub scale: Option<f64>,
+    /// Unit of the network's lengths (m, cm, mm, um), or from one to another: um:m reads micrometres and goes on in metres
+    #[arg(long, value_name = "UNIT[:UNIT]", conflicts_with = "scale")]
+    pub units: Option<Units>,
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|e| format!("{e}"))?;
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err("a finite number above zero".into()) }
 }
 
 /// A network ready for use.
@@ -28,6 +48,10 @@ pub struct Network {
     pub notes: Vec<NetworkNote>,
     /// What cleaning did.
     pub cleaned: CleanReport,
+    /// What the file calls its nodes.
+    names: NodeNames,
+    /// Roots of the trees in the file.
+    roots: Vec<NodeId>,
 }
 
 /// A network ready for use, and what was done so that it is.
@@ -43,30 +67,59 @@ pub struct PreparedNetwork {
     pub notes: Vec<NetworkNote>,
     /// What was done.
     pub report: PrepareReport,
+    /// What the file calls its nodes.
+    names: NodeNames,
+    /// Roots of the trees in the file.
+    roots: Vec<NodeId>,
 }
 
 impl NetworkArgs {
+    /// How the network is to be read.
+    pub fn options(&self, any_radii: bool) -> NetworkOptions {
+        NetworkOptions {
+            radius_array: self.radius_array.clone(),
+            diameters: self.diameters,
+            radius_scale: self.radius_scale,
+            scale: self.scale.or(self.units.and_then(|units| units.factor())),
+            any_radii,
+        }
+    }
+
+    /// Reads the network as it stands in its file.
+    pub fn file(&self, any_radii: bool) -> Result<NetworkFile, Failure> {
+        let file = read_network(&self.network, &self.options(any_radii));
+        let mut file = file.map_err(|e| Failure::input(e.to_string()))?;
+        if let Some([from, to]) = self.units.map(Units::names) {
+            file.notes.push(NetworkNote::Unit { from, to });
+        }
+        Ok(file)
+    }
+
     /// Reads the network and applies cures to it.
     pub fn prepared(&self, params: &PrepareParams) -> Result<PreparedNetwork, Failure> {
-        let options = NetworkOptions { radius_array: self.radius_array.clone(), any_radii: params.radii };
-        let file = read_network(&self.network, &options).map_err(|e| Failure::input(e.to_string()))?;
+        let file = self.file(params.radii)?;
         let prepared = prepare(&file.skeleton, params);
         let prepared = prepared.map_err(|e| Failure::input(format!("{}: {e}", self.network.display())))?;
         let Prepared { skeleton, given, outline, report } = prepared;
-        Ok(PreparedNetwork { given, outline, skeleton, notes: file.notes, report })
+        let NetworkFile { notes, names, roots, .. } = file;
+        Ok(PreparedNetwork { given, outline, skeleton, notes, report, names, roots })
     }
 
     /// Reads and cleans the network.
     pub fn read(&self) -> Result<Network, Failure> {
-        let options = NetworkOptions { radius_array: self.radius_array.clone(), ..NetworkOptions::default() };
-        let file = read_network(&self.network, &options).map_err(|e| Failure::input(e.to_string()))?;
+        let file = self.file(false)?;
         let (skeleton, cleaned) =
             clean(&file.skeleton).map_err(|e| Failure::input(format!("{}: {e}", self.network.display())))?;
-        Ok(Network { skeleton, notes: file.notes, cleaned })
+        Ok(Network { skeleton, notes: file.notes, cleaned, names: file.names, roots: file.roots })
     }
 }
 
 impl Network {
+    /// The terminals that become inlets, of which some may be asked for as the file calls them.
+    pub fn inlets(&self, asked: &[String]) -> Result<Inlets, Failure> {
+        inlets(&self.skeleton, &self.names, &self.roots, asked)
+    }
+
     /// Lines for people on what was read and cleaned.
     pub fn remarks(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
@@ -76,6 +129,11 @@ impl Network {
 }
 
 impl PreparedNetwork {
+    /// The terminals that become inlets, of which some may be asked for as the file calls them.
+    pub fn inlets(&self, asked: &[String]) -> Result<Inlets, Failure> {
+        inlets(&self.skeleton, &self.names, &self.roots, asked)
+    }
+
     /// Lines for people on what was read and done.
     pub fn remarks(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
@@ -84,4 +142,15 @@ impl PreparedNetwork {
         }
         lines
     }
+}
+
+fn inlets(skeleton: &Skeleton, names: &NodeNames, roots: &[NodeId], asked: &[String]) -> Result<Inlets, Failure> {
+    Inlets::of(skeleton, names, roots, asked).map_err(|NoTerminal { node, vessels }| {
+        Failure::usage(match vessels {
+            Some(vessels) => format!(
+                "--root: node {node} is no terminal, as {vessels} vessels meet there; name a node with one vessel"
+            ),
+            None => format!("--root: node {node} is not in the network; name a terminal as the file does"),
+        })
+    })
 }

@@ -20,7 +20,7 @@ pub struct Args {
     /// The input of a block that failed: a file of the folder MESH.failed that `mesh` leaves
     #[arg(value_name = "DUMP.json")]
     dump: PathBuf,
-    /// Where the block's mesh goes if it comes out: .vtu, .pvtu, .msh, .mesh, or .ele
+    /// Where the block's mesh goes if it comes out: .vtu, .pvtu, .msh, .msh2, .mesh, or .ele
     #[arg(short, long, value_name = "MESH")]
     output: Option<PathBuf>,
     /// Memory that may be used, such as 2GiB or 500MB

@@ -1,5 +1,6 @@
 //! What `info` says about a network.
 
+use super::inlets::Inlet;
 use crate::geometry::Aabb;
 use crate::skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Skeleton};
 use serde::Serialize;
@@ -134,6 +135,8 @@ pub struct NetworkInfo {
     pub branch_length_in_radii: Spread,
     /// Length of all edges together.
     pub total_length: f64,
+    /// Terminals that become inlets, as far as the caller knows them.
+    pub inlets: Vec<Inlet>,
     /// Lowest and highest coordinates of the nodes.
     pub bounding_box: [[f64; 3]; 2],
     /// A guess at the unit of length from the sizes.
@@ -179,6 +182,7 @@ impl NetworkInfo {
             edges_shorter_than_radius: short,
             branch_length: Spread::of(branches.iter().map(crate::skeleton::Branch::length).collect()),
             branch_length_in_radii: Spread::of(branches.iter().map(|b| b.length() / b.mean_radius(skeleton)).collect()),
+            inlets: Vec::new(),
             total_length: lengths.iter().sum(),
             edge_length: Spread::of(lengths),
             bounding_box: [aabb.min.into(), aabb.max.into()],

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod fidelity;
 pub mod info;
+pub mod inlets;
 pub mod mesh;
 #[cfg(feature = "cli")]
 pub mod plot;

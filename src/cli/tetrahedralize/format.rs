@@ -33,6 +33,8 @@ pub enum StreamFormat {
     Vtu,
     /// Gmsh 4.1
     Msh,
+    /// Gmsh 2.2, text
+    Msh2,
     /// Medit
     Mesh,
 }
@@ -106,6 +108,7 @@ impl Target {
             return match named {
                 Some(StreamFormat::Vtu) => Ok(Self::Stream(MeshFormat::Vtu)),
                 Some(StreamFormat::Msh) => Ok(Self::Stream(MeshFormat::Msh)),
+                Some(StreamFormat::Msh2) => Ok(Self::Stream(MeshFormat::Msh2)),
                 Some(StreamFormat::Mesh) => Ok(Self::Stream(MeshFormat::Medit)),
                 None => Err(Failure::usage("standard output has no extension: name its format with --to")),
             };

@@ -1,6 +1,14 @@
 //! Why a network could not be read or written.
 
+use super::amira::AmiraError;
+use super::csv::CsvError;
+use super::format::KNOWN;
+use super::graph_xml::GraphXmlError;
+use super::json::JsonError;
+use super::pajek::PajekError;
+use super::sv1d::Sv1dError;
 use super::swc::SwcError;
+use super::vtk::VtkLegacyError;
 use super::vtp::VtpError;
 use crate::io::file::FileError;
 use crate::skeleton::{NodeId, SkeletonError};
@@ -14,7 +22,7 @@ pub enum NetworkFileError {
     #[error(transparent)]
     File(#[from] FileError<NetworkFault>),
     /// It is a directory.
-    #[error("{}: is a directory; name a network file (.swc, .vtp)", path.display())]
+    #[error("{}: is a directory; name a network file ({KNOWN})", path.display())]
     Directory {
         /// The directory.
         path: PathBuf,
@@ -53,7 +61,28 @@ pub enum NetworkFault {
     /// It is no usable VTP file.
     #[error(transparent)]
     Vtp(#[from] VtpError),
+    /// It is no usable legacy VTK file.
+    #[error(transparent)]
+    Vtk(#[from] VtkLegacyError),
+    /// It is no usable spatial graph of Amira.
+    #[error(transparent)]
+    Amira(#[from] AmiraError),
+    /// The tables are no usable network.
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    /// It is no usable GraphML or GXL file.
+    #[error(transparent)]
+    GraphXml(#[from] GraphXmlError),
+    /// It is no usable Pajek file.
+    #[error(transparent)]
+    Pajek(#[from] PajekError),
+    /// It is no usable node-link data.
+    #[error(transparent)]
+    Json(#[from] JsonError),
+    /// It is no usable input of a one-dimensional solver.
+    #[error(transparent)]
+    Sv1d(#[from] Sv1dError),
     /// A number in it cannot be used.
-    #[error("{0}; correct the file")]
+    #[error("{0}; correct the file, or let `anastomesh prepare` fill radii that cannot be used")]
     Numbers(#[from] SkeletonError),
 }

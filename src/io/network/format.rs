@@ -12,10 +12,40 @@ pub enum NetworkFormat {
     Swc,
     /// VTK poly data with lines: `.vtp`.
     Vtp,
+    /// VTK's legacy format with lines: `.vtk`.
+    Vtk,
+    /// A spatial graph of Amira or Avizo, as text: `.am`.
+    Amira,
+    /// Tables of nodes and edges: `.csv`.
+    Csv,
+    /// GraphML or GXL: `.graphml`, `.gxl`, `.xml`.
+    GraphXml,
+    /// Pajek's lists: `.net`.
+    Pajek,
+    /// Node-link data of NetworkX: `.json`.
+    Json,
+    /// Input of SimVascular's one-dimensional solver: `.in`.
+    Sv1d,
 }
 
 /// Extensions, in lower case.
-const EXTENSIONS: [(&str, NetworkFormat); 2] = [("swc", NetworkFormat::Swc), ("vtp", NetworkFormat::Vtp)];
+const EXTENSIONS: [(&str, NetworkFormat); 12] = [
+    ("swc", NetworkFormat::Swc),
+    ("vtp", NetworkFormat::Vtp),
+    ("vtk", NetworkFormat::Vtk),
+    ("am", NetworkFormat::Amira),
+    ("csv", NetworkFormat::Csv),
+    ("tsv", NetworkFormat::Csv),
+    ("graphml", NetworkFormat::GraphXml),
+    ("gxl", NetworkFormat::GraphXml),
+    ("xml", NetworkFormat::GraphXml),
+    ("net", NetworkFormat::Pajek),
+    ("json", NetworkFormat::Json),
+    ("in", NetworkFormat::Sv1d),
+];
+
+/// The same for people.
+pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .am, .csv, .graphml, .gxl, .net, .json, .in";
 
 impl NetworkFormat {
     /// The format that a file name asks for by its extension.
@@ -23,7 +53,7 @@ impl NetworkFormat {
     /// # Errors
     /// `UnknownFormat` when no format has the extension.
     pub fn of(path: &Path) -> Result<Self, NetworkFileError> {
-        let (kind, known) = ("known network format", ".swc, .vtp");
+        let (kind, known) = ("known network format", KNOWN);
         let unknown = || FileError::UnknownFormat { path: path.to_path_buf(), kind, known };
         Ok(by_extension(path, &EXTENSIONS).ok_or_else(unknown)?)
     }

@@ -1,13 +1,15 @@
 //! Reads a network in any format.
 
-use super::content::{NetworkFile, NetworkOptions};
+use super::content::{NetworkFile, NetworkNote, NetworkOptions};
 use super::error::{NetworkFault, NetworkFileError};
 use super::format::NetworkFormat;
-use super::{swc, vtp};
+use super::scale::scale;
+use super::{amira, csv, graph_xml, json, pajek, sv1d, swc, vtk, vtp};
 use crate::io::file::{FileError, read_bytes};
 use std::path::Path;
 
-/// Reads a network file; the extension gives the format.
+/// Reads a network file; the extension gives the format. A table of nodes or edges is read together with the other one,
+/// found beside it by its name.
 ///
 /// ```
 /// use anastomesh::io::{NetworkOptions, read_network};
@@ -24,10 +26,29 @@ pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile
         return Err(NetworkFileError::Directory { path: path.to_path_buf() });
     }
     let format = NetworkFormat::of(path)?;
+    if let (NetworkFormat::Csv, Some((other, has_edges))) = (format, csv::partner(path)) {
+        return read_tables(path, &other, has_edges, options);
+    }
     Ok(read_network_from(&read_bytes(path)?, format, options).map_err(FileError::content(path))?)
 }
 
-/// Reads a network from the bytes of a file.
+/// Reads two tables; `other` holds the edges, or else the nodes.
+fn read_tables(
+    path: &Path,
+    other: &Path,
+    has_edges: bool,
+    options: &NetworkOptions,
+) -> Result<NetworkFile, NetworkFileError> {
+    let (nodes, edges) = if has_edges { (path, other) } else { (other, path) };
+    let read = csv::read_tables(&read_bytes(nodes)?, &read_bytes(edges)?, options).map_err(NetworkFault::from);
+    let network = read.and_then(|network| finished(network, options));
+    let mut network = network.map_err(FileError::content(nodes))?;
+    let file = edges.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    network.notes.insert(0, NetworkNote::EdgesFrom { file });
+    Ok(network)
+}
+
+/// Reads a network from the bytes of a file. Both tables of nodes and edges can stand in one, an empty line between them.
 ///
 /// ```
 /// use anastomesh::io::NetworkOptions;
@@ -49,7 +70,20 @@ pub fn read_network_from(
     let network = match format {
         NetworkFormat::Swc => swc::read(bytes, options)?,
         NetworkFormat::Vtp => vtp::read(bytes, options)?,
+        NetworkFormat::Vtk => vtk::read(bytes, options)?,
+        NetworkFormat::Amira => amira::read(bytes, options)?,
+        NetworkFormat::Csv => csv::read(bytes, options)?,
+        NetworkFormat::GraphXml => graph_xml::read(bytes, options)?,
+        NetworkFormat::Pajek => pajek::read(bytes, options)?,
+        NetworkFormat::Json => json::read(bytes, options)?,
+        NetworkFormat::Sv1d => sv1d::read(bytes, options)?,
     };
+    finished(network, options)
+}
+
+/// What holds for every format: lengths multiplied as asked for, numbers that can be used.
+fn finished(mut network: NetworkFile, options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
+    scale(&mut network, options);
     if !options.any_radii {
         network.skeleton.check_numbers()?;
     }

@@ -1,4 +1,5 @@
 use super::error::NetworkFault;
+use super::radii::RadiusFault;
 use super::swc::SwcError;
 use super::vtp;
 use super::vtp::VtpError;
@@ -133,7 +134,7 @@ fn radii_on_points_lines_or_both() {
 
     let chosen = Vtp { cell_data: cells, ..SMALL }.read(Some("Radius")).unwrap();
     assert_eq!(chosen.skeleton, points.skeleton);
-    assert!(matches!(SMALL.read(Some("radii")), Err(VtpError::UnknownArray { .. })));
+    assert!(matches!(SMALL.read(Some("radii")), Err(VtpError::Radius(RadiusFault::UnknownArray { .. }))));
 }
 
 #[test]
@@ -160,7 +161,7 @@ fn vtp_errors_say_what_is_wrong() {
     assert!(matches!(error(Vtp { points: "0 0 0", ..SMALL }), VtpError::WrongLength { expected: 9, found: 3, .. }));
     assert!(matches!(error(Vtp { points: "0 0 0 a", ..SMALL }), VtpError::File(VtkError::BadNumber { index: 3, .. })));
     assert!(matches!(error(Vtp { kind: "Float64", ..SMALL }), VtpError::NotIntegers { array: "connectivity" }));
-    assert!(matches!(error(Vtp { point_data: "", ..SMALL }), VtpError::NoRadius { .. }));
+    assert!(matches!(error(Vtp { point_data: "", ..SMALL }), VtpError::Radius(RadiusFault::NoRadius { .. })));
     let short = "<DataArray type=\"Float64\" Name=\"Radius\" format=\"ascii\">1 2</DataArray>";
     assert!(matches!(error(Vtp { point_data: short, ..SMALL }), VtpError::WrongLength { expected: 3, found: 2, .. }));
     let surface = SMALL.text().replace("NumberOfLines=\"1\"", "NumberOfPolys=\"1\"");

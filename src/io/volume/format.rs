@@ -14,6 +14,8 @@ pub enum MeshFormat {
     Pvtu,
     /// Gmsh 4.1, `.msh`.
     Msh,
+    /// Gmsh 2.2 as text, `.msh2`, which more programs read.
+    Msh2,
     /// Medit's text format, `.mesh`.
     Medit,
     /// `TetGen`'s family of files, named by its `.ele` or `.node`.
@@ -21,10 +23,11 @@ pub enum MeshFormat {
 }
 
 /// Extensions, in lower case.
-const EXTENSIONS: [(&str, MeshFormat); 6] = [
+const EXTENSIONS: [(&str, MeshFormat); 7] = [
     ("vtu", MeshFormat::Vtu),
     ("pvtu", MeshFormat::Pvtu),
     ("msh", MeshFormat::Msh),
+    ("msh2", MeshFormat::Msh2),
     ("mesh", MeshFormat::Medit),
     ("ele", MeshFormat::Tetgen),
     ("node", MeshFormat::Tetgen),
@@ -39,7 +42,7 @@ impl MeshFormat {
         by_extension(path, &EXTENSIONS).ok_or_else(|| FileError::UnknownFormat {
             path: path.to_path_buf(),
             kind: "known mesh format",
-            known: ".vtu, .pvtu, .msh, .mesh, .ele",
+            known: ".vtu, .pvtu, .msh, .msh2, .mesh, .ele",
         })
     }
 

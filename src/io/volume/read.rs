@@ -31,7 +31,8 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
 pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, MeshFault> {
     match format {
         MeshFormat::Vtu => Ok(vtu::read(bytes)?),
-        MeshFormat::Msh => Ok(msh::read(bytes)?),
+        // The file itself says which version it is.
+        MeshFormat::Msh | MeshFormat::Msh2 => Ok(msh::read(bytes)?),
         MeshFormat::Medit => Ok(medit::read(bytes)?.into()),
         MeshFormat::Tetgen | MeshFormat::Pvtu => Err(MeshFault::SeveralFiles),
     }

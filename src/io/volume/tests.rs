@@ -15,7 +15,7 @@ use proptest::prelude::*;
 use std::borrow::Cow;
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
 
-const STREAMED: [MeshFormat; 3] = [MeshFormat::Vtu, MeshFormat::Msh, MeshFormat::Medit];
+const STREAMED: [MeshFormat; 4] = [MeshFormat::Vtu, MeshFormat::Msh, MeshFormat::Msh2, MeshFormat::Medit];
 
 fn bytes_of(format: MeshFormat, mesh: &dyn MeshSource, notes: &MeshNotes) -> Vec<u8> {
     let mut bytes = Vec::new();

@@ -127,6 +127,7 @@ pub(super) fn write_format(
     match format {
         MeshFormat::Vtu => vtu::write(out, mesh, notes),
         MeshFormat::Msh => msh::write(out, mesh, notes),
+        MeshFormat::Msh2 => msh::write_2(out, mesh, notes),
         MeshFormat::Medit => medit::write(out, mesh),
         MeshFormat::Tetgen | MeshFormat::Pvtu => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))

@@ -2,7 +2,7 @@
 
 use super::error::SwcError;
 use crate::geometry::Point3;
-use crate::io::network::content::{NetworkFile, NetworkOptions};
+use crate::io::network::content::{NetworkFile, NetworkOptions, NodeNames};
 use crate::skeleton::{Edge, LARGEST, Node, NodeId, Skeleton};
 use rustc_hash::FxHashMap;
 
@@ -37,7 +37,16 @@ pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Re
         return Err(SwcError::NoNodes);
     }
     let edges = join_parents(&rows, &nodes, &index)?;
-    Ok(NetworkFile { skeleton: Skeleton { nodes, edges }, notes: Vec::new() })
+    // A node alone is the root of nothing.
+    let mut joined = vec![false; nodes.len()];
+    edges.iter().flat_map(|edge| edge.nodes).for_each(|node| joined[node.index()] = true);
+    let roots = (0..nodes.len() as u32).map(NodeId).filter(|n| rows[n.index()].parent == -1 && joined[n.index()]);
+    Ok(NetworkFile {
+        roots: roots.collect(),
+        names: NodeNames::Ids(rows.iter().map(|row| row.id).collect()),
+        skeleton: Skeleton { nodes, edges },
+        notes: Vec::new(),
+    })
 }
 
 fn join_parents(rows: &[Row], nodes: &[Node], index: &FxHashMap<i64, u32>) -> Result<Vec<Edge>, SwcError> {

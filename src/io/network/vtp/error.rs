@@ -1,5 +1,6 @@
 //! What can be wrong with a VTP file.
 
+use crate::io::network::radii::RadiusFault;
 use crate::io::vtk_xml::VtkError;
 
 /// Why a VTP file is no usable network.
@@ -63,28 +64,10 @@ pub enum VtpError {
         /// Number of vertex cells.
         vertices: usize,
     },
-    /// No array is known as a radius.
-    #[error(
-        "no array on points or lines is named like a radius; there are: {}; choose with --radius-array",
-        list(available)
-    )]
-    NoRadius {
-        /// Names of the arrays there are.
-        available: Vec<String>,
-    },
-    /// The array that was asked for does not exist.
-    #[error("there is no array '{wanted}' on points or lines; there are: {}", list(available))]
-    UnknownArray {
-        /// What was asked for.
-        wanted: String,
-        /// Names of the arrays there are.
-        available: Vec<String>,
-    },
+    /// No array can be taken for the radius.
+    #[error(transparent)]
+    Radius(#[from] RadiusFault),
     /// There are more points or edges than can be numbered.
     #[error("there are more points than can be numbered ({})", u32::MAX)]
     TooMany,
-}
-
-fn list(names: &[String]) -> String {
-    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }

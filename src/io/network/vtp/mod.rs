@@ -1,7 +1,6 @@
 //! VTP: VTK poly data whose lines are vessels.
 
 mod error;
-mod radii;
 mod read;
 mod write;
 

@@ -1,20 +1,24 @@
 //! Reads lines with radii.
 
 use super::error::VtpError;
-use super::radii::{Choice, is_diameter};
-use super::write::END_RADII;
 use crate::geometry::Point3;
 use crate::io::network::content::{NetworkFile, NetworkNote, NetworkOptions};
+use crate::io::network::polylines::{Astray, Polylines, Radii};
+use crate::io::network::radii::{Choice, END_RADII, RadiusFault};
 use crate::io::vtk_xml::{ElementId, VtkXml};
-use crate::skeleton::{Edge, Node, NodeId, Skeleton};
+use crate::skeleton::Skeleton;
 
 pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtpError> {
     let document = VtkXml::parse(bytes, "PolyData")?;
     let poly = document.child(VtkXml::ROOT, "PolyData").ok_or(VtpError::MissingElement { element: "PolyData" })?;
     let pieces: Vec<ElementId> = document.children(poly, "Piece").collect();
     let &first = pieces.first().ok_or(VtpError::MissingElement { element: "Piece" })?;
-    let choice = Choice::of(&document, first, options)?;
-    let mut network = NetworkFile { skeleton: Skeleton::default(), notes: choice.notes() };
+    let names = |section: &str| -> Vec<String> {
+        let section = document.child(first, section);
+        section.map(|s| document.arrays(s).map(|(name, _)| name.to_owned()).collect()).unwrap_or_default()
+    };
+    let choice = Choice::of(&names("PointData"), &names("CellData"), options)?;
+    let mut network = NetworkFile { notes: choice.notes(), ..NetworkFile::default() };
     let mut others = Others::default();
     for piece in pieces {
         read_piece(&document, piece, &choice, &mut network.skeleton, &mut others)?;
@@ -48,44 +52,44 @@ fn read_piece(
     let vertices = document.count(piece, "NumberOfVerts")?;
     let polygons = document.count(piece, "NumberOfPolys")?.saturating_add(document.count(piece, "NumberOfStrips")?);
     let cells = lines.len().saturating_add(vertices).saturating_add(polygons);
-    let node_radii = read_radii(document, piece, "PointData", choice.points.as_deref(), points.len())?;
-    let cell_radii = read_radii(document, piece, "CellData", choice.cells.as_deref(), cells)?;
-    let (base, first_edge) = (skeleton.nodes.len(), skeleton.edges.len());
-    if base + points.len() + connectivity.len() >= u32::MAX as usize {
+    let nodes = read_radii(document, piece, "PointData", (choice, choice.points.as_deref()), points.len())?;
+    let of_cells = read_radii(document, piece, "CellData", (choice, choice.cells.as_deref()), cells)?;
+    let end_radii = read_end_radii(document, piece, choice, cells)?;
+    let count = points.len();
+    let astray = |a: Astray| VtpError::UnknownPoint { line: others.lines + a.line, point: a.point, points: count };
+    let polylines = Polylines::checked(points, lines, &connectivity).map_err(astray)?;
+    if !polylines.fits(skeleton) {
         return Err(VtpError::TooMany);
     }
-    for (i, position) in points.iter().enumerate() {
-        let radius = node_radii.as_ref().map_or(0.0, |r| r[i]);
-        skeleton.nodes.push(Node { position: *position, radius, original: (base + i) as u32 });
-    }
-    let end_radii = read_end_radii(document, piece, choice, cells)?;
     // Cell data run over vertex cells first, then lines.
-    let line_radius = |line: usize| cell_radii.as_ref().map(|r| r[vertices + line]);
-    let mut start = 0;
-    for (line, &end) in lines.iter().enumerate() {
-        let ids = &connectivity[start..end];
-        start = end;
-        if let Some(&point) = ids.iter().find(|&&p| p < 0 || p >= points.len() as i64) {
-            return Err(VtpError::UnknownPoint { line: others.lines + line, point, points: points.len() });
-        }
-        for pair in ids.windows(2) {
-            let nodes = [pair[0], pair[1]].map(|p| NodeId((base as i64 + p) as u32));
-            let of_line = end_radii.as_ref().map(|r| r[vertices + line]).filter(|_| ids.len() == 2);
-            let radii = match (of_line, line_radius(line)) {
-                (Some(radii), _) => radii,
-                (None, Some(radius)) => [radius; 2],
-                (None, None) => nodes.map(|n| skeleton.node(n).radius),
-            };
-            skeleton.edges.push(Edge { nodes, radii });
-        }
+    let of_lines = of_cells.map(|r| r[vertices..vertices + polylines.ends.len()].to_vec());
+    let mut radii = Radii { nodes, lines: of_lines, corners: None };
+    if let Some(ends) = end_radii {
+        radii.corners = Some(corner_radii(&polylines, &ends[vertices..], &radii));
     }
-    if node_radii.is_none() {
-        node_radii_from_edges(&mut skeleton.nodes[base..], base, &skeleton.edges[first_edge..]);
-    }
+    polylines.append_to(skeleton, &radii);
+    let lines = &polylines.ends;
     others.lines += lines.len();
     others.vertices += vertices;
     others.polygons += polygons;
     Ok(())
+}
+
+/// Radii along all lines: those of both ends where a line has two points, else what the line or its points have.
+fn corner_radii(polylines: &Polylines, ends: &[[f64; 2]], radii: &Radii) -> Vec<f64> {
+    let mut corners = Vec::with_capacity(polylines.path.len());
+    let mut start = 0;
+    for (line, &end) in polylines.ends.iter().enumerate() {
+        let path = &polylines.path[start..end];
+        let of_node = |point: u32| radii.nodes.as_ref().map_or(0.0, |r| r[point as usize]);
+        let of_line = radii.lines.as_ref().map(|r| r[line]);
+        match path.len() {
+            2 => corners.extend(ends[line]),
+            _ => corners.extend(path.iter().map(|&p| of_line.unwrap_or_else(|| of_node(p)))),
+        }
+        start = end;
+    }
+    corners
 }
 
 /// The radii at both ends of each line, which our own files hold beside those of the lines; none when the caller chose
@@ -102,23 +106,14 @@ fn read_end_radii(
     let arrays = document.child(piece, "CellData").map(|s| document.arrays(s).find(|(n, _)| *n == END_RADII));
     let Some((_, element)) = arrays.flatten() else { return Ok(None) };
     let array = document.read(element)?;
-    if array.len() != 2 * cells {
-        return Err(VtpError::WrongLength { array: END_RADII.to_owned(), expected: 2 * cells, found: array.len() });
+    if array.len() != cells.saturating_mul(2) {
+        return Err(VtpError::WrongLength {
+            array: END_RADII.to_owned(),
+            expected: cells.saturating_mul(2),
+            found: array.len(),
+        });
     }
     Ok(Some(array.into_floats().as_chunks::<2>().0.to_vec()))
-}
-
-/// Points on no line get any legal radius: cleaning drops them.
-fn node_radii_from_edges(nodes: &mut [Node], base: usize, edges: &[Edge]) {
-    for edge in edges {
-        for (id, radius) in edge.nodes.into_iter().zip(edge.radii) {
-            let node = &mut nodes[id.index() - base];
-            node.radius = node.radius.max(radius);
-        }
-    }
-    for node in nodes.iter_mut().filter(|n| n.radius <= 0.0) {
-        node.radius = 1.0;
-    }
 }
 
 fn read_points(document: &VtkXml, piece: ElementId) -> Result<Vec<Point3>, VtpError> {
@@ -179,23 +174,17 @@ fn read_radii(
     document: &VtkXml,
     piece: ElementId,
     section: &'static str,
-    name: Option<&str>,
+    (choice, name): (&Choice, Option<&str>),
     expected: usize,
 ) -> Result<Option<Vec<f64>>, VtpError> {
     let Some(name) = name else { return Ok(None) };
     let element = document.child(piece, section).and_then(|s| document.arrays(s).find(|(n, _)| *n == name));
     let Some((_, element)) = element else {
-        return Err(VtpError::UnknownArray { wanted: name.to_owned(), available: Vec::new() });
+        return Err(RadiusFault::UnknownArray { wanted: name.to_owned(), available: Vec::new() }.into());
     };
     let array = document.read(element)?;
     if array.len() != expected {
         return Err(VtpError::WrongLength { array: name.to_owned(), expected, found: array.len() });
     }
-    let mut radii = array.into_floats();
-    if is_diameter(name) {
-        for radius in &mut radii {
-            *radius *= 0.5;
-        }
-    }
-    Ok(Some(radii))
+    Ok(Some(choice.radii(name, array.into_floats())))
 }

@@ -1,15 +1,13 @@
 //! Writes lines with radii, and what refinement knows of each node.
 
 use crate::io::network::content::NetworkArray;
+use crate::io::network::radii::END_RADII;
 use crate::skeleton::{Edge, Skeleton};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::{Compression, write::ZlibEncoder};
 use std::fmt::Write as _;
 use std::io::{self, Write};
-
-/// Name of the cell array with the radii at both ends of each line.
-pub(super) const END_RADII: &str = "EndRadii";
 
 /// The bytes of the file.
 pub(in crate::io::network) fn bytes_of(skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<Vec<u8>> {

@@ -2,6 +2,15 @@
 
 use super::error::MshFault;
 
+/// Versions that differ in what their sections hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Version {
+    /// 2 to 2.2, as text.
+    Two,
+    /// 4.1.
+    Four,
+}
+
 /// A place in the file.
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -98,21 +107,26 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    /// Reads the section that says how the others are written.
-    pub(super) fn read_format(&mut self) -> Result<(), MshFault> {
+    /// Reads the section that says how the others are written; which version it is.
+    pub(super) fn read_format(&mut self) -> Result<Version, MshFault> {
         let line = self.line()?;
         let mut words = line.split_whitespace();
         let version = words.next().unwrap_or_default();
-        if version != "4.1" {
-            return Err(MshFault::UnsupportedVersion { version: version.chars().take(20).collect() });
-        }
         let (binary, width) = (words.next() == Some("1"), words.next());
+        match (version, binary) {
+            ("4.1", _) => {}
+            ("2" | "2.1" | "2.2", false) => return Ok(Version::Two),
+            ("2" | "2.1" | "2.2", true) => {
+                return Err(MshFault::UnsupportedVersion { version: format!("{version}, binary") });
+            }
+            _ => return Err(MshFault::UnsupportedVersion { version: version.chars().take(20).collect() }),
+        }
         if binary {
             self.binary = true;
             if width != Some("8") || self.int()? != 1 {
                 return Err(MshFault::UnsupportedVersion { version: "4.1, other byte order or width".into() });
             }
         }
-        Ok(())
+        Ok(Version::Four)
     }
 }

@@ -1,6 +1,6 @@
 //! What can be wrong with an MSH file.
 
-/// Why a file is no tetrahedral mesh in Gmsh's MSH 4.1.
+/// Why a file is no tetrahedral mesh in Gmsh's MSH 4.1 or 2.2.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MshFault {
@@ -23,7 +23,7 @@ pub enum MshFault {
     #[error("two nodes have the tag {tag}")]
     RepeatedTag { tag: u64 },
     /// A version of the format that is not read.
-    #[error("version {version} of the format is not supported; Gmsh writes 4.1 with -format msh41")]
+    #[error("version {version} of the format is not read; Gmsh writes 4.1 with -format msh41")]
     UnsupportedVersion { version: String },
     /// There are elements that are neither tetrahedra nor triangles.
     #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]

@@ -1,6 +1,6 @@
-//! Reads tetrahedral meshes from Gmsh's MSH 4.1, text or binary.
+//! Reads tetrahedral meshes from Gmsh's MSH: 4.1, text or binary, and 2.2, text.
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, Version};
 use super::error::MshFault;
 use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION};
 use crate::geometry::Point3;
@@ -9,7 +9,7 @@ use crate::io::volume::content::MeshFile;
 use crate::mesh::{Cap, Patch};
 use rustc_hash::FxHashMap;
 
-/// Reads a mesh from the bytes of a `.msh` file of version 4.1. Tetrahedra and triangles are taken, points and lines
+/// Reads a mesh from the bytes of a `.msh` file of version 4.1, or 2.2 as text. Tetrahedra and triangles are taken, points and lines
 /// among the elements passed over; a triangle's label is the first physical group of its surface.
 ///
 /// # Errors
@@ -20,14 +20,16 @@ pub(in crate::io::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
     if cursor.next_section()? != Some("MeshFormat") {
         return Err(MshFault::Missing { what: "$MeshFormat" });
     }
-    cursor.read_format()?;
+    let version = cursor.read_format()?;
     cursor.finish_section("MeshFormat")?;
     let (mut nodes, mut elements) = (false, false);
     while let Some(name) = cursor.next_section()? {
         match name {
             "PhysicalNames" => parts.read_names(&mut cursor)?,
             "Entities" => parts.read_entities(&mut cursor)?,
+            "Nodes" if version == Version::Two => parts.read_node_list(&mut cursor)?,
             "Nodes" => parts.read_nodes(&mut cursor)?,
+            "Elements" if version == Version::Two => parts.read_element_list(&mut cursor)?,
             "Elements" => parts.read_elements(&mut cursor)?,
             SECTION => parts.read_extra(&mut cursor)?,
             _ => {}
@@ -133,6 +135,42 @@ impl Parts {
                         let cell = self.tets.len() + self.triangles.len();
                         return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
                     }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Version 2: a tag and a place each.
+    fn read_node_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        for _ in 0..cursor.size()? {
+            let tag = cursor.size()?;
+            self.nodes.push((tag, Point3::new(cursor.float()?, cursor.float()?, cursor.float()?)));
+        }
+        Ok(())
+    }
+
+    /// Version 2: a tag, a type, a number of further tags (the first is the physical group), those, and the corners.
+    fn read_element_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        for _ in 0..cursor.size()? {
+            let (tag, kind, tags) = (cursor.size()?, cursor.int()?, cursor.size()?);
+            let mut group = 0;
+            for i in 0..tags {
+                let value = cursor.int()?;
+                group = if i == 0 { value } else { group };
+            }
+            match kind {
+                MSH_TRIANGLE => {
+                    // What a reader of version 4.1 knows from the entities.
+                    self.group_of_surface.insert(group, group);
+                    self.triangles.push((tag, cursor.sizes()?, group));
+                }
+                MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
+                1 => drop(cursor.sizes::<2>()?),
+                15 => drop(cursor.size()?),
+                _ => {
+                    let cell = self.tets.len() + self.triangles.len();
+                    return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
                 }
             }
         }

@@ -3,19 +3,50 @@
 use super::error::MshFault;
 use super::read::read;
 use super::write::write;
+use super::write_2::write as write_2;
 use crate::geometry::Point3;
 use crate::io::volume::content::{MeshFile, MeshNotes};
 use crate::io::volume::fixtures::labelled_tube;
 use crate::mesh::VolumeMesh;
+use crate::mesh::source::MeshSource;
+use std::io;
+
+type Writer = fn(&mut Vec<u8>, &dyn MeshSource, &MeshNotes) -> io::Result<()>;
+
+/// Both versions.
+const WRITERS: [Writer; 2] = [|out, mesh, notes| write(out, mesh, notes), |out, mesh, notes| write_2(out, mesh, notes)];
 
 #[test]
 fn what_is_written_is_read_but_for_the_blocks() {
     let (mut volume, notes) = labelled_tube(5);
-    let mut bytes = Vec::new();
-    write(&mut bytes, &volume, &notes).unwrap();
+    let both = WRITERS.map(|write| {
+        let mut bytes = Vec::new();
+        write(&mut bytes, &volume, &notes).unwrap();
+        bytes
+    });
     volume.tet_block.fill(0);
     volume.boundary_block.fill(0);
-    assert_eq!(read(&bytes).unwrap(), MeshFile { volume, labelled: true, notes });
+    for bytes in both {
+        let expected = MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() };
+        assert_eq!(read(&bytes).unwrap(), expected);
+    }
+}
+
+#[test]
+fn the_older_version_is_text() {
+    let (volume, notes) = labelled_tube(1);
+    let mut bytes = Vec::new();
+    write_2(&mut bytes, &volume, &notes).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    assert!(text.starts_with("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n"), "{text}");
+    let first = text.lines().skip_while(|line| *line != "$Elements").nth(2).unwrap();
+    let words: Vec<&str> = first.split(' ').collect();
+    assert_eq!((words.len(), &words[..3]), (8, &["1", "2", "2"][..]), "{first}");
+    let of = |from: &str, to: &str| read(text.replacen(from, to, 1).as_bytes());
+    assert!(matches!(of("2.2 0 8", "2.2 1 8"), Err(MshFault::UnsupportedVersion { .. })));
+    assert!(matches!(of("2.2 0 8", "1.0 0 8"), Err(MshFault::UnsupportedVersion { .. })));
+    assert!(matches!(of("\n1 2 2 ", "\n1 5 2 "), Err(MshFault::UnsupportedCell { kind: 5, .. })));
+    assert!(of("\n1 2 2 ", "\n1 2 99999999999 ").is_err());
 }
 
 #[test]
@@ -25,34 +56,43 @@ fn regions_become_volumes() {
     for (tet, block) in volume.tet_block.iter_mut().enumerate() {
         *block = [7, 2, 1_000_000][tet % 3];
     }
-    let mut bytes = Vec::new();
-    write(&mut bytes, &volume, &notes).unwrap();
+    let both = WRITERS.map(|write| {
+        let mut bytes = Vec::new();
+        write(&mut bytes, &volume, &notes).unwrap();
+        bytes
+    });
     volume.boundary_block.fill(0);
     notes.regions = false;
-    assert_eq!(read(&bytes).unwrap(), MeshFile { volume, labelled: true, notes });
-    let names = String::from_utf8_lossy(&bytes).into_owned();
-    assert!(names.contains("3 2 \"region_2\"\n3 7 \"region_7\"\n3 1000000 \"region_1000000\"\n"));
+    for bytes in both {
+        assert_eq!(read(&bytes).unwrap(), MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() });
+        let names = String::from_utf8_lossy(&bytes).into_owned();
+        assert!(names.contains("3 2 \"region_2\"\n3 7 \"region_7\"\n3 1000000 \"region_1000000\"\n"));
+    }
 }
 
 #[test]
 fn an_empty_mesh() {
-    let mut bytes = Vec::new();
-    write(&mut bytes, &VolumeMesh::default(), &MeshNotes::default()).unwrap();
-    assert_eq!(read(&bytes).unwrap(), MeshFile::default());
+    for write in WRITERS {
+        let mut bytes = Vec::new();
+        write(&mut bytes, &VolumeMesh::default(), &MeshNotes::default()).unwrap();
+        assert_eq!(read(&bytes).unwrap(), MeshFile::default());
+    }
 }
 
 #[test]
 fn every_cut_is_noticed() {
     let (volume, notes) = labelled_tube(2);
-    let mut whole = Vec::new();
-    write(&mut whole, &volume, &notes).unwrap();
-    // Once the elements are complete only what a check would want to know is lost.
-    let end = b"$EndElements";
-    let end = whole.windows(end.len()).position(|window| window == end).unwrap() + end.len();
-    for cut in (0..end).step_by(31).chain([end - 1]) {
-        assert!(read(&whole[..cut]).is_err(), "cut at {cut} of {end}");
+    for write in WRITERS {
+        let mut whole = Vec::new();
+        write(&mut whole, &volume, &notes).unwrap();
+        // Once the elements are complete only what a check would want to know is lost.
+        let end = b"$EndElements";
+        let end = whole.windows(end.len()).position(|window| window == end).unwrap() + end.len();
+        for cut in (0..end).step_by(31).chain([end - 1]) {
+            assert!(read(&whole[..cut]).is_err(), "cut at {cut} of {end}");
+        }
+        assert!(read(&whole[..whole.len() - 2]).is_err());
     }
-    assert!(read(&whole[..whole.len() - 2]).is_err());
 }
 
 const TEXT: &str = "$MeshFormat

@@ -21,7 +21,6 @@ pub(super) enum Place {
 /// The name of a type of values, and the bytes that one takes.
 type Kind = (&'static str, usize);
 
-const STRING: Kind = ("String", 1);
 const UINT8: Kind = ("UInt8", 1);
 const INT32: Kind = ("Int32", 4);
 const INT64: Kind = ("Int64", 8);
@@ -108,17 +107,15 @@ pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<Array<'
     arrays
 }
 
-/// VTK's string arrays: the characters of each string and a zero behind it.
+/// Texts as bytes, the characters of each and a zero behind it, as VTK's string arrays have them; but such an array makes
+/// other readers (meshio) give the whole file up, and bytes do not.
 fn strings<'a>(name: &'static str, texts: &[String]) -> Array<'a> {
     let mut bytes = Vec::new();
     for text in texts {
         bytes.extend(text.bytes().filter(|&b| b != 0));
         bytes.push(0);
     }
-    Array {
-        components: texts.len(),
-        ..Array::new(Place::Field, name, STRING, bytes.len(), move |out| out.push(bytes.len(), |i| [bytes[i]]))
-    }
+    Array::new(Place::Field, name, UINT8, bytes.len(), move |out| out.push(bytes.len(), |i| [bytes[i]]))
 }
 
 fn ints<'a>(name: &'static str, values: Vec<i64>) -> Array<'a> {

@@ -10,6 +10,11 @@ use crate::mesh::check::Expectation;
 use crate::mesh::{Cap, Patch};
 use rustc_hash::FxHashMap;
 
+/// Whether an array of bytes holds texts, by its name.
+fn holds_text(name: &str) -> bool {
+    name.ends_with("_names") || [field::GENERATOR, field::OPTIONS].contains(&name)
+}
+
 /// The field data of a file.
 #[derive(Default)]
 pub(super) struct Fields {
@@ -27,7 +32,11 @@ impl Fields {
         let mut fields = Self::default();
         for data in xml.children(grid, "FieldData") {
             for (name, array) in xml.arrays(data) {
-                let is_text = xml.attribute(array, "type") == Some("String");
+                let is_text = match xml.attribute(array, "type") {
+                    Some("String") => true,
+                    Some("UInt8") => holds_text(name),
+                    _ => false,
+                };
                 let values = xml.read(array)?;
                 if is_text {
                     fields.strings.insert(name.into(), values.into_strings().unwrap_or_default());

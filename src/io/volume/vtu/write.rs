@@ -94,27 +94,19 @@ fn section(text: &mut String, tag: &str, attributes: &str, place: Place, arrays:
     let _ = writeln!(text, "<{tag}{attributes}>");
     for (array, offset) in arrays.iter().zip(offsets).filter(|(array, _)| array.place == place) {
         let Array { name, kind, components, .. } = array;
-        let _ = if *kind == "String" {
-            writeln!(
-                text,
-                "<Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{components}\" format=\"appended\" \
-                 offset=\"{offset}\"/>"
-            )
-        } else {
-            // Field arrays carry their length; elsewhere the piece knows it.
-            let tuples = match place {
-                Place::Field => format!(" NumberOfTuples=\"{}\"", array.values / components),
-                _ => String::new(),
-            };
-            // VTK takes global ids only from arrays of its own type of ids.
-            let ids = if place == Place::PointData { " IdType=\"1\"" } else { "" };
-            // One component is the default, and readers shape an explicit one as a column.
-            let width = if *components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
-            writeln!(
-                text,
-                "<DataArray type=\"{kind}\"{ids} Name=\"{name}\"{width}{tuples} format=\"appended\" offset=\"{offset}\"/>"
-            )
+        // Field arrays carry their length; elsewhere the piece knows it.
+        let tuples = match place {
+            Place::Field => format!(" NumberOfTuples=\"{}\"", array.values / components),
+            _ => String::new(),
         };
+        // VTK takes global ids only from arrays of its own type of ids.
+        let ids = if place == Place::PointData { " IdType=\"1\"" } else { "" };
+        // One component is the default, and readers shape an explicit one as a column.
+        let width = if *components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
+        let _ = writeln!(
+            text,
+            "<DataArray type=\"{kind}\"{ids} Name=\"{name}\"{width}{tuples} format=\"appended\" offset=\"{offset}\"/>"
+        );
     }
     let _ = writeln!(text, "</{tag}>");
 }

@@ -1,0 +1,171 @@
+//! Which arrays hold the radii, by their names or by the caller's choice.
+
+use super::content::{NetworkNote, NetworkOptions};
+
+/// Name of the cell array with the radii at both ends of each line.
+pub(super) const END_RADII: &str = "EndRadii";
+
+/// Why no array can be taken for the radius.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RadiusFault {
+    /// No array is known as a radius.
+    #[error(
+        "no array on nodes or vessels is named like a radius; there are: {}; choose with --radius-array",
+        list(available)
+    )]
+    NoRadius {
+        /// Names of the arrays there are.
+        available: Vec<String>,
+    },
+    /// The array that was asked for does not exist.
+    #[error("there is no array '{wanted}' on nodes or vessels; there are: {}", list(available))]
+    UnknownArray {
+        /// What was asked for.
+        wanted: String,
+        /// Names of the arrays there are.
+        available: Vec<String>,
+    },
+}
+
+/// Names as a list for people; the first of them where there are very many.
+fn list(names: &[String]) -> String {
+    const SHOWN: usize = 40;
+    let more = if names.len() > SHOWN { format!(" and {} more", names.len() - SHOWN) } else { String::new() };
+    let shown: Vec<&str> = names.iter().take(SHOWN).map(String::as_str).collect();
+    if names.is_empty() { "none".to_owned() } else { shown.join(", ") + &more }
+}
+
+/// Which arrays hold the radius.
+pub(super) struct Choice {
+    pub points: Option<String>,
+    pub cells: Option<String>,
+    unused: Vec<String>,
+    /// Whether the arrays were found by their names.
+    pub by_name: bool,
+    /// Whether all of them hold diameters, as the caller says.
+    diameters: bool,
+}
+
+impl Choice {
+    /// Chooses among the arrays with these names on points and on cells.
+    pub(super) fn of(points: &[String], cells: &[String], options: &NetworkOptions) -> Result<Self, RadiusFault> {
+        let diameters = options.diameters;
+        let available = || points.iter().chain(cells).cloned().collect();
+        if let Some(wanted) = &options.radius_array {
+            let choice = Self {
+                points: named(points, wanted),
+                cells: named(cells, wanted),
+                unused: Vec::new(),
+                by_name: false,
+                diameters,
+            };
+            if choice.points.is_none() && choice.cells.is_none() {
+                return Err(RadiusFault::UnknownArray { wanted: wanted.clone(), available: available() });
+            }
+            return Ok(choice);
+        }
+        let choice = Self { points: best(points), cells: best(cells), unused: Vec::new(), by_name: true, diameters };
+        if choice.points.is_none() && choice.cells.is_none() {
+            return Err(RadiusFault::NoRadius { available: available() });
+        }
+        let used = |n: &String| Some(n) == choice.points.as_ref() || Some(n) == choice.cells.as_ref();
+        let unused =
+            points.iter().chain(cells).filter(|n| rank(n).is_some() && !used(n) && *n != END_RADII).cloned().collect();
+        Ok(Self { unused, ..choice })
+    }
+
+    /// Whether the values of an array are halved here: by its name, unless all radii are halved anyway.
+    pub(super) fn halves(&self, array: &str) -> bool {
+        is_diameter(array) && !self.diameters
+    }
+
+    /// The values of an array as radii.
+    pub(super) fn radii(&self, array: &str, mut values: Vec<f64>) -> Vec<f64> {
+        if self.halves(array) {
+            for value in &mut values {
+                *value *= 0.5;
+            }
+        }
+        values
+    }
+
+    /// What the caller should know of the choice.
+    pub(super) fn notes(&self) -> Vec<NetworkNote> {
+        let mut notes = Vec::new();
+        let halved = |array: &String, notes: &mut Vec<_>| {
+            if self.halves(array) {
+                notes.push(NetworkNote::Halved { array: array.clone() });
+            }
+        };
+        match &self.points {
+            Some(array) => {
+                notes.push(NetworkNote::NodeRadii { array: array.clone() });
+                halved(array, &mut notes);
+            }
+            None => notes.push(NetworkNote::NodeRadiiFromEdges),
+        }
+        if let Some(array) = &self.cells {
+            notes.push(NetworkNote::EdgeRadii { array: array.clone() });
+            if self.points.as_ref() != Some(array) {
+                halved(array, &mut notes);
+            }
+        }
+        if !self.unused.is_empty() {
+            notes.push(NetworkNote::NotUsed { arrays: self.unused.clone() });
+        }
+        notes
+    }
+}
+
+/// A name as it is compared: lower case, letters and digits only.
+fn plain(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+}
+
+/// Whether an array holds diameters, by its name.
+fn is_diameter(name: &str) -> bool {
+    plain(name).contains("diam")
+}
+
+/// How well a name fits a radius: smaller is better.
+fn rank(name: &str) -> Option<usize> {
+    const KNOWN: [&str; 12] = [
+        "radius",
+        "edgeradius",
+        "maximuminscribedsphereradius",
+        "radii",
+        "noderadius",
+        "meanradius",
+        "avgradius",
+        "radiusavg",
+        "avgradiusavg",
+        "rad",
+        "r",
+        // Amira's word for the distance from the axis to the wall.
+        "thickness",
+    ];
+    let plain = plain(name);
+    if let Some(rank) = KNOWN.iter().position(|&k| k == plain) {
+        return Some(rank);
+    }
+    // How much a radius spreads is no radius.
+    if ["std", "stdev", "variance", "error"].iter().any(|end| plain.ends_with(end)) {
+        return None;
+    }
+    if plain.contains("radius") || plain.contains("radii") {
+        return Some(KNOWN.len());
+    }
+    plain.contains("diam").then_some(KNOWN.len() + 1)
+}
+
+/// The name that fits a radius best; the first among equals.
+fn best(names: &[String]) -> Option<String> {
+    names.iter().filter_map(|n| rank(n).map(|r| (r, n))).min_by_key(|(r, _)| *r).map(|(_, n)| n.clone())
+}
+
+/// The array of this name, or else the first that differs from it only by case.
+fn named(names: &[String], wanted: &str) -> Option<String> {
+    let exact = names.iter().find(|n| *n == wanted);
+    exact.or_else(|| names.iter().find(|n| n.eq_ignore_ascii_case(wanted))).cloned()
+}
