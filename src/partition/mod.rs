@@ -26,8 +26,9 @@ pub use summary::PartitionSummary;
 
 /// Cuts a skeleton into clusters and connectors (3.2.1 of the paper, read for graphs with loops).
 ///
-/// The skeleton is a cleaned one. Branches, not edges, are cut. The result depends on nothing but the arguments;
-/// clusters are ordered by their lowest node, cuts by branch and place.
+/// The skeleton is a cleaned one. Branches, not edges, are cut. Where that leaves a cluster too large, as equations 11 and 12
+/// forbid every cut in a dense place, its branches are cut wherever there is room for discs. The result depends on nothing but
+/// the arguments; clusters are ordered by their lowest node, cuts by branch and place.
 ///
 /// # Errors
 /// If a parameter is not positive or the skeleton has an edge without length, radius or node.
@@ -36,7 +37,18 @@ pub fn partition(skeleton: &Skeleton, params: &PartitionParams) -> Result<Partit
     params::check_skeleton(skeleton)?;
     let mut params = params.clone();
     params.forbidden_cuts.extend(params.together.iter().flatten());
-    let params = &params;
+    let usual = cut(skeleton, &params);
+    let large: Vec<BranchId> = usual.in_clusters_above(params.large).collect();
+    if large.is_empty() {
+        return Ok(usual);
+    }
+    params.eager.extend(large);
+    let eager = cut(skeleton, &params);
+    let largest = |p: &Partition| p.clusters.iter().map(|c| c.nodes.len()).max();
+    Ok(if largest(&eager) < largest(&usual) { eager } else { usual })
+}
+
+fn cut(skeleton: &Skeleton, params: &PartitionParams) -> Partition {
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
     let courses: Vec<_> = branches.list.iter().map(|b| Course::new(skeleton, b)).collect();
@@ -54,5 +66,5 @@ pub fn partition(skeleton: &Skeleton, params: &PartitionParams) -> Result<Partit
     let terminals = courses.iter().map(|c| c.branch.ends().map(terminal)).collect();
     let mut settler = settle::Settler::new(skeleton.nodes.len(), &courses, params, slots, terminals);
     uncut.extend(settler.settle());
-    Ok(assemble::assemble(settler, uncut))
+    assemble::assemble(settler, uncut)
 }

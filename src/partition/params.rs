@@ -14,6 +14,12 @@ pub struct PartitionParams {
     pub kappa: f64,
     /// What a cut needs, in the terms of equations 11 and 12.
     pub cuts: CutRules,
+    /// What it needs where a cluster would be too large otherwise: room for two discs, and little more.
+    pub eager_cuts: CutRules,
+    /// A cluster of more nodes than this is too large.
+    pub large: usize,
+    /// Branches that are cut as `eager_cuts` says; those of clusters that are too large are added to them.
+    pub eager: BTreeSet<BranchId>,
     /// Length of the straight piece that continues a vessel beyond its end plane.
     pub overrun: f64,
     /// Least length of that piece in voxels.
@@ -43,6 +49,14 @@ impl Default for PartitionParams {
             rho: RHO,
             kappa: KAPPA,
             cuts: CutRules::default(),
+            eager_cuts: CutRules {
+                node_distance: 1.5,
+                angle_margin: 1.1,
+                room: 1.0,
+                max_turn: 40.0_f64.to_radians(),
+            },
+            large: 150,
+            eager: BTreeSet::new(),
             overrun: 1.0,
             overrun_voxels: 1.6,
             shortest_overrun: 0.4,
@@ -57,6 +71,11 @@ impl Default for PartitionParams {
 }
 
 impl PartitionParams {
+    /// What a cut of a branch needs.
+    pub(super) fn rules(&self, branch: u32) -> CutRules {
+        if self.eager.contains(&BranchId(branch)) { self.eager_cuts } else { self.cuts }
+    }
+
     /// How far the axes of two parallel vessels have to be apart, in sums of their radii, to stay two vessels: the
     /// distance at which equal tubes of the convolution surface fuse, √(1 + 2 κ² ln 2), and 5 % more.
     pub fn blending(&self) -> f64 {

@@ -31,6 +31,14 @@ pub struct Partition {
     pub warnings: Vec<PartitionWarning>,
 }
 
+impl Partition {
+    /// The branches that run through clusters of more than so many nodes.
+    pub(super) fn in_clusters_above(&self, nodes: usize) -> impl Iterator<Item = BranchId> {
+        let large = |piece: &&Piece| self.clusters[piece.cluster.0 as usize].nodes.len() > nodes;
+        self.pieces.iter().filter(large).map(|piece| piece.branch)
+    }
+}
+
 /// A piece of a branch in a cluster.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {

@@ -221,7 +221,7 @@ impl<'a> Settler<'a> {
         let mut step = STEP * course.radius(planes[way.side()], way);
         for i in 0..STEPS {
             planes[way.side()] += way.sign() * step;
-            if planes[1] - planes[0] < self.params.cuts.room_between(course, planes[0], planes[1]) {
+            if planes[1] - planes[0] < self.params.rules(branch).room_between(course, planes[0], planes[1]) {
                 return None;
             }
             if self.clear_at(run, way, planes[way.side()]).is_ok() {

@@ -23,7 +23,8 @@ pub(super) struct Cutter<'a> {
     courses: &'a [Course<'a>],
     params: &'a PartitionParams,
     adjacency: &'a Adjacency,
-    cuttability: Cuttability<'a>,
+    usual: Cuttability<'a>,
+    eager: Option<Cuttability<'a>>,
 }
 
 /// Shortest piece between two cuts of a branch, in radii.
@@ -36,7 +37,9 @@ impl<'a> Cutter<'a> {
         courses: &'a [Course<'a>],
         params: &'a PartitionParams,
     ) -> Self {
-        Self { courses, params, adjacency, cuttability: Cuttability::new(skeleton, adjacency, courses, params.cuts) }
+        let cuttability = |rules| Cuttability::new(skeleton, adjacency, courses, rules);
+        let eager = (!params.eager.is_empty()).then(|| cuttability(params.eager_cuts));
+        Self { courses, params, adjacency, usual: cuttability(params.cuts), eager }
     }
 
     /// The places where `branch` is to be cut, in order along it, or why there is none.
@@ -49,7 +52,8 @@ impl<'a> Cutter<'a> {
         if ends.contains(&BranchEnd::Terminal) && !self.terminal_wants_cut(course) {
             return Some(UncutReason::Terminal);
         }
-        let window = match self.cuttability.window(branch) {
+        let eager = self.eager.as_ref().filter(|_| self.params.eager.contains(&BranchId(branch)));
+        let window = match eager.unwrap_or(&self.usual).window(branch) {
             Ok(window) => window,
             Err(Uncuttable::Length) => return Some(UncutReason::Length),
             Err(Uncuttable::Angle) => return Some(UncutReason::Angle),
@@ -75,7 +79,8 @@ impl<'a> Cutter<'a> {
             let clipped = parts.iter().map(|p| [p[0].max(lo), p[1].min(hi)]);
             // Another cut only for a fair length of connector; the first one as soon as there is room.
             let least = if piece_lo > 0.0 || piece_hi < course.length() { 2.0 } else { 1.0 };
-            let fits = |p: &[f64; 2]| self.params.cuts.fits(course, *p, least);
+            let rules = self.params.rules(branch);
+            let fits = |p: &[f64; 2]| rules.fits(course, *p, least);
             let best = clipped.filter(fits).reduce(|a, b| {
                 // Not the first of nearly equal ones by rounding.
                 if b[1] - b[0] > (a[1] - a[0]) * (1.0 + 1e-9) { b } else { a }
@@ -114,7 +119,7 @@ impl<'a> Cutter<'a> {
     fn planes(&self, course: &Course, branch: u32, window: [f64; 2]) -> [f64; 2] {
         let shift = self.params.shifted_cuts.get(&BranchId(branch)).copied().unwrap_or(0.0).clamp(-1.0, 1.0);
         let largest = course.radius_range(window[0], window[1])[1];
-        let slack = (window[1] - window[0] - self.params.cuts.room * largest).max(0.0);
+        let slack = (window[1] - window[0] - self.params.rules(branch).room * largest).max(0.0);
         // A NaN is no shift.
         if shift > 0.0 {
             [window[0] + shift * slack, window[1]]
