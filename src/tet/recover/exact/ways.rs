@@ -32,7 +32,7 @@ impl Way {
 
     /// What is left to try.
     pub(in crate::tet) const OTHERS: [Self; 4] =
-        [Self::seen(1), Self::seen(2), Self::deep(true, 2), Self::deep(false, 3)];
+        [Self::seen(0), Self::seen(1), Self::deep(true, 2), Self::deep(false, 3)];
 
     const fn seen(salt: u64) -> Self {
         Self { level: false, deep: false, salt, vertices: VERTICES }
