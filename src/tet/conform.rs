@@ -7,7 +7,7 @@ use super::lattice;
 use super::options::{Interior, Refinement};
 use super::progress::Stage;
 use super::recover::exact::{Missing, Way, recover_exact};
-use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single};
+use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_turned};
 use super::request::Request;
 use super::{contacts, delaunay, sized};
 use crate::geometry::Point3;
@@ -64,16 +64,25 @@ fn exactly(
     let single = flat_height_in_single(&r.surface.points);
     let go_on = |ways: &[Way]| go_on(r, complex, points.len(), missing, (ways, flat));
     let anew = |flat| anew(r, points, flat);
-    // Where flips have met with flat parts they have left flat tetrahedra, more than one for each edge.
-    let turned = complex.real_tets().filter(|&t| !Rule::Thick(flat).allows(complex, &complex.verts(t)));
-    let turned = turned.take(missing.edges.len() + 1).count() > missing.edges.len();
-    let first = if turned { anew(flat) } else { go_on(&Way::FIRST) };
-    let second = again(first, || match single {
+    let rounded = single.filter(|&coarse| lies_turned(r.surface, missing.edges, coarse));
+    let turned = lies_turned(r.surface, missing.edges, flat) || has_flat(complex, flat, missing.edges.len());
+    let first = match rounded {
         Some(coarse) => anew(coarse),
-        None if turned => go_on(&Way::FIRST),
+        None if turned => anew(flat),
+        None => go_on(&Way::FIRST),
+    };
+    let second = again(first, || match single.filter(|_| rounded.is_none()) {
+        Some(coarse) => anew(coarse),
+        None if turned || rounded.is_some() => go_on(&Way::FIRST),
         None => anew(flat),
     });
     again(second, || go_on(&Way::OTHERS))
+}
+
+/// Whether flips have left more flat tetrahedra than edges: they have met with flat parts.
+fn has_flat(complex: &Complex, height: f64, edges: usize) -> bool {
+    let flat = complex.real_tets().filter(|&t| !Rule::Thick(height).allows(complex, &complex.verts(t)));
+    flat.take(edges + 1).count() > edges
 }
 
 /// Tries another way after an error that may be owed to the way.

@@ -138,6 +138,16 @@ fn turned_plates_are_filled() {
 }
 
 #[test]
+fn turned_plates_of_needles_are_filled() {
+    for seed in 0..cases() / 10 {
+        let mut coin = Coin(seed);
+        let n = 300 + coin.below(300) as u32;
+        let plate = plate(n, 0.2, &mut coin);
+        assert!(fills(&turned(plate, &mut coin), &format!("needles {seed} {n}")));
+    }
+}
+
+#[test]
 fn turned_rows_of_points_are_filled() {
     for seed in 0..cases() / 4 {
         let mut coin = Coin(seed);

@@ -13,6 +13,7 @@ mod flat;
 mod march;
 mod rule;
 mod steiner;
+mod turned;
 
 use super::complex::Complex;
 use super::error::{Obstacle, TetError};
@@ -25,6 +26,7 @@ use crate::mesh::TriMesh;
 use cavity::Cavity;
 use march::{Crossing, crossings, piercing_edges};
 pub(super) use rule::{Rule, flat_height, flat_height_in_single};
+pub(super) use turned::lies_turned;
 
 /// Depth to which a flip that is blocked may clear its way by others.
 const DEPTH: u32 = 3;
@@ -80,7 +82,10 @@ pub(super) fn recover(
         r.dissolve();
         let total = summary.missing_edges + summary.missing_triangles;
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
-        lost_edges.retain(|&e| r.met.is_some() || !r.recover_edge(e));
+        let in_vain = r.recover_edges(&mut lost_edges);
+        if in_vain && r.met.is_none() {
+            break;
+        }
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
         lost_faces.retain(|&f| r.met.is_some() || !r.recover_face(f));
         if let Some(error) = r.met {
@@ -142,6 +147,33 @@ impl<'a> Recovery<'a> {
     /// What makes the choices of this round.
     fn salt(round: u32) -> u64 {
         4 * u64::from(round)
+    }
+
+    /// Recovers edges; those that come loose are lost no longer. Whether the others were given up, since flips are in vain.
+    fn recover_edges(&mut self, lost: &mut Vec<[u32; 2]>) -> bool {
+        let missing = lost.clone();
+        let (mut tried, mut failed, mut in_vain) = (0, 0, false);
+        lost.retain(|&edge| {
+            if in_vain || self.met.is_some() {
+                return true;
+            }
+            tried += 1;
+            let fails = !self.recover_edge(edge);
+            failed += usize::from(fails);
+            in_vain = self.round == 0 && fails && failed == MANY && 2 * failed > tried && self.is_turned(&missing);
+            fails
+        });
+        in_vain
+    }
+
+    /// Whether most of some edges lie in planes but for rounding.
+    fn is_turned(&self, edges: &[[u32; 2]]) -> bool {
+        let points = &self.surface.points;
+        let height = match self.rule {
+            Rule::Positive => flat_height_in_single(points).unwrap_or(flat_height(points)),
+            Rule::Thick(height) => height,
+        };
+        lies_turned(self.surface, edges, height)
     }
 
     /// Flips away what crosses an edge: the first crossing that gives way, from one end and then from the other.

@@ -1,11 +1,12 @@
 //! Edges among faces that lie in one plane but for rounding: as in the plane, each edge in their way is exchanged for the
 //! other diagonal of its quadrilateral (Sloan, 'A fast algorithm for generating constrained Delaunay triangulations',
 //! 1993). In space that takes the ring around the edge apart: its two halves, above and below the quadrilateral, are
-//! joined each to a vertex that sees all of it, one of its corners or a new one well off the plane. Nothing is put
+//! joined each to a vertex that sees all of it, one of its corners, high above the plane if need be with what is in the
+//! way, or a new one. Nothing is put
 //! between points that lie in the plane, where there is no room.
 
 use super::parts::{Missing, sides, sorted};
-use super::plane::{Plane, area};
+use super::plane::{Patch, Plane};
 use super::push::Push;
 use super::room::{Apex, LEVELS, Room};
 use super::sectors::{Sector, refill};
@@ -28,6 +29,15 @@ const PIERCED: usize = 16;
 
 /// Tetrahedra that are added to one half of a ring at most.
 const STEPS: usize = 6;
+
+/// Corners of one half of a ring that are tried as vertices to which all is joined, the highest ones.
+const HIGHEST: usize = 4;
+
+/// Least distance of such a corner from what it sees, over its height.
+const MARGIN: f64 = 1e-3;
+
+/// Tetrahedra at most that go as well, so that it sees all.
+const IN_VIEW: usize = 40;
 
 /// What an exchange that is refused costs, in exchanges.
 const REFUSED: usize = 8;
@@ -161,9 +171,10 @@ impl<'a> Level<'a> {
             && plane.height(self.s.point(v)).abs() < 4.0 * self.tolerance
     }
 
-    /// The plane of a facet, told by the largest of the facets around that lie in it, and the area of that.
+    /// The plane of a facet, told by all of the facets around that lie in it, and their area. That of a needle alone is
+    /// known only near its long side.
     fn plane(&self, facet: [u32; 3]) -> (f64, Plane) {
-        let mut best = (area(self.s, facet), Plane::of(self.s, facet));
+        let mut patch = Patch::new(self.s, facet);
         let mut near = vec![facet];
         let mut head = 0;
         while let Some(&triangle) = near.get(head).filter(|_| near.len() < AROUND) {
@@ -172,18 +183,15 @@ impl<'a> Level<'a> {
                 if near.contains(other) {
                     continue;
                 }
-                let plane = Plane::of(self.s, *other);
-                let tells = facet.iter().all(|&v| self.lies_in(v, &plane));
-                if tells || other.iter().all(|&v| self.lies_in(v, &best.1)) {
+                let wider = patch.with(self.s, *other);
+                let plane = wider.plane();
+                if facet.iter().chain(other).all(|&v| self.lies_in(v, &plane)) {
                     near.push(*other);
-                    let area = area(self.s, *other);
-                    if tells && area > best.0 {
-                        best = (area, plane);
-                    }
+                    patch = wider;
                 }
             }
         }
-        best
+        (patch.area(), patch.plane())
     }
 
     /// Exchanges the edges that cross one, as far as they come loose.
@@ -317,8 +325,8 @@ impl<'a> Level<'a> {
         fits
     }
 
-    /// A sector, with a vertex that sees its faces from well above, a corner of theirs if there is one; where there is
-    /// none, a wider sector.
+    /// A sector, with a vertex that sees its faces from well above: a corner of theirs if there is one, or else a new one;
+    /// where there is none, a wider sector.
     pub(super) fn apex(&self, wider: &mut Wider, sector: Sector) -> Option<(Sector, Apex)> {
         let origin = wider.origin;
         let least = self.least(&Room::new(self.s, origin, &sector.faces));
@@ -327,6 +335,9 @@ impl<'a> Level<'a> {
             levels.iter().find_map(|level| room.apex(self.s, level.max(least)).ok())
         };
         let (ample, scant) = LEVELS.split_at(AMPLE);
+        if let Some(found) = self.corner(wider, &sector, ample, least) {
+            return Some(found);
+        }
         if let Some(apex) = direct(ample) {
             return Some(self.raised(origin, sector, apex, least));
         }
@@ -337,6 +348,29 @@ impl<'a> Level<'a> {
         wider.cavity.truncate(narrow);
         let apex = direct(scant)?;
         Some(self.raised(origin, sector, apex, least))
+    }
+
+    /// A sector and a corner of its faces that sees them all; or one of the highest, and what is in its view goes as well.
+    /// As long as few vertices high above see all of the plane, the next exchanges have room; new ones would be ever lower.
+    fn corner(&self, wider: &mut Wider, sector: &Sector, ample: &[f64], least: f64) -> Option<(Sector, Apex)> {
+        let room = Room::new(self.s, wider.origin, &sector.faces);
+        if let Some(w) = ample.iter().find_map(|level| room.neighbor(self.s, level.max(least)).ok()) {
+            return Some((sector.clone(), Apex::Vertex(w)));
+        }
+        let [a, b, c] = sector.faces.last()?.map(|v| self.s.point(v).coords);
+        let up = unit_normal(a, b, c);
+        let mut rim: Vec<u32> = sector.faces.iter().flatten().copied().collect();
+        rim.sort_unstable();
+        rim.dedup();
+        let height = |v: u32| up.dot(&(self.s.point(v).coords - a));
+        let mut high: Vec<(f64, u32)> = rim.into_iter().map(|v| (height(v), v)).collect();
+        high.retain(|&(height, _)| height > self.clearance);
+        high.sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        let free = |v: u32| (v as usize) >= self.points && !self.within.contains(&v);
+        high.into_iter().take(HIGHEST).find_map(|(height, w)| {
+            let least = (MARGIN * height).max(self.clearance);
+            wider.seen_from(sector, w, (least, IN_VIEW), free).map(|sector| (sector, Apex::Vertex(w)))
+        })
     }
 
     /// A sector and its apex, a new one as high as can be above the new faces: then the next exchanges there have room.

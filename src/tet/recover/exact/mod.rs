@@ -50,7 +50,7 @@ const LARGE: usize = 100;
 
 /// Edges of those missing that may be left when what lies in planes is recovered; beyond that it gains nothing, and new
 /// vertices are in the way.
-const WORTHWHILE: f64 = 1.0 / 3.0;
+const WORTHWHILE: f64 = 0.2;
 
 /// What the exact tier did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

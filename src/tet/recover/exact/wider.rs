@@ -1,10 +1,10 @@
 //! Cavities that are wider than a sector of a star: where the room in a sector is too small, the tetrahedra behind the
-//! walls that bound it are taken as well.
+//! walls that bound it, or that a vertex does not see, are taken as well.
 
 use super::room::{Apex, Room};
 use super::sectors::Sector;
 use super::space::Space;
-use crate::geometry::Point3;
+use crate::geometry::{Point3, unit_normal};
 
 /// Makes sectors around one vertex, or place, wider.
 pub(super) struct Wider<'a> {
@@ -41,6 +41,78 @@ impl<'a> Wider<'a> {
             }
         }
         None
+    }
+
+    /// A sector that is made wider, by so many tetrahedra at most, until a vertex sees all its faces from further than
+    /// `least`. Vertices that are free may go.
+    pub(super) fn seen_from(
+        &mut self,
+        sector: &Sector,
+        w: u32,
+        (least, steps): (f64, usize),
+        free: impl Fn(u32) -> bool,
+    ) -> Option<Sector> {
+        let s = self.s;
+        let p = s.point(w).coords;
+        let sees = |f: [u32; 3]| {
+            let [a, b, c] = f.map(|v| s.point(v).coords);
+            f.contains(&w) || (unit_normal(a, b, c).dot(&(p - a)) > least && s.orient([f[0], f[1], f[2], w]) > 0)
+        };
+        let facets = &sector.faces[sector.halves.len()..];
+        let before = self.cavity.len();
+        let halves = if facets.iter().all(|&f| sees(f)) { self.grow(&sector.halves, sees, steps) } else { None };
+        let wide = halves.map(|halves| {
+            let faces = halves.iter().map(|&half| s.wall(half)).chain(facets.iter().copied()).collect();
+            Sector { faces, halves }
+        });
+        let wide = wide.filter(|wide| self.keeps(wide, &self.cavity[before..], |v| v == w || free(v)));
+        if wide.is_none() {
+            self.cavity.truncate(before);
+        }
+        wide
+    }
+
+    /// Takes what lies behind walls that are not seen, until all are; returns these. Nothing where something frozen is in
+    /// the way, or more than so many tetrahedra.
+    fn grow(&mut self, halves: &[u32], sees: impl Fn([u32; 3]) -> bool, steps: usize) -> Option<Vec<u32>> {
+        let c = &self.s.c;
+        let before = self.cavity.len();
+        let mut open = halves.to_vec();
+        let mut walls = Vec::new();
+        while let Some(half) = open.pop() {
+            if sees(self.s.wall(half)) {
+                walls.push(half);
+                continue;
+            }
+            let next = c.mate(half) >> 2;
+            let taken = self.cavity.contains(&next) || self.cavity.len() == before + steps;
+            if taken || c.is_frozen(half) || c.is_ghost(next) {
+                return None;
+            }
+            self.cavity.push(next);
+            for inner in (4 * next..4 * next + 4).filter(|&inner| c.mate(inner) != half) {
+                let mate = c.mate(inner);
+                let known = [&mut open, &mut walls].into_iter().find_map(|list| {
+                    let k = list.iter().position(|&x| x == mate)?;
+                    Some(list.swap_remove(k))
+                });
+                match known {
+                    Some(_) if c.is_frozen(inner) => return None,
+                    Some(_) => {}
+                    None => open.push(inner),
+                }
+            }
+        }
+        Some(walls)
+    }
+
+    /// Whether what has to stay of some tetrahedra lies on the faces of a sector.
+    fn keeps(&self, sector: &Sector, tets: &[u32], free: impl Fn(u32) -> bool) -> bool {
+        let has = |part: &[u32]| sector.faces.iter().any(|f| part.iter().all(|x| f.contains(x)));
+        tets.iter().map(|&t| self.s.c.verts(t)).all(|v| {
+            v.iter().all(|&x| free(x) || has(&[x]))
+                && (0..4).all(|i| (0..i).all(|j| !(self.stays)(v[i], v[j]) || has(&[v[i], v[j]])))
+        })
     }
 
     /// Adds to a sector the tetrahedron behind one of the walls that bound its room, the one that gains most. False when
@@ -83,9 +155,7 @@ impl<'a> Wider<'a> {
         }
         let facets = &sector.faces[sector.halves.len()..];
         let faces: Vec<[u32; 3]> = halves.iter().map(|&half| self.s.wall(half)).chain(facets.iter().copied()).collect();
-        let has = |part: &[u32]| faces.iter().any(|f| part.iter().all(|x| f.contains(x)));
-        let keeps = corners.iter().all(|&x| has(&[x]))
-            && (0..4).all(|i| (0..i).all(|j| !(self.stays)(corners[i], corners[j]) || has(&[corners[i], corners[j]])));
-        keeps.then_some(Sector { faces, halves })
+        let wider = Sector { faces, halves };
+        self.keeps(&wider, &[next], |_| false).then_some(wider)
     }
 }

@@ -1,0 +1,45 @@
+//! Whether a surface has flat parts that are flat no longer, but for rounding: then flips are in vain, and what is missing
+//! is recovered as in the plane.
+
+use super::rule::least_height;
+use crate::geometry::predicates::orient3d;
+use crate::mesh::TriMesh;
+use rustc_hash::FxHashMap;
+
+/// Whether more than three quarters of some edges lie between two triangles that are one plane to within a height, and not exactly.
+pub(in crate::tet) fn lies_turned(surface: &TriMesh, edges: &[[u32; 2]], height: f64) -> bool {
+    let sorted = |a: u32, b: u32| [a.min(b), a.max(b)];
+    let mut across: FxHashMap<[u32; 2], Vec<u32>> = edges.iter().map(|&[a, b]| (sorted(a, b), Vec::new())).collect();
+    for &[a, b, c] in &surface.triangles {
+        for (p, q, apex) in [(a, b, c), (b, c, a), (c, a, b)] {
+            if let Some(apices) = across.get_mut(&sorted(p, q)) {
+                apices.push(apex);
+            }
+        }
+    }
+    let turned = across.iter().filter(|(edge, apices)| {
+        let [x, y] = apices[..] else { return false };
+        let corners @ [p, q, r, s] = [edge[0], edge[1], x, y].map(|v| &surface.points[v as usize]);
+        orient3d(p, q, r, s) != 0.0 && least_height(corners) < height
+    });
+    4 * turned.count() > 3 * edges.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+
+    /// Two triangles at a diagonal that is missing, one corner so high above the others' plane.
+    fn folded(height: f64) -> TriMesh {
+        let points = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, height]];
+        let points = points.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();
+        TriMesh { points, triangles: vec![[0, 2, 1], [1, 3, 0]] }
+    }
+
+    #[test]
+    fn only_what_is_nearly_flat_counts() {
+        let counts = |height| lies_turned(&folded(height), &[[0, 1]], 1e-10);
+        assert!(counts(1e-14) && !counts(0.0) && !counts(1e-3));
+    }
+}
