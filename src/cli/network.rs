@@ -80,7 +80,7 @@ impl NetworkArgs {
             radius_array: self.radius_array.clone(),
             diameters: self.diameters,
             radius_scale: self.radius_scale,
-            scale: self.scale.or(self.units.and_then(|units| units.factor())),
+            scale: self.scale.or(self.units.and_then(Units::factor)),
             any_radii,
         }
     }

@@ -102,7 +102,9 @@ impl Inlets {
         }
         let chosen: Vec<NodeId> = skeleton.node_ids().filter(|n| why[n.index()].is_some()).collect();
         let mut rooted = vec![false; components.list.len()];
-        chosen.iter().for_each(|n| rooted[components.of_node[n.index()] as usize] = true);
+        for n in &chosen {
+            rooted[components.of_node[n.index()] as usize] = true;
+        }
         let widest = skeleton.roots(&adjacency, &components);
         for node in widest.into_iter().zip(&rooted).filter(|(_, rooted)| !**rooted).filter_map(|(node, _)| node) {
             why[node.index()] = Some(Why::Widest);

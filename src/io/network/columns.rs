@@ -2,6 +2,7 @@
 //!
 //! Values are kept with the row that has them, so that memory grows with the file, whatever names it makes up.
 
+use super::radii::plain;
 use rustc_hash::FxHashMap;
 
 /// A value under a name.
@@ -50,15 +51,12 @@ pub(super) struct NoNumber {
 impl Columns {
     /// Sets what a row has under a name; what it had before is replaced.
     pub(super) fn set(&mut self, row: u32, name: &str, value: Value) {
-        let at = match self.index.get(name) {
-            Some(&at) => at,
-            None => {
-                self.index.insert(name.to_owned(), self.names.len());
-                self.names.push(name.to_owned());
-                self.values.push(Vec::new());
-                self.names.len() - 1
-            }
-        };
+        let at = self.index.get(name).copied().unwrap_or_else(|| {
+            self.index.insert(name.to_owned(), self.names.len());
+            self.names.push(name.to_owned());
+            self.values.push(Vec::new());
+            self.names.len() - 1
+        });
         self.values[at].push((row, value));
     }
 
@@ -69,9 +67,6 @@ impl Columns {
 
     /// The first name that fits, in lower case with letters and digits only, one of `wanted`; the earlier of these first.
     pub(super) fn find(&self, wanted: &[&str]) -> Option<&str> {
-        let plain = |name: &str| -> String {
-            name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
-        };
         wanted.iter().find_map(|w| self.names.iter().find(|name| plain(name) == *w)).map(String::as_str)
     }
 

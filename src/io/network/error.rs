@@ -2,7 +2,6 @@
 
 use super::amira::AmiraError;
 use super::csv::CsvError;
-use super::format::KNOWN;
 use super::graph_xml::GraphXmlError;
 use super::json::JsonError;
 use super::pajek::PajekError;
@@ -13,6 +12,9 @@ use super::vtp::VtpError;
 use crate::io::file::FileError;
 use crate::skeleton::{NodeId, SkeletonError};
 use std::path::PathBuf;
+
+/// The extensions that are known, for messages.
+pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .am, .csv, .graphml, .gxl, .net, .json, .in";
 
 /// Why a network could not be read or written.
 #[derive(Debug, thiserror::Error)]

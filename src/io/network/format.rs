@@ -1,6 +1,6 @@
 //! Which formats of networks there are, and which of them a path asks for.
 
-use super::error::NetworkFileError;
+use super::error::{KNOWN, NetworkFileError};
 use crate::io::file::{FileError, by_extension};
 use std::path::Path;
 
@@ -43,9 +43,6 @@ const EXTENSIONS: [(&str, NetworkFormat); 12] = [
     ("json", NetworkFormat::Json),
     ("in", NetworkFormat::Sv1d),
 ];
-
-/// The same for people.
-pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .am, .csv, .graphml, .gxl, .net, .json, .in";
 
 impl NetworkFormat {
     /// The format that a file name asks for by its extension.

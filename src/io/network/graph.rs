@@ -171,13 +171,13 @@ impl Graph {
     fn positions(&self) -> Result<Positions, GraphFault> {
         let (x, y, z) = (self.nodes.find(X), self.nodes.find(Y), self.nodes.find(Z));
         match (x, y, self.nodes.find(POSITION)) {
-            (Some(x), Some(y), _) => self.from_coordinates([Some(x), Some(y), z]),
-            (_, _, Some(list)) => self.from_lists(list),
+            (Some(x), Some(y), _) => self.placed_by_coordinates([Some(x), Some(y), z]),
+            (_, _, Some(list)) => self.placed_by_lists(list),
             _ => Err(GraphFault::NoPositions { available: self.nodes.names().to_vec() }),
         }
     }
 
-    fn from_coordinates(&self, names: [Option<&str>; 3]) -> Result<Positions, GraphFault> {
+    fn placed_by_coordinates(&self, names: [Option<&str>; 3]) -> Result<Positions, GraphFault> {
         let mut points = vec![Point3::origin(); self.names.len()];
         for (axis, name) in names.iter().enumerate() {
             let Some(name) = name else { continue };
@@ -193,7 +193,7 @@ impl Graph {
         Ok(Positions { points, planar: names[2].is_none() })
     }
 
-    fn from_lists(&self, name: &str) -> Result<Positions, GraphFault> {
+    fn placed_by_lists(&self, name: &str) -> Result<Positions, GraphFault> {
         let mut planar = true;
         let mut points = Vec::with_capacity(self.names.len());
         for (row, value) in self.nodes.values(name, self.names.len()).into_iter().enumerate() {

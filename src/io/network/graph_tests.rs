@@ -184,7 +184,7 @@ fn amira_and_the_solver_say_where() {
     amira("1 3\n", "1 4\n", "edge 1 (from 0) names vertex 4");
     amira("@3\n3\n", "@3\n4\n", "edges have 6 points together, but 5");
     amira("@3\n3\n", "@3\n1\n", "edges have 3 points together, but 5");
-    amira("@5\n", "@6\n", "'@6' are declared nowhere");
+    amira("\n@5\n", "\n@6\n", "'@6' are declared nowhere");
     amira("thickness", "colour", "--radius-array");
     amira("EDGE { int[2] EdgeConnectivity } @2", "EDGE { int[2] EdgeConnectivity @2", "line 14");
     let solver = |from: &str, to: &str, what: &str| says(SV1D, NetworkFormat::Sv1d, from, to, what);

@@ -119,7 +119,7 @@ impl Choice {
 }
 
 /// A name as it is compared: lower case, letters and digits only.
-fn plain(name: &str) -> String {
+pub(super) fn plain(name: &str) -> String {
     name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }
 

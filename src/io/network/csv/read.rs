@@ -4,6 +4,7 @@ use super::error::{CsvError, Table};
 use crate::io::network::columns::Value;
 use crate::io::network::content::{NetworkFile, NetworkOptions};
 use crate::io::network::graph::{Graph, GraphPlace};
+use crate::io::network::radii::plain;
 
 /// Columns with the name of a node.
 const IDS: &[&str] = &["id", "nodeid", "node", "vertexid", "vertex", "name", "label", "index", ""];
@@ -53,7 +54,7 @@ pub(in crate::io::network) fn read_tables(
 
 /// Number of lines of a text that ends with one.
 fn lines(text: &[u8]) -> usize {
-    text.iter().filter(|&&b| b == b'\n').count()
+    text.split(|&b| b == b'\n').count() - 1
 }
 
 /// Each table comes with the number of lines before it.
@@ -119,9 +120,6 @@ impl<'a> Rows<'a> {
 
     /// The first column with one of these names, in lower case with letters and digits only.
     fn column(&self, wanted: &[&str]) -> Option<usize> {
-        let plain = |name: &str| -> String {
-            name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
-        };
         wanted.iter().find_map(|w| self.names.iter().position(|name| plain(name) == *w))
     }
 
@@ -164,6 +162,6 @@ fn row_error(error: &csv::Error, table: Table, before: usize) -> CsvError {
 /// What stands between the columns: what there is most of in the first line.
 fn delimiter(bytes: &[u8]) -> u8 {
     let head = bytes.split(|&b| b == b'\n').find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
-    let times = |d: u8| head.unwrap_or_default().iter().filter(|&&b| b == d).count();
+    let times = |d: u8| head.unwrap_or_default().split(|&b| b == d).count();
     [b',', b'\t', b';'].into_iter().max_by_key(|&d| times(d)).unwrap_or(b',')
 }

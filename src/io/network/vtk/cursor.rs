@@ -21,10 +21,10 @@ impl<'a> Cursor<'a> {
     }
 
     pub(super) fn place_of(&self, at: usize) -> Place {
-        match self.binary {
-            true => Place::Byte(at),
-            false => Place::Line(1 + self.bytes[..at].iter().filter(|&&b| b == b'\n').count()),
+        if self.binary {
+            return Place::Byte(at);
         }
+        Place::Line(self.bytes[..at].split(|&b| b == b'\n').count())
     }
 
     /// The rest of this line, and on to the next one; none at the end of the file.

@@ -91,13 +91,12 @@ impl Lines {
         let mut cell = 0;
         while cell < list.count {
             let bad = || VtkLegacyError::BadCells { place: list.place, list: list.keyword, cell };
-            let range = match &offsets {
-                Some(offsets) => offsets[cell]..offsets[cell + 1],
-                None => {
-                    let &length = points.get(at).ok_or_else(bad)?;
-                    let begin = at as i64 + 1;
-                    begin..begin.checked_add(length).ok_or_else(bad)?
-                }
+            let range = if let Some(offsets) = &offsets {
+                offsets[cell]..offsets[cell + 1]
+            } else {
+                let &length = points.get(at).ok_or_else(bad)?;
+                let begin = at as i64 + 1;
+                begin..begin.checked_add(length).ok_or_else(bad)?
             };
             let range = usize::try_from(range.start).ok().zip(usize::try_from(range.end).ok()).ok_or_else(bad)?;
             let ids = points.get(range.0..range.1).ok_or_else(bad)?;

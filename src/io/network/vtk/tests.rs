@@ -65,7 +65,7 @@ fn a_binary_file_that_is_cut_has_its_byte() {
             // The last byte is a line's end.
             Ok(network) => assert!(cut == BINARY.len() - 1 && network == whole, "{cut}"),
             Err(VtkLegacyError::CutShort { place, .. }) => {
-                assert!(matches!(place, Place::Byte(b) if b <= cut), "{cut}")
+                assert!(matches!(place, Place::Byte(b) if b <= cut), "{cut}");
             }
             Err(_) => {}
         }

@@ -152,7 +152,7 @@ fn text_with_tags_in_any_order() {
 #[test]
 fn what_is_not_supported_is_named() {
     let fault = |text: String| read(text.as_bytes()).unwrap_err();
-    assert!(matches!(fault(TEXT.replace("4.1 0", "2.2 0")), MshFault::UnsupportedVersion { .. }));
+    assert!(matches!(fault(TEXT.replace("4.1 0", "3.0 0")), MshFault::UnsupportedVersion { .. }));
     assert!(matches!(fault(TEXT.replace("3 7 4 1", "3 7 5 1")), MshFault::UnsupportedCell { kind: 5, .. }));
     assert!(matches!(fault(TEXT.replace("\n30\n", "\n10\n")), MshFault::RepeatedTag { tag: 10 }));
     assert!(matches!(fault(TEXT.replace("0 1 0\n3", "0 one 0\n3")), MshFault::BadNumber { .. }));
