@@ -34,7 +34,7 @@ pub struct Partition {
 impl Partition {
     /// The branches that run through clusters of more than so many nodes.
     pub(super) fn in_clusters_above(&self, nodes: usize) -> impl Iterator<Item = BranchId> {
-        let large = |piece: &&Piece| self.clusters[piece.cluster.0 as usize].nodes.len() > nodes;
+        let large = move |piece: &&Piece| self.clusters[piece.cluster.0 as usize].nodes.len() > nodes;
         self.pieces.iter().filter(large).map(|piece| piece.branch)
     }
 }
