@@ -16,8 +16,8 @@ const STEP: f64 = 2.0;
 const MOST: f64 = 8.0;
 /// Vessels further apart than this, in sums of their radii, do not fuse.
 const NEAR: f64 = 1.3;
-/// Far along the vessels, in sums of radii that are wider by that.
-const FAR: f64 = 6.0;
+/// Far along the vessels, in sums of radii that are wider by that: some 12 radii.
+const FAR: f64 = 4.5;
 
 /// What a wall does not keep of its vessels: nothing, if it was not allowed to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -74,20 +74,20 @@ fn inner_tubes(cluster: &Cluster) -> impl Iterator<Item = &Tube> {
     (0..).zip(&cluster.tubes).filter(move |(i, _)| !beyond(*i)).map(|(_, tube)| tube)
 }
 
-/// Two places on the axes of vessels that overlap, or come near each other far from where they are joined, with no wall
-/// between them. The web in the crotch of a narrow fork is neither.
+/// Two places on the axes of vessels that come near each other far from where they are joined, with no wall between them.
+/// The web in the crotch of a narrow fork is none.
 fn fused(wall: &TriMesh, cluster: &Cluster) -> Option<[Point3; 2]> {
     let skeleton = widened(cluster);
     let adjacency = skeleton.adjacency();
     let overlaps = skeleton.overlaps(&adjacency);
     let mut ways = LocalDistances::default();
-    let mut is_far = |o: &Overlap| {
-        let [start, _] = o.nodes[0];
-        ways.search(&skeleton, &adjacency, start, FAR * o.radii);
-        o.nodes[1].iter().all(|&n| ways.of(n).is_infinite())
+    let mut is_far = |o: &&Overlap| {
+        o.nodes[0].iter().all(|&start| {
+            ways.search(&skeleton, &adjacency, start, FAR * o.radii);
+            o.nodes[1].iter().all(|&n| ways.of(n).is_infinite())
+        })
     };
-    let mut counts = |o: &&Overlap| NEAR * o.distance < o.radii || is_far(o);
-    let mut pairs = overlaps.pairs.iter().filter(|o| counts(o));
+    let mut pairs = overlaps.pairs.iter().filter(|o| is_far(o));
     pairs.find(|o| !is_parted(wall, &o.points[0], &o.points[1])).map(|o| o.points)
 }
 

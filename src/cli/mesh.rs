@@ -128,7 +128,8 @@ impl Before<'_> {
         let moved = self.refine.into_iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
         let crowded = self.refine.into_iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
         let tips = self.prepare.touching.iter().map(|tip| tip.tip);
-        moved.chain(crowded).chain(tips).collect()
+        let short = self.prepare.short_tips.iter().map(|tip| tip.tip);
+        moved.chain(crowded).chain(tips).chain(short).collect()
     }
 }
 
@@ -293,7 +294,7 @@ impl Args {
     fn unfaithful(&self, fidelity: &Fidelity, before: Before) -> Option<String> {
         let bound = self.max_displacement.or(before.prepare.measured.then_some(FURTHEST))?;
         let excused = before.demanded();
-        let excused = |d: &&Displaced| self.max_displacement.is_none() && d.meshed.iter().any(|n| excused.contains(n));
+        let excused = |d: &&Displaced| self.max_displacement.is_none() && d.meshed.iter().chain([&d.node]).any(|n| excused.contains(n));
         let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound).filter(|d| !excused(d));
         displaced(&far.copied().collect::<Vec<_>>(), bound)
     }
@@ -367,7 +368,7 @@ impl Args {
             return print(true, &Output { program, plan, before, run, check, fidelity }, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
-        if !self.common.quiet || !run.failed.is_empty() || check.is_some_and(|c| !c.is_valid()) {
+        if !self.common.quiet || !run.failed.is_empty() || !run.keeps_vessels(plan.fuse) || check.is_some_and(|c| !c.is_valid()) {
             eprint!("{run}");
             if let Some(check) = check {
                 eprint!("{check}");

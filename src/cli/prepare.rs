@@ -46,6 +46,9 @@ pub struct CureArgs {
     /// Leave points as they are
     #[arg(long)]
     keep_points: bool,
+    /// Leave tips so close to their branch point that their cap lies in another vessel of it
+    #[arg(long)]
+    keep_short_tips: bool,
     /// What to do with tips that end in or on another vessel
     #[arg(long, value_enum, default_value_t = TouchingArg::Retract)]
     touching: TouchingArg,
@@ -95,6 +98,7 @@ impl CureArgs {
         params.spurs &= !self.keep_spurs;
         params.join &= !self.keep_joints;
         params.resample &= !self.keep_points;
+        params.short_tips &= !self.keep_short_tips;
         params.touching = match self.touching {
             _ if self.as_is => Touching::Keep,
             TouchingArg::Join => Touching::Join,

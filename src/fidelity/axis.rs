@@ -1,6 +1,7 @@
 //! The given axis held against the one that was meshed.
 
-use super::{Spread, Tubes};
+use super::spread::Spread;
+use super::tubes::Tubes;
 use crate::skeleton::{EdgeId, Skeleton};
 use rayon::prelude::*;
 use serde::Serialize;

@@ -3,7 +3,7 @@
 //! Each tube is sampled; a sample that lies in n tubes counts for 1/n of its share, so that what tubes have in common is
 //! counted once. At inner nodes a ball fills the wedge between tubes that meet at an angle.
 
-use super::Tubes;
+use super::tubes::Tubes;
 use crate::geometry::{Aabb, Point3, Section, point_segment};
 use crate::skeleton::{Adjacency, EdgeId, NodeId, Skeleton};
 use rayon::prelude::*;
@@ -13,6 +13,9 @@ use std::f64::consts::{PI, TAU};
 const SAMPLES: usize = 1 << 20;
 const LEAST: usize = 8;
 const MOST: usize = 512;
+
+/// A vessel that turns by less, in radians, has no wedge worth a ball.
+const STRAIGHT: f64 = 0.3;
 
 /// Steps of the additive recurrence that fills a cube evenly (Roberts 2018): powers of the inverse of the root of
 /// x⁴ = x + 1.
@@ -66,9 +69,16 @@ impl Lumen<'_> {
         4.0 / 3.0 * PI * radius.powi(3) * sum / count as f64
     }
 
-    /// Radius of the ball at an inner node: of its second thickest vessel, which is the thickest that needs a ball.
+    /// Radius of the ball at an inner node: of its second thickest vessel, which is the thickest that needs a ball. None where
+    /// a vessel goes on all but straight.
     fn ball(&self, node: NodeId) -> f64 {
-        let radii = self.adjacency.edges(node).iter().map(|&e| self.network.edge(e).radii[self.network.edge(e).end(node)]);
+        let edges = self.adjacency.edges(node);
+        if let &[e, f] = edges
+            && self.network.angle(node, [e, f]) > PI - STRAIGHT
+        {
+            return 0.0;
+        }
+        let radii = edges.iter().map(|&e| self.network.edge(e).radii[self.network.edge(e).end(node)]);
         let (mut first, mut second) = (0.0_f64, 0.0_f64);
         for r in radii {
             (first, second) = if r > first { (r, first) } else { (first, second.max(r)) };
@@ -92,7 +102,7 @@ impl Lumen<'_> {
         });
         seen.sort_unstable();
         seen.dedup();
-        let holds = |&n: &NodeId| (point - self.network.node(n).position).norm() <= self.ball(n);
+        let holds = |&n: &NodeId| (point - self.network.node(n).position).norm() < self.ball(n);
         count += seen.iter().filter(|n| holds(n)).count() as u32;
         f64::from(count.max(1))
     }

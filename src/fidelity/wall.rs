@@ -1,6 +1,7 @@
 //! The wall held against the given tubes.
 
-use super::{Spread, Tubes};
+use super::spread::Spread;
+use super::tubes::Tubes;
 use crate::geometry::Point3;
 use crate::mesh::WALL;
 use crate::mesh::source::MeshSource;

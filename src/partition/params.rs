@@ -49,12 +49,7 @@ impl Default for PartitionParams {
             rho: RHO,
             kappa: KAPPA,
             cuts: CutRules::default(),
-            eager_cuts: CutRules {
-                node_distance: 1.5,
-                angle_margin: 1.1,
-                room: 1.0,
-                max_turn: 40.0_f64.to_radians(),
-            },
+            eager_cuts: CutRules { node_distance: 1.5, angle_margin: 1.1, room: 1.0, ..CutRules::default() },
             large: 150,
             eager: BTreeSet::new(),
             overrun: 1.0,

@@ -12,6 +12,7 @@ mod merge;
 mod radii;
 mod report;
 mod resample;
+mod short_tips;
 mod spurs;
 mod touching;
 
@@ -22,6 +23,7 @@ pub use merge::MergeReport;
 pub use radii::{Fault, FilledRadius};
 pub use report::{PrepareReport, Size};
 pub use resample::ResampleReport;
+pub use short_tips::ShortTip;
 pub use spurs::{Spur, SpurReason};
 pub use touching::{TouchedBy, Touching, TouchingTip};
 
@@ -42,6 +44,8 @@ pub struct PrepareParams {
     pub spurs: bool,
     /// Join branch points within one lumen and close loops within their own.
     pub join: bool,
+    /// Put tips out whose cap would lie in another vessel of their branch point.
+    pub short_tips: bool,
     /// What is done about tips that end in or on another vessel.
     pub touching: Touching,
     /// Drop components of fewer nodes than this (0: none).
@@ -57,7 +61,7 @@ pub struct PrepareParams {
 impl Default for PrepareParams {
     fn default() -> Self {
         let touching = Touching::Retract;
-        Self { radii: true, merge: true, spurs: true, join: true, touching, resample: true, ..Self::as_is() }
+        Self { radii: true, merge: true, spurs: true, join: true, short_tips: true, touching, resample: true, ..Self::as_is() }
     }
 }
 
@@ -70,6 +74,7 @@ impl PrepareParams {
             merge: false,
             spurs: false,
             join: false,
+            short_tips: false,
             touching: Touching::Keep,
             drop_islands: 0,
             resample: false,
@@ -130,6 +135,9 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
     }
     if params.join {
         (skeleton, report.joined) = lumen::join(&skeleton)?;
+    }
+    if params.short_tips {
+        (skeleton, report.short_tips) = short_tips::treat(&skeleton)?;
     }
     (skeleton, report.touching) = touching::treat(&skeleton, params.touching)?;
     if params.drop_islands > 0 {

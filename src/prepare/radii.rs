@@ -154,9 +154,15 @@ impl Places {
             let [r, a, b] = [place, p, q].map(|i| at[i as usize]);
             a > 0.0 && b > 0.0 && a.max(b) <= 2.0 * a.min(b) && (r > ABSURD * a.max(b) || r * ABSURD < a.min(b))
         };
+        // A radius that is absurdly large says nothing of those beside it.
+        let all: Vec<bool> = (0..self.count as u32).map(absurd).collect();
+        let mut told = at.clone();
+        for (radius, _) in told.iter_mut().zip(&all).filter(|(_, absurd)| **absurd) {
+            *radius = 0.0;
+        }
         let fault = |(node, &place): (&crate::skeleton::Node, &u32)| match node.radius {
             r if !good(r) => Some(Fault::Missing),
-            _ if absurd(place) || self.is_dip(place, &at) => Some(Fault::Absurd),
+            _ if all[place as usize] || self.is_dip(place, &told) => Some(Fault::Absurd),
             _ => None,
         };
         raw.nodes.iter().zip(&self.of_node).map(fault).collect()

@@ -1,6 +1,6 @@
 //! What was done to a network.
 
-use super::{FilledRadius, Island, JoinedReport, MergeReport, ResampleReport, Spur, TouchingTip};
+use super::{FilledRadius, Island, JoinedReport, MergeReport, ResampleReport, ShortTip, Spur, TouchingTip};
 use crate::skeleton::{CleanReport, Skeleton};
 use serde::Serialize;
 
@@ -68,6 +68,8 @@ pub struct PrepareReport {
     pub spurs: Vec<Spur>,
     /// Branch points joined, loops closed.
     pub joined: JoinedReport,
+    /// Tips that were too close to their branch point for a cap.
+    pub short_tips: Vec<ShortTip>,
     /// Tips that end in or on another vessel.
     pub touching: Vec<TouchingTip>,
     /// Components that were dropped.

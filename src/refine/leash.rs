@@ -1,10 +1,10 @@
 //! How far the nodes of a measured network may go: nothing moves but what overlaps, and that no further than it has to.
 
-use super::FarNode;
 use super::frame::Frame;
 use super::params::Freedom;
 use crate::geometry::Point3;
 use crate::skeleton::{NodeId, Overlaps, Skeleton};
+use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -12,8 +12,19 @@ use std::collections::BinaryHeap;
 const USUAL: f64 = 1.0;
 /// Along the skeleton vessels give way this far from where they overlap, in sums of the radii there.
 const REACH: f64 = 4.0;
+/// The last share of it over which the way that a node may go falls to nothing.
+const RAMP: f64 = 0.6;
 /// The furthest that an overlap can demand, in sums of its radii: a vessel that crosses another one's axis has to go one.
 const DEMANDED: f64 = 2.0;
+
+/// A node that moved far.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FarNode {
+    /// The node, as in the input.
+    pub node: u32,
+    /// How far, in its radii.
+    pub radii: f64,
+}
 
 /// How far nodes may go.
 #[derive(Clone, Copy, Debug)]
@@ -50,21 +61,23 @@ impl Leashes {
         let mut seen = vec![false; frame.origin.len()];
         let mut heap: BinaryHeap<Reached> = BinaryHeap::new();
         for overlap in &overlaps.pairs {
-            let reached = |node| Reached { left: REACH * overlap.radii, demanded: DEMANDED * overlap.radii, node };
+            let reached = |node| Reached { left: REACH * overlap.radii, radii: overlap.radii, node };
             heap.extend(overlap.nodes.into_iter().flatten().map(reached));
         }
-        while let Some(Reached { left, demanded, node }) = heap.pop() {
+        while let Some(Reached { left, radii, node }) = heap.pop() {
             if std::mem::replace(&mut seen[node.index()], true) {
                 continue;
             }
             let usual = self.radii * frame.skeleton.node(node).radius;
-            let further = if self.grows { (2.0 * frame.leash[node.index()]).min(demanded) } else { 0.0 };
-            frame.loosen(node, usual.max(further));
+            let further = if self.grows { (2.0 * frame.leash[node.index()]).min(DEMANDED * radii) } else { 0.0 };
+            // Less and less towards where nothing moves, so that no kink is left there.
+            let share = (left / (RAMP * REACH * radii)).min(1.0);
+            frame.loosen(node, share * usual.max(further));
             for &edge in frame.adjacency.edges(node) {
                 let left = left - frame.skeleton.length(edge);
                 let next = frame.skeleton.edge(edge).other(node);
                 if left > 0.0 && !seen[next.index()] {
-                    heap.push(Reached { left, demanded, node: next });
+                    heap.push(Reached { left, radii, node: next });
                 }
             }
         }
@@ -74,8 +87,10 @@ impl Leashes {
 /// The node with most way left comes first out of a heap.
 #[derive(PartialEq)]
 struct Reached {
+    /// How far the search goes on.
     left: f64,
-    demanded: f64,
+    /// Sum of the radii of the overlap that it comes from.
+    radii: f64,
     node: NodeId,
 }
 
@@ -84,7 +99,7 @@ impl Eq for Reached {}
 impl Ord for Reached {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_way = self.left.total_cmp(&other.left).then(other.node.cmp(&self.node));
-        by_way.then(self.demanded.total_cmp(&other.demanded))
+        by_way.then(self.radii.total_cmp(&other.radii))
     }
 }
 

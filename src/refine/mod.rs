@@ -21,6 +21,7 @@ mod tests;
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
 pub use history::{Displacement, Sample};
+pub use leash::FarNode;
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
 pub use residual::{ResidualReport, Treatment};
 
@@ -42,15 +43,6 @@ pub struct Refined {
     pub origin: Vec<Point3>,
     /// What was found and done.
     pub report: RefineReport,
-}
-
-/// A node that moved far.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct FarNode {
-    /// The node, as in the input.
-    pub node: u32,
-    /// How far, in its radii.
-    pub radii: f64,
 }
 
 /// What a refinement found and did.

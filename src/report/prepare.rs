@@ -39,6 +39,11 @@ pub fn text(report: &PrepareReport) -> String {
     list(&mut out, "branch points joined within one lumen (--keep-joints)", joined);
     let loops = report.joined.loops.iter().map(|l| format!("{} to {}: length {:.4}", l.nodes[0], l.nodes[1], l.length));
     list(&mut out, "loops closed within their own lumen (--keep-joints)", loops);
+    let short = report.short_tips.iter().map(|t| {
+        let done = if t.put_out { "put out" } else { "taken off, as it is too short by far" };
+        format!("{} from {}: length {:.4}, its cap is clear at {:.4}: {done}", t.tip, t.from, t.length, t.needed)
+    });
+    list(&mut out, "tips too close to their branch point for a cap (--keep-short-tips)", short);
     let tips = report.touching.iter().map(|t| {
         let done = match t.done {
             TouchedBy::Retracted { by } => format!("drawn back by {by:.4}"),

@@ -1,0 +1,112 @@
+//! Tips so close to their branch point that their cap lies in the wall of another vessel of it.
+
+use crate::geometry::{Point3, Vec3};
+use crate::skeleton::{Adjacency, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean, separation};
+use serde::Serialize;
+
+/// How much further than where two walls part (equation 12) a tip has to be: walls blend before they part, and a cap needs a
+/// stretch of its own vessel.
+const MARGIN: f64 = 1.1;
+const OWN: f64 = 0.3;
+/// How far a tip is put out at most, in its radii: what is shorter than that by more is no vessel.
+const FURTHEST: f64 = 3.0;
+
+/// A tip that was too close to its branch point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ShortTip {
+    /// The tip.
+    pub tip: u32,
+    /// The branch point that its vessel leaves.
+    pub from: u32,
+    /// Length of the vessel, in the unit of the network.
+    pub length: f64,
+    /// The length at which its cap is clear.
+    pub needed: f64,
+    /// Whether it was put out so far; else its vessel was taken off.
+    pub put_out: bool,
+}
+
+/// Puts such tips out, straight on, or takes their vessels off.
+pub(super) fn treat(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ShortTip>), SkeletonError> {
+    let adjacency = skeleton.adjacency();
+    let branches = skeleton.branches(&adjacency);
+    let found: Vec<(BranchId, Found)> = (0..branches.list.len() as u32)
+        .map(BranchId)
+        .filter_map(|id| Some((id, find(skeleton, &adjacency, &branches, id)?)))
+        .collect();
+    if found.is_empty() {
+        return Ok((skeleton.clone(), Vec::new()));
+    }
+    let mut result = skeleton.clone();
+    let mut gone = vec![false; skeleton.edges.len()];
+    for (id, tip) in &found {
+        if tip.told.put_out {
+            let node = &mut result.nodes[tip.node.index()];
+            node.position += tip.way * (tip.told.needed - tip.told.length);
+        } else {
+            branches.list[id.index()].edges.iter().for_each(|e| gone[e.index()] = true);
+        }
+    }
+    result.edges = skeleton.edge_ids().filter(|e| !gone[e.index()]).map(|e| *skeleton.edge(e)).collect();
+    Ok((clean(&result)?.0, found.into_iter().map(|(_, tip)| tip.told).collect()))
+}
+
+/// A tip and where it is put out to.
+struct Found {
+    node: NodeId,
+    /// Direction in which its vessel ends.
+    way: Vec3,
+    told: ShortTip,
+}
+
+fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: BranchId) -> Option<Found> {
+    let branch = &branches.list[id.index()];
+    let [a, b] = branch.ends();
+    let (from, tip) = match [a, b].map(|n| adjacency.valence(n)) {
+        [1, v] if v > 2 => (b, a),
+        [v, 1] if v > 2 => (a, b),
+        _ => return None,
+    };
+    let length = branch.length();
+    let at = |n: NodeId| skeleton.node(n).position;
+    let own = skeleton.edge(*branch.edges.iter().find(|e| skeleton.edge(**e).nodes.contains(&tip))?);
+    let radius = own.radii[own.end(tip)];
+    let way = (at(tip) - at(own.other(tip))).try_normalize(0.0)?;
+    let chord = at(tip) - at(from);
+    let mut needed = 0.0_f64;
+    for &edge in adjacency.edges(from).iter().filter(|e| branches.of_edge[e.index()].0 != id) {
+        let beside = point_along(skeleton, branches, edge, from, length) - at(from);
+        let other = skeleton.edge(edge).radii[skeleton.edge(edge).end(from)];
+        if beside.norm() > 0.0 && chord.norm() > 0.0 {
+            needed = needed.max(MARGIN * separation(&chord, &beside, [radius, other]).max(other) + OWN * radius);
+        }
+    }
+    let short = needed - length;
+    (short > 0.0).then(|| {
+        let name = |n: NodeId| skeleton.node(n).original;
+        let put_out = short <= FURTHEST * radius;
+        Found { node: tip, way, told: ShortTip { tip: name(tip), from: name(from), length, needed, put_out } }
+    })
+}
+
+/// The node of a branch that leaves `from` by an edge that is the first so far along it, or its last.
+fn point_along(
+    skeleton: &Skeleton,
+    branches: &Branches,
+    edge: crate::skeleton::EdgeId,
+    from: NodeId,
+    length: f64,
+) -> Point3 {
+    let (id, piece) = branches.of_edge[edge.index()];
+    let branch = &branches.list[id.index()];
+    let here = branch.arc[piece as usize];
+    let node = if branch.nodes[piece as usize] == from {
+        let next = branch.arc.partition_point(|&s| s < here + length);
+        branch.nodes[next.min(branch.nodes.len() - 1)]
+    } else {
+        let end = branch.arc[piece as usize + 1];
+        let before = branch.arc.partition_point(|&s| s <= end - length);
+        branch.nodes[before.saturating_sub(1)]
+    };
+    skeleton.node(node).position
+}
