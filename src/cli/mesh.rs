@@ -123,13 +123,15 @@ struct Before<'a> {
 }
 
 impl Before<'_> {
-    /// Nodes that may be far from where they were: an overlap demanded it, or a tip was drawn back from another vessel.
+    /// Nodes that may be far from where they were: an overlap demanded it, or a cure that is in the report.
     fn demanded(&self) -> FxHashSet<u32> {
         let moved = self.refine.into_iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
         let crowded = self.refine.into_iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
         let tips = self.prepare.touching.iter().map(|tip| tip.tip);
         let short = self.prepare.short_tips.iter().map(|tip| tip.tip);
-        moved.chain(crowded).chain(tips).chain(short).collect()
+        let joined = self.prepare.joined.nodes.iter().flat_map(|j| [j.node, j.into]);
+        let spurs = self.prepare.spurs.iter().flat_map(|s| [s.tip, s.from]);
+        moved.chain(crowded).chain(tips).chain(short).chain(joined).chain(spurs).collect()
     }
 }
 
@@ -294,7 +296,7 @@ impl Args {
     fn unfaithful(&self, fidelity: &Fidelity, before: Before) -> Option<String> {
         let bound = self.max_displacement.or(before.prepare.measured.then_some(FURTHEST))?;
         let excused = before.demanded();
-        let excused = |d: &&Displaced| self.max_displacement.is_none() && d.meshed.iter().chain([&d.node]).any(|n| excused.contains(n));
+        let excused = |d: &&Displaced| self.max_displacement.is_none() && d.meshed.iter().chain(&d.given).any(|n| excused.contains(n));
         let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound).filter(|d| !excused(d));
         displaced(&far.copied().collect::<Vec<_>>(), bound)
     }

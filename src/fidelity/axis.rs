@@ -17,8 +17,8 @@ const MOST_KEPT: usize = 10_000;
 /// A place of the given axis that is far from the one that was meshed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Displaced {
-    /// The nearer node of the given edge, as in the file.
-    pub node: u32,
+    /// The nodes of the given edge, as in the file.
+    pub given: [u32; 2],
     /// Where it is.
     pub place: [f64; 3],
     /// The nodes of the edge that was meshed nearest to it.
@@ -80,7 +80,7 @@ fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (V
         let radii = off(near.distance, near.radius) / radius;
         if worst.is_none_or(|w| radii > w.radii) {
             let beside = meshed.edge(near.edge).nodes.map(|n| meshed.node(n).original);
-            worst = Some(Displaced { node: ends[usize::from(t > 0.5)].original, place: place.into(), meshed: beside, radii });
+            worst = Some(Displaced { given: ends.map(|n| n.original), place: place.into(), meshed: beside, radii });
         }
         radii
     });

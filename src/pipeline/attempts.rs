@@ -1,6 +1,7 @@
 //! The parameters with which a block is tried, one after the other, before its cuts are touched.
 
 use super::once::{self, Connector};
+use super::tips;
 use super::plan::{JointStyle, MeshPlan};
 use crate::block::{BlockError, BlockParams, ConnectorEnd, DIVISIONS, EndStyle, Finished};
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
@@ -170,7 +171,26 @@ pub fn cluster(
     watch: &Watch,
 ) -> Tried {
     let name = format!("cluster {}", id.0);
-    first_good(&name, attempts(plan, overlapping, first), |params| once::cluster(id, cluster, params, &original, watch))
+    let made = |cluster: &Cluster| {
+        let make = |params: &BlockParams| once::cluster(id, cluster, params, &original, watch);
+        first_good(&name, attempts(plan, overlapping, first), make)
+    };
+    let tried = made(cluster);
+    let mut open = tips::uncapped(cluster, &tried.result, &tried.failures);
+    for radii in tips::MOVES {
+        let Some(moved) = tips::moved(cluster, &open, radii).filter(|_| !open.is_empty()) else { continue };
+        let again = made(&moved);
+        let still = tips::uncapped(&moved, &again.result, &again.failures);
+        match again.result {
+            Ok(block) if still.is_empty() => {
+                let failures = [tried.failures, tried.result.err().into_iter().collect(), again.failures].concat();
+                return Tried { result: Ok(block), failures, way: format!("tips moved by {radii} radii, {}", again.way) };
+            }
+            // Another one may be in the way now.
+            _ => open.extend(still.into_iter().filter(|end| !open.contains(end)).collect::<Vec<_>>()),
+        }
+    }
+    tried
 }
 
 /// Meshes a connector between the ends of its two clusters.

@@ -20,6 +20,7 @@ mod terminals;
 #[cfg(test)]
 mod tests;
 mod timing;
+mod tips;
 mod whole;
 
 pub use error::RunError;

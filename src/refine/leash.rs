@@ -22,7 +22,7 @@ const DEMANDED: f64 = 2.0;
 pub struct FarNode {
     /// The node, as in the input.
     pub node: u32,
-    /// How far, in its radii.
+    /// How far, in radii of its thinnest vessel.
     pub radii: f64,
 }
 
@@ -49,8 +49,13 @@ impl Leashes {
 
     /// The nodes that moved further than usual, the furthest first.
     pub(super) fn demanded(self, skeleton: &Skeleton, origin: &[Point3]) -> Vec<FarNode> {
-        let moved = skeleton.nodes.iter().zip(origin);
-        let moved = moved.map(|(n, o)| FarNode { node: n.original, radii: (n.position - o).norm() / n.radius });
+        // In radii of the thinnest vessel at each.
+        let mut thin = vec![f64::INFINITY; skeleton.nodes.len()];
+        for (node, radius) in skeleton.edges.iter().flat_map(|e| e.nodes.into_iter().zip(e.radii)) {
+            thin[node.index()] = thin[node.index()].min(radius);
+        }
+        let moved = skeleton.nodes.iter().zip(origin).zip(thin);
+        let moved = moved.map(|((n, o), r)| FarNode { node: n.original, radii: (n.position - o).norm() / r });
         let mut far: Vec<FarNode> = moved.filter(|n| n.radii > self.radii).collect();
         far.sort_by(|a, b| b.radii.total_cmp(&a.radii).then(a.node.cmp(&b.node)));
         far

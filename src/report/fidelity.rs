@@ -40,7 +40,7 @@ pub fn displaced(far: &[Displaced], bound: f64) -> Option<String> {
     for d in far.iter().take(LISTED) {
         let [x, y, z] = d.place;
         // Writing to a string cannot fail.
-        let _ = writeln!(out, "  at node {} ({x:.4} {y:.4} {z:.4}): {:.3} radii", d.node, d.radii);
+        let _ = writeln!(out, "  at {}-{} ({x:.4} {y:.4} {z:.4}): {:.3} radii", d.given[0], d.given[1], d.radii);
     }
     Some(out)
 }

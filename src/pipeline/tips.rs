@@ -1,0 +1,76 @@
+//! Tips that cannot be capped where they are: put out or drawn back along their vessel until they can.
+
+use crate::block::{BlockError, Finished};
+use crate::partition::{Cluster, EndKind};
+use crate::surface::CapError;
+
+/// How far a tip is moved, in its radii, one after the other: outwards, where another vessel of its branch point is in the
+/// way, or back, where it ends in another vessel.
+pub const MOVES: [f64; 8] = [0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, 3.0];
+
+/// What is left of the last piece of a vessel whose tip is drawn back, in radii.
+const LEFT: f64 = 0.5;
+
+/// The ends of a cluster that could not be capped, ascending.
+pub fn uncapped(cluster: &Cluster, result: &Result<Finished, BlockError>, failures: &[BlockError]) -> Vec<u32> {
+    let mut ends: Vec<u32> = failures.iter().chain(result.as_ref().err()).filter_map(failed_end).collect();
+    let left_open = result.as_ref().map_or(&[][..], |made| &made.about.uncapped);
+    let is_open = |kind| matches!(kind, EndKind::Terminal(node) if left_open.contains(&node.0));
+    ends.extend((0..).zip(&cluster.ends).filter(|(_, end)| is_open(end.kind)).map(|(i, _)| i));
+    // Where the block came out, what it says counts.
+    if result.is_ok() {
+        ends.retain(|&i| is_open(cluster.ends[i as usize].kind));
+    }
+    ends.sort_unstable();
+    ends.dedup();
+    ends
+}
+
+fn failed_end(error: &BlockError) -> Option<u32> {
+    match error {
+        BlockError::Cap { source: CapError::End { end, node: Some(_), .. }, .. } => Some(*end),
+        _ => None,
+    }
+}
+
+/// The cluster with some tips moved by so many of their radii; none when a vessel is too short for it.
+pub fn moved(cluster: &Cluster, ends: &[u32], radii: f64) -> Option<Cluster> {
+    let mut result = cluster.clone();
+    for &i in ends {
+        let end = result.ends.get_mut(i as usize)?;
+        let (from, way) = (end.section.origin, radii * end.section.radius);
+        let to = from + end.section.axis * way;
+        let beyond = end.overrun as usize;
+        let last = (0..result.tubes.len()).find(|&k| k != beyond && [result.tubes[k].a, result.tubes[k].b].contains(&from))?;
+        if result.tubes[last].length() + way < LEFT * end.section.radius {
+            return None;
+        }
+        let tube = &mut result.tubes[last];
+        *(if tube.a == from { &mut tube.a } else { &mut tube.b }) = to;
+        let shift = to - from;
+        result.tubes[beyond].a += shift;
+        result.tubes[beyond].b += shift;
+        end.section.origin = to;
+    }
+    Some(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::fixtures::bifurcation;
+
+    #[test]
+    fn a_tip_moves_along_its_vessel_and_no_further_than_it_is_long() {
+        let cluster = bifurcation(3);
+        for (i, end) in (0..).zip(&cluster.ends) {
+            let out = moved(&cluster, &[i], 1.0).expect("room");
+            let way = out.ends[i as usize].section.origin - end.section.origin;
+            assert!((way - end.section.axis * end.section.radius).norm() < 1e-12);
+            let length = |c: &Cluster| c.tubes.iter().map(crate::geometry::Tube::length).sum::<f64>();
+            assert!((length(&out) - length(&cluster) - end.section.radius).abs() < 1e-9);
+            assert_eq!(moved(&cluster, &[i], -1e3), None);
+        }
+        assert_eq!(moved(&cluster, &[99], 1.0), None);
+    }
+}
