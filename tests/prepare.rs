@@ -222,6 +222,39 @@ fn grown_networks_are_left_alone() {
 }
 
 #[test]
+fn a_straight_vessel_beside_a_bow_is_no_loop_within_a_lumen() {
+    // Their ends are shared, and lie within either.
+    let mut s = lines(&[(0..=20).map(|i| [f64::from(i), 0.1 * f64::from(i * (20 - i)), 0.0]).collect()], 1.0);
+    s.edges.push(Edge { nodes: [NodeId(0), NodeId(20)], radii: [1.0; 2] });
+    s.nodes.extend([([-9.0, 0.0, 0.0], 21), ([29.0, 0.0, 0.0], 22)].map(|(p, id)| Node {
+        position: p.into(),
+        radius: 1.0,
+        original: id,
+    }));
+    s.edges.extend([[21, 0], [20, 22]].map(|ends| Edge { nodes: ends.map(NodeId), radii: [1.0; 2] }));
+    let made = done(&s, &only(|p| p.join = true));
+    assert_eq!((made.report.joined.loops.len(), made.report.result.loops), (0, 1));
+}
+
+#[test]
+fn tips_too_close_to_their_fork_are_put_out_or_taken_off() {
+    let branch = |angle: f64, length: f64| {
+        let (sin, cos) = angle.to_radians().sin_cos();
+        [length * cos, length * sin, 0.0]
+    };
+    let made = |angle: f64, length: f64| {
+        let points = [[-20.0, 0.0, 0.0], [0.0; 3], [20.0, 0.0, 0.0], branch(angle, length)];
+        let mut s = lines(&points.map(|p| vec![p]), 1.0);
+        s.edges.extend([(0, 1), (1, 2), (1, 3)].map(|(a, b)| Edge { nodes: [NodeId(a), NodeId(b)], radii: [1.0; 2] }));
+        let made = done(&s, &only(|p| p.short_tips = true));
+        (made.report.result.tips, made.report.short_tips.first().map(|t| (t.tip, t.put_out)))
+    };
+    assert_eq!(made(90.0, 5.0), (3, None));
+    assert_eq!(made(35.0, 2.5), (3, Some((3, true))));
+    assert_eq!(made(10.0, 4.0), (2, Some((3, false))));
+}
+
+#[test]
 fn islands_smaller_than_asked_go() {
     let s = lines(&[vec![[0.0; 3], [9.0, 0.0, 0.0], [19.0, 0.0, 0.0]], vec![[0.0, 50.0, 0.0], [4.0, 50.0, 0.0]]], 1.0);
     let made = done(&s, &only(|p| p.drop_islands = 3));

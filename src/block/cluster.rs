@@ -79,8 +79,18 @@ pub(crate) fn mesh_cluster_watched(
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
     let loops = independent_loops(&cluster.tubes);
     let uncapped = uncapped(cluster, &caps);
-    let mut out =
-        ClusterMesh { mesh: filled, caps, uncapped, astray, voxel, edge, surface_triangles, handles, loops, ends: Vec::new() };
+    let mut out = ClusterMesh {
+        mesh: filled,
+        caps,
+        uncapped,
+        astray,
+        voxel,
+        edge,
+        surface_triangles,
+        handles,
+        loops,
+        ends: Vec::new(),
+    };
     match params.ends {
         EndStyle::Open => {}
         EndStyle::Disc => out.ends = disc_ends(id, cluster, &surface, &out.mesh)?,

@@ -115,9 +115,7 @@ fn is_parted(wall: &TriMesh, p: &Point3, q: &Point3) -> bool {
     let high = p.coords.sup(&q.coords);
     wall.triangles.iter().any(|triangle| {
         let [a, b, c] = triangle.map(|v| &wall.points[v as usize]);
-        let apart = (0..3).any(|k| {
-            a[k].max(b[k]).max(c[k]) < low[k] || a[k].min(b[k]).min(c[k]) > high[k]
-        });
+        let apart = (0..3).any(|k| a[k].max(b[k]).max(c[k]) < low[k] || a[k].min(b[k]).min(c[k]) > high[k]);
         !apart && meets([a, b, c], p, q)
     })
 }
@@ -148,7 +146,9 @@ mod tests {
     }
 
     fn wall(cluster: &Cluster) -> TriMesh {
-        vessel_wall(&cluster.tubes, &SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(0.5) }).expect("a wall").mesh
+        vessel_wall(&cluster.tubes, &SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(0.5) })
+            .expect("a wall")
+            .mesh
     }
 
     /// A helix of radius 2 with turns so far apart, in radii of the vessel.

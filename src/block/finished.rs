@@ -6,8 +6,8 @@ use rustc_hash::FxHashMap;
 
 use super::cluster::ClusterMesh;
 use super::connector::ConnectorMesh;
-use super::faithful::Astray;
 use super::end_surface::{EndSurface, StoredEnd, disc_rim};
+use super::faithful::Astray;
 use crate::geometry::Section;
 use crate::mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
 use crate::mesh::check::parts::{Certificate, PartView, certify_with};

@@ -25,7 +25,7 @@ use crate::prepare::PrepareReport;
 use crate::progress::{Progress, Stage};
 use crate::refine::{RefineReport, Refined, split};
 use crate::report::fidelity::displaced;
-use crate::skeleton::Skeleton;
+use crate::skeleton::{Branch, NodeId, Skeleton};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -123,15 +123,27 @@ struct Before<'a> {
 }
 
 impl Before<'_> {
-    /// Nodes that may be far from where they were: an overlap demanded it, or a cure that is in the report.
+    /// Nodes that may be far from where they were: an overlap demanded it, a node of many vessels was split within its ball, or
+    /// a cure in the report took their vessel off or moved its end.
     fn demanded(&self) -> FxHashSet<u32> {
         let moved = self.refine.into_iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
         let crowded = self.refine.into_iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
-        let tips = self.prepare.touching.iter().map(|tip| tip.tip);
-        let short = self.prepare.short_tips.iter().map(|tip| tip.tip);
         let joined = self.prepare.joined.nodes.iter().flat_map(|j| [j.node, j.into]);
-        let spurs = self.prepare.spurs.iter().flat_map(|s| [s.tip, s.from]);
-        moved.chain(crowded).chain(tips).chain(short).chain(joined).chain(spurs).collect()
+        let mut nodes: FxHashSet<u32> = moved.chain(crowded).chain(joined).collect();
+        let given = self.compared.given;
+        let adjacency = given.adjacency();
+        let name = |n: NodeId| given.node(n).original;
+        nodes.extend(given.node_ids().filter(|&n| adjacency.valence(n) > 3).map(name));
+        let touching = self.prepare.touching.iter().map(|t| t.tip);
+        let ends = touching
+            .chain(self.prepare.short_tips.iter().map(|t| t.tip))
+            .chain(self.prepare.spurs.iter().map(|s| s.tip));
+        let ends: FxHashSet<u32> = ends.collect();
+        let cured = |branch: &&Branch| branch.ends().into_iter().any(|n| ends.contains(&name(n)));
+        for branch in given.branches(&adjacency).list.iter().filter(cured) {
+            nodes.extend(branch.nodes.iter().map(|&n| name(n)));
+        }
+        nodes
     }
 }
 
@@ -208,13 +220,7 @@ impl Args {
     }
 
     /// Joints are to be smoothed: the mesh is held.
-    fn run_in_memory(
-        &self,
-        network: &Skeleton,
-        plan: &MeshPlan,
-        before: Before,
-        bars: &Bars,
-    ) -> Result<Exit, Failure> {
+    fn run_in_memory(&self, network: &Skeleton, plan: &MeshPlan, before: Before, bars: &Bars) -> Result<Exit, Failure> {
         let estimate = Estimate::rough(network, plan);
         let bytes = (estimate.tets * HELD_PER_TET) as u64;
         if bytes > plan.memory {
@@ -271,8 +277,9 @@ impl Args {
         let notes = self.notes(expectation);
         let memory = (self.memory / 4) as usize;
         // Passes over the blocks end when the run is to end.
-        let failed =
-            |e: &dyn std::fmt::Display| if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) };
+        let failed = |e: &dyn std::fmt::Display| {
+            if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
+        };
         let mut clock = Clock::default();
         let compare = || Fidelity::of(before.compared, mesh, check.counts.volume);
         let fidelity = clock.time(bars, Stage::Check, 0, compare).map_err(|e| failed(&e))?;
@@ -296,7 +303,9 @@ impl Args {
     fn unfaithful(&self, fidelity: &Fidelity, before: Before) -> Option<String> {
         let bound = self.max_displacement.or(before.prepare.measured.then_some(FURTHEST))?;
         let excused = before.demanded();
-        let excused = |d: &&Displaced| self.max_displacement.is_none() && d.meshed.iter().chain(&d.given).any(|n| excused.contains(n));
+        let excused = |d: &&Displaced| {
+            self.max_displacement.is_none() && d.meshed.iter().chain(&d.given).any(|n| excused.contains(n))
+        };
         let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound).filter(|d| !excused(d));
         displaced(&far.copied().collect::<Vec<_>>(), bound)
     }
@@ -370,7 +379,11 @@ impl Args {
             return print(true, &Output { program, plan, before, run, check, fidelity }, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
-        if !self.common.quiet || !run.failed.is_empty() || !run.keeps_vessels(plan.fuse) || check.is_some_and(|c| !c.is_valid()) {
+        if !self.common.quiet
+            || !run.failed.is_empty()
+            || !run.keeps_vessels(plan.fuse)
+            || check.is_some_and(|c| !c.is_valid())
+        {
             eprint!("{run}");
             if let Some(check) = check {
                 eprint!("{check}");

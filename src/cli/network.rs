@@ -99,7 +99,8 @@ impl NetworkArgs {
     pub fn prepared(&self, params: &PrepareParams) -> Result<PreparedNetwork, Failure> {
         let file = self.file(params.radii)?;
         let prepared = prepare(&file.skeleton, params);
-        let prepared = prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;
+        let prepared =
+            prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;
         let Prepared { skeleton, given, outline, report } = prepared;
         let NetworkFile { notes, names, roots, .. } = file;
         Ok(PreparedNetwork { given, outline, skeleton, notes, report, names, roots })

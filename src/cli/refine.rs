@@ -12,8 +12,8 @@ use super::progress::Bars;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
 use crate::io::write_text;
-use crate::refine::{self, Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual};
 use crate::prepare::PrepareReport;
+use crate::refine::{self, Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual};
 use crate::report::plot::svg;
 use crate::report::refine::{csv, panels};
 

@@ -72,7 +72,8 @@ fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (V
         let t = k as f64 / count;
         let place = tube.point(t);
         // At a node of several vessels one lumen is shared, as wide as the node.
-        let shared = ends.iter().filter(|n| (n.position - place).norm() <= n.radius).map(|n| n.radius).fold(0.0, f64::max);
+        let shared =
+            ends.iter().filter(|n| (n.position - place).norm() <= n.radius).map(|n| n.radius).fold(0.0, f64::max);
         let radius = tube.radius(t).max(shared);
         // In radii of the thicker: what lies within a thicker vessel, as a spur did that was taken off, is in its lumen.
         let off = |distance: f64, meshed: f64| distance * (radius / meshed).min(1.0);

@@ -81,7 +81,8 @@ mod tests {
         let tube = lumen_of(&[[0.0; 3], [10.0, 0.0, 0.0]], &[(0, 1)]);
         assert!((tube / (10.0 * PI) - 1.0).abs() < 1e-9, "{tube}");
         // Two cylinders that cross at a right angle have 16/3 in common.
-        let crossed = lumen_of(&[[-9.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, -9.0, 0.0], [0.0, 9.0, 0.0]], &[(0, 1), (2, 3)]);
+        let crossed =
+            lumen_of(&[[-9.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, -9.0, 0.0], [0.0, 9.0, 0.0]], &[(0, 1), (2, 3)]);
         assert!((crossed / (36.0 * PI - 16.0 / 3.0) - 1.0).abs() < 0.01, "{crossed}");
         // The same vessel in many pieces.
         let points: Vec<[f64; 3]> = (0..=40).map(|i| [0.25 * f64::from(i), 0.0, 0.0]).collect();

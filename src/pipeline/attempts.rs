@@ -1,8 +1,8 @@
 //! The parameters with which a block is tried, one after the other, before its cuts are touched.
 
 use super::once::{self, Connector};
-use super::tips;
 use super::plan::{JointStyle, MeshPlan};
+use super::tips;
 use crate::block::{BlockError, BlockParams, ConnectorEnd, DIVISIONS, EndStyle, Finished};
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
 use crate::skeleton::NodeId;
@@ -184,7 +184,11 @@ pub fn cluster(
         match again.result {
             Ok(block) if still.is_empty() => {
                 let failures = [tried.failures, tried.result.err().into_iter().collect(), again.failures].concat();
-                return Tried { result: Ok(block), failures, way: format!("tips moved by {radii} radii, {}", again.way) };
+                return Tried {
+                    result: Ok(block),
+                    failures,
+                    way: format!("tips moved by {radii} radii, {}", again.way),
+                };
             }
             // Another one may be in the way now.
             _ => open.extend(still.into_iter().filter(|end| !open.contains(end)).collect::<Vec<_>>()),

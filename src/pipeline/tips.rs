@@ -41,7 +41,8 @@ pub fn moved(cluster: &Cluster, ends: &[u32], radii: f64) -> Option<Cluster> {
         let (from, way) = (end.section.origin, radii * end.section.radius);
         let to = from + end.section.axis * way;
         let beyond = end.overrun as usize;
-        let last = (0..result.tubes.len()).find(|&k| k != beyond && [result.tubes[k].a, result.tubes[k].b].contains(&from))?;
+        let last =
+            (0..result.tubes.len()).find(|&k| k != beyond && [result.tubes[k].a, result.tubes[k].b].contains(&from))?;
         if result.tubes[last].length() + way < LEFT * end.section.radius {
             return None;
         }

@@ -1,6 +1,6 @@
 //! Branch points beside each other in one lumen, and loops that enclose nothing but lumen.
 
-use crate::geometry::point_segment;
+use crate::geometry::{Tube, point_segment};
 use crate::skeleton::{Adjacency, Branch, Branches, Edge, NodeId, Skeleton, SkeletonError, clean};
 use rustc_hash::FxHashMap;
 use serde::Serialize;
@@ -152,21 +152,28 @@ fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), Skele
 /// Branches between the same two branch points that others are held against, at most.
 const MOST_BESIDE: usize = 8;
 /// Pairs of points and edges that are looked at to find whether one branch lies within another, at most.
-const MOST_LOOKS: usize = 1_000_000;
+const MOST_LOOKS: f64 = 1e6;
+/// A branch is looked at in steps of so many of its radii.
+const STEP: f64 = 0.5;
 
-/// Whether all nodes of branch `i` lie within the tubes of branch `k`; no where they have too many points to tell: a loop
+/// Whether branch `i` lies within the tubes of branch `k` all along; no where they have too many points to tell: a loop
 /// within a lumen is short.
 fn within(skeleton: &Skeleton, branches: &Branches, i: usize, k: usize) -> bool {
     let (inner, outer) = (&branches.list[i], &branches.list[k]);
     let tubes: Vec<_> = outer.tubes(skeleton).collect();
-    if inner.nodes.len().saturating_mul(tubes.len()) > MOST_LOOKS {
+    let steps = |tube: &Tube| (tube.length() / (STEP * tube.min_radius())).ceil().max(1.0);
+    let places: f64 = inner.tubes(skeleton).map(|tube| steps(&tube)).sum();
+    if places * tubes.len() as f64 > MOST_LOOKS {
         return false;
     }
-    inner.nodes.iter().all(|&n| {
-        let point = skeleton.node(n).position;
-        tubes.iter().any(|tube| {
-            let (t, distance) = point_segment(&point, &tube.a, &tube.b);
-            distance < tube.radius(t)
+    inner.tubes(skeleton).all(|inner| {
+        // Both ends of most edges are looked at twice; a branch of one edge has no node but those that it shares.
+        (0..=steps(&inner) as usize).all(|j| {
+            let point = inner.point(j as f64 / steps(&inner));
+            tubes.iter().any(|tube| {
+                let (t, distance) = point_segment(&point, &tube.a, &tube.b);
+                distance < tube.radius(t)
+            })
         })
     })
 }

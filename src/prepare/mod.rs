@@ -61,7 +61,16 @@ pub struct PrepareParams {
 impl Default for PrepareParams {
     fn default() -> Self {
         let touching = Touching::Retract;
-        Self { radii: true, merge: true, spurs: true, join: true, short_tips: true, touching, resample: true, ..Self::as_is() }
+        Self {
+            radii: true,
+            merge: true,
+            spurs: true,
+            join: true,
+            short_tips: true,
+            touching,
+            resample: true,
+            ..Self::as_is()
+        }
     }
 }
 
@@ -126,7 +135,11 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
         given.clone()
     };
     let grown = params.only_measured && !report.measured;
-    let params = &if grown { PrepareParams { drop_islands: params.drop_islands, ..PrepareParams::as_is() } } else { params.clone() };
+    let params = &if grown {
+        PrepareParams { drop_islands: params.drop_islands, ..PrepareParams::as_is() }
+    } else {
+        params.clone()
+    };
     if params.merge {
         (skeleton, report.merge) = merge::merge(&skeleton)?;
     }

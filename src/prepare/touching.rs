@@ -59,10 +59,7 @@ const STEP: f64 = 0.25;
 const OWN: f64 = 6.0;
 
 /// Treats all tips, in the order of their numbers.
-pub(super) fn treat(
-    skeleton: &Skeleton,
-    how: Touching,
-) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
+pub(super) fn treat(skeleton: &Skeleton, how: Touching) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
     if how == Touching::Keep {
         return Ok((skeleton.clone(), Vec::new()));
     }
