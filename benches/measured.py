@@ -42,7 +42,7 @@ def meshed(program, network, mesh, refine, seconds):
         return [f"none (exit {code}, {took:.0f} s)", "", ""]
     if not mesh.exists():
         return [f"{len(report['run']['failed'])} blocks failed ({took:.0f} s)", "", ""]
-    checked, _, _ = run(program, ["check", mesh, "-q"], seconds)
+    checked, _, _ = run(program, ["check", mesh, "--json"], seconds)
     mesh.unlink()
     sound = "valid" if checked == 0 and code == 0 else "sound, exit 1" if checked == 0 else "not valid: " + ", ".join(failing(report))
     fidelity = report["fidelity"]

@@ -79,7 +79,9 @@ const KINDS: [(&str, Make); 12] = [
         let angle = r.between(0.5, 20.0).to_radians();
         let ids = [[-15.0, 0.0, 0.0], [0.0; 3], [30.0, 0.0, 0.0], [30.0 * angle.cos(), 30.0 * angle.sin(), 0.0]];
         let ids = ids.map(|p| b.node(p, 1.0));
-        [(0, 1), (1, 2), (1, 3)].into_iter().for_each(|(i, j)| b.edge(ids[i], ids[j]));
+        for (i, j) in [(0, 1), (1, 2), (1, 3)] {
+            b.edge(ids[i], ids[j]);
+        }
         b.0
     }),
     ("radius that jumps twentyfold", |r| {
