@@ -153,10 +153,12 @@ fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), Skele
 const MOST_BESIDE: usize = 8;
 /// Pairs of points and edges that are looked at to find whether one branch lies within another, at most.
 const MOST_LOOKS: f64 = 1e6;
+/// A branch lies within another one up to so many of its radii: further out there may be a hole between their walls.
+const WITHIN: f64 = 1.25;
 /// A branch is looked at in steps of so many of its radii.
 const STEP: f64 = 0.5;
 
-/// Whether branch `i` lies within the tubes of branch `k` all along; no where they have too many points to tell: a loop
+/// Whether branch `i` lies within the tubes of branch `k` all along, or all but; no where they have too many points to tell: a loop
 /// within a lumen is short.
 fn within(skeleton: &Skeleton, branches: &Branches, i: usize, k: usize) -> bool {
     let (inner, outer) = (&branches.list[i], &branches.list[k]);
@@ -172,7 +174,7 @@ fn within(skeleton: &Skeleton, branches: &Branches, i: usize, k: usize) -> bool 
             let point = inner.point(j as f64 / steps(&inner));
             tubes.iter().any(|tube| {
                 let (t, distance) = point_segment(&point, &tube.a, &tube.b);
-                distance < tube.radius(t)
+                distance < WITHIN * tube.radius(t)
             })
         })
     })
