@@ -1,7 +1,8 @@
 //! Whatever the bytes: a network or an error; what is read is sound, or said not to be.
 #![no_main]
 
-use anastomesh::io::{NetworkFormat, NetworkOptions, read_network_from};
+use anastomesh::io::NetworkOptions;
+use anastomesh::testing::{NetworkFormat, read_network_from};
 use anastomesh::network::clean;
 use libfuzzer_sys::fuzz_target;
 
