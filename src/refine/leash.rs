@@ -8,8 +8,9 @@ use serde::Serialize;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// How far a node of a polyline may go, in its radii, unless an overlap demands more.
-const USUAL: f64 = 1.0;
+/// How far a node of a polyline may go, in its radii, unless an overlap demands more: short of what counts as displaced, which
+/// is measured between nodes, too.
+const USUAL: f64 = 0.9;
 /// Along the skeleton vessels give way this far from where they overlap, in sums of the radii there.
 const REACH: f64 = 4.0;
 /// The last share of it over which the way that a node may go falls to nothing.
