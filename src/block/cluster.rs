@@ -3,8 +3,9 @@
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::faithful::Astray;
+use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
-use crate::geometry::{DisjointSets, Section, Tube, place_key};
+use crate::geometry::{Section, Tube};
 use crate::mesh::TetMesh;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
@@ -13,7 +14,6 @@ use crate::surface::{
     vessel_wall,
 };
 use crate::tet::{Watch, tetrahedralize_watched};
-use rustc_hash::FxHashMap;
 
 /// The flat disc that closes a terminal.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,8 +48,10 @@ pub struct ClusterMesh {
     pub surface_triangles: usize,
     /// Genus of the wall.
     pub handles: i64,
-    /// Independent loops of the cluster's skeleton; other than `handles` only if that was allowed.
+    /// Independent loops of the cluster's skeleton, less those that are filled; other than `handles` only if that was allowed.
     pub loops: i64,
+    /// Loops of the skeleton that are filled by their own lumen.
+    pub filled: i64,
 }
 
 /// Meshes one cluster.
@@ -77,7 +79,8 @@ pub(crate) fn mesh_cluster_watched(
     let caps = caps(cluster, &surface);
     let surface_triangles = surface.mesh.triangles.len();
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
-    let loops = independent_loops(&cluster.tubes);
+    let all = Loops::of(cluster);
+    let loops = all.expected(handles);
     let uncapped = uncapped(cluster, &caps);
     let mut out = ClusterMesh {
         mesh: filled,
@@ -89,6 +92,7 @@ pub(crate) fn mesh_cluster_watched(
         surface_triangles,
         handles,
         loops,
+        filled: all.all - loops,
         ends: Vec::new(),
     };
     match params.ends {
@@ -123,7 +127,8 @@ pub fn cluster_surface(
     };
     let failed = |source| BlockError::Surface { cluster: id, source };
     let wall = vessel_wall(&cluster.tubes, &surface_params).map_err(failed)?;
-    let (handles, loops) = (1 - euler_characteristic(&wall.mesh) / 2, independent_loops(&cluster.tubes));
+    let handles = 1 - euler_characteristic(&wall.mesh) / 2;
+    let loops = Loops::of(cluster).expected(handles);
     if handles != loops && !params.allow_fused {
         return Err(BlockError::Genus { cluster: id, handles, loops });
     }
@@ -194,22 +199,6 @@ fn name_end(error: CapError, closed: &[(u32, &ClusterEnd)]) -> CapError {
 fn smallest_radius(cluster: &Cluster) -> f64 {
     let tubes = cluster.tubes.iter().map(Tube::min_radius);
     tubes.chain(cluster.ends.iter().map(|e| e.section.radius)).fold(f64::INFINITY, f64::min)
-}
-
-/// Independent loops of the graph of tubes, whose ends are the same node when they are the same point.
-fn independent_loops(tubes: &[Tube]) -> i64 {
-    let mut nodes: FxHashMap<[u64; 3], u32> = FxHashMap::default();
-    let mut sets = DisjointSets::new(0);
-    let mut loops = 0;
-    for t in tubes {
-        let [a, b] = [&t.a, &t.b].map(|p| *nodes.entry(place_key(p)).or_insert_with(|| sets.push()));
-        if sets.root(a) == sets.root(b) {
-            loops += i64::from(t.a != t.b);
-        } else {
-            sets.join(a, b);
-        }
-    }
-    loops
 }
 
 fn faces_of(surface: &CappedSurface, end: u32) -> Vec<[u32; 3]> {

@@ -69,8 +69,10 @@ pub struct About {
     pub astray: Astray,
     /// Genus of a cluster's wall.
     pub handles: i64,
-    /// Independent loops of its skeleton.
+    /// Independent loops of its skeleton, less those that are filled.
     pub loops: i64,
+    /// Loops of its skeleton that are filled by their own lumen.
+    pub filled: i64,
     /// What helped, where it failed before.
     pub cured: Option<Cured>,
 }
@@ -90,7 +92,7 @@ impl Finished {
     /// # Errors
     /// When an end or a cap is not on the boundary.
     pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
-        let ClusterMesh { mesh, ends, caps, uncapped, astray, handles, loops, .. } = cluster;
+        let ClusterMesh { mesh, ends, caps, uncapped, astray, handles, loops, filled, .. } = cluster;
         let mut faces = Faces::new(&mesh);
         let joints = ends.iter().map(|end| faces.joint(&end.triangles)).collect::<Result<_, _>>()?;
         let cap = |cap: &super::CapFaces| {
@@ -98,7 +100,7 @@ impl Finished {
         };
         let caps = caps.iter().map(cap).collect::<Result<_, _>>()?;
         let uncapped = uncapped.iter().map(|n| n.0).collect();
-        let about = About { uncapped, astray, handles, loops, ..About::default() };
+        let about = About { uncapped, astray, handles, loops, filled, ..About::default() };
         let (wall, adjacency) = faces.rest();
         Ok(Self { mesh, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
     }

@@ -13,6 +13,7 @@ mod end_surface;
 mod error;
 mod faithful;
 mod finished;
+mod loops;
 mod params;
 mod path;
 mod record;

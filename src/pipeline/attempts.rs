@@ -26,6 +26,8 @@ pub enum Way {
     Usual,
     /// With the grid of the contour moved: another triangulation of the same wall.
     Shifted,
+    /// With edges that follow the radius half as far: a thin vessel beside a thick one is lost in triangles as large as that.
+    Even,
     /// With a narrower kernel: parallel vessels fuse when their axes are closer than √(1 + 2 κ² ln 2) times the sum of their
     /// radii.
     Narrower,
@@ -41,9 +43,10 @@ pub enum Way {
 
 impl Way {
     /// All, in the order in which they are tried.
-    const ALL: [Self; 7] = [
+    const ALL: [Self; 8] = [
         Self::Usual,
         Self::Shifted,
+        Self::Even,
         Self::Narrower,
         Self::Other,
         Self::FinerShifted,
@@ -59,6 +62,7 @@ impl Way {
         match self {
             Self::Usual => "as usual",
             Self::Shifted => "grid shifted",
+            Self::Even => "more even edges",
             Self::Narrower => "narrower kernel",
             Self::Other => "other ends or grid",
             Self::FinerShifted => "finer voxel, grid shifted",
@@ -69,7 +73,7 @@ impl Way {
 
     /// Whether it may keep vessels apart that come close to each other.
     fn may_part(self) -> bool {
-        matches!(self, Self::Usual | Self::Shifted | Self::FinerNarrower)
+        matches!(self, Self::Usual | Self::Shifted | Self::Even | Self::FinerNarrower)
     }
 
     fn params(self, plan: &MeshPlan) -> BlockParams {
@@ -80,6 +84,7 @@ impl Way {
         match self {
             Self::Usual => usual,
             Self::Shifted => shifted,
+            Self::Even => BlockParams { follow: 0.5 * usual.follow, ..usual },
             Self::Narrower => narrower,
             Self::Other => match plan.joint {
                 JointStyle::Woven => BlockParams { ends: EndStyle::Open, ..usual },
@@ -294,11 +299,11 @@ mod tests {
         };
         let plan = MeshPlan::default();
         assert_eq!(fused(&plan, false), [false; Way::ALL.len()]);
-        assert_eq!(fused(&plan, true), [[false; 3].as_slice(), &[true; Way::ALL.len()]].concat());
+        assert_eq!(fused(&plan, true), [[false; 4].as_slice(), &[true; Way::ALL.len()]].concat());
         assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; Way::ALL.len()]);
         let names: Vec<String> = attempts(&plan, true, Way::Usual).into_iter().map(|attempt| attempt.name).collect();
-        assert_eq!(names[2], "finer voxel, narrower kernel");
-        assert_eq!(names[3], "vessels that overlap taken as one, as usual");
+        assert_eq!(names[3], "finer voxel, narrower kernel");
+        assert_eq!(names[4], "vessels that overlap taken as one, as usual");
         assert!(Way::ALL.is_sorted());
         for first in Way::APART {
             assert_eq!(attempts(&plan, false, first)[0].name, first.name());

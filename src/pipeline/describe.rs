@@ -6,7 +6,7 @@ use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{Made, Workshop};
 use super::plan::{JointStyle, MeshPlan};
-use super::report::{BlockCounts, FailedBlock, FusedBlock, Meeting, RunReport};
+use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, RunReport};
 use crate::block::{About, Astray, BlockDump};
 use crate::partition::{ClusterId, CutId};
 use crate::progress::Progress;
@@ -71,6 +71,9 @@ pub(super) fn describe_blocks(
     report.retries.clone_from(&blocks.retries);
     for (i, (cluster, about)) in partition.clusters.iter().zip(&clusters.0).enumerate() {
         let nodes = || original_nodes(skeleton, cluster.nodes.iter().copied());
+        if let Some(filled) = about.as_ref().map(|about| about.filled).filter(|&filled| filled > 0) {
+            report.filled.push(FilledLoops { block: format!("cluster {i}"), nodes: nodes(), loops: filled });
+        }
         if let Some(about) = about
             && (about.handles != about.loops || !about.uncapped.is_empty() || about.astray != Astray::default())
         {

@@ -48,6 +48,17 @@ pub struct FusedBlock {
     pub astray: Astray,
 }
 
+/// A cluster in which loops of the skeleton enclose nothing: they lie within their own lumen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FilledLoops {
+    /// `cluster 12`.
+    pub block: String,
+    /// Nodes of the block, as indices in the file that was read (the first 20).
+    pub nodes: Vec<u32>,
+    /// How many of its loops.
+    pub loops: i64,
+}
+
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BlockCounts {
     /// Number of clusters.
@@ -113,6 +124,8 @@ pub struct RunReport {
     pub retries: Vec<Retry>,
     /// Clusters in which overlapping vessels changed the topology.
     pub fused: Vec<FusedBlock>,
+    /// Clusters with loops that are filled by their own lumen, which are none of the mesh.
+    pub filled: Vec<FilledLoops>,
     /// Blocks that are missing from the mesh.
     pub failed: Vec<FailedBlock>,
     /// Size of the mesh.

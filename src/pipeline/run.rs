@@ -178,7 +178,7 @@ fn join_blocks<'a>(
         report.stages = clock.stages();
         return Err(RunError::BlocksFailed(Box::new(report)));
     }
-    let mut expectation = expectation(&skeleton);
+    let mut expectation = expectation(&skeleton, &blocks, &clusters);
     if plan.fuse {
         expectation.loops = fused_loops(&blocks, &clusters);
     }
@@ -252,13 +252,18 @@ fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
 }
 
 /// What the network asks of its mesh.
-fn expectation(skeleton: &Skeleton) -> Expectation {
+/// Loops that are filled by their own lumen are none of the mesh.
+fn expectation(skeleton: &Skeleton, blocks: &Blocks, clusters: &Clusters) -> Expectation {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);
-    Expectation {
-        loops: components.list.iter().map(|c| c.loops() as u32).collect(),
-        terminals: adjacency.terminals().iter().map(|&n| skeleton.node(n).original).collect(),
+    let mut loops: Vec<u32> = components.list.iter().map(|c| c.loops() as u32).collect();
+    for (cluster, about) in blocks.partition.clusters.iter().zip(&clusters.0) {
+        if let (Some(node), Some(about)) = (cluster.nodes.first(), about) {
+            let of_component = &mut loops[components.of_node[node.index()] as usize];
+            *of_component = of_component.saturating_sub(u32::try_from(about.filled).unwrap_or(0));
+        }
     }
+    Expectation { loops, terminals: adjacency.terminals().iter().map(|&n| skeleton.node(n).original).collect() }
 }
 
 /// Loops of each connected piece when vessels are meshed together on purpose: the handles of its clusters, and the loops

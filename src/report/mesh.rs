@@ -36,6 +36,13 @@ impl fmt::Display for RunReport {
                 )?;
             }
         }
+        for f in &self.filled {
+            writeln!(
+                out,
+                "  {} loops filled by their own lumen in {} (nodes {:?}): counted as closed",
+                f.loops, f.block, f.nodes
+            )?;
+        }
         for failed in &self.failed {
             writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason)?;
             if let Some(dump) = &failed.dump {

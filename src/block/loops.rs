@@ -1,0 +1,168 @@
+//! Loops of a cluster's vessels, and which of them are no holes: a loop that lies within its own lumen encloses nothing.
+
+use crate::geometry::{DisjointSets, Point3, Total, Tube, place_key, point_segment};
+use crate::partition::Cluster;
+use rustc_hash::FxHashMap;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// A loop may be filled where all that it spans is within so many radii of its vessels: further off there is a hole, nearer
+/// walls blend.
+const WITHIN: f64 = 1.25;
+/// What a loop spans is looked at in steps of so many of its smallest radius,
+const STEP: f64 = 0.5;
+/// and in so many to a side of a triangle at most.
+const MOST: f64 = 64.0;
+/// Loops that are looked at in one cluster, at most.
+const MOST_LOOPS: usize = 64;
+
+/// Independent loops of the graph of a cluster's tubes, whose ends are the same node when they are the same point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Loops {
+    /// All of them.
+    pub all: i64,
+    /// Those that may be filled by their own lumen.
+    pub filled: i64,
+}
+
+impl Loops {
+    pub fn of(cluster: &Cluster) -> Self {
+        let graph = Graph::of(&cluster.tubes);
+        let filled = graph.closing.iter().take(MOST_LOOPS).filter(|&&tube| graph.is_filled(tube)).count();
+        Self { all: graph.closing.len() as i64, filled: filled as i64 }
+    }
+
+    /// The loops that a wall of so many handles has to have: its handles, where only such are missing that may be filled.
+    pub fn expected(self, handles: i64) -> i64 {
+        if (self.all - self.filled..=self.all).contains(&handles) { handles } else { self.all }
+    }
+}
+
+/// Tubes as edges.
+struct Graph<'a> {
+    tubes: &'a [Tube],
+    places: Vec<Point3>,
+    /// The two places of each tube.
+    ends: Vec<[u32; 2]>,
+    /// The tubes at each place.
+    beside: Vec<Vec<u32>>,
+    /// Tubes that close a loop, each another one.
+    closing: Vec<u32>,
+}
+
+impl<'a> Graph<'a> {
+    fn of(tubes: &'a [Tube]) -> Self {
+        let mut numbers: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+        let mut sets = DisjointSets::new(0);
+        let mut graph = Self { tubes, places: Vec::new(), ends: Vec::new(), beside: Vec::new(), closing: Vec::new() };
+        for (tube, number) in tubes.iter().zip(0..) {
+            let ends = [&tube.a, &tube.b].map(|p| {
+                *numbers.entry(place_key(p)).or_insert_with(|| {
+                    graph.places.push(*p);
+                    graph.beside.push(Vec::new());
+                    sets.push()
+                })
+            });
+            graph.ends.push(ends);
+            ends.iter().for_each(|&end| graph.beside[end as usize].push(number));
+            if sets.root(ends[0]) != sets.root(ends[1]) {
+                sets.join(ends[0], ends[1]);
+            } else if ends[0] != ends[1] {
+                graph.closing.push(number);
+            }
+        }
+        graph
+    }
+
+    /// Whether the shortest loop through a tube spans nothing but lumen.
+    fn is_filled(&self, tube: u32) -> bool {
+        let [a, b] = self.ends[tube as usize];
+        let Some(mut around) = self.way(a, b, tube) else { return false };
+        around.push(tube);
+        let vessels: Vec<&Tube> = around.iter().map(|&t| &self.tubes[t as usize]).collect();
+        let length: f64 = vessels.iter().map(|t| t.length()).sum();
+        let mut center = nalgebra::Vector3::zeros();
+        for tube in &vessels {
+            center += (tube.a.coords + tube.b.coords) * (0.5 * tube.length() / length);
+        }
+        let step = STEP * vessels.iter().map(|t| t.min_radius()).fold(f64::INFINITY, f64::min);
+        vessels.iter().all(|tube| self.holds([&center.into(), &tube.a, &tube.b], step))
+    }
+
+    /// The tubes of the shortest way between two places that does without one of them (Dijkstra's algorithm).
+    fn way(&self, from: u32, to: u32, without: u32) -> Option<Vec<u32>> {
+        let mut came_by: Vec<Option<u32>> = vec![None; self.places.len()];
+        let mut heap = BinaryHeap::from([Reverse((Total(0.0), from, without))]);
+        while let Some(Reverse((Total(distance), place, by))) = heap.pop() {
+            if came_by[place as usize].is_some() {
+                continue;
+            }
+            came_by[place as usize] = Some(by);
+            if place == to {
+                break;
+            }
+            for &tube in self.beside[place as usize].iter().filter(|&&tube| tube != without) {
+                let length = self.tubes[tube as usize].length();
+                heap.push(Reverse((Total(distance + length), self.other(tube, place), tube)));
+            }
+        }
+        let (mut way, mut place) = (Vec::new(), to);
+        while place != from {
+            let tube = came_by[place as usize]?;
+            way.push(tube);
+            place = self.other(tube, place);
+        }
+        Some(way)
+    }
+
+    fn other(&self, tube: u32, place: u32) -> u32 {
+        let [a, b] = self.ends[tube as usize];
+        if a == place { b } else { a }
+    }
+
+    /// Whether a triangle lies within the tubes, or all but.
+    fn holds(&self, [a, b, c]: [&Point3; 3], step: f64) -> bool {
+        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        let count = (longest / step).ceil().clamp(1.0, MOST) as u32;
+        let share = |k: u32| f64::from(k) / f64::from(count);
+        (0..=count).all(|i| {
+            (0..=count - i).all(|j| {
+                let point = a + (b - a) * share(i) + (c - a) * share(j);
+                self.tubes.iter().any(|tube| {
+                    let (t, distance) = point_segment(&point, &tube.a, &tube.b);
+                    distance <= WITHIN * tube.radius(t)
+                })
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// A ring of this radius of vessels of radius 1, with a vessel that leaves it.
+    fn ring(radius: f64) -> Cluster {
+        let at = |i: u32| {
+            let angle = TAU * f64::from(i % 12) / 12.0;
+            Point3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
+        };
+        let tube = |a, b| Tube { a, b, ra: 1.0, rb: 1.0 };
+        let mut tubes: Vec<Tube> = (0..12).map(|i| tube(at(i), at(i + 1))).collect();
+        tubes.push(tube(at(0), Point3::new(radius + 9.0, 0.0, 0.0)));
+        Cluster { tubes, nodes: Vec::new(), ends: Vec::new() }
+    }
+
+    #[test]
+    fn a_loop_within_its_lumen_may_be_filled_and_no_other() {
+        for (radius, filled) in [(0.9, 1), (1.2, 1), (1.6, 0), (5.0, 0)] {
+            let loops = Loops::of(&ring(radius));
+            assert_eq!(loops, Loops { all: 1, filled }, "radius {radius}");
+            assert_eq!([0, 1, 2].map(|handles| loops.expected(handles)), [1 - filled, 1, 1]);
+        }
+        let mut two = ring(1.0);
+        two.tubes.extend(ring(6.0).tubes);
+        assert_eq!(Loops::of(&two), Loops { all: 2, filled: 1 });
+    }
+}
