@@ -1,6 +1,5 @@
 //! What was done to a network before it was meshed, and what the mesh is held against.
 
-use super::exit::Failure;
 use super::network::PreparedNetwork;
 use super::progress::Bars;
 use crate::fidelity::{Compared, Displaced, Fidelity};
@@ -48,6 +47,19 @@ impl Before {
         Self { given, outline, network, meshed, prepare, refine }
     }
 
+    /// The same without refinement, of the network as it was prepared; none if it was not refined.
+    pub fn unrefined(&self, prepared: &Skeleton) -> Option<Self> {
+        self.refine.as_ref()?;
+        Some(Self {
+            given: self.given.clone(),
+            outline: self.outline.clone(),
+            network: prepared.clone(),
+            meshed: split(prepared).0,
+            prepare: self.prepare.clone(),
+            refine: None,
+        })
+    }
+
     /// The networks that the mesh is held against.
     pub fn compared(&self) -> Compared<'_> {
         Compared { given: &self.given, outline: &self.outline, meshed: &self.meshed }
@@ -55,13 +67,14 @@ impl Before {
 
     /// Draws the tips of a measured network back that could not be capped, but inlets that were asked for; says which, and
     /// whether there were any.
-    pub fn take_back(&mut self, run: &RunReport, roots: &[u32], bars: &Bars) -> Result<bool, Failure> {
+    pub fn take_back(&mut self, run: &RunReport, roots: &[u32], bars: &Bars) -> bool {
         let tips: Vec<u32> =
             run.fused.iter().flat_map(|f| &f.uncapped).copied().filter(|n| !roots.contains(n)).collect();
         if tips.is_empty() || !self.prepare.measured {
-            return Ok(false);
+            return false;
         }
-        let (network, told) = take_back(&self.network, &tips).map_err(|e| Failure::stage(e.to_string()))?;
+        // Where no vessel would remain all stay.
+        let Ok((network, told)) = take_back(&self.network, &tips) else { return false };
         let done = told.iter().any(|tip| tip.done != TouchedBy::Left);
         if done {
             touching(&told).lines().for_each(|line| bars.note(line));
@@ -69,7 +82,7 @@ impl Before {
             self.network = network;
             self.prepare.touching.extend(told);
         }
-        Ok(done)
+        done
     }
 
     /// Places of the network that are further from what was meshed than they may be, in words; none when there are none.

@@ -20,9 +20,10 @@ use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
-use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, RunError, TooLarge};
+use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, RunError, Store, Stored, TooLarge};
 use crate::progress::{Progress, Stage};
 use crate::refine::Refined;
+use crate::report::advice::advice;
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -108,6 +109,20 @@ struct Done<'a> {
     expectation: Expectation,
     check: &'a CheckReport,
     report: RunReport,
+}
+
+/// A mesh whose blocks are in a store, and what it was made of.
+struct Made<'a> {
+    stored: Stored<'a>,
+    before: Before,
+}
+
+impl Made<'_> {
+    /// Whether it is valid, and all of the network.
+    fn is_sound(&self, plan: &MeshPlan) -> bool {
+        let Stored { check, report, .. } = &self.stored;
+        report.failed.is_empty() && check.is_valid() && report.keeps_vessels(plan.fuse)
+    }
 }
 
 /// What `--json` prints.
@@ -196,7 +211,7 @@ impl Args {
     }
 
     /// Blocks go to where they are kept, and the mesh from there to its file.
-    fn run_in_store(&self, read: &Skeleton, plan: &MeshPlan, mut before: Before, bars: &Bars) -> Result<Exit, Failure> {
+    fn run_in_store(&self, read: &Skeleton, plan: &MeshPlan, before: Before, bars: &Bars) -> Result<Exit, Failure> {
         let rough = Estimate::rough(&before.network, plan);
         let place = BlockPlace::choose(self.work_dir.as_deref(), self.restart, &self.output, &rough, plan.memory);
         let store = place.open(read, || self.options(plan))?;
@@ -209,18 +224,48 @@ impl Args {
                 "finished blocks are kept in {dir}: the same command goes on there if this run is stopped"
             ));
         }
+        let make = |before| self.make(&store, plan, before, &fits, bars);
+        let first = make(before);
+        // Refinement is not to end in something worse than none.
+        let second = match &first {
+            Ok(made) if made.is_sound(plan) => None,
+            Ok(made) => made.before.unrefined(read),
+            Err((RunError::BlocksFailed(_), before)) => before.unrefined(read),
+            Err(_) => None,
+        };
+        let second = second.and_then(|before| make(before).ok()).filter(|made| made.is_sound(plan));
+        if second.is_some() {
+            bars.note("refined, the network gives no valid mesh; as it was, it does: that is kept");
+        }
+        let Made { stored, before } = match second {
+            Some(made) => made,
+            None => first.map_err(|(error, before)| self.explain(error, plan, &before))?,
+        };
+        let Stored { whole, expectation, check, report } = stored;
+        self.finish(Done { mesh: &whole, expectation, check: &check, report }, plan, &before, bars)
+    }
+
+    /// Makes the mesh of a network, and again as long as tips have to be drawn back.
+    fn make<'a>(
+        &self,
+        store: &'a Store,
+        plan: &MeshPlan,
+        mut before: Before,
+        fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
+        bars: &'a Bars,
+    ) -> Result<Made<'a>, (RunError, Before)> {
         let mut round = 0;
-        let made = loop {
-            let made = pipeline::mesh_into(&store, &before.network, plan, &fits, bars);
-            let made = made.map_err(|e| self.explain(e, plan, &before))?;
+        loop {
+            let stored = match pipeline::mesh_into(store, &before.network, plan, fits, bars) {
+                Ok(stored) => stored,
+                Err(error) => return Err((error, before)),
+            };
             round += 1;
             // Blocks that this does not change are found in the store.
-            if round > ROUNDS || !self.cures.touches() || !before.take_back(&made.report, &plan.roots, bars)? {
-                break made;
+            if round > ROUNDS || !self.cures.touches() || !before.take_back(&stored.report, &plan.roots, bars) {
+                return Ok(Made { stored, before });
             }
-        };
-        let done = Done { mesh: &made.whole, expectation: made.expectation, check: &made.check, report: made.report };
-        self.finish(done, plan, &before, bars)
+        }
     }
 
     /// Everything that the mesh depends on, beside the network.
@@ -247,16 +292,25 @@ impl Args {
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
         report.stages.extend(clock.stages());
         self.print(plan, before, &report, Some((check, &fidelity)))?;
+        let invalid = !check.is_valid() || !report.keeps_vessels(plan.fuse);
+        self.advise(&report, invalid);
         let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
         if let Some(words) = &unfaithful {
             eprint!("{words}");
         }
         Ok(match () {
             () if !report.failed.is_empty() => Exit::StageFailed,
-            () if !check.is_valid() || !report.keeps_vessels(plan.fuse) => Exit::GateNotMet,
+            () if invalid => Exit::GateNotMet,
             () if unfaithful.is_some() && !self.allow_displaced => Exit::GateNotMet,
             () => Exit::Fine,
         })
+    }
+
+    /// Says what may help.
+    fn advise(&self, run: &RunReport, invalid: bool) {
+        for line in advice(run, invalid, self.refine.is_some(), self.rho) {
+            eprintln!("{line}");
+        }
     }
 
     /// What went wrong, for people.
@@ -264,10 +318,13 @@ impl Args {
         match error {
             RunError::BlocksFailed(report) => match self.print(plan, before, &report, None) {
                 Err(failure) => failure,
-                Ok(()) => Failure::stage(format!(
-                    "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
-                    report.failed.len()
-                )),
+                Ok(()) => {
+                    self.advise(&report, true);
+                    Failure::stage(format!(
+                        "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
+                        report.failed.len()
+                    ))
+                }
             },
             RunError::Cancelled => self.stopped(),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),

@@ -77,6 +77,7 @@ pub(super) fn describe_blocks(
         if let Some(about) = about
             && (about.handles != about.loops || !about.uncapped.is_empty() || about.astray != Astray::default())
         {
+            report.anastomoses += (about.handles - about.loops).max(0);
             report.fused.push(FusedBlock {
                 block: format!("cluster {i}"),
                 nodes: nodes(),

@@ -29,6 +29,8 @@ pub use estimate::{Estimate, TooLarge};
 pub use once::replay;
 pub use plan::{JointStyle, MeshPlan};
 pub use report::RunReport;
+#[cfg(test)]
+pub use report::{FailedBlock, Meeting};
 pub use run::{Meshed, Stored, mesh_into, mesh_network};
 pub use store::{Manifest, Store};
 #[cfg(feature = "cli")]

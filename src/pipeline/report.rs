@@ -124,6 +124,8 @@ pub struct RunReport {
     pub retries: Vec<Retry>,
     /// Clusters in which overlapping vessels changed the topology.
     pub fused: Vec<FusedBlock>,
+    /// Loops that vessels make which fused: handles of the walls beyond the loops of the skeleton.
+    pub anastomoses: i64,
     /// Clusters with loops that are filled by their own lumen, which are none of the mesh.
     pub filled: Vec<FilledLoops>,
     /// Blocks that are missing from the mesh.

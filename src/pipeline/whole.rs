@@ -2,7 +2,7 @@
 //! that order. Nothing but the plan is held; blocks are read when their turn comes.
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::io;
 
 use super::blocks::Blocks;
@@ -30,8 +30,8 @@ pub struct Whole<'a> {
     patches: Vec<Patch>,
     /// Patch of each terminal's cap, ascending by node.
     patch_of: Vec<(u32, i32)>,
-    /// Joints that nothing is joined to, because a block is missing: their faces are wall.
-    open: BTreeSet<JointPlace>,
+    /// Joints that nothing is joined to, because a block is missing, each with the patch of its disc.
+    open: BTreeMap<JointPlace, i32>,
     joined: Vec<[(u32, u32); 2]>,
     counts: SourceCounts,
 }
@@ -82,7 +82,7 @@ impl<'a> Whole<'a> {
             parts: Vec::with_capacity(blocks.clusters.len() + blocks.connectors.len()),
             patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
             patch_of: Vec::new(),
-            open: BTreeSet::new(),
+            open: BTreeMap::new(),
             joined: Vec::new(),
             counts: SourceCounts::default(),
         };
@@ -91,8 +91,9 @@ impl<'a> Whole<'a> {
         for (block, made) in (0..).zip(&blocks.clusters) {
             part_of.push(made.as_ref().ok().map(|kept| whole.add(*kept, block, None)).transpose()?);
         }
-        let connectors = blocks.partition.cuts.iter().zip(&blocks.connectors);
-        for (block, (cut, made)) in (blocks.clusters.len() as i32..).zip(connectors) {
+        let connectors = blocks.partition.cuts.iter().zip(&blocks.connectors).enumerate();
+        let mut next = terminals.of.values().map(|(id, _)| *id).max().unwrap_or(WALL) + 1;
+        for (block, (number, (cut, made))) in (blocks.clusters.len() as i32..).zip(connectors) {
             let sides = joints_of_cut(&blocks.partition, cut);
             let sides = sides.map(|place| part_of[place.part as usize].map(|part| JointPlace { part, ..place }));
             match (made, sides) {
@@ -101,7 +102,14 @@ impl<'a> Whole<'a> {
                     let join = |side, place: JointPlace| [(place.part, place.joint), (part, side)];
                     whole.joined.extend([join(0, a), join(1, b)]);
                 }
-                _ => whole.open.extend(sides.into_iter().flatten()),
+                _ => {
+                    for (side, place) in sides.into_iter().enumerate().filter_map(|(side, place)| Some((side, place?)))
+                    {
+                        whole.patches.push(Patch { id: next, name: format!("missing_{number}_{side}"), cap: None });
+                        whole.open.insert(place, next);
+                        next += 1;
+                    }
+                }
             }
         }
         whole.add_open_faces()?;
@@ -122,7 +130,7 @@ impl<'a> Whole<'a> {
     }
 
     fn add_open_faces(&mut self) -> io::Result<()> {
-        for place in &self.open {
+        for place in self.open.keys() {
             let joints = Record::open(&self.record(self.parts[place.part as usize])?)?.joints()?;
             self.counts.boundary += joints.get(place.joint as usize).map_or(0, |joint| joint.faces.len());
         }
@@ -187,8 +195,9 @@ impl<'a> Whole<'a> {
         let last = JointPlace { part, joint: u32::MAX };
         if self.open.range(first..=last).next().is_some() {
             let joints = record.joints()?;
-            for place in self.open.range(first..=last) {
-                faces.extend(joints.get(place.joint as usize).into_iter().flat_map(|j| &j.faces).map(|&f| (f, WALL)));
+            for (place, patch) in self.open.range(first..=last) {
+                let open = joints.get(place.joint as usize).into_iter().flat_map(|j| &j.faces);
+                faces.extend(open.map(|&face| (face, *patch)));
             }
         }
         faces.sort_unstable();

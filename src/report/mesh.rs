@@ -36,6 +36,9 @@ impl fmt::Display for RunReport {
                 )?;
             }
         }
+        if self.anastomoses > 0 {
+            writeln!(out, "  {} anastomoses: loops that vessels make which fused", self.anastomoses)?;
+        }
         for f in &self.filled {
             writeln!(
                 out,

@@ -1,0 +1,53 @@
+//! What to try when a network did not become a valid mesh: options to be pasted.
+
+use crate::pipeline::RunReport;
+
+/// How much finer the blocks are that come next.
+const FINER: f64 = 1.5;
+
+/// One line for each option that may help. `invalid`: the mesh, if there is one, is not valid; `refined`: the network was
+/// refined first; `rho`: the resolution that was asked for.
+pub fn advice(run: &RunReport, invalid: bool, refined: bool, rho: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    if run.failed.is_empty() && !invalid {
+        return lines;
+    }
+    if !run.overlaps.is_empty() || !run.fused.is_empty() {
+        lines.push(if refined {
+            "vessels overlap that could not be moved apart: --residual fuse takes them as one and counts the loops"
+                .into()
+        } else {
+            "vessels overlap or come too close: --refine moves them apart".into()
+        });
+    }
+    if run.fused.iter().any(|block| !block.uncapped.is_empty()) {
+        lines.push("tips end in other vessels: --touching retract draws them back, --touching join joins them".into());
+    }
+    if run.overlaps.is_empty() || refined {
+        lines.push(format!("finer blocks may come out where these did not: --rho {}", (FINER * rho).ceil()));
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::{FailedBlock, Meeting};
+
+    #[test]
+    fn what_would_help_is_named_and_nothing_where_all_is_well() {
+        let meeting = Meeting { edges: [[0, 1], [2, 3]], vessels: [0, 1], distance: 0.5, radii: 1.0 };
+        let failed = FailedBlock { block: "cluster 0".into(), nodes: vec![0], reason: String::new(), dump: None };
+        let overlapping = RunReport { overlaps: vec![meeting], ..RunReport::default() };
+        let broken = RunReport { failed: vec![failed], ..RunReport::default() };
+        assert_eq!(advice(&overlapping, false, false, 3.0), Vec::<String>::new());
+        let options = |run: &RunReport, refined| -> Vec<String> {
+            let option = |line: &String| line.split("--").nth(1).map(|w| w.split(' ').next().unwrap_or("").to_owned());
+            advice(run, true, refined, 3.0).iter().filter_map(option).collect()
+        };
+        assert_eq!(options(&overlapping, false), ["refine"]);
+        assert_eq!(options(&overlapping, true), ["residual", "rho"]);
+        assert_eq!(options(&broken, false), ["rho"]);
+        assert!(advice(&broken, false, false, 3.0)[0].ends_with("--rho 5"));
+    }
+}
