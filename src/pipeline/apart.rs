@@ -1,7 +1,7 @@
 //! Blocks that meet. No block knows of the vessels of another one; when a web in the crotch of a fork, or the facets of a
 //! thick vessel, reach a vessel that runs close by, that is seen in the whole. The clusters are then made again, finer.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::attempts::Way;
 use super::blocks::{Blocks, original_nodes};
@@ -10,17 +10,52 @@ use super::estimate::cluster_cost;
 use super::report::Retry;
 use super::rounds::Run;
 use super::routes::{Overlapping, tangled_clusters};
-use crate::partition::ClusterId;
+use crate::partition::{ClusterId, Partition};
 use crate::progress::Stage;
+use crate::skeleton::BranchId;
 use crate::tet::Watch;
 
 /// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
 pub type Meetings = Vec<[u32; 2]>;
 
-/// Leaves the meetings at which finer walls may help: a cluster takes part, and it is not vessels that overlap.
-pub fn hopeful(mut meetings: Meetings, clusters: usize, overlapping: &Overlapping) -> Meetings {
-    meetings.retain(|pair| (pair[0] as usize) < clusters && !overlapping.do_overlap(*pair));
-    meetings
+/// What is done about blocks that meet, and was before.
+#[derive(Debug, Default)]
+pub struct Apart {
+    /// Blocks that met, as often as clusters were made again because of it.
+    pub met: Vec<Meetings>,
+    /// Vessels that are not cut, for their connectors met something: as part of a cluster they can be made finer.
+    pub uncut: BTreeSet<BranchId>,
+    /// How often some were added.
+    rounds: usize,
+}
+
+/// How often vessels are left uncut because their connectors meet something.
+const ROUNDS: usize = 2;
+
+impl Apart {
+    /// Decides what is done about meetings; no when nothing is left to try. `partition`: of the blocks that met.
+    pub fn part(&mut self, mut meetings: Meetings, partition: &Partition, overlapping: &Overlapping) -> bool {
+        meetings.retain(|pair| !overlapping.do_overlap(*pair));
+        let clusters = partition.clusters.len();
+        let is_cluster = |block: u32| (block as usize) < clusters;
+        let tried = self.met.len() == Way::APART.len();
+        // Connectors are not made finer.
+        let stuck = meetings.iter().filter(|pair| tried || !is_cluster(pair[0]));
+        let connectors = stuck.flatten().filter(|&&block| !is_cluster(block));
+        let branches: Vec<BranchId> = connectors.map(|&i| partition.cuts[i as usize - clusters].branch).collect();
+        if !branches.is_empty() && self.rounds < ROUNDS {
+            self.rounds += 1;
+            self.uncut.extend(branches);
+            self.met.clear();
+            return true;
+        }
+        meetings.retain(|pair| is_cluster(pair[0]));
+        if meetings.is_empty() || tried {
+            return false;
+        }
+        self.met.push(meetings);
+        true
+    }
 }
 
 impl Run<'_> {

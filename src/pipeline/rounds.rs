@@ -39,13 +39,18 @@ pub struct Run<'a> {
 type Pass = (Vec<Made>, Vec<Option<Made>>);
 
 impl Run<'_> {
-    /// Meshes every block, changing the partition where blocks fail. `fits` is asked before the first one.
+    /// Meshes every block, changing the partition where blocks fail. `uncut`: vessels that are not cut. `fits` is asked before
+    /// the first block.
     ///
     /// # Errors
     /// When the network cannot be partitioned, or blocks cannot be kept.
-    pub fn build(&mut self, fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>) -> Result<Blocks, RunError> {
+    pub fn build(
+        &mut self,
+        uncut: &BTreeSet<BranchId>,
+        fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
+    ) -> Result<Blocks, RunError> {
         let plan = self.shop.plan;
-        let mut cures: BTreeMap<BranchId, Cure> = BTreeMap::new();
+        let mut cures: BTreeMap<BranchId, Cure> = uncut.iter().map(|&branch| (branch, Cure::NotCut)).collect();
         let overlapping = self.overlaps.pairs.iter().filter(|_| plan.fuse).map(|o| o.edges);
         let together: BTreeSet<_> = branch_pairs(self.shop.skeleton, overlapping).into_iter().collect();
         let mut notes = Notes::default();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io;
 
-use super::apart::{Meetings, hopeful};
+use super::apart::Apart;
 use super::attempts::Way;
 use super::blocks::Blocks;
 use super::describe::{Clusters, announce, describe_blocks};
@@ -22,6 +22,7 @@ use crate::mesh::check::parts::PartsCheck;
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
+use crate::partition::Partition;
 use crate::progress::{Progress, Stage, ask};
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
@@ -75,7 +76,8 @@ pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress
     let store = Store::in_memory();
     let clock = &mut Clock::default();
     if plan.smooths_joints() {
-        return join_blocks(network, plan, &store, &[], &|_| Ok(()), progress, clock)?.smoothed(progress, clock);
+        return join_blocks(network, plan, &store, &Apart::default(), &|_| Ok(()), progress, clock)?
+            .smoothed(progress, clock);
     }
     let Stored { whole, expectation, check, mut report } =
         mesh_timed(&store, network, plan, &|_| Ok(()), progress, clock)?;
@@ -125,17 +127,15 @@ fn mesh_timed<'a>(
 ) -> Result<Stored<'a>, RunError> {
     // What is in memory for the blocks is not while the whole is checked. In the rare case that blocks meet everything is
     // done again, which finds all blocks but these in the store. Woven connectors belong to the clusters as they are.
-    let tries = if plan.joint == JointStyle::Woven { 0 } else { Way::APART.len() };
-    let mut met = Vec::new();
+    let mut apart = Apart::default();
     loop {
-        let joined = join_blocks(network, plan, store, &met, fits, progress, clock)?;
+        let joined = join_blocks(network, plan, store, &apart, fits, progress, clock)?;
         ask(progress)?;
-        let (stored, meetings) = joined.checked(plan, progress, clock)?;
+        let (stored, goes_on) = joined.checked(plan, &mut apart, progress, clock)?;
         ask(progress)?;
-        if meetings.is_empty() || met.len() == tries {
+        if !goes_on {
             return Ok(stored);
         }
-        met.push(meetings);
     }
 }
 
@@ -144,15 +144,16 @@ struct Joined<'a> {
     whole: Whole<'a>,
     expectation: Expectation,
     overlapping: Overlapping,
+    partition: Partition,
     report: RunReport,
 }
 
-/// `met`: which blocks met when this was done before, as often as it was.
+/// `apart`: what is done about blocks that met when this was done before.
 fn join_blocks<'a>(
     network: &Skeleton,
     plan: &MeshPlan,
     store: &'a Store,
-    met: &[Meetings],
+    apart: &Apart,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     progress: &'a dyn Progress,
     clock: &mut Clock,
@@ -161,13 +162,14 @@ fn join_blocks<'a>(
     let mut report = RunReport::default();
     let (skeleton, overlaps) = clock.time(progress, Stage::Prepare, 0, || prepare(network, &mut report));
     let terminals = terminals::assign(&skeleton, &plan.roots)?;
-    if met.is_empty() {
+    let first = apart.met.is_empty() && apart.uncut.is_empty();
+    if first {
         announce(&report, progress);
     }
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let mut run = Run { overlaps: &overlaps, shop, progress, clock };
-    let mut blocks = run.build(if met.is_empty() { fits } else { &|_| Ok(()) })?;
-    for (way, meetings) in Way::APART.into_iter().zip(met) {
+    let mut blocks = run.build(&apart.uncut, if first { fits } else { &|_| Ok(()) })?;
+    for (way, meetings) in Way::APART.into_iter().zip(&apart.met) {
         run.set_apart(&mut blocks, meetings, way)?;
     }
     let overlapping = Overlapping::of(&skeleton, &blocks.partition, &overlaps);
@@ -184,24 +186,25 @@ fn join_blocks<'a>(
     }
     let number = || Whole::new(store, progress, &skeleton, &blocks, &terminals);
     let whole = clock.time(progress, Stage::Merge, 0, number)?;
-    Ok(Joined { whole, expectation, overlapping, report })
+    Ok(Joined { whole, expectation, overlapping, partition: blocks.partition, report })
 }
 
 impl<'a> Joined<'a> {
-    /// With the mesh comes which of its blocks meet.
+    /// With the mesh comes whether it is made again, because blocks of it meet.
     fn checked(
         self,
         plan: &MeshPlan,
+        apart: &mut Apart,
         progress: &dyn Progress,
         clock: &mut Clock,
-    ) -> io::Result<(Stored<'a>, Meetings)> {
-        let Self { whole, expectation, overlapping, mut report } = self;
+    ) -> io::Result<(Stored<'a>, bool)> {
+        let Self { whole, expectation, overlapping, partition, mut report } = self;
         let check = || whole.check(&expectation, plan.memory);
         let PartsCheck { report: check, meeting } = clock.time(progress, Stage::Check, 0, check)?;
         report.mesh = whole.size();
         report.stages = clock.stages();
-        let meetings = hopeful(meeting, report.blocks.clusters, &overlapping);
-        Ok((Stored { whole, expectation, check, report }, meetings))
+        let goes_on = plan.joint != JointStyle::Woven && apart.part(meeting, &partition, &overlapping);
+        Ok((Stored { whole, expectation, check, report }, goes_on))
     }
 
     fn smoothed(self, progress: &dyn Progress, clock: &mut Clock) -> Result<Meshed, RunError> {
@@ -251,8 +254,7 @@ fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
     (skeleton, overlaps)
 }
 
-/// What the network asks of its mesh.
-/// Loops that are filled by their own lumen are none of the mesh.
+/// What the network asks of its mesh. Loops that are filled by their own lumen are none of the mesh.
 fn expectation(skeleton: &Skeleton, blocks: &Blocks, clusters: &Clusters) -> Expectation {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);

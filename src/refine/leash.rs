@@ -3,7 +3,8 @@
 use super::frame::Frame;
 use super::params::Freedom;
 use crate::geometry::{Point3, Total};
-use crate::skeleton::{NodeId, Overlaps, Skeleton};
+use crate::skeleton::{EdgeId, NodeId, Overlaps, Skeleton};
+use rustc_hash::FxHashSet;
 use serde::Serialize;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -15,6 +16,8 @@ const USUAL: f64 = 0.9;
 const REACH: f64 = 4.0;
 /// The last share of it over which the way that a node may go falls to nothing.
 const RAMP: f64 = 0.6;
+/// Vessels closer than this, in sums of their radii, are all but touching.
+const CLOSE: f64 = 1.05;
 /// The furthest that an overlap can demand, in sums of its radii: a vessel that crosses another one's axis has to go one.
 const DEMANDED: f64 = 2.0;
 
@@ -60,6 +63,17 @@ impl Leashes {
         let mut far: Vec<FarNode> = moved.filter(|n| n.radii > self.radii).collect();
         far.sort_by(|a, b| b.radii.total_cmp(&a.radii).then(a.node.cmp(&b.node)));
         far
+    }
+
+    /// Overlaps, and vessels that were let go and are all but touching: walls are not exactly at their radius.
+    pub(super) fn close(self, frame: &Frame, overlaps: &Overlaps) -> Overlaps {
+        let is_loose = |node: &NodeId| frame.leash[node.index()] > 0.0;
+        let overlapping: FxHashSet<[EdgeId; 2]> = overlaps.pairs.iter().map(|o| o.edges).collect();
+        let mut wide = frame.skeleton.clone();
+        wide.edges.iter_mut().for_each(|edge| edge.radii = edge.radii.map(|r| CLOSE * r));
+        let mut close = wide.overlaps(&frame.adjacency);
+        close.pairs.retain(|o| overlapping.contains(&o.edges) || o.nodes.iter().flatten().any(is_loose));
+        close
     }
 
     /// Lets the nodes near overlaps go: at first by so many of their radii, then twice as far each time.

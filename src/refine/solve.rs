@@ -245,7 +245,10 @@ impl<'a> Solver<'a> {
         let bends = if self.params.bends { add_bends(&mut self.frame, overlaps) } else { 0 };
         self.bends += bends;
         self.frame.rejoin();
-        self.loosen(overlaps);
+        if let Some(leashes) = self.leashes {
+            let close = leashes.close(&self.frame, overlaps);
+            leashes.loosen(&mut self.frame, &close);
+        }
         self.restart();
         bends
     }
