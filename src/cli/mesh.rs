@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::grid::GridArgs;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::prepare::CureArgs;
 use super::progress::Bars;
@@ -16,7 +17,7 @@ use super::room::{self, BlockPlace, size};
 use super::stop::{self, Stop};
 use crate::fidelity::{Compared, Displaced, Fidelity};
 use crate::io::network::ensure_network_writable;
-use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
+use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable, write_mesh_with};
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
@@ -83,6 +84,8 @@ pub struct Args {
     /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
+    #[command(flatten)]
+    grid: GridArgs,
     #[command(flatten)]
     common: Common,
     #[command(flatten)]
@@ -275,7 +278,7 @@ impl Args {
     fn finish(&self, done: Done, plan: &MeshPlan, before: Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
         let notes = self.notes(expectation);
-        let memory = (self.memory / 4) as usize;
+        let options = WriteOptions { memory: Some((self.memory / 4) as usize), grid: self.grid.options() };
         // Passes over the blocks end when the run is to end.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
@@ -283,7 +286,7 @@ impl Args {
         let mut clock = Clock::default();
         let compare = || Fidelity::of(before.compared, mesh, check.counts.volume);
         let fidelity = clock.time(bars, Stage::Check, 0, compare).map_err(|e| failed(&e))?;
-        let write = || write_mesh_within(Some(memory), &self.output, mesh, &notes, bars);
+        let write = || write_mesh_with(&options, &self.output, mesh, &notes, bars);
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
         report.stages.extend(clock.stages());
         self.print(plan, before, &report, Some((check, &fidelity)))?;

@@ -6,6 +6,7 @@ mod completions;
 mod dual;
 mod exit;
 mod generate;
+mod grid;
 mod info;
 mod man;
 mod mesh;

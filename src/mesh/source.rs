@@ -167,7 +167,7 @@ impl dyn MeshSource + '_ {
     }
 
     /// Reads some parts at a time on all threads, and gives what was read in the parts' order.
-    fn in_order<T: Send>(
+    pub(super) fn in_order<T: Send>(
         &self,
         expected: usize,
         read: impl Fn(u32) -> io::Result<T> + Sync,

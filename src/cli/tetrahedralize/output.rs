@@ -9,7 +9,7 @@ use super::plan::{TetPlan, Wanted};
 use crate::cli::exit::Failure;
 use crate::cli::stop::NOTHING_KEPT;
 use crate::io::tetgen::{Extent, MeshFamily};
-use crate::io::volume::{MeshNotes, write_mesh_to, write_mesh_within};
+use crate::io::volume::{MeshNotes, WriteOptions, write_mesh_to, write_mesh_with};
 use crate::mesh::{Patch, TET_FACES, VolumeMesh};
 use crate::progress::Progress;
 use crate::tet::Tetrahedralization;
@@ -78,7 +78,7 @@ pub fn write(
     };
     match target {
         Target::File(path) => {
-            write_mesh_within(None, path, volume, &notes, progress).map_err(|e| failed(&e))?;
+            write_mesh_with(&WriteOptions::default(), path, volume, &notes, progress).map_err(|e| failed(&e))?;
             Ok(vec![path.clone()])
         }
         Target::Family(base) => {

@@ -2,7 +2,6 @@
 //!
 //! A format has its faults in `error`, and `read` and `write` that know bytes and streams but neither of the other formats.
 
-mod bits;
 mod content;
 mod error;
 #[cfg(test)]
@@ -10,6 +9,7 @@ pub(in crate::io) mod fixtures;
 mod format;
 mod medit;
 mod msh;
+mod options;
 mod pvtu;
 mod read;
 #[cfg(test)]
@@ -20,8 +20,11 @@ mod write;
 pub use content::{MeshFile, MeshNotes};
 pub use error::MeshFileError;
 pub use format::MeshFormat;
+#[cfg(feature = "cli")]
+pub use options::GridOptions;
+pub use options::WriteOptions;
 pub use read::{read_mesh, read_mesh_from};
 pub use vtu::{VtuPieces, VtuPiecesError};
 #[cfg(feature = "cli")]
-pub use write::write_mesh_within;
+pub use write::write_mesh_with;
 pub use write::{ensure_writable, write_mesh, write_mesh_to};
