@@ -1,5 +1,6 @@
 //! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
+mod blocks;
 mod check;
 mod common;
 mod completions;
@@ -17,6 +18,7 @@ mod refine;
 mod replay;
 mod room;
 mod stop;
+mod surface;
 mod tetrahedralize;
 mod units;
 
@@ -39,6 +41,8 @@ struct Args {
 enum Verb {
     /// Mesh a network: skeleton in, labelled tetrahedral mesh out
     Mesh(mesh::Args),
+    /// Make the wall of a network alone, for pictures and printers: STL, PLY, OBJ, GLB, 3MF
+    Surface(surface::Args),
     /// Make a measured network one graph: doubled lines merged, spurs off, radii filled, points as needed
     Prepare(prepare::Args),
     /// Move the nodes of a network until its vessels do not overlap and can be cut
@@ -74,6 +78,7 @@ pub fn main() -> ExitCode {
     };
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
+        Verb::Surface(args) => surface::run(args),
         Verb::Prepare(args) => prepare::run(args),
         Verb::Refine(args) => refine::run(args),
         Verb::Dual(args) => dual::run(args),

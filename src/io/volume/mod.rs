@@ -24,6 +24,7 @@ pub use format::MeshFormat;
 pub use options::GridOptions;
 pub use options::WriteOptions;
 pub use read::{read_mesh, read_mesh_from};
+pub(in crate::io) use vtu::write_boundary as write_poly_data;
 pub use vtu::{VtuPieces, VtuPiecesError};
 #[cfg(feature = "cli")]
 pub use write::write_mesh_with;

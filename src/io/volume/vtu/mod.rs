@@ -22,4 +22,5 @@ pub use layout::VtuPiecesError;
 pub(super) use names::GLOBAL_IDS;
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
-pub(super) use write::{Grid, write, write_boundary};
+pub(in crate::io) use write::write_boundary;
+pub(super) use write::{Grid, write};

@@ -54,7 +54,7 @@ impl Grid<'_> {
 ///
 /// # Errors
 /// What the writer `out` or reading the mesh reports.
-pub(in crate::io::volume) fn write_boundary(
+pub(in crate::io) fn write_boundary(
     out: &mut (impl Write + Seek),
     surface: &BoundarySurface,
     notes: &MeshNotes,
