@@ -4,6 +4,7 @@ mod blocks;
 mod check;
 mod common;
 mod completions;
+mod convert;
 mod dual;
 mod exit;
 mod generate;
@@ -53,6 +54,8 @@ enum Verb {
     Generate(generate::Args),
     /// Fill a surface, a complex of facets or points with tetrahedra
     Tetrahedralize(tetrahedralize::Args),
+    /// Write a volume mesh, a surface or a network in another format, or a volume mesh's boundary
+    Convert(convert::Args),
     /// Verify a volume mesh line by line
     Check(check::Args),
     /// Make a block again that failed, from what `mesh` left of it
@@ -84,6 +87,7 @@ pub fn main() -> ExitCode {
         Verb::Dual(args) => dual::run(args),
         Verb::Generate(args) => generate::run(args),
         Verb::Tetrahedralize(args) => tetrahedralize::run(args),
+        Verb::Convert(args) => convert::run(args),
         Verb::Check(args) => check::run(args),
         Verb::Replay(args) => replay::run(args),
         Verb::Info(args) => info::run(args),
