@@ -349,6 +349,7 @@ impl Args {
                 None => format!("mesh --rho {} --follow {}", self.rho, self.follow),
             },
             regions: false,
+            flow: None,
         }
     }
 

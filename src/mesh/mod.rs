@@ -3,6 +3,7 @@
 pub mod adjacency;
 mod bounds;
 pub mod check;
+pub mod faces;
 pub mod facets;
 mod keep;
 mod keys;

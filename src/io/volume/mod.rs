@@ -3,6 +3,7 @@
 //! A format has its faults in `error`, and `read` and `write` that know bytes and streams but neither of the other formats.
 
 mod bits;
+mod conditions;
 mod content;
 mod error;
 #[cfg(test)]
@@ -10,6 +11,7 @@ pub(in crate::io) mod fixtures;
 mod format;
 mod medit;
 mod msh;
+mod openfoam;
 mod pvtu;
 mod read;
 #[cfg(test)]
@@ -17,6 +19,7 @@ mod tests;
 mod vtu;
 mod write;
 
+pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 pub use content::{MeshFile, MeshNotes};
 pub use error::MeshFileError;
 pub use format::MeshFormat;
