@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::flow::FlowArgs;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::prepare::CureArgs;
 use super::progress::Bars;
@@ -15,15 +16,17 @@ use super::refine::RefineArgs;
 use super::room::{self, BlockPlace, size};
 use super::stop::{self, Stop};
 use crate::fidelity::{Compared, Displaced, Fidelity};
-use crate::io::network::ensure_network_writable;
+use crate::io::network::{NodeNames, ensure_network_writable};
+use crate::io::write_text;
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
-use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, RunError, TooLarge};
+use crate::pipeline::{self, Caps, Clock, Estimate, JointStyle, MeshPlan, Outlets, RunError, TooLarge};
 use crate::prepare::PrepareReport;
 use crate::progress::{Progress, Stage};
 use crate::refine::{RefineReport, Refined, split};
+use crate::report::caps;
 use crate::report::fidelity::displaced;
 use crate::skeleton::{Branch, NodeId, Skeleton};
 
@@ -86,6 +89,8 @@ pub struct Args {
     #[command(flatten)]
     common: Common,
     #[command(flatten)]
+    flow: FlowArgs,
+    #[command(flatten)]
     cures: CureArgs,
     #[command(flatten)]
     how: RefineArgs,
@@ -117,6 +122,8 @@ struct Done<'a> {
 struct Before<'a> {
     #[serde(skip)]
     compared: Compared<'a>,
+    #[serde(skip)]
+    names: &'a NodeNames,
     prepare: &'a PrepareReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     refine: Option<&'a RefineReport>,
@@ -186,7 +193,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let refinement = refined.as_ref().map(|r| &r.report);
     let meshed = &split(skeleton).0;
     let compared = Compared { given: &network.given, outline: &network.outline, meshed };
-    let before = Before { compared, prepare: &network.report, refine: refinement };
+    let before = Before { compared, names: &network.names, prepare: &network.report, refine: refinement };
     // Blocks are kept as soon as they are done.
     stop.keep();
     pool.install(|| {
@@ -274,7 +281,6 @@ impl Args {
     /// Writes the mesh, holds it against its network and says what was done.
     fn finish(&self, done: Done, plan: &MeshPlan, before: Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
-        let notes = self.notes(expectation);
         let memory = (self.memory / 4) as usize;
         // Passes over the blocks end when the run is to end.
         let failed = |e: &dyn std::fmt::Display| {
@@ -283,8 +289,13 @@ impl Args {
         let mut clock = Clock::default();
         let compare = || Fidelity::of(before.compared, mesh, check.counts.volume);
         let fidelity = clock.time(bars, Stage::Check, 0, compare).map_err(|e| failed(&e))?;
-        let write = || write_mesh_within(Some(memory), &self.output, mesh, &notes, bars);
+        let mut caps = Caps::of(mesh, before.compared.meshed, self.flow.fluid()).map_err(|e| failed(&e))?;
+        let grouped = caps.group(mesh, self.flow.outlets());
+        let written = grouped.as_ref().map_or(mesh, |grouped| grouped);
+        let notes = self.notes(expectation, &caps);
+        let write = || write_mesh_within(Some(memory), &self.output, written, &notes, bars);
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
+        self.write_table(&caps, before.names)?;
         report.stages.extend(clock.stages());
         self.print(plan, before, &report, Some((check, &fidelity)))?;
         let unfaithful = self.unfaithful(&fidelity, before);
@@ -340,7 +351,18 @@ impl Args {
         })
     }
 
-    fn notes(&self, expectation: Expectation) -> MeshNotes {
+    /// Writes what is known of inlets and outlets beside the mesh.
+    fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<(), Failure> {
+        let path = self.output.with_extension("patches.csv");
+        let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: cannot be written: {e}", path.display()));
+        let text = caps::table(caps, names).map_err(|e| failed(&e))?;
+        write_text(&path, &text).map_err(|e| failed(&e))
+    }
+
+    fn notes(&self, mut expectation: Expectation, caps: &Caps) -> MeshNotes {
+        if self.flow.outlets() != Outlets::Separate {
+            expectation.terminals = caps.alone();
+        }
         MeshNotes {
             expectation: Some(expectation),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
@@ -349,7 +371,7 @@ impl Args {
                 None => format!("mesh --rho {} --follow {}", self.rho, self.follow),
             },
             regions: false,
-            flow: None,
+            flow: Some(caps.flow()),
         }
     }
 

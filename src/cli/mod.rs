@@ -5,6 +5,7 @@ mod common;
 mod completions;
 mod dual;
 mod exit;
+mod flow;
 mod generate;
 mod info;
 mod man;

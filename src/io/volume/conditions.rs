@@ -1,6 +1,6 @@
 //! What flows through a mesh and what it is let out against: for formats that are whole cases of a solver.
 
-use crate::mesh::{Cap, Patch, WALL};
+use crate::mesh::{Cap, Patch};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
@@ -47,9 +47,9 @@ pub(super) enum Role {
 
 impl Role {
     pub(super) fn of(patch: &Patch) -> Self {
-        match patch.name.as_str() {
-            name if patch.id != WALL && name.starts_with("inlet") => Self::Inlet,
-            name if patch.id != WALL && name.starts_with("outlet") => Self::Outlet,
+        match (patch.is_inlet(), patch.is_outlet()) {
+            (true, _) => Self::Inlet,
+            (_, true) => Self::Outlet,
             _ => Self::Wall,
         }
     }
@@ -58,7 +58,7 @@ impl Role {
 impl Flow {
     /// Blood that creeps through the inlets: for a mesh without a network. An inlet of unknown radius gets no flow.
     pub(super) fn usual(patches: &[Patch]) -> Self {
-        let inlets = patches.iter().filter(|&patch| Role::of(patch) == Role::Inlet);
+        let inlets = patches.iter().filter(|patch| patch.is_inlet());
         let flow = |cap: &Cap| flow_of_reynolds(USUAL_REYNOLDS, cap.radius, BLOOD_DENSITY, BLOOD_VISCOSITY);
         let cap = |patch: &Patch| CapFlow { flow: patch.cap.as_ref().map_or(0.0, flow), resistance: 0.0 };
         let caps = inlets.map(|patch| (patch.id, cap(patch))).collect();

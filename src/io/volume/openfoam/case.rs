@@ -80,7 +80,8 @@ pub(super) fn solution() -> String {
 }
 
 pub(super) fn decompose() -> String {
-    head::text("dictionary", "system/decomposeParDict") + "numberOfSubdomains 4;\nmethod          scotch;\n"
+    head::text("dictionary", "system/decomposeParDict") + "numberOfSubdomains 4;\n// Asks for no library; scotch is better where it is there.\nmethod          hierarchical;\n\
+           coeffs          { n (2 2 1); }\n"
 }
 
 const CONTROL: &str = "\
