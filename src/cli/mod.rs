@@ -1,5 +1,6 @@
 //! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
+mod before;
 mod check;
 mod common;
 mod completions;

@@ -246,6 +246,23 @@ impl MeshSource for Whole<'_> {
         Ok(points.into())
     }
 
+    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
+        let mut found = Vec::with_capacity(ids.len());
+        while let Some(&id) = ids.get(found.len()) {
+            // Of parts that begin with the same number, all but the last have no points of their own.
+            let part = self.parts.partition_point(|part| part.first_point <= id).saturating_sub(1);
+            let first = self.parts[part].first_point;
+            let points = self.points(part as u32)?;
+            let here = ids[found.len()..].iter().map_while(|&id| points.get(id.checked_sub(first)? as usize));
+            let before = found.len();
+            found.extend(here.copied());
+            if found.len() == before {
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("there is no point {id}")));
+            }
+        }
+        Ok(found)
+    }
+
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
         let part = self.parts[part as usize];
         let numbers = self.numbers(part)?;

@@ -1,8 +1,9 @@
 //! OFF: counts, then one point a line, then one face a line.
 
 use super::content::SurfaceContent;
-use super::error::{Place, SurfaceFault};
+use super::error::SurfaceFault;
 use super::faces::Faces;
+use crate::io::text::Place;
 use crate::io::text::{Words, shown};
 use crate::mesh::TriMesh;
 use std::io::{self, Write};
