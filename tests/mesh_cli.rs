@@ -423,3 +423,22 @@ fn the_root_of_an_swc_file_is_the_inlet() {
     let inlet = patches.iter().find(|p| p.name == "inlet").expect("an inlet");
     assert_eq!(inlet.cap.map(|c| c.node), Some(0));
 }
+
+// ---- How VTK's files are written ------------------------------------------------------------------------------------
+
+#[test]
+fn a_grid_of_tetrahedra_alone_has_its_boundary_beside_it() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    let options = ["-q", "--cells", "tets", "--float32", "--compress", "none"];
+    assert_code(&mesh(&fixture("tree_30.swc"), &out, &options), FINE);
+    assert_eq!(entries(folder.path()), ["tree.vtu", "tree_boundary.vtp"]);
+    let file = read_mesh(&out).expect("a mesh");
+    assert!(!file.labelled && file.notes.expectation.is_some());
+    let boundary = fs::read(folder.path().join("tree_boundary.vtp")).expect("a file");
+    let head = String::from_utf8_lossy(&boundary[..4000]).into_owned();
+    for words in ["type=\"PolyData\"", "Name=\"patch\"", "Name=\"patch_names\"", "type=\"Float32\" Name=\"Points\""] {
+        assert!(head.contains(words), "'{words}' in {head}");
+    }
+    assert!(!head.contains("compressor"));
+}

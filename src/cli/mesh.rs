@@ -1,24 +1,25 @@
 //! `anastomesh mesh`: from a network to a volume mesh.
 
-use crate::skeleton::resolution::{FOLLOW, RHO};
 use std::path::PathBuf;
 
 use serde::Serialize;
 
 use super::before::Before;
+use super::blocks::BlockArgs;
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
+use super::grid::GridArgs;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::room::{self, BlockPlace, size};
+use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
 use crate::fidelity::Fidelity;
 use crate::io::network::{NodeNames, ensure_network_writable};
+use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable, write_mesh_with};
 use crate::io::write_text;
-use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
@@ -36,13 +37,8 @@ pub struct Args {
     /// .mesh (Medit), or .ele (TetGen's family of files)
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
-    /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
-    #[arg(long, default_value_t = RHO, allow_negative_numbers = true)]
-    rho: f64,
-    /// How far edges follow the radius of wider vessels: 1 in proportion, so that each has RHO voxels across; 0 not at all,
-    /// so that all of a cluster is as fine as its thinnest vessel
-    #[arg(long, default_value_t = FOLLOW, allow_negative_numbers = true)]
-    follow: f64,
+    #[command(flatten)]
+    blocks: BlockArgs,
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
     /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
     /// vessel is cut
@@ -51,18 +47,12 @@ pub struct Args {
     /// Leave woven joints as the blocks have them instead of smoothing across them
     #[arg(long)]
     frozen_joints: bool,
-    /// Memory that may be used, such as 2GiB or 500MB, however large the network
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
-    memory: u64,
     /// Folder that keeps finished blocks: a run that was stopped goes on there when it is started again
     #[arg(long, value_name = "DIR")]
     work_dir: Option<PathBuf>,
     /// Throw away what the work directory holds if it is of another network, other options or another version
     #[arg(long, requires = "work_dir")]
     restart: bool,
-    /// Refine the network first, in at most N iterations, so that its vessels do not overlap and can be cut
-    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
-    refine: Option<usize>,
     /// Write the refined network
     #[arg(long, value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
@@ -78,12 +68,11 @@ pub struct Args {
     /// Say so where the axis is further off, and exit as if it were not
     #[arg(long)]
     allow_displaced: bool,
-    /// Leave out blocks that fail, say so, and exit 4 all the same
-    #[arg(long)]
-    keep_going: bool,
     /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
+    #[command(flatten)]
+    grid: GridArgs,
     #[command(flatten)]
     common: Common,
     #[command(flatten)]
@@ -168,19 +157,14 @@ impl Args {
         let mut beside = self.output.clone().into_os_string();
         beside.push(".failed");
         MeshPlan {
-            rho: self.rho,
-            follow: self.follow,
             joint: match self.joint {
                 Joint::Woven => JointStyle::Woven,
                 Joint::Disc => JointStyle::Disc,
                 Joint::None => JointStyle::None,
             },
             frozen_joints: self.frozen_joints,
-            memory: self.memory,
-            roots: Vec::new(),
-            fuse: self.refine.is_some() && self.how.fuses(),
-            keep_going: self.keep_going,
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
+            ..self.blocks.plan(self.how.fuses())
         }
     }
 
@@ -230,7 +214,7 @@ impl Args {
 
     /// Everything that the mesh depends on, beside the network.
     fn options(&self, plan: &MeshPlan) -> serde_json::Value {
-        let refine = self.refine.map(|iterations| format!("{:?}", self.how.params(iterations)));
+        let refine = self.blocks.refine.map(|iterations| format!("{:?}", self.how.params(iterations)));
         // Whether failed blocks are left out says nothing about those that are done.
         let plan = MeshPlan { keep_going: false, ..plan.clone() };
         serde_json::json!({ "mesh": plan, "refine": refine })
@@ -239,7 +223,7 @@ impl Args {
     /// Writes the mesh, holds it against its network and says what was done.
     fn finish(&self, done: Done, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
-        let memory = (self.memory / 4) as usize;
+        let options = WriteOptions { memory: Some((self.blocks.memory / 4) as usize), grid: self.grid.options() };
         // Passes over the blocks end when the run is to end.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
@@ -251,7 +235,7 @@ impl Args {
         let grouped = caps.group(mesh, self.flow.outlets());
         let written = grouped.as_ref().map_or(mesh, |grouped| grouped);
         let notes = self.notes(expectation, &caps);
-        let write = || write_mesh_within(Some(memory), &self.output, written, &notes, bars);
+        let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
         self.write_table(&caps, &before.names)?;
         report.stages.extend(clock.stages());
@@ -313,10 +297,7 @@ impl Args {
         MeshNotes {
             expectation: Some(expectation),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: match self.refine {
-                Some(n) => format!("mesh --rho {} --follow {} --refine {n}", self.rho, self.follow),
-                None => format!("mesh --rho {} --follow {}", self.rho, self.follow),
-            },
+            options: format!("mesh {}", self.blocks.typed()),
             regions: false,
             flow: Some(caps.flow()),
         }
@@ -324,7 +305,7 @@ impl Args {
 
     /// The network refined, if that was asked for.
     fn refined(&self, network: &PreparedNetwork, stop: &Stop) -> Result<Option<Refined>, Failure> {
-        let Some(iterations) = self.refine else { return Ok(None) };
+        let Some(iterations) = self.blocks.refine else { return Ok(None) };
         let refined = super::refine::moved(network, &self.how.params(iterations), self.common.quiet, stop)?;
         if let Some(path) = &self.refined {
             stop.keep();

@@ -1,6 +1,7 @@
 //! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
 mod before;
+mod blocks;
 mod check;
 mod common;
 mod completions;
@@ -8,6 +9,7 @@ mod dual;
 mod exit;
 mod flow;
 mod generate;
+mod grid;
 mod info;
 mod man;
 mod mesh;
@@ -18,6 +20,7 @@ mod refine;
 mod replay;
 mod room;
 mod stop;
+mod surface;
 mod tetrahedralize;
 mod units;
 
@@ -40,6 +43,8 @@ struct Args {
 enum Verb {
     /// Mesh a network: skeleton in, labelled tetrahedral mesh out
     Mesh(mesh::Args),
+    /// Make the wall of a network alone, for pictures and printers: STL, PLY, OBJ, GLB, 3MF
+    Surface(surface::Args),
     /// Make a measured network one graph: doubled lines merged, spurs off, radii filled, points as needed
     Prepare(prepare::Args),
     /// Move the nodes of a network until its vessels do not overlap and can be cut
@@ -75,6 +80,7 @@ pub fn main() -> ExitCode {
     };
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
+        Verb::Surface(args) => surface::run(args),
         Verb::Prepare(args) => prepare::run(args),
         Verb::Refine(args) => refine::run(args),
         Verb::Dual(args) => dual::run(args),

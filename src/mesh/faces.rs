@@ -157,7 +157,9 @@ fn joined(loose: &[Loose]) -> io::Result<Vec<(u32, [u32; 3], Side)>> {
 
 fn unpaired([a, b, c]: [u32; 3], sides: usize) -> io::Error {
     let text = match sides {
-        1 => format!("the face of points {a}, {b} and {c} has a tetrahedron or a patch on one side and nothing on the other"),
+        1 => format!(
+            "the face of points {a}, {b} and {c} has a tetrahedron or a patch on one side and nothing on the other"
+        ),
         _ => format!("the face of points {a}, {b} and {c} has {sides} tetrahedra and patches instead of two"),
     };
     io::Error::new(io::ErrorKind::InvalidData, text)

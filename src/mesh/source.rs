@@ -166,7 +166,8 @@ impl dyn MeshSource + '_ {
         self.in_order(self.counts().boundary, |part| self.face_labels(part), |piece| piece.count, each)
     }
 
-    fn in_order<T: Send>(
+    /// As [`each_part`](Self::each_part), with the things counted that are to come.
+    pub(super) fn in_order<T: Send>(
         &self,
         expected: usize,
         read: impl Fn(u32) -> io::Result<T> + Sync,

@@ -26,7 +26,9 @@ impl AtomicFolder {
         match fs::metadata(target) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
             Err(error) => return Err(error),
-            Ok(data) if !data.is_dir() => return taken("a folder is to be written, and a file of its name exists".into()),
+            Ok(data) if !data.is_dir() => {
+                return taken("a folder is to be written, and a file of its name exists".into());
+            }
             Ok(_) => {}
         }
         match files_in(target)?.into_iter().find(|(name, _)| !ours(name)) {
@@ -122,7 +124,9 @@ fn files_in(folder: &Path) -> io::Result<Vec<(String, PathBuf)>> {
 
 /// Whether a name is that of a file that was not completed.
 fn is_part(name: &str) -> bool {
-    name.rsplit('/').next().is_some_and(|own| own.starts_with('.') && Path::new(own).extension().is_some_and(|e| e == "part"))
+    name.rsplit('/')
+        .next()
+        .is_some_and(|own| own.starts_with('.') && Path::new(own).extension().is_some_and(|e| e == "part"))
 }
 
 /// Removes a folder's own files and what folders are empty then. Nothing can be done about a failure here.

@@ -12,7 +12,7 @@ use super::log::LogFile;
 use crate::skeleton::Skeleton;
 
 /// Version of what is in a work directory.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 const MANIFEST: &str = "anastomesh.json";
 const LOCK: &str = "anastomesh.lock";

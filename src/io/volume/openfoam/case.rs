@@ -34,7 +34,11 @@ pub(super) fn velocity(boundary: &Boundary, flow: &Flow) -> String {
             inlet.name
         );
     }
-    text += &per_name(boundary, Role::Outlet, "type inletOutlet;\n        inletValue uniform (0 0 0);\n        value uniform (0 0 0);");
+    text += &per_name(
+        boundary,
+        Role::Outlet,
+        "type inletOutlet;\n        inletValue uniform (0 0 0);\n        value uniform (0 0 0);",
+    );
     text + &per_name(boundary, Role::Wall, "type noSlip;") + "}\n"
 }
 
@@ -80,7 +84,8 @@ pub(super) fn solution() -> String {
 }
 
 pub(super) fn decompose() -> String {
-    head::text("dictionary", "system/decomposeParDict") + "numberOfSubdomains 4;\n// Asks for no library; scotch is better where it is there.\nmethod          hierarchical;\n\
+    head::text("dictionary", "system/decomposeParDict")
+        + "numberOfSubdomains 4;\n// Asks for no library; scotch is better where it is there.\nmethod          hierarchical;\n\
            coeffs          { n (2 2 1); }\n"
 }
 

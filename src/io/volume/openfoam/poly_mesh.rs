@@ -29,15 +29,15 @@ pub(super) fn write(
 ) -> io::Result<()> {
     let faces = boundary.inner + boundary.outer;
     if 3 * faces > LARGEST || mesh.counts().points as u64 > LARGEST {
-        let text = format!("the mesh has {faces} faces, more than labels of 32 bits can count; mesh its parts, or use a smaller --rho");
+        let text = format!(
+            "the mesh has {faces} faces, more than labels of 32 bits can count; mesh its parts, or use a smaller --rho"
+        );
         return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
     }
     write_points(folder, mesh, progress)?;
     let counts = mesh.counts();
-    let note = format!(
-        "nPoints:{}  nCells:{}  nFaces:{faces}  nInternalFaces:{}",
-        counts.points, counts.tets, boundary.inner
-    );
+    let note =
+        format!("nPoints:{}  nCells:{}  nFaces:{faces}  nInternalFaces:{}", counts.points, counts.tets, boundary.inner);
     let mut lists = Lists {
         corners: corner_list(folder, &note, faces, progress)?,
         owner: label_list(folder, OWNER, &note, faces)?,

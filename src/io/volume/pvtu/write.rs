@@ -3,10 +3,11 @@
 use super::folder::PieceFolder;
 use super::plan::Plan;
 use crate::io::file::{Asked, AtomicFile, write_whole};
-use crate::io::volume::bits::Bits;
 use crate::io::volume::content::MeshNotes;
+use crate::io::volume::options::GridOptions;
 use crate::io::volume::vtu::{GLOBAL_IDS, Grid};
 use crate::mesh::VolumeMesh;
+use crate::mesh::bits::Bits;
 use crate::mesh::source::MeshSource;
 use crate::progress::Progress;
 use rayon::prelude::*;
@@ -20,11 +21,13 @@ pub(in crate::io::volume) struct Pieces {
     pub tets: usize,
     /// How many bytes of pieces are held at a time, about; one piece is, in any case.
     pub memory: usize,
+    /// How each of them is written.
+    pub grid: GridOptions,
 }
 
 impl Default for Pieces {
     fn default() -> Self {
-        Self { tets: 2_000_000, memory: 512 << 20 }
+        Self { tets: 2_000_000, memory: 512 << 20, grid: GridOptions::default() }
     }
 }
 
@@ -54,12 +57,13 @@ pub(in crate::io::volume) fn write(
         plan: &plan,
         folder: &folder,
         room,
+        grid: pieces.grid,
         progress,
         piece: Bits::new(points),
         used: Bits::new(points),
     }
     .write()?;
-    write_index(&mut index, plan.ends.len(), &folder)?;
+    write_index(&mut index, plan.ends.len(), &folder, pieces.grid)?;
     folder.commit(index, path)
 }
 
@@ -70,13 +74,15 @@ fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
     ((20.0 + shared) * tets.min(counts.tets.max(1)) as f64) as usize
 }
 
-fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder) -> io::Result<()> {
+fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, grid: GridOptions) -> io::Result<()> {
+    let compressor = if grid.raw { "" } else { " compressor=\"vtkZLibDataCompressor\"" };
+    let float = if grid.float32 { "Float32" } else { "Float64" };
     writeln!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PUnstructuredGrid GhostLevel=\"0\">\n\
+         header_type=\"UInt64\"{compressor}>\n<PUnstructuredGrid GhostLevel=\"0\">\n\
          <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n\
-         </PPointData>\n<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
+         </PPointData>\n<PPoints>\n<PDataArray type=\"{float}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
          <PCellData Scalars=\"patch\">\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
          <PDataArray type=\"Int32\" Name=\"block\"/>\n</PCellData>"
     )?;
@@ -95,6 +101,7 @@ struct Writer<'a> {
     folder: &'a PieceFolder,
     /// How many pieces may be held.
     room: usize,
+    grid: GridOptions,
     progress: &'a dyn Progress,
     /// The points of the piece under way.
     piece: Bits,
@@ -238,7 +245,7 @@ impl Writer<'_> {
         if notes.is_some() {
             piece.volume.patches = self.mesh.patches().to_vec();
         }
-        let grid = Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids) };
+        let grid = Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids), options: self.grid };
         write_whole(&self.folder.piece(number), |out| grid.write(&mut Asked { out, progress: self.progress }))
     }
 }

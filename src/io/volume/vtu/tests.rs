@@ -1,11 +1,13 @@
 //! What is written can be read again, unchanged, for any number of threads.
 
 use super::arrays::{LARGEST_NAMED, Width, cell_arrays};
+use super::file::APPENDED_CLOSE;
 use super::read::read;
-use super::write::{APPENDED_CLOSE, write};
+use super::write::write;
 use crate::io::volume::content::{MeshFile, MeshNotes};
 use crate::io::volume::fixtures::labelled_tube;
-use crate::io::vtk_xml::write_blocks;
+use crate::io::volume::options::GridOptions;
+use crate::io::vtk_xml::{Packing, write_blocks};
 use crate::mesh::check::Expectation;
 use crate::mesh::source::SourceCounts;
 use crate::mesh::{Patch, VolumeMesh};
@@ -14,7 +16,7 @@ use std::io::Cursor;
 
 fn bytes_of(volume: &VolumeMesh, notes: &MeshNotes) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write(&mut bytes, volume, notes).unwrap();
+    write(&mut bytes, volume, notes, GridOptions::default()).unwrap();
     bytes.into_inner()
 }
 
@@ -26,6 +28,25 @@ fn what_is_written_is_read() {
         let file = read(&bytes_of(&volume, &notes)).unwrap();
         assert_eq!(file, MeshFile { volume, labelled: true, notes });
     }
+}
+
+#[test]
+fn options_change_how_it_stands_in_the_file() {
+    let (volume, notes) = labelled_tube(900);
+    let read_with = |options| {
+        let mut bytes = Cursor::new(Vec::new());
+        write(&mut bytes, &volume, &notes, options).unwrap();
+        read(&bytes.into_inner()).unwrap()
+    };
+    let usual = GridOptions::default();
+    let whole = MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() };
+    assert_eq!(read_with(GridOptions { raw: true, ..usual }), whole);
+    let mut short = whole;
+    short.volume.mesh.points.iter_mut().for_each(|p| *p = p.map(|x| f64::from(x as f32)));
+    assert_eq!(read_with(GridOptions { float32: true, ..usual }), short);
+    let alone = read_with(GridOptions { tets_alone: true, ..usual });
+    assert_eq!((&alone.volume.mesh, &alone.notes), (&volume.mesh, &notes));
+    assert!(!alone.labelled && alone.volume.boundary.is_empty());
 }
 
 #[test]
@@ -137,7 +158,7 @@ fn wide_numbers_are_read() {
     for (array, first) in [(corners, u64::from(volume.mesh.tets[0][0])), (offsets, 4)] {
         assert_eq!((array.kind, array.width), ("Int64", 8));
         let mut bytes = Cursor::new(Vec::new());
-        write_blocks(&mut bytes, array.values, 8, Compression::none(), &array.fill).unwrap();
+        write_blocks(&mut bytes, array.values, 8, Packing::Zlib(Compression::none()), &array.fill).unwrap();
         let bytes = bytes.into_inner();
         let size = |word: usize| u64::from_le_bytes(bytes[8 * word..8 * word + 8].try_into().unwrap());
         let mut raw = Vec::new();
