@@ -20,6 +20,7 @@ mod block;
 #[doc(hidden)]
 pub mod cli;
 mod fidelity;
+mod flow;
 mod geometry;
 mod grow;
 pub mod io;

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use rustc_hash::FxHashSet;
 use serde::Serialize;
 
+use super::before::Before;
 use super::blocks::BlockArgs;
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::flow::FlowArgs;
 use super::grid::GridArgs;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::prepare::CureArgs;
@@ -15,18 +16,18 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
-use crate::fidelity::{Compared, Displaced, Fidelity};
-use crate::io::network::ensure_network_writable;
+use crate::fidelity::Fidelity;
+use crate::io::network::{NodeNames, ensure_network_writable};
 use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable, write_mesh_with};
+use crate::io::write_text;
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
-use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, RunError, TooLarge};
-use crate::prepare::PrepareReport;
+use crate::pipeline::{self, Caps, Clock, Estimate, JointStyle, MeshPlan, Outlets, RunError, TooLarge};
 use crate::progress::{Progress, Stage};
-use crate::refine::{RefineReport, Refined, split};
-use crate::report::fidelity::displaced;
-use crate::skeleton::{Branch, NodeId, Skeleton};
+use crate::refine::Refined;
+use crate::report::caps;
+use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -75,6 +76,8 @@ pub struct Args {
     #[command(flatten)]
     common: Common,
     #[command(flatten)]
+    flow: FlowArgs,
+    #[command(flatten)]
     cures: CureArgs,
     #[command(flatten)]
     how: RefineArgs,
@@ -87,8 +90,8 @@ enum Joint {
     None,
 }
 
-/// How far a measured axis may be from where it was given, in radii, unless an overlap demands more.
-const FURTHEST: f64 = 1.0;
+/// How often tips that could not be capped are drawn back.
+const ROUNDS: usize = 4;
 
 /// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
 const HELD_PER_TET: f64 = 150.0;
@@ -101,48 +104,13 @@ struct Done<'a> {
     report: RunReport,
 }
 
-/// What was done to the network before it was meshed.
-#[derive(Clone, Copy, Serialize)]
-struct Before<'a> {
-    #[serde(skip)]
-    compared: Compared<'a>,
-    prepare: &'a PrepareReport,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    refine: Option<&'a RefineReport>,
-}
-
-impl Before<'_> {
-    /// Nodes that may be far from where they were: an overlap demanded it, a node of many vessels was split within its ball, or
-    /// a cure in the report took their vessel off or moved its end.
-    fn demanded(&self) -> FxHashSet<u32> {
-        let moved = self.refine.into_iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
-        let crowded = self.refine.into_iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
-        let joined = self.prepare.joined.nodes.iter().flat_map(|j| [j.node, j.into]);
-        let mut nodes: FxHashSet<u32> = moved.chain(crowded).chain(joined).collect();
-        let given = self.compared.given;
-        let adjacency = given.adjacency();
-        let name = |n: NodeId| given.node(n).original;
-        nodes.extend(given.node_ids().filter(|&n| adjacency.valence(n) > 3).map(name));
-        let touching = self.prepare.touching.iter().map(|t| t.tip);
-        let ends = touching
-            .chain(self.prepare.short_tips.iter().map(|t| t.tip))
-            .chain(self.prepare.spurs.iter().map(|s| s.tip));
-        let ends: FxHashSet<u32> = ends.collect();
-        let cured = |branch: &&Branch| branch.ends().into_iter().any(|n| ends.contains(&name(n)));
-        for branch in given.branches(&adjacency).list.iter().filter(cured) {
-            nodes.extend(branch.nodes.iter().map(|&n| name(n)));
-        }
-        nodes
-    }
-}
-
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,
     plan: &'a MeshPlan,
     #[serde(flatten)]
-    before: Before<'a>,
+    before: &'a Before,
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
     fidelity: Option<&'a Fidelity>,
@@ -170,19 +138,16 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     for remark in network.remarks().into_iter().chain(inlets.remarks()) {
         bars.note(&remark);
     }
+    let read = network.skeleton.clone();
     let refined = pool.install(|| args.refined(&network, &stop))?;
-    let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
-    let refinement = refined.as_ref().map(|r| &r.report);
-    let meshed = &split(skeleton).0;
-    let compared = Compared { given: &network.given, outline: &network.outline, meshed };
-    let before = Before { compared, prepare: &network.report, refine: refinement };
+    let before = Before::new(network, refined);
     // Blocks are kept as soon as they are done.
     stop.keep();
     pool.install(|| {
         if plan.smooths_joints() {
-            args.run_in_memory(skeleton, &plan, before, &bars)
+            args.run_in_memory(&plan, &before, &bars)
         } else {
-            args.run_in_store(&network.skeleton, skeleton, &plan, before, &bars)
+            args.run_in_store(&read, &plan, before, &bars)
         }
     })
 }
@@ -204,15 +169,15 @@ impl Args {
     }
 
     /// Joints are to be smoothed: the mesh is held.
-    fn run_in_memory(&self, network: &Skeleton, plan: &MeshPlan, before: Before, bars: &Bars) -> Result<Exit, Failure> {
-        let estimate = Estimate::rough(network, plan);
+    fn run_in_memory(&self, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
+        let estimate = Estimate::rough(&before.network, plan);
         let bytes = (estimate.tets * HELD_PER_TET) as u64;
         if bytes > plan.memory {
             let (why, instead) = ("woven joints", "--joint disc");
             let refused = TooLarge::Whole { estimate, why, instead, bytes, memory: plan.memory };
             return Err(Failure::input(refused.to_string()));
         }
-        let result = pipeline::mesh_network(network, plan, bars);
+        let result = pipeline::mesh_network(&before.network, plan, bars);
         let result = result.map_err(|e| self.explain(e, plan, before))?;
         let done =
             Done { mesh: &result.mesh, expectation: result.expectation, check: &result.check, report: result.report };
@@ -220,15 +185,8 @@ impl Args {
     }
 
     /// Blocks go to where they are kept, and the mesh from there to its file.
-    fn run_in_store(
-        &self,
-        read: &Skeleton,
-        network: &Skeleton,
-        plan: &MeshPlan,
-        before: Before,
-        bars: &Bars,
-    ) -> Result<Exit, Failure> {
-        let rough = Estimate::rough(network, plan);
+    fn run_in_store(&self, read: &Skeleton, plan: &MeshPlan, mut before: Before, bars: &Bars) -> Result<Exit, Failure> {
+        let rough = Estimate::rough(&before.network, plan);
         let place = BlockPlace::choose(self.work_dir.as_deref(), self.restart, &self.output, &rough, plan.memory);
         let store = place.open(read, || self.options(plan))?;
         let kept = store.bytes_on_disk();
@@ -240,11 +198,18 @@ impl Args {
                 "finished blocks are kept in {dir}: the same command goes on there if this run is stopped"
             ));
         }
-        let result = pipeline::mesh_into(&store, network, plan, &fits, bars);
-        let result = result.map_err(|e| self.explain(e, plan, before))?;
-        let done =
-            Done { mesh: &result.whole, expectation: result.expectation, check: &result.check, report: result.report };
-        self.finish(done, plan, before, bars)
+        let mut round = 0;
+        let made = loop {
+            let made = pipeline::mesh_into(&store, &before.network, plan, &fits, bars);
+            let made = made.map_err(|e| self.explain(e, plan, &before))?;
+            round += 1;
+            // Blocks that this does not change are found in the store.
+            if round > ROUNDS || !self.cures.touches() || !before.take_back(&made.report, &plan.roots, bars)? {
+                break made;
+            }
+        };
+        let done = Done { mesh: &made.whole, expectation: made.expectation, check: &made.check, report: made.report };
+        self.finish(done, plan, &before, bars)
     }
 
     /// Everything that the mesh depends on, beside the network.
@@ -256,22 +221,26 @@ impl Args {
     }
 
     /// Writes the mesh, holds it against its network and says what was done.
-    fn finish(&self, done: Done, plan: &MeshPlan, before: Before, bars: &Bars) -> Result<Exit, Failure> {
+    fn finish(&self, done: Done, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
-        let notes = self.notes(expectation);
         let options = WriteOptions { memory: Some((self.blocks.memory / 4) as usize), grid: self.grid.options() };
         // Passes over the blocks end when the run is to end.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
         };
         let mut clock = Clock::default();
-        let compare = || Fidelity::of(before.compared, mesh, check.counts.volume);
+        let compare = || Fidelity::of(before.compared(), mesh, check.counts.volume);
         let fidelity = clock.time(bars, Stage::Check, 0, compare).map_err(|e| failed(&e))?;
-        let write = || write_mesh_with(&options, &self.output, mesh, &notes, bars);
+        let mut caps = Caps::of(mesh, before.compared().meshed, self.flow.fluid()).map_err(|e| failed(&e))?;
+        let grouped = caps.group(mesh, self.flow.outlets());
+        let written = grouped.as_ref().map_or(mesh, |grouped| grouped);
+        let notes = self.notes(expectation, &caps);
+        let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
+        self.write_table(&caps, &before.names)?;
         report.stages.extend(clock.stages());
         self.print(plan, before, &report, Some((check, &fidelity)))?;
-        let unfaithful = self.unfaithful(&fidelity, before);
+        let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
         if let Some(words) = &unfaithful {
             eprint!("{words}");
         }
@@ -283,19 +252,8 @@ impl Args {
         })
     }
 
-    /// Places of the network that are further from what was meshed than they may be, in words; none when there are none.
-    fn unfaithful(&self, fidelity: &Fidelity, before: Before) -> Option<String> {
-        let bound = self.max_displacement.or(before.prepare.measured.then_some(FURTHEST))?;
-        let excused = before.demanded();
-        let excused = |d: &&Displaced| {
-            self.max_displacement.is_none() && d.meshed.iter().chain(&d.given).any(|n| excused.contains(n))
-        };
-        let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound).filter(|d| !excused(d));
-        displaced(&far.copied().collect::<Vec<_>>(), bound)
-    }
-
     /// What went wrong, for people.
-    fn explain(&self, error: RunError, plan: &MeshPlan, before: Before) -> Failure {
+    fn explain(&self, error: RunError, plan: &MeshPlan, before: &Before) -> Failure {
         match error {
             RunError::BlocksFailed(report) => match self.print(plan, before, &report, None) {
                 Err(failure) => failure,
@@ -324,12 +282,24 @@ impl Args {
         })
     }
 
-    fn notes(&self, expectation: Expectation) -> MeshNotes {
+    /// Writes what is known of inlets and outlets beside the mesh.
+    fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<(), Failure> {
+        let path = self.output.with_extension("patches.csv");
+        let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: cannot be written: {e}", path.display()));
+        let text = caps::table(caps, names).map_err(|e| failed(&e))?;
+        write_text(&path, &text).map_err(|e| failed(&e))
+    }
+
+    fn notes(&self, mut expectation: Expectation, caps: &Caps) -> MeshNotes {
+        if self.flow.outlets() != Outlets::Separate {
+            expectation.terminals = caps.alone();
+        }
         MeshNotes {
             expectation: Some(expectation),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
             options: format!("mesh {}", self.blocks.typed()),
             regions: false,
+            flow: Some(caps.flow()),
         }
     }
 
@@ -350,7 +320,7 @@ impl Args {
     fn print(
         &self,
         plan: &MeshPlan,
-        before: Before,
+        before: &Before,
         run: &RunReport,
         found: Option<(&CheckReport, &Fidelity)>,
     ) -> Result<(), Failure> {

@@ -1,5 +1,6 @@
 //! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
+mod before;
 mod blocks;
 mod check;
 mod common;
@@ -7,6 +8,7 @@ mod completions;
 mod convert;
 mod dual;
 mod exit;
+mod flow;
 mod generate;
 mod grid;
 mod info;

@@ -110,6 +110,11 @@ impl CureArgs {
         params.radius_tolerance = self.radius_tolerance;
         params
     }
+
+    /// Whether anything is done about tips that have no room for a cap.
+    pub fn touches(&self) -> bool {
+        self.params(true).touching != Touching::Keep
+    }
 }
 
 /// Prepares a network and writes it.

@@ -100,6 +100,7 @@ impl Args {
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
             options: format!("surface {}", self.blocks.typed()),
             regions: false,
+            flow: None,
         };
         let faces = if self.no_caps { Faces::Wall } else { Faces::All };
         let failed = |e: &dyn std::fmt::Display| match bars.is_cancelled() {

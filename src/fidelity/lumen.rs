@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Samples over all tubes, about, and bounds of those in each.
-const SAMPLES: usize = 1 << 20;
+const SAMPLES: usize = 1 << 18;
 const LEAST: usize = 8;
 const MOST: usize = 512;
 
@@ -69,7 +69,7 @@ impl Lumen<'_> {
         4.0 / 3.0 * PI * radius.powi(3) * sum / count as f64
     }
 
-    /// Radius of the ball at an inner node: of its second thickest vessel, which is the thickest that needs a ball. None where
+    /// Radius of the ball at an inner node: of the thickest vessel that needs a ball. None where
     /// a vessel goes on all but straight.
     fn ball(&self, node: NodeId) -> f64 {
         let edges = self.adjacency.edges(node);
@@ -78,12 +78,7 @@ impl Lumen<'_> {
         {
             return 0.0;
         }
-        let radii = edges.iter().map(|&e| self.network.edge(e).radii[self.network.edge(e).end(node)]);
-        let (mut first, mut second) = (0.0_f64, 0.0_f64);
-        for r in radii {
-            (first, second) = if r > first { (r, first) } else { (first, second.max(r)) };
-        }
-        second
+        self.network.shared_radius(self.adjacency, node)
     }
 
     /// How many tubes and balls hold a point, 1 at least.

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use std::io;
 
 /// Parts that are read, at most, and points of the wall that are looked at, about.
-const PARTS: u32 = 2_000;
-const POINTS: usize = 200_000;
+const PARTS: u32 = 500;
+const POINTS: usize = 50_000;
 
 /// |d − r| / r at points of the wall, d the distance from the axis of the tube whose wall is nearest.
 pub(super) fn spread(tubes: &Tubes, mesh: &dyn MeshSource) -> io::Result<Spread> {

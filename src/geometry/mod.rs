@@ -15,6 +15,7 @@ mod normal;
 mod place;
 pub mod predicates;
 mod ray;
+mod total;
 mod tri_tri;
 mod tube;
 
@@ -27,6 +28,7 @@ pub use distance::{point_segment, point_triangle, point_tube, segment_segment, t
 pub use normal::unit_normal;
 pub(crate) use place::place_key;
 pub use ray::crossing;
+pub(crate) use total::Total;
 pub use tri_tri::{Contact, Improper, Triangle, classify, classify_triangles, self_contacts, self_intersections};
 pub use tube::{Section, Tube};
 

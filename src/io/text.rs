@@ -1,6 +1,26 @@
 //! Words and numbers of text files, with the line that each stands in.
 
 use crate::geometry::Point3;
+use std::fmt;
+
+/// Where something stands in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// In a line, numbered from 1.
+    Line(usize),
+    /// At a byte, numbered from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
+}
 
 /// What can be wrong with the words of a text file. Lines are numbered from 1.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -166,7 +166,7 @@ impl dyn MeshSource + '_ {
         self.in_order(self.counts().boundary, |part| self.face_labels(part), |piece| piece.count, each)
     }
 
-    /// Reads some parts at a time on all threads, and gives what was read in the parts' order.
+    /// As [`each_part`](Self::each_part), with the things counted that are to come.
     pub(super) fn in_order<T: Send>(
         &self,
         expected: usize,
@@ -175,15 +175,29 @@ impl dyn MeshSource + '_ {
         mut each: impl FnMut(&T) -> io::Result<()>,
     ) -> io::Result<()> {
         let mut left = expected;
+        self.each_part(read, |piece| {
+            left = left.checked_sub(count(&piece)).ok_or_else(miscounted)?;
+            each(&piece)
+        })?;
+        if left == 0 { Ok(()) } else { Err(miscounted()) }
+    }
+
+    /// Reads some parts at a time on all threads, and gives what was read in the parts' order.
+    ///
+    /// # Errors
+    /// What `read` or `each` fails with.
+    pub fn each_part<T: Send>(
+        &self,
+        read: impl Fn(u32) -> io::Result<T> + Sync,
+        mut each: impl FnMut(T) -> io::Result<()>,
+    ) -> io::Result<()> {
         for first in (0..self.parts()).step_by(AT_A_TIME as usize) {
             let parts = first..self.parts().min(first + AT_A_TIME);
             for piece in parts.into_par_iter().map(&read).collect::<Vec<_>>() {
-                let piece = piece?;
-                left = left.checked_sub(count(&piece)).ok_or_else(miscounted)?;
-                each(&piece)?;
+                each(piece?)?;
             }
         }
-        if left == 0 { Ok(()) } else { Err(miscounted()) }
+        Ok(())
     }
 }
 

@@ -177,25 +177,46 @@ pub fn cluster(
         first_good(&name, attempts(plan, overlapping, first), make)
     };
     let tried = made(cluster);
-    let mut open = tips::uncapped(cluster, &tried.result, &tried.failures);
-    for radii in tips::MOVES {
-        let Some(moved) = tips::moved(cluster, &open, radii).filter(|_| !open.is_empty()) else { continue };
+    let open = tips::uncapped(cluster, &tried.result, &tried.failures);
+    let Some((block, way, failures)) =
+        [false, true].into_iter().find_map(|all| with_tips_moved(cluster, &open, all, &made))
+    else {
+        return tried;
+    };
+    let failures = [tried.failures, tried.result.err().into_iter().collect(), failures].concat();
+    Tried { result: Ok(block), failures, way }
+}
+
+/// Makes a cluster with its tips moved until all are capped: the way in which it came out, and what failed in it. `all`: every
+/// tip that could not be capped at some time, by the same; else a tip stays where it could be capped.
+fn with_tips_moved(
+    cluster: &Cluster,
+    uncapped: &[u32],
+    all: bool,
+    made: impl Fn(&Cluster) -> Tried,
+) -> Option<(Finished, String, Vec<BlockError>)> {
+    let mut open = uncapped.to_vec();
+    let mut moves: Vec<(u32, f64)> = Vec::new();
+    for radii in tips::MOVES.into_iter().take_while(|_| !uncapped.is_empty()) {
+        moves.retain(|(end, _)| !open.contains(end) && !all);
+        moves.extend(open.iter().map(|&end| (end, radii)));
+        let Some(moved) = tips::moved(cluster, &moves) else { continue };
         let again = made(&moved);
         let still = tips::uncapped(&moved, &again.result, &again.failures);
         match again.result {
             Ok(block) if still.is_empty() => {
-                let failures = [tried.failures, tried.result.err().into_iter().collect(), again.failures].concat();
-                return Tried {
-                    result: Ok(block),
-                    failures,
-                    way: format!("tips moved by {radii} radii, {}", again.way),
-                };
+                return Some((block, format!("{}, {}", tips::described(&moves), again.way), again.failures));
             }
             // Another one may be in the way now.
-            _ => open.extend(still.into_iter().filter(|end| !open.contains(end)).collect::<Vec<_>>()),
+            _ if all => open.extend(still.into_iter().filter(|end| !uncapped.contains(end))),
+            // What failed otherwise says nothing about tips.
+            _ if !still.is_empty() => open = still,
+            _ => {}
         }
+        open.sort_unstable();
+        open.dedup();
     }
-    tried
+    None
 }
 
 /// Meshes a connector between the ends of its two clusters.

@@ -3,6 +3,8 @@
 mod apart;
 mod attempts;
 mod blocks;
+#[cfg(feature = "cli")]
+mod caps;
 mod cures;
 mod describe;
 mod error;
@@ -23,6 +25,8 @@ mod timing;
 mod tips;
 mod whole;
 
+#[cfg(feature = "cli")]
+pub use caps::{CapRow, Caps, Fluid, Outlets};
 pub use error::RunError;
 pub use estimate::{Estimate, TooLarge};
 #[cfg(feature = "cli")]

@@ -33,10 +33,10 @@ fn failed_end(error: &BlockError) -> Option<u32> {
     }
 }
 
-/// The cluster with some tips moved by so many of their radii; none when a vessel is too short for it.
-pub fn moved(cluster: &Cluster, ends: &[u32], radii: f64) -> Option<Cluster> {
+/// The cluster with each of some tips moved by so many of its radii; none when a vessel is too short for it.
+pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
     let mut result = cluster.clone();
-    for &i in ends {
+    for &(i, radii) in moves {
         let end = result.ends.get_mut(i as usize)?;
         let (from, way) = (end.section.origin, radii * end.section.radius);
         let to = from + end.section.axis * way;
@@ -56,6 +56,15 @@ pub fn moved(cluster: &Cluster, ends: &[u32], radii: f64) -> Option<Cluster> {
     Some(result)
 }
 
+/// How far tips were moved, in words.
+pub fn described(moves: &[(u32, f64)]) -> String {
+    let mut radii: Vec<f64> = moves.iter().map(|(_, radii)| *radii).collect();
+    radii.sort_unstable_by(f64::total_cmp);
+    radii.dedup();
+    let radii: Vec<String> = radii.iter().map(f64::to_string).collect();
+    format!("tips moved by {} radii", radii.join(" and "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,13 +74,13 @@ mod tests {
     fn a_tip_moves_along_its_vessel_and_no_further_than_it_is_long() {
         let cluster = bifurcation(3);
         for (i, end) in (0..).zip(&cluster.ends) {
-            let out = moved(&cluster, &[i], 1.0).expect("room");
+            let out = moved(&cluster, &[(i, 1.0)]).expect("room");
             let way = out.ends[i as usize].section.origin - end.section.origin;
             assert!((way - end.section.axis * end.section.radius).norm() < 1e-12);
             let length = |c: &Cluster| c.tubes.iter().map(crate::geometry::Tube::length).sum::<f64>();
             assert!((length(&out) - length(&cluster) - end.section.radius).abs() < 1e-9);
-            assert_eq!(moved(&cluster, &[i], -1e3), None);
+            assert_eq!(moved(&cluster, &[(i, -1e3)]), None);
         }
-        assert_eq!(moved(&cluster, &[99], 1.0), None);
+        assert_eq!(moved(&cluster, &[(99, 1.0)]), None);
     }
 }

@@ -245,6 +245,23 @@ impl MeshSource for Whole<'_> {
         Ok(points.into())
     }
 
+    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
+        let mut found = Vec::with_capacity(ids.len());
+        while let Some(&id) = ids.get(found.len()) {
+            // Of parts that begin with the same number, all but the last have no points of their own.
+            let part = self.parts.partition_point(|part| part.first_point <= id).saturating_sub(1);
+            let first = self.parts[part].first_point;
+            let points = self.points(part as u32)?;
+            let here = ids[found.len()..].iter().map_while(|&id| points.get(id.checked_sub(first)? as usize));
+            let before = found.len();
+            found.extend(here.copied());
+            if found.len() == before {
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("there is no point {id}")));
+            }
+        }
+        Ok(found)
+    }
+
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
         let part = self.parts[part as usize];
         let numbers = self.numbers(part)?;
@@ -264,19 +281,6 @@ impl MeshSource for Whole<'_> {
         faces.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
         let blocks = vec![plan.block; faces.len()].into();
         Ok(FacePiece { faces: faces.into(), patches: patches.into(), blocks })
-    }
-
-    /// Reads the parts alone that have them.
-    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
-        let part_of = |id: u32| self.parts.partition_point(|part| part.first_point <= id);
-        let mut found = Vec::with_capacity(ids.len());
-        for run in ids.chunk_by(|&a, &b| part_of(a) == part_of(b)) {
-            let Some(part) = part_of(run[0]).checked_sub(1) else { return Err(missing_point()) };
-            let (points, first) = (self.points(part as u32)?, self.parts[part].first_point);
-            let there = run.iter().map(|&id| points.get((id - first) as usize).copied().ok_or_else(missing_point));
-            found.extend(there.collect::<Result<Vec<_>, _>>()?);
-        }
-        Ok(found)
     }
 
     fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
@@ -353,10 +357,6 @@ impl Parts for Whole<'_> {
     fn vertices(&self, part: u32, _: u32) -> io::Result<Vec<u32>> {
         self.numbers(self.parts[part as usize])
     }
-}
-
-fn missing_point() -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, "a face names a point that no block has")
 }
 
 /// Faces that name only the vertices that they use, and these vertices, ascending.

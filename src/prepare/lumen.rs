@@ -1,7 +1,7 @@
 //! Branch points beside each other in one lumen, and loops that enclose nothing but lumen.
 
 use crate::geometry::{Tube, point_segment};
-use crate::skeleton::{Adjacency, Branch, Branches, Edge, NodeId, Skeleton, SkeletonError, clean};
+use crate::skeleton::{Branch, Branches, Edge, NodeId, Skeleton, SkeletonError, clean};
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
@@ -50,7 +50,7 @@ pub(super) fn join(skeleton: &Skeleton) -> Result<(Skeleton, JoinedReport), Skel
 fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), SkeletonError> {
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
-    let radius = |n: NodeId| thickness(skeleton, &adjacency, n);
+    let radius = |n: NodeId| skeleton.shared_radius(&adjacency, n);
     let between = |b: &Branch| b.ends().iter().all(|&n| adjacency.valence(n) > 2) && !b.is_closed();
     let mut short: Vec<(f64, usize)> = (branches.list.iter().enumerate())
         .filter(|(_, b)| between(b) && b.length() <= b.ends().map(radius).into_iter().fold(f64::INFINITY, f64::min))
@@ -97,16 +97,6 @@ fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), Skele
     Ok((clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?.0, report))
 }
 
-/// Radius of the second thickest vessel at a node: that of the lumen which a thick side branch and its trunk share.
-fn thickness(skeleton: &Skeleton, adjacency: &Adjacency, node: NodeId) -> f64 {
-    let (mut first, mut second) = (0.0_f64, 0.0_f64);
-    for &id in adjacency.edges(node) {
-        let radius = skeleton.edge(id).radii[skeleton.edge(id).end(node)];
-        (first, second) = if radius > first { (radius, first) } else { (first, second.max(radius)) };
-    }
-    second
-}
-
 /// Takes away branches that return to their branch point within its lumen, and of two between the same branch points the
 /// one that lies within the other.
 fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), SkeletonError> {
@@ -120,7 +110,7 @@ fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), Skele
             beside.entry([a.min(b), a.max(b)]).or_default().push(i);
         } else if adjacency.valence(a) > 2 {
             let center = skeleton.node(a);
-            let radius = thickness(skeleton, &adjacency, a);
+            let radius = skeleton.shared_radius(&adjacency, a);
             gone[i] = branch.nodes.iter().all(|&n| (skeleton.node(n).position - center.position).norm() < radius);
         }
     }

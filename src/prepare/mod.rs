@@ -25,7 +25,7 @@ pub use report::{PrepareReport, Size};
 pub use resample::ResampleReport;
 pub use short_tips::ShortTip;
 pub use spurs::{Spur, SpurReason};
-pub use touching::{TouchedBy, Touching, TouchingTip};
+pub use touching::{TouchedBy, Touching, TouchingTip, take_back};
 
 use crate::skeleton::{Skeleton, SkeletonError, clean};
 

@@ -1,10 +1,10 @@
 //! Radii that cannot be true, filled from their neighbours.
 
-use crate::geometry::{DisjointSets, place_key};
+use crate::geometry::{DisjointSets, Total, place_key};
 use crate::skeleton::{LARGEST, NodeId, Skeleton, SkeletonError};
 use rustc_hash::FxHashMap;
 use serde::Serialize;
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// A radius this many times that of all its neighbours, or as many times smaller, is absurd.
@@ -236,39 +236,17 @@ impl Places {
     /// The nearest known radius along the vessels.
     fn nearest(&self, known: &[Option<f64>]) -> Vec<Option<f64>> {
         let mut radii = vec![None; self.count];
-        let sources = (0..).zip(known).filter_map(|(place, r)| Some(Reached { distance: 0.0, place, radius: (*r)? }));
-        let mut heap: BinaryHeap<Reached> = sources.collect();
-        while let Some(Reached { distance, place, radius }) = heap.pop() {
+        let sources = (0..).zip(known).filter_map(|(place, r)| Some((Total(0.0), place, Total((*r)?))));
+        // The nearest first: its distance, its place, and the radius that comes along.
+        let mut heap: BinaryHeap<Reverse<(Total, u32, Total)>> = sources.map(Reverse).collect();
+        while let Some(Reverse((Total(distance), place, radius))) = heap.pop() {
             if radii[place as usize].is_some() {
                 continue;
             }
-            radii[place as usize] = Some(radius);
+            radii[place as usize] = Some(radius.0);
             let further = self.beside[place as usize].iter().filter(|(next, _)| radii[*next as usize].is_none());
-            heap.extend(further.map(|&(next, length)| Reached { distance: distance + length, place: next, radius }));
+            heap.extend(further.map(|&(next, length)| Reverse((Total(distance + length), next, radius))));
         }
         radii
-    }
-}
-
-/// The smallest distance comes first out of a heap; the smallest place among equals.
-#[derive(PartialEq)]
-struct Reached {
-    distance: f64,
-    place: u32,
-    radius: f64,
-}
-
-impl Eq for Reached {}
-
-impl Ord for Reached {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_distance = other.distance.total_cmp(&self.distance).then(other.place.cmp(&self.place));
-        by_distance.then(other.radius.total_cmp(&self.radius))
-    }
-}
-
-impl PartialOrd for Reached {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
     }
 }

@@ -1,7 +1,9 @@
 //! Tips that end in or on another vessel: no cap has room there.
 
 use crate::geometry::{Aabb, Bvh, Point3, point_segment};
-use crate::skeleton::{Adjacency, BranchId, Branches, Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
+use crate::skeleton::{
+    Adjacency, BranchId, Branches, Edge, EdgeId, LocalDistances, Node, NodeId, Skeleton, SkeletonError, clean,
+};
 use serde::Serialize;
 
 /// What is done about a tip that touches another vessel.
@@ -51,6 +53,8 @@ pub struct TouchingTip {
 const CLEAR: f64 = 1.15;
 /// How far a tip is drawn back at most, in sums of the radii.
 const FURTHEST: f64 = 4.0;
+/// How far a tip that could not be capped is drawn back, in its radii.
+const BACK: f64 = 2.0;
 /// What is left of a vessel that is drawn back, in radii of the branch point that it leaves; less is a spur.
 const LEFT: f64 = 2.0;
 /// Steps in which a tip is drawn back, in its radii.
@@ -72,6 +76,24 @@ pub(super) fn treat(skeleton: &Skeleton, how: Touching) -> Result<(Skeleton, Vec
     }
     if found.iter().all(|f| f.done == TouchedBy::Left) {
         return Ok((skeleton.clone(), found));
+    }
+    Ok((clean(&work.result())?.0, found))
+}
+
+/// Draws tips that could not be capped back, by some radii each, or takes what is left of their vessels off: those of `tips`, by
+/// their numbers in the input.
+///
+/// # Errors
+/// When no vessel remains.
+pub fn take_back(skeleton: &Skeleton, tips: &[u32]) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
+    let mut work = Work::new(skeleton);
+    let mut found = Vec::new();
+    for tip in work.adjacency.terminals() {
+        let name = skeleton.node(tip).original;
+        if let Some(way) = work.way(tip).filter(|_| tips.contains(&name)) {
+            let with = skeleton.edge(work.beside(&way)).nodes.map(|n| skeleton.node(n).original);
+            found.push(TouchingTip { tip: name, with, done: work.draw_back(&way) });
+        }
     }
     Ok((clean(&work.result())?.0, found))
 }
@@ -183,20 +205,22 @@ impl<'a> Work<'a> {
         nearest.map(|(_, edge, radius)| (edge, radius))
     }
 
-    /// Whether an edge belongs to the place where a way is looked at: it is near along the branch, or about the branch point
-    /// that it comes from.
+    /// Whether an edge belongs to the place where a way is looked at: it is near along the skeleton.
     fn is_own(&self, way: &Way, stand: &Stand, edge: EdgeId, radius: f64) -> bool {
         let near = OWN * stand.radius.max(radius);
         if self.branches.of_edge[edge.index()].0 == way.branch {
             let before: f64 = way.edges.iter().take_while(|&&e| e != edge).map(|&e| self.given.length(e)).sum();
             return (before - stand.arc).abs() <= near + self.given.length(edge);
         }
+        let Some(from) = way.from else { return false };
         let ends = self.given.edge(edge).nodes;
-        way.from.is_some_and(|from| {
-            let at = self.given.node(from).position;
-            let off = ends.map(|n| (self.given.node(n).position - at).norm());
-            ends.contains(&from) || way.length - stand.arc + off[0].min(off[1]) <= near
-        })
+        if ends.contains(&from) {
+            return true;
+        }
+        let mut along = LocalDistances::default();
+        along.search(self.given, &self.adjacency, from, near);
+        let reached = ends.map(|n| along.of(n)).into_iter().fold(f64::INFINITY, f64::min);
+        way.length - stand.arc + reached <= near
     }
 
     fn join(&mut self, tip: NodeId, with: EdgeId) -> TouchedBy {
@@ -228,6 +252,41 @@ impl<'a> Work<'a> {
         }
         way.edges.iter().for_each(|e| self.gone[e.index()] = true);
         TouchedBy::Removed
+    }
+
+    /// Draws a tip back by some radii.
+    fn draw_back(&mut self, way: &Way) -> TouchedBy {
+        let stands = self.stands(way);
+        let radius = stands[0].radius;
+        let keep = LEFT * self.given.tube(way.edges[way.edges.len() - 1]).max_radius();
+        match stands.iter().find(|stand| stand.arc >= BACK * radius && stand.arc <= way.length - keep) {
+            Some(stand) => {
+                self.cut(way, stand);
+                TouchedBy::Retracted { by: stand.arc }
+            }
+            None if way.from.is_none() || way.length > (BACK + FURTHEST) * radius + keep => TouchedBy::Left,
+            None => {
+                way.edges.iter().for_each(|e| self.gone[e.index()] = true);
+                TouchedBy::Removed
+            }
+        }
+    }
+
+    /// The edge of another vessel that is nearest to a tip, or the way's own last one where none is near.
+    fn beside(&self, way: &Way) -> EdgeId {
+        let last = self.given.edge(way.edges[0]);
+        let (point, radius) = (self.given.node(way.tip).position, last.radii[last.end(way.tip)]);
+        let mut nearest: Option<(f64, EdgeId)> = None;
+        self.tree.query(&Aabb::of_points([&point]).grown(FURTHEST * radius), |id| {
+            let edge = EdgeId(id);
+            let tube = self.given.tube(edge);
+            let gap = point_segment(&point, &tube.a, &tube.b).1 - tube.max_radius();
+            let other = self.branches.of_edge[edge.index()].0 != way.branch;
+            if other && nearest.is_none_or(|(g, e)| gap < g || gap <= g && edge < e) {
+                nearest = Some((gap, edge));
+            }
+        });
+        nearest.map_or(way.edges[0], |(_, edge)| edge)
     }
 
     /// Places along a way, from its tip on.

@@ -2,14 +2,15 @@
 
 use super::frame::Frame;
 use super::params::Freedom;
-use crate::geometry::Point3;
+use crate::geometry::{Point3, Total};
 use crate::skeleton::{NodeId, Overlaps, Skeleton};
 use serde::Serialize;
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// How far a node of a polyline may go, in its radii, unless an overlap demands more.
-const USUAL: f64 = 1.0;
+/// How far a node of a polyline may go, in its radii, unless an overlap demands more: short of what counts as displaced, which
+/// is measured between nodes, too.
+const USUAL: f64 = 0.9;
 /// Along the skeleton vessels give way this far from where they overlap, in sums of the radii there.
 const REACH: f64 = 4.0;
 /// The last share of it over which the way that a node may go falls to nothing.
@@ -64,12 +65,13 @@ impl Leashes {
     /// Lets the nodes near overlaps go: at first by so many of their radii, then twice as far each time.
     pub(super) fn loosen(self, frame: &mut Frame, overlaps: &Overlaps) {
         let mut seen = vec![false; frame.origin.len()];
-        let mut heap: BinaryHeap<Reached> = BinaryHeap::new();
+        // How far the search goes on, its node, and the sum of the radii of the overlap that it comes from.
+        let mut heap: BinaryHeap<(Total, Reverse<NodeId>, Total)> = BinaryHeap::new();
         for overlap in &overlaps.pairs {
-            let reached = |node| Reached { left: REACH * overlap.radii, radii: overlap.radii, node };
+            let reached = |node| (Total(REACH * overlap.radii), Reverse(node), Total(overlap.radii));
             heap.extend(overlap.nodes.into_iter().flatten().map(reached));
         }
-        while let Some(Reached { left, radii, node }) = heap.pop() {
+        while let Some((Total(left), Reverse(node), Total(radii))) = heap.pop() {
             if std::mem::replace(&mut seen[node.index()], true) {
                 continue;
             }
@@ -82,34 +84,9 @@ impl Leashes {
                 let left = left - frame.skeleton.length(edge);
                 let next = frame.skeleton.edge(edge).other(node);
                 if left > 0.0 && !seen[next.index()] {
-                    heap.push(Reached { left, radii, node: next });
+                    heap.push((Total(left), Reverse(next), Total(radii)));
                 }
             }
         }
-    }
-}
-
-/// The node with most way left comes first out of a heap.
-#[derive(PartialEq)]
-struct Reached {
-    /// How far the search goes on.
-    left: f64,
-    /// Sum of the radii of the overlap that it comes from.
-    radii: f64,
-    node: NodeId,
-}
-
-impl Eq for Reached {}
-
-impl Ord for Reached {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_way = self.left.total_cmp(&other.left).then(other.node.cmp(&self.node));
-        by_way.then(self.radii.total_cmp(&other.radii))
-    }
-}
-
-impl PartialOrd for Reached {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
     }
 }

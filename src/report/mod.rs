@@ -1,5 +1,7 @@
 //! Floor 7: what the verbs say, for people, in tables and plots; models with a text and a JSON form.
 
+#[cfg(feature = "cli")]
+pub mod caps;
 pub mod check;
 pub mod fidelity;
 pub mod info;

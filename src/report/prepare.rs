@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::prepare::{Fault, PrepareReport, Size, SpurReason, TouchedBy};
+use crate::prepare::{Fault, PrepareReport, Size, SpurReason, TouchedBy, TouchingTip};
 
 /// A line of the table of sizes.
 type Row = (&'static str, fn(&Size) -> usize);
@@ -44,16 +44,7 @@ pub fn text(report: &PrepareReport) -> String {
         format!("{} from {}: length {:.4}, its cap is clear at {:.4}: {done}", t.tip, t.from, t.length, t.needed)
     });
     list(&mut out, "tips too close to their branch point for a cap (--keep-short-tips)", short);
-    let tips = report.touching.iter().map(|t| {
-        let done = match t.done {
-            TouchedBy::Retracted { by } => format!("drawn back by {by:.4}"),
-            TouchedBy::Joined => "joined".into(),
-            TouchedBy::Removed => "taken off, as no room for a cap is left on its vessel".into(),
-            TouchedBy::Left => "left, as its vessel runs along the other".into(),
-        };
-        format!("{} at {}-{}: {done}", t.tip, t.with[0], t.with[1])
-    });
-    list(&mut out, "tips that end in or on another vessel (--touching)", tips);
+    out.push_str(&touching(&report.touching));
     let islands = report.islands.iter().map(|i| format!("at {}: {} nodes, length {:.4}", i.node, i.nodes, i.length));
     list(&mut out, "islands dropped (--drop-islands)", islands);
     let r = &report.resample;
@@ -69,6 +60,22 @@ pub fn text(report: &PrepareReport) -> String {
         );
     }
     sizes(report, &mut out);
+    out
+}
+
+/// What became of tips that end in or on another vessel.
+pub fn touching(tips: &[TouchingTip]) -> String {
+    let mut out = String::new();
+    let tips = tips.iter().map(|t| {
+        let done = match t.done {
+            TouchedBy::Retracted { by } => format!("drawn back by {by:.4}"),
+            TouchedBy::Joined => "joined".into(),
+            TouchedBy::Removed => "taken off, as no room for a cap is left on its vessel".into(),
+            TouchedBy::Left => "left, as its vessel runs along the other".into(),
+        };
+        format!("{} at {}-{}: {done}", t.tip, t.with[0], t.with[1])
+    });
+    list(&mut out, "tips that end in or on another vessel (--touching)", tips);
     out
 }
 

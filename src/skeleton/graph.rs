@@ -177,6 +177,17 @@ impl Skeleton {
         (0..self.edges.len() as u32).map(EdgeId)
     }
 
+    /// Radius of the second thickest vessel at a node: that of the lumen which a thick side branch and its trunk share.
+    pub(crate) fn shared_radius(&self, adjacency: &Adjacency, node: NodeId) -> f64 {
+        let (mut first, mut second) = (0.0_f64, 0.0_f64);
+        for &id in adjacency.edges(node) {
+            let edge = self.edge(id);
+            let radius = edge.radii[edge.end(node)];
+            (first, second) = if radius > first { (radius, first) } else { (first, second.max(radius)) };
+        }
+        second
+    }
+
     pub(crate) fn length(&self, id: EdgeId) -> f64 {
         let [a, b] = self.edge(id).nodes;
         (self.node(b).position - self.node(a).position).norm()

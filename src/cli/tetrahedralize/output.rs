@@ -72,7 +72,8 @@ pub fn write(
     let generator = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
     // What the bytes depend on, and nothing else: neither threads nor paths.
     let options = serde_json::to_string(plan).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
-    let notes = MeshNotes { expectation: None, generator, options: format!("tetrahedralize {options}"), regions };
+    let notes =
+        MeshNotes { expectation: None, generator, options: format!("tetrahedralize {options}"), regions, flow: None };
     let failed = |e: &dyn std::error::Error| {
         if progress.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(e.to_string()) }
     };

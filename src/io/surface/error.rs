@@ -2,31 +2,11 @@
 //! are the same.
 
 use crate::io::file::FileError;
-use crate::io::text::{TextFault, shown};
+use crate::io::text::{Place, TextFault, shown};
 use crate::mesh::facets::FacetError;
-use std::fmt;
 
 /// Why a surface file could not be read or written.
 pub type SurfaceFileError = FileError<SurfaceFault>;
-
-/// Where something stands in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Place {
-    /// In a line, numbered from 1.
-    Line(usize),
-    /// At a byte, numbered from 0.
-    Byte(usize),
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Line(line) => write!(f, "line {line}"),
-            Self::Byte(byte) => write!(f, "byte {byte}"),
-        }
-    }
-}
 
 /// Why the content of a file is no triangle surface. Faces are numbered as the format numbers points: from 1 in OBJ, else
 /// from 0.

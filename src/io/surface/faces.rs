@@ -1,8 +1,9 @@
 //! Faces on their way from a file to triangles.
 
 use super::content::SurfaceContent;
-use super::error::{Place, SurfaceFault};
+use super::error::SurfaceFault;
 use crate::geometry::Point3;
+use crate::io::text::Place;
 use crate::io::text::from_first;
 use crate::mesh::facets;
 

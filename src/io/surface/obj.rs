@@ -1,9 +1,10 @@
 //! OBJ: lines `v x y z` and `f v/vt/vn …`; a negative index counts back from the last vertex so far.
 
 use super::content::SurfaceContent;
-use super::error::{Place, SurfaceFault};
+use super::error::SurfaceFault;
 use super::faces::Faces;
 use crate::geometry::Point3;
+use crate::io::text::Place;
 use crate::io::text::{TextFault, Words};
 use crate::mesh::TriMesh;
 use crate::mesh::boundary::BoundarySurface;

@@ -1,10 +1,10 @@
 //! OFF: counts, then one point a line, then one face a line.
 
 use super::content::SurfaceContent;
-use super::error::{Place, SurfaceFault};
+use super::error::SurfaceFault;
 use super::faces::Faces;
 use crate::geometry::Point3;
-use crate::io::text::{Words, shown};
+use crate::io::text::{Place, Words, shown};
 use crate::mesh::TriMesh;
 use crate::mesh::boundary::BoundarySurface;
 use std::io::{self, Write};

@@ -1,8 +1,9 @@
 //! STL: triangles that each bring their own corners; corners at the same place become one point.
 
 use super::content::{SurfaceContent, SurfaceNote};
-use super::error::{Place, SurfaceFault};
+use super::error::SurfaceFault;
 use crate::geometry::{Point3, Vec3};
+use crate::io::text::Place;
 use crate::io::text::{TextFault, Words};
 use crate::mesh::TriMesh;
 use crate::mesh::boundary::BoundarySurface;

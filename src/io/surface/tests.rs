@@ -1,12 +1,13 @@
 //! Every format: what is written comes back, files by other hands are read, and no file makes a panic.
 
 use super::content::SurfaceNote;
-use super::error::{Place, SurfaceFault};
+use super::error::SurfaceFault;
 use super::write::write_format;
 use super::*;
 use crate::geometry::Point3;
 use crate::io::damage::damage;
 use crate::io::file::FileError;
+use crate::io::text::Place;
 use crate::io::text::TextFault;
 use crate::mesh::TriMesh;
 use crate::mesh::facets::FacetError;

@@ -18,17 +18,20 @@ pub enum MeshFormat {
     Msh2,
     /// Medit's text format, `.mesh`.
     Medit,
+    /// A case for `OpenFOAM`, a folder; `.foam`.
+    OpenFoam,
     /// `TetGen`'s family of files, named by its `.ele` or `.node`.
     Tetgen,
 }
 
 /// Extensions, in lower case.
-const EXTENSIONS: [(&str, MeshFormat); 7] = [
+const EXTENSIONS: [(&str, MeshFormat); 8] = [
     ("vtu", MeshFormat::Vtu),
     ("pvtu", MeshFormat::Pvtu),
     ("msh", MeshFormat::Msh),
     ("msh2", MeshFormat::Msh2),
     ("mesh", MeshFormat::Medit),
+    ("foam", MeshFormat::OpenFoam),
     ("ele", MeshFormat::Tetgen),
     ("node", MeshFormat::Tetgen),
 ];
@@ -42,7 +45,7 @@ impl MeshFormat {
         by_extension(path, &EXTENSIONS).ok_or_else(|| FileError::UnknownFormat {
             path: path.to_path_buf(),
             kind: "known mesh format",
-            known: ".vtu, .pvtu, .msh, .msh2, .mesh, .ele",
+            known: ".vtu, .pvtu, .msh, .msh2, .mesh, .foam, .ele",
         })
     }
 

@@ -2,6 +2,7 @@
 //!
 //! A format has its faults in `error`, and `read` and `write` that know bytes and streams but neither of the other formats.
 
+mod conditions;
 mod content;
 mod error;
 #[cfg(test)]
@@ -9,6 +10,7 @@ pub(in crate::io) mod fixtures;
 mod format;
 mod medit;
 mod msh;
+mod openfoam;
 mod options;
 mod pvtu;
 mod read;
@@ -17,6 +19,7 @@ mod tests;
 mod vtu;
 mod write;
 
+pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 pub use content::{MeshFile, MeshNotes};
 pub use error::MeshFileError;
 pub use format::MeshFormat;

@@ -5,7 +5,7 @@ use super::error::MeshFileError;
 use super::format::MeshFormat;
 use super::options::{GridOptions, WriteOptions, boundary_beside};
 use super::pvtu::{PieceFolder, Pieces};
-use super::{medit, msh, pvtu, vtu};
+use super::{medit, msh, openfoam, pvtu, vtu};
 use crate::io::file::{Asked, AtomicFile, FileError, write_whole};
 use crate::io::tetgen::MeshFamily;
 use crate::mesh::boundary::{BoundarySurface, Faces};
@@ -20,9 +20,13 @@ use std::path::Path;
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
-    let format = MeshFormat::of(path)?;
-    let pieces = || if format == MeshFormat::Pvtu { PieceFolder::ensure_replaceable(path) } else { Ok(()) };
-    AtomicFile::create(path).map(drop).and_then(|()| pieces()).map_err(FileError::write(path))
+    let file = || AtomicFile::create(path).map(drop);
+    match MeshFormat::of(path)? {
+        MeshFormat::OpenFoam => openfoam::ensure_writable(path),
+        MeshFormat::Pvtu => file().and_then(|()| PieceFolder::ensure_replaceable(path)),
+        _ => file(),
+    }
+    .map_err(FileError::write(path))
 }
 
 /// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all. The bytes depend
@@ -67,6 +71,7 @@ pub fn write_mesh_with(
             let memory = options.memory.unwrap_or(usual.memory);
             pvtu::write(path, mesh, notes, Pieces { memory, grid, ..usual }, progress)
         }
+        MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, progress),
         MeshFormat::Vtu => write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid)),
         format => write_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
     };
@@ -159,7 +164,7 @@ pub(super) fn write_format(
         MeshFormat::Msh => msh::write(out, mesh, notes),
         MeshFormat::Msh2 => msh::write_2(out, mesh, notes),
         MeshFormat::Medit => medit::write(out, mesh),
-        MeshFormat::Tetgen | MeshFormat::Pvtu => {
+        MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::OpenFoam => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
         }
     }

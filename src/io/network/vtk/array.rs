@@ -1,7 +1,8 @@
 //! Arrays of a legacy file, passed over when they come and decoded when they are asked for.
 
 use super::cursor::Cursor;
-use super::error::{Place, VtkLegacyError};
+use super::error::VtkLegacyError;
+use crate::io::text::Place;
 use crate::io::text::shown;
 
 /// A type of values.

@@ -1,6 +1,7 @@
 //! A place in a legacy VTK file, of which lines of keywords are text whatever the arrays are.
 
-use super::error::{Place, VtkLegacyError};
+use super::error::VtkLegacyError;
+use crate::io::text::Place;
 use crate::io::text::shown;
 
 pub(super) struct Cursor<'a> {

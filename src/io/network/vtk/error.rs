@@ -1,25 +1,7 @@
 //! What can be wrong with a legacy VTK file.
 
 use crate::io::network::radii::RadiusFault;
-use std::fmt;
-
-/// A place in a legacy VTK file: a line where it is text, a byte where it is binary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Numbered from 1.
-    Line(usize),
-    /// Numbered from 0.
-    Byte(usize),
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Line(line) => write!(f, "line {line}"),
-            Self::Byte(byte) => write!(f, "byte {byte}"),
-        }
-    }
-}
+use crate::io::text::Place;
 
 /// Why a legacy VTK file is no usable network.
 #[derive(Debug, PartialEq, thiserror::Error)]

@@ -2,7 +2,8 @@
 
 use super::array::Array;
 use super::cursor::Cursor;
-use super::error::{Place, VtkLegacyError};
+use super::error::VtkLegacyError;
+use crate::io::text::Place;
 use crate::io::text::shown;
 
 /// A list of cells of poly data, or all cells of an unstructured grid.

@@ -1,6 +1,7 @@
-use super::error::{Place, VtkLegacyError};
+use super::error::VtkLegacyError;
 use super::read;
 use crate::io::network::content::{NetworkFile, NetworkNote, NetworkOptions};
+use crate::io::text::Place;
 
 const TEXT: &str = include_str!("../../../../fixtures/networks/fork_2.vtk");
 const BINARY: &[u8] = include_bytes!("../../../../fixtures/networks/fork_51.vtk");

@@ -1,7 +1,8 @@
 //! The numbers behind the head of a PLY file.
 
 use super::head::{Element, Encoding, Head, Scalar};
-use crate::io::surface::error::{Place, SurfaceFault};
+use crate::io::surface::error::SurfaceFault;
+use crate::io::text::Place;
 use crate::io::text::{TextFault, Words};
 
 /// The numbers behind the head.

@@ -1,6 +1,7 @@
 //! The head of a PLY file: which elements follow, with which properties, in which encoding.
 
-use crate::io::surface::error::{Place, SurfaceFault};
+use crate::io::surface::error::SurfaceFault;
+use crate::io::text::Place;
 use crate::io::text::{TextFault, Words};
 
 /// How the numbers are written.

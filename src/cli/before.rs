@@ -1,0 +1,110 @@
+//! What was done to a network before it was meshed, and what the mesh is held against.
+
+use super::exit::Failure;
+use super::network::PreparedNetwork;
+use super::progress::Bars;
+use crate::fidelity::{Compared, Displaced, Fidelity};
+use crate::io::network::NodeNames;
+use crate::pipeline::RunReport;
+use crate::prepare::{PrepareReport, TouchedBy, take_back};
+use crate::progress::Progress;
+use crate::refine::{RefineReport, Refined, split};
+use crate::report::fidelity::displaced;
+use crate::report::prepare::touching;
+use crate::skeleton::{Branch, NodeId, Skeleton};
+use rustc_hash::FxHashSet;
+use serde::Serialize;
+
+/// How far a measured axis may be from where it was given, in radii, unless an overlap demands more.
+const FURTHEST: f64 = 1.0;
+
+/// What was done to the network before it was meshed.
+#[derive(Serialize)]
+pub struct Before {
+    /// As it was read, with usable radii.
+    #[serde(skip)]
+    given: Skeleton,
+    /// The same with as many points as its shape needs.
+    #[serde(skip)]
+    outline: Skeleton,
+    /// What is to be meshed.
+    #[serde(skip)]
+    pub network: Skeleton,
+    /// The same with nodes of many vessels split.
+    #[serde(skip)]
+    meshed: Skeleton,
+    /// What the file calls its nodes.
+    #[serde(skip)]
+    pub names: NodeNames,
+    prepare: PrepareReport,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refine: Option<RefineReport>,
+}
+
+impl Before {
+    pub fn new(prepared: PreparedNetwork, refined: Option<Refined>) -> Self {
+        let PreparedNetwork { given, outline, skeleton, report: prepare, names, .. } = prepared;
+        let (network, refine) = match refined {
+            Some(Refined { skeleton, report, .. }) => (skeleton, Some(report)),
+            None => (skeleton, None),
+        };
+        let meshed = split(&network).0;
+        Self { given, outline, network, meshed, names, prepare, refine }
+    }
+
+    /// The networks that the mesh is held against.
+    pub fn compared(&self) -> Compared<'_> {
+        Compared { given: &self.given, outline: &self.outline, meshed: &self.meshed }
+    }
+
+    /// Draws the tips of a measured network back that could not be capped, but inlets that were asked for; says which, and
+    /// whether there were any.
+    pub fn take_back(&mut self, run: &RunReport, roots: &[u32], bars: &Bars) -> Result<bool, Failure> {
+        let tips: Vec<u32> =
+            run.fused.iter().flat_map(|f| &f.uncapped).copied().filter(|n| !roots.contains(n)).collect();
+        if tips.is_empty() || !self.prepare.measured {
+            return Ok(false);
+        }
+        let (network, told) = take_back(&self.network, &tips).map_err(|e| Failure::stage(e.to_string()))?;
+        let done = told.iter().any(|tip| tip.done != TouchedBy::Left);
+        if done {
+            touching(&told).lines().for_each(|line| bars.note(line));
+            self.meshed = split(&network).0;
+            self.network = network;
+            self.prepare.touching.extend(told);
+        }
+        Ok(done)
+    }
+
+    /// Places of the network that are further from what was meshed than they may be, in words; none when there are none.
+    pub fn unfaithful(&self, fidelity: &Fidelity, most: Option<f64>) -> Option<String> {
+        let bound = most.or(self.prepare.measured.then_some(FURTHEST))?;
+        let excused = self.demanded();
+        let excused =
+            |d: &&Displaced| most.is_none() && d.meshed.iter().chain(&d.given).any(|node| excused.contains(node));
+        let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound).filter(|d| !excused(d));
+        displaced(&far.copied().collect::<Vec<_>>(), bound)
+    }
+
+    /// Nodes that may be far from where they were: an overlap demanded it, a node of many vessels was split within its ball, or
+    /// a cure in the report took their vessel off or moved its end.
+    fn demanded(&self) -> FxHashSet<u32> {
+        let moved = self.refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
+        let crowded = self.refine.iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
+        let joined = self.prepare.joined.nodes.iter().flat_map(|j| [j.node, j.into]);
+        let mut nodes: FxHashSet<u32> = moved.chain(crowded).chain(joined).collect();
+        let adjacency = self.given.adjacency();
+        let name = |n: NodeId| self.given.node(n).original;
+        nodes.extend(self.given.node_ids().filter(|&n| adjacency.valence(n) > 3).map(name));
+        let touching = self.prepare.touching.iter().map(|t| t.tip);
+        let ends = touching
+            .chain(self.prepare.short_tips.iter().map(|t| t.tip))
+            .chain(self.prepare.spurs.iter().map(|s| s.tip));
+        let ends: FxHashSet<u32> = ends.collect();
+        let cured = |branch: &&Branch| branch.ends().into_iter().any(|n| ends.contains(&name(n)));
+        for branch in self.given.branches(&adjacency).list.iter().filter(cured) {
+            nodes.extend(branch.nodes.iter().map(|&n| name(n)));
+        }
+        nodes
+    }
+}
