@@ -442,3 +442,25 @@ fn a_grid_of_tetrahedra_alone_has_its_boundary_beside_it() {
     }
     assert!(!head.contains("compressor"));
 }
+
+#[test]
+fn what_is_known_of_the_vessels_stands_in_the_grid_on_request() {
+    let folder = folder();
+    let network = fixture("tree_30.swc");
+    let data = ["-q", "--data", "radius,distance,branch,generation,strahler,node,ratio"];
+    let out = folder.path().join("tree.vtu");
+    assert_code(&mesh(&network, &out, &data), FINE);
+    let bytes = fs::read(&out).expect("a mesh");
+    let head = String::from_utf8_lossy(&bytes[..6000]).into_owned();
+    for name in ["radius", "distance", "branch", "generation", "strahler", "node", "ratio"] {
+        assert!(head.contains(&format!("Name=\"{name}\"")), "{name}: {head}");
+    }
+    assert_code(&run("check", &[&out], &[]), FINE);
+    let pieces = folder.path().join("pieces.pvtu");
+    assert_code(&mesh(&network, &pieces, &data), FINE);
+    let index = fs::read_to_string(&pieces).expect("an index");
+    assert!(index.contains("Name=\"radius\"") && index.contains("Name=\"ratio\""), "{index}");
+    let bent = mesh(&network, &folder.path().join("a.vtu"), &["--data", "colour"]);
+    assert_says(&bent, USAGE, &["colour", "generation"]);
+    assert_says(&mesh(&network, &folder.path().join("a.msh"), &["--data", "radius"]), USAGE, &["--data", ".pvtu"]);
+}

@@ -20,7 +20,7 @@ use crate::io::volume::{
     write_mesh_with,
 };
 use crate::mesh::adjacency::boundary_faces;
-use crate::mesh::boundary::{BoundarySurface, Faces};
+use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 use crate::mesh::source::{MeshSource, SourceCounts};
 use crate::mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 use crate::prepare::directed;
@@ -214,12 +214,13 @@ impl Args {
 
     fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: Kind, bars: &Bars) -> Result<Written, Failure> {
         if to == Kind::Mesh {
-            let options = WriteOptions { memory: Some((self.memory / 4) as usize), grid: self.grid.options() };
+            let options =
+                WriteOptions { memory: Some((self.memory / 4) as usize), grid: self.grid.options(), values: None };
             write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
             let SourceCounts { points, tets, boundary } = mesh.counts();
             return Ok(Written::Mesh { points, tets, boundary_faces: boundary });
         }
-        let faces = if self.no_caps { Faces::Wall } else { Faces::All };
+        let faces = if self.no_caps { BoundaryPart::Wall } else { BoundaryPart::Whole };
         let surface = BoundarySurface::new(mesh, faces)
             .map_err(|e| failed(&format!("{}: {e}; run `anastomesh check`", self.input.display()), bars))?;
         write_boundary_watched(&self.output, &surface, notes, bars).map_err(|e| failed(&e, bars))?;

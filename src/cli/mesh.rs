@@ -18,12 +18,15 @@ use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
 use crate::fidelity::Fidelity;
 use crate::io::network::{NodeNames, ensure_network_writable};
-use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable, write_mesh_with};
+use crate::io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable, write_mesh_with};
 use crate::io::write_text;
+use crate::mesh::beside::Beside;
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
-use crate::pipeline::{self, Caps, Clock, Estimate, JointStyle, MeshPlan, Outlets, RunError, TooLarge};
+use crate::pipeline::{
+    self, Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, Outlets, RunError, TooLarge, VesselData,
+};
 use crate::progress::{Progress, Stage};
 use crate::refine::Refined;
 use crate::report::caps;
@@ -71,6 +74,10 @@ pub struct Args {
     /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
+    /// What VTU and PVTU say of each place: radius and distance along the branch at points; branch, generation, strahler, node
+    /// (the nearer one) and ratio (the cell's radius ratio) in cells; several with commas between them
+    #[arg(long, value_name = "DATA", value_delimiter = ',', value_parser = datum)]
+    data: Vec<Datum>,
     #[command(flatten)]
     grid: GridArgs,
     #[command(flatten)]
@@ -95,6 +102,11 @@ const ROUNDS: usize = 4;
 
 /// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
 const HELD_PER_TET: f64 = 150.0;
+
+fn datum(name: &str) -> Result<Datum, String> {
+    let known = || Datum::ALL.map(Datum::name).join(", ");
+    Datum::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| format!("what is known is {}", known()))
+}
 
 /// A mesh that is there, and what is known of it.
 struct Done<'a> {
@@ -124,6 +136,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage(
             "--work-dir cannot keep joints that are smoothed: give --joint disc or --frozen-joints",
         ));
+    }
+    if !args.data.is_empty() && !MeshFormat::of(&args.output).is_ok_and(MeshFormat::is_grid) {
+        return Err(Failure::usage("--data is for .vtu and .pvtu; the other formats have no place for it"));
     }
     ensure_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     if let Some(path) = &args.refined {
@@ -223,7 +238,13 @@ impl Args {
     /// Writes the mesh, holds it against its network and says what was done.
     fn finish(&self, done: Done, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
-        let options = WriteOptions { memory: Some((self.blocks.memory / 4) as usize), grid: self.grid.options() };
+        let asked = Some(&self.data).filter(|data| !data.is_empty());
+        let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh));
+        let options = WriteOptions {
+            memory: Some((self.blocks.memory / 4) as usize),
+            grid: self.grid.options(),
+            values: data.as_ref().map(|data| data as &dyn Beside),
+        };
         // Passes over the blocks end when the run is to end.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }

@@ -15,7 +15,7 @@ use super::room::BlockPlace;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::surface::{ensure_boundary_writable, write_boundary_watched};
 use crate::io::volume::MeshNotes;
-use crate::mesh::boundary::{BoundarySurface, Faces};
+use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 use crate::mesh::check::CheckReport;
 use crate::pipeline::{self, Clock, Estimate, MeshPlan, RunError, RunReport, TooLarge};
 use crate::prepare::PrepareReport;
@@ -102,7 +102,7 @@ impl Args {
             regions: false,
             flow: None,
         };
-        let faces = if self.no_caps { Faces::Wall } else { Faces::All };
+        let faces = if self.no_caps { BoundaryPart::Wall } else { BoundaryPart::Whole };
         let failed = |e: &dyn std::fmt::Display| match bars.is_cancelled() {
             true => Failure::stopped(NOTHING_KEPT),
             false => Failure::input(e.to_string()),

@@ -25,7 +25,7 @@ mod text;
 pub(crate) mod volume;
 mod vtk_xml;
 
-pub use crate::mesh::boundary::{BoundarySurface, Faces};
+pub use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 #[cfg(feature = "cli")]
 pub(crate) use file::write_text;
 pub use network::{NetworkArray, NetworkFile, NetworkFileError, NetworkOptions, read_network, write_network};

@@ -8,24 +8,24 @@ use std::io;
 
 /// Which faces of a boundary are meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Faces {
+pub enum BoundaryPart {
     /// All: the surface is closed.
     #[default]
-    All,
+    Whole,
     /// The wall alone: the surface is open at inlets and outlets.
     Wall,
 }
 
-impl Faces {
+impl BoundaryPart {
     fn has(self, patch: i32) -> bool {
-        self == Self::All || patch == WALL
+        self == Self::Whole || patch == WALL
     }
 }
 
 /// The boundary of a mesh. Nothing but a bit for each point is held.
 pub struct BoundarySurface<'a> {
     mesh: &'a dyn MeshSource,
-    faces: Faces,
+    part: BoundaryPart,
     used: Bits,
     points: usize,
     triangles: usize,
@@ -36,10 +36,10 @@ impl<'a> BoundarySurface<'a> {
     ///
     /// # Errors
     /// What reading the mesh fails with; `InvalidData` when a face names a point that does not exist.
-    pub fn new(mesh: &'a dyn MeshSource, faces: Faces) -> io::Result<Self> {
+    pub fn new(mesh: &'a dyn MeshSource, part: BoundaryPart) -> io::Result<Self> {
         let (mut used, mut triangles) = (Bits::new(mesh.counts().points), 0);
         mesh.each_faces(|piece| {
-            for face in chosen(piece, faces).0 {
+            for face in chosen(piece, part).0 {
                 triangles += 1;
                 for v in face {
                     if !used.insert(v) {
@@ -50,7 +50,7 @@ impl<'a> BoundarySurface<'a> {
             }
             Ok(())
         })?;
-        Ok(Self { mesh, faces, points: used.count(), used, triangles })
+        Ok(Self { mesh, part, points: used.count(), used, triangles })
     }
 
     /// The mesh that this is the boundary of.
@@ -83,7 +83,7 @@ impl<'a> BoundarySurface<'a> {
     pub fn each_faces(&self, mut each: impl FnMut(&FacePiece) -> io::Result<()>) -> io::Result<()> {
         let ranks = self.used.ranks();
         self.mesh.each_faces(|piece| {
-            let (mut faces, [patches, blocks]) = chosen(piece, self.faces);
+            let (mut faces, [patches, blocks]) = chosen(piece, self.part);
             faces.as_flattened_mut().iter_mut().for_each(|v| *v = ranks.rank(*v));
             each(&FacePiece { faces: faces.into(), patches: patches.into(), blocks: blocks.into() })
         })
@@ -96,20 +96,10 @@ impl<'a> BoundarySurface<'a> {
     pub fn each_corners(&self, mut each: impl FnMut(&[[Point3; 3]]) -> io::Result<()>) -> io::Result<()> {
         let read = |part| {
             let piece = self.mesh.boundary(part)?;
-            Ok((piece.faces.len(), self.corners(&chosen(&piece, self.faces).0)?))
+            Ok((piece.faces.len(), self.mesh.corners_of(&chosen(&piece, self.part).0)?))
         };
         let expected = self.mesh.counts().boundary;
         self.mesh.in_order(expected, read, |(count, _)| *count, |(_, corners)| each(corners))
-    }
-
-    fn corners(&self, faces: &[[u32; 3]]) -> io::Result<Vec<[Point3; 3]>> {
-        let mut ids = faces.as_flattened().to_vec();
-        ids.sort_unstable();
-        ids.dedup();
-        let points = self.mesh.points_of(&ids)?;
-        // Every number was found to exist.
-        let at = |v: u32| points.get(ids.partition_point(|&id| id < v)).copied().unwrap_or_else(Point3::origin);
-        Ok(faces.iter().map(|face| face.map(at)).collect())
     }
 
     /// Puts it together in memory.
@@ -131,12 +121,12 @@ impl<'a> BoundarySurface<'a> {
 }
 
 /// The faces of a piece that are meant, their patches and blocks.
-fn chosen(piece: &FacePiece, faces: Faces) -> (Vec<[u32; 3]>, [Vec<i32>; 2]) {
+fn chosen(piece: &FacePiece, part: BoundaryPart) -> (Vec<[u32; 3]>, [Vec<i32>; 2]) {
     let at = |values: &[i32], i: usize| values.get(i).copied().unwrap_or(0);
     let mut out = (Vec::with_capacity(piece.faces.len()), [const { Vec::new() }; 2]);
     for (i, &face) in piece.faces.iter().enumerate() {
         let patch = at(&piece.patches, i);
-        if faces.has(patch) {
+        if part.has(patch) {
             out.0.push(face);
             out.1[0].push(patch);
             out.1[1].push(at(&piece.blocks, i));
@@ -163,8 +153,8 @@ mod tests {
     fn points_that_no_face_has_are_left_out() {
         let volume = tube();
         for (which, faces) in [
-            (Faces::All, volume.boundary.len()),
-            (Faces::Wall, volume.boundary_patch.iter().filter(|&&p| p == WALL).count()),
+            (BoundaryPart::Whole, volume.boundary.len()),
+            (BoundaryPart::Wall, volume.boundary_patch.iter().filter(|&&p| p == WALL).count()),
         ] {
             let surface = BoundarySurface::new(&volume, which).unwrap();
             let gathered = surface.gather().unwrap();
@@ -191,7 +181,7 @@ mod tests {
     fn a_face_of_no_point_is_an_error() {
         let mut volume = tube();
         volume.boundary[3][1] = 100_000;
-        let error = BoundarySurface::new(&volume, Faces::All).err().unwrap();
+        let error = BoundarySurface::new(&volume, BoundaryPart::Whole).err().unwrap();
         assert_eq!(error.kind(), io::ErrorKind::InvalidData);
     }
 }

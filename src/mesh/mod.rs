@@ -1,6 +1,7 @@
 //! Floor 2: what concerns one mesh, wherever it came from: arrays, adjacency, quality, smoothing, validity.
 
 pub mod adjacency;
+pub(crate) mod beside;
 pub(crate) mod bits;
 pub(crate) mod boundary;
 mod bounds;

@@ -166,6 +166,37 @@ impl dyn MeshSource + '_ {
         self.in_order(self.counts().boundary, |part| self.face_labels(part), |piece| piece.count, each)
     }
 
+    /// Gives the corners of all tetrahedra.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_tet_corners(&self, mut each: impl FnMut(&[[Point3; 4]]) -> io::Result<()>) -> io::Result<()> {
+        let read = |part| self.corners_of(&self.tets(part)?.tets);
+        self.in_order(self.counts().tets, read, Vec::len, |corners| each(corners))
+    }
+
+    /// Gives the corners of all boundary faces.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_face_corners(&self, mut each: impl FnMut(&[[Point3; 3]]) -> io::Result<()>) -> io::Result<()> {
+        let read = |part| self.corners_of(&self.boundary(part)?.faces);
+        self.in_order(self.counts().boundary, read, Vec::len, |corners| each(corners))
+    }
+
+    /// The corners of cells.
+    pub(super) fn corners_of<const N: usize>(&self, cells: &[[u32; N]]) -> io::Result<Vec<[Point3; N]>> {
+        let mut ids = cells.as_flattened().to_vec();
+        ids.sort_unstable();
+        ids.dedup();
+        let points = self.points_of(&ids)?;
+        if points.len() != ids.len() {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "a cell names a point that does not exist"));
+        }
+        let at = |v: u32| points[ids.partition_point(|&id| id < v)];
+        Ok(cells.iter().map(|cell| cell.map(at)).collect())
+    }
+
     /// As [`each_part`](Self::each_part), with the things counted that are to come.
     pub(super) fn in_order<T: Send>(
         &self,

@@ -6,6 +6,8 @@ mod blocks;
 #[cfg(feature = "cli")]
 mod caps;
 mod cures;
+#[cfg(feature = "cli")]
+mod data;
 mod describe;
 mod error;
 mod estimate;
@@ -27,6 +29,8 @@ mod whole;
 
 #[cfg(feature = "cli")]
 pub use caps::{CapRow, Caps, Fluid, Outlets};
+#[cfg(feature = "cli")]
+pub use data::{Datum, VesselData};
 pub use error::RunError;
 pub use estimate::{Estimate, TooLarge};
 #[cfg(feature = "cli")]

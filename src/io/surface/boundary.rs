@@ -65,7 +65,7 @@ pub fn ensure_boundary_writable(path: &Path) -> Result<(), SurfaceFileError> {
 /// round coordinates to 32 bits.
 ///
 /// ```
-/// use anastomesh::io::{BoundarySurface, Faces, MeshNotes, NetworkOptions, read_network, read_surface, write_boundary};
+/// use anastomesh::io::{BoundaryPart, BoundarySurface, MeshNotes, NetworkOptions, read_network, read_surface, write_boundary};
 /// use anastomesh::network::{MeshPlan, clean, mesh_network};
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
@@ -74,7 +74,7 @@ pub fn ensure_boundary_writable(path: &Path) -> Result<(), SurfaceFileError> {
 /// let made = mesh_network(&clean(&file.skeleton)?.0, &plan, &())?;
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("wall.ply");
-/// write_boundary(&path, &BoundarySurface::new(&made.mesh, Faces::All)?, &MeshNotes::default())?;
+/// write_boundary(&path, &BoundarySurface::new(&made.mesh, BoundaryPart::Whole)?, &MeshNotes::default())?;
 /// assert_eq!(read_surface(&path)?.triangles.len(), made.mesh.boundary.len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -4,7 +4,7 @@ use super::*;
 use crate::io::surface::{SurfaceFormat, read_content_from, read_surface_from};
 use crate::io::volume::fixtures::labelled_tube;
 use crate::mesh::TriMesh;
-use crate::mesh::boundary::Faces;
+use crate::mesh::boundary::BoundaryPart;
 use std::io::Cursor;
 
 fn bytes_of(format: BoundaryFormat, surface: &BoundarySurface) -> Vec<u8> {
@@ -16,7 +16,7 @@ fn bytes_of(format: BoundaryFormat, surface: &BoundarySurface) -> Vec<u8> {
 #[test]
 fn surfaces_come_back() {
     let (volume, _) = labelled_tube(9);
-    for faces in [Faces::All, Faces::Wall] {
+    for faces in [BoundaryPart::Whole, BoundaryPart::Wall] {
         let surface = BoundarySurface::new(&volume, faces).unwrap();
         let expected = surface.gather().unwrap();
         for (format, read) in [
@@ -39,7 +39,7 @@ fn surfaces_come_back() {
 #[test]
 fn glb_says_where_its_bytes_are() {
     let (volume, _) = labelled_tube(9);
-    let surface = BoundarySurface::new(&volume, Faces::All).unwrap();
+    let surface = BoundarySurface::new(&volume, BoundaryPart::Whole).unwrap();
     let bytes = bytes_of(BoundaryFormat::Glb, &surface);
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
     assert_eq!((&bytes[..4], word(4), word(8)), (&b"glTF"[..], 2, bytes.len()));

@@ -49,6 +49,11 @@ impl MeshFormat {
         })
     }
 
+    /// Whether it is one of VTK's unstructured grids.
+    pub fn is_grid(self) -> bool {
+        matches!(self, Self::Vtu | Self::Pvtu)
+    }
+
     /// Whether a mesh can be written without being held in memory as a whole.
     pub fn is_written_in_passes(self) -> bool {
         self != Self::Tetgen

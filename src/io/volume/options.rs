@@ -1,14 +1,17 @@
 //! What can be chosen beside the format when a mesh is written.
 
+use crate::mesh::beside::Beside;
 use std::path::{Path, PathBuf};
 
 /// How a mesh is written; each format takes what concerns it.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct WriteOptions {
+#[derive(Clone, Copy, Default)]
+pub struct WriteOptions<'a> {
     /// How many bytes of a mesh in pieces are held at a time, about; other formats take less.
     pub memory: Option<usize>,
     /// How VTK's files are written.
     pub grid: GridOptions,
+    /// Values beside the mesh that VTK's files are to have.
+    pub values: Option<&'a dyn Beside>,
 }
 
 /// How VTK's files are written.

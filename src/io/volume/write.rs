@@ -8,7 +8,7 @@ use super::pvtu::{PieceFolder, Pieces};
 use super::{medit, msh, openfoam, pvtu, vtu};
 use crate::io::file::{Asked, AtomicFile, FileError, write_whole};
 use crate::io::tetgen::MeshFamily;
-use crate::mesh::boundary::{BoundarySurface, Faces};
+use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 use crate::mesh::source::{MeshSource, gather};
 use crate::progress::Progress;
 use std::io::{self, Cursor, Seek, Write};
@@ -69,10 +69,12 @@ pub fn write_mesh_with(
         MeshFormat::Pvtu => {
             let usual = Pieces::default();
             let memory = options.memory.unwrap_or(usual.memory);
-            pvtu::write(path, mesh, notes, Pieces { memory, grid, ..usual }, progress)
+            pvtu::write(path, mesh, notes, Pieces { memory, grid, values: options.values, ..usual }, progress)
         }
         MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, progress),
-        MeshFormat::Vtu => write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid)),
+        MeshFormat::Vtu => {
+            write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid, options.values))
+        }
         format => write_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
     };
     match format {
@@ -96,7 +98,7 @@ fn complete_boundary(
     let beside = boundary_beside(path);
     let make = || {
         let mut file = AtomicFile::create(&beside)?;
-        let surface = BoundarySurface::new(mesh, Faces::All)?;
+        let surface = BoundarySurface::new(mesh, BoundaryPart::Whole)?;
         vtu::write_boundary(&mut Asked { out: &mut file, progress }, &surface, notes, grid)?;
         file.complete()?;
         Ok(file)
@@ -160,7 +162,7 @@ pub(super) fn write_format(
     notes: &MeshNotes,
 ) -> io::Result<()> {
     match format {
-        MeshFormat::Vtu => vtu::write(out, mesh, notes, GridOptions::default()),
+        MeshFormat::Vtu => vtu::write(out, mesh, notes, GridOptions::default(), None),
         MeshFormat::Msh => msh::write(out, mesh, notes),
         MeshFormat::Msh2 => msh::write_2(out, mesh, notes),
         MeshFormat::Medit => medit::write(out, mesh),

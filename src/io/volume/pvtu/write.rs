@@ -7,6 +7,7 @@ use crate::io::volume::content::MeshNotes;
 use crate::io::volume::options::GridOptions;
 use crate::io::volume::vtu::{GLOBAL_IDS, Grid};
 use crate::mesh::VolumeMesh;
+use crate::mesh::beside::{Beside, Column};
 use crate::mesh::bits::Bits;
 use crate::mesh::source::MeshSource;
 use crate::progress::Progress;
@@ -15,19 +16,21 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// How a mesh is cut into pieces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::io::volume) struct Pieces {
+#[derive(Clone, Copy)]
+pub(in crate::io::volume) struct Pieces<'a> {
     /// Tetrahedra in a piece at most. Cuts lie between blocks, unless one has more.
     pub tets: usize,
     /// How many bytes of pieces are held at a time, about; one piece is, in any case.
     pub memory: usize,
     /// How each of them is written.
     pub grid: GridOptions,
+    /// Values beside the mesh.
+    pub values: Option<&'a dyn Beside>,
 }
 
-impl Default for Pieces {
+impl Default for Pieces<'_> {
     fn default() -> Self {
-        Self { tets: 2_000_000, memory: 512 << 20, grid: GridOptions::default() }
+        Self { tets: 2_000_000, memory: 512 << 20, grid: GridOptions::default(), values: None }
     }
 }
 
@@ -58,12 +61,13 @@ pub(in crate::io::volume) fn write(
         folder: &folder,
         room,
         grid: pieces.grid,
+        values: pieces.values,
         progress,
         piece: Bits::new(points),
         used: Bits::new(points),
     }
     .write()?;
-    write_index(&mut index, plan.ends.len(), &folder, pieces.grid)?;
+    write_index(&mut index, plan.ends.len(), &folder, pieces)?;
     folder.commit(index, path)
 }
 
@@ -74,23 +78,36 @@ fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
     ((20.0 + shared) * tets.min(counts.tets.max(1)) as f64) as usize
 }
 
-fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, grid: GridOptions) -> io::Result<()> {
+fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, how: Pieces) -> io::Result<()> {
+    let grid = how.grid;
     let compressor = if grid.raw { "" } else { " compressor=\"vtkZLibDataCompressor\"" };
     let float = if grid.float32 { "Float32" } else { "Float64" };
+    let columns = how.values.map_or(&[][..], Beside::columns);
     writeln!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\"{compressor}>\n<PUnstructuredGrid GhostLevel=\"0\">\n\
-         <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n\
+         <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n{}\
          </PPointData>\n<PPoints>\n<PDataArray type=\"{float}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
          <PCellData Scalars=\"patch\">\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
-         <PDataArray type=\"Int32\" Name=\"block\"/>\n</PCellData>"
+         <PDataArray type=\"Int32\" Name=\"block\"/>\n{}</PCellData>",
+        announced(columns, true),
+        announced(columns, false)
     )?;
     for piece in 0..pieces {
         let source = folder.source(piece);
         writeln!(out, "<Piece Source=\"{}\"/>", quick_xml::escape::escape(source.as_str()))?;
     }
     out.write_all(b"</PUnstructuredGrid>\n</VTKFile>\n")
+}
+
+/// What the index says of the columns at points, or of those in cells.
+fn announced(columns: &[Column], at_points: bool) -> String {
+    let line = |column: &Column| {
+        let kind = if column.is_integer { "Int32" } else { "Float64" };
+        format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", column.name)
+    };
+    columns.iter().filter(|column| column.at_points == at_points).map(line).collect()
 }
 
 /// Writes pieces, some in each pass over points and boundary.
@@ -102,6 +119,7 @@ struct Writer<'a> {
     /// How many pieces may be held.
     room: usize,
     grid: GridOptions,
+    values: Option<&'a dyn Beside>,
     progress: &'a dyn Progress,
     /// The points of the piece under way.
     piece: Bits,
@@ -245,7 +263,8 @@ impl Writer<'_> {
         if notes.is_some() {
             piece.volume.patches = self.mesh.patches().to_vec();
         }
-        let grid = Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids), options: self.grid };
+        let grid =
+            Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids), options: self.grid, values: self.values };
         write_whole(&self.folder.piece(number), |out| grid.write(&mut Asked { out, progress: self.progress }))
     }
 }

@@ -5,6 +5,7 @@ use crate::geometry::Point3;
 use crate::io::volume::content::MeshNotes;
 use crate::io::vtk_xml::Blocks;
 use crate::mesh::Patch;
+use crate::mesh::beside::{Beside, Column};
 use crate::mesh::boundary::BoundarySurface;
 use crate::mesh::source::{MeshSource, SourceCounts};
 use std::io;
@@ -238,6 +239,32 @@ pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec
         Array::new(Place::CellData, "patch", INT32, faces, patch),
         Array::new(Place::CellData, "block", INT32, faces, block),
     ]
+}
+
+/// Values beside a mesh, at its points and in its cells. Those of cells follow from their corners.
+pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) -> Vec<Array<'a>> {
+    let SourceCounts { points, tets, boundary } = mesh.counts();
+    let array = |(column, named): (usize, &Column)| {
+        let Column { name, at_points, is_integer } = *named;
+        let kind = if is_integer { INT32 } else { FLOAT64 };
+        let push = move |out: &mut Blocks, found: Vec<f64>| {
+            if is_integer {
+                out.push(found.len(), |i| (found[i] as i32).to_le_bytes())
+            } else {
+                out.push(found.len(), |i| found[i].to_le_bytes())
+            }
+        };
+        if at_points {
+            return Array::new(Place::PointData, name, kind, points, move |out| {
+                mesh.each_points(|some| push(out, values.at_points(column, some)))
+            });
+        }
+        Array::new(Place::CellData, name, kind, tets + boundary, move |out| {
+            mesh.each_tet_corners(|some| push(out, values.in_tets(column, some)))?;
+            mesh.each_face_corners(|some| push(out, values.in_faces(column, some)))
+        })
+    };
+    values.columns().iter().enumerate().map(array).collect()
 }
 
 /// Patches of the boundary faces; those of tetrahedra are 0.

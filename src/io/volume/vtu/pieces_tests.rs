@@ -26,7 +26,7 @@ fn bytes_of(volume: &VolumeMesh, notes: &MeshNotes) -> Vec<u8> {
 
 fn bytes_with(volume: &VolumeMesh, notes: &MeshNotes, options: GridOptions) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write(&mut bytes, volume, notes, options).unwrap();
+    write(&mut bytes, volume, notes, options, None).unwrap();
     bytes.into_inner()
 }
 

@@ -4,10 +4,12 @@ use super::arrays::{LARGEST_NAMED, Width, cell_arrays};
 use super::file::APPENDED_CLOSE;
 use super::read::read;
 use super::write::write;
+use crate::geometry::Point3;
 use crate::io::volume::content::{MeshFile, MeshNotes};
 use crate::io::volume::fixtures::labelled_tube;
 use crate::io::volume::options::GridOptions;
-use crate::io::vtk_xml::{Packing, write_blocks};
+use crate::io::vtk_xml::{Packing, VtkXml, write_blocks};
+use crate::mesh::beside::{Beside, Column};
 use crate::mesh::check::Expectation;
 use crate::mesh::source::SourceCounts;
 use crate::mesh::{Patch, VolumeMesh};
@@ -16,7 +18,7 @@ use std::io::Cursor;
 
 fn bytes_of(volume: &VolumeMesh, notes: &MeshNotes) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write(&mut bytes, volume, notes, GridOptions::default()).unwrap();
+    write(&mut bytes, volume, notes, GridOptions::default(), None).unwrap();
     bytes.into_inner()
 }
 
@@ -35,7 +37,7 @@ fn options_change_how_it_stands_in_the_file() {
     let (volume, notes) = labelled_tube(900);
     let read_with = |options| {
         let mut bytes = Cursor::new(Vec::new());
-        write(&mut bytes, &volume, &notes, options).unwrap();
+        write(&mut bytes, &volume, &notes, options, None).unwrap();
         read(&bytes.into_inner()).unwrap()
     };
     let usual = GridOptions::default();
@@ -47,6 +49,50 @@ fn options_change_how_it_stands_in_the_file() {
     let alone = read_with(GridOptions { tets_alone: true, ..usual });
     assert_eq!((&alone.volume.mesh, &alone.notes), (&volume.mesh, &notes));
     assert!(!alone.labelled && alone.volume.boundary.is_empty());
+}
+
+/// The height of a point, and the number of corners of a cell.
+struct Heights([Column; 2]);
+
+impl Beside for Heights {
+    fn columns(&self) -> &[Column] {
+        &self.0
+    }
+
+    fn at_points(&self, _: usize, points: &[Point3]) -> Vec<f64> {
+        points.iter().map(|p| p.z).collect()
+    }
+
+    fn in_tets(&self, _: usize, tets: &[[Point3; 4]]) -> Vec<f64> {
+        vec![4.0; tets.len()]
+    }
+
+    fn in_faces(&self, _: usize, faces: &[[Point3; 3]]) -> Vec<f64> {
+        vec![3.0; faces.len()]
+    }
+}
+
+#[test]
+fn values_stand_beside_the_mesh() {
+    let (volume, notes) = labelled_tube(9);
+    let height = Column { name: "height", at_points: true, is_integer: false };
+    let corners = Column { name: "corners", at_points: false, is_integer: true };
+    let mut bytes = Cursor::new(Vec::new());
+    write(&mut bytes, &volume, &notes, GridOptions::default(), Some(&Heights([height, corners]))).unwrap();
+    let bytes = bytes.into_inner();
+    assert_eq!(read(&bytes).unwrap().volume, volume);
+    let xml = VtkXml::parse(&bytes, "UnstructuredGrid").unwrap();
+    let grid = xml.child(VtkXml::ROOT, "UnstructuredGrid").unwrap();
+    let piece = xml.child(grid, "Piece").unwrap();
+    let array = |section, name| {
+        let section = xml.child(piece, section).unwrap();
+        let (_, array) = xml.arrays(section).find(|(n, _)| *n == name).unwrap();
+        xml.read(array).unwrap()
+    };
+    let heights: Vec<f64> = volume.mesh.points.iter().map(|p| p.z).collect();
+    assert_eq!(array("PointData", "height").into_floats(), heights);
+    let expected = [vec![4; volume.mesh.tets.len()], vec![3; volume.boundary.len()]].concat();
+    assert_eq!(array("CellData", "corners").into_ints(), Some(expected));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::geometry::Point3;
 use crate::io::volume::content::MeshNotes;
 use crate::io::volume::options::GridOptions;
 use crate::mesh::Patch;
+use crate::mesh::beside::Beside;
 use crate::mesh::boundary::BoundarySurface;
 use crate::mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece};
 use std::borrow::Cow;
@@ -22,8 +23,9 @@ pub(in crate::io::volume) fn write(
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     options: GridOptions,
+    values: Option<&dyn Beside>,
 ) -> io::Result<()> {
-    Grid { mesh, notes: Some(notes), global_ids: None, options }.write(out)
+    Grid { mesh, notes: Some(notes), global_ids: None, options, values }.write(out)
 }
 
 /// What goes into a file.
@@ -34,6 +36,8 @@ pub(in crate::io::volume) struct Grid<'a> {
     /// For a piece of a mesh: which point of the whole each point is.
     pub global_ids: Option<&'a [u32]>,
     pub options: GridOptions,
+    /// Values beside the mesh.
+    pub values: Option<&'a dyn Beside>,
 }
 
 impl Grid<'_> {
@@ -44,6 +48,7 @@ impl Grid<'_> {
         let mut all = self.notes.map_or_else(Vec::new, |notes| arrays::of_fields(mesh.patches(), notes));
         all.extend(self.global_ids.map(arrays::of_ids));
         all.extend(arrays::of_mesh(mesh, self.options.float32));
+        all.extend(self.values.into_iter().flat_map(|values| arrays::of_values(mesh, values)));
         let SourceCounts { points, tets, boundary } = mesh.counts();
         let counts = format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{}\"", tets + boundary);
         File { kind: "UnstructuredGrid", counts, arrays: all, raw: self.options.raw }.write(out)
