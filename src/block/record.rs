@@ -167,7 +167,9 @@ pub fn encode(block: &Finished) -> io::Result<Vec<u8>> {
     }
     for numbers in [block.mesh.tets.as_flattened(), block.hull.as_flattened()] {
         if sizes.narrow() {
-            numbers.iter().for_each(|&v| out.extend_from_slice(&(v as u16).to_le_bytes()));
+            for &v in numbers {
+                out.extend_from_slice(&(v as u16).to_le_bytes());
+            }
         } else {
             put(&mut out, numbers);
         }

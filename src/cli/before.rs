@@ -5,7 +5,7 @@ use super::network::PreparedNetwork;
 use super::progress::Bars;
 use crate::fidelity::{Compared, Displaced, Fidelity};
 use crate::io::network::NodeNames;
-use crate::pipeline::RunReport;
+use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_into};
 use crate::prepare::{PrepareReport, TouchedBy, take_back};
 use crate::progress::Progress;
 use crate::refine::{RefineReport, Refined, split};
@@ -17,6 +17,9 @@ use serde::Serialize;
 
 /// How far a measured axis may be from where it was given, in radii, unless an overlap demands more.
 const FURTHEST: f64 = 1.0;
+
+/// How often tips that could not be capped are drawn back.
+const ROUNDS: usize = 4;
 
 /// What was done to the network before it was meshed.
 #[derive(Serialize)]
@@ -57,9 +60,31 @@ impl Before {
         Compared { given: &self.given, outline: &self.outline, meshed: &self.meshed }
     }
 
+    /// Meshes it into a store. With `touches`, tips of a measured network that could not be capped are drawn back, and it is
+    /// meshed again.
+    pub fn mesh<'a>(
+        &mut self,
+        store: &'a Store,
+        plan: &MeshPlan,
+        fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
+        touches: bool,
+        explain: &dyn Fn(RunError, &Self) -> Failure,
+        bars: &'a Bars,
+    ) -> Result<Stored<'a>, Failure> {
+        let mut round = 0;
+        loop {
+            let made = mesh_into(store, &self.network, plan, fits, bars).map_err(|e| explain(e, self))?;
+            round += 1;
+            // Blocks that this does not change are found in the store.
+            if round > ROUNDS || !touches || !self.take_back(&made.report, &plan.roots, bars)? {
+                return Ok(made);
+            }
+        }
+    }
+
     /// Draws the tips of a measured network back that could not be capped, but inlets that were asked for; says which, and
     /// whether there were any.
-    pub fn take_back(&mut self, run: &RunReport, roots: &[u32], bars: &Bars) -> Result<bool, Failure> {
+    fn take_back(&mut self, run: &RunReport, roots: &[u32], bars: &Bars) -> Result<bool, Failure> {
         let tips: Vec<u32> =
             run.fused.iter().flat_map(|f| &f.uncapped).copied().filter(|n| !roots.contains(n)).collect();
         if tips.is_empty() || !self.prepare.measured {

@@ -165,8 +165,8 @@ impl Args {
         let path = &self.output;
         // A .vtp holds a network or a surface, as what becomes of it asks.
         let to = match Kind::of(path) {
-            Ok(Kind::Network) if from != Kind::Network => Kind::Surface,
-            Err(_) if from != Kind::Network => Kind::Surface,
+            // Pictures and printers have formats that are not read.
+            Ok(Kind::Network) | Err(_) if from != Kind::Network => Kind::Surface,
             found => found?,
         };
         match (from, to) {

@@ -97,9 +97,6 @@ enum Joint {
     None,
 }
 
-/// How often tips that could not be capped are drawn back.
-const ROUNDS: usize = 4;
-
 /// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
 const HELD_PER_TET: f64 = 150.0;
 
@@ -213,16 +210,8 @@ impl Args {
                 "finished blocks are kept in {dir}: the same command goes on there if this run is stopped"
             ));
         }
-        let mut round = 0;
-        let made = loop {
-            let made = pipeline::mesh_into(&store, &before.network, plan, &fits, bars);
-            let made = made.map_err(|e| self.explain(e, plan, &before))?;
-            round += 1;
-            // Blocks that this does not change are found in the store.
-            if round > ROUNDS || !self.cures.touches() || !before.take_back(&made.report, &plan.roots, bars)? {
-                break made;
-            }
-        };
+        let explain = |e, before: &Before| self.explain(e, plan, before);
+        let made = before.mesh(&store, plan, &fits, self.cures.touches(), &explain, bars)?;
         let done = Done { mesh: &made.whole, expectation: made.expectation, check: &made.check, report: made.report };
         self.finish(done, plan, &before, bars)
     }

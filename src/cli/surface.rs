@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::before::Before;
 use super::blocks::BlockArgs;
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
@@ -17,11 +18,8 @@ use crate::io::surface::{ensure_boundary_writable, write_boundary_watched};
 use crate::io::volume::MeshNotes;
 use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 use crate::mesh::check::CheckReport;
-use crate::pipeline::{self, Clock, Estimate, MeshPlan, RunError, RunReport, TooLarge};
-use crate::prepare::PrepareReport;
+use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport, TooLarge};
 use crate::progress::{Progress, Stage};
-use crate::refine::RefineReport;
-use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -48,17 +46,10 @@ pub struct Args {
 struct Output<'a> {
     program: &'static str,
     plan: &'a MeshPlan,
-    prepare: &'a PrepareReport,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    refine: Option<&'a RefineReport>,
+    #[serde(flatten)]
+    before: &'a Before,
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
-}
-
-/// What was done to the network before its wall was made.
-struct Before<'a> {
-    prepare: &'a PrepareReport,
-    refine: Option<&'a RefineReport>,
 }
 
 /// Makes the wall of a network and writes it.
@@ -78,34 +69,33 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         pool.install(|| super::refine::moved(&network, &params, args.common.quiet, &stop))
     };
     let refined = args.blocks.refine.map(moved).transpose()?;
-    let skeleton = refined.as_ref().map_or(&network.skeleton, |r| &r.skeleton);
-    let before = Before { prepare: &network.report, refine: refined.as_ref().map(|r| &r.report) };
+    if let Some(refined) = refined.as_ref().filter(|_| !args.common.quiet && !args.common.json) {
+        eprint!("{}", refined.report);
+    }
+    let before = Before::new(network, refined);
     stop.keep();
-    pool.install(|| args.make(skeleton, &plan, &before, &bars))
+    pool.install(|| args.make(before, &plan, &bars))
 }
 
 impl Args {
-    fn make(&self, skeleton: &Skeleton, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
-        let rough = Estimate::rough(skeleton, plan);
+    fn make(&self, mut before: Before, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
+        let rough = Estimate::rough(&before.network, plan);
         let place = BlockPlace::choose(None, false, &self.output, &rough, plan.memory);
-        let store = place.open(skeleton, || serde_json::Value::Null)?;
+        let store = place.open(&before.network, || serde_json::Value::Null)?;
         let fits = |estimate: &Estimate| {
             let (estimate, memory) = (*estimate, plan.memory);
             if estimate.largest_block_bytes > memory { Err(TooLarge::Block { estimate, memory }) } else { Ok(()) }
         };
-        let made = pipeline::mesh_into(&store, skeleton, plan, &fits, bars);
-        let mut made = made.map_err(|e| self.explain(e, plan, before))?;
+        let explain = |e, before: &Before| self.explain(e, plan, before);
+        let mut made = before.mesh(&store, plan, &fits, self.cures.touches(), &explain, bars)?;
         let notes = MeshNotes {
-            expectation: None,
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
             options: format!("surface {}", self.blocks.typed()),
-            regions: false,
-            flow: None,
+            ..MeshNotes::default()
         };
         let faces = if self.no_caps { BoundaryPart::Wall } else { BoundaryPart::Whole };
-        let failed = |e: &dyn std::fmt::Display| match bars.is_cancelled() {
-            true => Failure::stopped(NOTHING_KEPT),
-            false => Failure::input(e.to_string()),
+        let failed = |e: &dyn std::fmt::Display| {
+            if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(e.to_string()) }
         };
         let mut clock = Clock::default();
         let write = || {
@@ -114,7 +104,7 @@ impl Args {
         };
         clock.time(bars, Stage::Write, 0, write)?;
         made.report.stages.extend(clock.stages());
-        self.print(plan, before, &made.report, Some(&made.check))?;
+        self.print(plan, &before, &made.report, Some(&made.check))?;
         Ok(match () {
             () if !made.report.failed.is_empty() => Exit::StageFailed,
             () if !made.check.is_valid() || !made.report.keeps_vessels(plan.fuse) => Exit::GateNotMet,
@@ -148,15 +138,11 @@ impl Args {
     ) -> Result<(), Failure> {
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            let output = Output { program, plan, prepare: before.prepare, refine: before.refine, run, check };
-            return print(true, &output, String::new);
+            return print(true, &Output { program, plan, before, run, check }, String::new);
         }
         // What is wrong is an error, which --quiet does not silence.
         let is_wrong = !run.failed.is_empty() || !run.keeps_vessels(plan.fuse) || check.is_some_and(|c| !c.is_valid());
         if !self.common.quiet || is_wrong {
-            if let Some(report) = before.refine {
-                eprint!("{report}");
-            }
             eprint!("{run}");
             if let Some(check) = check {
                 eprint!("{check}");

@@ -18,7 +18,7 @@ pub(super) fn write_boundary(out: &mut impl Write, surface: &BoundarySurface) ->
     let counts = surface.counts();
     let mut bounds = Aabb::EMPTY;
     surface.each_points(|points| {
-        points.iter().for_each(|p| bounds.include(p));
+        bounds = bounds.union(&Aabb::of_points(points));
         Ok(())
     })?;
     let middle = nalgebra::center(&bounds.min, &bounds.max);

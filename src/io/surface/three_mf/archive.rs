@@ -71,8 +71,9 @@ impl<W: Write + Seek> Archive<W> {
         }
         let (size, count) = (self.position()? - at, self.entries.len() as u16);
         let mut end = END.to_le_bytes().to_vec();
-        [0, 0, count, count].iter().for_each(|n: &u16| end.extend(n.to_le_bytes()));
-        [size, at].iter().for_each(|n| end.extend(n.to_le_bytes()));
+        // No other disks; no comment.
+        end.extend([0, 0, count, count].map(u16::to_le_bytes).as_flattened());
+        end.extend([size, at].map(u32::to_le_bytes).as_flattened());
         end.extend([0; 2]);
         self.out.write_all(&end)
     }

@@ -53,11 +53,10 @@ impl File<'_> {
     }
 
     fn packing(&self, array: &Array) -> Packing {
-        match array.shrinks {
-            _ if self.raw => Packing::Raw,
-            true => Packing::Zlib(Compression::fast()),
-            false => Packing::Zlib(Compression::none()),
+        if self.raw {
+            return Packing::Raw;
         }
+        Packing::Zlib(if array.shrinks { Compression::fast() } else { Compression::none() })
     }
 
     fn header(&self, offsets: &[u64]) -> String {
