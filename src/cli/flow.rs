@@ -7,10 +7,10 @@ use crate::pipeline::{Fluid, Outlets};
 #[command(next_help_heading = "Flow")]
 pub struct FlowArgs {
     /// Which outlets share a patch: separate, none; grouped, all (`outlets`); by-order, those whose vessels have the same
-    /// diameter-defined Strahler order (`outlets_order_1`, …). MESH.patches.csv names every one of them in any case
+    /// diameter-defined Strahler order (`outlets_order_1`, …). MESH_patches.csv names every one of them in any case
     #[arg(long, value_enum, default_value_t = OutletArg::Separate)]
     outlets: OutletArg,
-    /// Volume per time into each inlet, in the mesh's unit of length: for the one-dimensional flow in MESH.patches.csv and for
+    /// Volume per time into each inlet, in the mesh's unit of length: for the one-dimensional flow in MESH_patches.csv and for
     /// cases of solvers (default: what has a Reynolds number of 1 there)
     #[arg(long, value_name = "FLOW", value_parser = above_zero)]
     inflow: Option<f64>,

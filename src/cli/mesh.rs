@@ -19,7 +19,7 @@ use super::stop::{self, Stop};
 use crate::fidelity::Fidelity;
 use crate::io::network::{NodeNames, ensure_network_writable};
 use crate::io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable, write_mesh_with};
-use crate::io::write_text;
+use crate::io::{ensure_text_writable, write_text};
 use crate::mesh::beside::Beside;
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
@@ -37,7 +37,8 @@ pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
     /// Where the mesh goes: .vtu, .pvtu (pieces in a folder beside it), .msh (Gmsh 4.1), .msh2 (Gmsh 2.2, text),
-    /// .mesh (Medit), or .ele (TetGen's family of files)
+    /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), or .ele
+    /// (TetGen's family of files)
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
     #[command(flatten)]
@@ -138,6 +139,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage("--data is for .vtu and .pvtu; the other formats have no place for it"));
     }
     ensure_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
     if let Some(path) = &args.refined {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
@@ -294,10 +296,19 @@ impl Args {
 
     /// Writes what is known of inlets and outlets beside the mesh.
     fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<(), Failure> {
-        let path = self.output.with_extension("patches.csv");
-        let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: cannot be written: {e}", path.display()));
-        let text = caps::table(caps, names).map_err(|e| failed(&e))?;
-        write_text(&path, &text).map_err(|e| failed(&e))
+        let text = caps::table(caps, names).map_err(|e| self.no_table(&e))?;
+        write_text(&self.table(), &text).map_err(|e| self.no_table(&e))
+    }
+
+    /// Where the table of inlets and outlets goes.
+    fn table(&self) -> PathBuf {
+        let mut name = self.output.file_stem().unwrap_or_default().to_owned();
+        name.push("_patches.csv");
+        self.output.with_file_name(name)
+    }
+
+    fn no_table(&self, why: &dyn std::fmt::Display) -> Failure {
+        Failure::input(format!("{}: cannot be written: {why}", self.table().display()))
     }
 
     fn notes(&self, mut expectation: Expectation, caps: &Caps) -> MeshNotes {

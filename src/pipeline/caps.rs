@@ -189,3 +189,6 @@ fn areas(mesh: &dyn MeshSource) -> io::Result<BTreeMap<i32, f64>> {
     }
     Ok(areas)
 }
+
+#[cfg(test)]
+mod tests;

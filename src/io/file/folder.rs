@@ -47,12 +47,21 @@ impl AtomicFolder {
 
     /// A new file of the folder, by its path in it.
     pub(in crate::io) fn file(&self, name: &str) -> io::Result<AtomicFile> {
+        AtomicFile::create(&self.place(name)?)
+    }
+
+    /// Puts a small file into the folder. The disk is not waited for: with thousands of them that would take minutes.
+    pub(in crate::io) fn put(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        fs::write(self.place(name)?, bytes)
+    }
+
+    fn place(&self, name: &str) -> io::Result<PathBuf> {
         debug_assert!((self.ours)(name), "{name} could not be replaced");
         let path = self.temporary.join(name);
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder)?;
         }
-        AtomicFile::create(&path)
+        Ok(path)
     }
 
     /// Moves the folder to its target, replacing what was there. When that fails all is as before.
@@ -162,6 +171,7 @@ mod tests {
             file.write_all(text.as_bytes()).unwrap();
             file.commit().unwrap();
         }
+        folder.put("sub/b", text.as_bytes()).unwrap();
         folder
     }
 

@@ -10,6 +10,6 @@ pub(super) use asked::Asked;
 pub(super) use atomic::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
 pub use error::FileError;
 pub(super) use folder::AtomicFolder;
-#[cfg(feature = "cli")]
-pub use whole::write_text;
 pub(super) use whole::{Writing, by_extension, ensure_sound, extension, read_bytes, write_all_whole, write_whole};
+#[cfg(feature = "cli")]
+pub use whole::{ensure_text_writable, write_text};

@@ -55,6 +55,12 @@ impl Role {
     }
 }
 
+/// A name that is a word in every dictionary, and the name of a file.
+pub(super) fn plain(name: &str) -> String {
+    let breaks = |c: char| c.is_whitespace() || c.is_control() || "\"'/\\;:{}()[]<>&|*?$#".contains(c);
+    name.chars().map(|c| if breaks(c) { '_' } else { c }).collect()
+}
+
 impl Flow {
     /// Blood that creeps through the inlets: for a mesh without a network. An inlet of unknown radius gets no flow.
     pub(super) fn usual(patches: &[Patch]) -> Self {

@@ -30,8 +30,8 @@ pub enum MeshFault {
     #[error(transparent)]
     Tetgen(#[from] TetgenFault),
     /// Meshes of this format are written alone.
-    #[error("cases for {0} are written, not read: read what the same run can write as .vtu or .msh")]
-    NotRead(&'static str),
+    #[error("cases of solvers are written, not read: name the same mesh as .vtu or .msh")]
+    NotRead,
     /// The format spreads a mesh over several files.
     #[error("a mesh of this format is several files: name the path of its .ele or .pvtu file")]
     SeveralFiles,

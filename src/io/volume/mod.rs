@@ -14,6 +14,7 @@ mod openfoam;
 mod options;
 mod pvtu;
 mod read;
+mod simvascular;
 #[cfg(test)]
 mod tests;
 mod vtu;

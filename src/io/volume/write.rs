@@ -5,7 +5,7 @@ use super::error::MeshFileError;
 use super::format::MeshFormat;
 use super::options::{GridOptions, WriteOptions, boundary_beside};
 use super::pvtu::{PieceFolder, Pieces};
-use super::{medit, msh, openfoam, pvtu, vtu};
+use super::{medit, msh, openfoam, pvtu, simvascular, vtu};
 use crate::io::file::{Asked, AtomicFile, FileError, write_whole};
 use crate::io::tetgen::MeshFamily;
 use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
@@ -23,6 +23,7 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
     let file = || AtomicFile::create(path).map(drop);
     match MeshFormat::of(path)? {
         MeshFormat::OpenFoam => openfoam::ensure_writable(path),
+        MeshFormat::SimVascular => simvascular::ensure_writable(path),
         MeshFormat::Pvtu => file().and_then(|()| PieceFolder::ensure_replaceable(path)),
         _ => file(),
     }
@@ -72,6 +73,7 @@ pub fn write_mesh_with(
             pvtu::write(path, mesh, notes, Pieces { memory, grid, values: options.values, ..usual }, progress)
         }
         MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, progress),
+        MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
         MeshFormat::Vtu => {
             write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid, options.values))
         }
@@ -166,7 +168,7 @@ pub(super) fn write_format(
         MeshFormat::Msh => msh::write(out, mesh, notes),
         MeshFormat::Msh2 => msh::write_2(out, mesh, notes),
         MeshFormat::Medit => medit::write(out, mesh),
-        MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::OpenFoam => {
+        MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::OpenFoam | MeshFormat::SimVascular => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
         }
     }

@@ -1,7 +1,7 @@
 //! The patches of a case: their names, and where their faces stand among all.
 
 use crate::io::patches::usual_name;
-use crate::io::volume::conditions::Role;
+use crate::io::volume::conditions::{Role, plain};
 use crate::mesh::Patch;
 use crate::mesh::source::{MeshSource, miscounted};
 use std::collections::BTreeMap;
@@ -45,7 +45,7 @@ impl Boundary {
             let unnamed = || Patch { id, name: usual_name(id), cap: None };
             let patch = named.get(&id).map_or_else(unnamed, |&patch| patch.clone());
             first += faces;
-            FoamPatch { name: word(&patch.name), role: Role::of(&patch), patch, faces, first: first - faces }
+            FoamPatch { name: plain(&patch.name), role: Role::of(&patch), patch, faces, first: first - faces }
         };
         Ok(Self { patches: faces.into_iter().map(place).collect(), inner, outer })
     }
@@ -53,10 +53,4 @@ impl Boundary {
     pub(super) fn with_role(&self, role: Role) -> impl Iterator<Item = &FoamPatch> {
         self.patches.iter().filter(move |patch| patch.role == role)
     }
-}
-
-/// A name without what ends a word in a dictionary.
-fn word(name: &str) -> String {
-    let ends = |c: char| c.is_whitespace() || c.is_control() || "\"'/;{}()[]$#".contains(c);
-    name.chars().map(|c| if ends(c) { '_' } else { c }).collect()
 }

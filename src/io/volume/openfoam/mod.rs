@@ -13,7 +13,7 @@ use crate::io::file::AtomicFolder;
 use crate::mesh::source::MeshSource;
 use crate::progress::Progress;
 use boundary::Boundary;
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 /// The folder's files beside those of the mesh, and what writes them.
@@ -62,10 +62,8 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
         &usual
     };
     for (name, text) in TEXTS {
-        let mut file = folder.file(name)?;
-        file.write_all(text(&boundary, flow).as_bytes())?;
-        file.commit()?;
+        folder.put(name, text(&boundary, flow).as_bytes())?;
     }
-    folder.file(FOR_PARAVIEW)?.commit()?;
+    folder.put(FOR_PARAVIEW, b"")?;
     folder.commit()
 }

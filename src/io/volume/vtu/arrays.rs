@@ -12,7 +12,7 @@ use std::io;
 
 /// Where an array stands in the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(in crate::io::volume) enum Place {
     Field,
     PointData,
     Points,
@@ -22,19 +22,19 @@ pub(super) enum Place {
 }
 
 /// The name of a type of values, and the bytes that one takes.
-type Kind = (&'static str, usize);
+pub(in crate::io::volume) type Kind = (&'static str, usize);
 
 const UINT8: Kind = ("UInt8", 1);
-const INT32: Kind = ("Int32", 4);
+pub(in crate::io::volume) const INT32: Kind = ("Int32", 4);
 const INT64: Kind = ("Int64", 8);
 const FLOAT32: Kind = ("Float32", 4);
 const FLOAT64: Kind = ("Float64", 8);
 
 /// Gives an array's values, as little-endian bytes.
-type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
+pub(in crate::io::volume) type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
 
 /// One array of the file: what it is called and where its values come from.
-pub(super) struct Array<'a> {
+pub(in crate::io::volume) struct Array<'a> {
     pub place: Place,
     pub name: &'static str,
     pub kind: &'static str,
@@ -48,7 +48,7 @@ pub(super) struct Array<'a> {
 }
 
 impl<'a> Array<'a> {
-    fn new(
+    pub(in crate::io::volume) fn new(
         place: Place,
         name: &'static str,
         (kind, width): Kind,
@@ -143,7 +143,11 @@ pub(super) fn of_ids(ids: &[u32]) -> Array<'_> {
 type EachPoints<'a> = dyn FnMut(&[Point3]) -> io::Result<()> + 'a;
 
 /// `pass`: gives all points.
-fn points_array<'a>(count: usize, float32: bool, pass: impl Fn(&mut EachPoints) -> io::Result<()> + 'a) -> Array<'a> {
+pub(in crate::io::volume) fn points_array<'a>(
+    count: usize,
+    float32: bool,
+    pass: impl Fn(&mut EachPoints) -> io::Result<()> + 'a,
+) -> Array<'a> {
     let kind = if float32 { FLOAT32 } else { FLOAT64 };
     let fill = move |out: &mut Blocks| {
         pass(&mut |points| {
@@ -169,14 +173,14 @@ fn point_bytes<const W: usize, const N: usize>(p: &Point3, word: impl Fn(f64) ->
 
 /// How wide vertex numbers and offsets are.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Width {
+pub(in crate::io::volume) enum Width {
     Int32,
     Int64,
 }
 
 impl Width {
     /// Ids are u32: within the signed range they can be written as they are, else they need 64 bits.
-    pub(super) fn of(counts: SourceCounts) -> Self {
+    pub(in crate::io::volume) fn of(counts: SourceCounts) -> Self {
         let fits = |count: usize| i32::try_from(count).is_ok();
         let narrow = fits(4 * counts.tets + 3 * counts.boundary) && fits(counts.points);
         if narrow { Self::Int32 } else { Self::Int64 }
@@ -194,7 +198,7 @@ impl Width {
     }
 }
 
-pub(super) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
+pub(in crate::io::volume) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
     let SourceCounts { tets, boundary, .. } = mesh.counts();
     let corners = move |out: &mut Blocks| {
         let mut push = |ids: &[u32]| width.push(out, ids.len(), |i| u64::from(ids[i]));

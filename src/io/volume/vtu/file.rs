@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::io::{self, Seek, SeekFrom, Write};
 
 /// What goes into a file of one piece.
-pub(super) struct File<'a> {
+pub(in crate::io::volume) struct File<'a> {
     /// VTK's name of the kind of file.
     pub kind: &'static str,
     /// How many points and cells there are, as attributes of the piece.
@@ -19,20 +19,23 @@ pub(super) struct File<'a> {
 }
 
 /// The sections of a piece, in their order.
-const SECTIONS: [(Place, &str, &str); 5] = [
-    (Place::PointData, "PointData", ""),
-    (Place::Points, "Points", ""),
-    (Place::Cells, "Cells", ""),
-    (Place::Polys, "Polys", ""),
-    (Place::CellData, "CellData", " Scalars=\"patch\""),
+const SECTIONS: [(Place, &str); 5] = [
+    (Place::PointData, "PointData"),
+    (Place::Points, "Points"),
+    (Place::Cells, "Cells"),
+    (Place::Polys, "Polys"),
+    (Place::CellData, "CellData"),
 ];
+
+/// What is shown first, where it is there.
+const LABELS: &str = "patch";
 
 const APPENDED_OPEN: &[u8] = b"\n<AppendedData encoding=\"raw\">\n_";
 pub(super) const APPENDED_CLOSE: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
 
 impl File<'_> {
     /// Writes it.
-    pub(super) fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    pub(in crate::io::volume) fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
         // The offsets are known only after compression: room for the longest possible header is left in front.
         let reserved = self.header(&vec![u64::MAX; self.arrays.len()]).len();
         let start = out.stream_position()?;
@@ -66,7 +69,7 @@ impl File<'_> {
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" \
              header_type=\"UInt64\"{compressor}>\n<{kind}>\n"
         );
-        self.section(&mut text, (Place::Field, "FieldData", ""), offsets);
+        self.section(&mut text, (Place::Field, "FieldData"), offsets);
         // Writing to a string cannot fail.
         let _ = writeln!(text, "<Piece {}>", self.counts);
         for section in SECTIONS {
@@ -76,14 +79,16 @@ impl File<'_> {
         text
     }
 
-    fn section(&self, text: &mut String, (place, tag, attributes): (Place, &str, &str), offsets: &[u64]) {
+    fn section(&self, text: &mut String, (place, tag): (Place, &str), offsets: &[u64]) {
         let arrays: Vec<_> = self.arrays.iter().zip(offsets).filter(|(array, _)| array.place == place).collect();
         if arrays.is_empty() {
             return;
         }
         let has_ids = arrays.iter().any(|(array, _)| array.name == GLOBAL_IDS);
         let ids = if has_ids { format!(" GlobalIds=\"{GLOBAL_IDS}\"") } else { String::new() };
-        let _ = writeln!(text, "<{tag}{attributes}{ids}>");
+        let has_labels = arrays.iter().any(|(array, _)| array.name == LABELS);
+        let labels = if has_labels { format!(" Scalars=\"{LABELS}\"") } else { String::new() };
+        let _ = writeln!(text, "<{tag}{labels}{ids}>");
         for (array, offset) in arrays {
             let _ = writeln!(text, "<DataArray {} format=\"appended\" offset=\"{offset}\"/>", attributes_of(array));
         }

@@ -5,10 +5,10 @@
 //! belongs (a tetrahedron's patch is 0). Field data name the patches (`patch_names`, indexed by the id) and hold what a
 //! later check needs to know: the caps, the loops of each component, the terminals.
 
-mod arrays;
+pub(super) mod arrays;
 mod error;
 mod fields;
-mod file;
+pub(super) mod file;
 mod layout;
 mod names;
 mod pieces;
@@ -23,4 +23,4 @@ pub(super) use names::GLOBAL_IDS;
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
 pub(in crate::io) use write::write_boundary;
-pub(super) use write::{Grid, write};
+pub(super) use write::{Grid, TetsAlone, write};

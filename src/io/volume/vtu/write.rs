@@ -73,7 +73,7 @@ pub(in crate::io) fn write_boundary(
 }
 
 /// A mesh without its boundary.
-struct TetsAlone<'a>(&'a dyn MeshSource);
+pub(in crate::io::volume) struct TetsAlone<'a>(pub &'a dyn MeshSource);
 
 impl MeshSource for TetsAlone<'_> {
     fn counts(&self) -> SourceCounts {
