@@ -20,6 +20,7 @@ mod block;
 #[doc(hidden)]
 pub mod cli;
 mod fidelity;
+mod flow;
 mod geometry;
 mod grow;
 pub mod io;
@@ -62,6 +63,7 @@ pub mod check {
 #[doc(hidden)]
 pub mod testing {
     pub use crate::block::{BlockParams, ClusterMesh, EndStyle, mesh_cluster};
+    pub use crate::flow::solve as network_flow;
     pub use crate::geometry::predicates::{insphere, orient3d};
     pub use crate::geometry::{
         Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,

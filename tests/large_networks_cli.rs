@@ -43,7 +43,7 @@ fn bytes_do_not_depend_on_memory_threads_or_where_blocks_are() {
     let mut names: Vec<_> =
         fs::read_dir(folder.path()).expect("a folder").map(|e| e.expect("an entry").file_name()).collect();
     names.sort_unstable();
-    assert_eq!(names, ["a.vtu", "b.vtu", "work"]);
+    assert_eq!(names, ["a.vtu", "a_patches.csv", "b.vtu", "b_patches.csv", "work"]);
 }
 
 /// Kills a run once its blocks have grown to `bytes`; false if it ended before.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Rooms by floor; a room may import from rooms with a smaller number, and from itself.
-const FLOORS: [(&str, u32); 18] = [
+const FLOORS: [(&str, u32); 19] = [
     ("main", 9),
     ("cli", 8),
     ("report", 7),
@@ -17,6 +17,7 @@ const FLOORS: [(&str, u32); 18] = [
     ("refine", 3),
     ("prepare", 3),
     ("fidelity", 3),
+    ("flow", 3),
     ("grow", 3),
     ("partition", 3),
     ("mesh", 2),

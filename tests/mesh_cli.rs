@@ -24,7 +24,7 @@ fn the_fixture_becomes_a_valid_mesh_in_both_formats() {
         assert!(stdout(&checked).ends_with("\nvalid\n"), "{}", stdout(&checked));
         assert!(checked.stderr.is_empty());
     }
-    assert_eq!(entries(folder.path()), ["tree.msh", "tree.vtu"]);
+    assert_eq!(entries(folder.path()), ["tree.msh", "tree.vtu", "tree_patches.csv"]);
     let [vtu, msh] = ["tree.vtu", "tree.msh"].map(|name| read_mesh(&folder.path().join(name)).expect("a mesh"));
     assert_eq!(vtu.volume.mesh, msh.volume.mesh);
     assert_eq!(vtu.volume.boundary_patch, msh.volume.boundary_patch);
@@ -379,7 +379,7 @@ fn a_block_that_fails_ends_the_run_with_its_input_kept() {
         "{said}"
     );
     assert_eq!(fs::read(&out).expect("the file"), b"precious");
-    assert_eq!(entries(folder.path()), ["hopeless.swc", "out.vtu", "out.vtu.failed"]);
+    assert_eq!(entries(folder.path()), ["hopeless.swc", "out.vtu", "out.vtu.failed", "out_patches.csv"]);
     let dumps = entries(&folder.path().join("out.vtu.failed"));
     assert!(!dumps.is_empty());
     let dump = fs::read(folder.path().join("out.vtu.failed").join(&dumps[0])).expect("the dump");
@@ -399,7 +399,7 @@ fn blocks_that_fail_are_left_out_on_request() {
     let failed = mesh(&network, &out, &options);
     assert_code(&failed, STAGE_FAILED);
     assert!(stderr(&failed).contains("FAILED cluster "), "{}", stderr(&failed));
-    assert_eq!(entries(folder.path()), ["dumps", "hopeless.swc", "out.vtu"]);
+    assert_eq!(entries(folder.path()), ["dumps", "hopeless.swc", "out.vtu", "out_patches.csv"]);
     let checked = run("check", &[&out], &[]);
     assert_code(&checked, GATE_NOT_MET);
     let said = stdout(&checked);
@@ -422,4 +422,45 @@ fn the_root_of_an_swc_file_is_the_inlet() {
     let patches = read_mesh(&out).expect("a mesh").volume.patches;
     let inlet = patches.iter().find(|p| p.name == "inlet").expect("an inlet");
     assert_eq!(inlet.cap.map(|c| c.node), Some(0));
+}
+
+// ---- How VTK's files are written ------------------------------------------------------------------------------------
+
+#[test]
+fn a_grid_of_tetrahedra_alone_has_its_boundary_beside_it() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    let options = ["-q", "--cells", "tets", "--float32", "--compress", "none"];
+    assert_code(&mesh(&fixture("tree_30.swc"), &out, &options), FINE);
+    assert_eq!(entries(folder.path()), ["tree.vtu", "tree_boundary.vtp", "tree_patches.csv"]);
+    let file = read_mesh(&out).expect("a mesh");
+    assert!(!file.labelled && file.notes.expectation.is_some());
+    let boundary = fs::read(folder.path().join("tree_boundary.vtp")).expect("a file");
+    let head = String::from_utf8_lossy(&boundary[..4000]).into_owned();
+    for words in ["type=\"PolyData\"", "Name=\"patch\"", "Name=\"patch_names\"", "type=\"Float32\" Name=\"Points\""] {
+        assert!(head.contains(words), "'{words}' in {head}");
+    }
+    assert!(!head.contains("compressor"));
+}
+
+#[test]
+fn what_is_known_of_the_vessels_stands_in_the_grid_on_request() {
+    let folder = folder();
+    let network = fixture("tree_30.swc");
+    let data = ["-q", "--data", "radius,distance,branch,generation,strahler,node,ratio"];
+    let out = folder.path().join("tree.vtu");
+    assert_code(&mesh(&network, &out, &data), FINE);
+    let bytes = fs::read(&out).expect("a mesh");
+    let head = String::from_utf8_lossy(&bytes[..6000]).into_owned();
+    for name in ["radius", "distance", "branch", "generation", "strahler", "node", "ratio"] {
+        assert!(head.contains(&format!("Name=\"{name}\"")), "{name}: {head}");
+    }
+    assert_code(&run("check", &[&out], &[]), FINE);
+    let pieces = folder.path().join("pieces.pvtu");
+    assert_code(&mesh(&network, &pieces, &data), FINE);
+    let index = fs::read_to_string(&pieces).expect("an index");
+    assert!(index.contains("Name=\"radius\"") && index.contains("Name=\"ratio\""), "{index}");
+    let bent = mesh(&network, &folder.path().join("a.vtu"), &["--data", "colour"]);
+    assert_says(&bent, USAGE, &["colour", "generation"]);
+    assert_says(&mesh(&network, &folder.path().join("a.msh"), &["--data", "radius"]), USAGE, &["--data", ".pvtu"]);
 }

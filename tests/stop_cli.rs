@@ -84,7 +84,7 @@ fn a_mesh_that_is_stopped_leaves_its_blocks_and_says_how_it_goes_on() {
         let again = again.args(["-c", &format!("exec {last} -q --json")]).output().expect("a shell");
         assert_code(&again, FINE);
         assert!(length() > kept);
-        assert_eq!(entries(folder.path()), ["a.vtu", "my work"]);
+        assert_eq!(entries(folder.path()), ["a.vtu", "a_patches.csv", "my work"]);
         if name == "-INT" {
             let whole = folder.path().join("b.vtu");
             assert_code(&mesh(&fixture("tree_30.vtp"), &whole, &["--rho", "9", "--memory", "20GiB", "-q"]), FINE);

@@ -1,13 +1,11 @@
 //! A finished block as a mesh of its own.
 
-use super::finished::Finished;
-use crate::mesh::adjacency::face_vertices;
+use super::finished::{Finished, triangle_of};
 use crate::mesh::{Patch, VolumeMesh, WALL};
 
 impl Finished {
     /// The block alone, its joints and caps labelled: `wall`, `joint_0`, …, then `terminal_N` for the terminal N.
     pub fn into_volume(self) -> VolumeMesh {
-        let tets = &self.mesh.tets;
         let wall = (self.wall, Patch { id: WALL, name: "wall".into(), cap: None });
         let mut labelled = vec![wall];
         for (i, joint) in self.joints.into_iter().enumerate() {
@@ -17,9 +15,9 @@ impl Finished {
             let patch = Patch { id: 0, name: format!("terminal_{}", cap.node.0), cap: Some(cap.disc(cap.node.0)) };
             labelled.push((cap.faces, patch));
         }
-        let mut volume = VolumeMesh { tet_block: vec![0; tets.len()], ..VolumeMesh::default() };
+        let mut volume = VolumeMesh { tet_block: vec![0; self.mesh.tets.len()], ..VolumeMesh::default() };
         for (id, (faces, patch)) in (WALL..).zip(labelled) {
-            volume.boundary.extend(faces.iter().map(|&face| face_vertices(tets, face)));
+            volume.boundary.extend(faces.iter().map(|&face| triangle_of(&self.mesh, &self.hull, face)));
             volume.boundary_patch.resize(volume.boundary.len(), id);
             volume.patches.push(Patch { id, ..patch });
         }

@@ -6,7 +6,7 @@ use super::faithful::Astray;
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
 use crate::geometry::{Section, Tube};
-use crate::mesh::TetMesh;
+use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::{
@@ -29,8 +29,10 @@ pub struct CapFaces {
 /// A meshed cluster.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClusterMesh {
-    /// Points and tetrahedra.
+    /// Points and tetrahedra; no tetrahedra with [`BlockParams::hollow`].
     pub mesh: TetMesh,
+    /// The closed surface, with [`BlockParams::hollow`]; else empty.
+    pub hull: Vec<[u32; 3]>,
     /// One end surface per cut end, in the order of `Cluster::ends`, by which it is found: the cut may be renumbered. None
     /// with [`EndStyle::Open`].
     pub ends: Vec<EndSurface>,
@@ -74,8 +76,13 @@ pub(crate) fn mesh_cluster_watched(
 ) -> Result<ClusterMesh, BlockError> {
     let (surface, voxel, astray) = cluster_surface(id, cluster, params)?;
     let edge = surface.mesh.mean_edge();
-    let filled = tetrahedralize_watched(&surface.mesh, &filling(&surface.mesh), watch)
-        .map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
+    let (filled, hull) = if params.hollow {
+        let TriMesh { points, triangles } = surface.mesh.clone();
+        (TetMesh { points, tets: Vec::new() }, triangles)
+    } else {
+        let filled = tetrahedralize_watched(&surface.mesh, &filling(&surface.mesh), watch);
+        (filled.map_err(|source| BlockError::Tetrahedra { cluster: id, source })?, Vec::new())
+    };
     let caps = caps(cluster, &surface);
     let surface_triangles = surface.mesh.triangles.len();
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
@@ -84,6 +91,7 @@ pub(crate) fn mesh_cluster_watched(
     let uncapped = uncapped(cluster, &caps);
     let mut out = ClusterMesh {
         mesh: filled,
+        hull,
         caps,
         uncapped,
         astray,

@@ -8,7 +8,7 @@ use super::error::BlockError;
 use super::error::{ConnectorAttempt, ConnectorFailure};
 use super::params::{BlockParams, filling};
 use crate::geometry::Section;
-use crate::mesh::TetMesh;
+use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cut, CutId};
 use crate::surface::SharedDisc;
 use crate::tet::tetrahedralize;
@@ -16,8 +16,11 @@ use crate::tet::tetrahedralize;
 /// A meshed connector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConnectorMesh {
-    /// Points and tetrahedra. The first points are those of `shared`, bit for bit.
+    /// Points and tetrahedra; no tetrahedra with [`BlockParams::hollow`]. The first points are those of `shared`, bit for
+    /// bit.
     pub mesh: TetMesh,
+    /// The closed surface, with [`BlockParams::hollow`]; else empty.
+    pub hull: Vec<[u32; 3]>,
     /// For each of the first points, which vertex of which cluster it is: side 0's, then side 1's.
     pub shared: Vec<EndVertex>,
     /// Rings between the two rims.
@@ -52,6 +55,9 @@ pub fn mesh_connector(
             Ok(surface) if tried.contains(&surface.rings) => continue,
             Ok(surface) => {
                 tried.push(surface.rings);
+                if params.hollow {
+                    return Ok(hollow(surface, failed));
+                }
                 match tetrahedralize(&surface.surface, &filling(&surface.surface)) {
                     Ok(mesh) => return Ok(filled(surface, mesh, failed)),
                     Err(e) => ConnectorFailure::Tetrahedra(e),
@@ -111,5 +117,10 @@ impl FreeEnds {
 }
 
 fn filled(surface: ConnectorSurface, mesh: TetMesh, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {
-    ConnectorMesh { mesh, shared: surface.shared, rings: surface.rings, failed }
+    ConnectorMesh { mesh, hull: Vec::new(), shared: surface.shared, rings: surface.rings, failed }
+}
+
+fn hollow(surface: ConnectorSurface, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {
+    let ConnectorSurface { surface: TriMesh { points, triangles }, shared, rings, .. } = surface;
+    ConnectorMesh { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, shared, rings, failed }
 }

@@ -2,6 +2,7 @@
 
 use super::connector_surface::{ConnectorFault, Division};
 use super::end_surface::CutEnd;
+use crate::mesh::check::Line;
 use crate::partition::{ClusterId, CutId};
 use crate::surface::{CapError, SurfaceError};
 use crate::tet::TetError;
@@ -110,6 +111,14 @@ pub enum BlockError {
         /// The smallest radius ratio.
         ratio: f64,
     },
+    /// The surface of a block that is not filled could not be filled.
+    #[error("{block}: its surface is not sound: it does not hold that {}", line.statement())]
+    Unsound {
+        /// `cluster 12` or `connector 7`.
+        block: String,
+        /// What does not hold.
+        line: Line,
+    },
     /// No way of building a connector works.
     #[error("connector of cut {} near {at:?}: {}", cut.0, attempts.last().map_or_else(String::new, |a| a.failure.to_string()))]
     Connector {
@@ -159,7 +168,7 @@ impl BlockError {
             Self::Cap { .. } => "caps",
             Self::Tetrahedra { .. } => "tetrahedra",
             Self::End { .. } => "ends",
-            Self::Faces { .. } | Self::Flat { .. } => "check",
+            Self::Faces { .. } | Self::Flat { .. } | Self::Unsound { .. } => "check",
             Self::Connector { attempts, .. } => match attempts.last().map(|attempt| &attempt.failure) {
                 Some(ConnectorFailure::Tetrahedra(_)) => "tetrahedra",
                 Some(ConnectorFailure::Surface(_)) | None => "wall",

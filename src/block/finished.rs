@@ -10,16 +10,19 @@ use super::end_surface::{EndSurface, StoredEnd, disc_rim};
 use super::faithful::Astray;
 use crate::geometry::Section;
 use crate::mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
-use crate::mesh::check::parts::{Certificate, PartView, certify_with};
+use crate::mesh::check::parts::{Certificate, PartView, certify_hollow, certify_with};
 use crate::mesh::{Cap, TetMesh};
 use crate::partition::CutId;
 use crate::skeleton::NodeId;
 
-/// A finished block. Faces are handles, `4 · tet + i` for the face opposite vertex `i`, ascending.
+/// A finished block. Faces are handles, `4 · tet + i` for the face opposite vertex `i`, ascending; in a hollow block they are
+/// numbers of triangles of its hull.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Finished {
     /// Points and tetrahedra.
     pub mesh: TetMesh,
+    /// The closed surface of a hollow block, which has no tetrahedra; else empty.
+    pub hull: Vec<[u32; 3]>,
     /// The first so many points are those of the joints, in their order: other blocks have them, too, and name them.
     pub shared: u32,
     /// Boundary faces that belong to no joint and no cap.
@@ -92,8 +95,8 @@ impl Finished {
     /// # Errors
     /// When an end or a cap is not on the boundary.
     pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
-        let ClusterMesh { mesh, ends, caps, uncapped, astray, handles, loops, filled, .. } = cluster;
-        let mut faces = Faces::new(&mesh);
+        let ClusterMesh { mesh, hull, ends, caps, uncapped, astray, handles, loops, filled, .. } = cluster;
+        let mut faces = Faces::new(&mesh, &hull);
         let joints = ends.iter().map(|end| faces.joint(&end.triangles)).collect::<Result<_, _>>()?;
         let cap = |cap: &super::CapFaces| {
             Ok(FinishedCap { node: cap.node, section: cap.section, faces: faces.take(&cap.triangles)? })
@@ -102,7 +105,7 @@ impl Finished {
         let uncapped = uncapped.iter().map(|n| n.0).collect();
         let about = About { uncapped, astray, handles, loops, filled, ..About::default() };
         let (wall, adjacency) = faces.rest();
-        Ok(Self { mesh, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
+        Ok(Self { mesh, hull, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
     }
 
     /// A connector between two end surfaces.
@@ -110,8 +113,8 @@ impl Finished {
     /// # Errors
     /// When an end is not on the boundary.
     pub fn of_connector(connector: ConnectorMesh, ends: [&EndSurface; 2]) -> Result<Self, NotOnBoundary> {
-        let ConnectorMesh { mesh, shared, .. } = connector;
-        let mut faces = Faces::new(&mesh);
+        let ConnectorMesh { mesh, hull, shared, .. } = connector;
+        let mut faces = Faces::new(&mesh, &hull);
         let mut joints = Vec::with_capacity(2);
         let mut base = 0;
         for end in ends {
@@ -123,23 +126,26 @@ impl Finished {
             base += vertices.len() as u32;
         }
         let (wall, adjacency) = faces.rest();
-        let connector = Self { mesh, shared: shared.len() as u32, wall, joints, ..Self::default() };
+        let connector = Self { mesh, hull, shared: shared.len() as u32, wall, joints, ..Self::default() };
         Ok(connector.certified(adjacency, |node| node.0))
     }
 
     /// Checks it alone.
-    fn certified(mut self, adjacency: TetAdjacency, original: impl Fn(NodeId) -> u32) -> Self {
+    fn certified(mut self, adjacency: Option<TetAdjacency>, original: impl Fn(NodeId) -> u32) -> Self {
         let joints: Vec<_> = self.joints.iter().map(|joint| self.triangles(&joint.faces)).collect();
         let cap = |cap: &FinishedCap| (cap.disc(original(cap.node)), self.triangles(&cap.faces));
         let caps: Vec<_> = self.caps.iter().map(cap).collect();
         let view = PartView { mesh: &self.mesh, joints: &joints, caps: &caps };
-        self.certificate = certify_with(&view, || adjacency);
+        self.certificate = match adjacency {
+            Some(adjacency) => certify_with(&view, || adjacency),
+            None => certify_hollow(&view, &self.hull),
+        };
         self
     }
 
     /// The vertices of faces.
     pub fn triangles(&self, faces: &[u32]) -> Vec<[u32; 3]> {
-        faces.iter().map(|&face| face_vertices(&self.mesh.tets, face)).collect()
+        faces.iter().map(|&face| triangle_of(&self.mesh, &self.hull, face)).collect()
     }
 
     /// A joint as an end surface over its own points alone; none if it is no disc.
@@ -153,17 +159,27 @@ impl Finished {
     }
 }
 
+/// The vertices of a face, by its handle.
+pub(super) fn triangle_of(mesh: &TetMesh, hull: &[[u32; 3]], face: u32) -> [u32; 3] {
+    hull.get(face as usize).copied().unwrap_or_else(|| face_vertices(&mesh.tets, face))
+}
+
 /// The boundary faces of a block that no end has taken yet.
 struct Faces {
     left: FxHashMap<[u32; 3], u32>,
-    adjacency: TetAdjacency,
+    /// None in a hollow block.
+    adjacency: Option<TetAdjacency>,
 }
 
 impl Faces {
-    fn new(mesh: &TetMesh) -> Self {
+    fn new(mesh: &TetMesh, hull: &[[u32; 3]]) -> Self {
+        if mesh.tets.is_empty() {
+            let left = (0..).zip(hull).map(|(face, triangle)| (face_key(*triangle), face)).collect();
+            return Self { left, adjacency: None };
+        }
         let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
         let left = adjacency.boundary().map(|face| (face_key(face_vertices(&mesh.tets, face)), face)).collect();
-        Self { left, adjacency }
+        Self { left, adjacency: Some(adjacency) }
     }
 
     fn take(&mut self, triangles: &[[u32; 3]]) -> Result<Vec<u32>, NotOnBoundary> {
@@ -181,7 +197,7 @@ impl Faces {
     }
 
     /// The faces that nothing took, and what all were found with.
-    fn rest(self) -> (Vec<u32>, TetAdjacency) {
+    fn rest(self) -> (Vec<u32>, Option<TetAdjacency>) {
         let mut rest: Vec<u32> = self.left.into_values().collect();
         rest.sort_unstable();
         (rest, self.adjacency)

@@ -47,6 +47,9 @@ pub struct BlockParams {
     pub allow_fused: bool,
     /// How deep below its plane an end surface may go, in radii of the cut.
     pub depth: f64,
+    /// Stop at the closed surface, and do not fill it.
+    #[serde(default)]
+    pub hollow: bool,
 }
 
 impl Default for BlockParams {
@@ -62,6 +65,7 @@ impl Default for BlockParams {
             relax_ends: true,
             allow_fused: false,
             depth: 1.5,
+            hollow: false,
         }
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Little-endian. A head of [`HEAD`] counts, then, each as long as the counts say: certificate and
 //! what reports say (postcard), sizes of the
-//! joints, their vertices, their faces; the caps and their faces; the wall; points (3 × f64); tetrahedra (4 × u16 where
-//! the points are that few, else u32).
+//! joints, their vertices, their faces; the caps and their faces; the wall; points (3 × f64); tetrahedra and the triangles of
+//! a hull (u16 where the points are that few, else u32).
 
 use std::io;
 use std::ops::Range;
@@ -11,11 +11,12 @@ use std::ops::Range;
 use super::finished::{About, Finished, FinishedCap, FinishedJoint};
 use crate::geometry::{Point3, Section, Vec3};
 use crate::mesh::TetMesh;
+use crate::mesh::adjacency::face_vertices;
 use crate::mesh::check::parts::Certificate;
 use crate::skeleton::NodeId;
 
 /// Number of counts in front.
-const HEAD: usize = 10;
+const HEAD: usize = 11;
 
 /// Bytes of a cap before its faces: node, number of faces, origin, axis, radius.
 const CAP: usize = 2 * 4 + 7 * 8;
@@ -39,6 +40,8 @@ pub struct Sizes {
     pub caps: u32,
     /// Faces of all caps.
     pub cap_faces: u32,
+    /// Triangles of the hull of a hollow block.
+    pub hull: u32,
     notes: u32,
 }
 
@@ -55,18 +58,20 @@ impl Sizes {
             joint_faces: sum(&mut block.joints.iter().map(|j| j.faces.len())),
             caps: block.caps.len() as u32,
             cap_faces: sum(&mut block.caps.iter().map(|c| c.faces.len())),
+            hull: block.hull.len() as u32,
             notes: notes as u32,
         }
     }
 
     fn counts(&self) -> [u32; HEAD] {
-        let Self { points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, notes } = *self;
-        [points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, notes]
+        let Self { points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, hull, notes } =
+            *self;
+        [points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, hull, notes]
     }
 
     fn from_counts(counts: [u32; HEAD]) -> Self {
-        let [points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, notes] = counts;
-        Self { points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, notes }
+        let [points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, hull, notes] = counts;
+        Self { points, shared, tets, wall, joints, joint_vertices, joint_faces, caps, cap_faces, hull, notes }
     }
 
     fn narrow(&self) -> bool {
@@ -74,10 +79,10 @@ impl Sizes {
     }
 
     /// Where each section begins and ends: notes, joints' sizes, their vertices, their faces, caps, their faces, wall,
-    /// points, tetrahedra.
-    fn sections(&self) -> [Range<u64>; 9] {
-        let per_tet = if self.narrow() { 8 } else { 16 };
-        let lengths: [(u32, u64); 9] = [
+    /// points, tetrahedra, hull.
+    fn sections(&self) -> [Range<u64>; 10] {
+        let number = if self.narrow() { 2 } else { 4 };
+        let lengths: [(u32, u64); 10] = [
             (self.notes, 1),
             (self.joints, 8),
             (self.joint_vertices, 4),
@@ -86,7 +91,8 @@ impl Sizes {
             (self.cap_faces, 4),
             (self.wall, 4),
             (self.points, 24),
-            (self.tets, per_tet),
+            (self.tets, 4 * number),
+            (self.hull, 3 * number),
         ];
         let mut end = 4 * HEAD as u64;
         lengths.map(|(count, width)| {
@@ -98,7 +104,7 @@ impl Sizes {
 
     /// Bytes of the whole record.
     pub fn bytes(&self) -> u64 {
-        self.sections()[8].end
+        self.sections()[9].end
     }
 
     /// Boundary faces of the block that belong to no joint.
@@ -159,10 +165,14 @@ pub fn encode(block: &Finished) -> io::Result<Vec<u8>> {
             out.extend_from_slice(&x.to_le_bytes());
         }
     }
-    if sizes.narrow() {
-        block.mesh.tets.as_flattened().iter().for_each(|&v| out.extend_from_slice(&(v as u16).to_le_bytes()));
-    } else {
-        put(&mut out, block.mesh.tets.as_flattened());
+    for numbers in [block.mesh.tets.as_flattened(), block.hull.as_flattened()] {
+        if sizes.narrow() {
+            for &v in numbers {
+                out.extend_from_slice(&(v as u16).to_le_bytes());
+            }
+        } else {
+            put(&mut out, numbers);
+        }
     }
     Ok(out)
 }
@@ -269,15 +279,40 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
     /// # Errors
     /// When they cannot be read or name a point that is not there.
     pub fn tets(&self) -> io::Result<Vec<[u32; 4]>> {
-        let bytes = self.section(8)?;
-        let tets: Vec<[u32; 4]> = if self.sizes.narrow() {
-            let short = |b: &[u8]| u32::from(u16::from_le_bytes([b[0], b[1]]));
-            bytes.chunks_exact(8).map(|t| [short(t), short(&t[2..]), short(&t[4..]), short(&t[6..])]).collect()
+        self.cells(8)
+    }
+
+    /// The hull; it is empty if the block is not hollow.
+    ///
+    /// # Errors
+    /// When it cannot be read or names a point that is not there.
+    pub fn hull(&self) -> io::Result<Vec<[u32; 3]>> {
+        self.cells(9)
+    }
+
+    /// The vertices of faces.
+    ///
+    /// # Errors
+    /// When the cells that they belong to cannot be read.
+    pub fn triangles(&self, faces: &[u32]) -> io::Result<Vec<[u32; 3]>> {
+        if self.sizes.hull == 0 {
+            let tets = self.tets()?;
+            return Ok(faces.iter().map(|&face| face_vertices(&tets, face)).collect());
+        }
+        let hull = self.hull()?;
+        faces.iter().map(|&face| hull.get(face as usize).copied().ok_or_else(damaged)).collect()
+    }
+
+    /// Cells with so many vertices each.
+    fn cells<const N: usize>(&self, section: usize) -> io::Result<Vec<[u32; N]>> {
+        let bytes = self.section(section)?;
+        let numbers: Vec<u32> = if self.sizes.narrow() {
+            bytes.as_chunks().0.iter().map(|&b| u32::from(u16::from_le_bytes(b))).collect()
         } else {
-            words(&bytes).chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect()
+            words(&bytes)
         };
-        let all_there = tets.as_flattened().iter().all(|&v| v < self.sizes.points);
-        if all_there { Ok(tets) } else { Err(damaged()) }
+        let all_there = numbers.iter().all(|&v| v < self.sizes.points);
+        if all_there { Ok(numbers.as_chunks().0.to_vec()) } else { Err(damaged()) }
     }
 
     /// All of it.
@@ -288,6 +323,7 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
         let (certificate, about) = self.notes()?;
         Ok(Finished {
             mesh: TetMesh { points: self.points()?, tets: self.tets()? },
+            hull: self.hull()?,
             shared: self.sizes.shared,
             wall: self.wall()?,
             joints: self.joints()?,

@@ -3,7 +3,8 @@
 use super::network::PreparedNetwork;
 use super::progress::Bars;
 use crate::fidelity::{Compared, Displaced, Fidelity};
-use crate::pipeline::RunReport;
+use crate::io::network::NodeNames;
+use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_into};
 use crate::prepare::{PrepareReport, TouchedBy, take_back};
 use crate::progress::Progress;
 use crate::refine::{RefineReport, Refined, split};
@@ -15,6 +16,9 @@ use serde::Serialize;
 
 /// How far a measured axis may be from where it was given, in radii, unless an overlap demands more.
 const FURTHEST: f64 = 1.0;
+
+/// How often tips that could not be capped are drawn back.
+const ROUNDS: usize = 4;
 
 /// What was done to the network before it was meshed.
 #[derive(Serialize)]
@@ -31,33 +35,52 @@ pub struct Before {
     /// The same with nodes of many vessels split.
     #[serde(skip)]
     meshed: Skeleton,
+    /// What the file calls its nodes.
+    #[serde(skip)]
+    pub names: NodeNames,
     prepare: PrepareReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     refine: Option<RefineReport>,
+    /// What was to be meshed before it was refined.
+    #[serde(skip)]
+    unrefined: Option<Skeleton>,
+}
+
+/// A mesh whose blocks are in a store, and what it was made of.
+pub struct Made<'a> {
+    pub stored: Stored<'a>,
+    pub before: Before,
+}
+
+impl Made<'_> {
+    /// Whether it is valid, and all of the network.
+    fn is_sound(&self, plan: &MeshPlan) -> bool {
+        let Stored { check, report, .. } = &self.stored;
+        report.failed.is_empty() && check.is_valid() && report.keeps_vessels(plan.fuse)
+    }
+}
+
+/// Where and how a network is meshed.
+#[derive(Clone, Copy)]
+pub struct Meshing<'a, 'b> {
+    pub store: &'a Store,
+    pub plan: &'b MeshPlan,
+    /// Hears what it will take, and may refuse.
+    pub fits: &'b dyn Fn(&Estimate) -> Result<(), TooLarge>,
+    /// Whether tips of a measured network that could not be capped are drawn back.
+    pub touches: bool,
+    pub bars: &'a Bars,
 }
 
 impl Before {
     pub fn new(prepared: PreparedNetwork, refined: Option<Refined>) -> Self {
-        let PreparedNetwork { given, outline, skeleton, report: prepare, .. } = prepared;
-        let (network, refine) = match refined {
-            Some(Refined { skeleton, report, .. }) => (skeleton, Some(report)),
-            None => (skeleton, None),
+        let PreparedNetwork { given, outline, skeleton, report: prepare, names, .. } = prepared;
+        let (network, refine, unrefined) = match refined {
+            Some(Refined { skeleton: moved, report, .. }) => (moved, Some(report), Some(skeleton)),
+            None => (skeleton, None, None),
         };
         let meshed = split(&network).0;
-        Self { given, outline, network, meshed, prepare, refine }
-    }
-
-    /// The same without refinement, of the network as it was prepared; none if it was not refined.
-    pub fn unrefined(&self, prepared: &Skeleton) -> Option<Self> {
-        self.refine.as_ref()?;
-        Some(Self {
-            given: self.given.clone(),
-            outline: self.outline.clone(),
-            network: prepared.clone(),
-            meshed: split(prepared).0,
-            prepare: self.prepare.clone(),
-            refine: None,
-        })
+        Self { given, outline, network, meshed, names, prepare, refine, unrefined }
     }
 
     /// The networks that the mesh is held against.
@@ -65,9 +88,61 @@ impl Before {
         Compared { given: &self.given, outline: &self.outline, meshed: &self.meshed }
     }
 
+    /// Meshes it into a store. Refinement is not to end in something worse than none: where the refined network gives no
+    /// sound mesh, it is tried as it was.
+    pub fn mesh<'a>(self, how: Meshing<'a, '_>) -> Result<Made<'a>, (RunError, Box<Self>)> {
+        let first = self.mesh_alone(how);
+        let second = match &first {
+            Ok(made) if made.is_sound(how.plan) => None,
+            Ok(made) => made.before.as_it_was(),
+            Err((RunError::BlocksFailed(_), before)) => before.as_it_was(),
+            Err(_) => None,
+        };
+        let second = second.and_then(|before| before.mesh_alone(how).ok()).filter(|made| made.is_sound(how.plan));
+        match second {
+            Some(made) => {
+                how.bars.note("refined, the network gives no valid mesh; as it was, it does: that is kept");
+                Ok(made)
+            }
+            None => first,
+        }
+    }
+
+    /// Meshes it, and again as long as tips have to be drawn back.
+    fn mesh_alone<'a>(mut self, how: Meshing<'a, '_>) -> Result<Made<'a>, (RunError, Box<Self>)> {
+        let Meshing { store, plan, fits, touches, bars } = how;
+        let mut round = 0;
+        loop {
+            let stored = match mesh_into(store, &self.network, plan, fits, bars) {
+                Ok(stored) => stored,
+                Err(error) => return Err((error, Box::new(self))),
+            };
+            round += 1;
+            // Blocks that this does not change are found in the store.
+            if round > ROUNDS || !touches || !self.take_back(&stored.report, &plan.roots, bars) {
+                return Ok(Made { stored, before: self });
+            }
+        }
+    }
+
+    /// The same without refinement; none if it was not refined.
+    fn as_it_was(&self) -> Option<Self> {
+        let network = self.unrefined.clone()?;
+        Some(Self {
+            given: self.given.clone(),
+            outline: self.outline.clone(),
+            meshed: split(&network).0,
+            network,
+            names: self.names.clone(),
+            prepare: self.prepare.clone(),
+            refine: None,
+            unrefined: None,
+        })
+    }
+
     /// Draws the tips of a measured network back that could not be capped, but inlets that were asked for; says which, and
     /// whether there were any.
-    pub fn take_back(&mut self, run: &RunReport, roots: &[u32], bars: &Bars) -> bool {
+    fn take_back(&mut self, run: &RunReport, roots: &[u32], bars: &Bars) -> bool {
         let tips: Vec<u32> =
             run.fused.iter().flat_map(|f| &f.uncapped).copied().filter(|n| !roots.contains(n)).collect();
         if tips.is_empty() || !self.prepare.measured {

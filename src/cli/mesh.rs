@@ -1,29 +1,36 @@
 //! `anastomesh mesh`: from a network to a volume mesh.
 
-use crate::skeleton::resolution::{FOLLOW, RHO};
 use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::before::Before;
+use super::before::{Before, Made, Meshing};
+use super::blocks::BlockArgs;
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::flow::FlowArgs;
+use super::grid::GridArgs;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::room::{self, BlockPlace, size};
+use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
 use crate::fidelity::Fidelity;
-use crate::io::network::ensure_network_writable;
-use crate::io::volume::{MeshNotes, ensure_writable, write_mesh_within};
+use crate::io::network::{NodeNames, ensure_network_writable};
+use crate::io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable, write_mesh_with};
+use crate::io::{ensure_text_writable, write_text};
+use crate::mesh::beside::Beside;
 use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
-use crate::pipeline::{self, Clock, Estimate, JointStyle, MeshPlan, RunError, Store, Stored, TooLarge};
+use crate::pipeline::{
+    self, Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, Outlets, RunError, Stored, TooLarge, VesselData,
+};
 use crate::progress::{Progress, Stage};
 use crate::refine::Refined;
 use crate::report::advice::advice;
+use crate::report::caps;
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -31,16 +38,12 @@ pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
     /// Where the mesh goes: .vtu, .pvtu (pieces in a folder beside it), .msh (Gmsh 4.1), .msh2 (Gmsh 2.2, text),
-    /// .mesh (Medit), or .ele (TetGen's family of files)
+    /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), or .ele
+    /// (TetGen's family of files)
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
-    /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
-    #[arg(long, default_value_t = RHO, allow_negative_numbers = true)]
-    rho: f64,
-    /// How far edges follow the radius of wider vessels: 1 in proportion, so that each has RHO voxels across; 0 not at all,
-    /// so that all of a cluster is as fine as its thinnest vessel
-    #[arg(long, default_value_t = FOLLOW, allow_negative_numbers = true)]
-    follow: f64,
+    #[command(flatten)]
+    blocks: BlockArgs,
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
     /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
     /// vessel is cut
@@ -49,18 +52,12 @@ pub struct Args {
     /// Leave woven joints as the blocks have them instead of smoothing across them
     #[arg(long)]
     frozen_joints: bool,
-    /// Memory that may be used, such as 2GiB or 500MB, however large the network
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
-    memory: u64,
     /// Folder that keeps finished blocks: a run that was stopped goes on there when it is started again
     #[arg(long, value_name = "DIR")]
     work_dir: Option<PathBuf>,
     /// Throw away what the work directory holds if it is of another network, other options or another version
     #[arg(long, requires = "work_dir")]
     restart: bool,
-    /// Refine the network first, in at most N iterations, so that its vessels do not overlap and can be cut
-    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
-    refine: Option<usize>,
     /// Write the refined network
     #[arg(long, value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
@@ -76,14 +73,19 @@ pub struct Args {
     /// Say so where the axis is further off, and exit as if it were not
     #[arg(long)]
     allow_displaced: bool,
-    /// Leave out blocks that fail, say so, and exit 4 all the same
-    #[arg(long)]
-    keep_going: bool,
     /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
+    /// What VTU and PVTU say of each place: radius and distance along the branch at points; branch, generation, strahler, node
+    /// (the nearer one) and ratio (the cell's radius ratio) in cells; several with commas between them
+    #[arg(long, value_name = "DATA", value_delimiter = ',', value_parser = datum)]
+    data: Vec<Datum>,
+    #[command(flatten)]
+    grid: GridArgs,
     #[command(flatten)]
     common: Common,
+    #[command(flatten)]
+    flow: FlowArgs,
     #[command(flatten)]
     cures: CureArgs,
     #[command(flatten)]
@@ -97,11 +99,13 @@ enum Joint {
     None,
 }
 
-/// How often tips that could not be capped are drawn back.
-const ROUNDS: usize = 4;
-
 /// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
 const HELD_PER_TET: f64 = 150.0;
+
+fn datum(name: &str) -> Result<Datum, String> {
+    let known = || Datum::ALL.map(Datum::name).join(", ");
+    Datum::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| format!("what is known is {}", known()))
+}
 
 /// A mesh that is there, and what is known of it.
 struct Done<'a> {
@@ -109,20 +113,6 @@ struct Done<'a> {
     expectation: Expectation,
     check: &'a CheckReport,
     report: RunReport,
-}
-
-/// A mesh whose blocks are in a store, and what it was made of.
-struct Made<'a> {
-    stored: Stored<'a>,
-    before: Before,
-}
-
-impl Made<'_> {
-    /// Whether it is valid, and all of the network.
-    fn is_sound(&self, plan: &MeshPlan) -> bool {
-        let Stored { check, report, .. } = &self.stored;
-        report.failed.is_empty() && check.is_valid() && report.keeps_vessels(plan.fuse)
-    }
 }
 
 /// What `--json` prints.
@@ -146,7 +136,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             "--work-dir cannot keep joints that are smoothed: give --joint disc or --frozen-joints",
         ));
     }
+    if !args.data.is_empty() && !MeshFormat::of(&args.output).is_ok_and(MeshFormat::is_grid) {
+        return Err(Failure::usage("--data is for .vtu and .pvtu; the other formats have no place for it"));
+    }
     ensure_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
     if let Some(path) = &args.refined {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
@@ -178,19 +172,14 @@ impl Args {
         let mut beside = self.output.clone().into_os_string();
         beside.push(".failed");
         MeshPlan {
-            rho: self.rho,
-            follow: self.follow,
             joint: match self.joint {
                 Joint::Woven => JointStyle::Woven,
                 Joint::Disc => JointStyle::Disc,
                 Joint::None => JointStyle::None,
             },
             frozen_joints: self.frozen_joints,
-            memory: self.memory,
-            roots: Vec::new(),
-            fuse: self.refine.is_some() && self.how.fuses(),
-            keep_going: self.keep_going,
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
+            ..self.blocks.plan(self.how.fuses())
         }
     }
 
@@ -224,53 +213,15 @@ impl Args {
                 "finished blocks are kept in {dir}: the same command goes on there if this run is stopped"
             ));
         }
-        let make = |before| self.make(&store, plan, before, &fits, bars);
-        let first = make(before);
-        // Refinement is not to end in something worse than none.
-        let second = match &first {
-            Ok(made) if made.is_sound(plan) => None,
-            Ok(made) => made.before.unrefined(read),
-            Err((RunError::BlocksFailed(_), before)) => before.unrefined(read),
-            Err(_) => None,
-        };
-        let second = second.and_then(|before| make(before).ok()).filter(|made| made.is_sound(plan));
-        if second.is_some() {
-            bars.note("refined, the network gives no valid mesh; as it was, it does: that is kept");
-        }
-        let Made { stored, before } = match second {
-            Some(made) => made,
-            None => first.map_err(|(error, before)| self.explain(error, plan, &before))?,
-        };
+        let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
+        let Made { stored, before } = before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;
         let Stored { whole, expectation, check, report } = stored;
         self.finish(Done { mesh: &whole, expectation, check: &check, report }, plan, &before, bars)
     }
 
-    /// Makes the mesh of a network, and again as long as tips have to be drawn back.
-    fn make<'a>(
-        &self,
-        store: &'a Store,
-        plan: &MeshPlan,
-        mut before: Before,
-        fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
-        bars: &'a Bars,
-    ) -> Result<Made<'a>, (RunError, Before)> {
-        let mut round = 0;
-        loop {
-            let stored = match pipeline::mesh_into(store, &before.network, plan, fits, bars) {
-                Ok(stored) => stored,
-                Err(error) => return Err((error, before)),
-            };
-            round += 1;
-            // Blocks that this does not change are found in the store.
-            if round > ROUNDS || !self.cures.touches() || !before.take_back(&stored.report, &plan.roots, bars) {
-                return Ok(Made { stored, before });
-            }
-        }
-    }
-
     /// Everything that the mesh depends on, beside the network.
     fn options(&self, plan: &MeshPlan) -> serde_json::Value {
-        let refine = self.refine.map(|iterations| format!("{:?}", self.how.params(iterations)));
+        let refine = self.blocks.refine.map(|iterations| format!("{:?}", self.how.params(iterations)));
         // Whether failed blocks are left out says nothing about those that are done.
         let plan = MeshPlan { keep_going: false, ..plan.clone() };
         serde_json::json!({ "mesh": plan, "refine": refine })
@@ -279,8 +230,13 @@ impl Args {
     /// Writes the mesh, holds it against its network and says what was done.
     fn finish(&self, done: Done, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
-        let notes = self.notes(expectation);
-        let memory = (self.memory / 4) as usize;
+        let asked = Some(&self.data).filter(|data| !data.is_empty());
+        let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh));
+        let options = WriteOptions {
+            memory: Some((self.blocks.memory / 4) as usize),
+            grid: self.grid.options(),
+            values: data.as_ref().map(|data| data as &dyn Beside),
+        };
         // Passes over the blocks end when the run is to end.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
@@ -288,8 +244,13 @@ impl Args {
         let mut clock = Clock::default();
         let compare = || Fidelity::of(before.compared(), mesh, check.counts.volume);
         let fidelity = clock.time(bars, Stage::Check, 0, compare).map_err(|e| failed(&e))?;
-        let write = || write_mesh_within(Some(memory), &self.output, mesh, &notes, bars);
+        let mut caps = Caps::of(mesh, before.compared().meshed, self.flow.fluid()).map_err(|e| failed(&e))?;
+        let grouped = caps.group(mesh, self.flow.outlets());
+        let written = grouped.as_ref().map_or(mesh, |grouped| grouped);
+        let notes = self.notes(expectation, &caps);
+        let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
+        self.write_table(&caps, &before.names)?;
         report.stages.extend(clock.stages());
         self.print(plan, before, &report, Some((check, &fidelity)))?;
         let invalid = !check.is_valid() || !report.keeps_vessels(plan.fuse);
@@ -308,7 +269,7 @@ impl Args {
 
     /// Says what may help.
     fn advise(&self, run: &RunReport, invalid: bool) {
-        for line in advice(run, invalid, self.refine.is_some(), self.rho) {
+        for line in advice(run, invalid, self.blocks.refine.is_some(), self.blocks.rho) {
             eprintln!("{line}");
         }
     }
@@ -346,21 +307,39 @@ impl Args {
         })
     }
 
-    fn notes(&self, expectation: Expectation) -> MeshNotes {
+    /// Writes what is known of inlets and outlets beside the mesh.
+    fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<(), Failure> {
+        let text = caps::table(caps, names).map_err(|e| self.no_table(&e))?;
+        write_text(&self.table(), &text).map_err(|e| self.no_table(&e))
+    }
+
+    /// Where the table of inlets and outlets goes.
+    fn table(&self) -> PathBuf {
+        let mut name = self.output.file_stem().unwrap_or_default().to_owned();
+        name.push("_patches.csv");
+        self.output.with_file_name(name)
+    }
+
+    fn no_table(&self, why: &dyn std::fmt::Display) -> Failure {
+        Failure::input(format!("{}: cannot be written: {why}", self.table().display()))
+    }
+
+    fn notes(&self, mut expectation: Expectation, caps: &Caps) -> MeshNotes {
+        if self.flow.outlets() != Outlets::Separate {
+            expectation.terminals = caps.alone();
+        }
         MeshNotes {
             expectation: Some(expectation),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: match self.refine {
-                Some(n) => format!("mesh --rho {} --follow {} --refine {n}", self.rho, self.follow),
-                None => format!("mesh --rho {} --follow {}", self.rho, self.follow),
-            },
+            options: format!("mesh {}", self.blocks.typed()),
             regions: false,
+            flow: Some(caps.flow()),
         }
     }
 
     /// The network refined, if that was asked for.
     fn refined(&self, network: &PreparedNetwork, stop: &Stop) -> Result<Option<Refined>, Failure> {
-        let Some(iterations) = self.refine else { return Ok(None) };
+        let Some(iterations) = self.blocks.refine else { return Ok(None) };
         let refined = super::refine::moved(network, &self.how.params(iterations), self.common.quiet, stop)?;
         if let Some(path) = &self.refined {
             stop.keep();

@@ -1,12 +1,16 @@
 //! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
 mod before;
+mod blocks;
 mod check;
 mod common;
 mod completions;
+mod convert;
 mod dual;
 mod exit;
+mod flow;
 mod generate;
+mod grid;
 mod info;
 mod man;
 mod mesh;
@@ -17,6 +21,7 @@ mod refine;
 mod replay;
 mod room;
 mod stop;
+mod surface;
 mod tetrahedralize;
 mod units;
 
@@ -39,6 +44,8 @@ struct Args {
 enum Verb {
     /// Mesh a network: skeleton in, labelled tetrahedral mesh out
     Mesh(mesh::Args),
+    /// Make the wall of a network alone, for pictures and printers: STL, PLY, OBJ, GLB, 3MF
+    Surface(surface::Args),
     /// Make a measured network one graph: doubled lines merged, spurs off, radii filled, points as needed
     Prepare(prepare::Args),
     /// Move the nodes of a network until its vessels do not overlap and can be cut
@@ -49,6 +56,8 @@ enum Verb {
     Generate(generate::Args),
     /// Fill a surface, a complex of facets or points with tetrahedra
     Tetrahedralize(tetrahedralize::Args),
+    /// Write a volume mesh, a surface or a network in another format, or a volume mesh's boundary
+    Convert(convert::Args),
     /// Verify a volume mesh line by line
     Check(check::Args),
     /// Make a block again that failed, from what `mesh` left of it
@@ -74,11 +83,13 @@ pub fn main() -> ExitCode {
     };
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
+        Verb::Surface(args) => surface::run(args),
         Verb::Prepare(args) => prepare::run(args),
         Verb::Refine(args) => refine::run(args),
         Verb::Dual(args) => dual::run(args),
         Verb::Generate(args) => generate::run(args),
         Verb::Tetrahedralize(args) => tetrahedralize::run(args),
+        Verb::Convert(args) => convert::run(args),
         Verb::Check(args) => check::run(args),
         Verb::Replay(args) => replay::run(args),
         Verb::Info(args) => info::run(args),

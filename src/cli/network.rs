@@ -68,7 +68,7 @@ pub struct PreparedNetwork {
     /// What was done.
     pub report: PrepareReport,
     /// What the file calls its nodes.
-    names: NodeNames,
+    pub names: NodeNames,
     /// Roots of the trees in the file.
     roots: Vec<NodeId>,
 }

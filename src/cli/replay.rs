@@ -107,6 +107,7 @@ impl Args {
                 generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
                 options: format!("replay of {}", dump.name()),
                 regions: false,
+                flow: None,
             };
             write_mesh(path, &volume, &notes).map_err(|e| Failure::input(e.to_string()))?;
         }

@@ -15,9 +15,9 @@ use crate::skeleton::Skeleton;
 use serde::Serialize;
 use spread::Spread;
 use std::io;
-use tubes::Tubes;
 
 pub use axis::{Displaced, Displacements};
+pub use tubes::{Nearest, Tubes};
 
 /// What a mesh keeps of its network.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -4,7 +4,7 @@ use crate::geometry::{Aabb, Bvh, Point3, Tube, point_segment};
 use crate::skeleton::{EdgeId, Skeleton};
 
 /// The tubes of a network, to be found by place.
-pub(super) struct Tubes {
+pub struct Tubes {
     pub list: Vec<Tube>,
     pub tree: Bvh,
     /// A length in which the network is large: no place of it is further from another one.
@@ -15,8 +15,10 @@ pub(super) struct Tubes {
 
 /// What is nearest to a place.
 #[derive(Clone, Copy)]
-pub(super) struct Nearest {
+pub struct Nearest {
     pub edge: EdgeId,
+    /// Where along it, in [0, 1].
+    pub t: f64,
     /// Distance of the axis.
     pub distance: f64,
     /// Radius there.
@@ -24,6 +26,7 @@ pub(super) struct Nearest {
 }
 
 impl Tubes {
+    /// Of all edges.
     pub fn of(skeleton: &Skeleton) -> Self {
         let list: Vec<Tube> = skeleton.edge_ids().map(|e| skeleton.tube(e)).collect();
         let boxes: Vec<Aabb> = list.iter().map(|t| Aabb::of_points([&t.a, &t.b]).grown(t.max_radius())).collect();
@@ -43,7 +46,7 @@ impl Tubes {
             self.tree.query(&Aabb::of_points([place]).grown(reach), |id| {
                 let tube = &self.list[id as usize];
                 let (t, distance) = point_segment(place, &tube.a, &tube.b);
-                let found = Nearest { edge: EdgeId(id), distance, radius: tube.radius(t) };
+                let found = Nearest { edge: EdgeId(id), t, distance, radius: tube.radius(t) };
                 let value = measure(distance, found.radius);
                 if best.is_none_or(|(b, n)| value < b || value <= b && found.edge < n.edge) {
                     best = Some((value, found));

@@ -225,7 +225,6 @@ pub fn face_vertices(tets: &[[u32; 4]], handle: u32) -> [u32; 3] {
 }
 
 /// The boundary faces of a mesh, oriented outwards, in ascending order of tetrahedron and face.
-#[cfg(test)]
 pub fn boundary_faces(mesh: &super::TetMesh) -> Vec<[u32; 3]> {
     let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
     adjacency.boundary().map(|handle| face_vertices(&mesh.tets, handle)).collect()

@@ -1,12 +1,17 @@
 //! Floor 2: what concerns one mesh, wherever it came from: arrays, adjacency, quality, smoothing, validity.
 
 pub mod adjacency;
+pub(crate) mod beside;
+pub(crate) mod bits;
+pub(crate) mod boundary;
 mod bounds;
 pub mod check;
+pub mod faces;
 pub mod facets;
 mod keep;
 mod keys;
 pub mod quality;
+pub mod relabel;
 pub mod repair;
 #[cfg(test)]
 pub(crate) mod shapes;
@@ -112,6 +117,18 @@ pub struct Patch {
     pub name: String,
     /// What a cap closes; none for the wall.
     pub cap: Option<Cap>,
+}
+
+impl Patch {
+    /// Whether it is called an inlet.
+    pub(crate) fn is_inlet(&self) -> bool {
+        self.id != WALL && self.name.starts_with("inlet")
+    }
+
+    /// Whether it is called an outlet, or holds several.
+    pub(crate) fn is_outlet(&self) -> bool {
+        self.id != WALL && self.name.starts_with("outlet")
+    }
 }
 
 /// A flat disc that closes a vessel: an inlet or outlet.

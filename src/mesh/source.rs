@@ -166,8 +166,39 @@ impl dyn MeshSource + '_ {
         self.in_order(self.counts().boundary, |part| self.face_labels(part), |piece| piece.count, each)
     }
 
-    /// Reads some parts at a time on all threads, and gives what was read in the parts' order.
-    fn in_order<T: Send>(
+    /// Gives the corners of all tetrahedra.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_tet_corners(&self, mut each: impl FnMut(&[[Point3; 4]]) -> io::Result<()>) -> io::Result<()> {
+        let read = |part| self.corners_of(&self.tets(part)?.tets);
+        self.in_order(self.counts().tets, read, Vec::len, |corners| each(corners))
+    }
+
+    /// Gives the corners of all boundary faces.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with.
+    pub fn each_face_corners(&self, mut each: impl FnMut(&[[Point3; 3]]) -> io::Result<()>) -> io::Result<()> {
+        let read = |part| self.corners_of(&self.boundary(part)?.faces);
+        self.in_order(self.counts().boundary, read, Vec::len, |corners| each(corners))
+    }
+
+    /// The corners of cells.
+    pub(super) fn corners_of<const N: usize>(&self, cells: &[[u32; N]]) -> io::Result<Vec<[Point3; N]>> {
+        let mut ids = cells.as_flattened().to_vec();
+        ids.sort_unstable();
+        ids.dedup();
+        let points = self.points_of(&ids)?;
+        if points.len() != ids.len() {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "a cell names a point that does not exist"));
+        }
+        let at = |v: u32| points[ids.partition_point(|&id| id < v)];
+        Ok(cells.iter().map(|cell| cell.map(at)).collect())
+    }
+
+    /// As [`each_part`](Self::each_part), with the things counted that are to come.
+    pub(super) fn in_order<T: Send>(
         &self,
         expected: usize,
         read: impl Fn(u32) -> io::Result<T> + Sync,
@@ -175,15 +206,29 @@ impl dyn MeshSource + '_ {
         mut each: impl FnMut(&T) -> io::Result<()>,
     ) -> io::Result<()> {
         let mut left = expected;
+        self.each_part(read, |piece| {
+            left = left.checked_sub(count(&piece)).ok_or_else(miscounted)?;
+            each(&piece)
+        })?;
+        if left == 0 { Ok(()) } else { Err(miscounted()) }
+    }
+
+    /// Reads some parts at a time on all threads, and gives what was read in the parts' order.
+    ///
+    /// # Errors
+    /// What `read` or `each` fails with.
+    pub fn each_part<T: Send>(
+        &self,
+        read: impl Fn(u32) -> io::Result<T> + Sync,
+        mut each: impl FnMut(T) -> io::Result<()>,
+    ) -> io::Result<()> {
         for first in (0..self.parts()).step_by(AT_A_TIME as usize) {
             let parts = first..self.parts().min(first + AT_A_TIME);
             for piece in parts.into_par_iter().map(&read).collect::<Vec<_>>() {
-                let piece = piece?;
-                left = left.checked_sub(count(&piece)).ok_or_else(miscounted)?;
-                each(&piece)?;
+                each(piece?)?;
             }
         }
-        if left == 0 { Ok(()) } else { Err(miscounted()) }
+        Ok(())
     }
 }
 

@@ -161,7 +161,8 @@ fn first_good(
 
 /// A block is better if it is sound, and of sound ones the one whose flattest tetrahedron is rounder.
 fn goodness(block: &Finished) -> (bool, f64) {
-    (block.certificate.is_sound(), block.certificate.worst_ratio())
+    let worst = if block.hull.is_empty() { block.certificate.worst_ratio() } else { f64::INFINITY };
+    (block.certificate.is_sound(), worst)
 }
 
 /// Meshes a cluster. `overlapping`: vessels of the network overlap in it; `first`: the way that is tried first; `original`:

@@ -146,6 +146,7 @@ pub fn joints_of_cut(partition: &Partition, cut: &Cut) -> [JointPlace; 2] {
 fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     key.float(plan.rho);
     key.float(plan.follow);
+    key.id(u32::from(plan.hollow));
     key.id(match plan.joint {
         JointStyle::Disc => 0,
         JointStyle::Woven => 1,
@@ -208,6 +209,7 @@ mod tests {
             MeshPlan { follow: 0.5, ..plan.clone() },
             MeshPlan { joint: JointStyle::Woven, ..plan.clone() },
             MeshPlan { fuse: true, ..plan.clone() },
+            MeshPlan { hollow: true, ..plan.clone() },
         ];
         for other in others {
             assert_ne!(cluster_key(&cluster, &other, true, Way::Usual), plain, "{other:?}");

@@ -3,7 +3,11 @@
 mod apart;
 mod attempts;
 mod blocks;
+#[cfg(feature = "cli")]
+mod caps;
 mod cures;
+#[cfg(feature = "cli")]
+mod data;
 mod describe;
 mod error;
 mod estimate;
@@ -23,6 +27,10 @@ mod timing;
 mod tips;
 mod whole;
 
+#[cfg(feature = "cli")]
+pub use caps::{CapRow, Caps, Fluid, Outlets};
+#[cfg(feature = "cli")]
+pub use data::{Datum, VesselData};
 pub use error::RunError;
 pub use estimate::{Estimate, TooLarge};
 #[cfg(feature = "cli")]

@@ -21,8 +21,17 @@ pub fn cluster(
         EndStyle::Disc | EndStyle::Shared => mesh_cluster_watched(id, cluster, params, watch)?,
         EndStyle::Open => woven::mesh_trimmed(id, cluster, params, watch)?,
     };
-    Finished::of_cluster(mesh, original)
-        .map_err(|source| BlockError::Faces { block: format!("cluster {}", id.0), source })
+    let name = || format!("cluster {}", id.0);
+    let made = Finished::of_cluster(mesh, original);
+    sound(made.map_err(|source| BlockError::Faces { block: name(), source })?, name)
+}
+
+/// A hollow block is taken only if it could be filled: those that are filled have shown it.
+fn sound(block: Finished, name: impl Fn() -> String) -> Result<Finished, BlockError> {
+    match block.certificate.broken_line().filter(|_| !block.hull.is_empty()) {
+        Some(line) => Err(BlockError::Unsound { block: name(), line }),
+        None => Ok(block),
+    }
 }
 
 /// A connector, and how its tube could not be divided.
@@ -43,8 +52,9 @@ pub fn free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result<Conn
 
 fn finished(id: CutId, mut mesh: ConnectorMesh, ends: [&EndSurface; 2]) -> Result<Connector, BlockError> {
     let failed = std::mem::take(&mut mesh.failed);
-    let faces = |source| BlockError::Faces { block: format!("connector {}", id.0), source };
-    Ok((Finished::of_connector(mesh, ends).map_err(faces)?, failed))
+    let name = || format!("connector {}", id.0);
+    let made = Finished::of_connector(mesh, ends);
+    Ok((sound(made.map_err(|source| BlockError::Faces { block: name(), source })?, name)?, failed))
 }
 
 /// The block of a dump, again.

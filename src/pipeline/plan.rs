@@ -50,6 +50,8 @@ pub struct MeshPlan {
     /// Mesh vessels that overlap together, so that they become one lumen, knowingly: the mesh is to have the loops that
     /// come of it.
     pub fuse: bool,
+    /// Stop at the closed surfaces of the blocks, and fill none: what comes is the boundary that the mesh would have.
+    pub hollow: bool,
     /// Leave out blocks that fail instead of stopping.
     pub keep_going: bool,
     /// Folder for the inputs of blocks that fail; none writes no dumps.
@@ -67,6 +69,7 @@ impl Default for MeshPlan {
             memory: 2 << 30,
             roots: Vec::new(),
             fuse: false,
+            hollow: false,
             keep_going: false,
             dump_dir: None,
         }
@@ -97,7 +100,7 @@ impl MeshPlan {
             JointStyle::Woven | JointStyle::None => EndStyle::Disc,
             JointStyle::Disc => EndStyle::Shared,
         };
-        BlockParams { follow: self.follow, ends, ..BlockParams::with_rho(self.rho) }
+        BlockParams { follow: self.follow, ends, hollow: self.hollow, ..BlockParams::with_rho(self.rho) }
     }
 
     /// # Errors

@@ -121,6 +121,34 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
 }
 
 #[test]
+fn hollow_blocks_have_the_boundary_of_filled_ones() {
+    let corners = |meshed: &Meshed| {
+        let bits = |v: u32| <[f64; 3]>::from(meshed.mesh.mesh.points[v as usize].coords).map(f64::to_bits);
+        let faces = meshed.mesh.boundary.iter().zip(&meshed.mesh.boundary_patch);
+        let mut corners: Vec<_> = faces
+            .map(|(face, patch)| {
+                let mut places = face.map(bits);
+                let first = places.iter().enumerate().min_by_key(|(_, place)| **place).map_or(0, |(i, _)| i);
+                places.rotate_left(first);
+                (places, *patch)
+            })
+            .collect();
+        corners.sort_unstable();
+        corners
+    };
+    for network in [h(12.0), uneven()] {
+        let filled = run(&network, &MeshPlan::default()).expect("meshed");
+        let hollow = run(&network, &MeshPlan { hollow: true, ..MeshPlan::default() }).expect("made");
+        assert!(hollow.mesh.mesh.tets.is_empty());
+        assert!(hollow.check.is_valid(), "{:?}", hollow.check.failed().collect::<Vec<_>>());
+        assert_eq!(corners(&hollow), corners(&filled));
+        assert_eq!(hollow.mesh.patches, filled.mesh.patches);
+        let volumes = [&hollow, &filled].map(|meshed| meshed.check.counts.volume);
+        assert!((volumes[0] / volumes[1] - 1.0).abs() < 1e-9, "{volumes:?}");
+    }
+}
+
+#[test]
 fn finished_blocks_come_back_from_their_bytes() {
     let blocks = finished(&uneven(), &MeshPlan::default());
     for block in &blocks {
@@ -221,6 +249,9 @@ fn blocks_that_meet_are_made_again_unless_their_vessels_overlap() {
         let tried: Vec<&str> = meshed.report.retries.iter().map(|retry| retry.remedy.as_str()).collect();
         assert!(meshed.report.retries.iter().all(|retry| retry.reason == "its wall meets that of connector 0"));
         assert_eq!((&tried[..], meshed.check.is_valid()), (remedies, valid), "{way}");
+        let hollow = run(&through_the_crotch(way), &MeshPlan { hollow: true, ..MeshPlan::default() }).expect("made");
+        assert_eq!(hollow.report.retries, meshed.report.retries);
+        assert_eq!(hollow.check.is_valid(), valid, "{way}");
     }
 }
 

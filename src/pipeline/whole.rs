@@ -12,7 +12,6 @@ use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
 use crate::block::{FinishedJoint, Record};
 use crate::geometry::Point3;
-use crate::mesh::adjacency::face_vertices;
 use crate::mesh::check::Expectation;
 use crate::mesh::check::parts::{Certificate, FacesApart, Parts, PartsCheck, check_parts};
 use crate::mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
@@ -286,11 +285,11 @@ impl MeshSource for Whole<'_> {
         let numbers = self.numbers(plan)?;
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
-        let tets = record.tets()?;
         let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(part, &record)?.into_iter().unzip();
-        let triangle = |&face: &u32| face_vertices(&tets, face).map(|v| numbers[v as usize]);
+        let mut faces = record.triangles(&faces)?;
+        faces.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
         let blocks = vec![plan.block; faces.len()].into();
-        Ok(FacePiece { faces: faces.iter().map(triangle).collect(), patches: patches.into(), blocks })
+        Ok(FacePiece { faces: faces.into(), patches: patches.into(), blocks })
     }
 
     fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
@@ -321,9 +320,8 @@ impl Parts for Whole<'_> {
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
         let faces: Vec<u32> = self.outer_faces(part, &record)?.into_iter().map(|(face, _)| face).collect();
-        let (points, tets, numbers) = (record.points()?, record.tets()?, self.numbers(plan)?);
-        let faces = faces.iter().map(|&face| face_vertices(&tets, face)).collect();
-        let (faces, vertices) = compact(faces, points.len());
+        let (points, numbers) = (record.points()?, self.numbers(plan)?);
+        let (faces, vertices) = compact(record.triangles(&faces)?, points.len());
         let at = |&v: &u32| points[v as usize];
         let number = |&v: &u32| numbers[v as usize];
         Ok(FacesApart {
@@ -346,12 +344,12 @@ impl Parts for Whole<'_> {
             .into_iter()
             .nth(joint as usize)
             .ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?;
-        let (points, tets, numbers) = (record.points()?, record.tets()?, self.numbers(plan)?);
+        let (points, numbers) = (record.points()?, self.numbers(plan)?);
         let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
         Ok(FacesApart {
             points: vertices.iter().map(|&v| points[v as usize]).collect(),
             vertices: vertices.iter().map(|&v| numbers[v as usize]).collect(),
-            faces: faces.iter().map(|&face| face_vertices(&tets, face).map(local)).collect(),
+            faces: record.triangles(&faces)?.into_iter().map(|face| face.map(local)).collect(),
         })
     }
 

@@ -11,10 +11,10 @@ impl fmt::Display for CheckReport {
             write_line(out, line)?;
         }
         let counts = &self.counts;
+        let tets = if counts.tets > 0 { format!("{} tetrahedra, ", counts.tets) } else { String::new() };
         writeln!(
             out,
-            "\n{} tetrahedra, {} points, {} boundary faces, {} caps, {} component{}, volume {:.6e}",
-            counts.tets,
+            "\n{tets}{} points, {} boundary faces, {} caps, {} component{}, volume {:.6e}",
             counts.points,
             counts.boundary_faces,
             counts.caps,

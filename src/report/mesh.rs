@@ -52,11 +52,11 @@ impl fmt::Display for RunReport {
                 writeln!(out, "    its input is in {dump}")?;
             }
         }
-        writeln!(
-            out,
-            "{} tetrahedra, {} points, {} wall triangles, {} cap triangles",
-            m.tets, m.points, m.wall_triangles, m.cap_triangles
-        )?;
+        if m.tets > 0 {
+            write!(out, "{} tetrahedra, ", m.tets)?;
+        }
+        let (points, wall, caps) = (m.points, m.wall_triangles, m.cap_triangles);
+        writeln!(out, "{points} points, {wall} wall triangles, {caps} cap triangles")?;
         let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
         writeln!(out, "{}", times.join(", "))
     }

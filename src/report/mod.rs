@@ -2,6 +2,8 @@
 
 #[cfg(feature = "cli")]
 pub mod advice;
+#[cfg(feature = "cli")]
+pub mod caps;
 pub mod check;
 pub mod fidelity;
 pub mod info;

@@ -69,3 +69,19 @@ impl Random {
         (self.word() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
+
+/// A program of `OpenFOAM`; none, with a note, where it is missing, unless `ANASTOMESH_REQUIRE_ORACLES` is set.
+pub fn openfoam(program: &str) -> Option<Command> {
+    let there = |command: &mut Command| command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
+    if !there(Command::new(program).arg("-help")) {
+        missing(&format!("{program} is not there"));
+        return None;
+    }
+    let mut command = Command::new(program);
+    // Debian's finds its own files by this alone.
+    let debian = Path::new("/usr/share/openfoam");
+    if std::env::var_os("WM_PROJECT_DIR").is_none() && debian.is_dir() {
+        command.env("WM_PROJECT_DIR", debian);
+    }
+    Some(command)
+}

@@ -9,7 +9,7 @@ use super::plan::{TetPlan, Wanted};
 use crate::cli::exit::Failure;
 use crate::cli::stop::NOTHING_KEPT;
 use crate::io::tetgen::{Extent, MeshFamily};
-use crate::io::volume::{MeshNotes, write_mesh_to, write_mesh_within};
+use crate::io::volume::{MeshNotes, WriteOptions, write_mesh_to, write_mesh_with};
 use crate::mesh::{Patch, TET_FACES, VolumeMesh};
 use crate::progress::Progress;
 use crate::tet::Tetrahedralization;
@@ -72,13 +72,14 @@ pub fn write(
     let generator = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
     // What the bytes depend on, and nothing else: neither threads nor paths.
     let options = serde_json::to_string(plan).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
-    let notes = MeshNotes { expectation: None, generator, options: format!("tetrahedralize {options}"), regions };
+    let notes =
+        MeshNotes { expectation: None, generator, options: format!("tetrahedralize {options}"), regions, flow: None };
     let failed = |e: &dyn std::error::Error| {
         if progress.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(e.to_string()) }
     };
     match target {
         Target::File(path) => {
-            write_mesh_within(None, path, volume, &notes, progress).map_err(|e| failed(&e))?;
+            write_mesh_with(&WriteOptions::default(), path, volume, &notes, progress).map_err(|e| failed(&e))?;
             Ok(vec![path.clone()])
         }
         Target::Family(base) => {

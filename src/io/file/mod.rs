@@ -3,11 +3,13 @@
 mod asked;
 mod atomic;
 mod error;
+mod folder;
 mod whole;
 
 pub(super) use asked::Asked;
 pub(super) use atomic::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
 pub use error::FileError;
-#[cfg(feature = "cli")]
-pub use whole::write_text;
+pub(super) use folder::AtomicFolder;
 pub(super) use whole::{Writing, by_extension, ensure_sound, extension, read_bytes, write_all_whole, write_whole};
+#[cfg(feature = "cli")]
+pub use whole::{ensure_text_writable, write_text};

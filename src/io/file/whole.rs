@@ -36,6 +36,15 @@ pub fn write_text(path: &Path, text: &str) -> io::Result<()> {
     write_whole(path, |file| file.write_all(text.as_bytes()))
 }
 
+/// Makes sure that a text file can be written, and leaves nothing behind.
+///
+/// # Errors
+/// What the operating system reports.
+#[cfg(feature = "cli")]
+pub fn ensure_text_writable(path: &Path) -> io::Result<()> {
+    AtomicFile::create(path).map(drop)
+}
+
 /// A file's path, and what writes what it holds.
 pub(in crate::io) type Writing<'a> = (PathBuf, &'a dyn Fn(&mut dyn Write) -> io::Result<()>);
 

@@ -1,9 +1,11 @@
 //! Triangle surfaces in files: a file or folder for each format, and which of them a path asks for.
 
+mod boundary;
 mod content;
 mod error;
 mod faces;
 mod format;
+mod glb;
 mod obj;
 mod off;
 mod ply;
@@ -11,8 +13,10 @@ mod read;
 mod stl;
 #[cfg(test)]
 mod tests;
+mod three_mf;
 mod write;
 
+pub use boundary::{ensure_boundary_writable, write_boundary, write_boundary_watched};
 pub use content::SurfaceContent;
 pub use error::SurfaceFileError;
 pub use format::SurfaceFormat;

@@ -7,6 +7,7 @@ use crate::geometry::Point3;
 use crate::io::text::Place;
 use crate::io::text::{TextFault, Words};
 use crate::mesh::TriMesh;
+use crate::mesh::boundary::BoundarySurface;
 use std::io::{self, Write};
 
 /// Parses a file.
@@ -88,11 +89,23 @@ impl Reader {
 }
 
 pub(super) fn write(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
-    for p in &mesh.points {
-        writeln!(out, "v {:?} {:?} {:?}", p.x, p.y, p.z)?;
-    }
-    for [a, b, c] in &mesh.triangles {
-        writeln!(out, "f {} {} {}", u64::from(*a) + 1, u64::from(*b) + 1, u64::from(*c) + 1)?;
-    }
-    Ok(())
+    write_points(out, &mesh.points)?;
+    write_triangles(out, &mesh.triangles)
+}
+
+/// Writes a boundary.
+pub(super) fn write_boundary(out: &mut impl Write, surface: &BoundarySurface) -> io::Result<()> {
+    surface.each_points(|points| write_points(out, points))?;
+    surface.each_faces(|piece| write_triangles(out, &piece.faces))
+}
+
+fn write_points(out: &mut impl Write, points: &[Point3]) -> io::Result<()> {
+    points.iter().try_for_each(|p| writeln!(out, "v {:?} {:?} {:?}", p.x, p.y, p.z))
+}
+
+fn write_triangles(out: &mut impl Write, triangles: &[[u32; 3]]) -> io::Result<()> {
+    triangles.iter().try_for_each(|triangle| {
+        let [a, b, c] = triangle.map(|v| u64::from(v) + 1);
+        writeln!(out, "f {a} {b} {c}")
+    })
 }

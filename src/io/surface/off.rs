@@ -3,9 +3,10 @@
 use super::content::SurfaceContent;
 use super::error::SurfaceFault;
 use super::faces::Faces;
-use crate::io::text::Place;
-use crate::io::text::{Words, shown};
+use crate::geometry::Point3;
+use crate::io::text::{Place, Words, shown};
 use crate::mesh::TriMesh;
+use crate::mesh::boundary::BoundarySurface;
 use std::io::{self, Write};
 
 /// Parses a file. The position stands first in a line of whatever variant, so colours, normals and texture coordinates
@@ -61,11 +62,22 @@ fn read_keyword(words: &mut Words) -> Result<(), SurfaceFault> {
 
 pub(super) fn write(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
     writeln!(out, "OFF\n{} {} 0", mesh.points.len(), mesh.triangles.len())?;
-    for p in &mesh.points {
-        writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z)?;
-    }
-    for [a, b, c] in &mesh.triangles {
-        writeln!(out, "3 {a} {b} {c}")?;
-    }
-    Ok(())
+    write_points(out, &mesh.points)?;
+    write_triangles(out, &mesh.triangles)
+}
+
+/// Writes a boundary.
+pub(super) fn write_boundary(out: &mut impl Write, surface: &BoundarySurface) -> io::Result<()> {
+    let counts = surface.counts();
+    writeln!(out, "OFF\n{} {} 0", counts.points, counts.boundary)?;
+    surface.each_points(|points| write_points(out, points))?;
+    surface.each_faces(|piece| write_triangles(out, &piece.faces))
+}
+
+fn write_points(out: &mut impl Write, points: &[Point3]) -> io::Result<()> {
+    points.iter().try_for_each(|p| writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z))
+}
+
+fn write_triangles(out: &mut impl Write, triangles: &[[u32; 3]]) -> io::Result<()> {
+    triangles.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
 }

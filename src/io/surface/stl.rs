@@ -6,6 +6,7 @@ use crate::geometry::{Point3, Vec3};
 use crate::io::text::Place;
 use crate::io::text::{TextFault, Words};
 use crate::mesh::TriMesh;
+use crate::mesh::boundary::BoundarySurface;
 use rustc_hash::FxHashMap;
 use std::io::{self, Write};
 
@@ -146,22 +147,42 @@ fn normal([a, b, c]: [Point3; 3]) -> Vec3 {
 }
 
 fn write_binary(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
-    let mut head = [b' '; 80];
-    head[..10].copy_from_slice(b"anastomesh");
-    out.write_all(&head)?;
-    out.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
+    out.write_all(&head(mesh.triangles.len() as u32))?;
     for triangle in &mesh.triangles {
-        let points = triangle.map(|v| mesh.points[v as usize]);
-        let mut record = [0; RECORD];
-        let (floats, _) = record.as_chunks_mut::<4>();
-        let normal = normal(points);
-        let values = normal.iter().chain(points.iter().flat_map(Point3::iter));
-        for (slot, &value) in floats.iter_mut().zip(values) {
-            *slot = (value as f32).to_le_bytes();
-        }
-        out.write_all(&record)?;
+        out.write_all(&record(triangle.map(|v| mesh.points[v as usize])))?;
     }
     Ok(())
+}
+
+/// Writes a boundary in binary, its coordinates rounded to 32 bits.
+pub(super) fn write_boundary(out: &mut impl Write, surface: &BoundarySurface) -> io::Result<()> {
+    let Ok(count) = u32::try_from(surface.counts().boundary) else {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "STL cannot count so many triangles; write PLY"));
+    };
+    out.write_all(&head(count))?;
+    surface.each_corners(|triangles| {
+        out.write_all(triangles.iter().map(|corners| record(*corners)).collect::<Vec<_>>().as_flattened())
+    })
+}
+
+/// What stands before the triangles of a binary file.
+fn head(count: u32) -> [u8; HEAD] {
+    let mut head = [b' '; HEAD];
+    head[..10].copy_from_slice(b"anastomesh");
+    head[80..].copy_from_slice(&count.to_le_bytes());
+    head
+}
+
+/// A triangle of a binary file.
+fn record(corners: [Point3; 3]) -> [u8; RECORD] {
+    let mut record = [0; RECORD];
+    let (floats, _) = record.as_chunks_mut::<4>();
+    let normal = normal(corners);
+    let values = normal.iter().chain(corners.iter().flat_map(Point3::iter));
+    for (slot, &value) in floats.iter_mut().zip(values) {
+        *slot = (value as f32).to_le_bytes();
+    }
+    record
 }
 
 fn write_text(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {

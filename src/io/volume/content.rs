@@ -1,5 +1,6 @@
 //! What a mesh file holds beside the mesh.
 
+use super::conditions::Flow;
 use crate::mesh::VolumeMesh;
 use crate::mesh::check::Expectation;
 
@@ -14,6 +15,8 @@ pub struct MeshNotes {
     pub options: String,
     /// Whether the blocks of the tetrahedra are regions, which a format that groups cells is to keep apart.
     pub regions: bool,
+    /// What flows through the mesh, for formats that are cases of a solver.
+    pub flow: Option<Flow>,
 }
 
 /// A mesh as it was read from a file.

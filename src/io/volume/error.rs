@@ -29,6 +29,9 @@ pub enum MeshFault {
     /// It is no mesh of `TetGen`'s.
     #[error(transparent)]
     Tetgen(#[from] TetgenFault),
+    /// Meshes of this format are written alone.
+    #[error("cases of solvers are written, not read: name the same mesh as .vtu or .msh")]
+    NotRead,
     /// The format spreads a mesh over several files.
     #[error("a mesh of this format is several files: name the path of its .ele or .pvtu file")]
     SeveralFiles,

@@ -33,6 +33,7 @@ pub(in crate::io) fn labelled_tube(layers: u32) -> (VolumeMesh, MeshNotes) {
         generator: "anastomesh 0.1.0".into(),
         options: "rho = 3 # größer".into(),
         regions: false,
+        flow: None,
     };
     (volume, notes)
 }

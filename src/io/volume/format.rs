@@ -18,17 +18,23 @@ pub enum MeshFormat {
     Msh2,
     /// Medit's text format, `.mesh`.
     Medit,
+    /// A case for `OpenFOAM`, a folder; `.foam`.
+    OpenFoam,
+    /// The `mesh-complete` folder of `SimVascular` and `svMultiPhysics`; `.svmesh`.
+    SimVascular,
     /// `TetGen`'s family of files, named by its `.ele` or `.node`.
     Tetgen,
 }
 
 /// Extensions, in lower case.
-const EXTENSIONS: [(&str, MeshFormat); 7] = [
+const EXTENSIONS: [(&str, MeshFormat); 9] = [
     ("vtu", MeshFormat::Vtu),
     ("pvtu", MeshFormat::Pvtu),
     ("msh", MeshFormat::Msh),
     ("msh2", MeshFormat::Msh2),
     ("mesh", MeshFormat::Medit),
+    ("foam", MeshFormat::OpenFoam),
+    ("svmesh", MeshFormat::SimVascular),
     ("ele", MeshFormat::Tetgen),
     ("node", MeshFormat::Tetgen),
 ];
@@ -42,8 +48,18 @@ impl MeshFormat {
         by_extension(path, &EXTENSIONS).ok_or_else(|| FileError::UnknownFormat {
             path: path.to_path_buf(),
             kind: "known mesh format",
-            known: ".vtu, .pvtu, .msh, .msh2, .mesh, .ele",
+            known: ".vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .ele",
         })
+    }
+
+    /// Whether it is one of VTK's unstructured grids.
+    pub fn is_grid(self) -> bool {
+        matches!(self, Self::Vtu | Self::Pvtu)
+    }
+
+    /// Whether a mesh is a folder; none of these is read.
+    pub(super) fn is_folder(self) -> bool {
+        matches!(self, Self::OpenFoam | Self::SimVascular)
     }
 
     /// Whether a mesh can be written without being held in memory as a whole.

@@ -2,7 +2,7 @@
 //!
 //! A format has its faults in `error`, and `read` and `write` that know bytes and streams but neither of the other formats.
 
-mod bits;
+mod conditions;
 mod content;
 mod error;
 #[cfg(test)]
@@ -10,18 +10,26 @@ pub(in crate::io) mod fixtures;
 mod format;
 mod medit;
 mod msh;
+mod openfoam;
+mod options;
 mod pvtu;
 mod read;
+mod simvascular;
 #[cfg(test)]
 mod tests;
 mod vtu;
 mod write;
 
+pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 pub use content::{MeshFile, MeshNotes};
 pub use error::MeshFileError;
 pub use format::MeshFormat;
+#[cfg(feature = "cli")]
+pub use options::GridOptions;
+pub use options::WriteOptions;
 pub use read::{read_mesh, read_mesh_from};
+pub(in crate::io) use vtu::write_boundary as write_poly_data;
 pub use vtu::{VtuPieces, VtuPiecesError};
 #[cfg(feature = "cli")]
-pub use write::write_mesh_within;
+pub use write::write_mesh_with;
 pub use write::{ensure_writable, write_mesh, write_mesh_to};

@@ -14,12 +14,13 @@ use std::path::Path;
 /// # Errors
 /// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
-    if path.is_dir() {
+    if path.is_dir() && !MeshFormat::of(path).is_ok_and(MeshFormat::is_folder) {
         return Err(FileError::read(path)(io::ErrorKind::IsADirectory.into()));
     }
     match MeshFormat::of(path)? {
         MeshFormat::Tetgen => tetgen::read_mesh(path).map(MeshFile::from).map_err(FileError::widen),
         MeshFormat::Pvtu => pvtu::read(path).map_err(FileError::widen),
+        format if format.is_folder() => Err(FileError::content(path)(MeshFault::NotRead)),
         format => read_mesh_from(&read_bytes(path)?, format).map_err(FileError::content(path)),
     }
 }
@@ -34,6 +35,7 @@ pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, Mesh
         // The file itself says which version it is.
         MeshFormat::Msh | MeshFormat::Msh2 => Ok(msh::read(bytes)?),
         MeshFormat::Medit => Ok(medit::read(bytes)?.into()),
+        MeshFormat::OpenFoam | MeshFormat::SimVascular => Err(MeshFault::NotRead),
         MeshFormat::Tetgen | MeshFormat::Pvtu => Err(MeshFault::SeveralFiles),
     }
 }

@@ -4,8 +4,9 @@
 use super::content::MeshNotes;
 use super::fixtures::{Cut, labelled_tube};
 use super::format::MeshFormat;
+use super::options::WriteOptions;
 use super::read::read_mesh;
-use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_within};
+use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_with};
 use crate::geometry::Point3;
 use crate::io::file::FileError;
 use crate::mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece, gather};
@@ -257,7 +258,8 @@ fn a_mesh_whose_writing_is_stopped_leaves_nothing() {
     for name in ["a.vtu", "a.pvtu", "a.msh", "a.mesh", "a.ele"] {
         let path = folder.path().join(name);
         for times in [0, 3] {
-            let error = write_mesh_within(None, &path, &volume, &notes, &StopsAfter::new(times)).unwrap_err();
+            let error =
+                write_mesh_with(&WriteOptions::default(), &path, &volume, &notes, &StopsAfter::new(times)).unwrap_err();
             assert!(error.to_string().contains("cancelled"), "{error}");
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{name}");
         }

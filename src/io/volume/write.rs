@@ -3,10 +3,12 @@
 use super::content::MeshNotes;
 use super::error::MeshFileError;
 use super::format::MeshFormat;
+use super::options::{GridOptions, WriteOptions, boundary_beside};
 use super::pvtu::{PieceFolder, Pieces};
-use super::{medit, msh, pvtu, vtu};
+use super::{medit, msh, openfoam, pvtu, simvascular, vtu};
 use crate::io::file::{Asked, AtomicFile, FileError, write_whole};
 use crate::io::tetgen::MeshFamily;
+use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 use crate::mesh::source::{MeshSource, gather};
 use crate::progress::Progress;
 use std::io::{self, Cursor, Seek, Write};
@@ -18,9 +20,14 @@ use std::path::Path;
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
-    let format = MeshFormat::of(path)?;
-    let pieces = || if format == MeshFormat::Pvtu { PieceFolder::ensure_replaceable(path) } else { Ok(()) };
-    AtomicFile::create(path).map(drop).and_then(|()| pieces()).map_err(FileError::write(path))
+    let file = || AtomicFile::create(path).map(drop);
+    match MeshFormat::of(path)? {
+        MeshFormat::OpenFoam => openfoam::ensure_writable(path),
+        MeshFormat::SimVascular => simvascular::ensure_writable(path),
+        MeshFormat::Pvtu => file().and_then(|()| PieceFolder::ensure_replaceable(path)),
+        _ => file(),
+    }
+    .map_err(FileError::write(path))
 }
 
 /// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all. The bytes depend
@@ -43,30 +50,62 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Result<(), MeshFileError> {
-    write_mesh_within(None, path, mesh, notes, &())
+    write_mesh_with(&WriteOptions::default(), path, mesh, notes, &())
 }
 
-/// As [`write_mesh`], holding about so many bytes of a mesh in pieces at a time, if that is said; the other formats take less. Ends, and
-/// leaves nothing, when it is told to.
+/// As [`write_mesh`], as the options say. Ends, and leaves nothing, when it is told to.
 ///
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
-pub fn write_mesh_within(
-    memory: Option<usize>,
+pub fn write_mesh_with(
+    options: &WriteOptions,
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     progress: &dyn Progress,
 ) -> Result<(), MeshFileError> {
-    let written = match MeshFormat::of(path)? {
-        MeshFormat::Tetgen => return write_family(path, mesh, progress),
+    let grid = options.grid;
+    let format = MeshFormat::of(path)?;
+    let write = || match format {
         MeshFormat::Pvtu => {
             let usual = Pieces::default();
-            pvtu::write(path, mesh, notes, Pieces { memory: memory.unwrap_or(usual.memory), ..usual }, progress)
+            let memory = options.memory.unwrap_or(usual.memory);
+            pvtu::write(path, mesh, notes, Pieces { memory, grid, values: options.values, ..usual }, progress)
+        }
+        MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, progress),
+        MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
+        MeshFormat::Vtu => {
+            write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid, options.values))
         }
         format => write_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
     };
-    written.map_err(FileError::write(path))
+    match format {
+        MeshFormat::Tetgen => write_family(path, mesh, progress),
+        MeshFormat::Vtu | MeshFormat::Pvtu if grid.tets_alone => {
+            let boundary = complete_boundary(path, mesh, notes, grid, progress)?;
+            write().and_then(|()| boundary.commit()).map_err(FileError::write(path))
+        }
+        _ => write().map_err(FileError::write(path)),
+    }
+}
+
+/// The boundary beside a grid of tetrahedra alone, which only has to be put in its place when the grid is.
+fn complete_boundary(
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    grid: GridOptions,
+    progress: &dyn Progress,
+) -> Result<AtomicFile, MeshFileError> {
+    let beside = boundary_beside(path);
+    let make = || {
+        let mut file = AtomicFile::create(&beside)?;
+        let surface = BoundarySurface::new(mesh, BoundaryPart::Whole)?;
+        vtu::write_boundary(&mut Asked { out: &mut file, progress }, &surface, notes, grid)?;
+        file.complete()?;
+        Ok(file)
+    };
+    make().map_err(FileError::write(&beside))
 }
 
 /// The neighbours of tetrahedra are not found in passes: this format holds the mesh in memory.
@@ -125,11 +164,11 @@ pub(super) fn write_format(
     notes: &MeshNotes,
 ) -> io::Result<()> {
     match format {
-        MeshFormat::Vtu => vtu::write(out, mesh, notes),
+        MeshFormat::Vtu => vtu::write(out, mesh, notes, GridOptions::default(), None),
         MeshFormat::Msh => msh::write(out, mesh, notes),
         MeshFormat::Msh2 => msh::write_2(out, mesh, notes),
         MeshFormat::Medit => medit::write(out, mesh),
-        MeshFormat::Tetgen | MeshFormat::Pvtu => {
+        MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::OpenFoam | MeshFormat::SimVascular => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
         }
     }

@@ -1,5 +1,5 @@
-//! The values of one array on their way into a VTK XML file: collected into blocks, compressed in parallel, a wave of
-//! blocks at a time, so that memory does not grow with the mesh.
+//! The values of one array on their way into a VTK XML file: collected into blocks, compressed in parallel where they are to
+//! be, a wave of blocks at a time, so that memory does not grow with the mesh.
 
 use crate::mesh::source::miscounted;
 use flate2::{Compression, write::ZlibEncoder};
@@ -12,7 +12,16 @@ const BLOCK: usize = 98_304;
 /// Bytes below which values are laid out by one thread.
 const SERIAL: usize = 1 << 16;
 
-/// Writes the number and sizes of an array's blocks, then the blocks. `fill` has to give `values` values of `width`
+/// How an array's bytes stand in a file.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::io) enum Packing {
+    /// As they are, with their number in front.
+    Raw,
+    /// In blocks compressed with zlib, with the number and sizes of the blocks in front.
+    Zlib(Compression),
+}
+
+/// Writes an array, its sizes in front. `fill` has to give `values` values of `width`
 /// bytes. The bytes depend on the values alone: neither on how they are pushed nor on the number of threads.
 ///
 /// # Errors
@@ -21,12 +30,18 @@ pub(in crate::io) fn write_blocks(
     out: &mut (impl Write + Seek),
     values: usize,
     width: usize,
-    level: Compression,
+    packing: Packing,
     fill: impl FnOnce(&mut Blocks) -> io::Result<()>,
 ) -> io::Result<()> {
+    if matches!(packing, Packing::Raw) {
+        out.write_all(&((values * width) as u64).to_le_bytes())?;
+        let mut blocks = Blocks::new(out, values, width, packing);
+        fill(&mut blocks)?;
+        return blocks.finish().map(drop);
+    }
     let head = out.stream_position()?;
     write_spaces(out, 8 * (3 + values.div_ceil(BLOCK)))?;
-    let mut blocks = Blocks::new(out, values, width, level);
+    let mut blocks = Blocks::new(out, values, width, packing);
     fill(&mut blocks)?;
     let sizes = blocks.finish()?;
     let end = out.stream_position()?;
@@ -53,7 +68,7 @@ pub(in crate::io) fn write_spaces(out: &mut impl Write, count: usize) -> io::Res
 /// Takes the values of one array.
 pub(in crate::io) struct Blocks<'a> {
     out: &'a mut dyn Write,
-    level: Compression,
+    packing: Packing,
     /// Bytes in a full block.
     block: usize,
     /// The bytes of the wave under way, of which the first `filled` are known.
@@ -66,12 +81,12 @@ pub(in crate::io) struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    fn new(out: &'a mut dyn Write, values: usize, width: usize, level: Compression) -> Self {
+    fn new(out: &'a mut dyn Write, values: usize, width: usize, packing: Packing) -> Self {
         let (block, total) = (BLOCK * width, values * width);
         // Enough for every thread to have some, few enough to stay small.
         let wave = block * (4 * rayon::current_num_threads()).clamp(8, 64);
         let sizes = vec![values.div_ceil(BLOCK) as u64, block as u64, (total % block) as u64];
-        Self { out, level, block, wave: vec![0; wave.min(total)], filled: 0, left: total, sizes }
+        Self { out, packing, block, wave: vec![0; wave.min(total)], filled: 0, left: total, sizes }
     }
 
     /// Takes the bytes of `count` items, `item(i)` for each.
@@ -104,13 +119,17 @@ impl<'a> Blocks<'a> {
     }
 
     fn write_wave(&mut self) -> io::Result<()> {
-        let level = self.level;
-        let packed: Vec<io::Result<Vec<u8>>> =
-            self.wave[..self.filled].par_chunks(self.block).map(|raw| compress(raw, level)).collect();
-        for bytes in packed {
-            let bytes = bytes?;
-            self.sizes.push(bytes.len() as u64);
-            self.out.write_all(&bytes)?;
+        let wave = &self.wave[..self.filled];
+        match self.packing {
+            Packing::Raw => self.out.write_all(wave)?,
+            Packing::Zlib(level) => {
+                let packed: Vec<_> = wave.par_chunks(self.block).map(|raw| compress(raw, level)).collect();
+                for bytes in packed {
+                    let bytes = bytes?;
+                    self.sizes.push(bytes.len() as u64);
+                    self.out.write_all(&bytes)?;
+                }
+            }
         }
         self.filled = 0;
         Ok(())

@@ -106,11 +106,12 @@ impl<'a> VtkXml<'a> {
         })
     }
 
-    /// Where the appended data begin in the file, if they are raw, compressed with zlib, little-endian and with lengths of
-    /// 8 bytes: such arrays can be read a block at a time.
-    pub(in crate::io) fn packed_data(&self) -> Option<usize> {
-        let packed = Layout { big_endian: false, wide_header: true, zlib: true };
-        self.appended.filter(|appended| !appended.base64 && self.layout == packed).map(|appended| appended.start)
+    /// Where the appended data begin in the file, and whether they are compressed with zlib, if they are no text,
+    /// little-endian and with lengths of 8 bytes: such arrays can be read a block at a time.
+    pub(in crate::io) fn packed_data(&self) -> Option<(usize, bool)> {
+        let Layout { big_endian, wide_header, zlib } = self.layout;
+        let appended = self.appended.filter(|appended| !appended.base64 && !big_endian && wide_header);
+        appended.map(|appended| (appended.start, zlib))
     }
 
     /// An element's name.

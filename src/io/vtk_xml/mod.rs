@@ -12,7 +12,7 @@ mod packed;
 mod tests;
 
 pub(super) use array::Values;
-pub(super) use blocks::{Blocks, write_blocks, write_spaces};
+pub(super) use blocks::{Blocks, Packing, write_blocks, write_spaces};
 pub(super) use document::{ElementId, VtkXml};
 pub use error::VtkError;
 pub(super) use packed::{BlockFile, PackedArray};

@@ -1,4 +1,5 @@
-//! Arrays that stand in a file as blocks compressed with zlib, read a range at a time: the counterpart of `blocks`.
+//! Arrays that stand in a file as they are or as blocks compressed with zlib, read a range at a time: the counterpart of
+//! `blocks`.
 
 use flate2::read::ZlibDecoder;
 use rustc_hash::FxHashMap;
@@ -8,6 +9,9 @@ use std::io::{self, Read};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Values in a block of an array that stands in the file as it is.
+const RAW_BLOCK: u64 = 98_304;
 
 /// Blocks larger than that are not taken: they would have to be held as a whole.
 const LARGEST_BLOCK: u64 = 1 << 28;
@@ -40,6 +44,8 @@ pub(in crate::io) struct PackedArray {
     bytes: u64,
     /// Bytes of a value.
     width: u64,
+    /// Whether the blocks are compressed.
+    zlib: bool,
 }
 
 fn damaged(what: &'static str) -> io::Error {
@@ -86,11 +92,14 @@ impl BlockFile {
 
     /// Finds the blocks of an array of `values` values of `width` bytes, by the little-endian 64-bit sizes in front of
     /// them.
-    pub(in crate::io) fn array(&self, offset: u64, values: u64, width: u64) -> io::Result<PackedArray> {
+    pub(in crate::io) fn array(&self, offset: u64, values: u64, width: u64, zlib: bool) -> io::Result<PackedArray> {
         let bytes = values.checked_mul(width).ok_or_else(|| damaged("an array is too long"))?;
         let [count] = self.words::<1>(offset)?;
+        if !zlib {
+            return self.raw_array(offset, count, bytes, width);
+        }
         if count == 0 && bytes == 0 {
-            return Ok(PackedArray { starts: vec![offset], block: 1, bytes, width });
+            return Ok(PackedArray { starts: vec![offset], block: 1, bytes, width, zlib });
         }
         let [_, block, last] = self.words::<3>(offset)?;
         let full = count.checked_sub(u64::from(last > 0)).and_then(|full| full.checked_mul(block));
@@ -111,7 +120,18 @@ impl BlockFile {
             let start = starts[starts.len() - 1].checked_add(size);
             starts.push(start.filter(|&end| end <= self.length).ok_or(io::ErrorKind::UnexpectedEof)?);
         }
-        Ok(PackedArray { starts, block, bytes, width })
+        Ok(PackedArray { starts, block, bytes, width, zlib })
+    }
+
+    /// An array of so many bytes, as the number in front of it says, too.
+    fn raw_array(&self, offset: u64, said: u64, bytes: u64, width: u64) -> io::Result<PackedArray> {
+        if said != bytes {
+            return Err(damaged("an array has another size than its values"));
+        }
+        let (first, block) = (offset + 8, RAW_BLOCK * width);
+        let end = first.checked_add(bytes).filter(|&end| end <= self.length).ok_or(io::ErrorKind::UnexpectedEof)?;
+        let starts = (first..end).step_by(block as usize).chain([end]).collect();
+        Ok(PackedArray { starts, block, bytes, width, zlib: false })
     }
 
     fn words<const N: usize>(&self, offset: u64) -> io::Result<[u64; N]> {
@@ -153,10 +173,13 @@ impl BlockFile {
         Ok(block)
     }
 
-    /// A block, decompressed.
+    /// A block, decompressed where it is compressed.
     pub(in crate::io) fn block(&self, array: &PackedArray, index: u64) -> io::Result<Vec<u8>> {
         let i = index as usize;
         let packed = self.bytes(array.starts[i]..array.starts[i + 1])?;
+        if !array.zlib {
+            return Ok(packed);
+        }
         let expected = (array.bytes - index * array.block).min(array.block);
         let mut out = Vec::new();
         // The buffer grows with what is there: a damaged file allocates no more.

@@ -74,10 +74,11 @@ pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) 
 }
 
 /// The lines about patches and caps where others have labelled the boundary: they name parts of it, but say of none what
-/// cap it is.
+/// cap it is. So do outlets that are one patch.
 pub(super) fn lines_without_caps(patches: &[Patch], expectation: Option<&Expectation>) -> Option<Vec<LineResult>> {
     let no_caps = patches.iter().all(|patch| patch.cap.is_none());
-    if !no_caps || expectation.is_some_and(|expected| expected.terminals.is_empty()) {
+    let grouped = patches.iter().any(|patch| patch.is_outlet() && patch.cap.is_none());
+    if !(no_caps || grouped) || expectation.is_some_and(|expected| expected.terminals.is_empty()) {
         return None;
     }
     let mut lines = vec![own_patch(patches)];

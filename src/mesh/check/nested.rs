@@ -22,6 +22,10 @@ impl Enclosed {
         Self { volume, doubt: 0.0 }
     }
 
+    pub(super) fn volume(&self) -> f64 {
+        self.volume
+    }
+
     /// Adds a triangle, seen from a point of its surface.
     fn add_triangle(&mut self, from: &Point3, [a, b, c]: [&Point3; 3]) {
         let (d, u, v) = (a - from, b - a, c - a);

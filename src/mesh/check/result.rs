@@ -98,6 +98,11 @@ impl Line {
         Self::CapNormal,
     ];
 
+    /// Whether it says something of a boundary that is not filled with tetrahedra.
+    pub(super) fn concerns_surfaces(self) -> bool {
+        self >= Self::BoundaryEdges || matches!(self, Self::FinitePoints | Self::NoDuplicatePoints)
+    }
+
     /// What holds when the line passes.
     pub fn statement(self) -> &'static str {
         match self {

@@ -99,6 +99,10 @@ impl<'a> Boundary<'a> {
         &self.surfaces
     }
 
+    pub(super) fn into_surfaces(self) -> Surfaces {
+        self.surfaces
+    }
+
     /// Compares the genera of the boundary surfaces, which must be closed manifolds, with the expected loops.
     pub(super) fn loops(&self, expected: &[u32]) -> LineResult {
         let genus = |s: &Surface| genus(s.euler());

@@ -308,3 +308,19 @@ fn only_the_first_offenders_are_kept() {
     assert_eq!(line.offenders[3].ids, [3]);
     assert!(failing(&volume, &expectation).contains(&Line::PositiveTets));
 }
+
+#[test]
+fn of_outlets_that_are_one_patch_the_caps_are_not_known() {
+    let group = |v: &mut VolumeMesh, e: &mut Expectation| {
+        v.patches[2] = Patch { id: 3, name: "outlets".into(), cap: None };
+        e.terminals.retain(|&n| n != 3);
+    };
+    let (mut volume, mut expectation) = tube();
+    group(&mut volume, &mut expectation);
+    assert_ne!(check_volume(&volume, Some(&expectation)).verdict, Verdict::Invalid);
+    let both_gone = |v: &mut VolumeMesh, e: &mut Expectation| {
+        group(v, e);
+        v.patches[1].cap = None;
+    };
+    assert_eq!(planted(both_gone), [Line::CapPerTerminal]);
+}

@@ -57,7 +57,7 @@ impl Extra {
     pub(super) fn into_notes(self) -> (MeshNotes, Vec<(i32, Cap)>) {
         let terminals = self.terminals.unwrap_or_default();
         let expectation = self.loops.map(|loops| Expectation { loops, terminals });
-        let notes = MeshNotes { expectation, generator: self.generator, options: self.options, regions: false };
+        let notes = MeshNotes { expectation, generator: self.generator, options: self.options, ..MeshNotes::default() };
         let cap = |c: ExtraCap| {
             let (center, normal) = (Point3::from(c.center), Vec3::from(c.normal));
             (c.patch, Cap { node: c.node, center, normal, radius: c.radius })

@@ -5,7 +5,7 @@
 //! they are written; those of the others (caps) are few, and held.
 
 use crate::geometry::{Aabb, Point3};
-use crate::io::volume::bits::Bits;
+use crate::mesh::bits::Bits;
 use crate::mesh::source::MeshSource;
 use rustc_hash::FxHashMap;
 use std::io;

@@ -71,7 +71,7 @@ fn what_is_written_is_read() {
     let (volume, notes) = tube(40, 300);
     let tets = volume.mesh.tets.len();
     for (limit, memory, count) in [(1000, 0, tets.div_ceil(900)), (600, 1 << 16, tets.div_ceil(600)), (tets, 0, 1)] {
-        write(&path, &volume, &notes, Pieces { tets: limit, memory }, &()).unwrap();
+        write(&path, &volume, &notes, Pieces { tets: limit, memory, ..Pieces::default() }, &()).unwrap();
         assert_eq!(fs::read_dir(folder.path().join("a tube & more")).unwrap().count(), count);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
         let back = read_mesh(&path).unwrap();
@@ -87,7 +87,7 @@ fn neither_memory_nor_the_pieces_that_are_read_make_a_difference() {
     let written = |memory, sizes: Option<&[usize]>| {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("tube.pvtu");
-        let pieces = Pieces { tets: 400, memory };
+        let pieces = Pieces { tets: 400, memory, ..Pieces::default() };
         match sizes {
             Some(sizes) => write(&path, &Cut { volume: &volume, sizes }, &notes, pieces, &()).unwrap(),
             None => write(&path, &volume, &notes, pieces, &()).unwrap(),
@@ -107,7 +107,8 @@ fn neither_memory_nor_the_pieces_that_are_read_make_a_difference() {
 fn pieces_have_the_boundary_of_their_blocks() {
     let folder = tempfile::tempdir().unwrap();
     let (volume, notes) = tube(30, 200);
-    write(&folder.path().join("t.pvtu"), &volume, &notes, Pieces { tets: 450, memory: 0 }, &()).unwrap();
+    write(&folder.path().join("t.pvtu"), &volume, &notes, Pieces { tets: 450, memory: 0, ..Pieces::default() }, &())
+        .unwrap();
     for entry in fs::read_dir(folder.path().join("t")).unwrap() {
         let piece = read_mesh(&entry.unwrap().path()).unwrap();
         let volume = piece.volume;
@@ -126,7 +127,7 @@ fn odd_meshes() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("odd.pvtu");
     let back = |volume: &VolumeMesh| {
-        write(&path, volume, &MeshNotes::default(), Pieces { tets: 100, memory: 0 }, &()).unwrap();
+        write(&path, volume, &MeshNotes::default(), Pieces { tets: 100, memory: 0, ..Pieces::default() }, &()).unwrap();
         in_order(read_mesh(&path).unwrap().volume)
     };
     assert_eq!(back(&VolumeMesh::default()), VolumeMesh::default());
@@ -182,7 +183,7 @@ fn broken_pieces_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out.pvtu");
     let (volume, notes) = tube(6, 100);
-    write(&path, &volume, &notes, Pieces { tets: 300, memory: 0 }, &()).unwrap();
+    write(&path, &volume, &notes, Pieces { tets: 300, memory: 0, ..Pieces::default() }, &()).unwrap();
     let piece = folder.path().join("out/out_0001.vtu");
     let sound = fs::read(&piece).unwrap();
     fs::write(&piece, &sound[..sound.len() / 2]).unwrap();

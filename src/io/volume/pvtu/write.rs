@@ -1,12 +1,15 @@
 //! Writes a mesh in pieces, as many at a time as memory allows.
 
 use super::folder::PieceFolder;
+use super::order::Reordered;
 use super::plan::Plan;
 use crate::io::file::{Asked, AtomicFile, write_whole};
-use crate::io::volume::bits::Bits;
 use crate::io::volume::content::MeshNotes;
+use crate::io::volume::options::GridOptions;
 use crate::io::volume::vtu::{GLOBAL_IDS, Grid};
 use crate::mesh::VolumeMesh;
+use crate::mesh::beside::{Beside, Column};
+use crate::mesh::bits::Bits;
 use crate::mesh::source::MeshSource;
 use crate::progress::Progress;
 use rayon::prelude::*;
@@ -14,25 +17,29 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// How a mesh is cut into pieces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::io::volume) struct Pieces {
+#[derive(Clone, Copy)]
+pub(in crate::io::volume) struct Pieces<'a> {
     /// Tetrahedra in a piece at most. Cuts lie between blocks, unless one has more.
     pub tets: usize,
     /// How many bytes of pieces are held at a time, about; one piece is, in any case.
     pub memory: usize,
+    /// How each of them is written.
+    pub grid: GridOptions,
+    /// Values beside the mesh.
+    pub values: Option<&'a dyn Beside>,
 }
 
-impl Default for Pieces {
+impl Default for Pieces<'_> {
     fn default() -> Self {
-        Self { tets: 2_000_000, memory: 512 << 20 }
+        Self { tets: 2_000_000, memory: 512 << 20, grid: GridOptions::default(), values: None }
     }
 }
 
 /// Writes a mesh in pieces: `path`, and the folder of the same name without the extension. Both appear whole or not at
 /// all, and pieces of an earlier mesh are replaced; a folder that holds other things is not.
 ///
-/// Of a mesh that is read in passes, as many pieces are held at a time as `pieces.memory` allows. Tetrahedra are read
-/// twice; points and boundary are read once for every so many pieces, and the boundary once more.
+/// Blocks are put in an order in which pieces part few joints. Of a mesh that is read in passes, as many pieces are held at a time as `pieces.memory` allows. Tetrahedra are read
+/// three times; points and boundary are read once for every so many pieces, and the boundary once more.
 ///
 /// # Errors
 /// What the operating system reports, or reading the mesh; `InvalidData` when a cell names a point that does not exist.
@@ -45,6 +52,7 @@ pub(in crate::io::volume) fn write(
 ) -> io::Result<()> {
     let mut index = AtomicFile::create(path)?;
     let folder = PieceFolder::create(path)?;
+    let mesh: &dyn MeshSource = &Reordered::along_the_tree(mesh, pieces.memory)?;
     let plan = Plan::of(mesh, pieces.tets)?;
     let room = pieces.memory / bytes_of_piece(mesh, pieces.tets).max(1);
     let points = mesh.counts().points;
@@ -54,12 +62,14 @@ pub(in crate::io::volume) fn write(
         plan: &plan,
         folder: &folder,
         room,
+        grid: pieces.grid,
+        values: pieces.values,
         progress,
         piece: Bits::new(points),
         used: Bits::new(points),
     }
     .write()?;
-    write_index(&mut index, plan.ends.len(), &folder)?;
+    write_index(&mut index, plan.ends.len(), &folder, pieces)?;
     folder.commit(index, path)
 }
 
@@ -70,21 +80,36 @@ fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
     ((20.0 + shared) * tets.min(counts.tets.max(1)) as f64) as usize
 }
 
-fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder) -> io::Result<()> {
+fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, how: Pieces) -> io::Result<()> {
+    let grid = how.grid;
+    let compressor = if grid.raw { "" } else { " compressor=\"vtkZLibDataCompressor\"" };
+    let float = if grid.float32 { "Float32" } else { "Float64" };
+    let columns = how.values.map_or(&[][..], Beside::columns);
     writeln!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PUnstructuredGrid GhostLevel=\"0\">\n\
-         <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n\
-         </PPointData>\n<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
+         header_type=\"UInt64\"{compressor}>\n<PUnstructuredGrid GhostLevel=\"0\">\n\
+         <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n{}\
+         </PPointData>\n<PPoints>\n<PDataArray type=\"{float}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
          <PCellData Scalars=\"patch\">\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
-         <PDataArray type=\"Int32\" Name=\"block\"/>\n</PCellData>"
+         <PDataArray type=\"Int32\" Name=\"block\"/>\n{}</PCellData>",
+        announced(columns, true),
+        announced(columns, false)
     )?;
     for piece in 0..pieces {
         let source = folder.source(piece);
         writeln!(out, "<Piece Source=\"{}\"/>", quick_xml::escape::escape(source.as_str()))?;
     }
     out.write_all(b"</PUnstructuredGrid>\n</VTKFile>\n")
+}
+
+/// What the index says of the columns at points, or of those in cells.
+fn announced(columns: &[Column], at_points: bool) -> String {
+    let line = |column: &Column| {
+        let kind = if column.is_integer { "Int32" } else { "Float64" };
+        format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", column.name)
+    };
+    columns.iter().filter(|column| column.at_points == at_points).map(line).collect()
 }
 
 /// Writes pieces, some in each pass over points and boundary.
@@ -95,6 +120,8 @@ struct Writer<'a> {
     folder: &'a PieceFolder,
     /// How many pieces may be held.
     room: usize,
+    grid: GridOptions,
+    values: Option<&'a dyn Beside>,
     progress: &'a dyn Progress,
     /// The points of the piece under way.
     piece: Bits,
@@ -238,7 +265,8 @@ impl Writer<'_> {
         if notes.is_some() {
             piece.volume.patches = self.mesh.patches().to_vec();
         }
-        let grid = Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids) };
+        let grid =
+            Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids), options: self.grid, values: self.values };
         write_whole(&self.folder.piece(number), |out| grid.write(&mut Asked { out, progress: self.progress }))
     }
 }

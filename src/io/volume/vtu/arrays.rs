@@ -5,32 +5,36 @@ use crate::geometry::Point3;
 use crate::io::volume::content::MeshNotes;
 use crate::io::vtk_xml::Blocks;
 use crate::mesh::Patch;
+use crate::mesh::beside::{Beside, Column};
+use crate::mesh::boundary::BoundarySurface;
 use crate::mesh::source::{MeshSource, SourceCounts};
 use std::io;
 
 /// Where an array stands in the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(in crate::io::volume) enum Place {
     Field,
     PointData,
     Points,
     Cells,
+    Polys,
     CellData,
 }
 
 /// The name of a type of values, and the bytes that one takes.
-type Kind = (&'static str, usize);
+pub(in crate::io::volume) type Kind = (&'static str, usize);
 
 const UINT8: Kind = ("UInt8", 1);
-const INT32: Kind = ("Int32", 4);
+pub(in crate::io::volume) const INT32: Kind = ("Int32", 4);
 const INT64: Kind = ("Int64", 8);
+const FLOAT32: Kind = ("Float32", 4);
 const FLOAT64: Kind = ("Float64", 8);
 
 /// Gives an array's values, as little-endian bytes.
-type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
+pub(in crate::io::volume) type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
 
 /// One array of the file: what it is called and where its values come from.
-pub(super) struct Array<'a> {
+pub(in crate::io::volume) struct Array<'a> {
     pub place: Place,
     pub name: &'static str,
     pub kind: &'static str,
@@ -44,7 +48,7 @@ pub(super) struct Array<'a> {
 }
 
 impl<'a> Array<'a> {
-    fn new(
+    pub(in crate::io::volume) fn new(
         place: Place,
         name: &'static str,
         (kind, width): Kind,
@@ -56,8 +60,8 @@ impl<'a> Array<'a> {
 }
 
 /// Points, cells and their labels.
-pub(super) fn of_mesh(mesh: &dyn MeshSource) -> Vec<Array<'_>> {
-    let mut all = vec![points_array(mesh)];
+pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool) -> Vec<Array<'_>> {
+    let mut all = vec![points_array(mesh.counts().points, float32, |each| mesh.each_points(each))];
     all.extend(cell_arrays(mesh, Width::of(mesh.counts())));
     all.extend([patch_array(mesh), block_array(mesh)]);
     all
@@ -135,31 +139,48 @@ pub(super) fn of_ids(ids: &[u32]) -> Array<'_> {
     Array::new(Place::PointData, GLOBAL_IDS, INT64, ids.len(), fill)
 }
 
-fn points_array(mesh: &dyn MeshSource) -> Array<'_> {
-    let fill = |out: &mut Blocks| mesh.each_points(|points| out.push(points.len(), |i| point_bytes(&points[i])));
-    let array = Array::new(Place::Points, "Points", FLOAT64, 3 * mesh.counts().points, fill);
+/// Does something with points, some at a time.
+type EachPoints<'a> = dyn FnMut(&[Point3]) -> io::Result<()> + 'a;
+
+/// `pass`: gives all points.
+pub(in crate::io::volume) fn points_array<'a>(
+    count: usize,
+    float32: bool,
+    pass: impl Fn(&mut EachPoints) -> io::Result<()> + 'a,
+) -> Array<'a> {
+    let kind = if float32 { FLOAT32 } else { FLOAT64 };
+    let fill = move |out: &mut Blocks| {
+        pass(&mut |points| {
+            if float32 {
+                out.push(points.len(), |i| point_bytes::<4, 12>(&points[i], |x| (x as f32).to_le_bytes()))
+            } else {
+                out.push(points.len(), |i| point_bytes::<8, 24>(&points[i], f64::to_le_bytes))
+            }
+        })
+    };
+    let array = Array::new(Place::Points, "Points", kind, 3 * count, fill);
     Array { components: 3, shrinks: false, ..array }
 }
 
-fn point_bytes(p: &Point3) -> [u8; 24] {
-    let mut bytes = [0; 24];
-    let (words, _) = bytes.as_chunks_mut::<8>();
-    for (word, x) in words.iter_mut().zip([p.x, p.y, p.z]) {
-        *word = x.to_le_bytes();
+fn point_bytes<const W: usize, const N: usize>(p: &Point3, word: impl Fn(f64) -> [u8; W]) -> [u8; N] {
+    let mut bytes = [0; N];
+    let (words, _) = bytes.as_chunks_mut::<W>();
+    for (place, x) in words.iter_mut().zip([p.x, p.y, p.z]) {
+        *place = word(x);
     }
     bytes
 }
 
 /// How wide vertex numbers and offsets are.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Width {
+pub(in crate::io::volume) enum Width {
     Int32,
     Int64,
 }
 
 impl Width {
     /// Ids are u32: within the signed range they can be written as they are, else they need 64 bits.
-    pub(super) fn of(counts: SourceCounts) -> Self {
+    pub(in crate::io::volume) fn of(counts: SourceCounts) -> Self {
         let fits = |count: usize| i32::try_from(count).is_ok();
         let narrow = fits(4 * counts.tets + 3 * counts.boundary) && fits(counts.points);
         if narrow { Self::Int32 } else { Self::Int64 }
@@ -177,7 +198,7 @@ impl Width {
     }
 }
 
-pub(super) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
+pub(in crate::io::volume) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
     let SourceCounts { tets, boundary, .. } = mesh.counts();
     let corners = move |out: &mut Blocks| {
         let mut push = |ids: &[u32]| width.push(out, ids.len(), |i| u64::from(ids[i]));
@@ -199,6 +220,55 @@ pub(super) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3]
         Array::new(Place::Cells, "offsets", width.kind(), tets + boundary, offsets),
         Array::new(Place::Cells, "types", UINT8, tets + boundary, types),
     ]
+}
+
+/// Points, triangles and labels of a boundary.
+pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec<Array<'a>> {
+    let counts = surface.counts();
+    let (width, faces) = (Width::of(counts), counts.boundary);
+    let corners = move |out: &mut Blocks| {
+        surface.each_faces(|piece| {
+            let ids = piece.faces.as_flattened();
+            width.push(out, ids.len(), |i| u64::from(ids[i]))
+        })
+    };
+    let offsets = move |out: &mut Blocks| width.push(out, faces, |face| 3 * (face as u64 + 1));
+    let patch = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.patches));
+    let block = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.blocks));
+    let corners = Array::new(Place::Polys, "connectivity", width.kind(), 3 * faces, corners);
+    vec![
+        points_array(counts.points, float32, |each| surface.each_points(each)),
+        Array { shrinks: width == Width::Int64, ..corners },
+        Array::new(Place::Polys, "offsets", width.kind(), faces, offsets),
+        Array::new(Place::CellData, "patch", INT32, faces, patch),
+        Array::new(Place::CellData, "block", INT32, faces, block),
+    ]
+}
+
+/// Values beside a mesh, at its points and in its cells. Those of cells follow from their corners.
+pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) -> Vec<Array<'a>> {
+    let SourceCounts { points, tets, boundary } = mesh.counts();
+    let array = |(column, named): (usize, &Column)| {
+        let Column { name, at_points, is_integer } = *named;
+        let kind = if is_integer { INT32 } else { FLOAT64 };
+        let push = move |out: &mut Blocks, found: Vec<f64>| {
+            if is_integer {
+                out.push(found.len(), |i| (found[i] as i32).to_le_bytes())
+            } else {
+                out.push(found.len(), |i| found[i].to_le_bytes())
+            }
+        };
+        if at_points {
+            return Array::new(Place::PointData, name, kind, points, move |out| {
+                mesh.each_points(|some| push(out, values.at_points(column, some)))
+            });
+        }
+        Array::new(Place::CellData, name, kind, tets + boundary, move |out| {
+            mesh.each_tet_corners(|some| push(out, values.in_tets(column, some)))?;
+            mesh.each_face_corners(|some| push(out, values.in_faces(column, some)))
+        })
+    };
+    values.columns().iter().enumerate().map(array).collect()
 }
 
 /// Patches of the boundary faces; those of tetrahedra are 0.

@@ -68,6 +68,7 @@ impl Fields {
             generator: self.text(field::GENERATOR),
             options: self.text(field::OPTIONS),
             regions: false,
+            flow: None,
         }
     }
 

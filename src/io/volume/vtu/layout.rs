@@ -48,6 +48,10 @@ fn layout(what: &'static str) -> VtuPiecesError {
 pub(super) struct Head {
     pub counts: Counts,
     pub wide: bool,
+    /// Whether the arrays are compressed.
+    pub zlib: bool,
+    /// Bytes of a coordinate.
+    pub coordinate: u64,
     pub points: u64,
     pub connectivity: u64,
     pub offsets: u64,
@@ -81,7 +85,7 @@ impl Head {
 
     /// All that the text says.
     fn of(xml: &VtkXml) -> Result<Self, VtuPiecesError> {
-        let data = xml.packed_data().ok_or_else(|| layout("its data are not appended in compressed blocks"))?;
+        let (data, zlib) = xml.packed_data().ok_or_else(|| layout("its data are not appended as bytes"))?;
         let grid = grid(xml)?;
         let mut pieces = xml.children(grid, "Piece");
         let (Some(piece), None) = (pieces.next(), pieces.next()) else {
@@ -106,6 +110,8 @@ impl Head {
         let (connectivity, wide) =
             array("Cells", "connectivity", &indices).ok_or_else(|| layout("it has no connectivity"))?;
         let (offsets, wide_offsets) = array("Cells", "offsets", &indices).ok_or_else(|| layout("it has no offsets"))?;
+        let (points_at, double) =
+            array("Points", "Points", &["Float32", "Float64"]).ok_or_else(|| layout("it has no points"))?;
         let count = |name| xml.count(piece, name).map_err(|_| layout("its counts are no numbers"));
         let (points, cells) = (count("NumberOfPoints")? as u64, count("NumberOfCells")? as u64);
         // Numbers of points are 32 bits wide; twice as many cells as that would be none of these points'.
@@ -115,7 +121,9 @@ impl Head {
         Ok(Self {
             counts: Counts { points, tets: 0, cells },
             wide: wide == 1,
-            points: needed("Points", "Points", "Float64")?,
+            zlib,
+            coordinate: 4 * (1 + double as u64),
+            points: points_at,
             connectivity,
             offsets,
             types: needed("Cells", "types", "UInt8")?,

@@ -1,12 +1,14 @@
-//! VTK unstructured grids (`.vtu`): a labelled tetrahedral mesh, in appended raw data compressed with zlib.
+//! VTK unstructured grids (`.vtu`): a labelled tetrahedral mesh, in appended data compressed with zlib or as they are; and
+//! its boundary alone as poly data (`.vtp`).
 //!
 //! Tetrahedra come first, then the boundary triangles; the `Int32` cell arrays `patch` and `block` say where each
 //! belongs (a tetrahedron's patch is 0). Field data name the patches (`patch_names`, indexed by the id) and hold what a
 //! later check needs to know: the caps, the loops of each component, the terminals.
 
-mod arrays;
+pub(super) mod arrays;
 mod error;
 mod fields;
+pub(super) mod file;
 mod layout;
 mod names;
 mod pieces;
@@ -20,4 +22,5 @@ pub use layout::VtuPiecesError;
 pub(super) use names::GLOBAL_IDS;
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
-pub(super) use write::{Grid, write};
+pub(in crate::io) use write::write_boundary;
+pub(super) use write::{Grid, TetsAlone, write};

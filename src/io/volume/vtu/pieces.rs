@@ -24,6 +24,8 @@ pub struct VtuPieces {
     patch: PackedArray,
     /// Whether vertex numbers take 8 bytes.
     wide: bool,
+    /// Whether coordinates take 8 bytes.
+    double: bool,
     counts: Counts,
     pieces: Vec<Piece>,
     patches: Vec<Patch>,
@@ -40,20 +42,25 @@ impl VtuPieces {
         let file = BlockFile::open(path, memory)?;
         let head = Head::read(&file, memory)?;
         let counts = head.counts;
-        let array = |offset, values, width| file.array(offset, values, width);
+        let array = |offset, values, width| file.array(offset, values, width, head.zlib);
         let index = if head.wide { 8 } else { 4 };
         let ends = array(head.offsets, counts.cells, index)?;
         let types = array(head.types, counts.cells, 1)?;
         let block = array(head.block, counts.cells, 4)?;
         let counts = Counts { tets: count_tets(&file, &types, counts.cells)?, ..counts };
         check_offsets(&file, &ends, head.wide, counts.tets)?;
+        // Without faces nothing says where blocks meet and where the boundary is.
+        if counts.tets == counts.cells && counts.cells > 0 {
+            return Err(VtuPiecesError::Layout { what: "it labels no boundary" });
+        }
         let pieces = pieces(&runs(&file, &block)?, counts)?;
         Ok(Self {
-            points: array(head.points, 3 * counts.points, 8)?,
+            points: array(head.points, 3 * counts.points, head.coordinate)?,
             connectivity: array(head.connectivity, 4 * counts.tets + 3 * (counts.cells - counts.tets), index)?,
             patch: array(head.patch, counts.cells, 4)?,
             file,
             wide: head.wide,
+            double: head.coordinate == 8,
             counts,
             pieces,
             patches: head.patches,
@@ -64,6 +71,17 @@ impl VtuPieces {
     /// What else the file says.
     pub fn notes(&self) -> &MeshNotes {
         &self.notes
+    }
+
+    /// Points of these numbers.
+    fn points_at(&self, points: Range<u64>) -> io::Result<Vec<Point3>> {
+        let bytes = self.file.values(&self.points, 3 * points.start..3 * points.end)?;
+        let values: Vec<f64> = if self.double {
+            bytes.as_chunks().0.iter().map(|w| f64::from_le_bytes(*w)).collect()
+        } else {
+            bytes.as_chunks().0.iter().map(|w| f64::from(f32::from_le_bytes(*w))).collect()
+        };
+        Ok(values.as_chunks::<3>().0.iter().map(|&p| Point3::from(p)).collect())
     }
 
     /// Vertices of cells, `N` for each.
@@ -97,9 +115,7 @@ impl MeshSource for VtuPieces {
     fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
         let (parts, part) = (u64::from(self.parts()), u64::from(part));
         let share = |part: u64| part * self.counts.points / parts;
-        let bytes = self.file.values(&self.points, 3 * share(part)..3 * share(part + 1))?;
-        let (triples, _) = bytes.as_chunks::<8>().0.as_chunks::<3>();
-        Ok(triples.iter().map(|p| Point3::from(p.map(f64::from_le_bytes))).collect())
+        self.points_at(share(part)..share(part + 1)).map(Cow::Owned)
     }
 
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
@@ -121,10 +137,8 @@ impl MeshSource for VtuPieces {
         let mut points = Vec::with_capacity(ids.len());
         for run in ids.chunk_by(|a, b| b - a <= GAP) {
             let (first, last) = (u64::from(run[0]), u64::from(run[run.len() - 1]));
-            let bytes = self.file.values(&self.points, 3 * first..3 * (last + 1))?;
-            let (words, _) = bytes.as_chunks::<8>();
-            let (triples, _) = words.as_chunks::<3>();
-            points.extend(run.iter().map(|&id| Point3::from(triples[(id - run[0]) as usize].map(f64::from_le_bytes))));
+            let there = self.points_at(first..last + 1)?;
+            points.extend(run.iter().map(|&id| there[(id - run[0]) as usize]));
         }
         Ok(points)
     }

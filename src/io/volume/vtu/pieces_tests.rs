@@ -3,8 +3,9 @@
 use super::super::names::{VTK_TETRA, VTK_TRIANGLE};
 use super::*;
 use crate::io::volume::fixtures::labelled_tube;
+use crate::io::volume::options::GridOptions;
 use crate::io::volume::vtu::write;
-use crate::io::vtk_xml::write_blocks;
+use crate::io::vtk_xml::{Packing, write_blocks};
 use crate::mesh::VolumeMesh;
 use crate::mesh::source::gather;
 use flate2::Compression;
@@ -20,8 +21,12 @@ fn blocks(layers: u32, count: usize) -> (VolumeMesh, MeshNotes) {
 }
 
 fn bytes_of(volume: &VolumeMesh, notes: &MeshNotes) -> Vec<u8> {
+    bytes_with(volume, notes, GridOptions::default())
+}
+
+fn bytes_with(volume: &VolumeMesh, notes: &MeshNotes, options: GridOptions) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write(&mut bytes, volume, notes).unwrap();
+    write(&mut bytes, volume, notes, options, None).unwrap();
     bytes.into_inner()
 }
 
@@ -45,6 +50,19 @@ fn what_is_written_is_read_in_pieces() {
 }
 
 #[test]
+fn arrays_as_they_are_and_short_coordinates_are_read_in_pieces() {
+    let (mut volume, notes) = blocks(900, 7);
+    let raw = open(&bytes_with(&volume, &notes, GridOptions { raw: true, ..GridOptions::default() })).unwrap();
+    assert_eq!(gather(&raw).unwrap(), volume);
+    let options = GridOptions { raw: true, float32: true, tets_alone: false };
+    let bytes = bytes_with(&volume, &notes, options);
+    volume.mesh.points.iter_mut().for_each(|p| *p = p.map(|x| f64::from(x as f32)));
+    assert_eq!(gather(&open(&bytes).unwrap()).unwrap(), volume);
+    let cut = bytes.len() / 2;
+    assert!(open(&bytes[..cut]).is_err());
+}
+
+#[test]
 fn other_layouts_are_told_apart() {
     let said = |volume: &VolumeMesh, notes: &MeshNotes| match open(&bytes_of(volume, notes)) {
         Err(VtuPiecesError::Layout { what }) => what,
@@ -57,6 +75,8 @@ fn other_layouts_are_told_apart() {
     volume.boundary_block.reverse();
     volume.boundary_block[0] = 10;
     assert_eq!(said(&volume, &notes), "the cells of a block do not stand together");
+    let alone = bytes_with(&volume, &notes, GridOptions { tets_alone: true, ..GridOptions::default() });
+    assert!(matches!(open(&alone), Err(VtuPiecesError::Layout { what: "it labels no boundary" })));
     let text = b"<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid></UnstructuredGrid></VTKFile>";
     assert!(matches!(open(text), Err(VtuPiecesError::Layout { .. })));
     assert!(matches!(open(b""), Err(VtuPiecesError::Layout { .. })));
@@ -92,8 +112,10 @@ fn vertex_numbers_of_64_bits() {
     let mut array = |name: &str, kind: &str, width: usize, bytes: Vec<u8>| {
         let offset = body.stream_position().unwrap();
         let values = bytes.len() / width;
-        write_blocks(&mut body, values, width, Compression::fast(), |out| out.push(bytes.len(), |i| [bytes[i]]))
-            .unwrap();
+        write_blocks(&mut body, values, width, Packing::Zlib(Compression::fast()), |out| {
+            out.push(bytes.len(), |i| [bytes[i]])
+        })
+        .unwrap();
         format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"appended\" offset=\"{offset}\"/>")
     };
     let wide = |values: &[u64]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();

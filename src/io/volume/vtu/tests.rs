@@ -1,11 +1,15 @@
 //! What is written can be read again, unchanged, for any number of threads.
 
 use super::arrays::{LARGEST_NAMED, Width, cell_arrays};
+use super::file::APPENDED_CLOSE;
 use super::read::read;
-use super::write::{APPENDED_CLOSE, write};
+use super::write::write;
+use crate::geometry::Point3;
 use crate::io::volume::content::{MeshFile, MeshNotes};
 use crate::io::volume::fixtures::labelled_tube;
-use crate::io::vtk_xml::write_blocks;
+use crate::io::volume::options::GridOptions;
+use crate::io::vtk_xml::{Packing, VtkXml, write_blocks};
+use crate::mesh::beside::{Beside, Column};
 use crate::mesh::check::Expectation;
 use crate::mesh::source::SourceCounts;
 use crate::mesh::{Patch, VolumeMesh};
@@ -14,7 +18,7 @@ use std::io::Cursor;
 
 fn bytes_of(volume: &VolumeMesh, notes: &MeshNotes) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write(&mut bytes, volume, notes).unwrap();
+    write(&mut bytes, volume, notes, GridOptions::default(), None).unwrap();
     bytes.into_inner()
 }
 
@@ -26,6 +30,69 @@ fn what_is_written_is_read() {
         let file = read(&bytes_of(&volume, &notes)).unwrap();
         assert_eq!(file, MeshFile { volume, labelled: true, notes });
     }
+}
+
+#[test]
+fn options_change_how_it_stands_in_the_file() {
+    let (volume, notes) = labelled_tube(900);
+    let read_with = |options| {
+        let mut bytes = Cursor::new(Vec::new());
+        write(&mut bytes, &volume, &notes, options, None).unwrap();
+        read(&bytes.into_inner()).unwrap()
+    };
+    let usual = GridOptions::default();
+    let whole = MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() };
+    assert_eq!(read_with(GridOptions { raw: true, ..usual }), whole);
+    let mut short = whole;
+    short.volume.mesh.points.iter_mut().for_each(|p| *p = p.map(|x| f64::from(x as f32)));
+    assert_eq!(read_with(GridOptions { float32: true, ..usual }), short);
+    let alone = read_with(GridOptions { tets_alone: true, ..usual });
+    assert_eq!((&alone.volume.mesh, &alone.notes), (&volume.mesh, &notes));
+    assert!(!alone.labelled && alone.volume.boundary.is_empty());
+}
+
+/// The height of a point, and the number of corners of a cell.
+struct Heights([Column; 2]);
+
+impl Beside for Heights {
+    fn columns(&self) -> &[Column] {
+        &self.0
+    }
+
+    fn at_points(&self, _: usize, points: &[Point3]) -> Vec<f64> {
+        points.iter().map(|p| p.z).collect()
+    }
+
+    fn in_tets(&self, _: usize, tets: &[[Point3; 4]]) -> Vec<f64> {
+        vec![4.0; tets.len()]
+    }
+
+    fn in_faces(&self, _: usize, faces: &[[Point3; 3]]) -> Vec<f64> {
+        vec![3.0; faces.len()]
+    }
+}
+
+#[test]
+fn values_stand_beside_the_mesh() {
+    let (volume, notes) = labelled_tube(9);
+    let height = Column { name: "height", at_points: true, is_integer: false };
+    let corners = Column { name: "corners", at_points: false, is_integer: true };
+    let mut bytes = Cursor::new(Vec::new());
+    write(&mut bytes, &volume, &notes, GridOptions::default(), Some(&Heights([height, corners]))).unwrap();
+    let bytes = bytes.into_inner();
+    assert_eq!(read(&bytes).unwrap().volume, volume);
+    let xml = VtkXml::parse(&bytes, "UnstructuredGrid").unwrap();
+    let grid = xml.child(VtkXml::ROOT, "UnstructuredGrid").unwrap();
+    let piece = xml.child(grid, "Piece").unwrap();
+    let array = |section, name| {
+        let section = xml.child(piece, section).unwrap();
+        let (_, array) = xml.arrays(section).find(|(n, _)| *n == name).unwrap();
+        xml.read(array).unwrap()
+    };
+    let heights: Vec<f64> = volume.mesh.points.iter().map(|p| p.z).collect();
+    assert_eq!(array("PointData", "height").into_floats(), heights);
+    let expected = [vec![4; volume.mesh.tets.len()], vec![3; volume.boundary.len()]].concat();
+    assert_eq!(array("CellData", "corners").into_ints(), Some(expected));
 }
 
 #[test]
@@ -137,7 +204,7 @@ fn wide_numbers_are_read() {
     for (array, first) in [(corners, u64::from(volume.mesh.tets[0][0])), (offsets, 4)] {
         assert_eq!((array.kind, array.width), ("Int64", 8));
         let mut bytes = Cursor::new(Vec::new());
-        write_blocks(&mut bytes, array.values, 8, Compression::none(), &array.fill).unwrap();
+        write_blocks(&mut bytes, array.values, 8, Packing::Zlib(Compression::none()), &array.fill).unwrap();
         let bytes = bytes.into_inner();
         let size = |word: usize| u64::from_le_bytes(bytes[8 * word..8 * word + 8].try_into().unwrap());
         let mut raw = Vec::new();

@@ -2,9 +2,9 @@
 
 use super::sums::face_sum;
 use super::{Certificate, Fault, HeldCap, HeldJoint, HeldSurface, PartView};
+use crate::geometry::Aabb;
 use crate::geometry::DisjointSets;
 use crate::geometry::predicates::{in_exact_range, orient3d};
-use crate::geometry::{Aabb, Point3};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{NONE, TetAdjacency, face_vertices};
 use crate::mesh::check::cells;
@@ -54,6 +54,28 @@ pub fn certify_with(part: &PartView, adjacency: impl FnOnce() -> TetAdjacency) -
     certificate
 }
 
+/// As [`certify_with`], for a part that is its closed surface `hull` alone. What concerns tetrahedra holds of those that
+/// could fill it.
+pub fn certify_hollow(part: &PartView, hull: &[[u32; 3]]) -> Certificate {
+    let mesh = part.mesh;
+    let mut certificate = Certificate {
+        points: mesh.points.len() as u32,
+        joints: vec![HeldJoint::default(); part.joints.len()],
+        ..Certificate::default()
+    };
+    let all_there = hull.as_flattened().iter().all(|&v| (v as usize) < mesh.points.len());
+    if !has_sound_arrays(mesh) || !all_there {
+        certificate.take([cells::finite_points(mesh)]);
+        certificate.unsound = true;
+        return certificate;
+    }
+    certificate.look_at_hull(part, hull);
+    if !certificate.faults.is_empty() {
+        certificate.take([cells::no_duplicate_points(mesh)]);
+    }
+    certificate
+}
+
 fn has_sound_arrays(mesh: &TetMesh) -> bool {
     let count = mesh.points.len();
     mesh.points.iter().all(|p| p.iter().all(|&x| x.is_finite() && in_exact_range(x)))
@@ -92,11 +114,36 @@ impl Certificate {
 
     /// Everything about the part's closed surface.
     fn look_at_boundary(&mut self, part: &PartView, adjacency: &TetAdjacency) {
-        let (mesh, points) = (part.mesh, &part.mesh.points[..]);
         let handles: Vec<u32> = adjacency.boundary().collect();
-        let faces: Vec<[u32; 3]> = handles.iter().map(|&handle| face_vertices(&mesh.tets, handle)).collect();
-        let (owners, labels) = owners(part, &faces);
-        let boundary = Boundary::new(points, &faces);
+        let faces: Vec<[u32; 3]> = handles.iter().map(|&handle| face_vertices(&part.mesh.tets, handle)).collect();
+        let (owners, surfaces) = self.look_at_faces(part, &faces);
+        let enclosed = match surfaces.all.len() {
+            // The tetrahedra tell better.
+            1 => vec![Enclosed::exactly(self.volume)],
+            _ => enclosed(&part.mesh.points, &faces, &surfaces),
+        };
+        self.hold_surfaces(&faces, &owners, &surfaces, enclosed);
+        self.hold_components(adjacency, &handles, &owners);
+        self.hold_joints(part, &surfaces);
+        self.hold_caps(part);
+    }
+
+    /// The same where there is nothing else. What one surface encloses is one component.
+    fn look_at_hull(&mut self, part: &PartView, faces: &[[u32; 3]]) {
+        let (owners, surfaces) = self.look_at_faces(part, faces);
+        let enclosed = enclosed(&part.mesh.points, faces, &surfaces);
+        self.volume = enclosed.iter().map(Enclosed::volume).sum();
+        self.components = enclosed.iter().filter(|enclosed| !enclosed.is_cavity()).count() as u32;
+        self.hold_surfaces(faces, &owners, &surfaces, enclosed);
+        self.hold_joints(part, &surfaces);
+        self.hold_caps(part);
+    }
+
+    /// Who owns each face, and which surface it belongs to.
+    fn look_at_faces(&mut self, part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, Surfaces) {
+        let points = &part.mesh.points[..];
+        let (owners, labels) = owners(part, faces);
+        let boundary = Boundary::new(points, faces);
         let (contacts, intersections) = boundary.self_intersections(false);
         self.take([labels, boundary.edges_closed(), boundary.single_fans(), contacts]);
         self.intersections = intersections;
@@ -113,19 +160,10 @@ impl Certificate {
                 }
             }
         }
-        let surfaces = boundary.surfaces();
-        self.hold_surfaces(points, &faces, &owners, surfaces);
-        self.hold_components(adjacency, &handles, &owners);
-        self.hold_joints(part, surfaces);
-        self.hold_caps(part);
+        (owners, boundary.into_surfaces())
     }
 
-    fn hold_surfaces(&mut self, points: &[Point3], faces: &[[u32; 3]], owners: &[Owner], surfaces: &Surfaces) {
-        let enclosed = match surfaces.all.len() {
-            // The tetrahedra tell better.
-            1 => vec![Enclosed::exactly(self.volume)],
-            _ => enclosed(points, faces, surfaces),
-        };
+    fn hold_surfaces(&mut self, faces: &[[u32; 3]], owners: &[Owner], surfaces: &Surfaces, enclosed: Vec<Enclosed>) {
         let held = |(surface, enclosed): (&Surface, Enclosed)| HeldSurface {
             vertex: NONE,
             euler: surface.euler() as i32,

@@ -64,7 +64,7 @@ impl Held {
     fn add(&mut self, parts: &dyn Parts, part: u32, c: Certificate, tallies: &mut Tallies) -> io::Result<()> {
         let [low, high] = c.bounds.map(Point3::from);
         self.parts.push(Part {
-            bounds: if c.tets == 0 { Aabb::EMPTY } else { Aabb { min: low, max: high } },
+            bounds: if c.surfaces.is_empty() { Aabb::EMPTY } else { Aabb { min: low, max: high } },
             points: c.points,
             wall_faces: c.wall_faces,
             wall_sum: c.wall_sum,
@@ -102,6 +102,11 @@ impl Held {
 
     pub(super) fn count(&self) -> u32 {
         self.parts.len() as u32
+    }
+
+    /// Whether there is nothing: neither a tetrahedron nor, in a part that is not filled, a surface.
+    pub(super) fn is_empty(&self) -> bool {
+        self.tets == 0 && self.surfaces.is_empty()
     }
 
     pub(super) fn joint_count(&self) -> usize {

@@ -53,7 +53,7 @@ mod whole;
 #[cfg(test)]
 mod tests;
 
-pub use certificate::certify_with;
+pub use certificate::{certify_hollow, certify_with};
 pub use pieces::{PiecesError, check_pieces};
 pub use whole::check_parts;
 
@@ -68,7 +68,7 @@ use std::io;
 /// What a part is, for its certificate.
 #[derive(Clone, Copy, Debug)]
 pub struct PartView<'a> {
-    /// Its points and tetrahedra.
+    /// Its points and tetrahedra; no tetrahedra where it is hollow.
     pub mesh: &'a TetMesh,
     /// Faces shared with other parts, one list per joint, oriented out of the part (local vertex numbers).
     pub joints: &'a [Vec<[u32; 3]>],
@@ -113,6 +113,11 @@ impl Certificate {
     /// Whether every line that concerns the part alone holds (the shapes of its caps aside).
     pub fn is_sound(&self) -> bool {
         self.faults.is_empty()
+    }
+
+    /// The first line that does not hold.
+    pub fn broken_line(&self) -> Option<Line> {
+        self.faults.first().map(|fault| fault.line)
     }
 
     /// The smallest radius ratio of the tetrahedra.

@@ -43,7 +43,7 @@ pub fn check_parts(
     let mut tallies = Tallies::default();
     let held = Held::read(parts, &mut tallies)?;
     let counts = Counts { points: held.points as usize, tets: held.tets as usize, ..Counts::default() };
-    if held.tets == 0 {
+    if held.is_empty() {
         tallies.add(Line::NotEmpty, Offender { kind: OffenderKind::Tet, ids: Vec::new(), position: None });
     }
     let arrays = [Line::NotEmpty, Line::FinitePoints, Line::IndicesInRange];
@@ -112,7 +112,10 @@ impl Whole<'_> {
                 lines.push(self.tallies.take(line));
             }
         }
-        let report = CheckReport::new(counts, lines, Some(self.held.quality.quality()), intersections);
+        let is_filled = self.held.tets > 0;
+        lines.retain(|result| is_filled || result.line.concerns_surfaces());
+        let quality = is_filled.then(|| self.held.quality.quality());
+        let report = CheckReport::new(counts, lines, quality, intersections);
         Ok(PartsCheck { report, meeting })
     }
 

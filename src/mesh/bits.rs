@@ -1,19 +1,19 @@
 //! Sets of points of a mesh, a bit for each point.
 
 /// A set of points: a bit for each.
-pub(super) struct Bits {
+pub(crate) struct Bits {
     words: Vec<u64>,
     points: usize,
 }
 
 impl Bits {
     /// An empty set of points below `points`.
-    pub(super) fn new(points: usize) -> Self {
+    pub(crate) fn new(points: usize) -> Self {
         Self { words: vec![0; points.div_ceil(64)], points }
     }
 
     /// Puts a point in; false when there is no such point.
-    pub(super) fn insert(&mut self, v: u32) -> bool {
+    pub(crate) fn insert(&mut self, v: u32) -> bool {
         let there = (v as usize) < self.points;
         if let Some(word) = self.words.get_mut(v as usize / 64).filter(|_| there) {
             *word |= 1 << (v % 64);
@@ -22,22 +22,22 @@ impl Bits {
     }
 
     /// Whether a point is in it.
-    pub(super) fn has(&self, v: u32) -> bool {
+    pub(crate) fn has(&self, v: u32) -> bool {
         self.words.get(v as usize / 64).is_some_and(|word| word >> (v % 64) & 1 == 1)
     }
 
     /// How many points are in it.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.words.iter().map(|word| word.count_ones() as usize).sum()
     }
 
     /// Takes all points out.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.words.fill(0);
     }
 
     /// Puts in what is not in, and takes out what is.
-    pub(super) fn invert(&mut self) {
+    pub(crate) fn invert(&mut self) {
         self.words.iter_mut().for_each(|word| *word = !*word);
         if let Some(last) = self.words.last_mut().filter(|_| !self.points.is_multiple_of(64)) {
             *last &= (1 << (self.points % 64)) - 1;
@@ -45,12 +45,12 @@ impl Bits {
     }
 
     /// Puts in all points of a set of the same size.
-    pub(super) fn unite(&mut self, other: &Self) {
+    pub(crate) fn unite(&mut self, other: &Self) {
         self.words.iter_mut().zip(&other.words).for_each(|(word, more)| *word |= more);
     }
 
     /// The points in it, ascending.
-    pub(super) fn ids(&self) -> Vec<u32> {
+    pub(crate) fn ids(&self) -> Vec<u32> {
         let mut ids = Vec::with_capacity(self.count());
         for (i, &word) in self.words.iter().enumerate() {
             let mut word = word;
@@ -63,7 +63,7 @@ impl Bits {
     }
 
     /// How many points of the set come before those of each word.
-    pub(super) fn ranks(&self) -> Ranks<'_> {
+    pub(crate) fn ranks(&self) -> Ranks<'_> {
         let mut sum = 0;
         let before = self.words.iter().map(|word| {
             sum += word.count_ones();
@@ -74,14 +74,14 @@ impl Bits {
 }
 
 /// Numbers the points of a set.
-pub(super) struct Ranks<'a> {
+pub(crate) struct Ranks<'a> {
     words: &'a [u64],
     before: Vec<u32>,
 }
 
 impl Ranks<'_> {
     /// How many points of the set are below `v`: the index of `v` when it is in the set.
-    pub(super) fn rank(&self, v: u32) -> u32 {
+    pub(crate) fn rank(&self, v: u32) -> u32 {
         let (word, bit) = (v as usize / 64, v % 64);
         let here = self.words.get(word).map_or(0, |word| (word & ((1 << bit) - 1)).count_ones());
         self.before.get(word).map_or(0, |before| before + here)

@@ -1,0 +1,45 @@
+//! How the blocks of a network are made: arguments of every verb that makes them.
+
+use super::room::size;
+use crate::pipeline::MeshPlan;
+use crate::skeleton::resolution::{FOLLOW, RHO};
+
+#[derive(Debug, clap::Args)]
+pub struct BlockArgs {
+    /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
+    #[arg(long, default_value_t = RHO, allow_negative_numbers = true)]
+    pub rho: f64,
+    /// How far edges follow the radius of wider vessels: 1 in proportion, so that each has RHO voxels across; 0 not at all,
+    /// so that all of a cluster is as fine as its thinnest vessel
+    #[arg(long, default_value_t = FOLLOW, allow_negative_numbers = true)]
+    pub follow: f64,
+    /// Memory that may be used, such as 2GiB or 500MB, however large the network
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
+    pub memory: u64,
+    /// Refine the network first, in at most N iterations, so that its vessels do not overlap and can be cut
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
+    pub refine: Option<usize>,
+    /// Leave out blocks that fail, say so, and exit 4 all the same
+    #[arg(long)]
+    pub keep_going: bool,
+}
+
+impl BlockArgs {
+    /// The plan that they ask for. `fuse`: vessels that overlap once the network is refined are meshed together.
+    pub fn plan(&self, fuse: bool) -> MeshPlan {
+        MeshPlan {
+            rho: self.rho,
+            follow: self.follow,
+            memory: self.memory,
+            fuse: self.refine.is_some() && fuse,
+            keep_going: self.keep_going,
+            ..MeshPlan::default()
+        }
+    }
+
+    /// What of them a mesh depends on, as they are typed.
+    pub fn typed(&self) -> String {
+        let refine = self.refine.map_or_else(String::new, |n| format!(" --refine {n}"));
+        format!("--rho {} --follow {}{refine}", self.rho, self.follow)
+    }
+}

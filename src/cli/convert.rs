@@ -1,0 +1,265 @@
+//! `anastomesh convert`: from one format to another of the same kind, and from a volume mesh to its boundary.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::common::{Common, print, thread_pool};
+use super::exit::{Exit, Failure};
+use super::grid::GridArgs;
+use super::progress::Bars;
+use super::room;
+use super::stop::{NOTHING_KEPT, Stop};
+use crate::io::network::{NetworkFormat, NetworkOptions, ensure_tree_writable, read_network, write_tree};
+use crate::io::surface::{
+    SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
+};
+use crate::io::volume::{
+    MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, WriteOptions, ensure_writable, read_mesh,
+    write_mesh_with,
+};
+use crate::mesh::adjacency::boundary_faces;
+use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
+use crate::mesh::source::{MeshSource, SourceCounts};
+use crate::mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
+use crate::prepare::directed;
+use crate::progress::Progress;
+
+/// Bytes of memory that a mesh takes for each byte of its file while it is converted as a whole.
+const MEMORY_PER_BYTE: u64 = 4;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off) or a network (.swc, .vtp, .vtk,
+    /// .am, .csv, .graphml, .gxl, .net, .json, .in)
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// What it becomes: a volume mesh the same in another format, or its boundary (.stl, .ply, .obj, .off, .glb, .3mf, .vtp); a
+    /// surface one of these; a network .vtp or, if it is a tree, .swc
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Of a volume mesh's boundary take the wall alone (the patch 1), without inlets and outlets
+    #[arg(long)]
+    no_caps: bool,
+    /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
+    /// held as a whole
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
+    memory: u64,
+    #[command(flatten)]
+    grid: GridArgs,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What a file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Kind {
+    Mesh,
+    Surface,
+    Network,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mesh => "a volume mesh",
+            Self::Surface => "a surface",
+            Self::Network => "a network",
+        })
+    }
+}
+
+impl Kind {
+    /// What a file to be read holds, by its extension. Of files without a known one a message about meshes tells.
+    fn of(path: &Path) -> Result<Self, Failure> {
+        if SurfaceFormat::of(path).is_ok() {
+            return Ok(Self::Surface);
+        }
+        if NetworkFormat::of(path).is_ok() {
+            return Ok(Self::Network);
+        }
+        MeshFormat::of(path).map(|_| Self::Mesh).map_err(|_| {
+            Failure::input(format!(
+                "{}: no extension of a volume mesh, a surface or a network; `convert --help` lists them",
+                path.display()
+            ))
+        })
+    }
+}
+
+/// A network has no wall and a surface no inside: other verbs make them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{from} does not become {to} by being converted{}", instead(*.from, *.to))]
+struct Unlike {
+    from: Kind,
+    to: Kind,
+}
+
+fn instead(from: Kind, to: Kind) -> &'static str {
+    match (from, to) {
+        (Kind::Network, Kind::Mesh) => "; `anastomesh mesh` makes it",
+        (Kind::Network, Kind::Surface) => "; `anastomesh surface` makes it",
+        (Kind::Surface, Kind::Mesh) => "; `anastomesh tetrahedralize` fills it",
+        _ => "",
+    }
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Output {
+    program: &'static str,
+    from: Kind,
+    to: Kind,
+    #[serde(flatten)]
+    counts: Written,
+}
+
+/// How much was written.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Written {
+    Mesh { points: usize, tets: usize, boundary_faces: usize },
+    Surface { points: usize, triangles: usize },
+    Network { nodes: usize, edges: usize },
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Mesh { points, tets, boundary_faces } => {
+                write!(f, "{points} points, {tets} tetrahedra, {boundary_faces} boundary faces")
+            }
+            Self::Surface { points, triangles } => write!(f, "{points} points, {triangles} triangles"),
+            Self::Network { nodes, edges } => write!(f, "{nodes} nodes, {edges} edges"),
+        }
+    }
+}
+
+/// Converts a file.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let from = Kind::of(&args.input)?;
+    let to = args.target(from)?;
+    let pool = thread_pool(args.common.threads)?;
+    let stop = Stop::listen(args.common.quiet)?;
+    let bars = Bars::new(args.common.quiet, stop.clone());
+    stop.keep();
+    let counts = pool.install(|| match from {
+        Kind::Mesh => args.convert_mesh(to, &bars),
+        Kind::Surface => args.convert_surface(&bars),
+        Kind::Network => args.convert_network(),
+    })?;
+    if args.common.json {
+        let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
+        print(true, &Output { program, from, to, counts }, String::new)?;
+    } else if !args.common.quiet {
+        eprintln!("{counts}");
+    }
+    Ok(Exit::Fine)
+}
+
+impl Args {
+    /// What the output is to hold; makes sure that it can be written.
+    fn target(&self, from: Kind) -> Result<Kind, Failure> {
+        let path = &self.output;
+        // A .vtp holds a network or a surface, as what becomes of it asks.
+        let to = match Kind::of(path) {
+            // Pictures and printers have formats that are not read.
+            Ok(Kind::Network) | Err(_) if from != Kind::Network => Kind::Surface,
+            found => found?,
+        };
+        match (from, to) {
+            (Kind::Mesh, Kind::Mesh) => ensure_writable(path).map_err(|e| e.to_string()),
+            (Kind::Mesh | Kind::Surface, Kind::Surface) => ensure_boundary_writable(path).map_err(|e| e.to_string()),
+            (Kind::Network, Kind::Network) => ensure_tree_writable(path).map_err(|e| e.to_string()),
+            (from, to) => return Err(Failure::usage(Unlike { from, to }.to_string())),
+        }
+        .map_err(Failure::input)?;
+        Ok(to)
+    }
+
+    fn convert_mesh(&self, to: Kind, bars: &Bars) -> Result<Written, Failure> {
+        if let Some(pieces) = self.in_pieces()? {
+            return self.write(&pieces, pieces.notes(), to, bars);
+        }
+        let MeshFile { mut volume, labelled, notes } = read_mesh(&self.input).map_err(|e| failed(&e, bars))?;
+        if to == Kind::Surface && !labelled {
+            volume.boundary = boundary_faces(&volume.mesh);
+            volume.boundary_patch = vec![WALL; volume.boundary.len()];
+        }
+        self.write(&volume, &notes, to, bars)
+    }
+
+    /// A file that is too large to be held; none when it is not, or has to be.
+    fn in_pieces(&self) -> Result<Option<VtuPieces>, Failure> {
+        let length = std::fs::metadata(&self.input).map_or(0, |data| data.len());
+        if length.saturating_mul(MEMORY_PER_BYTE) <= self.memory
+            || MeshFormat::of(&self.input).ok() != Some(MeshFormat::Vtu)
+        {
+            return Ok(None);
+        }
+        let path = self.input.display();
+        match VtuPieces::open(&self.input, (self.memory / 4) as usize) {
+            Ok(pieces) => Ok(Some(pieces)),
+            Err(VtuPiecesError::Read(source)) => {
+                Err(Failure::input(format!("{path}: cannot be read: {source}; write or copy it again")))
+            }
+            Err(why) => {
+                eprintln!("anastomesh: {path} is held as a whole, which may need more than --memory: {why}");
+                Ok(None)
+            }
+        }
+    }
+
+    fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: Kind, bars: &Bars) -> Result<Written, Failure> {
+        if to == Kind::Mesh {
+            let options =
+                WriteOptions { memory: Some((self.memory / 4) as usize), grid: self.grid.options(), values: None };
+            write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
+            let SourceCounts { points, tets, boundary } = mesh.counts();
+            return Ok(Written::Mesh { points, tets, boundary_faces: boundary });
+        }
+        let faces = if self.no_caps { BoundaryPart::Wall } else { BoundaryPart::Whole };
+        let surface = BoundarySurface::new(mesh, faces)
+            .map_err(|e| failed(&format!("{}: {e}; run `anastomesh check`", self.input.display()), bars))?;
+        write_boundary_watched(&self.output, &surface, notes, bars).map_err(|e| failed(&e, bars))?;
+        let SourceCounts { points, boundary, .. } = surface.counts();
+        Ok(Written::Surface { points, triangles: boundary })
+    }
+
+    fn convert_surface(&self, bars: &Bars) -> Result<Written, Failure> {
+        let mesh = read_surface(&self.input).map_err(|e| failed(&e, bars))?;
+        if SurfaceFormat::of(&self.output).is_ok() {
+            write_surface(&self.output, &mesh).map_err(|e| failed(&e, bars))?;
+            return Ok(Written::Surface { points: mesh.points.len(), triangles: mesh.triangles.len() });
+        }
+        self.write(&boundary_of(mesh), &MeshNotes::default(), Kind::Surface, bars)
+    }
+
+    fn convert_network(&self) -> Result<Written, Failure> {
+        // Radii that nothing can be meshed with are converted as they are.
+        let options = NetworkOptions { any_radii: true, ..NetworkOptions::default() };
+        let file = read_network(&self.input, &options).map_err(|e| Failure::input(e.to_string()))?;
+        let network = directed(&file.skeleton);
+        write_tree(&self.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;
+        Ok(Written::Network { nodes: network.nodes.len(), edges: network.edges.len() })
+    }
+}
+
+fn failed(error: &dyn fmt::Display, bars: &Bars) -> Failure {
+    if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(error.to_string()) }
+}
+
+/// A mesh of nothing but this boundary.
+fn boundary_of(surface: TriMesh) -> VolumeMesh {
+    let TriMesh { points, triangles } = surface;
+    VolumeMesh {
+        mesh: TetMesh { points, tets: Vec::new() },
+        boundary_patch: vec![WALL; triangles.len()],
+        boundary_block: vec![0; triangles.len()],
+        boundary: triangles,
+        patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
+        ..VolumeMesh::default()
+    }
+}

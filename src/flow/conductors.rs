@@ -1,0 +1,175 @@
+//! Pressures in a network of conductors, by eliminating its nodes: the star of a node becomes a mesh between its neighbours.
+//!
+//! Nothing is ever subtracted, so that every pressure is right to some units in the last place, however far conductances lie
+//! apart: those of vessels differ by more than what a sum of them in doubles can tell. A tree is eliminated from its tips and
+//! fills nothing in; loops fill in what their cuts are wide.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Nodes, what conducts between them and to the ground, and what flows in.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Conductors {
+    /// The neighbours of each node, ascending, each with the conductance to it.
+    around: Vec<Vec<(u32, f64)>>,
+    /// Conductance from each node to the ground, whose pressure is 0.
+    ground: Vec<f64>,
+    /// What flows into each node from outside; not below 0.
+    inflow: Vec<f64>,
+}
+
+/// A node that is gone, and what it was joined to.
+struct Gone {
+    node: u32,
+    total: f64,
+    star: Vec<(u32, f64)>,
+}
+
+impl Conductors {
+    pub(super) fn new(nodes: usize) -> Self {
+        Self { around: vec![Vec::new(); nodes], ground: vec![0.0; nodes], inflow: vec![0.0; nodes] }
+    }
+
+    /// Joins two nodes; beside a conductor that is there already.
+    pub(super) fn join(&mut self, [a, b]: [u32; 2], conductance: f64) {
+        if a != b {
+            add(&mut self.around[a as usize], b, conductance);
+            add(&mut self.around[b as usize], a, conductance);
+        }
+    }
+
+    pub(super) fn join_ground(&mut self, node: u32, conductance: f64) {
+        self.ground[node as usize] += conductance;
+    }
+
+    pub(super) fn let_in(&mut self, node: u32, flow: f64) {
+        self.inflow[node as usize] += flow;
+    }
+
+    /// The pressure of each node; 0 where nothing leads to the ground, and nothing may flow in there.
+    pub(super) fn pressures(mut self) -> Vec<f64> {
+        // Those with few neighbours first, of equals the first.
+        let entry = |node: usize, around: &[(u32, f64)]| Reverse((around.len() as u32, node as u32));
+        let mut next: BinaryHeap<_> = self.around.iter().enumerate().map(|(node, list)| entry(node, list)).collect();
+        let mut is_gone = vec![false; self.around.len()];
+        let mut gone = Vec::with_capacity(self.around.len());
+        while let Some(Reverse((degree, node))) = next.pop() {
+            // The heap also holds what nodes were before.
+            if is_gone[node as usize] || self.around[node as usize].len() != degree as usize {
+                continue;
+            }
+            is_gone[node as usize] = true;
+            let last = self.eliminate(node);
+            next.extend(last.star.iter().map(|&(other, _)| entry(other as usize, &self.around[other as usize])));
+            gone.push(last);
+        }
+        let mut pressure = vec![0.0; self.around.len()];
+        for Gone { node, total, star } in gone.iter().rev() {
+            let through: f64 = star.iter().map(|&(other, g)| g * pressure[other as usize]).sum();
+            if *total > 0.0 {
+                pressure[*node as usize] = (self.inflow[*node as usize] + through) / total;
+            }
+        }
+        pressure
+    }
+
+    fn eliminate(&mut self, node: u32) -> Gone {
+        let star = std::mem::take(&mut self.around[node as usize]);
+        let (ground, inflow) = (self.ground[node as usize], self.inflow[node as usize]);
+        let total = ground + star.iter().map(|(_, g)| g).sum::<f64>();
+        for &(other, g) in &star {
+            let share = g / total;
+            self.ground[other as usize] += share * ground;
+            self.inflow[other as usize] += share * inflow;
+            let mesh = star.iter().filter(|(third, _)| *third != other).map(|&(third, h)| (third, share * h));
+            let own = &mut self.around[other as usize];
+            *own = merged(own, node, mesh);
+        }
+        Gone { node, total, star }
+    }
+}
+
+fn add(list: &mut Vec<(u32, f64)>, node: u32, conductance: f64) {
+    match list.binary_search_by_key(&node, |entry| entry.0) {
+        Ok(at) => list[at].1 += conductance,
+        Err(at) => list.insert(at, (node, conductance)),
+    }
+}
+
+/// Two ascending lists as one, without a node that is gone.
+fn merged(own: &[(u32, f64)], gone: u32, more: impl Iterator<Item = (u32, f64)>) -> Vec<(u32, f64)> {
+    let mut more = more.peekable();
+    let mut all = Vec::with_capacity(own.len() + more.size_hint().1.unwrap_or(0));
+    for &(node, g) in own.iter().filter(|(node, _)| *node != gone) {
+        while let Some(new) = more.next_if(|new| new.0 < node) {
+            all.push(new);
+        }
+        all.push((node, g + more.next_if(|new| new.0 == node).map_or(0.0, |new| new.1)));
+    }
+    all.extend(more);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    fn pressures(nodes: usize, joined: &[(u32, u32, f64)], ground: &[(u32, f64)], inflow: &[(u32, f64)]) -> Vec<f64> {
+        let mut network = Conductors::new(nodes);
+        joined.iter().for_each(|&(a, b, g)| network.join([a, b], g));
+        ground.iter().for_each(|&(node, g)| network.join_ground(node, g));
+        inflow.iter().for_each(|&(node, flow)| network.let_in(node, flow));
+        network.pressures()
+    }
+
+    #[test]
+    fn in_a_row_pressures_add_up() {
+        let found = pressures(3, &[(0, 1, 2.0), (1, 2, 0.5)], &[(2, 4.0)], &[(0, 1.0)]);
+        assert_eq!(found, [2.75, 2.25, 0.25]);
+    }
+
+    #[test]
+    fn an_even_bridge_carries_nothing() {
+        let bridge = [(0, 1, 1.0), (0, 2, 2.0), (1, 2, 7.0)];
+        let found = pressures(3, &bridge, &[(1, 1.0), (2, 2.0)], &[(0, 3.0)]);
+        assert!(found.iter().zip([2.0, 1.0, 1.0]).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?}");
+    }
+
+    #[test]
+    fn conductances_that_differ_by_more_than_doubles_can_add() {
+        let found = pressures(2, &[(0, 1, 1e30)], &[(1, 1e-30)], &[(0, 1e-30)]);
+        assert_eq!(found, [1.0, 1.0]);
+    }
+
+    #[test]
+    fn what_leads_nowhere_has_no_pressure() {
+        assert_eq!(pressures(3, &[(0, 1, 1.0), (1, 2, 1.0)], &[], &[]), [0.0; 3]);
+    }
+
+    proptest! {
+        #[test]
+        fn as_by_a_dense_solution(joined in prop::collection::vec((0_u32..12, 0_u32..12, 0.1..10.0), 1..40)) {
+            // A ring joins all of it.
+            let mut joined = joined;
+            joined.extend((0..12).map(|i| (i, (i + 1) % 12, 1.0)));
+            let found = pressures(12, &joined, &[(3, 0.7), (8, 2.0)], &[(0, 1.0), (5, 0.25)]);
+            let mut matrix = DMatrix::zeros(12, 12);
+            for &(a, b, g) in joined.iter().filter(|(a, b, _)| a != b) {
+                let (a, b) = (a as usize, b as usize);
+                matrix[(a, a)] += g;
+                matrix[(b, b)] += g;
+                matrix[(a, b)] -= g;
+                matrix[(b, a)] -= g;
+            }
+            matrix[(3, 3)] += 0.7;
+            matrix[(8, 8)] += 2.0;
+            let mut inflow = DVector::zeros(12);
+            inflow[0] = 1.0;
+            inflow[5] = 0.25;
+            let expected = matrix.lu().solve(&inflow).unwrap();
+            prop_assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-10 * b), "{found:?} {expected}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Poiseuille's flow: given at the inlets, let out against no pressure.
+
+use super::conductors::Conductors;
+use crate::skeleton::{EdgeId, NodeId, Skeleton};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// The flow through a network.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NetworkFlow {
+    /// Pressure of each node.
+    pub pressure: Vec<f64>,
+    /// Volume per time in at each inlet, out at each outlet. Nothing goes into a component that has no outlet.
+    pub of_terminal: BTreeMap<NodeId, f64>,
+}
+
+/// Lengths below this share of the radius count as so much: a conductor of no length has no finite conductance.
+const SHORTEST: f64 = 1e-9;
+
+/// Solves for the pressures of a network. `inlets`: terminals with the volume per time that they let in; all other terminals
+/// are outlets, at pressure 0.
+pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64) -> NetworkFlow {
+    let adjacency = skeleton.adjacency();
+    let components = skeleton.components(&adjacency);
+    let terminals = adjacency.terminals();
+    let mut is_outlet = vec![false; skeleton.nodes.len()];
+    let mut has_outlet = vec![false; components.list.len()];
+    for node in terminals.iter().filter(|node| !inlets.contains_key(node)) {
+        is_outlet[node.index()] = true;
+        has_outlet[components.of_node[node.index()] as usize] = true;
+    }
+    let mut network = Conductors::new(skeleton.nodes.len());
+    for edge in skeleton.edge_ids() {
+        let (conductance, [a, b]) = (conductance(skeleton, edge, viscosity), skeleton.edge(edge).nodes);
+        match [a, b].map(|node| is_outlet[node.index()]) {
+            [false, false] => network.join([a.0, b.0], conductance),
+            [false, true] => network.join_ground(a.0, conductance),
+            [true, false] => network.join_ground(b.0, conductance),
+            [true, true] => {}
+        }
+    }
+    let let_in = |node: NodeId, flow: f64| {
+        if has_outlet[components.of_node[node.index()] as usize] { flow } else { 0.0 }
+    };
+    for (&node, &flow) in inlets {
+        network.let_in(node.0, let_in(node, flow));
+    }
+    let pressure = network.pressures();
+    let through = |node: NodeId| match inlets.get(&node) {
+        Some(&flow) => let_in(node, flow),
+        None => {
+            let edge = adjacency.edges(node)[0];
+            conductance(skeleton, edge, viscosity) * pressure[skeleton.edge(edge).other(node).index()]
+        }
+    };
+    let of_terminal = terminals.iter().map(|&node| (node, through(node))).collect();
+    NetworkFlow { pressure, of_terminal }
+}
+
+/// Flow per pressure through a straight cone: 3 π a³ b³ / (8 μ L (a² + ab + b²)).
+fn conductance(skeleton: &Skeleton, edge: EdgeId, viscosity: f64) -> f64 {
+    let [a, b] = skeleton.edge(edge).radii;
+    let length = skeleton.length(edge).max(SHORTEST * a.min(b));
+    3.0 * PI * (a * b).powi(3) / (8.0 * viscosity * length * (a * a + a * b + b * b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::fixtures::{network, tangle};
+
+    fn solved(skeleton: &Skeleton, inlets: &[(u32, f64)]) -> NetworkFlow {
+        solve(skeleton, &inlets.iter().map(|&(node, flow)| (NodeId(node), flow)).collect(), 2.0)
+    }
+
+    #[test]
+    fn a_tube_has_poiseuilles_resistance_and_a_cone_its_own() {
+        let mut tube = network(&[[0.0; 3], [0.0, 0.0, 6.0], [0.0, 0.0, 9.0]], 1.5, &[(0, 1), (1, 2)]);
+        let flow = solved(&tube, &[(0, 3.0)]);
+        let expected = 3.0 * 8.0 * 2.0 * 9.0 / (PI * 1.5_f64.powi(4));
+        assert!((flow.pressure[0] / expected - 1.0).abs() < 1e-14, "{flow:?}");
+        assert_eq!(flow.of_terminal[&NodeId(0)], 3.0);
+        assert!((flow.of_terminal[&NodeId(2)] - 3.0).abs() < 1e-14);
+        // One cone is as good as two halves of it.
+        tube.edges = vec![tube.edges[0]];
+        tube.edges[0].radii = [2.0, 1.0];
+        tube.nodes.pop();
+        let whole = solved(&tube, &[(0, 1.0)]).pressure[0];
+        let mut halves = network(&[[0.0; 3], [0.0, 0.0, 3.0], [0.0, 0.0, 6.0]], 1.0, &[(0, 1), (1, 2)]);
+        halves.edges[0].radii = [2.0, 1.5];
+        halves.edges[1].radii = [1.5, 1.0];
+        assert!((solved(&halves, &[(0, 1.0)]).pressure[0] / whole - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn what_goes_in_comes_out() {
+        let tree = tangle(12, 3);
+        let flow = solved(&tree, &[(0, 1.0)]);
+        let out: f64 = flow.of_terminal.iter().filter(|(node, _)| node.0 != 0).map(|(_, flow)| flow).sum();
+        assert_eq!(flow.of_terminal.len(), 4097);
+        assert!((out - 1.0).abs() < 1e-12, "{out}");
+    }
+
+    #[test]
+    fn both_ways_round_a_loop_are_taken() {
+        let points = [[0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 2.0], [-1.0, 0.0, 2.0], [0.0, 0.0, 3.0], [0.0, 0.0, 4.0]];
+        let ring = network(&points, 0.2, &[(0, 1), (1, 2), (1, 3), (2, 4), (3, 4), (4, 5)]);
+        let flow = solved(&ring, &[(0, 1.0)]);
+        assert_eq!(flow.pressure[2], flow.pressure[3]);
+        let [long, short] = [8.0_f64.sqrt() / 2.0, 1.0].map(|length| 8.0 * 2.0 * length / (PI * 0.2_f64.powi(4)));
+        assert!((flow.pressure[0] / (2.0 * short + long) - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn nothing_goes_into_a_closed_component() {
+        let two = network(&[[0.0; 3], [0.0, 0.0, 1.0], [5.0, 0.0, 0.0], [5.0, 0.0, 1.0]], 0.2, &[(0, 1), (2, 3)]);
+        let flow = solved(&two, &[(0, 1.0), (2, 1.0), (3, 1.0)]);
+        let of_terminal: Vec<f64> = flow.of_terminal.into_values().collect();
+        assert!((of_terminal[1] - 1.0).abs() < 1e-14);
+        assert_eq!([of_terminal[0], of_terminal[2], of_terminal[3]], [1.0, 0.0, 0.0]);
+        assert_eq!(flow.pressure[1..], [0.0; 3]);
+    }
+}

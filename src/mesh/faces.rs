@@ -1,0 +1,248 @@
+//! All faces of a mesh that is read in parts: between which two tetrahedra each of them lies, or on which patch.
+//!
+//! Faces inside a part are paired when the part is read. Held are those between parts alone: some 50 bytes for each.
+
+use super::source::{FacePiece, MeshSource, miscounted};
+use super::{TET_FACES, face_key};
+use std::io;
+
+/// A face between two tetrahedra.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct InnerFace {
+    /// The tetrahedra by their numbers in the whole mesh, the lower first.
+    pub tets: [u32; 2],
+    /// Vertices; seen from the second tetrahedron they run counter-clockwise.
+    pub vertices: [u32; 3],
+}
+
+/// A face of the boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct OuterFace {
+    /// Its patch.
+    pub patch: i32,
+    /// The tetrahedron under it, by its number in the whole mesh.
+    pub tet: u32,
+    /// Vertices, oriented outwards.
+    pub vertices: [u32; 3],
+}
+
+/// The faces that are numbered with a part.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PartFaces {
+    /// Those whose lower tetrahedron is in the part, ascending by their tetrahedra.
+    pub inner: Vec<InnerFace>,
+    /// Those of the boundary under which there is a tetrahedron of the part, by patch, then by tetrahedron.
+    pub outer: Vec<OuterFace>,
+}
+
+/// What gives the faces of each part of a mesh.
+pub struct Faces<'a> {
+    mesh: &'a dyn MeshSource,
+    /// Number of the first tetrahedron of each part.
+    first: Vec<u32>,
+    /// What faces lie on that are no pair within a part, by tetrahedron and vertices.
+    known: Vec<(u32, [u32; 3], Side)>,
+}
+
+/// What is on the other side of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Side {
+    Tet(u32),
+    Patch(i32),
+}
+
+/// A face that a part cannot place: by its vertices in ascending order, and what is on one of its sides.
+type Loose = ([u32; 3], Side);
+
+/// What a part says of its faces, its tetrahedra counted from 0.
+#[derive(Default)]
+struct Sorted {
+    tets: Vec<[u32; 4]>,
+    /// Handles of faces between two tetrahedra: four times the tetrahedron, and the face.
+    pairs: Vec<[u32; 2]>,
+    /// Handles of boundary faces, with their patches.
+    labelled: Vec<(u32, i32)>,
+    /// Handles of faces that are neither.
+    open: Vec<u32>,
+    /// Labels of the part without a face in it.
+    strays: Vec<Loose>,
+}
+
+impl<'a> Faces<'a> {
+    /// Looks for the faces that parts have in common: reads tetrahedra and boundary once.
+    ///
+    /// # Errors
+    /// What reading the mesh fails with; `InvalidData` where a face has more than two sides, or one side and no patch.
+    pub fn of(mesh: &'a dyn MeshSource) -> io::Result<Self> {
+        let (mut first, mut tets) = (Vec::with_capacity(mesh.parts() as usize), 0_u32);
+        let mut loose: Vec<Loose> = Vec::new();
+        mesh.each_part(
+            |part| Sorted::read(mesh, part).map(|sorted| (sorted.tets.len(), sorted.loose())),
+            |(count, found)| {
+                loose.extend(found.into_iter().map(|(key, side)| match side {
+                    Side::Tet(tet) => (key, Side::Tet(tets + tet)),
+                    patch @ Side::Patch(_) => (key, patch),
+                }));
+                first.push(tets);
+                tets = u32::try_from(count).ok().and_then(|count| tets.checked_add(count)).ok_or_else(miscounted)?;
+                Ok(())
+            },
+        )?;
+        loose.sort_unstable();
+        Ok(Self { mesh, first, known: joined(&loose)? })
+    }
+
+    /// The faces of a part.
+    ///
+    /// # Errors
+    /// What reading the mesh fails with.
+    pub fn of_part(&self, part: u32) -> io::Result<PartFaces> {
+        let sorted = Sorted::read(self.mesh, part)?;
+        let first = self.first[part as usize];
+        let tet = |handle: u32| first + (handle >> 2);
+        let vertices = |handle: u32| face_of(&sorted.tets, handle);
+        let pair = |&[a, b]: &[u32; 2]| InnerFace { tets: [tet(a), tet(b)], vertices: vertices(a) };
+        let label = |&(h, patch): &(u32, i32)| OuterFace { patch, tet: tet(h), vertices: vertices(h) };
+        let mut inner: Vec<InnerFace> = sorted.pairs.iter().map(pair).collect();
+        let mut outer: Vec<OuterFace> = sorted.labelled.iter().map(label).collect();
+        for &handle in &sorted.open {
+            let at = (tet(handle), face_key(vertices(handle)));
+            // Of a face between two parts the lower tetrahedron alone is known.
+            let Ok(place) = self.known.binary_search_by_key(&at, |&(tet, key, _)| (tet, key)) else { continue };
+            match self.known[place].2 {
+                Side::Tet(other) => inner.push(InnerFace { tets: [at.0, other], vertices: vertices(handle) }),
+                Side::Patch(patch) => outer.push(OuterFace { patch, tet: at.0, vertices: vertices(handle) }),
+            }
+        }
+        inner.sort_unstable();
+        outer.sort_unstable();
+        Ok(PartFaces { inner, outer })
+    }
+
+    /// Gives the faces of all parts, in order.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with; `InvalidData` when the mesh does not hold as much as it says.
+    pub fn each(&self, mut each: impl FnMut(&PartFaces) -> io::Result<()>) -> io::Result<()> {
+        let counts = self.mesh.counts();
+        let (mut sides, mut labelled) = (0, 0);
+        self.mesh.each_part(
+            |part| self.of_part(part),
+            |faces| {
+                sides += 2 * faces.inner.len() + faces.outer.len();
+                labelled += faces.outer.len();
+                // Whoever writes has said how many there are before they come.
+                if sides > 4 * counts.tets || labelled > counts.boundary {
+                    return Err(miscounted());
+                }
+                each(&faces)
+            },
+        )?;
+        if sides == 4 * counts.tets && labelled == counts.boundary { Ok(()) } else { Err(miscounted()) }
+    }
+}
+
+/// What lies on both sides of each loose face; they ascend.
+fn joined(loose: &[Loose]) -> io::Result<Vec<(u32, [u32; 3], Side)>> {
+    let mut known = Vec::with_capacity(loose.len() / 2);
+    for sides in loose.chunk_by(|a, b| a.0 == b.0) {
+        match *sides {
+            [(key, Side::Tet(tet)), (_, other)] => known.push((tet, key, other)),
+            _ => return Err(unpaired(sides[0].0, sides.len())),
+        }
+    }
+    known.sort_unstable();
+    Ok(known)
+}
+
+fn unpaired([a, b, c]: [u32; 3], sides: usize) -> io::Error {
+    let text = match sides {
+        1 => format!(
+            "the face of points {a}, {b} and {c} has a tetrahedron or a patch on one side and nothing on the other"
+        ),
+        _ => format!("the face of points {a}, {b} and {c} has {sides} tetrahedra and patches instead of two"),
+    };
+    io::Error::new(io::ErrorKind::InvalidData, text)
+}
+
+fn face_of(tets: &[[u32; 4]], handle: u32) -> [u32; 3] {
+    let tet = &tets[(handle >> 2) as usize];
+    TET_FACES[(handle & 3) as usize].map(|corner| tet[corner])
+}
+
+/// Vertices in ascending order and a handle, in one number that sorts by them.
+fn packed([a, b, c]: [u32; 3], handle: u32) -> u128 {
+    (u128::from(a) << 96) | (u128::from(b) << 64) | (u128::from(c) << 32) | u128::from(handle)
+}
+
+impl Sorted {
+    fn read(mesh: &dyn MeshSource, part: u32) -> io::Result<Self> {
+        let tets = mesh.tets(part)?.tets.into_owned();
+        // Handles have 32 bits.
+        if tets.len() > u32::MAX as usize / 4 {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "a part of the mesh has more than 2^30 tetrahedra"));
+        }
+        let mut sorted = Self { tets, ..Self::default() };
+        let mut labels = Labels::of(&mesh.boundary(part)?);
+        let handles = 0..4 * sorted.tets.len() as u32;
+        let mut sides: Vec<u128> = handles.map(|h| packed(face_key(face_of(&sorted.tets, h)), h)).collect();
+        sides.sort_unstable();
+        for same in sides.chunk_by(|a, b| a >> 32 == b >> 32) {
+            match *same {
+                [one] => match labels.take(one) {
+                    Some(patch) => sorted.labelled.push((one as u32, patch)),
+                    None => sorted.open.push(one as u32),
+                },
+                [one, two] => sorted.pairs.push([one as u32, two as u32]),
+                _ => return Err(unpaired(face_key(face_of(&sorted.tets, same[0] as u32)), same.len())),
+            }
+        }
+        sorted.strays = labels.strays();
+        Ok(sorted)
+    }
+
+    fn loose(&self) -> Vec<Loose> {
+        let open = self.open.iter().map(|&handle| (face_key(face_of(&self.tets, handle)), Side::Tet(handle >> 2)));
+        open.chain(self.strays.iter().copied()).collect()
+    }
+}
+
+/// The labels of a part, to be taken in the order of their faces.
+struct Labels {
+    list: Vec<(u128, i32)>,
+    next: usize,
+    passed: Vec<usize>,
+}
+
+impl Labels {
+    fn of(piece: &FacePiece) -> Self {
+        let patch = |i: usize| piece.patches.get(i).copied().unwrap_or(0);
+        let label = |(i, &face): (usize, &[u32; 3])| (packed(face_key(face), 0), patch(i));
+        let mut list: Vec<(u128, i32)> = piece.faces.iter().enumerate().map(label).collect();
+        list.sort_unstable();
+        Self { list, next: 0, passed: Vec::new() }
+    }
+
+    /// The patch of a face, which come in ascending order.
+    fn take(&mut self, side: u128) -> Option<i32> {
+        let key = side >> 32 << 32;
+        while let Some(&(label, patch)) = self.list.get(self.next).filter(|label| label.0 <= key) {
+            self.next += 1;
+            if label == key {
+                return Some(patch);
+            }
+            self.passed.push(self.next - 1);
+        }
+        None
+    }
+
+    /// Those that no face took.
+    fn strays(self) -> Vec<Loose> {
+        let key = |label: u128| [96, 64, 32].map(|shift| (label >> shift) as u32);
+        let left = self.passed.into_iter().chain(self.next..self.list.len());
+        left.map(|i| (key(self.list[i].0), Side::Patch(self.list[i].1))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,46 @@
+//! All inlets and outlets as a table.
+
+use crate::io::network::NodeNames;
+use crate::pipeline::{CapRow, Caps};
+use crate::skeleton::NodeId;
+use std::error::Error;
+
+/// The columns. Lengths are in the mesh's unit; flow is volume per time, in at inlets, out at outlets.
+const COLUMNS: [&str; 16] = [
+    "id",
+    "name",
+    "node",
+    "center_x",
+    "center_y",
+    "center_z",
+    "normal_x",
+    "normal_y",
+    "normal_z",
+    "area",
+    "radius",
+    "strahler_order",
+    "diameter_order",
+    "flow",
+    "pressure",
+    "resistance",
+];
+
+/// A row for each inlet and outlet, in CSV; nodes as the network's file calls them.
+///
+/// # Errors
+/// When the table cannot be put together, which memory alone can be the reason of.
+pub fn table(caps: &Caps, names: &NodeNames) -> Result<String, Box<dyn Error>> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(COLUMNS)?;
+    for CapRow { id, name, cap, area, strahler, order, flow, pressure, resistance, .. } in &caps.rows {
+        let mut record = vec![id.to_string(), name.clone(), names.of(NodeId(cap.node))];
+        let numbers = cap.center.coords.iter().chain(&cap.normal).chain([area, &cap.radius]);
+        // The shortest form that reads back as the same number.
+        let text = |number: &f64| format!("{number:?}");
+        record.extend(numbers.map(text));
+        record.extend([strahler, order].map(ToString::to_string));
+        record.extend([flow, pressure, resistance].map(text));
+        table.write_record(record)?;
+    }
+    Ok(String::from_utf8(table.into_inner()?)?)
+}

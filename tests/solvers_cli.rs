@@ -1,0 +1,159 @@
+//! Meshes that are cases of solvers, patches that outlets share, and the table beside every mesh.
+
+mod common;
+
+use anastomesh::io::read_mesh;
+use common::oracle;
+use common::program::{BAD_INPUT, FINE, USAGE, assert_code, assert_says, entries, folder, mesh, run, stdout};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A vessel of radius 2 that forks into vessels of 1.6, 1.2 and 0.8; nodes are numbered from 5.
+const FORKS: &str = "5 0 0 0 0 2 -1\n6 0 0 0 40 2 5\n7 0 0 30 70 1.6 6\n8 0 0 -30 70 1.6 6\n9 0 20 50 110 1.2 7\n\
+                     10 0 -20 50 110 0.8 7\n";
+
+/// Writes the network and meshes it.
+fn meshed(folder: &Path, name: &str, options: &[&str]) -> PathBuf {
+    let (network, out) = (folder.join("forks.swc"), folder.join(name));
+    fs::write(&network, FORKS).expect("a file");
+    assert_code(&mesh(&network, &out, options), FINE);
+    out
+}
+
+/// The rows of a table, each by its columns.
+fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let text = fs::read_to_string(path).expect("a table");
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned));
+    let columns: Vec<String> = lines.next().expect("a head").collect();
+    lines.map(|row| columns.iter().cloned().zip(row).collect()).collect()
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
+}
+
+#[test]
+fn every_mesh_has_a_table_of_its_patches_beside_it() {
+    let folder = folder();
+    meshed(folder.path(), "forks.vtu", &["--inflow", "3"]);
+    assert_eq!(entries(folder.path()), ["forks.swc", "forks.vtu", "forks_patches.csv"]);
+    let rows = table(&folder.path().join("forks_patches.csv"));
+    let column = |name: &str| rows.iter().map(|row| row[name].as_str()).collect::<Vec<_>>();
+    assert_eq!(column("name"), ["inlet", "outlet_0", "outlet_1", "outlet_2"]);
+    assert_eq!(column("node"), ["5", "8", "9", "10"]);
+    assert_eq!(column("id"), ["2", "3", "4", "5"]);
+    assert_eq!(column("strahler_order"), ["2", "1", "1", "1"]);
+    assert_eq!(number(&rows[0], "flow"), 3.0);
+    let out: f64 = rows[1..].iter().map(|row| number(row, "flow")).sum();
+    assert!((out - 3.0).abs() < 1e-12, "{out}");
+    let file = read_mesh(&folder.path().join("forks.vtu")).expect("the mesh");
+    for (row, patch) in rows.iter().zip(&file.volume.patches[1..]) {
+        let cap = patch.cap.as_ref().expect("a cap");
+        assert_eq!([number(row, "center_x"), number(row, "normal_z")], [cap.center.x, cap.normal.z]);
+    }
+}
+
+#[test]
+fn outlets_share_patches_of_the_same_names_in_every_format() {
+    let folder = folder();
+    for (outlets, name) in [("grouped", "outlets"), ("by-order", "outlets_order_")] {
+        let mut all = Vec::new();
+        for format in ["vtu", "msh", "msh2"] {
+            let path = meshed(folder.path(), &format!("{outlets}.{format}"), &["--outlets", outlets]);
+            assert_code(&run("check", &[&path], &[]), FINE);
+            let volume = read_mesh(&path).expect("the mesh").volume;
+            let faces = |id| volume.boundary_patch.iter().filter(|&&patch| patch == id).count();
+            all.push(volume.patches.iter().map(|p| (p.id, p.name.clone(), faces(p.id))).collect::<Vec<_>>());
+        }
+        assert!(all.windows(2).all(|pair| pair[0] == pair[1]), "{all:?}");
+        assert!(all[0][2..].iter().all(|(_, patch, faces)| patch.starts_with(name) && *faces > 0), "{all:?}");
+        let case = meshed(folder.path(), &format!("{outlets}.foam"), &["--outlets", outlets]);
+        let boundary = fs::read_to_string(case.join("constant/polyMesh/boundary")).expect("patches");
+        for (_, patch, faces) in &all[0] {
+            assert!(
+                boundary.lines().any(|line| line.trim().starts_with(&format!("{patch} {{"))
+                    && line.contains(&format!("nFaces {faces};"))),
+                "{boundary}"
+            );
+        }
+        let rows = table(&folder.path().join(format!("{outlets}_patches.csv")));
+        assert!(rows.len() == 4 && rows[1..].iter().all(|row| row["name"].starts_with(name)), "{rows:?}");
+    }
+}
+
+#[test]
+fn a_folder_for_simvascular_names_every_patch() {
+    let folder = folder();
+    let path = meshed(folder.path(), "forks.svmesh", &[]);
+    let all =
+        ["mesh-complete.exterior.vtp", "mesh-complete.mesh.vtu", "mesh-surfaces", "solver.xml", "walls_combined.vtp"];
+    assert_eq!(entries(&path), all);
+    let surfaces = ["inlet.vtp", "outlet_0.vtp", "outlet_1.vtp", "outlet_2.vtp", "wall.vtp"];
+    assert_eq!(entries(&path.join("mesh-surfaces")), surfaces);
+    let solver = fs::read_to_string(path.join("solver.xml")).expect("a file");
+    for surface in surfaces {
+        let name = surface.strip_suffix(".vtp").expect("a surface");
+        assert!(
+            solver.contains(&format!("<Add_face name=\"{name}\">"))
+                && solver.contains(&format!("<Add_BC name=\"{name}\">"))
+        );
+    }
+    let rows = table(&folder.path().join("forks_patches.csv"));
+    assert!(solver.contains(&format!("<Value> {:e} </Value>", number(&rows[1], "resistance"))), "{solver}");
+    // Whatever is in the way is named before anything is meshed.
+    fs::write(path.join("results.vtu"), "").expect("a file");
+    assert_says(&mesh(&folder.path().join("forks.swc"), &path, &[]), BAD_INPUT, &["also holds results.vtu"]);
+    assert_says(&run("check", &[&path], &[]), BAD_INPUT, &["cases of solvers are written, not read"]);
+}
+
+#[test]
+fn flow_that_makes_no_sense_is_refused() {
+    let folder = folder();
+    let out = folder.path().join("a.foam");
+    for option in [["--inflow", "-1"], ["--viscosity", "0"], ["--density", "inf"]] {
+        assert_says(&mesh(&common::fixture("tree_30.swc"), &out, &option), USAGE, &["a finite number above zero"]);
+    }
+}
+
+#[test]
+fn a_case_passes_openfoams_check_and_converges_as_it_is() {
+    let (Some(mut check), Some(mut solve)) = (oracle::openfoam("checkMesh"), oracle::openfoam("simpleFoam")) else {
+        return;
+    };
+    let folder = folder();
+    let case = meshed(folder.path(), "forks.foam", &[]);
+    let checked =
+        check.arg("-case").arg(&case).args(["-allTopology", "-allGeometry"]).output().expect("checkMesh runs");
+    let said = stdout(&checked);
+    for ok in
+        ["Upper triangular ordering OK", "Boundary definition OK", "Face pyramids OK", "Number of regions: 1 (OK)"]
+    {
+        assert!(said.contains(ok), "{said}");
+    }
+    let solved = solve.arg("-case").arg(&case).output().expect("simpleFoam runs");
+    assert!(stdout(&solved).contains("SIMPLE solution converged"), "{}", stdout(&solved));
+    // The flow through each outlet is what the table says, but for forks, which the table knows nothing of.
+    let rows = table(&folder.path().join("forks_patches.csv"));
+    let inflow = number(&rows[0], "flow");
+    let time = entries(&case).into_iter().filter_map(|name| name.parse::<u32>().ok()).max().expect("a result");
+    let phi = fs::read(case.join(format!("{time}/phi"))).expect("a result");
+    for row in &rows {
+        let (flow, expected) = (through(&phi, &row["name"]).abs() / inflow, number(row, "flow") / inflow);
+        assert!((flow - expected).abs() < 0.02, "{}: {flow} instead of {expected}", row["name"]);
+    }
+}
+
+/// Sum of the fluxes of a patch in a binary field.
+fn through(field: &[u8], patch: &str) -> f64 {
+    let find = |from: usize, what: &str| {
+        let found = field[from..].windows(what.len()).position(|window| window == what.as_bytes());
+        from + found.unwrap_or_else(|| panic!("no {what} in the field")) + what.len()
+    };
+    let start = find(find(find(0, "boundaryField"), &format!("\n    {patch}\n")), "List<scalar>");
+    let open = find(start, "(");
+    let count: usize =
+        std::str::from_utf8(&field[start..open - 1]).expect("a number").trim().parse().expect("a number");
+    let (words, _) = field[open..open + 8 * count].as_chunks::<8>();
+    words.iter().map(|word| f64::from_le_bytes(*word)).sum()
+}
