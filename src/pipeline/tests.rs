@@ -317,6 +317,38 @@ fn what_can_be_meshed_is_kept_on_request() {
     assert!(meshed.mesh.tet_block.contains(&1) && !meshed.mesh.tet_block.contains(&0));
 }
 
+#[test]
+fn some_points_of_a_stored_mesh_are_found_without_the_others() {
+    let store = Store::in_memory();
+    let stored = mesh_into(&store, &h(40.0), &MeshPlan::default(), &|_| Ok(()), &()).expect("a mesh");
+    let all = gather(&stored.whole).expect("read").mesh.points;
+    for step in [1, 7, all.len() / 3] {
+        let ids: Vec<u32> = (0..all.len() as u32).step_by(step).collect();
+        let expected: Vec<Point3> = ids.iter().map(|&i| all[i as usize]).collect();
+        assert_eq!(stored.whole.points_of(&ids).expect("read"), expected);
+    }
+    assert!(stored.whole.points_of(&[all.len() as u32]).is_err());
+}
+
+#[test]
+fn where_a_block_is_missing_the_others_end_in_patches_of_their_own() {
+    let mut network = hair_on_a_trunk();
+    let far = Node { position: Point3::new(0.0, 0.0, -1e5), radius: 1e3, original: 4 };
+    network.nodes.push(far);
+    network.edges.push(Edge { nodes: [NodeId(0), NodeId(4)], radii: [1e3; 2] });
+    let more = [[3e4, 0.0, -1.2e5], [-3e4, 0.0, -1.2e5]];
+    for (p, i) in more.into_iter().zip(5..) {
+        network.nodes.push(Node { position: p.into(), radius: 1e3, original: i });
+        network.edges.push(Edge { nodes: [NodeId(4), NodeId(i)], radii: [1e3; 2] });
+    }
+    let (network, _) = crate::skeleton::clean(&network).expect("clean");
+    let meshed = run(&network, &MeshPlan { keep_going: true, ..MeshPlan::default() }).expect("the rest");
+    let missing: Vec<&crate::mesh::Patch> =
+        meshed.mesh.patches.iter().filter(|patch| patch.name.starts_with("missing_")).collect();
+    let [patch] = missing[..] else { panic!("{:?}", meshed.mesh.patches) };
+    assert!(meshed.mesh.boundary_patch.contains(&patch.id), "its disc has faces");
+}
+
 /// Says to stop after so many blocks.
 struct Stops {
     after: usize,

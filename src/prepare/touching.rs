@@ -356,3 +356,47 @@ impl<'a> Work<'a> {
         skeleton
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::fixtures::network;
+
+    /// A trunk of radius 1 with a side branch of this length from its middle.
+    fn fork(length: f64) -> Skeleton {
+        let points = [[-20.0, 0.0, 0.0], [0.0; 3], [20.0, 0.0, 0.0], [0.0, length, 0.0]];
+        network(&points, 1.0, &[(0, 1), (1, 2), (1, 3)])
+    }
+
+    #[test]
+    fn a_tip_that_could_not_be_capped_is_drawn_back_and_a_stub_taken_off() {
+        for (length, done) in [(12.0, TouchedBy::Retracted { by: BACK }), (3.0, TouchedBy::Removed)] {
+            let (result, told) = take_back(&fork(length), &[3]).expect("vessels");
+            let [tip] = told[..] else { panic!("one tip: {told:?}") };
+            assert_eq!((tip.tip, tip.done), (3, done));
+            assert_eq!(result.check(), Ok(()));
+            let end = result.nodes.iter().find(|node| node.original == 3);
+            match done {
+                TouchedBy::Removed => assert!(end.is_none()),
+                _ => assert!((end.expect("there").position.y - (length - BACK)).abs() < 1e-9),
+            }
+        }
+        let given = fork(12.0);
+        assert_eq!(take_back(&given, &[1, 77]).expect("vessels"), (given, Vec::new()));
+    }
+
+    #[test]
+    fn a_tip_that_faces_another_one_is_in_its_way_however_near_its_branch_point_is() {
+        // The other vessel belongs to no place of this one, though the branch point is near.
+        let mut broken = fork(4.0);
+        let other = network(&[[0.0, 4.5, 0.0], [0.0, 24.0, 0.0]], 1.0, &[(0, 1)]);
+        let first = broken.nodes.len() as u32;
+        broken.nodes.extend(other.nodes.iter().map(|n| Node { original: n.original + first, ..*n }));
+        let moved = |e: &Edge| Edge { nodes: e.nodes.map(|n| NodeId(n.0 + first)), ..*e };
+        broken.edges.extend(other.edges.iter().map(moved));
+        let (_, told) = treat(&broken, Touching::Retract).expect("vessels");
+        assert!(told.iter().any(|tip| tip.done != TouchedBy::Left), "{told:?}");
+        let (joined, _) = treat(&broken, Touching::Join).expect("vessels");
+        assert_eq!(joined.components(&joined.adjacency()).list.len(), 1);
+    }
+}
