@@ -14,24 +14,24 @@ const LISTED: usize = 10;
 #[command(next_help_heading = "Flow")]
 pub struct FlowArgs {
     /// Which outlets share a patch: separate, none; grouped, all (`outlets`); by-order, those whose vessels have the same
-    /// diameter-defined Strahler order (`outlets_order_1`, …). MESH_patches.csv names every one of them in any case
+    /// diameter-defined Strahler order (`outlets_order_1`, …). `MESH_patches.csv` names every one of them in any case
     #[arg(long, value_enum, default_value_t = OutletArg::Separate)]
     outlets: OutletArg,
     /// Go on straight from each outlet by so many of its radii; less where another vessel is in the way, which is said
-    #[arg(long, value_name = "RADII", value_parser = above_zero)]
+    #[arg(long, value_name = "RADII", value_parser = above_zero, allow_negative_numbers = true)]
     extend_outlets: Option<f64>,
     /// The same of each inlet
-    #[arg(long, value_name = "RADII", value_parser = above_zero)]
+    #[arg(long, value_name = "RADII", value_parser = above_zero, allow_negative_numbers = true)]
     extend_inlets: Option<f64>,
-    /// Volume per time into each inlet, in the mesh's unit of length: for the one-dimensional flow in MESH_patches.csv and for
+    /// Volume per time into each inlet, in the mesh's unit of length: for the one-dimensional flow in `MESH_patches.csv` and for
     /// cases of solvers (default: what has a Reynolds number of 1 there)
-    #[arg(long, value_name = "FLOW", value_parser = above_zero)]
+    #[arg(long, value_name = "FLOW", value_parser = above_zero, allow_negative_numbers = true)]
     inflow: Option<f64>,
     /// Dynamic viscosity, in units that fit the mesh's: as it stands that of blood, when the mesh is in metres (--units)
-    #[arg(long, value_name = "MU", default_value_t = crate::io::volume::BLOOD_VISCOSITY, value_parser = above_zero)]
+    #[arg(long, value_name = "MU", default_value_t = crate::io::volume::BLOOD_VISCOSITY, value_parser = above_zero, allow_negative_numbers = true)]
     viscosity: f64,
     /// Mass per volume, in units that fit the mesh's: as it stands that of blood, when the mesh is in metres (--units)
-    #[arg(long, value_name = "RHO", default_value_t = crate::io::volume::BLOOD_DENSITY, value_parser = above_zero)]
+    #[arg(long, value_name = "RHO", default_value_t = crate::io::volume::BLOOD_DENSITY, value_parser = above_zero, allow_negative_numbers = true)]
     density: f64,
 }
 

@@ -46,12 +46,12 @@ pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64
         network.let_in(node.0, let_in(node, flow));
     }
     let pressure = network.pressures();
-    let through = |node: NodeId| match inlets.get(&node) {
-        Some(&flow) => let_in(node, flow),
-        None => {
-            let edge = adjacency.edges(node)[0];
-            conductance(skeleton, edge, viscosity) * pressure[skeleton.edge(edge).other(node).index()]
+    let through = |node: NodeId| {
+        if let Some(&flow) = inlets.get(&node) {
+            return let_in(node, flow);
         }
+        let edge = adjacency.edges(node)[0];
+        conductance(skeleton, edge, viscosity) * pressure[skeleton.edge(edge).other(node).index()]
     };
     let of_terminal = terminals.iter().map(|&node| (node, through(node))).collect();
     NetworkFlow { pressure, of_terminal }

@@ -13,9 +13,10 @@ fn meshed() -> (Skeleton, Meshed) {
     let trunk = (0..6).map(|i| (i, i + 1));
     let edges: Vec<(u32, u32)> = trunk.chain((1..6).map(|i| (i, i + 6))).chain([(12, 13)]).collect();
     let mut skeleton = network(&points, 2.0, &edges);
-    skeleton.edges[6..11].iter_mut().for_each(|edge| edge.radii = [0.8; 2]);
-    let mut plan = MeshPlan::default();
-    plan.roots = vec![0, 12];
+    for edge in &mut skeleton.edges[6..11] {
+        edge.radii = [0.8; 2];
+    }
+    let plan = MeshPlan { roots: vec![0, 12], ..MeshPlan::default() };
     let made = mesh_network(&skeleton, &plan, &()).unwrap();
     (skeleton, made)
 }
