@@ -379,7 +379,7 @@ fn a_block_that_fails_ends_the_run_with_its_input_kept() {
         "{said}"
     );
     assert_eq!(fs::read(&out).expect("the file"), b"precious");
-    assert_eq!(entries(folder.path()), ["hopeless.swc", "out.vtu", "out.vtu.failed", "out_patches.csv"]);
+    assert_eq!(entries(folder.path()), ["hopeless.swc", "out.vtu", "out.vtu.failed"]);
     let dumps = entries(&folder.path().join("out.vtu.failed"));
     assert!(!dumps.is_empty());
     let dump = fs::read(folder.path().join("out.vtu.failed").join(&dumps[0])).expect("the dump");

@@ -108,6 +108,18 @@ fn a_folder_for_simvascular_names_every_patch() {
 }
 
 #[test]
+fn outlets_go_on_straight_and_keep_their_names() {
+    let folder = folder();
+    let path = meshed(folder.path(), "forks.vtu", &["--extend-outlets", "5", "--extend-inlets", "2"]);
+    assert_code(&run("check", &[&path], &[]), FINE);
+    let rows = table(&folder.path().join("forks_patches.csv"));
+    assert_eq!((rows[0]["node"].as_str(), rows[1]["node"].as_str()), ("5", "8"));
+    let near = |row: usize, column: &str, expected: f64| (number(&rows[row], column) - expected).abs() < 1e-9;
+    let further = 5.0 * 1.6 * 0.5_f64.sqrt();
+    assert!(near(0, "center_z", -4.0) && near(1, "center_y", -30.0 - further) && near(1, "center_z", 70.0 + further));
+}
+
+#[test]
 fn flow_that_makes_no_sense_is_refused() {
     let folder = folder();
     let out = folder.path().join("a.foam");

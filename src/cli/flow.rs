@@ -1,24 +1,37 @@
 //! What flows through a mesh, for what is written beside it and for cases of solvers.
 
+use super::network::PreparedNetwork;
 use crate::pipeline::{Fluid, Outlets};
+use crate::report::inlets::Inlets;
+use crate::skeleton::{Extended, NodeId, Skeleton};
+use rustc_hash::FxHashSet;
+
+/// Terminals that are named at most.
+const LISTED: usize = 10;
 
 /// Flow and outlets.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Flow")]
 pub struct FlowArgs {
     /// Which outlets share a patch: separate, none; grouped, all (`outlets`); by-order, those whose vessels have the same
-    /// diameter-defined Strahler order (`outlets_order_1`, …). MESH_patches.csv names every one of them in any case
+    /// diameter-defined Strahler order (`outlets_order_1`, …). `MESH_patches.csv` names every one of them in any case
     #[arg(long, value_enum, default_value_t = OutletArg::Separate)]
     outlets: OutletArg,
-    /// Volume per time into each inlet, in the mesh's unit of length: for the one-dimensional flow in MESH_patches.csv and for
+    /// Go on straight from each outlet by so many of its radii; less where another vessel is in the way, which is said
+    #[arg(long, value_name = "RADII", value_parser = above_zero, allow_negative_numbers = true)]
+    extend_outlets: Option<f64>,
+    /// The same of each inlet
+    #[arg(long, value_name = "RADII", value_parser = above_zero, allow_negative_numbers = true)]
+    extend_inlets: Option<f64>,
+    /// Volume per time into each inlet, in the mesh's unit of length: for the one-dimensional flow in `MESH_patches.csv` and for
     /// cases of solvers (default: what has a Reynolds number of 1 there)
-    #[arg(long, value_name = "FLOW", value_parser = above_zero)]
+    #[arg(long, value_name = "FLOW", value_parser = above_zero, allow_negative_numbers = true)]
     inflow: Option<f64>,
     /// Dynamic viscosity, in units that fit the mesh's: as it stands that of blood, when the mesh is in metres (--units)
-    #[arg(long, value_name = "MU", default_value_t = crate::io::volume::BLOOD_VISCOSITY, value_parser = above_zero)]
+    #[arg(long, value_name = "MU", default_value_t = crate::io::volume::BLOOD_VISCOSITY, value_parser = above_zero, allow_negative_numbers = true)]
     viscosity: f64,
     /// Mass per volume, in units that fit the mesh's: as it stands that of blood, when the mesh is in metres (--units)
-    #[arg(long, value_name = "RHO", default_value_t = crate::io::volume::BLOOD_DENSITY, value_parser = above_zero)]
+    #[arg(long, value_name = "RHO", default_value_t = crate::io::volume::BLOOD_DENSITY, value_parser = above_zero, allow_negative_numbers = true)]
     density: f64,
 }
 
@@ -37,6 +50,33 @@ fn above_zero(text: &str) -> Result<f64, String> {
 impl FlowArgs {
     pub fn fluid(&self) -> Fluid {
         Fluid { density: self.density, viscosity: self.viscosity, inflow: self.inflow }
+    }
+
+    /// Lengthens inlets and outlets, where that is asked for; says of which not by as much.
+    pub fn extend(&self, network: &mut PreparedNetwork, inlets: &Inlets) -> Option<String> {
+        let by = [self.extend_inlets, self.extend_outlets].map(Option::unwrap_or_default);
+        if by == [0.0; 2] {
+            return None;
+        }
+        let inlets: FxHashSet<u32> = inlets.list.iter().map(|inlet| inlet.original).collect();
+        let extended = |skeleton: &Skeleton| {
+            let by = |node: NodeId| by[usize::from(!inlets.contains(&skeleton.node(node).original))];
+            skeleton.extended(&skeleton.adjacency().terminals().into_iter().map(|node| (node, by(node))).collect())
+        };
+        // What the mesh is held against is as long.
+        network.given = extended(&network.given).skeleton;
+        network.outline = extended(&network.outline).skeleton;
+        let Extended { skeleton, cut_short } = extended(&network.skeleton);
+        network.skeleton = skeleton;
+        let named = |&(node, radii): &(NodeId, f64)| {
+            let name = network.names.of(NodeId(network.skeleton.node(node).original));
+            format!("node {name} by {radii} radii")
+        };
+        let first: Vec<String> = cut_short.iter().take(LISTED).map(named).collect();
+        let more = if cut_short.len() > LISTED { ", …" } else { "" };
+        let (count, list) = (cut_short.len(), first.join(", "));
+        (count > 0)
+            .then(|| format!("{count} terminals extended by less, as another vessel is in the way: {list}{more}"))
     }
 
     pub fn outlets(&self) -> Outlets {

@@ -145,12 +145,13 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
     let pool = thread_pool(args.common.threads)?;
-    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
+    let mut network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     let inlets = network.inlets(&args.root)?;
+    let cut_short = pool.install(|| args.flow.extend(&mut network, &inlets));
     plan.roots.clone_from(&inlets.roots);
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, stop.clone());
-    for remark in network.remarks().into_iter().chain(inlets.remarks()) {
+    for remark in network.remarks().into_iter().chain(inlets.remarks()).chain(cut_short) {
         bars.note(&remark);
     }
     let read = network.skeleton.clone();

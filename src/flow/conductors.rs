@@ -118,9 +118,15 @@ mod tests {
 
     fn pressures(nodes: usize, joined: &[(u32, u32, f64)], ground: &[(u32, f64)], inflow: &[(u32, f64)]) -> Vec<f64> {
         let mut network = Conductors::new(nodes);
-        joined.iter().for_each(|&(a, b, g)| network.join([a, b], g));
-        ground.iter().for_each(|&(node, g)| network.join_ground(node, g));
-        inflow.iter().for_each(|&(node, flow)| network.let_in(node, flow));
+        for &(a, b, g) in joined {
+            network.join([a, b], g);
+        }
+        for &(node, g) in ground {
+            network.join_ground(node, g);
+        }
+        for &(node, flow) in inflow {
+            network.let_in(node, flow);
+        }
         network.pressures()
     }
 

@@ -46,12 +46,12 @@ pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64
         network.let_in(node.0, let_in(node, flow));
     }
     let pressure = network.pressures();
-    let through = |node: NodeId| match inlets.get(&node) {
-        Some(&flow) => let_in(node, flow),
-        None => {
-            let edge = adjacency.edges(node)[0];
-            conductance(skeleton, edge, viscosity) * pressure[skeleton.edge(edge).other(node).index()]
+    let through = |node: NodeId| {
+        if let Some(&flow) = inlets.get(&node) {
+            return let_in(node, flow);
         }
+        let edge = adjacency.edges(node)[0];
+        conductance(skeleton, edge, viscosity) * pressure[skeleton.edge(edge).other(node).index()]
     };
     let of_terminal = terminals.iter().map(|&node| (node, through(node))).collect();
     NetworkFlow { pressure, of_terminal }
@@ -106,7 +106,7 @@ mod tests {
         let points = [[0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 2.0], [-1.0, 0.0, 2.0], [0.0, 0.0, 3.0], [0.0, 0.0, 4.0]];
         let ring = network(&points, 0.2, &[(0, 1), (1, 2), (1, 3), (2, 4), (3, 4), (4, 5)]);
         let flow = solved(&ring, &[(0, 1.0)]);
-        assert_eq!(flow.pressure[2], flow.pressure[3]);
+        assert!((flow.pressure[2] / flow.pressure[3] - 1.0).abs() < 1e-14);
         let [long, short] = [8.0_f64.sqrt() / 2.0, 1.0].map(|length| 8.0 * 2.0 * length / (PI * 0.2_f64.powi(4)));
         assert!((flow.pressure[0] / (2.0 * short + long) - 1.0).abs() < 1e-14);
     }

@@ -146,7 +146,7 @@ mod tests {
         let boundary = boundary_faces(&mesh);
         let foot = |f: &[u32; 3]| f.iter().all(|&v| mesh.points[v as usize].z < 0.1);
         let boundary_patch = boundary.iter().map(|f| if foot(f) { 2 } else { WALL }).collect();
-        VolumeMesh { boundary, boundary_patch, mesh, ..VolumeMesh::default() }
+        VolumeMesh { mesh, boundary, boundary_patch, ..VolumeMesh::default() }
     }
 
     #[test]

@@ -18,10 +18,10 @@ pub struct InnerFace {
 /// A face of the boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct OuterFace {
-    /// Its patch.
-    pub patch: i32,
     /// The tetrahedron under it, by its number in the whole mesh.
     pub tet: u32,
+    /// Its patch.
+    pub patch: i32,
     /// Vertices, oriented outwards.
     pub vertices: [u32; 3],
 }
@@ -31,7 +31,7 @@ pub struct OuterFace {
 pub struct PartFaces {
     /// Those whose lower tetrahedron is in the part, ascending by their tetrahedra.
     pub inner: Vec<InnerFace>,
-    /// Those of the boundary under which there is a tetrahedron of the part, by patch, then by tetrahedron.
+    /// Those of the boundary under which there is a tetrahedron of the part, ascending by it.
     pub outer: Vec<OuterFace>,
 }
 

@@ -112,11 +112,13 @@ impl Caps {
 
     /// Makes outlets one patch. What the mesh is then; none where it stays as it is.
     pub fn group<'a>(&mut self, mesh: &'a dyn MeshSource, outlets: Outlets) -> Option<Relabelled<'a>> {
-        let (of_row, name): (fn(&CapRow) -> u32, fn(u32) -> String) = match outlets {
+        let by_order = match outlets {
             Outlets::Separate => return None,
-            Outlets::Grouped => (|_| 0, |_| "outlets".into()),
-            Outlets::ByOrder => (|row| row.order, |order| format!("outlets_order_{order}")),
+            Outlets::Grouped => false,
+            Outlets::ByOrder => true,
         };
+        let of_row = |row: &CapRow| if by_order { row.order } else { 0 };
+        let name = |group: u32| if by_order { format!("outlets_order_{group}") } else { "outlets".to_owned() };
         let left = mesh.patches().iter().filter(|patch| patch.cap.is_none() || patch.is_inlet());
         let mut patches: Vec<Patch> = left.cloned().collect();
         let first = patches.iter().map(|patch| patch.id).max().unwrap_or(WALL) + 1;

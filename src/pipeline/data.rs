@@ -237,7 +237,7 @@ mod tests {
         let made = mesh_network(&network, &MeshPlan::default(), &()).expect("meshed").mesh;
         let data = VesselData::new(vec![Datum::Ratio], &network, &made);
         let p = |x, y, z| Point3::new(x, y, z);
-        let corner = [p(0.0, 0.0, 0.0), p(1.0, 1.0, 0.0), p(1.0, 0.0, 1.0), p(0.0, 1.0, 1.0)];
+        let corner = [p(0.0, 0.0, 0.0), p(1.0, 0.0, 1.0), p(1.0, 1.0, 0.0), p(0.0, 1.0, 1.0)];
         assert!((data.in_tets(0, &[corner])[0] - 1.0).abs() < 1e-12);
         assert!((data.in_faces(0, &[[corner[0], corner[1], corner[2]]])[0] - 1.0).abs() < 1e-12);
     }

@@ -20,6 +20,9 @@ pub enum Why {
 /// A terminal that becomes an inlet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inlet {
+    /// Its number in the file, from 0.
+    #[serde(skip)]
+    pub original: u32,
     /// As the file calls it.
     pub node: String,
     /// Where it is.
@@ -112,6 +115,7 @@ impl Inlets {
         let inlet = |n: NodeId| {
             let edge = skeleton.edge(adjacency.edges(n)[0]);
             why[n.index()].map(|why| Inlet {
+                original: original(n),
                 node: names.of(NodeId(original(n))),
                 position: skeleton.node(n).position.into(),
                 radius: edge.radii[edge.end(n)],

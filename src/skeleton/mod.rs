@@ -8,6 +8,7 @@ mod crowding;
 pub(crate) mod cuttability;
 mod elements;
 mod error;
+mod extend;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod graph;
@@ -25,6 +26,7 @@ pub use crowding::CrowdedTerminals;
 pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, separation};
 pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};
 pub use error::{LARGEST, SkeletonError};
+pub use extend::Extended;
 pub use graph::{Adjacency, Component};
 pub use metrics::{Barrier, Metrics, NARROW, Share};
 pub use overlap::{Overlap, Overlaps};

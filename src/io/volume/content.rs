@@ -1,8 +1,9 @@
 //! What a mesh file holds beside the mesh.
 
 use super::conditions::Flow;
-use crate::mesh::VolumeMesh;
 use crate::mesh::check::Expectation;
+use crate::mesh::{Patch, VolumeMesh};
+use std::borrow::Cow;
 
 /// What a mesh file says beside the mesh itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,6 +18,13 @@ pub struct MeshNotes {
     pub regions: bool,
     /// What flows through the mesh, for formats that are cases of a solver.
     pub flow: Option<Flow>,
+}
+
+impl MeshNotes {
+    /// What flows through the mesh; where nobody has said, blood that creeps.
+    pub(super) fn flow_of(&self, patches: &[Patch]) -> Cow<'_, Flow> {
+        self.flow.as_ref().map_or_else(|| Cow::Owned(Flow::usual(patches)), Cow::Borrowed)
+    }
 }
 
 /// A mesh as it was read from a file.

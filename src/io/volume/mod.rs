@@ -24,7 +24,6 @@ pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOL
 pub use content::{MeshFile, MeshNotes};
 pub use error::MeshFileError;
 pub use format::MeshFormat;
-#[cfg(feature = "cli")]
 pub use options::GridOptions;
 pub use options::WriteOptions;
 pub use read::{read_mesh, read_mesh_from};

@@ -54,13 +54,7 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
     let folder = AtomicFolder::create(path, is_ours)?;
     let boundary = Boundary::of(mesh)?;
     poly_mesh::write(&folder, mesh, &boundary, progress)?;
-    let usual;
-    let flow = if let Some(flow) = &notes.flow {
-        flow
-    } else {
-        usual = Flow::usual(mesh.patches());
-        &usual
-    };
+    let flow = &notes.flow_of(mesh.patches());
     for (name, text) in TEXTS {
         folder.put(name, text(&boundary, flow).as_bytes())?;
     }

@@ -52,7 +52,9 @@ pub(super) fn write(
         lists.owner.put(inner, &part.inner.iter().map(|face| face.tets[0]).collect::<Vec<_>>())?;
         lists.neighbour.put(inner, &part.inner.iter().map(|face| face.tets[1]).collect::<Vec<_>>())?;
         inner += part.inner.len() as u64;
-        for same in part.outer.chunk_by(|a, b| a.patch == b.patch) {
+        let mut outer = part.outer.clone();
+        outer.sort_by_key(|face| face.patch);
+        for same in outer.chunk_by(|a, b| a.patch == b.patch) {
             let place = places.get_mut(&same[0].patch).ok_or_else(miscounted)?;
             lists.put_outer(*place, same)?;
             *place += same.len() as u64;

@@ -11,9 +11,6 @@ use std::io;
 /// No part.
 const NONE: u32 = u32::MAX;
 
-/// Bytes for each point while neighbours are found.
-const PER_POINT: usize = size_of::<u32>();
-
 /// A mesh whose cells are read in another order of its parts. Points keep their order, and so their numbers.
 pub(super) struct Reordered<'a> {
     mesh: &'a dyn MeshSource,
@@ -21,13 +18,13 @@ pub(super) struct Reordered<'a> {
 }
 
 impl<'a> Reordered<'a> {
-    /// Along the tree, if that takes no more than so many bytes of memory; else as it is. Reads the tetrahedra once.
+    /// Along the tree where each part is a block of its own, else as it is. Reads points and tetrahedra once.
     ///
     /// # Errors
     /// What reading the mesh fails with.
-    pub(super) fn along_the_tree(mesh: &'a dyn MeshSource, memory: usize) -> io::Result<Self> {
-        let fits = mesh.counts().points.saturating_mul(PER_POINT) <= memory;
-        let order = if fits && mesh.parts() > 2 { Parts::of(mesh)?.in_preorder() } else { (0..mesh.parts()).collect() };
+    pub(super) fn along_the_tree(mesh: &'a dyn MeshSource) -> io::Result<Self> {
+        let parts = Parts::of(mesh)?;
+        let order = parts.map_or_else(|| (0..mesh.parts()).collect(), |parts| parts.in_preorder());
         Ok(Self { mesh, order })
     }
 
@@ -74,6 +71,32 @@ impl MeshSource for Reordered<'_> {
     }
 }
 
+/// What a part says of itself.
+struct Joined {
+    /// Its block, if all of it is one.
+    block: Option<i32>,
+    tets: u64,
+    /// The other parts of whose points it has some.
+    owners: Vec<u32>,
+}
+
+impl Joined {
+    /// `starts`: the first of the points that each part adds.
+    fn of(piece: &TetPiece, part: u32, starts: &[u32]) -> Self {
+        let own = starts[part as usize]..starts[part as usize + 1];
+        let mut others: Vec<u32> = piece.tets.as_flattened().iter().copied().filter(|v| !own.contains(v)).collect();
+        others.sort_unstable();
+        others.dedup();
+        // A point that does not exist is a fault which the writer finds.
+        others.retain(|v| starts.last().is_some_and(|end| v < end));
+        let mut owners: Vec<u32> =
+            others.into_iter().map(|v| starts.partition_point(|&start| start <= v) as u32 - 1).collect();
+        owners.dedup();
+        let block = piece.blocks.first().copied().filter(|block| piece.blocks.iter().all(|other| other == block));
+        Self { block, tets: piece.tets.len() as u64, owners }
+    }
+}
+
 /// The graph of parts, joined where they share points.
 struct Parts {
     neighbors: Vec<Vec<u32>>,
@@ -81,38 +104,37 @@ struct Parts {
 }
 
 impl Parts {
-    fn of(mesh: &dyn MeshSource) -> io::Result<Self> {
-        let count = mesh.parts() as usize;
-        let mut parts = Self { neighbors: vec![Vec::new(); count], tets: Vec::with_capacity(count) };
-        // The first part that has each point.
-        let mut first = vec![NONE; mesh.counts().points];
+    /// None if some part is not one block, or a block several parts.
+    fn of(mesh: &dyn MeshSource) -> io::Result<Option<Self>> {
+        let mut starts = vec![0_u32];
+        let mut sum = 0;
         mesh.each_part(
-            |part| mesh.tets(part),
-            |piece| {
-                parts.add(&piece.tets, &mut first);
+            |part| Ok(mesh.points(part)?.len() as u32),
+            |count| {
+                sum += count;
+                starts.push(sum);
                 Ok(())
             },
         )?;
-        Ok(parts)
-    }
-
-    fn add(&mut self, tets: &[[u32; 4]], first: &mut [u32]) {
-        let part = self.tets.len() as u32;
-        self.tets.push(tets.len() as u64);
-        let mut met: Vec<u32> = Vec::new();
-        for &v in tets.as_flattened() {
-            // A point that does not exist is a fault which the writer finds.
-            let Some(owner) = first.get_mut(v as usize) else { continue };
-            if *owner == NONE {
-                *owner = part;
-            } else if *owner != part && !met.contains(owner) {
-                met.push(*owner);
-            }
-        }
-        for other in met {
-            self.neighbors[other as usize].push(part);
-            self.neighbors[part as usize].push(other);
-        }
+        let mut parts = Self { neighbors: vec![Vec::new(); mesh.parts() as usize], tets: Vec::new() };
+        let mut blocks = Vec::with_capacity(parts.neighbors.len());
+        mesh.each_part(
+            |part| Ok(Joined::of(&mesh.tets(part)?, part, &starts)),
+            |Joined { block, tets, owners }| {
+                let part = parts.tets.len() as u32;
+                for other in owners {
+                    parts.neighbors[other as usize].push(part);
+                    parts.neighbors[part as usize].push(other);
+                }
+                parts.tets.push(tets);
+                blocks.push(block);
+                Ok(())
+            },
+        )?;
+        let count = blocks.len();
+        blocks.sort_unstable();
+        blocks.dedup();
+        Ok(Some(parts).filter(|_| blocks.len() == count && blocks.iter().all(Option::is_some)))
     }
 
     /// Each part before those behind it, small branches before large ones: wherever this order is cut, what lies before is
@@ -140,7 +162,7 @@ impl Parts {
             order.push(part);
             let own = &mut children[part as usize];
             // What is pushed last comes first.
-            own.sort_by_key(|&child| (std::cmp::Reverse(sizes[child as usize]), child));
+            own.sort_by_key(|&child| std::cmp::Reverse((sizes[child as usize], child)));
             pending.append(own);
         }
         order

@@ -38,8 +38,9 @@ impl Default for Pieces<'_> {
 /// Writes a mesh in pieces: `path`, and the folder of the same name without the extension. Both appear whole or not at
 /// all, and pieces of an earlier mesh are replaced; a folder that holds other things is not.
 ///
-/// Blocks are put in an order in which pieces part few joints. Of a mesh that is read in passes, as many pieces are held at a time as `pieces.memory` allows. Tetrahedra are read
-/// three times; points and boundary are read once for every so many pieces, and the boundary once more.
+/// Blocks that are parts of their own are put in an order in which pieces part few joints. Of a mesh that is read in passes, as
+/// many pieces are held at a time as `pieces.memory` allows. Tetrahedra are read three times, points once and once more for
+/// every so many pieces, the boundary likewise.
 ///
 /// # Errors
 /// What the operating system reports, or reading the mesh; `InvalidData` when a cell names a point that does not exist.
@@ -52,7 +53,7 @@ pub(in crate::io::volume) fn write(
 ) -> io::Result<()> {
     let mut index = AtomicFile::create(path)?;
     let folder = PieceFolder::create(path)?;
-    let mesh: &dyn MeshSource = &Reordered::along_the_tree(mesh, pieces.memory)?;
+    let mesh: &dyn MeshSource = &Reordered::along_the_tree(mesh)?;
     let plan = Plan::of(mesh, pieces.tets)?;
     let room = pieces.memory / bytes_of_piece(mesh, pieces.tets).max(1);
     let points = mesh.counts().points;

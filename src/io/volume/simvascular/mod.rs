@@ -1,13 +1,14 @@
 //! The `mesh-complete` folder of `SimVascular`, which `svMultiPhysics` runs: tetrahedra, the boundary as a whole and patch by
 //! patch, everything numbered from 1 in 32 bits, and a `solver.xml`.
 
+mod layout;
 mod sheet;
 mod solver;
 mod spool;
 #[cfg(test)]
 mod tests;
 
-use super::conditions::{Flow, plain};
+use super::conditions::plain;
 use super::content::MeshNotes;
 use super::vtu::arrays::{Array, INT32, Place, Width, cell_arrays, points_array};
 use super::vtu::{TetsAlone, file::File};
@@ -18,26 +19,12 @@ use crate::mesh::WALL;
 use crate::mesh::faces::OuterFace;
 use crate::mesh::source::MeshSource;
 use crate::progress::{Progress, ask};
+use layout::{EXTERIOR, MESH, SOLVER, WALLS, is_ours, surface_path};
 use sheet::{CapSheet, Sheet, WideSheet, used};
 use spool::Spool;
 use std::collections::BTreeMap;
 use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
-
-const MESH: &str = "mesh-complete.mesh.vtu";
-const EXTERIOR: &str = "mesh-complete.exterior.vtp";
-const WALLS: &str = "walls_combined.vtp";
-const SOLVER: &str = "solver.xml";
-
-/// The file of a patch.
-fn surface_path(patch: &str) -> String {
-    format!("mesh-surfaces/{patch}.vtp")
-}
-
-fn is_ours(name: &str) -> bool {
-    let surface = |name: &str| name.strip_prefix("mesh-surfaces/").and_then(|own| own.strip_suffix(".vtp")).is_some();
-    [MESH, EXTERIOR, WALLS, SOLVER].contains(&name) || surface(name)
-}
 
 /// Makes sure that the folder can be made or replaced. Leaves nothing behind.
 pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
@@ -67,13 +54,7 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
         folder.put(&surface(id), bytes.get_ref())?;
         ask(progress)?;
     }
-    let usual;
-    let flow = if let Some(flow) = &notes.flow {
-        flow
-    } else {
-        usual = Flow::usual(mesh.patches());
-        &usual
-    };
+    let flow = &notes.flow_of(mesh.patches());
     folder.put(SOLVER, solver::text(mesh.patches(), flow).as_bytes())?;
     folder.commit()
 }

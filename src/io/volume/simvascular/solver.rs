@@ -1,6 +1,6 @@
 //! What `svMultiPhysics` is told: steady laminar flow, given at the inlets, against a resistance at each outlet.
 
-use super::{MESH, surface_path};
+use super::layout::{MESH, surface_path};
 use crate::io::volume::conditions::{Flow, Role, plain};
 use crate::mesh::Patch;
 use std::fmt::Write;
