@@ -6,7 +6,7 @@ use crate::geometry::Point3;
 use crate::grow::dual;
 use crate::mesh::WALL;
 use crate::mesh::adjacency::tet_adjacency;
-use crate::mesh::source::gather;
+use crate::mesh::source::{MeshSource, gather};
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
 use crate::progress::{Progress, Stage, StopsAfter};
 use crate::refine::{Figures, RefineError, RefineParams, refine};
