@@ -5,6 +5,7 @@ use super::error::{BlockError, FlattenFailure};
 use super::faithful::Astray;
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
+use super::rims::split_rims;
 use crate::geometry::{Section, Tube};
 use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
@@ -81,7 +82,10 @@ pub(crate) fn mesh_cluster_watched(
         (TetMesh { points, tets: Vec::new() }, triangles)
     } else {
         let filled = tetrahedralize_watched(&surface.mesh, &filling(&surface.mesh), watch);
-        (filled.map_err(|source| BlockError::Tetrahedra { cluster: id, source })?, Vec::new())
+        let mut filled = filled.map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
+        let of_terminal = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Terminal(_));
+        split_rims(&mut filled, &surface.mesh, |i| surface.cap[i].is_some_and(of_terminal));
+        (filled, Vec::new())
     };
     let caps = caps(cluster, &surface);
     let surface_triangles = surface.mesh.triangles.len();

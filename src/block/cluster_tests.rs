@@ -3,9 +3,12 @@
 use super::fixtures::{assert_mesh, bifurcation, cut, direction, facing, star, worst_ratio};
 use super::{BlockError, BlockParams, ClusterMesh, EndStyle, mesh_cluster, mesh_free_connector};
 use crate::geometry::{Point3, Section, Tube, Vec3};
+use crate::mesh::adjacency::boundary_faces;
+use crate::mesh::face_key;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionWarning, partition};
 use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
 use crate::surface::SharedDisc;
+use rustc_hash::FxHashSet;
 
 fn meshed(seed: u64, params: &BlockParams) -> (Cluster, ClusterMesh) {
     let cluster = bifurcation(seed);
@@ -45,6 +48,22 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
             assert_eq!(*p, sides[v.side as usize][v.vertex as usize]);
         }
         assert!(worst_ratio(&connector.mesh) > 0.3, "{}", worst_ratio(&connector.mesh));
+    }
+}
+
+#[test]
+fn no_tetrahedron_has_a_face_on_a_cap_and_one_on_the_wall() {
+    for seed in 0..4 {
+        let (_, made) = meshed(seed, &BlockParams::with_rho(3.0 + (seed % 3) as f64));
+        let boundary: FxHashSet<[u32; 3]> = boundary_faces(&made.mesh).into_iter().map(face_key).collect();
+        let cap: FxHashSet<[u32; 3]> = made.caps[0].triangles.iter().copied().map(face_key).collect();
+        let faces = |tet: &[u32; 4]| [0, 1, 2, 3].map(|k| face_key([1, 2, 3].map(|j| tet[(k + j) % 4])));
+        for tet in &made.mesh.tets {
+            let outer = faces(tet).into_iter().filter(|face| boundary.contains(face));
+            let (on_cap, on_wall): (Vec<_>, Vec<_>) = outer.partition(|face| cap.contains(face));
+            assert!(on_cap.is_empty() || on_wall.is_empty(), "{tet:?}");
+        }
+        assert!(worst_ratio(&made.mesh) > 0.15, "{}", worst_ratio(&made.mesh));
     }
 }
 

@@ -64,7 +64,9 @@ impl<'a> Graph<'a> {
                 })
             });
             graph.ends.push(ends);
-            ends.iter().for_each(|&end| graph.beside[end as usize].push(number));
+            for end in ends {
+                graph.beside[end as usize].push(number);
+            }
             if sets.root(ends[0]) != sets.root(ends[1]) {
                 sets.join(ends[0], ends[1]);
             } else if ends[0] != ends[1] {

@@ -17,6 +17,7 @@ mod loops;
 mod params;
 mod path;
 mod record;
+mod rims;
 mod rings;
 mod shape;
 mod strip;

@@ -278,16 +278,16 @@ impl Args {
     /// What went wrong, for people.
     fn explain(&self, error: RunError, plan: &MeshPlan, before: &Before) -> Failure {
         match error {
-            RunError::BlocksFailed(report) => match self.print(plan, before, &report, None) {
-                Err(failure) => failure,
-                Ok(()) => {
-                    self.advise(&report, true);
-                    Failure::stage(format!(
-                        "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
-                        report.failed.len()
-                    ))
+            RunError::BlocksFailed(report) => {
+                if let Err(failure) = self.print(plan, before, &report, None) {
+                    return failure;
                 }
-            },
+                self.advise(&report, true);
+                Failure::stage(format!(
+                    "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
+                    report.failed.len()
+                ))
+            }
             RunError::Cancelled => self.stopped(),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
             RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),

@@ -184,7 +184,7 @@ pub fn cluster(
     let tried = made(cluster);
     let open = tips::uncapped(cluster, &tried.result, &tried.failures);
     let Some((block, way, failures)) =
-        [false, true].into_iter().find_map(|all| with_tips_moved(cluster, &open, all, &made))
+        [false, true].into_iter().find_map(|all| with_tips_moved(cluster, &open, all, made))
     else {
         return tried;
     };

@@ -17,7 +17,7 @@ const REACH: f64 = 4.0;
 /// The last share of it over which the way that a node may go falls to nothing.
 const RAMP: f64 = 0.6;
 /// Vessels closer than this, in sums of their radii, are all but touching.
-const CLOSE: f64 = 1.05;
+const CLOSE: f64 = 1.02;
 /// The furthest that an overlap can demand, in sums of its radii: a vessel that crosses another one's axis has to go one.
 const DEMANDED: f64 = 2.0;
 
@@ -66,7 +66,7 @@ impl Leashes {
     }
 
     /// Overlaps, and vessels that were let go and are all but touching: walls are not exactly at their radius.
-    pub(super) fn close(self, frame: &Frame, overlaps: &Overlaps) -> Overlaps {
+    pub(super) fn close(frame: &Frame, overlaps: &Overlaps) -> Overlaps {
         let is_loose = |node: &NodeId| frame.leash[node.index()] > 0.0;
         let overlapping: FxHashSet<[EdgeId; 2]> = overlaps.pairs.iter().map(|o| o.edges).collect();
         let mut wide = frame.skeleton.clone();

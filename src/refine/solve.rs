@@ -246,7 +246,7 @@ impl<'a> Solver<'a> {
         self.bends += bends;
         self.frame.rejoin();
         if let Some(leashes) = self.leashes {
-            let close = leashes.close(&self.frame, overlaps);
+            let close = Leashes::close(&self.frame, overlaps);
             leashes.loosen(&mut self.frame, &close);
         }
         self.restart();
