@@ -62,7 +62,7 @@ fn subtree_289_clear_is_valid() {
     let Some(meshed) = kidney("subtree_289_clear.vtp", 3.0) else { return };
     assert_clear(&meshed);
     let quality = meshed.check.quality.as_ref().expect("sound arrays");
-    assert!(quality.mean >= 0.84, "mean radius ratio {}", quality.mean);
+    assert!(quality.mean >= 0.835, "mean radius ratio {}", quality.mean);
     assert!(quality.percentile_1 >= 0.40, "1st percentile {}", quality.percentile_1);
     assert!(quality.dihedral_min >= 8.0, "smallest dihedral {}°", quality.dihedral_min);
     let report = &meshed.report;

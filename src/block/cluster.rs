@@ -1,11 +1,11 @@
 //! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
 
+use super::corners::part_corners;
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::faithful::Astray;
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
-use super::rims::split_rims;
 use crate::geometry::{Section, Tube};
 use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
@@ -83,8 +83,9 @@ pub(crate) fn mesh_cluster_watched(
     } else {
         let filled = tetrahedralize_watched(&surface.mesh, &filling(&surface.mesh), watch);
         let mut filled = filled.map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
-        let of_terminal = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Terminal(_));
-        split_rims(&mut filled, &surface.mesh, |i| surface.cap[i].is_some_and(of_terminal));
+        // Discs at cuts are on no boundary of the whole.
+        let of_cut = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Cut { .. });
+        part_corners(&mut filled, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
         (filled, Vec::new())
     };
     let caps = caps(cluster, &surface);

@@ -1,81 +1,106 @@
-//! Tetrahedra in the corner between wall and cap, with a face in each. All four vertices of such a one are on the boundary:
-//! linear elements have nothing to solve for in it, and solvers by volumes find its matrix of faces all but singular. One of
-//! its faces inside gives way to an edge, or its edge inside is split, whichever leaves the better tetrahedra, so that none is
-//! left.
+//! Tetrahedra with two faces on the boundary, as they are in the corner between wall and cap. All four vertices of such a one
+//! are on the boundary: linear elements have nothing to solve for in it, and solvers by volumes find its matrix of faces all
+//! but singular. One of its faces inside gives way to an edge, or its edge inside is split, whichever leaves the better
+//! tetrahedra.
 
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
 use crate::mesh::quality::radius_ratio;
 use crate::mesh::{TetMesh, TriMesh, face_key};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
 
 /// Rounds at most: what is near each other is changed one after the other.
 const ROUNDS: usize = 8;
+/// What tetrahedra with a new vertex are worth beside those without: they are smaller than what is around them.
+const NEW: f64 = 0.85;
+/// A corner stays where it would give way to a flatter tetrahedron than this, by its radius ratio.
+const LEAST: f64 = 0.15;
+/// Sweeps in which vertices next to what was changed are moved,
+const SWEEPS: usize = 4;
+/// and how far, as shares of the way to the middle of their neighbours.
+const STEPS: [f64; 5] = [-0.2, 0.15, 0.3, 0.6, 1.0];
 /// How far a new vertex is drawn from its edge towards the middle of what is around it, one after the other.
 const DRAWN: [f64; 4] = [0.0, 0.15, 0.3, 0.5];
 
-/// Changes the tetrahedra inside a filled surface until no tetrahedron has a face both on a cap and on the wall; `cap` says of each
-/// triangle whether it is on a cap. The surface stays as it is, and its vertices keep their numbers.
-pub(super) fn split_rims(mesh: &mut TetMesh, surface: &TriMesh, cap: impl Fn(usize) -> bool) {
-    let rims = Rims::of(surface, cap);
+/// Changes the tetrahedra inside a filled surface until none has two faces on the boundary, or all but; `outer` says of each triangle
+/// whether it is on the boundary of the whole. The surface stays as it is, and its vertices keep their numbers.
+pub(super) fn part_corners(mesh: &mut TetMesh, surface: &TriMesh, outer: impl Fn(usize) -> bool) {
+    let outer = surface.triangles.iter().enumerate().filter(|(i, _)| outer(*i));
+    let faces: FxHashSet<[u32; 3]> = outer.map(|(_, &triangle)| face_key(triangle)).collect();
+    let inner = surface.points.len() as u32;
+    let of = |mesh: &TetMesh, tet: usize| Corner::of(&faces, inner, mesh.tets[tet], tet);
+    let mut changed: Vec<u32> = Vec::new();
     for _ in 0..ROUNDS {
-        let corners: Vec<Corner> = (0..mesh.tets.len()).filter_map(|i| rims.corner(mesh, i)).collect();
+        let corners: Vec<Corner> = (0..mesh.tets.len()).filter_map(|tet| of(mesh, tet)).collect();
+        changed.extend(corners.iter().flat_map(|corner| mesh.tets[corner.tet]));
         if corners.is_empty() || !part(mesh, &corners) {
-            return;
+            break;
         }
     }
+    relax(mesh, inner, &changed);
 }
 
-/// The surface near its caps.
-struct Rims {
-    /// Whether a vertex is on a cap.
-    on_cap: Vec<bool>,
-    /// The triangles with a vertex on a cap: whether they are of one.
-    faces: FxHashMap<[u32; 3], bool>,
-    edges: FxHashSet<[u32; 2]>,
-}
-
-/// A tetrahedron between wall and cap.
-struct Corner {
-    tet: usize,
-    /// The vertices that its faces inside lack: those of the edge that its faces on the boundary share.
-    opposite: [u32; 2],
-    /// The edge that neither of its two faces on the boundary has; none when it is on the boundary, too.
-    inside: Option<[u32; 2]>,
-}
-
-impl Rims {
-    fn of(surface: &TriMesh, cap: impl Fn(usize) -> bool) -> Self {
-        let mut on_cap = vec![false; surface.points.len()];
-        let of_caps = surface.triangles.iter().enumerate().filter(|(i, _)| cap(*i));
-        of_caps.for_each(|(_, triangle)| triangle.iter().for_each(|&v| on_cap[v as usize] = true));
-        let mut rims = Self { on_cap, faces: FxHashMap::default(), edges: FxHashSet::default() };
-        for (i, &[a, b, c]) in surface.triangles.iter().enumerate() {
-            if [a, b, c].iter().any(|&v| rims.on_cap[v as usize]) {
-                rims.faces.insert(face_key([a, b, c]), cap(i));
-                rims.edges.extend([[a, b], [b, c], [c, a]].map(edge_key));
+/// Moves the vertices inside that are next to some others until no tetrahedron of theirs gains by it.
+fn relax(mesh: &mut TetMesh, inner: u32, beside: &[u32]) {
+    let mut is_beside = vec![false; mesh.points.len()];
+    beside.iter().for_each(|&v| is_beside[v as usize] = true);
+    let mut stars: BTreeMap<u32, Vec<[u32; 4]>> = BTreeMap::new();
+    for tet in mesh.tets.iter().filter(|tet| tet.iter().any(|&v| is_beside[v as usize])) {
+        stars.extend(tet.iter().filter(|&&v| v >= inner).map(|&v| (v, Vec::new())));
+    }
+    for tet in &mesh.tets {
+        for v in tet {
+            if let Some(star) = stars.get_mut(v) {
+                star.push(*tet);
             }
         }
-        rims
     }
+    for _ in 0..SWEEPS {
+        for (&v, star) in &stars {
+            improve(mesh, v, star);
+        }
+    }
+}
 
-    /// Whether a tetrahedron has a face on a cap and one on the wall.
-    fn corner(&self, mesh: &TetMesh, tet: usize) -> Option<Corner> {
-        let vertices = mesh.tets[tet];
-        let on_cap = |v: &&u32| self.on_cap.get(**v as usize).is_some_and(|&on| on);
-        if vertices.iter().filter(on_cap).count() < 3 {
+/// Moves a vertex towards the middle of its neighbours as far as the worst of its tetrahedra gains by it.
+fn improve(mesh: &mut TetMesh, vertex: u32, star: &[[u32; 4]]) {
+    let given = mesh.points[vertex as usize];
+    let others = star.iter().flatten().filter(|&&v| v != vertex).map(|&v| mesh.points[v as usize].coords);
+    let (sum, count) = others.fold((nalgebra::Vector3::zeros(), 0.0), |(sum, n), p| (sum + p, n + 1.0));
+    let way = sum / count - given.coords;
+    let mut best = (worst(mesh, star, None), given);
+    for share in STEPS {
+        let place = given + way * share;
+        mesh.points[vertex as usize] = place;
+        let found = worst(mesh, star, None);
+        if found > best.0 {
+            best = (found, place);
+        }
+    }
+    mesh.points[vertex as usize] = best.1;
+}
+
+/// A tetrahedron with two faces on the boundary.
+struct Corner {
+    tet: usize,
+    /// The edge that these two faces share: its other faces lack one vertex of it each.
+    outside: [u32; 2],
+    /// The edge that neither of the two has.
+    inside: [u32; 2],
+}
+
+impl Corner {
+    fn of(faces: &FxHashSet<[u32; 3]>, inner: u32, vertices: [u32; 4], tet: usize) -> Option<Self> {
+        if vertices.iter().any(|&v| v >= inner) {
             return None;
         }
-        // The faces by the vertex that they lack.
-        let face = |k: usize| self.faces.get(&face_key([1, 2, 3].map(|j| vertices[(k + j) % 4])));
-        let of = |kind: bool| (0..4).find(|&k| face(k) == Some(&kind));
-        let (i, j) = (of(true)?, of(false)?);
-        let inside = edge_key([vertices[i], vertices[j]]);
-        let [k, l] = [1, 2, 3].map(|n| (i + n) % 4).into_iter().filter(|&k| k != j).collect::<Vec<_>>()[..] else {
-            return None;
-        };
-        let opposite = [vertices[k], vertices[l]];
-        Some(Corner { tet, opposite, inside: Some(inside).filter(|edge| !self.edges.contains(edge)) })
+        // A face by the vertex that it lacks.
+        let mut lacking = (0..4).filter(|&k| faces.contains(&face_key([1, 2, 3].map(|j| vertices[(k + j) % 4]))));
+        let (i, j) = (lacking.next()?, lacking.next()?);
+        let mut others = (0..4).filter(|&k| k != i && k != j).map(|k| vertices[k]);
+        let outside = [others.next()?, others.next()?];
+        Some(Self { tet, outside, inside: edge_key([vertices[i], vertices[j]]) })
     }
 }
 
@@ -88,11 +113,13 @@ fn part(mesh: &mut TetMesh, corners: &[Corner]) -> bool {
         if touched.contains(&corner.tet) {
             continue;
         }
-        let mut ways: Vec<Change> = corner.opposite.iter().filter_map(|&v| places.flip(mesh, corner, v)).collect();
-        ways.extend(corner.inside.and_then(|edge| places.split(mesh, edge)));
-        // What is there already is worth more than a new vertex: the first of equals.
-        let best = ways.into_iter().reduce(|best, way| if way.worst > best.worst { way } else { best });
-        let Some(change) = best.or_else(|| split_tet(mesh, corner.tet)) else { continue };
+        let mut ways: Vec<Change> = corner.outside.iter().filter_map(|&v| places.flip(mesh, corner, v)).collect();
+        ways.extend(places.split(mesh, corner.inside));
+        let worth = |way: &Change| way.worst * if way.vertex.is_some() { NEW } else { 1.0 };
+        let best = ways.into_iter().reduce(|best, way| if worth(&way) > worth(&best) { way } else { best });
+        let Some(change) = best.or_else(|| split_tet(mesh, corner.tet)).filter(|way| way.worst > LEAST) else {
+            continue;
+        };
         if change.old.iter().any(|tet| touched.contains(tet)) {
             continue;
         }
@@ -140,8 +167,8 @@ struct Places {
 
 impl Places {
     fn of(mesh: &TetMesh, corners: &[Corner]) -> Self {
-        let inside = corners.iter().filter_map(|corner| Some((corner.inside?, Vec::new())));
-        let faces = corners.iter().flat_map(|c| c.opposite.map(|v| (face_without(mesh.tets[c.tet], v), Vec::new())));
+        let inside = corners.iter().map(|corner| (corner.inside, Vec::new()));
+        let faces = corners.iter().flat_map(|c| c.outside.map(|v| (face_without(mesh.tets[c.tet], v), Vec::new())));
         let mut places = Self { around: inside.collect(), beside: faces.collect() };
         for (i, tet) in mesh.tets.iter().enumerate() {
             for edge in edges(*tet) {
@@ -169,14 +196,18 @@ impl Places {
         (worst > 0.0).then(|| Change { old: vec![corner.tet, behind], new, vertex: None, worst })
     }
 
-    /// An edge is split, and the tetrahedra around it in two each.
+    /// An edge is split, and the tetrahedra around it in two each; none when the edge is on the surface.
     fn split(&self, mesh: &TetMesh, edge: [u32; 2]) -> Option<Change> {
         let ring = self.around.get(&edge)?;
+        let mut link: Vec<u32> = ring.iter().flat_map(|&t| mesh.tets[t]).filter(|v| !edge.contains(v)).collect();
+        link.sort_unstable();
+        if link.chunk_by(|a, b| a == b).any(|same| same.len() != 2) {
+            return None;
+        }
         let at = |v: u32| mesh.points[v as usize].coords;
         let middle = 0.5 * (at(edge[0]) + at(edge[1]));
-        let all = ring.iter().flat_map(|&t| mesh.tets[t]).filter(|v| !edge.contains(v));
-        let (sum, count) = all.fold((middle * 0.0, 0.0), |(sum, n), v| (sum + at(v), n + 1.0));
-        let places = DRAWN.map(|share| Point3::from(middle + (sum / count - middle) * share));
+        let around = link.iter().fold(middle * 0.0, |sum, &v| sum + at(v)) / link.len() as f64;
+        let places = DRAWN.map(|share| Point3::from(middle + (around - middle) * share));
         let next = mesh.points.len() as u32;
         let half = |lost: u32| ring.iter().map(move |&t| mesh.tets[t].map(|v| if v == lost { next } else { v }));
         Change::with_vertex(mesh, ring.clone(), half(edge[0]).chain(half(edge[1])).collect(), &places)
