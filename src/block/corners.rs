@@ -17,9 +17,9 @@ const NEW: f64 = 0.85;
 /// A corner stays where it would give way to a flatter tetrahedron than this, by its radius ratio.
 const LEAST: f64 = 0.15;
 /// Sweeps in which vertices next to what was changed are moved,
-const SWEEPS: usize = 4;
+const SWEEPS: usize = 2;
 /// and how far, as shares of the way to the middle of their neighbours.
-const STEPS: [f64; 5] = [-0.2, 0.15, 0.3, 0.6, 1.0];
+const STEPS: [f64; 3] = [0.2, 0.5, 1.0];
 /// How far a new vertex is drawn from its edge towards the middle of what is around it, one after the other.
 const DRAWN: [f64; 4] = [0.0, 0.15, 0.3, 0.5];
 
@@ -43,14 +43,14 @@ pub(super) fn part_corners(mesh: &mut TetMesh, surface: &TriMesh, outer: impl Fn
 
 /// Moves the vertices inside that are next to some others until no tetrahedron of theirs gains by it.
 fn relax(mesh: &mut TetMesh, inner: u32, beside: &[u32]) {
-    let mut is_beside = vec![false; mesh.points.len()];
-    beside.iter().for_each(|&v| is_beside[v as usize] = true);
+    let is_beside = marked(mesh, beside.iter().copied());
     let mut stars: BTreeMap<u32, Vec<[u32; 4]>> = BTreeMap::new();
     for tet in mesh.tets.iter().filter(|tet| tet.iter().any(|&v| is_beside[v as usize])) {
         stars.extend(tet.iter().filter(|&&v| v >= inner).map(|&v| (v, Vec::new())));
     }
+    let has_star = marked(mesh, stars.keys().copied());
     for tet in &mesh.tets {
-        for v in tet {
+        for v in tet.iter().filter(|&&v| has_star[v as usize]) {
             if let Some(star) = stars.get_mut(v) {
                 star.push(*tet);
             }
@@ -69,12 +69,11 @@ fn improve(mesh: &mut TetMesh, vertex: u32, star: &[[u32; 4]]) {
     let others = star.iter().flatten().filter(|&&v| v != vertex).map(|&v| mesh.points[v as usize].coords);
     let (sum, count) = others.fold((nalgebra::Vector3::zeros(), 0.0), |(sum, n), p| (sum + p, n + 1.0));
     let way = sum / count - given.coords;
-    let mut best = (worst(mesh, star, None), given);
+    let mut best = (worst(mesh, star, None, 0.0).unwrap_or(0.0), given);
     for share in STEPS {
         let place = given + way * share;
         mesh.points[vertex as usize] = place;
-        let found = worst(mesh, star, None);
-        if found > best.0 {
+        if let Some(found) = worst(mesh, star, None, best.0) {
             best = (found, place);
         }
     }
@@ -143,10 +142,13 @@ struct Change {
 impl Change {
     /// With the best of some places for a vertex; none when a tetrahedron is not positive at any.
     fn with_vertex(mesh: &TetMesh, old: Vec<usize>, new: Vec<[u32; 4]>, places: &[Point3]) -> Option<Self> {
-        let ranked = places.iter().map(|&place| (worst(mesh, &new, Some(place)), place));
-        // The first of equals.
-        let (worst, place) = ranked.reduce(|best, x| if x.0 > best.0 { x } else { best })?;
-        (worst > 0.0).then_some(Self { old, new, vertex: Some(place), worst })
+        let mut best = None;
+        for &place in places {
+            let above = best.map_or(0.0, |(worst, _)| worst);
+            best = worst(mesh, &new, Some(place), above).map(|worst| (worst, place)).or(best);
+        }
+        let (worst, place) = best?;
+        Some(Self { old, new, vertex: Some(place), worst })
     }
 
     fn apply(self, mesh: &mut TetMesh) {
@@ -170,7 +172,10 @@ impl Places {
         let inside = corners.iter().map(|corner| (corner.inside, Vec::new()));
         let faces = corners.iter().flat_map(|c| c.outside.map(|v| (face_without(mesh.tets[c.tet], v), Vec::new())));
         let mut places = Self { around: inside.collect(), beside: faces.collect() };
-        for (i, tet) in mesh.tets.iter().enumerate() {
+        // Most tetrahedra have nothing to do with corners.
+        let of_corner = marked(mesh, corners.iter().flat_map(|c| mesh.tets[c.tet]));
+        let is_near = |tet: &[u32; 4]| tet.iter().filter(|&&v| of_corner[v as usize]).count() > 1;
+        for (i, tet) in mesh.tets.iter().enumerate().filter(|(_, tet)| is_near(tet)) {
             for edge in edges(*tet) {
                 if let Some(ring) = places.around.get_mut(&edge) {
                     ring.push(i);
@@ -192,8 +197,8 @@ impl Places {
         let behind = *self.beside.get(&face)?.iter().find(|&&t| t != corner.tet)?;
         let apex = *mesh.tets[behind].iter().find(|v| !face.contains(v))?;
         let new: Vec<[u32; 4]> = face.iter().map(|&lost| tet.map(|v| if v == lost { apex } else { v })).collect();
-        let worst = worst(mesh, &new, None);
-        (worst > 0.0).then(|| Change { old: vec![corner.tet, behind], new, vertex: None, worst })
+        let worst = worst(mesh, &new, None, 0.0)?;
+        Some(Change { old: vec![corner.tet, behind], new, vertex: None, worst })
     }
 
     /// An edge is split, and the tetrahedra around it in two each; none when the edge is on the surface.
@@ -223,13 +228,27 @@ fn split_tet(mesh: &TetMesh, tet: usize) -> Option<Change> {
     Change::with_vertex(mesh, vec![tet], quarters, &[Point3::from(sum / 4.0)])
 }
 
-/// The smallest radius ratio of tetrahedra, with the next vertex where it is said to be; zero when one is not positive.
-fn worst(mesh: &TetMesh, tets: &[[u32; 4]], next: Option<Point3>) -> f64 {
+/// The smallest radius ratio of tetrahedra, with the next vertex where it is said to be; none when it is not above a bound, or
+/// one of them is not positive.
+fn worst(mesh: &TetMesh, tets: &[[u32; 4]], next: Option<Point3>, above: f64) -> Option<f64> {
     let corners = |tet: &[u32; 4]| tet.map(|v| mesh.points.get(v as usize).copied().or(next).unwrap_or_default());
-    let ratio = |[a, b, c, d]: [Point3; 4]| {
-        if orient3d(&a, &b, &c, &d) > 0.0 { radius_ratio(&a, &b, &c, &d) } else { 0.0 }
-    };
-    tets.iter().map(corners).map(ratio).fold(f64::INFINITY, f64::min)
+    let mut worst = f64::INFINITY;
+    for [a, b, c, d] in tets.iter().map(corners) {
+        worst = worst.min(radius_ratio(&a, &b, &c, &d));
+        if worst <= above {
+            return None;
+        }
+    }
+    tets.iter().map(corners).all(|[a, b, c, d]| orient3d(&a, &b, &c, &d) > 0.0).then_some(worst)
+}
+
+/// For each point of a mesh whether it is one of some vertices.
+fn marked(mesh: &TetMesh, vertices: impl Iterator<Item = u32>) -> Vec<bool> {
+    let mut marks = vec![false; mesh.points.len()];
+    for v in vertices {
+        marks[v as usize] = true;
+    }
+    marks
 }
 
 /// The face of a tetrahedron that lacks a vertex.

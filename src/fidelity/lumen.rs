@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Samples over all tubes, about, and bounds of those in each.
-const SAMPLES: usize = 1 << 18;
+const SAMPLES: usize = 1 << 17;
 const LEAST: usize = 8;
 const MOST: usize = 512;
 
