@@ -175,7 +175,7 @@ fn the_second_signal_ends_it_at_once() {
         }
         let (output, took) = ended(child);
         assert_code(&output, STOPPED);
-        assert!(took < Duration::from_secs(2) && !stderr(&output).contains("nothing is kept"), "{took:?}");
+        assert!(took < Duration::from_secs(10) && !stderr(&output).contains("nothing is kept"), "{took:?}");
         assert!(!out.exists());
     }
 }
