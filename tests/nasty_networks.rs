@@ -64,7 +64,7 @@ fn along(from: [f64; 3], way: [f64; 3], length: f64) -> [f64; 3] {
 type Make = fn(&mut Random) -> Skeleton;
 
 /// The kinds, each with a generator.
-const KINDS: [(&str, Make); 12] = [
+const KINDS: [(&str, Make); 19] = [
     ("star of up to 30 vessels", |r| {
         let mut b = Builder::default();
         let middle = b.node([0.0; 3], 1.0);
@@ -162,6 +162,87 @@ const KINDS: [(&str, Make); 12] = [
             let n = noise[(100.0 * t).round() as usize];
             [unit * (40.0 * t + n[0]), unit * n[1], unit * n[2]]
         });
+        b.0
+    }),
+    ("a vessel drawn twice, all but in one place", |r| {
+        let mut b = Builder::default();
+        for _ in 0..2 {
+            let off = along([0.0; 3], r.direction(), 10.0_f64.powf(r.between(-12.0, -1.0)));
+            b.line(30, 1.0, |t| [30.0 * t + off[0], off[1], off[2]]);
+        }
+        b.0
+    }),
+    ("theta graph", |r| {
+        let mut b = Builder::default();
+        let [from, to] = [0.0, 20.0].map(|x| b.node([x, 0.0, 0.0], 1.0));
+        for high in [-1.0, 0.0, 1.0].map(|side| side * r.between(0.5, 12.0)) {
+            let radius = r.between(0.2, 1.0);
+            let ids = b.line(8, radius, |t| [2.0 + 16.0 * t, high * (1.0 - (2.0 * t - 1.0).powi(2)), 0.0]);
+            b.edge(from, ids[0]);
+            b.edge(ids[8], to);
+        }
+        b.0
+    }),
+    ("tree in a plane", |r| {
+        let mut b = Builder::default();
+        let mut front = vec![(b.node([0.0; 3], 1.0), [0.0; 3], 1.57, 1.0)];
+        for _ in 0..4 {
+            let parents = std::mem::take(&mut front);
+            for (node, at, heading, radius) in parents {
+                for side in [-1.0, 1.0] {
+                    let angle: f64 = heading + side * r.between(0.2, 1.2);
+                    let place = along(at, [angle.cos(), angle.sin(), 0.0], radius * r.between(3.0, 10.0));
+                    let tip = b.node(place, 0.79 * radius);
+                    b.edge(node, tip);
+                    front.push((tip, place, angle, 0.79 * radius));
+                }
+            }
+        }
+        b.0
+    }),
+    ("radii over four decades", |r| {
+        let mut b = Builder::default();
+        let mut trunk = b.node([0.0; 3], 100.0);
+        for k in 0..5 {
+            let radius = 10.0_f64.powi(2 - k);
+            let at = *b.0.nodes[trunk as usize].position.coords.as_ref();
+            let next = b.node(along(at, [1.0, 0.0, 0.0], radius * r.between(4.0, 12.0)), 0.1 * radius);
+            b.0.edges.push(Edge { nodes: [NodeId(trunk), NodeId(next)], radii: [radius; 2] });
+            trunk = next;
+        }
+        b.0
+    }),
+    ("daughters that fold back by 170 to 180 degrees", |r| {
+        let mut b = Builder::default();
+        let [root, fork] = [[-20.0, 0.0, 0.0], [0.0; 3]].map(|p| b.node(p, 1.0));
+        b.edge(root, fork);
+        for side in [-1.0, 1.0] {
+            let angle = r.between(0.0, 10.0).to_radians();
+            let tip =
+                b.node([-r.between(5.0, 30.0) * angle.cos(), side * 20.0 * angle.sin(), 0.0], r.between(0.2, 1.0));
+            b.edge(fork, tip);
+        }
+        b.0
+    }),
+    ("tree in units of 1e-150 or 1e150", |r| {
+        let mut b = Builder::default();
+        let unit = if r.next() < 0.5 { 1e-150 } else { 1e150 };
+        let ids = [[0.0; 3], [12.0, 0.0, 0.0], [20.0, 9.0, 0.0], [20.0, -8.0, 1.0]]
+            .map(|p| b.node(p.map(|x| x * unit), unit));
+        for (i, j) in [(0, 1), (1, 2), (1, 3)] {
+            b.edge(ids[i], ids[j]);
+        }
+        b.0
+    }),
+    ("tips in a crowd", |r| {
+        let mut b = Builder::default();
+        let fork = b.node([0.0; 3], 1.0);
+        let root = b.node([-15.0, 0.0, 0.0], 1.0);
+        b.edge(root, fork);
+        for _ in 0..6 {
+            let tip = b.node([15.0, r.between(-2.0, 2.0), r.between(-2.0, 2.0)], 0.5);
+            b.edge(fork, tip);
+        }
         b.0
     }),
 ];

@@ -118,6 +118,19 @@ fn radii_are_filled_between_good_ones() {
     assert!(prepare(&s, &PrepareParams::default()).is_err());
 }
 
+/// Files that give vessels their radii mean them: the branch point, as wide as its widest, is no neighbour of a twig's tip.
+#[test]
+fn a_twig_keeps_the_radius_of_its_vessel() {
+    let points: Vec<[f64; 3]> = vec![[-9.0, 0.0, 0.0], [0.0; 3], [9.0, 0.0, 0.0], [0.0, 2.5, 0.0]];
+    let mut s = lines(&[points[..3].to_vec()], 1.0);
+    s.nodes.push(Node { position: points[3].into(), radius: 0.05, original: 3 });
+    for (radii, filled) in [([0.05; 2], 0), ([1.0, 0.05], 1)] {
+        s.edges.truncate(2);
+        s.edges.push(Edge { nodes: [NodeId(1), NodeId(3)], radii });
+        assert_eq!(done(&s, &only(|p| p.radii = true)).report.radii.len(), filled, "{radii:?}");
+    }
+}
+
 #[test]
 fn spurs_go_and_side_branches_stay() {
     let mut s = lines(&[(0..=8).map(|i| [5.0 * f64::from(i), 0.0, 0.0]).collect()], 2.0);

@@ -1,5 +1,6 @@
 //! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
 
+use super::buried::buried;
 use super::corners::part_corners;
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
@@ -11,8 +12,8 @@ use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::{
-    CapError, CappedSurface, Closing, Field, SharedDisc, SurfaceParams, cap_terminals, euler_characteristic,
-    vessel_wall,
+    CapError, CapFailure, CappedSurface, Closing, Field, SharedDisc, SurfaceParams, cap_terminals,
+    euler_characteristic, vessel_wall,
 };
 use crate::tet::{Watch, tetrahedralize_watched};
 
@@ -129,6 +130,12 @@ pub fn cluster_surface(
     params: &BlockParams,
 ) -> Result<(CappedSurface, f64, Astray), BlockError> {
     params.check()?;
+    if !params.allow_fused
+        && let Some((end, node, ClusterEnd { section, .. })) = buried(cluster).next()
+    {
+        let source = CapError::End { end, node: Some(node), origin: section.origin, reason: CapFailure::Buried };
+        return Err(BlockError::Cap { cluster: id, source });
+    }
     let thin = smallest_radius(cluster);
     let voxel = 2.0 * thin / params.rho * params.voxel_factor;
     let surface_params = SurfaceParams {

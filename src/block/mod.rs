@@ -5,6 +5,7 @@
 //! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
 
 mod alone;
+mod buried;
 mod cluster;
 mod connector;
 mod connector_surface;
@@ -23,6 +24,7 @@ mod shape;
 mod strip;
 mod wall;
 
+pub(crate) use buried::buried;
 pub use cluster::{CapFaces, ClusterMesh, mesh_cluster};
 pub(crate) use cluster::{cut_ends, mesh_cluster_watched};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector, shared_ends};

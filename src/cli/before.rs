@@ -2,20 +2,26 @@
 
 use super::network::PreparedNetwork;
 use super::progress::Bars;
-use crate::fidelity::{Compared, Displaced, Fidelity};
+use crate::fidelity::{Compared, Displaced, Fidelity, lumen_of};
 use crate::io::network::NodeNames;
+use crate::mesh::check::{CheckReport, Line};
 use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_into};
 use crate::prepare::{PrepareReport, TouchedBy, take_back};
 use crate::progress::Progress;
 use crate::refine::{RefineReport, Refined, split};
 use crate::report::fidelity::displaced;
 use crate::report::prepare::touching;
-use crate::skeleton::{Branch, NodeId, Skeleton};
+use crate::skeleton::{Branch, EdgeId, NodeId, Skeleton};
 use rustc_hash::FxHashSet;
 use serde::Serialize;
 
 /// How far a measured axis may be from where it was given, in radii, unless an overlap demands more.
 const FURTHEST: f64 = 1.0;
+
+/// A refined network whose lumen is larger or smaller by this share is tried as it was, too, if only vessels overlap there
+/// that leave one branch point: those may be kept apart.
+const SWOLLEN: f64 = 0.05;
+const NOT_VALID: &str = "no valid mesh";
 
 /// How often tips that could not be capped are drawn back.
 const ROUNDS: usize = 4;
@@ -58,6 +64,11 @@ impl Made<'_> {
         let Stored { check, report, .. } = &self.stored;
         report.failed.is_empty() && check.is_valid() && report.keeps_vessels(plan.fuse)
     }
+
+    /// By how much its volume differs from that of the lumen as it was given, as a share of that.
+    fn swelling(&self) -> f64 {
+        (self.stored.check.counts.volume / lumen_of(&self.before.outline) - 1.0).abs()
+    }
 }
 
 /// Where and how a network is meshed.
@@ -89,38 +100,54 @@ impl Before {
     }
 
     /// Meshes it into a store. Refinement is not to end in something worse than none: where the refined network gives no
-    /// sound mesh, it is tried as it was.
+    /// sound mesh, or one of another volume, it is tried as it was.
     pub fn mesh<'a>(self, how: Meshing<'a, '_>) -> Result<Made<'a>, (RunError, Box<Self>)> {
         let first = self.mesh_alone(how);
-        let second = match &first {
-            Ok(made) if made.is_sound(how.plan) => None,
-            Ok(made) => made.before.as_it_was(),
-            Err((RunError::BlocksFailed(_), before)) => before.as_it_was(),
-            Err(_) => None,
+        let (second, fault, least) = match &first {
+            Ok(made) if made.is_sound(how.plan) => match made.swelling() {
+                swelling if swelling > SWOLLEN => {
+                    let before = made.before.as_it_was().filter(|before| overlap_at_forks_alone(&before.network));
+                    (before, "a lumen of another size", swelling)
+                }
+                _ => (None, "", 0.0),
+            },
+            Ok(made) => (made.before.as_it_was(), NOT_VALID, f64::INFINITY),
+            Err((RunError::BlocksFailed(_), before)) => (before.as_it_was(), NOT_VALID, f64::INFINITY),
+            Err(_) => (None, "", 0.0),
         };
         let second = second.and_then(|before| before.mesh_alone(how).ok()).filter(|made| made.is_sound(how.plan));
-        match second {
+        match second.filter(|made| made.swelling() < least) {
             Some(made) => {
-                how.bars.note("refined, the network gives no valid mesh; as it was, it does: that is kept");
+                how.bars.note(&format!(
+                    "refined, the network gives {fault}; as it was, it gives a valid mesh: that is kept"
+                ));
                 Ok(made)
             }
             None => first,
         }
     }
 
-    /// Meshes it, and again as long as tips have to be drawn back.
+    /// Meshes it, and again as long as tips have to be drawn back: those that could not be capped, of a measured network, and
+    /// of any that lacks nothing else or comes to nothing.
     fn mesh_alone<'a>(mut self, how: Meshing<'a, '_>) -> Result<Made<'a>, (RunError, Box<Self>)> {
         let Meshing { store, plan, fits, touches, bars } = how;
         let mut round = 0;
         loop {
-            let stored = match mesh_into(store, &self.network, plan, fits, bars) {
-                Ok(stored) => stored,
-                Err(error) => return Err((error, Box::new(self))),
-            };
+            let made = mesh_into(store, &self.network, plan, fits, bars);
             round += 1;
+            let tips = match &made {
+                Ok(Stored { report, check, .. }) if self.prepare.measured || lacks_but_caps(check) => {
+                    open_tips(report, plan)
+                }
+                Err(RunError::BlocksFailed(report)) => open_tips(report, plan),
+                _ => Vec::new(),
+            };
             // Blocks that this does not change are found in the store.
-            if round > ROUNDS || !touches || !self.take_back(&stored.report, &plan.roots, bars) {
-                return Ok(Made { stored, before: self });
+            if round > ROUNDS || !touches || !self.take_back(&tips, bars) {
+                return match made {
+                    Ok(stored) => Ok(Made { stored, before: self }),
+                    Err(error) => Err((error, Box::new(self))),
+                };
             }
         }
     }
@@ -140,16 +167,13 @@ impl Before {
         })
     }
 
-    /// Draws the tips of a measured network back that could not be capped, but inlets that were asked for; says which, and
-    /// whether there were any.
-    fn take_back(&mut self, run: &RunReport, roots: &[u32], bars: &Bars) -> bool {
-        let tips: Vec<u32> =
-            run.fused.iter().flat_map(|f| &f.uncapped).copied().filter(|n| !roots.contains(n)).collect();
-        if tips.is_empty() || !self.prepare.measured {
+    /// Draws tips back; says which, and whether there were any.
+    fn take_back(&mut self, tips: &[u32], bars: &Bars) -> bool {
+        if tips.is_empty() {
             return false;
         }
         // Where no vessel would remain all stay.
-        let Ok((network, told)) = take_back(&self.network, &tips) else { return false };
+        let Ok((network, told)) = take_back(&self.network, tips) else { return false };
         let done = told.iter().any(|tip| tip.done != TouchedBy::Left);
         if done {
             touching(&told).lines().for_each(|line| bars.note(line));
@@ -191,4 +215,22 @@ impl Before {
         }
         nodes
     }
+}
+
+/// Whether all vessels that overlap leave one branch point.
+fn overlap_at_forks_alone(network: &Skeleton) -> bool {
+    let adjacency = network.adjacency();
+    let branches = network.branches(&adjacency);
+    let ends = |edge: EdgeId| branches.list[branches.of_edge[edge.index()].0.index()].ends();
+    network.overlaps(&adjacency).pairs.iter().all(|o| ends(o.edges[0]).iter().any(|end| ends(o.edges[1]).contains(end)))
+}
+
+/// Terminals that could not be capped, but inlets that were asked for.
+fn open_tips(report: &RunReport, plan: &MeshPlan) -> Vec<u32> {
+    report.uncapped().filter(|n| !plan.roots.contains(n)).collect()
+}
+
+/// Whether a mesh would be valid if each terminal had its cap.
+fn lacks_but_caps(check: &CheckReport) -> bool {
+    check.failed().all(|line| line.line == Line::CapPerTerminal)
 }

@@ -61,7 +61,8 @@ pub struct RefineArgs {
     #[arg(long, value_name = "FACTOR", default_value_t = RefineParams::default().clearance, allow_negative_numbers = true)]
     clearance: f64,
     /// How far a node may go, in its radii: nothing moves but what overlaps (default: in a network whose vessels are
-    /// polylines 1, further only where an overlap is not parted by that; in others as far as room for cuts asks)
+    /// polylines, or where nothing overlaps, 1, further only where an overlap is not parted by that; in others, and with
+    /// `inf`, as far as room for cuts asks)
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
     max_move: Option<f64>,
     /// Let terminals and roots move this far, in the unit of the network
@@ -111,6 +112,14 @@ impl RefineArgs {
         matches!(self.residual, ResidualArg::Fuse)
     }
 
+    fn freedom(&self) -> Freedom {
+        match self.max_move {
+            None => Freedom::Auto,
+            Some(f64::INFINITY) => Freedom::Grown,
+            Some(radii) => Freedom::Radii(radii),
+        }
+    }
+
     /// The parameters for so many iterations.
     pub fn params(&self, iterations: usize) -> RefineParams {
         RefineParams {
@@ -120,7 +129,7 @@ impl RefineArgs {
             angle_rate: self.angle_rate,
             clearance: self.clearance,
             free_terminals: self.free_terminals,
-            freedom: self.max_move.map_or(Freedom::Auto, Freedom::Radii),
+            freedom: self.freedom(),
             crowded: match self.crowded_terminals {
                 CrowdedArg::Keep => Crowded::Keep,
                 CrowdedArg::Part => Crowded::Part,
@@ -155,8 +164,8 @@ pub(super) fn moved(
 ) -> Result<Refined, Failure> {
     let mut params = params.clone();
     // Polylines that were resampled do not look measured any more.
-    if params.freedom == Freedom::Auto {
-        params.freedom = if network.report.measured { Freedom::Measured } else { Freedom::Grown };
+    if params.freedom == Freedom::Auto && network.report.measured {
+        params.freedom = Freedom::Measured;
     }
     let refined = refine::refine(&network.skeleton, &params, &Bars::new(quiet, stop.clone()));
     refined.map_err(|e| match e {

@@ -33,6 +33,11 @@ pub struct Fidelity {
     pub volume: f64,
 }
 
+/// Volume of the lumen of a network: of the union of its tubes, by sampling.
+pub fn lumen_of(network: &Skeleton) -> f64 {
+    lumen::volume(network, &Tubes::of(network))
+}
+
 /// The networks that are compared.
 #[derive(Clone, Copy, Debug)]
 pub struct Compared<'a> {
@@ -71,23 +76,21 @@ mod tests {
     use std::f64::consts::PI;
 
     /// The lumen of some tubes of radius 1.
-    fn lumen_of(points: &[[f64; 3]], edges: &[(u32, u32)]) -> f64 {
-        let network = network(points, 1.0, edges);
-        lumen::volume(&network, &Tubes::of(&network))
+    fn lumen(points: &[[f64; 3]], edges: &[(u32, u32)]) -> f64 {
+        lumen_of(&network(points, 1.0, edges))
     }
 
     #[test]
     fn what_tubes_have_in_common_counts_once() {
-        let tube = lumen_of(&[[0.0; 3], [10.0, 0.0, 0.0]], &[(0, 1)]);
+        let tube = lumen(&[[0.0; 3], [10.0, 0.0, 0.0]], &[(0, 1)]);
         assert!((tube / (10.0 * PI) - 1.0).abs() < 1e-9, "{tube}");
         // Two cylinders that cross at a right angle have 16/3 in common.
-        let crossed =
-            lumen_of(&[[-9.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, -9.0, 0.0], [0.0, 9.0, 0.0]], &[(0, 1), (2, 3)]);
+        let crossed = lumen(&[[-9.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, -9.0, 0.0], [0.0, 9.0, 0.0]], &[(0, 1), (2, 3)]);
         assert!((crossed / (36.0 * PI - 16.0 / 3.0) - 1.0).abs() < 0.01, "{crossed}");
         // The same vessel in many pieces.
         let points: Vec<[f64; 3]> = (0..=40).map(|i| [0.25 * f64::from(i), 0.0, 0.0]).collect();
         let edges: Vec<(u32, u32)> = (0..40).map(|i| (i, i + 1)).collect();
-        let pieces = lumen_of(&points, &edges);
+        let pieces = lumen(&points, &edges);
         assert!((pieces / (10.0 * PI) - 1.0).abs() < 0.01, "{pieces}");
     }
 

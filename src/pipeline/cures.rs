@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::plan::{JointStyle, MeshPlan};
 use super::report::Retry;
+use super::tips::is_buried;
 use crate::block::BlockError;
 use crate::partition::{Cluster, ClusterEnd, EndKind, PartitionParams};
 use crate::skeleton::{BranchId, Skeleton};
@@ -55,6 +56,9 @@ pub(super) fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<Br
     let mut found = Vec::new();
     for (i, (cluster, mesh)) in blocks.partition.clusters.iter().zip(&blocks.clusters).enumerate() {
         let Err(error) = mesh else { continue };
+        if is_buried(error) {
+            continue;
+        }
         let mut remedies = Vec::new();
         for branch in troubled_branches(blocks, cluster, error) {
             remedies.extend(advance(cures, branch));

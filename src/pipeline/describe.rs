@@ -7,6 +7,7 @@ use super::estimate::Estimate;
 use super::make::{Made, Workshop};
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, RunReport};
+use super::tips;
 use crate::block::{About, Astray, BlockDump};
 use crate::partition::{ClusterId, CutId};
 use crate::progress::Progress;
@@ -95,6 +96,7 @@ pub(super) fn describe_blocks(
                 block: format!("cluster {i}"),
                 nodes: nodes(),
                 reason: error.to_string(),
+                uncapped: tips::to_blame(cluster, error).into_iter().map(original).collect(),
                 dump: write_dump(shop.plan, &format!("cluster_{i}"), &input),
             });
         }
@@ -115,6 +117,7 @@ pub(super) fn describe_blocks(
             block: format!("connector {i}"),
             nodes: nodes(),
             reason: error.to_string(),
+            uncapped: Vec::new(),
             dump: input.and_then(|input| write_dump(shop.plan, &format!("connector_{i}"), &input)),
         });
     }

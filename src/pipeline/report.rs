@@ -26,6 +26,8 @@ pub struct FailedBlock {
     pub nodes: Vec<u32>,
     /// The stage that failed and why, at the last try.
     pub reason: String,
+    /// Terminals that could not be capped, if that is why.
+    pub uncapped: Vec<u32>,
     /// File with the input that reproduces the failure, when one could be written.
     pub dump: Option<String>,
 }
@@ -94,6 +96,11 @@ pub struct MeshSize {
 }
 
 impl RunReport {
+    /// Terminals without a cap, as indices in the file that was read: those that were let go, and those for which a block failed.
+    pub fn uncapped(&self) -> impl Iterator<Item = u32> {
+        self.fused.iter().flat_map(|f| &f.uncapped).chain(self.failed.iter().flat_map(|f| &f.uncapped)).copied()
+    }
+
     /// Whether the walls keep the vessels: every axis within, and, unless they were to fuse, vessels that are apart as two
     /// lumens.
     pub fn keeps_vessels(&self, fuse: bool) -> bool {

@@ -9,7 +9,7 @@ use crate::mesh::adjacency::tet_adjacency;
 use crate::mesh::source::{MeshSource, gather};
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
 use crate::progress::{Progress, Stage, StopsAfter};
-use crate::refine::{Figures, RefineError, RefineParams, refine};
+use crate::refine::{Figures, Freedom, RefineError, RefineParams, refine};
 use crate::skeleton::fixtures::tangle;
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -394,7 +394,8 @@ fn smoothing_and_refinement_stop_as_well() {
     let stops = Stops { after: 1, blocks: AtomicUsize::new(0) };
     let stopped = mesh_network(&h(12.0), &plan, &stops);
     assert!(matches!(stopped, Err(RunError::Cancelled)));
-    let refined = refine(&h(12.0), &RefineParams::default(), &StopsAfter::new(0));
+    let refined =
+        refine(&h(12.0), &RefineParams { freedom: Freedom::Grown, ..RefineParams::default() }, &StopsAfter::new(0));
     assert!(matches!(refined, Err(RefineError::Cancelled)));
 }
 

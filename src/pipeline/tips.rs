@@ -1,8 +1,9 @@
 //! Tips that cannot be capped where they are: put out or drawn back along their vessel until they can.
 
-use crate::block::{BlockError, Finished};
+use crate::block::{BlockError, Finished, buried};
 use crate::partition::{Cluster, EndKind};
-use crate::surface::CapError;
+use crate::skeleton::NodeId;
+use crate::surface::{CapError, CapFailure};
 
 /// How far a tip is moved, in its radii, one after the other: outwards, where another vessel of its branch point is in the
 /// way, or back, where it ends in another vessel.
@@ -13,7 +14,8 @@ const LEFT: f64 = 0.5;
 
 /// The ends of a cluster that could not be capped, ascending.
 pub fn uncapped(cluster: &Cluster, result: &Result<Finished, BlockError>, failures: &[BlockError]) -> Vec<u32> {
-    let mut ends: Vec<u32> = failures.iter().chain(result.as_ref().err()).filter_map(failed_end).collect();
+    let mut ends: Vec<u32> =
+        failures.iter().chain(result.as_ref().err()).filter_map(failed_end).map(|(end, _)| end).collect();
     let left_open = result.as_ref().map_or(&[][..], |made| &made.about.uncapped);
     let is_open = |kind| matches!(kind, EndKind::Terminal(node) if left_open.contains(&node.0));
     ends.extend((0..).zip(&cluster.ends).filter(|(_, end)| is_open(end.kind)).map(|(i, _)| i));
@@ -26,14 +28,30 @@ pub fn uncapped(cluster: &Cluster, result: &Result<Finished, BlockError>, failur
     ends
 }
 
-fn failed_end(error: &BlockError) -> Option<u32> {
+/// The end at which a block failed, if a tip is to blame, and its node.
+fn failed_end(error: &BlockError) -> Option<(u32, NodeId)> {
     match error {
-        BlockError::Cap { source: CapError::End { end, node: Some(_), .. }, .. } => Some(*end),
+        BlockError::Cap { source: CapError::End { end, node: Some(node), .. }, .. } => Some((*end, *node)),
         _ => None,
     }
 }
 
-/// The cluster with each of some tips moved by so many of its radii; none when a vessel is too short for it.
+/// The terminals for which a cluster failed: the one at which it did, and all that lie within other vessels if that is why.
+pub fn to_blame(cluster: &Cluster, error: &BlockError) -> Vec<NodeId> {
+    if is_buried(error) {
+        buried(cluster).map(|(_, node, _)| node).collect()
+    } else {
+        failed_end(error).map(|(_, node)| node).into_iter().collect()
+    }
+}
+
+/// Whether a tip lies within another vessel, so that nothing helps where it is.
+pub fn is_buried(error: &BlockError) -> bool {
+    matches!(error, BlockError::Cap { source: CapError::End { reason: CapFailure::Buried, .. }, .. })
+}
+
+/// The cluster with each of some tips moved by so many of its radii; none when a vessel is too short for it, or a tip lies
+/// within another vessel then.
 pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
     let mut result = cluster.clone();
     for &(i, radii) in moves {
@@ -53,7 +71,7 @@ pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
         result.tubes[beyond].b += shift;
         end.section.origin = to;
     }
-    Some(result)
+    if buried(&result).next().is_some() { None } else { Some(result) }
 }
 
 /// How far tips were moved, in words.

@@ -114,8 +114,17 @@ enum Beyond {
 struct Places {
     of_node: Vec<u32>,
     count: usize,
-    /// The places beside each, with the distance.
-    beside: Vec<Vec<(u32, f64)>>,
+    beside: Vec<Vec<Beside>>,
+}
+
+/// A place beside another.
+#[derive(Clone, Copy, Debug)]
+struct Beside {
+    place: u32,
+    /// How far it is along the vessel.
+    length: f64,
+    /// Radius that the vessel has there: a branch point has that of its widest.
+    radius: f64,
 }
 
 impl Places {
@@ -133,8 +142,8 @@ impl Places {
             let length = (raw.nodes[a].position - raw.nodes[b].position).norm();
             let [p, q] = [of_node[a], of_node[b]];
             if p != q {
-                beside[p as usize].push((q, length));
-                beside[q as usize].push((p, length));
+                beside[p as usize].push(Beside { place: q, length, radius: edge.radii[1] });
+                beside[q as usize].push(Beside { place: p, length, radius: edge.radii[0] });
             }
         }
         Self { of_node, count, beside }
@@ -150,8 +159,8 @@ impl Places {
         }
         // Of an inner node of a vessel, of which both neighbours agree, it can be told.
         let absurd = |place: u32| {
-            let [(p, _), (q, _)] = self.beside[place as usize][..] else { return false };
-            let [r, a, b] = [place, p, q].map(|i| at[i as usize]);
+            let [p, q] = self.beside[place as usize][..] else { return false };
+            let [r, a, b] = [place, p.place, q.place].map(|i| at[i as usize]);
             a > 0.0 && b > 0.0 && a.max(b) <= 2.0 * a.min(b) && (r > ABSURD * a.max(b) || r * ABSURD < a.min(b))
         };
         // A radius that is absurdly large says nothing of those beside it.
@@ -175,25 +184,22 @@ impl Places {
         if beside.len() > 2 {
             return false;
         }
-        let found: Vec<Beyond> = beside.iter().map(|&(next, length)| self.beyond(place, next, length, radii)).collect();
+        let found: Vec<Beyond> = beside.iter().map(|&next| self.beyond(place, next, radii)).collect();
         found.contains(&Beyond::Wider) && !found.contains(&Beyond::Same)
     }
 
     /// What follows where the vessel leaves a place towards `next`.
-    fn beyond(&self, place: u32, mut next: u32, mut arc: f64, radii: &[f64]) -> Beyond {
-        let (own, mut last) = (radii[place as usize], place);
+    fn beyond(&self, place: u32, mut next: Beside, radii: &[f64]) -> Beyond {
+        let (own, mut last, mut arc) = (radii[place as usize], place, 0.0);
         for _ in 0..MOST_BESIDE {
-            let radius = radii[next as usize];
+            arc += next.length;
+            let radius = radii[next.place as usize].min(next.radius);
             if radius > ABSURD * own && arc <= WINDOW * radius {
                 return Beyond::Wider;
             }
-            match self.beside[next as usize][..] {
+            match self.beside[next.place as usize][..] {
                 [_] => return Beyond::End,
-                [p, q] => {
-                    let (onward, length) = if p.0 == last { q } else { p };
-                    arc += length;
-                    (last, next) = (next, onward);
-                }
+                [p, q] => (last, next) = (next.place, if p.place == last { q } else { p }),
                 _ => return Beyond::Same,
             }
         }
@@ -224,9 +230,9 @@ impl Places {
     /// Mean of the radii beside a place, weighted by nearness.
     fn mean(&self, place: usize, radii: &[f64]) -> Option<f64> {
         let (mut sum, mut weights) = (0.0, 0.0);
-        for &(other, length) in &self.beside[place] {
-            let weight = 1.0 / length.max(APART);
-            sum += weight * radii[other as usize];
+        for next in &self.beside[place] {
+            let weight = 1.0 / next.length.max(APART);
+            sum += weight * radii[next.place as usize];
             weights += weight;
         }
         let mean = sum / weights;
@@ -244,8 +250,8 @@ impl Places {
                 continue;
             }
             radii[place as usize] = Some(radius.0);
-            let further = self.beside[place as usize].iter().filter(|(next, _)| radii[*next as usize].is_none());
-            heap.extend(further.map(|&(next, length)| Reverse((Total(distance + length), next, radius))));
+            let further = self.beside[place as usize].iter().filter(|next| radii[next.place as usize].is_none());
+            heap.extend(further.map(|next| Reverse((Total(distance + next.length), next.place, radius))));
         }
         radii
     }

@@ -205,6 +205,19 @@ impl<'a> Work<'a> {
         nearest.map(|(_, edge, radius)| (edge, radius))
     }
 
+    /// Whether all of a section of a way lies within another vessel.
+    fn is_buried(&self, way: &Way, stand: &Stand) -> bool {
+        let mut found = false;
+        self.tree.query(&Aabb::of_points([&stand.point]), |id| {
+            let edge = EdgeId(id);
+            let tube = self.given.tube(edge);
+            let (t, distance) = point_segment(&stand.point, &tube.a, &tube.b);
+            let other = self.branches.of_edge[edge.index()].0 != way.branch && !self.gone[edge.index()];
+            found |= other && distance + stand.radius <= tube.radius(t);
+        });
+        found
+    }
+
     /// Whether an edge belongs to the place where a way is looked at: it is near along the skeleton.
     fn is_own(&self, way: &Way, stand: &Stand, edge: EdgeId, radius: f64) -> bool {
         let near = OWN * stand.radius.max(radius);
@@ -254,17 +267,22 @@ impl<'a> Work<'a> {
         TouchedBy::Removed
     }
 
-    /// Draws a tip back by some radii.
+    /// Draws a tip back by some radii, and on until its disc does not lie within another vessel.
     fn draw_back(&mut self, way: &Way) -> TouchedBy {
         let stands = self.stands(way);
         let radius = stands[0].radius;
         let keep = LEFT * self.given.tube(way.edges[way.edges.len() - 1]).max_radius();
-        match stands.iter().find(|stand| stand.arc >= BACK * radius && stand.arc <= way.length - keep) {
+        let has_room = |stand: &&Stand| stand.arc <= way.length - keep && !self.is_buried(way, stand);
+        match stands.iter().skip_while(|stand| stand.arc < BACK * radius).find(has_room) {
             Some(stand) => {
                 self.cut(way, stand);
                 TouchedBy::Retracted { by: stand.arc }
             }
-            None if way.from.is_none() || way.length > (BACK + FURTHEST) * radius + keep => TouchedBy::Left,
+            None if way.from.is_none() => TouchedBy::Left,
+            // What lies within another vessel all along is a spur however long it is.
+            None if way.length > (BACK + FURTHEST) * radius + keep && !self.is_buried(way, &stands[0]) => {
+                TouchedBy::Left
+            }
             None => {
                 way.edges.iter().for_each(|e| self.gone[e.index()] = true);
                 TouchedBy::Removed
@@ -381,6 +399,12 @@ mod tests {
                 _ => assert!((end.expect("there").position.y - (length - BACK)).abs() < 1e-9),
             }
         }
+        // A hair that does not leave its trunk, however long it is for its width.
+        let mut hair = fork(0.9);
+        hair.edges[2].radii = [0.02; 2];
+        hair.nodes[3].radius = 0.02;
+        let (_, told) = take_back(&hair, &[3]).expect("vessels");
+        assert_eq!(told[0].done, TouchedBy::Removed);
         let given = fork(12.0);
         assert_eq!(take_back(&given, &[1, 77]).expect("vessels"), (given, Vec::new()));
     }

@@ -30,6 +30,11 @@ pub struct FarNode {
     pub radii: f64,
 }
 
+/// Whether there is nothing for whose sake anything would have to move.
+fn overlaps_nowhere(network: &Skeleton) -> bool {
+    network.overlaps(&network.adjacency()).pairs.is_empty()
+}
+
 /// How far nodes may go.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leashes {
@@ -44,7 +49,7 @@ impl Leashes {
     pub(super) fn of(freedom: Freedom, given: &Skeleton) -> Option<Self> {
         let measured = Self { radii: USUAL, grows: true };
         match freedom {
-            Freedom::Auto => given.is_measured().then_some(measured),
+            Freedom::Auto => (given.is_measured() || overlaps_nowhere(given)).then_some(measured),
             Freedom::Measured => Some(measured),
             Freedom::Radii(radii) => Some(Self { radii, grows: false }),
             Freedom::Grown => None,

@@ -38,7 +38,7 @@ pub enum Crowded {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Freedom {
-    /// As in a measured network where vessels are polylines, else as in a grown one.
+    /// As in a measured network where vessels are polylines, or where nothing overlaps; else as in a grown one.
     #[default]
     Auto,
     /// Nothing moves but what overlaps, by a radius of the node; further only where an overlap is not parted by that.

@@ -37,7 +37,13 @@ mod tests {
     #[test]
     fn what_would_help_is_named_and_nothing_where_all_is_well() {
         let meeting = Meeting { edges: [[0, 1], [2, 3]], vessels: [0, 1], distance: 0.5, radii: 1.0 };
-        let failed = FailedBlock { block: "cluster 0".into(), nodes: vec![0], reason: String::new(), dump: None };
+        let failed = FailedBlock {
+            block: "cluster 0".into(),
+            nodes: vec![0],
+            reason: String::new(),
+            uncapped: Vec::new(),
+            dump: None,
+        };
         let overlapping = RunReport { overlaps: vec![meeting], ..RunReport::default() };
         let broken = RunReport { failed: vec![failed], ..RunReport::default() };
         assert_eq!(advice(&overlapping, false, false, 3.0), Vec::<String>::new());

@@ -54,6 +54,9 @@ pub enum CapError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CapFailure {
+    /// The tip lies within another vessel, all of its disc: there is no wall.
+    #[error("the tip lies within another vessel")]
+    Buried,
     /// The vessel does not reach beyond the plane.
     #[error("no tip lies beyond the plane")]
     NoTip,

@@ -16,7 +16,7 @@ pub(crate) mod strip;
 #[cfg(test)]
 mod tests;
 
-pub use cap::{CapError, CappedSurface, Closing, cap_terminals};
+pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub use field::Field;
 pub use params::{SurfaceError, SurfaceParams};
 pub use shared_disc::SharedDisc;

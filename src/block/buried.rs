@@ -1,0 +1,66 @@
+//! Tips that lie within another vessel: no cap has room there, whatever is tried.
+
+use crate::geometry::{Point3, Tube, point_segment};
+use crate::partition::{Cluster, ClusterEnd, EndKind};
+use crate::skeleton::NodeId;
+
+/// The terminals of a cluster, with their indices in `Cluster::ends`, whose whole disc lies within the tube of another vessel.
+/// The wall is around that one, and none is at the tip.
+pub(crate) fn buried(cluster: &Cluster) -> impl Iterator<Item = (u32, NodeId, &ClusterEnd)> {
+    let beyond: Vec<usize> = cluster.ends.iter().map(|end| end.overrun as usize).collect();
+    (0..).zip(&cluster.ends).filter_map(move |(i, end)| match end.kind {
+        EndKind::Terminal(node) => is_buried(&cluster.tubes, &beyond, end).then_some((i, node, end)),
+        EndKind::Cut { .. } => None,
+    })
+}
+
+/// `beyond`: the tubes that lie beyond the ends.
+fn is_buried(tubes: &[Tube], beyond: &[usize], end: &ClusterEnd) -> bool {
+    let (tip, radius) = (end.section.origin, end.section.radius);
+    let covers = |i: &usize| {
+        let (t, distance) = point_segment(&tip, &tubes[*i].a, &tubes[*i].b);
+        distance + radius <= tubes[*i].radius(t)
+    };
+    let ends_here = |i: &usize| [tubes[*i].a, tubes[*i].b].contains(&tip);
+    let other = |i: &usize| !beyond.contains(i) && !ends_here(i);
+    let mut covering = (0..tubes.len()).filter(other).filter(covers).peekable();
+    if covering.peek().is_none() {
+        return false;
+    }
+    let own = own_vessel(tubes, beyond, tip);
+    covering.any(|i| !own.contains(&i))
+}
+
+/// The tubes from a tip to the next branch point.
+fn own_vessel(tubes: &[Tube], beyond: &[usize], tip: Point3) -> Vec<usize> {
+    let mut own: Vec<usize> = Vec::new();
+    let mut place = tip;
+    loop {
+        let touches = |i: &usize| [tubes[*i].a, tubes[*i].b].contains(&place) && !beyond.contains(i);
+        let mut onward = (0..tubes.len()).filter(touches).filter(|i| !own.contains(i));
+        let (Some(next), None) = (onward.next(), onward.next()) else { return own };
+        own.push(next);
+        place = if tubes[next].a == place { tubes[next].b } else { tubes[next].a };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::fixtures::bifurcation;
+
+    #[test]
+    fn a_tip_is_buried_where_its_disc_lies_in_another_vessel() {
+        let cluster = bifurcation(3);
+        assert_eq!(buried(&cluster).count(), 0);
+        let (i, tip) = (0..).zip(&cluster.ends).find(|(_, e)| matches!(e.kind, EndKind::Terminal(_))).expect("a tip");
+        let around = |radius: f64| {
+            let mut crowded = cluster.clone();
+            let (tip, aside) = (tip.section.origin, tip.section.frame().0 * 0.5);
+            crowded.tubes.push(Tube { a: tip + aside, b: tip + aside * 9.0, ra: radius, rb: radius });
+            buried(&crowded).map(|(end, _, _)| end).collect::<Vec<u32>>()
+        };
+        assert_eq!(around(tip.section.radius), Vec::<u32>::new());
+        assert_eq!(around(tip.section.radius + 0.51), [i]);
+    }
+}
