@@ -160,6 +160,11 @@ pub struct NotOnBoundary {
 }
 
 impl BlockError {
+    /// Whether the thinnest vessel asks for a grid of more cells than there may be.
+    pub fn is_too_fine(&self) -> bool {
+        matches!(self, Self::Surface { source: SurfaceError::TooLarge { .. }, .. })
+    }
+
     /// What was being done, for people.
     pub fn stage(&self) -> &'static str {
         match self {

@@ -47,7 +47,7 @@ impl Lumen<'_> {
         let Some(axis) = (tube.b - tube.a).try_normalize(0.0) else { return 0.0 };
         let (u, w) = Section { origin: tube.a, axis, radius: ra }.frame();
         let (mut sum, mut seen) = (0.0, Vec::new());
-        for [x, y, z] in evenly(count) {
+        for [x, y, z] in evenly(edge.index(), count) {
             // Evenly along the axis and over each section; a sample stands for its section's area.
             let radius = tube.radius(x);
             let (r, angle) = (radius * y.sqrt(), TAU * z);
@@ -60,7 +60,7 @@ impl Lumen<'_> {
     fn of_ball(&self, node: NodeId, count: usize) -> f64 {
         let (center, radius) = (self.network.node(node).position, self.ball(node));
         let (mut sum, mut seen) = (0.0, Vec::new());
-        for [x, y, z] in evenly(count) {
+        for [x, y, z] in evenly(node.index(), count) {
             let (r, height, angle) = (radius * x.cbrt(), 2.0 * y - 1.0, TAU * z);
             let across = (1.0 - height * height).sqrt();
             let way = crate::geometry::Vec3::new(across * angle.cos(), across * angle.sin(), height);
@@ -103,7 +103,9 @@ impl Lumen<'_> {
     }
 }
 
-/// Points that fill the unit cube evenly.
-fn evenly(count: usize) -> impl Iterator<Item = [f64; 3]> {
-    (0..count).map(|i| EVEN.map(|step| (0.5 + step * (i + 1) as f64).fract()))
+/// Points that fill the unit cube evenly: for each place the next so many, as the same ones would be off by the same
+/// everywhere.
+fn evenly(place: usize, count: usize) -> impl Iterator<Item = [f64; 3]> {
+    let first = place * count + 1;
+    (first..first + count).map(|i| EVEN.map(|step| (0.5 + step * i as f64).fract()))
 }

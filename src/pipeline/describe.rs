@@ -96,6 +96,7 @@ pub(super) fn describe_blocks(
                 block: format!("cluster {i}"),
                 nodes: nodes(),
                 reason: error.to_string(),
+                too_fine: error.is_too_fine(),
                 uncapped: tips::to_blame(cluster, error).into_iter().map(original).collect(),
                 dump: write_dump(shop.plan, &format!("cluster_{i}"), &input),
             });
@@ -117,6 +118,7 @@ pub(super) fn describe_blocks(
             block: format!("connector {i}"),
             nodes: nodes(),
             reason: error.to_string(),
+            too_fine: error.is_too_fine(),
             uncapped: Vec::new(),
             dump: input.and_then(|input| write_dump(shop.plan, &format!("connector_{i}"), &input)),
         });

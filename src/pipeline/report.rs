@@ -28,6 +28,8 @@ pub struct FailedBlock {
     pub reason: String,
     /// Terminals that could not be capped, if that is why.
     pub uncapped: Vec<u32>,
+    /// Whether its thinnest vessel asks for a grid of more cells than there may be.
+    pub too_fine: bool,
     /// File with the input that reproduces the failure, when one could be written.
     pub dump: Option<String>,
 }

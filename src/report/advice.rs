@@ -23,7 +23,13 @@ pub fn advice(run: &RunReport, invalid: bool, refined: bool, rho: f64) -> Vec<St
     if run.fused.iter().any(|block| !block.uncapped.is_empty()) {
         lines.push("tips end in other vessels: --touching retract draws them back, --touching join joins them".into());
     }
-    if run.overlaps.is_empty() || refined {
+    if run.failed.iter().any(|block| block.too_fine) {
+        lines.push(
+            "the radii in a block differ too much for one grid, whose cells follow the thinnest vessel: leave out what is that thin, \
+             or try a smaller --rho"
+                .into(),
+        );
+    } else if run.overlaps.is_empty() || refined {
         lines.push(format!("finer blocks may come out where these did not: --rho {}", (FINER * rho).ceil()));
     }
     lines
@@ -42,9 +48,12 @@ mod tests {
             nodes: vec![0],
             reason: String::new(),
             uncapped: Vec::new(),
+            too_fine: false,
             dump: None,
         };
         let overlapping = RunReport { overlaps: vec![meeting], ..RunReport::default() };
+        let fine = FailedBlock { too_fine: true, ..failed.clone() };
+        let fine = RunReport { failed: vec![fine], ..RunReport::default() };
         let broken = RunReport { failed: vec![failed], ..RunReport::default() };
         assert_eq!(advice(&overlapping, false, false, 3.0), Vec::<String>::new());
         let options = |run: &RunReport, refined| -> Vec<String> {
@@ -54,6 +63,7 @@ mod tests {
         assert_eq!(options(&overlapping, false), ["refine"]);
         assert_eq!(options(&overlapping, true), ["residual", "rho"]);
         assert_eq!(options(&broken, false), ["rho"]);
+        assert!(options(&fine, false) == ["rho"] && advice(&fine, false, false, 3.0)[0].ends_with("a smaller --rho"));
         assert!(advice(&broken, false, false, 3.0)[0].ends_with("--rho 5"));
     }
 }
