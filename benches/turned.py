@@ -79,6 +79,8 @@ def forms(args, points, triangles):
     if "split" in kinds:
         fine = (points, triangles)
         for times in ("once", "twice"):
+            if 4 * len(fine[1]) > args.max_triangles:
+                break
             fine = split(*fine)
             yield f"split {times}", fine
             yield f"split {times}, turned", (fine[0] @ rotation(1).T, fine[1])
@@ -143,6 +145,7 @@ def main():
     parser.add_argument("--program", default="target/release/anastomesh")
     parser.add_argument("--tetgen", default=shutil.which("tetgen") or "none")
     parser.add_argument("--limit", type=int, default=61, help="CPU seconds after which a run is ended")
+    parser.add_argument("--jobs", type=int, default=2, help="cases at a time")
     parser.add_argument("--save", help="folder for the surfaces that are not kept")
     parser.add_argument("--out", help="file for one line of JSON per case")
     args = parser.parse_args()
@@ -161,14 +164,23 @@ def main():
                 if len(surface[1]) <= args.max_triangles:
                     yield path.stem, form, surface
 
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for row in pool.map(lambda c: case(args, *c), cases()):
-            rows.append(row)
-            if out:
-                out.write(json.dumps(row) + "\n")
-                out.flush()
-            if not row["kept"]:
-                print(row, flush=True)
+    def done():
+        """Rows in the order of the cases, few of which are there at a time: split twice they are large."""
+        waiting = []
+        with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+            for one in cases():
+                waiting.append(pool.submit(case, args, *one))
+                if len(waiting) > args.jobs:
+                    yield waiting.pop(0).result()
+            yield from (row.result() for row in waiting)
+
+    for row in done():
+        rows.append(row)
+        if out:
+            out.write(json.dumps(row) + "\n")
+            out.flush()
+        if not row["kept"]:
+            print(row, flush=True)
     print("\n| form | cases | refused: meets itself | kept | TetGen kept | CPU s | TetGen CPU s | longest CPU s |\n|---|---|---|---|---|---|---|---|")
     names = dict.fromkeys(r["form"].split(" ")[0] if "split" not in r["form"] else r["form"] for r in rows)
     for name in [*names, "all"]:

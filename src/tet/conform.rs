@@ -7,7 +7,7 @@ use super::lattice;
 use super::options::{Interior, Refinement};
 use super::progress::Stage;
 use super::recover::exact::{Missing, Way, recover_exact};
-use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_turned};
+use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
 use super::request::Request;
 use super::{contacts, delaunay, sized};
 use crate::geometry::Point3;
@@ -65,7 +65,8 @@ fn exactly(
     let go_on = |ways: &[Way]| go_on(r, complex, points.len(), missing, (ways, flat));
     let anew = |flat| anew(r, points, flat);
     let rounded = single.filter(|&coarse| lies_turned(r.surface, missing.edges, coarse));
-    let turned = lies_turned(r.surface, missing.edges, flat) || has_flat(complex, flat, missing.edges.len());
+    let planes = lies_in_planes(r.surface, missing.edges, flat);
+    let turned = planes || lies_turned(r.surface, missing.edges, flat) || has_flat(complex, flat, missing.edges.len());
     let first = match rounded {
         Some(coarse) => anew(coarse),
         None if turned => anew(flat),

@@ -173,3 +173,54 @@ fn turned_boxes_within_boxes_are_filled() {
         assert!(fills(&turned(all, &mut coin), &format!("boxes {seed}")));
     }
 }
+
+#[test]
+fn turned_plates_as_thin_as_can_be_are_filled() {
+    for seed in 0..cases() {
+        let mut coin = Coin(seed);
+        // From thick ones to one unit in the last place.
+        let height = 10.0_f64.powf(-16.0 * coin.share()).max(f64::EPSILON);
+        let n = 4 + coin.below(20) as u32;
+        let plate = plate(n, height, &mut coin);
+        fills(&turned(plate, &mut coin), &format!("thin {seed} {n} {height}"));
+    }
+}
+
+#[test]
+fn turned_plates_of_needles_in_single_precision_are_filled() {
+    for seed in 0..cases() / 10 {
+        let mut coin = Coin(seed);
+        let n = 100 + coin.below(400) as u32;
+        let mut plate = turned(plate(n, 0.2, &mut coin), &mut coin);
+        for x in plate.points.iter_mut().flat_map(|p| p.iter_mut()) {
+            *x = f64::from(*x as f32);
+        }
+        fills(&plate, &format!("single {seed} {n}"));
+    }
+}
+
+#[test]
+fn plates_of_needles_with_points_amid_their_edges_are_filled() {
+    for seed in 0..cases() / 10 {
+        let mut coin = Coin(seed);
+        let n = 100 + coin.below(200) as u32;
+        let plate = split(&plate(n, 0.2, &mut coin));
+        fills(&plate, &format!("split {seed} {n}"));
+        fills(&turned(plate, &mut coin), &format!("split, turned {seed} {n}"));
+    }
+}
+
+/// A plate whose upper side is flat but for noise, and has points inside.
+#[test]
+fn nearly_flat_discs_are_filled() {
+    for seed in 0..cases() {
+        let mut coin = Coin(seed);
+        let n = 5 + coin.below(60) as u32;
+        let noise = 10.0_f64.powf(-16.0 + 8.0 * coin.share());
+        let mut plate = split(&plate(n, 0.3, &mut coin));
+        for p in &mut plate.points {
+            p.z += noise * (coin.share() - 0.5);
+        }
+        fills(&turned(plate, &mut coin), &format!("noise {seed} {n} {noise}"));
+    }
+}

@@ -3,12 +3,20 @@
 
 use super::Recovery;
 use super::rule::Rule;
+use crate::mesh::TriMesh;
+use crate::tet::complex::Complex;
+use crate::tet::input::SurfaceEdges;
 
 /// Depth to which flips clear the way, for a flat tetrahedron.
 const DEPTH: u32 = 2;
 
 /// Flips tried for one.
 const BUDGET: u32 = 100;
+
+/// Removes tetrahedra that are no thicker than a height, as far as flips can that keep what is there of a surface.
+pub(super) fn dissolve_flat(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges, height: f64) {
+    Recovery::new(c, surface, edges, Rule::Thick(height)).dissolve();
+}
 
 impl Recovery<'_> {
     /// Removes what the rule does not allow, as far as flips can.

@@ -26,7 +26,7 @@ use crate::mesh::TriMesh;
 use cavity::Cavity;
 use march::{Crossing, crossings, piercing_edges};
 pub(super) use rule::{Rule, flat_height, flat_height_in_single};
-pub(super) use turned::lies_turned;
+pub(super) use turned::{lies_in_planes, lies_turned};
 
 /// Depth to which a flip that is blocked may clear its way by others.
 const DEPTH: u32 = 3;
@@ -173,7 +173,7 @@ impl<'a> Recovery<'a> {
             Rule::Positive => flat_height_in_single(points).unwrap_or(flat_height(points)),
             Rule::Thick(height) => height,
         };
-        lies_turned(self.surface, edges, height)
+        lies_turned(self.surface, edges, height) || lies_in_planes(self.surface, edges, height)
     }
 
     /// Flips away what crosses an edge: the first crossing that gives way, from one end and then from the other.

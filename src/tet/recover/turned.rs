@@ -6,8 +6,23 @@ use crate::geometry::predicates::orient3d;
 use crate::mesh::TriMesh;
 use rustc_hash::FxHashMap;
 
+/// See [`lies_in_planes`].
+const MANY: usize = 2000;
+
 /// Whether more than three quarters of some edges lie between two triangles that are one plane to within a height, and not exactly.
 pub(in crate::tet) fn lies_turned(surface: &TriMesh, edges: &[[u32; 2]], height: f64) -> bool {
+    most_lie_flat(surface, edges, height, |sign| sign != 0.0)
+}
+
+/// Whether edges are so many, and more than three quarters of them between two triangles that are one plane to within a
+/// height, that recovering them as in the plane is quickest, be the planes exact or not.
+pub(in crate::tet) fn lies_in_planes(surface: &TriMesh, edges: &[[u32; 2]], height: f64) -> bool {
+    edges.len() > MANY && most_lie_flat(surface, edges, height, |_| true)
+}
+
+/// Whether more than three quarters of some edges lie between two triangles that are one plane to within a height, and
+/// whose orientation is wanted.
+fn most_lie_flat(surface: &TriMesh, edges: &[[u32; 2]], height: f64, wanted: impl Fn(f64) -> bool) -> bool {
     let sorted = |a: u32, b: u32| [a.min(b), a.max(b)];
     let mut across: FxHashMap<[u32; 2], Vec<u32>> = edges.iter().map(|&[a, b]| (sorted(a, b), Vec::new())).collect();
     for &[a, b, c] in &surface.triangles {
@@ -20,7 +35,7 @@ pub(in crate::tet) fn lies_turned(surface: &TriMesh, edges: &[[u32; 2]], height:
     let turned = across.iter().filter(|(edge, apices)| {
         let [x, y] = apices[..] else { return false };
         let corners @ [p, q, r, s] = [edge[0], edge[1], x, y].map(|v| &surface.points[v as usize]);
-        orient3d(p, q, r, s) != 0.0 && least_height(corners) < height
+        wanted(orient3d(p, q, r, s)) && least_height(corners) < height
     });
     4 * turned.count() > 3 * edges.len()
 }
@@ -41,5 +56,7 @@ mod tests {
     fn only_what_is_nearly_flat_counts() {
         let counts = |height| lies_turned(&folded(height), &[[0, 1]], 1e-10);
         assert!(counts(1e-14) && !counts(0.0) && !counts(1e-3));
+        let flat = |height| most_lie_flat(&folded(height), &[[0, 1]], 1e-10, |_| true);
+        assert!(flat(1e-14) && flat(0.0) && !flat(1e-3));
     }
 }

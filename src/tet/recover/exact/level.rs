@@ -24,20 +24,21 @@ use std::collections::VecDeque;
 /// Edges in the way of one, at most.
 const FAR: usize = 1024;
 
-/// Vertices put into a plane for one edge at most.
-const PIERCED: usize = 16;
+/// Vertices put into a plane for one edge at most: a long one crosses many edges that pierce the plane.
+const PIERCED: usize = 128;
 
 /// Tetrahedra that are added to one half of a ring at most.
 const STEPS: usize = 6;
 
 /// Corners of one half of a ring that are tried as vertices to which all is joined, the highest ones.
-const HIGHEST: usize = 4;
+const HIGHEST: usize = 12;
 
 /// Least distance of such a corner from what it sees, over its height.
 const MARGIN: f64 = 1e-3;
 
-/// Tetrahedra at most that go as well, so that it sees all.
-const IN_VIEW: usize = 40;
+/// Tetrahedra at most that go as well, so that it sees all: among needles these are many, and still fewer than those
+/// that vertices lower down would cost.
+const IN_VIEW: usize = 1000;
 
 /// What an exchange that is refused costs, in exchanges.
 const REFUSED: usize = 8;
@@ -48,9 +49,25 @@ const AMPLE: usize = 4;
 /// Facets that are looked at for the plane of one.
 const AROUND: usize = 200;
 
-/// What is flat, and least distances of new vertices from the planes around, in heights that count as flat: the more
-/// edges are there the less is in the way of the others.
-const MEASURES: [(f64, f64); 3] = [(1.0, 2.0), (1.0, 0.1), (4.0, 0.1)];
+/// How coarsely planes are looked at, in heights that count as flat.
+#[derive(Clone, Copy)]
+struct Measure {
+    /// What is flat.
+    flat: f64,
+    /// Least distance of new vertices from the planes around.
+    clearance: f64,
+    /// Triangles that are less high than this are not made on the way, since rounding may have tilted them by any angle.
+    thin: f64,
+}
+
+/// Strict at first, since what is low is in the way of what follows; the more edges are there the less is in the way of
+/// the others.
+const MEASURES: [Measure; 4] = [
+    Measure { flat: 1.0, clearance: 20.0, thin: 1.0 },
+    Measure { flat: 1.0, clearance: 5.0, thin: 1.0 },
+    Measure { flat: 1.0, clearance: 0.3, thin: 1.0 },
+    Measure { flat: 4.0, clearance: 0.3, thin: 0.0 },
+];
 
 /// Share of the edges that have to come with one measure, for the next to be tried.
 const GAIN: f64 = 0.1;
@@ -79,6 +96,10 @@ pub(super) struct Level<'a> {
     pub tolerance: f64,
     /// Least distance of a new vertex from the planes around.
     pub clearance: f64,
+    /// Least height of a triangle that is made on the way.
+    thin: f64,
+    /// The planes of missing facets and the areas that tell of them, as far as they are known.
+    planes: FxHashMap<[u32; 3], (f64, Plane)>,
     /// New vertices that lie on nothing.
     pub made: Vec<u32>,
     /// New vertices in planes.
@@ -103,9 +124,8 @@ pub(super) fn level_out(
     }
     let mut level = Level::new(push, keep, facets);
     let mut left = missing.edges.to_vec();
-    for (tolerance, clearance) in MEASURES {
-        level.tolerance = tolerance * level.s.flat;
-        level.clearance = clearance * level.s.flat;
+    for measure in MEASURES {
+        level.look(measure);
         let before = left.len();
         let mut again = Vec::new();
         for edge in left {
@@ -144,11 +164,21 @@ impl<'a> Level<'a> {
             spare: 0,
             tolerance: 0.0,
             clearance: 0.0,
+            thin: 0.0,
+            planes: FxHashMap::default(),
             made: Vec::new(),
             inside: Vec::new(),
             within: FxHashSet::default(),
         }
     }
+
+    fn look(&mut self, measure: Measure) {
+        self.tolerance = measure.flat * self.s.flat;
+        self.clearance = measure.clearance * self.s.flat;
+        self.thin = measure.thin * self.s.flat;
+        self.planes.clear();
+    }
+
     /// Makes an edge if it lies in the plane of one of its facets and that is one of faces. What has changed when this
     /// does not succeed is as good as before.
     pub(super) fn insert(&mut self, [a, b]: [u32; 2]) -> bool {
@@ -157,7 +187,7 @@ impl<'a> Level<'a> {
         }
         self.spare = PIERCED;
         let facets = self.facets.get(&sorted(a, b)).cloned().unwrap_or_default();
-        let mut planes: Vec<(f64, Plane)> = facets.into_iter().map(|facet| self.plane(facet)).collect();
+        let mut planes: Vec<(f64, Plane)> = facets.into_iter().map(|facet| self.plane_of(facet)).collect();
         planes.sort_by(|x, y| y.0.total_cmp(&x.0));
         planes.into_iter().any(|(_, plane)| {
             let course = self.course([a, b], &plane).or_else(|| self.course([b, a], &plane));
@@ -171,22 +201,33 @@ impl<'a> Level<'a> {
             && plane.height(self.s.point(v)).abs() < 4.0 * self.tolerance
     }
 
+    fn plane_of(&mut self, facet: [u32; 3]) -> (f64, Plane) {
+        if let Some(&known) = self.planes.get(&facet) {
+            return known;
+        }
+        let plane = self.plane(facet);
+        self.planes.insert(facet, plane);
+        plane
+    }
+
     /// The plane of a facet, told by all of the facets around that lie in it, and their area. That of a needle alone is
     /// known only near its long side.
     fn plane(&self, facet: [u32; 3]) -> (f64, Plane) {
         let mut patch = Patch::new(self.s, facet);
         let mut near = vec![facet];
+        let mut known = FxHashSet::from_iter([facet]);
         let mut head = 0;
         while let Some(&triangle) = near.get(head).filter(|_| near.len() < AROUND) {
             head += 1;
             for other in sides(triangle).iter().filter_map(|side| self.facets.get(side)).flatten() {
-                if near.contains(other) {
+                if known.contains(other) {
                     continue;
                 }
                 let wider = patch.with(self.s, *other);
                 let plane = wider.plane();
                 if facet.iter().chain(other).all(|&v| self.lies_in(v, &plane)) {
                     near.push(*other);
+                    known.insert(*other);
                     patch = wider;
                 }
             }
@@ -204,7 +245,7 @@ impl<'a> Level<'a> {
             }
             work -= 1;
             let flat = self.quadrilateral(edge, plane);
-            let convex = flat.filter(|q| self.convex(q, plane));
+            let convex = flat.filter(|q| self.convex(q, plane) && self.may_be(q.across, q.edge, [a, b]));
             let Some(Diagonal { across: [x, y], .. }) = convex.filter(|q| self.exchange(q)) else {
                 work = if convex.is_some() { work.saturating_sub(REFUSED) } else { work };
                 refused += 1;
@@ -300,6 +341,13 @@ impl<'a> Level<'a> {
 
     fn convex(&self, &Diagonal { edge: [p, q], across }: &Diagonal, plane: &Plane) -> bool {
         self.side(across, p, plane) * self.side(across, q, plane) < 0
+    }
+
+    /// Whether an edge may be made on the way to one: not if that makes a triangle that is too thin.
+    fn may_be(&self, [x, y]: [u32; 2], corners: [u32; 2], wanted: [u32; 2]) -> bool {
+        let (p, along) = (self.s.point(x), self.s.point(y) - self.s.point(x));
+        let high = |&v: &u32| along.cross(&(self.s.point(v) - p)).norm() > self.thin * along.norm();
+        sorted(x, y) == sorted(wanted[0], wanted[1]) || self.keep.contains(x, y) || corners.iter().all(high)
     }
 
     /// Exchanges an edge for the one across.

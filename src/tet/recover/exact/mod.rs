@@ -20,6 +20,7 @@ mod pierce;
 mod plane;
 mod polygon;
 mod push;
+mod queue;
 mod room;
 mod sectors;
 mod segments;
@@ -36,17 +37,12 @@ use crate::tet::progress::Watch;
 use helpers::add_helpers;
 use level::level_out;
 pub(in crate::tet) use parts::Missing;
-use parts::{Part, parts};
+use parts::Part;
 use push::Push;
+use queue::{Failed, Queue};
 use segments::Segments;
 use space::Space;
 pub(in crate::tet) use ways::Way;
-
-/// Times that a large part is tried in another order, in each of the ways.
-const ATTEMPTS_ALONE: u64 = 2;
-
-/// Edges of a part that is worth a copy of all, to be tried again alone.
-const LARGE: usize = 100;
 
 /// Edges of those missing that may be left when what lies in planes is recovered; beyond that it gains nothing, and new
 /// vertices are in the way.
@@ -92,9 +88,11 @@ pub(in crate::tet) fn recover_exact(
         if way.level && start.edges.len() as f64 > WORTHWHILE * missing.edges.len() as f64 {
             continue;
         }
-        match recover_parts(start.clone(), surface, way, watch) {
-            Ok(recovered) => return Ok(recovered),
-            Err(Failed { error, again: false }) => return Err(error),
+        let left = Missing { edges: &start.edges, triangles: &start.triangles };
+        let budget = way.budget(start.edges.len());
+        match Queue::new(start.push.clone(), (surface, edges), (way, budget), watch).run(left) {
+            Ok((push, summary)) => return Ok((push.s.c, summary)),
+            Err(Failed { error, .. }) if !matches!(error, TetError::Stuck { .. }) => return Err(error),
             Err(Failed { error, .. }) => last = error,
         }
     }
@@ -117,35 +115,6 @@ impl Start<'_> {
         let (edges, triangles) = level_out(&mut push, edges, missing, watch)?;
         Ok(Self { push, edges, triangles })
     }
-}
-
-/// Why parts could not be recovered, and whether all may be tried again.
-struct Failed {
-    error: TetError,
-    again: bool,
-}
-
-fn recover_parts(start: Start, surface: &TriMesh, way: Way, watch: &Watch) -> Result<(Complex, ExactSummary), Failed> {
-    let Start { mut push, edges, triangles } = start;
-    let budget = way.budget(edges.len());
-    let mut summary = ExactSummary::default();
-    push.segments.deep = way.deep;
-    for part in parts(&surface.triangles, Missing { edges: &edges, triangles: &triangles }) {
-        // Large parts take most of the time, and are tried again alone; a copy for each of the others would take longer.
-        let saved = (part.edges.len() >= LARGE).then(|| (push.clone(), summary));
-        let mut tried = 0;
-        while let Err(error) = recover_part(&mut push, &part, way.salt + tried, &mut summary, budget, watch) {
-            tried += 1;
-            let error = about_input(error, surface, &part);
-            // The surface does not meet itself, so whatever was in the way may not be there another way.
-            let again = matches!(error, TetError::Stuck { .. });
-            let Some(saved) = saved.as_ref().filter(|_| again && tried < ATTEMPTS_ALONE) else {
-                return Err(Failed { error, again });
-            };
-            (push, summary) = saved.clone();
-        }
-    }
-    Ok((push.s.c, summary))
 }
 
 /// What happens to helpers is told of the edge that they were to help.

@@ -1,10 +1,12 @@
 //! Cavities that are wider than a sector of a star: where the room in a sector is too small, the tetrahedra behind the
 //! walls that bound it, or that a vertex does not see, are taken as well.
 
+use super::parts::{sides, sorted};
 use super::room::{Apex, Room};
 use super::sectors::Sector;
 use super::space::Space;
 use crate::geometry::{Point3, unit_normal};
+use rustc_hash::FxHashSet;
 
 /// Makes sectors around one vertex, or place, wider.
 pub(super) struct Wider<'a> {
@@ -77,41 +79,45 @@ impl<'a> Wider<'a> {
     fn grow(&mut self, halves: &[u32], sees: impl Fn([u32; 3]) -> bool, steps: usize) -> Option<Vec<u32>> {
         let c = &self.s.c;
         let before = self.cavity.len();
+        let mut taken: FxHashSet<u32> = self.cavity.iter().copied().collect();
+        let mut border: FxHashSet<u32> = halves.iter().copied().collect();
         let mut open = halves.to_vec();
         let mut walls = Vec::new();
         while let Some(half) = open.pop() {
+            if !border.contains(&half) {
+                continue;
+            }
             if sees(self.s.wall(half)) {
                 walls.push(half);
                 continue;
             }
             let next = c.mate(half) >> 2;
-            let taken = self.cavity.contains(&next) || self.cavity.len() == before + steps;
-            if taken || c.is_frozen(half) || c.is_ghost(next) {
+            let full = self.cavity.len() == before + steps;
+            if full || c.is_frozen(half) || c.is_ghost(next) || !taken.insert(next) {
                 return None;
             }
             self.cavity.push(next);
+            border.remove(&half);
             for inner in (4 * next..4 * next + 4).filter(|&inner| c.mate(inner) != half) {
-                let mate = c.mate(inner);
-                let known = [&mut open, &mut walls].into_iter().find_map(|list| {
-                    let k = list.iter().position(|&x| x == mate)?;
-                    Some(list.swap_remove(k))
-                });
-                match known {
-                    Some(_) if c.is_frozen(inner) => return None,
-                    Some(_) => {}
-                    None => open.push(inner),
+                if !border.remove(&c.mate(inner)) {
+                    border.insert(inner);
+                    open.push(inner);
+                } else if c.is_frozen(inner) {
+                    return None;
                 }
             }
         }
+        walls.retain(|half| border.contains(half));
         Some(walls)
     }
 
     /// Whether what has to stay of some tetrahedra lies on the faces of a sector.
     fn keeps(&self, sector: &Sector, tets: &[u32], free: impl Fn(u32) -> bool) -> bool {
-        let has = |part: &[u32]| sector.faces.iter().any(|f| part.iter().all(|x| f.contains(x)));
+        let corners: FxHashSet<u32> = sector.faces.iter().flatten().copied().collect();
+        let edges: FxHashSet<[u32; 2]> = sector.faces.iter().flat_map(|&f| sides(f)).collect();
         tets.iter().map(|&t| self.s.c.verts(t)).all(|v| {
-            v.iter().all(|&x| free(x) || has(&[x]))
-                && (0..4).all(|i| (0..i).all(|j| !(self.stays)(v[i], v[j]) || has(&[v[i], v[j]])))
+            v.iter().all(|&x| free(x) || corners.contains(&x))
+                && (0..4).all(|i| (0..i).all(|j| !(self.stays)(v[i], v[j]) || edges.contains(&sorted(v[i], v[j]))))
         })
     }
 
