@@ -462,5 +462,53 @@ fn what_is_known_of_the_vessels_stands_in_the_grid_on_request() {
     assert!(index.contains("Name=\"radius\"") && index.contains("Name=\"ratio\""), "{index}");
     let bent = mesh(&network, &folder.path().join("a.vtu"), &["--data", "colour"]);
     assert_says(&bent, USAGE, &["colour", "generation"]);
-    assert_says(&mesh(&network, &folder.path().join("a.msh"), &["--data", "radius"]), USAGE, &["--data", ".pvtu"]);
+    for (name, read_as_text) in [("a.msh", false), ("a.msh2", true)] {
+        let out = folder.path().join(name);
+        assert_code(&mesh(&network, &out, &data), FINE);
+        let bytes = fs::read(&out).expect("a mesh");
+        let text = String::from_utf8_lossy(&bytes);
+        assert!(text.contains("$NodeData\n1\n\"radius\"") && text.contains("$ElementData\n1\n\"ratio\""), "{name}");
+        assert_eq!(std::str::from_utf8(&bytes).is_ok(), read_as_text);
+        assert_code(&run("check", &[&out], &[]), FINE);
+    }
+    for name in ["a.mesh", "a.foam", "a.svmesh", "a.ele"] {
+        let refused = mesh(&network, &folder.path().join(name), &["--data", "radius"]);
+        assert_says(&refused, USAGE, &["--data", ".msh2"]);
+    }
+}
+
+#[test]
+fn coordinates_of_32_bits_are_checked_as_such() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    assert_code(&mesh(&fixture("tree_30.swc"), &out, &["-q", "--float32"]), FINE);
+    assert_code(&run("check", &[&out], &[]), FINE);
+    assert_code(&run("check", &[&out], &["--memory", "1MiB"]), FINE);
+}
+
+#[test]
+fn a_format_can_be_named() {
+    let folder = folder();
+    let (network, at) = (fixture("tree_30.swc"), |name: &str| folder.path().join(name));
+    for (format, name, usual) in
+        [("msh2", "a.msh", "b.msh2"), ("medit", "a.vtu", "b.mesh"), ("vtu", "a.grid", "b.vtu"), ("msh", "a", "b.msh")]
+    {
+        assert_code(&mesh(&network, &at(name), &["-q", "--format", format]), FINE);
+        assert_code(&mesh(&network, &at(usual), &["-q"]), FINE);
+        assert!(fs::read(at(name)).expect("a mesh") == fs::read(at(usual)).expect("a mesh"), "{format}");
+        let bytes = fs::read(at(usual)).expect("a mesh");
+        let converted = run("convert", &[&at(usual), Path::new("--output"), &at(name)], &["-q", "--format", format]);
+        assert_code(&converted, FINE);
+        assert!(fs::read(at(name)).expect("a mesh") == bytes, "{format}");
+    }
+    assert_code(&run("check", &[&at("a.msh")], &[]), FINE);
+    assert_code(&mesh(&network, &at("case"), &["-q", "--format", "openfoam"]), FINE);
+    assert!(at("case/constant/polyMesh/owner").is_file() && at("case_patches.csv").is_file());
+    assert_code(&mesh(&network, &at("complete"), &["-q", "--format", "simvascular"]), FINE);
+    assert!(at("complete/solver.xml").is_file());
+    assert_says(&mesh(&network, &at("a.vtu"), &["--format", "stl"]), USAGE, &["stl", "simvascular"]);
+    let network_as_mesh = run("convert", &[&network, Path::new("--output"), &at("c.vtu")], &["--format", "vtu"]);
+    assert_says(&network_as_mesh, USAGE, &["anastomesh mesh"]);
+    let data = mesh(&network, &at("c.vtu"), &["--format", "medit", "--data", "radius"]);
+    assert_says(&data, USAGE, &["--data"]);
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::format::FormatArgs;
 use super::grid::GridArgs;
 use super::progress::Bars;
 use super::room;
@@ -16,7 +17,7 @@ use crate::io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
 };
 use crate::io::volume::{
-    MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, WriteOptions, ensure_writable, read_mesh,
+    MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, WriteOptions, ensure_writable_as, read_mesh,
     write_mesh_with,
 };
 use crate::mesh::adjacency::boundary_faces;
@@ -39,6 +40,8 @@ pub struct Args {
     /// surface one of these; a network .vtp or, if it is a tree, .swc
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    format: FormatArgs,
     /// Of a volume mesh's boundary take the wall alone (the patch 1), without inlets and outlets
     #[arg(long)]
     no_caps: bool,
@@ -165,12 +168,13 @@ impl Args {
         let path = &self.output;
         // A .vtp holds a network or a surface, as what becomes of it asks.
         let to = match Kind::of(path) {
+            _ if self.format.format.is_some() => Kind::Mesh,
             // Pictures and printers have formats that are not read.
             Ok(Kind::Network) | Err(_) if from != Kind::Network => Kind::Surface,
             found => found?,
         };
         match (from, to) {
-            (Kind::Mesh, Kind::Mesh) => ensure_writable(path).map_err(|e| e.to_string()),
+            (Kind::Mesh, Kind::Mesh) => ensure_writable_as(self.format.of(path)?, path).map_err(|e| e.to_string()),
             (Kind::Mesh | Kind::Surface, Kind::Surface) => ensure_boundary_writable(path).map_err(|e| e.to_string()),
             (Kind::Network, Kind::Network) => ensure_tree_writable(path).map_err(|e| e.to_string()),
             (from, to) => return Err(Failure::usage(Unlike { from, to }.to_string())),
@@ -214,8 +218,12 @@ impl Args {
 
     fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: Kind, bars: &Bars) -> Result<Written, Failure> {
         if to == Kind::Mesh {
-            let options =
-                WriteOptions { memory: Some((self.memory / 4) as usize), grid: self.grid.options(), values: None };
+            let options = WriteOptions {
+                format: self.format.format,
+                memory: Some((self.memory / 4) as usize),
+                grid: self.grid.options(),
+                values: None,
+            };
             write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
             let SourceCounts { points, tets, boundary } = mesh.counts();
             return Ok(Written::Mesh { points, tets, boundary_faces: boundary });

@@ -9,6 +9,7 @@ use super::blocks::BlockArgs;
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
+use super::format::FormatArgs;
 use super::grid::GridArgs;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::prepare::CureArgs;
@@ -18,7 +19,7 @@ use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
 use crate::fidelity::Fidelity;
 use crate::io::network::{NodeNames, ensure_network_writable};
-use crate::io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable, write_mesh_with};
+use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
 use crate::io::{ensure_text_writable, write_text};
 use crate::mesh::beside::Beside;
 use crate::mesh::check::{CheckReport, Expectation};
@@ -42,6 +43,8 @@ pub struct Args {
     /// (TetGen's family of files)
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
+    #[command(flatten)]
+    format: FormatArgs,
     #[command(flatten)]
     blocks: BlockArgs,
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
@@ -76,7 +79,7 @@ pub struct Args {
     /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
-    /// What VTU and PVTU say of each place: radius and distance along the branch at points; branch, generation, strahler, node
+    /// What VTU, PVTU and MSH say of each place: radius and distance along the branch at points; branch, generation, strahler, node
     /// (the nearer one) and ratio (the cell's radius ratio) in cells; several with commas between them
     #[arg(long, value_name = "DATA", value_delimiter = ',', value_parser = datum)]
     data: Vec<Datum>,
@@ -136,10 +139,13 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             "--work-dir cannot keep joints that are smoothed: give --joint disc or --frozen-joints",
         ));
     }
-    if !args.data.is_empty() && !MeshFormat::of(&args.output).is_ok_and(MeshFormat::is_grid) {
-        return Err(Failure::usage("--data is for .vtu and .pvtu; the other formats have no place for it"));
+    let format = args.format.of(&args.output)?;
+    if !args.data.is_empty() && !format.holds_values() {
+        return Err(Failure::usage(
+            "--data is for .vtu, .pvtu, .msh and .msh2; the other formats have no place for it",
+        ));
     }
-    ensure_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
     if let Some(path) = &args.refined {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
@@ -206,7 +212,8 @@ impl Args {
         let place = BlockPlace::choose(self.work_dir.as_deref(), self.restart, &self.output, &rough, plan.memory);
         let store = place.open(read, || self.options(plan))?;
         let kept = store.bytes_on_disk();
-        let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, &self.output);
+        let format = self.format.of(&self.output)?;
+        let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, (&self.output, format));
         if let Some(dir) = &self.work_dir {
             // Whoever kills the program cannot be told afterwards.
             let dir = dir.display();
@@ -234,6 +241,7 @@ impl Args {
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh));
         let options = WriteOptions {
+            format: self.format.format,
             memory: Some((self.blocks.memory / 4) as usize),
             grid: self.grid.options(),
             values: data.as_ref().map(|data| data as &dyn Beside),

@@ -9,6 +9,7 @@ mod convert;
 mod dual;
 mod exit;
 mod flow;
+mod format;
 mod generate;
 mod grid;
 mod info;

@@ -105,13 +105,13 @@ pub fn fits(
     plan: &MeshPlan,
     place: &BlockPlace,
     kept: u64,
-    output: &Path,
+    (output, format): (&Path, MeshFormat),
 ) -> Result<(), TooLarge> {
     let (estimate, memory) = (*estimate, plan.memory);
     if estimate.largest_block_bytes > memory {
         return Err(TooLarge::Block { estimate, memory });
     }
-    if MeshFormat::of(output).is_ok_and(|format| !format.is_written_in_passes()) {
+    if !format.is_written_in_passes() {
         let bytes = (estimate.tets * GATHERED_PER_TET) as u64;
         if bytes > memory {
             let (why, instead) = ("TetGen's files", "another format");

@@ -68,6 +68,12 @@ struct Sorted {
     strays: Vec<Loose>,
 }
 
+impl AsRef<[OuterFace]> for PartFaces {
+    fn as_ref(&self) -> &[OuterFace] {
+        &self.outer
+    }
+}
+
 impl<'a> Faces<'a> {
     /// Looks for the faces that parts have in common: reads tetrahedra and boundary once.
     ///
@@ -97,6 +103,13 @@ impl<'a> Faces<'a> {
     /// # Errors
     /// What reading the mesh fails with.
     pub fn of_part(&self, part: u32) -> io::Result<PartFaces> {
+        let (mut faces, _) = self.unordered(part)?;
+        faces.inner.sort_unstable();
+        Ok(faces)
+    }
+
+    /// The faces of a part, those inside in any order, and how many these are.
+    fn unordered(&self, part: u32) -> io::Result<(PartFaces, usize)> {
         let sorted = Sorted::read(self.mesh, part)?;
         let first = self.first[part as usize];
         let tet = |handle: u32| first + (handle >> 2);
@@ -114,30 +127,46 @@ impl<'a> Faces<'a> {
                 Side::Patch(patch) => outer.push(OuterFace { patch, tet: at.0, vertices: vertices(handle) }),
             }
         }
-        inner.sort_unstable();
         outer.sort_unstable();
-        Ok(PartFaces { inner, outer })
+        let count = inner.len();
+        Ok((PartFaces { inner, outer }, count))
     }
 
     /// Gives the faces of all parts, in order.
     ///
     /// # Errors
     /// What reading the mesh or `each` fails with; `InvalidData` when the mesh does not hold as much as it says.
-    pub fn each(&self, mut each: impl FnMut(&PartFaces) -> io::Result<()>) -> io::Result<()> {
+    pub fn each(&self, each: impl FnMut(&PartFaces) -> io::Result<()>) -> io::Result<()> {
+        self.each_counted(|part| self.of_part(part).map(|faces| (faces.inner.len(), faces)), each)
+    }
+
+    /// Gives the faces of all parts that are on the boundary, in order.
+    ///
+    /// # Errors
+    /// As [`each`](Self::each).
+    pub fn each_outer(&self, mut each: impl FnMut(&[OuterFace]) -> io::Result<()>) -> io::Result<()> {
+        let read = |part| self.unordered(part).map(|(faces, inner)| (inner, faces.outer));
+        self.each_counted(read, |outer| each(outer))
+    }
+
+    /// Gives what is read of each part, and counts faces: those inside as `read` says.
+    fn each_counted<T: AsRef<[OuterFace]> + Send>(
+        &self,
+        read: impl Fn(u32) -> io::Result<(usize, T)> + Sync,
+        mut each: impl FnMut(&T) -> io::Result<()>,
+    ) -> io::Result<()> {
         let counts = self.mesh.counts();
         let (mut sides, mut labelled) = (0, 0);
-        self.mesh.each_part(
-            |part| self.of_part(part),
-            |faces| {
-                sides += 2 * faces.inner.len() + faces.outer.len();
-                labelled += faces.outer.len();
-                // Whoever writes has said how many there are before they come.
-                if sides > 4 * counts.tets || labelled > counts.boundary {
-                    return Err(miscounted());
-                }
-                each(&faces)
-            },
-        )?;
+        self.mesh.each_part(read, |(inner, faces)| {
+            let outer = faces.as_ref().len();
+            sides += 2 * inner + outer;
+            labelled += outer;
+            // Whoever writes has said how many there are before they come.
+            if sides > 4 * counts.tets || labelled > counts.boundary {
+                return Err(miscounted());
+            }
+            each(&faces)
+        })?;
         if sides == 4 * counts.tets && labelled == counts.boundary { Ok(()) } else { Err(miscounted()) }
     }
 }
@@ -175,72 +204,77 @@ fn packed([a, b, c]: [u32; 3], handle: u32) -> u128 {
     (u128::from(a) << 96) | (u128::from(b) << 64) | (u128::from(c) << 32) | u128::from(handle)
 }
 
+/// The bit of a handle that is the number of a label.
+const LABEL: u32 = 1 << 31;
+
+/// The vertices of a packed side.
+fn vertices_of(side: u128) -> [u32; 3] {
+    [96, 64, 32].map(|shift| (side >> shift) as u32)
+}
+
+/// Sides in buckets, those of the same face in the same one, and where each bucket ends: sorting a few at a time takes half as
+/// long as sorting all.
+fn buckets(sides: &[u128]) -> (Vec<u128>, Vec<u32>) {
+    let bits = sides.len().max(8).ilog2() - 2;
+    let bucket_of = |side: u128| {
+        let mixed = ((side >> 64) as u64 ^ u64::from((side >> 32) as u32) << 17).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        (mixed >> (u64::BITS - bits)) as usize
+    };
+    let mut ends = vec![0_u32; 1 << bits];
+    for &side in sides {
+        ends[bucket_of(side)] += 1;
+    }
+    let mut before = 0;
+    for end in &mut ends {
+        before += std::mem::replace(end, before);
+    }
+    let mut sorted = vec![0; sides.len()];
+    for &side in sides {
+        let end = &mut ends[bucket_of(side)];
+        sorted[*end as usize] = side;
+        *end += 1;
+    }
+    (sorted, ends)
+}
+
 impl Sorted {
     fn read(mesh: &dyn MeshSource, part: u32) -> io::Result<Self> {
         let tets = mesh.tets(part)?.tets.into_owned();
-        // Handles have 32 bits.
-        if tets.len() > u32::MAX as usize / 4 {
-            return Err(io::Error::new(io::ErrorKind::InvalidData, "a part of the mesh has more than 2^30 tetrahedra"));
+        let FacePiece { faces, patches, .. } = mesh.boundary(part)?;
+        // Handles have 31 bits: the last one tells labels from faces of tetrahedra.
+        if tets.len() >= (LABEL / 4) as usize || faces.len() >= LABEL as usize {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "a part of the mesh has more than 2^29 tetrahedra"));
         }
         let mut sorted = Self { tets, ..Self::default() };
-        let mut labels = Labels::of(&mesh.boundary(part)?);
         let handles = 0..4 * sorted.tets.len() as u32;
-        let mut sides: Vec<u128> = handles.map(|h| packed(face_key(face_of(&sorted.tets, h)), h)).collect();
-        sides.sort_unstable();
-        for same in sides.chunk_by(|a, b| a >> 32 == b >> 32) {
-            match *same {
-                [one] => match labels.take(one) {
-                    Some(patch) => sorted.labelled.push((one as u32, patch)),
-                    None => sorted.open.push(one as u32),
-                },
-                [one, two] => sorted.pairs.push([one as u32, two as u32]),
-                _ => return Err(unpaired(face_key(face_of(&sorted.tets, same[0] as u32)), same.len())),
+        let labels = (0..).zip(faces.iter()).map(|(i, &face)| packed(face_key(face), LABEL | i));
+        let sides: Vec<u128> = handles.map(|h| packed(face_key(face_of(&sorted.tets, h)), h)).chain(labels).collect();
+        let patch = |side: u128| patches.get((side as u32 & !LABEL) as usize).copied().unwrap_or(0);
+        let (mut sides, ends) = buckets(&sides);
+        let mut start = 0;
+        for end in ends {
+            let bucket = &mut sides[start..end as usize];
+            start = end as usize;
+            bucket.sort_unstable();
+            for same in bucket.chunk_by(|a, b| a >> 32 == b >> 32) {
+                // Tetrahedra come before labels.
+                match *same {
+                    [one] if one as u32 & LABEL == 0 => sorted.open.push(one as u32),
+                    [label] => sorted.strays.push((vertices_of(label), Side::Patch(patch(label)))),
+                    [one, two] if one as u32 & LABEL == 0 && two as u32 & LABEL == 0 => {
+                        sorted.pairs.push([one as u32, two as u32]);
+                    }
+                    [one, label] if one as u32 & LABEL == 0 => sorted.labelled.push((one as u32, patch(label))),
+                    _ => return Err(unpaired(vertices_of(same[0]), same.len())),
+                }
             }
         }
-        sorted.strays = labels.strays();
         Ok(sorted)
     }
 
     fn loose(&self) -> Vec<Loose> {
         let open = self.open.iter().map(|&handle| (face_key(face_of(&self.tets, handle)), Side::Tet(handle >> 2)));
         open.chain(self.strays.iter().copied()).collect()
-    }
-}
-
-/// The labels of a part, to be taken in the order of their faces.
-struct Labels {
-    list: Vec<(u128, i32)>,
-    next: usize,
-    passed: Vec<usize>,
-}
-
-impl Labels {
-    fn of(piece: &FacePiece) -> Self {
-        let patch = |i: usize| piece.patches.get(i).copied().unwrap_or(0);
-        let label = |(i, &face): (usize, &[u32; 3])| (packed(face_key(face), 0), patch(i));
-        let mut list: Vec<(u128, i32)> = piece.faces.iter().enumerate().map(label).collect();
-        list.sort_unstable();
-        Self { list, next: 0, passed: Vec::new() }
-    }
-
-    /// The patch of a face, which come in ascending order.
-    fn take(&mut self, side: u128) -> Option<i32> {
-        let key = side >> 32 << 32;
-        while let Some(&(label, patch)) = self.list.get(self.next).filter(|label| label.0 <= key) {
-            self.next += 1;
-            if label == key {
-                return Some(patch);
-            }
-            self.passed.push(self.next - 1);
-        }
-        None
-    }
-
-    /// Those that no face took.
-    fn strays(self) -> Vec<Loose> {
-        let key = |label: u128| [96, 64, 32].map(|shift| (label >> shift) as u32);
-        let left = self.passed.into_iter().chain(self.next..self.list.len());
-        left.map(|i| (key(self.list[i].0), Side::Patch(self.list[i].1))).collect()
     }
 }
 

@@ -185,7 +185,10 @@ impl dyn MeshSource + '_ {
     }
 
     /// The corners of cells.
-    pub(super) fn corners_of<const N: usize>(&self, cells: &[[u32; N]]) -> io::Result<Vec<[Point3; N]>> {
+    ///
+    /// # Errors
+    /// What reading the mesh fails with; `InvalidData` when a cell names a point that does not exist.
+    pub fn corners_of<const N: usize>(&self, cells: &[[u32; N]]) -> io::Result<Vec<[Point3; N]>> {
         let mut ids = cells.as_flattened().to_vec();
         ids.sort_unstable();
         ids.dedup();

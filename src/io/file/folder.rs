@@ -55,6 +55,11 @@ impl AtomicFolder {
         fs::write(self.place(name)?, bytes)
     }
 
+    /// Puts a file that is there into the folder under another name, too.
+    pub(in crate::io) fn copy(&self, name: &str, to: &str) -> io::Result<()> {
+        fs::copy(self.temporary.join(name), self.place(to)?).map(drop)
+    }
+
     fn place(&self, name: &str) -> io::Result<PathBuf> {
         debug_assert!((self.ours)(name), "{name} could not be replaced");
         let path = self.temporary.join(name);

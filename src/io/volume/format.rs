@@ -39,7 +39,32 @@ const EXTENSIONS: [(&str, MeshFormat); 9] = [
     ("node", MeshFormat::Tetgen),
 ];
 
+/// What formats are called where the extension does not tell.
+#[cfg(feature = "cli")]
+const NAMES: [(&str, MeshFormat); 8] = [
+    ("vtu", MeshFormat::Vtu),
+    ("pvtu", MeshFormat::Pvtu),
+    ("msh", MeshFormat::Msh),
+    ("msh2", MeshFormat::Msh2),
+    ("medit", MeshFormat::Medit),
+    ("openfoam", MeshFormat::OpenFoam),
+    ("simvascular", MeshFormat::SimVascular),
+    ("tetgen", MeshFormat::Tetgen),
+];
+
 impl MeshFormat {
+    /// The names of all formats, for those who choose one.
+    #[cfg(feature = "cli")]
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        NAMES.into_iter().map(|(name, _)| name)
+    }
+
+    /// The format of a name.
+    #[cfg(feature = "cli")]
+    pub fn named(name: &str) -> Option<Self> {
+        NAMES.into_iter().find(|(known, _)| *known == name).map(|(_, format)| format)
+    }
+
     /// The format that a file name asks for by its extension.
     ///
     /// # Errors
@@ -55,6 +80,11 @@ impl MeshFormat {
     /// Whether it is one of VTK's unstructured grids.
     pub fn is_grid(self) -> bool {
         matches!(self, Self::Vtu | Self::Pvtu)
+    }
+
+    /// Whether it has a place for values at points and in cells.
+    pub fn holds_values(self) -> bool {
+        self.is_grid() || matches!(self, Self::Msh | Self::Msh2)
     }
 
     /// Whether a mesh is a folder; none of these is read.

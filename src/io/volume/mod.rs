@@ -29,6 +29,6 @@ pub use options::WriteOptions;
 pub use read::{read_mesh, read_mesh_from};
 pub(in crate::io) use vtu::write_boundary as write_poly_data;
 pub use vtu::{VtuPieces, VtuPiecesError};
-#[cfg(feature = "cli")]
-pub use write::write_mesh_with;
 pub use write::{ensure_writable, write_mesh, write_mesh_to};
+#[cfg(feature = "cli")]
+pub use write::{ensure_writable_as, write_mesh_with};

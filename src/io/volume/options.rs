@@ -1,16 +1,19 @@
 //! What can be chosen beside the format when a mesh is written.
 
+use super::format::MeshFormat;
 use crate::mesh::beside::Beside;
 use std::path::{Path, PathBuf};
 
 /// How a mesh is written; each format takes what concerns it.
 #[derive(Clone, Copy, Default)]
 pub struct WriteOptions<'a> {
+    /// The format, if not that of the extension.
+    pub format: Option<MeshFormat>,
     /// How many bytes of a mesh in pieces are held at a time, about; other formats take less.
     pub memory: Option<usize>,
     /// How VTK's files are written.
     pub grid: GridOptions,
-    /// Values beside the mesh that VTK's files are to have.
+    /// Values beside the mesh that files of VTK and Gmsh are to have.
     pub values: Option<&'a dyn Beside>,
 }
 

@@ -20,8 +20,16 @@ use std::path::Path;
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
 pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
+    ensure_writable_as(MeshFormat::of(path)?, path)
+}
+
+/// As [`ensure_writable`], whatever the extension says.
+///
+/// # Errors
+/// `Write` with the reason.
+pub fn ensure_writable_as(format: MeshFormat, path: &Path) -> Result<(), MeshFileError> {
     let file = || AtomicFile::create(path).map(drop);
-    match MeshFormat::of(path)? {
+    match format {
         MeshFormat::OpenFoam => openfoam::ensure_writable(path),
         MeshFormat::SimVascular => simvascular::ensure_writable(path),
         MeshFormat::Pvtu => file().and_then(|()| PieceFolder::ensure_replaceable(path)),
@@ -65,7 +73,7 @@ pub fn write_mesh_with(
     progress: &dyn Progress,
 ) -> Result<(), MeshFileError> {
     let grid = options.grid;
-    let format = MeshFormat::of(path)?;
+    let format = options.format.map_or_else(|| MeshFormat::of(path), Ok)?;
     let write = || match format {
         MeshFormat::Pvtu => {
             let usual = Pieces::default();
@@ -76,6 +84,12 @@ pub fn write_mesh_with(
         MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
         MeshFormat::Vtu => {
             write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid, options.values))
+        }
+        MeshFormat::Msh => {
+            write_whole(path, |out| msh::write(&mut Asked { out, progress }, mesh, notes, options.values))
+        }
+        MeshFormat::Msh2 => {
+            write_whole(path, |out| msh::write_2(&mut Asked { out, progress }, mesh, notes, options.values))
         }
         format => write_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
     };
@@ -165,8 +179,8 @@ pub(super) fn write_format(
 ) -> io::Result<()> {
     match format {
         MeshFormat::Vtu => vtu::write(out, mesh, notes, GridOptions::default(), None),
-        MeshFormat::Msh => msh::write(out, mesh, notes),
-        MeshFormat::Msh2 => msh::write_2(out, mesh, notes),
+        MeshFormat::Msh => msh::write(out, mesh, notes, None),
+        MeshFormat::Msh2 => msh::write_2(out, mesh, notes, None),
         MeshFormat::Medit => medit::write(out, mesh),
         MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::OpenFoam | MeshFormat::SimVascular => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))

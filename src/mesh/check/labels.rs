@@ -13,6 +13,8 @@ use std::f64::consts::PI;
 
 /// How far, in radii, a cap's vertices may lie from its plane.
 const FLATNESS: f64 = 1e-9;
+/// By which share of itself, at most, a coordinate moves when it is rounded to 32 bits: half a unit in the last place.
+const ROUNDED: f64 = 0.501 * f32::EPSILON as f64;
 /// How far, in radii, a cap's centre may lie from its node.
 const OFF_CENTRE: f64 = 0.1;
 /// By which share a cap's area may differ from that of the disc.
@@ -191,7 +193,7 @@ pub(super) fn cap_shape(points: &[Point3], cap: &Cap, triangles: &[[u32; 3]]) ->
     let disc = PI * cap.radius * cap.radius;
     [
         is_disc(triangles),
-        shape.off_plane <= FLATNESS * cap.radius,
+        shape.off_plane <= FLATNESS * cap.radius + shape.rounding,
         shape.off_centre <= OFF_CENTRE * cap.radius,
         (shape.area - disc).abs() <= AREA * disc,
         shape.faces_outwards,
@@ -215,13 +217,23 @@ struct CapShape {
     off_centre: f64,
     /// Largest distance of a vertex from the plane midway through the vertices, along the cap's normal.
     off_plane: f64,
+    /// How far rounding has moved a vertex along the normal, at most, where all coordinates are numbers of 32 bits: a file that
+    /// rounds them bends every cap that is not square to an axis. Coordinates of 64 bits owe nothing to it.
+    rounding: f64,
     faces_outwards: bool,
+}
+
+/// How far a vertex moves along a normal when its coordinates are rounded to 32 bits; none where they have more.
+fn moved_by_rounding(p: &Point3, normal: &Vec3) -> Option<f64> {
+    let fits = p.coords.iter().all(|&x| f64::from(x as f32).to_bits() == x.to_bits());
+    fits.then(|| ROUNDED * p.coords.abs().dot(&normal.abs()))
 }
 
 impl CapShape {
     fn measure(points: &[Point3], cap: &Cap, triangles: &[[u32; 3]]) -> Self {
         let (mut area, mut moment) = (0.0, Vec3::zeros());
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut rounding = Some(0.0_f64);
         let mut faces_outwards = !triangles.is_empty();
         for t in triangles {
             let corners = t.map(|v| &points[v as usize]);
@@ -234,10 +246,17 @@ impl CapShape {
                 moment += from_node * (a / 3.0);
                 let height = from_node.dot(&cap.normal);
                 (low, high) = (low.min(height), high.max(height));
+                rounding = rounding.zip(moved_by_rounding(p, &cap.normal)).map(|(most, here)| most.max(here));
             }
         }
         // A cap without triangles or area fails on every count.
-        Self { area, off_centre: (moment / area).norm(), off_plane: 0.5 * (high - low).abs(), faces_outwards }
+        Self {
+            area,
+            off_centre: (moment / area).norm(),
+            off_plane: 0.5 * (high - low).abs(),
+            rounding: rounding.unwrap_or(0.0),
+            faces_outwards,
+        }
     }
 }
 

@@ -59,7 +59,7 @@ pub enum Line {
     CapPerTerminal,
     /// Every cap is one disc: connected, with one boundary loop, Euler number 1.
     CapDisc,
-    /// Every cap is flat to 1e-9 of its radius.
+    /// Every cap is flat to 1e-9 of its radius; where all its coordinates are numbers of 32 bits, to their rounding.
     CapFlat,
     /// The centre of every cap is within 0.1 radii of its node.
     CapCentred,

@@ -6,15 +6,17 @@ use super::write::write;
 use super::write_2::write as write_2;
 use crate::geometry::Point3;
 use crate::io::volume::content::{MeshFile, MeshNotes};
-use crate::io::volume::fixtures::labelled_tube;
+use crate::io::volume::fixtures::{Cut, labelled_tube};
 use crate::mesh::VolumeMesh;
+use crate::mesh::beside::{Beside, Column};
 use crate::mesh::source::MeshSource;
 use std::io;
 
 type Writer = fn(&mut Vec<u8>, &dyn MeshSource, &MeshNotes) -> io::Result<()>;
 
 /// Both versions.
-const WRITERS: [Writer; 2] = [|out, mesh, notes| write(out, mesh, notes), |out, mesh, notes| write_2(out, mesh, notes)];
+const WRITERS: [Writer; 2] =
+    [|out, mesh, notes| write(out, mesh, notes, None), |out, mesh, notes| write_2(out, mesh, notes, None)];
 
 #[test]
 fn what_is_written_is_read_but_for_the_blocks() {
@@ -36,7 +38,7 @@ fn what_is_written_is_read_but_for_the_blocks() {
 fn the_older_version_is_text() {
     let (volume, notes) = labelled_tube(1);
     let mut bytes = Vec::new();
-    write_2(&mut bytes, &volume, &notes).unwrap();
+    write_2(&mut bytes, &volume, &notes, None).unwrap();
     let text = String::from_utf8(bytes).unwrap();
     assert!(text.starts_with("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n"), "{text}");
     let first = text.lines().skip_while(|line| *line != "$Elements").nth(2).unwrap();
@@ -67,6 +69,96 @@ fn regions_become_volumes() {
         assert_eq!(read(&bytes).unwrap(), MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() });
         let names = String::from_utf8_lossy(&bytes).into_owned();
         assert!(names.contains("3 2 \"region_2\"\n3 7 \"region_7\"\n3 1000000 \"region_1000000\"\n"));
+    }
+}
+
+/// The height of each place.
+struct Heights;
+
+impl Beside for Heights {
+    fn columns(&self) -> &[Column] {
+        const COLUMNS: [Column; 2] = [
+            Column { name: "height", at_points: true, is_integer: false },
+            Column { name: "middle", at_points: false, is_integer: false },
+        ];
+        &COLUMNS
+    }
+
+    fn at_points(&self, _: usize, points: &[Point3]) -> Vec<f64> {
+        points.iter().map(|p| p.z).collect()
+    }
+
+    fn in_tets(&self, _: usize, tets: &[[Point3; 4]]) -> Vec<f64> {
+        tets.iter().map(|t| t.iter().map(|p| p.z).sum::<f64>() / 4.0).collect()
+    }
+
+    fn in_faces(&self, _: usize, faces: &[[Point3; 3]]) -> Vec<f64> {
+        faces.iter().map(|t| t.iter().map(|p| p.z).sum::<f64>() / 3.0).collect()
+    }
+}
+
+/// Tags and values of a section of data.
+fn rows(bytes: &[u8], section: &str, name: &str, binary: bool) -> Vec<(i32, f64)> {
+    let head = format!("${section}\n1\n\"{name}\"\n1\n0.0\n3\n0\n1\n");
+    let start = bytes.windows(head.len()).position(|w| w == head.as_bytes()).unwrap() + head.len();
+    let line = bytes[start..].iter().position(|&b| b == b'\n').unwrap();
+    let count: usize = str::from_utf8(&bytes[start..start + line]).unwrap().parse().unwrap();
+    let rest = &bytes[start + line + 1..];
+    let end = format!("$End{section}\n");
+    if binary {
+        assert_eq!(&rest[12 * count..][..=end.len()], format!("\n{end}").as_bytes());
+        let row = |row: &[u8; 12]| {
+            let (tag, value) = row.split_first_chunk().unwrap();
+            (i32::from_le_bytes(*tag), f64::from_le_bytes(value.try_into().unwrap()))
+        };
+        return rest[..12 * count].as_chunks().0.iter().map(row).collect();
+    }
+    let lines: Vec<&str> = str::from_utf8(rest).unwrap().lines().take(count + 1).collect();
+    assert_eq!(lines[count], end.trim());
+    let row = |line: &str| line.split_once(' ').map(|(tag, x)| (tag.parse().unwrap(), x.parse().unwrap())).unwrap();
+    lines[..count].iter().map(|line| row(line)).collect()
+}
+
+#[test]
+fn values_stand_beside_nodes_and_elements() {
+    let (volume, mut notes) = labelled_tube(5);
+    let mean =
+        |points: &[Point3], cell: &[u32]| cell.iter().map(|&v| points[v as usize].z).sum::<f64>() / cell.len() as f64;
+    // Patches and notes are there as without values, and tetrahedra and faces as often, wherever they are.
+    let known = |file: MeshFile| {
+        let points = &file.volume.mesh.points;
+        let mut tets: Vec<f64> = file.volume.mesh.tets.iter().map(|tet| mean(points, tet)).collect();
+        tets.sort_unstable_by(f64::total_cmp);
+        let mut faces: Vec<(i32, u64)> = (file.volume.boundary_patch.iter().copied())
+            .zip(file.volume.boundary.iter().map(|face| mean(points, face).to_bits()))
+            .collect();
+        faces.sort_unstable();
+        (tets, faces, file.volume.patches, file.notes)
+    };
+    for (binary, regions) in [(true, false), (true, true), (false, false)] {
+        notes.regions = regions;
+        let bytes_of = |mesh: &dyn MeshSource, values: Option<&dyn Beside>| {
+            let mut bytes = Vec::new();
+            if binary {
+                write(&mut bytes, mesh, &notes, values).unwrap();
+            } else {
+                write_2(&mut bytes, mesh, &notes, values).unwrap();
+            }
+            bytes
+        };
+        let bytes = bytes_of(&volume, Some(&Heights));
+        assert!(bytes == bytes_of(&Cut { volume: &volume, sizes: &[7] }, Some(&Heights)));
+        let file = read(&bytes).unwrap();
+        let heights = rows(&bytes, "NodeData", "height", binary);
+        let points = &file.volume.mesh.points;
+        assert!(heights.iter().map(|row| row.0).eq(1..=points.len() as i32));
+        assert!(heights.iter().zip(points).all(|(row, p)| row.1.to_bits() == p.z.to_bits()));
+        let middles = rows(&bytes, "ElementData", "middle", binary);
+        let cells = file.volume.boundary.iter().map(|face| mean(points, face));
+        let cells = cells.chain(file.volume.mesh.tets.iter().map(|tet| mean(points, tet)));
+        assert!(middles.iter().map(|row| row.1).eq(cells));
+        assert!(middles.iter().map(|row| row.0).eq(1..=middles.len() as i32));
+        assert!(known(file) == known(read(&bytes_of(&volume, None)).unwrap()), "{binary} {regions}");
     }
 }
 

@@ -2,21 +2,24 @@
 
 use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME};
 use super::surfaces::{Surfaces, run};
+use super::tags::Tags;
+use super::values::write_values;
 use crate::geometry::Aabb;
 use crate::io::volume::content::MeshNotes;
+use crate::mesh::beside::Beside;
 use crate::mesh::source::MeshSource;
 use crate::mesh::{Patch, VolumeMesh};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// Part of the tetrahedra: a volume.
-struct Volume {
+pub(super) struct Volume {
     /// The physical group, and the name of it; none for regions whose id can be no physical tag.
     group: Option<(i32, String)>,
     /// How many tetrahedra it has.
     tets: usize,
     /// The region whose tetrahedra these are; none for all.
-    region: Option<i32>,
+    pub region: Option<i32>,
 }
 
 /// One volume for all, or one for each region.
@@ -45,13 +48,18 @@ fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> 
 /// Writes a mesh as MSH 4.1. Blocks that are regions become volumes; other blocks are not written: the format has no
 /// place for them.
 ///
-/// Points and boundary are read three times, tetrahedra once. What is held is two bits for each point, and the faces and
+/// Points and boundary are read three times, tetrahedra once, and each once more for every column of values. What is held is two bits for each point, and the faces and
 /// points of all surfaces but that of lowest id (the wall). Each region costs a
 /// pass over the tetrahedra of its own, or, of a mesh in memory, all together 8 bytes for each tetrahedron.
 ///
 /// # Errors
 /// What the writer `out` or reading the mesh reports.
-pub(in crate::io::volume) fn write(out: &mut impl Write, mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<()> {
+pub(in crate::io::volume) fn write(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    values: Option<&dyn Beside>,
+) -> io::Result<()> {
     let surfaces = Surfaces::of(mesh)?;
     let volumes = volumes_of(mesh, notes, &surfaces)?;
     out.write_all(b"$MeshFormat\n4.1 1 8\n")?;
@@ -59,8 +67,12 @@ pub(in crate::io::volume) fn write(out: &mut impl Write, mesh: &dyn MeshSource, 
     out.write_all(b"\n$EndMeshFormat\n")?;
     write_names(out, mesh.patches(), &volumes)?;
     write_entities(out, &surfaces, &volumes)?;
-    write_nodes(out, mesh, &surfaces)?;
-    write_elements(out, mesh, &surfaces, &volumes)?;
+    let mut tags = Tags::new(&surfaces, values.is_some());
+    write_nodes(out, mesh, &surfaces, &tags)?;
+    write_elements(out, mesh, &surfaces, &volumes, &mut tags)?;
+    if let Some(values) = values {
+        write_values(out, mesh, values, &surfaces, &volumes)?;
+    }
     writeln!(out, "${SECTION}")?;
     serde_json::to_writer(&mut *out, &Extra::of(mesh.patches(), notes))?;
     write!(out, "\n$End{SECTION}\n")
@@ -115,7 +127,7 @@ fn write_entities(out: &mut impl Write, surfaces: &Surfaces, volumes: &[Volume])
     out.write_all(b"\n$EndEntities\n")
 }
 
-fn write_nodes(out: &mut impl Write, mesh: &dyn MeshSource, surfaces: &Surfaces) -> io::Result<()> {
+fn write_nodes(out: &mut impl Write, mesh: &dyn MeshSource, surfaces: &Surfaces, tags: &Tags) -> io::Result<()> {
     let count = mesh.counts().points;
     let inner = count - surfaces.outer.count();
     let blocks = surfaces.list.iter().filter(|surface| surface.points > 0).count() + usize::from(inner > 0);
@@ -125,11 +137,11 @@ fn write_nodes(out: &mut impl Write, mesh: &dyn MeshSource, surfaces: &Surfaces)
         ints(out, &[2, i as i32 + 1, 0])?;
         sizes(out, &[surface.points])?;
         if i == 0 {
-            write_chosen_points(out, mesh, |v| surfaces.first.has(v))?;
+            write_chosen_points(out, mesh, tags, |v| surfaces.first.has(v))?;
             continue;
         }
         for &(v, _) in surfaces.points_of(surface.patch) {
-            sizes(out, &[v as usize + 1])?;
+            sizes(out, &[tags.node(v)])?;
         }
         for (_, p) in surfaces.points_of(surface.patch) {
             floats(out, &[p.x, p.y, p.z])?;
@@ -138,15 +150,20 @@ fn write_nodes(out: &mut impl Write, mesh: &dyn MeshSource, surfaces: &Surfaces)
     if inner > 0 {
         ints(out, &[3, 1, 0])?;
         sizes(out, &[inner])?;
-        write_chosen_points(out, mesh, |v| !surfaces.outer.has(v))?;
+        write_chosen_points(out, mesh, tags, |v| !surfaces.outer.has(v))?;
     }
     out.write_all(b"\n$EndNodes\n")
 }
 
 /// The tags of some points, then their positions.
-fn write_chosen_points(out: &mut impl Write, mesh: &dyn MeshSource, chosen: impl Fn(u32) -> bool) -> io::Result<()> {
+fn write_chosen_points(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    tags: &Tags,
+    chosen: impl Fn(u32) -> bool,
+) -> io::Result<()> {
     for v in (0..mesh.counts().points as u32).filter(|&v| chosen(v)) {
-        sizes(out, &[v as usize + 1])?;
+        sizes(out, &[tags.node(v)])?;
     }
     let mut before = 0;
     mesh.each_points(|points| {
@@ -163,6 +180,7 @@ fn write_elements(
     mesh: &dyn MeshSource,
     surfaces: &Surfaces,
     volumes: &[Volume],
+    tags: &mut Tags,
 ) -> io::Result<()> {
     let tets = mesh.counts().tets;
     let count = tets + surfaces.list.iter().map(|surface| surface.faces).sum::<usize>();
@@ -173,11 +191,11 @@ fn write_elements(
         ints(out, &[2, i as i32 + 1, MSH_TRIANGLE])?;
         sizes(out, &[surface.faces])?;
         if i == 0 {
-            write_faces(out, mesh, surface.patch)?;
+            write_faces(out, mesh, surface.patch, tags)?;
             continue;
         }
         for held in surfaces.faces_of(surface.patch) {
-            write_element(out, tets + held.face, held.corners)?;
+            write_element(out, tags, tets + held.face, held.corners)?;
         }
     }
     let by_region = match mesh.whole() {
@@ -190,10 +208,10 @@ fn write_elements(
         match (mesh.whole(), volume.region) {
             (Some(whole), Some(region)) => {
                 for &(_, tet) in run(&by_region, region, |tet| tet.0) {
-                    write_element(out, tet as usize, whole.mesh.tets[tet as usize])?;
+                    write_element(out, tags, tet as usize, whole.mesh.tets[tet as usize])?;
                 }
             }
-            _ => write_tets(out, mesh, volume.region)?,
+            _ => write_tets(out, mesh, volume.region, tags)?,
         }
     }
     out.write_all(b"\n$EndElements\n")
@@ -206,35 +224,40 @@ fn by_region(mesh: &VolumeMesh) -> Vec<(i32, u32)> {
     tets
 }
 
-fn write_faces(out: &mut impl Write, mesh: &dyn MeshSource, patch: i32) -> io::Result<()> {
-    let mut tag = mesh.counts().tets;
+fn write_faces(out: &mut impl Write, mesh: &dyn MeshSource, patch: i32, tags: &mut Tags) -> io::Result<()> {
+    let mut before = mesh.counts().tets;
     mesh.each_faces(|piece| {
         for (i, (&face, _)) in piece.faces.iter().zip(&*piece.patches).enumerate().filter(|(_, (_, id))| **id == patch)
         {
-            write_element(out, tag + i, face)?;
+            write_element(out, tags, before + i, face)?;
         }
-        tag += piece.faces.len();
+        before += piece.faces.len();
         Ok(())
     })
 }
 
 /// The tetrahedra of one region, or all.
-fn write_tets(out: &mut impl Write, mesh: &dyn MeshSource, region: Option<i32>) -> io::Result<()> {
-    let mut tag = 0;
+fn write_tets(out: &mut impl Write, mesh: &dyn MeshSource, region: Option<i32>, tags: &mut Tags) -> io::Result<()> {
+    let mut before = 0;
     mesh.each_tets(|piece| {
         let chosen = |i: usize| region.is_none_or(|id| piece.blocks.get(i) == Some(&id));
         for (i, &tet) in piece.tets.iter().enumerate().filter(|&(i, _)| chosen(i)) {
-            write_element(out, tag + i, tet)?;
+            write_element(out, tags, before + i, tet)?;
         }
-        tag += piece.tets.len();
+        before += piece.tets.len();
         Ok(())
     })
 }
 
 /// An element, given by its index and those of its corners.
-fn write_element<const N: usize>(out: &mut impl Write, index: usize, corners: [u32; N]) -> io::Result<()> {
-    sizes(out, &[index + 1])?;
-    sizes(out, &corners.map(|v| v as usize + 1))
+fn write_element<const N: usize>(
+    out: &mut impl Write,
+    tags: &mut Tags,
+    index: usize,
+    corners: [u32; N],
+) -> io::Result<()> {
+    sizes(out, &[tags.element(index)])?;
+    sizes(out, &corners.map(|v| tags.node(v)))
 }
 
 fn ints(out: &mut impl Write, values: &[i32]) -> io::Result<()> {

@@ -1,7 +1,9 @@
 //! Writes meshes in Gmsh's older format 2.2, as text: what MFEM, NGSolve, OpenFOAM's converter and others read.
 
 use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME};
+use super::values::write_values_2;
 use crate::io::volume::content::MeshNotes;
+use crate::mesh::beside::Beside;
 use crate::mesh::source::MeshSource;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -51,7 +53,12 @@ impl Groups {
 ///
 /// # Errors
 /// What the writer `out` or reading the mesh reports.
-pub(in crate::io::volume) fn write(out: &mut impl Write, mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<()> {
+pub(in crate::io::volume) fn write(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    values: Option<&dyn Beside>,
+) -> io::Result<()> {
     let (counts, groups) = (mesh.counts(), Groups::of(mesh, notes)?);
     writeln!(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat")?;
     let named: Vec<_> = mesh.patches().iter().filter(|p| p.id > 0).collect();
@@ -90,7 +97,11 @@ pub(in crate::io::volume) fn write(out: &mut impl Write, mesh: &dyn MeshSource, 
         }
         Ok(())
     })?;
-    writeln!(out, "$EndElements\n${SECTION}")?;
+    writeln!(out, "$EndElements")?;
+    if let Some(values) = values {
+        write_values_2(out, mesh, values)?;
+    }
+    writeln!(out, "${SECTION}")?;
     serde_json::to_writer(&mut *out, &Extra::of(mesh.patches(), notes))?;
     write!(out, "\n$End{SECTION}\n")
 }

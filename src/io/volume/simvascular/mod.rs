@@ -43,10 +43,11 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
     let folder = AtomicFolder::create(path, is_ours)?;
     let spool = Spool::of(mesh, path, progress)?;
     put(&folder, MESH, progress, &|out| write_tets(out, mesh))?;
-    put_wide(&folder, &[EXTERIOR], mesh, &spool, |_| true, progress)?;
+    put_wide(&folder, EXTERIOR, mesh, &spool, |_| true, progress)?;
     let names: BTreeMap<i32, String> = mesh.patches().iter().map(|p| (p.id, plain(&p.name))).collect();
     let surface = |id: i32| surface_path(names.get(&id).map_or(&usual_name(id), |name| name));
-    put_wide(&folder, &[WALLS, &surface(WALL)], mesh, &spool, |face| face.patch == WALL, progress)?;
+    put_wide(&folder, WALLS, mesh, &spool, |face| face.patch == WALL, progress)?;
+    folder.copy(WALLS, &surface(WALL))?;
     for (id, faces) in caps(&spool)? {
         let cap = CapSheet::new(mesh, &faces)?;
         let mut bytes = Cursor::new(Vec::new());
@@ -73,10 +74,10 @@ fn put(
     file.commit()
 }
 
-/// Files with the same faces.
+/// A file of the faces that are chosen.
 fn put_wide(
     folder: &AtomicFolder,
-    names: &[&str],
+    name: &str,
     mesh: &dyn MeshSource,
     spool: &Spool,
     has: fn(&OuterFace) -> bool,
@@ -84,7 +85,7 @@ fn put_wide(
 ) -> io::Result<()> {
     let (used, faces) = used(mesh, spool, has)?;
     let sheet = WideSheet { mesh, spool, has, used: &used, ranks: used.ranks(), faces };
-    names.iter().try_for_each(|name| put(folder, name, progress, &|out| write_sheet(out, &sheet)))
+    put(folder, name, progress, &|out| write_sheet(out, &sheet))
 }
 
 /// The faces of every patch but the wall.

@@ -151,7 +151,7 @@ fn global_ids(xml: &VtkXml, piece: ElementId, points: usize) -> Result<Vec<i64>,
 }
 
 fn read_points(xml: &VtkXml, piece: ElementId, into: &mut Vec<Point3>) -> Result<(), VtuFault> {
-    let expected = 3 * xml.count(piece, "NumberOfPoints")?;
+    let expected = xml.count(piece, "NumberOfPoints")?.saturating_mul(3);
     let points = xml.child(piece, "Points").and_then(|points| xml.arrays(points).next());
     let values = match points {
         Some((_, array)) => xml.read(array)?.into_floats(),
