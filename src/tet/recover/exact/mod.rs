@@ -188,7 +188,8 @@ fn recover_part(
         push.settle()?;
     }
     summary.steiner_points += push.finish();
-    Ok(())
+    let lost = part.triangles.iter().map(|&t| push.triangles[t as usize]).find(|&t| push.s.find_face(t).is_none());
+    lost.map_or(Ok(()), |t| Err(TetError::Stuck { part: Obstacle::Triangle(t), reason: Stuck::Precision }))
 }
 
 #[cfg(test)]

@@ -79,6 +79,7 @@ impl<'a> Push<'a> {
 
     /// Takes a facet that has been covered; the vertices inside of it have to go. Returns their number.
     pub(super) fn add_facet(&mut self, id: u32, cover: Cover) -> usize {
+        self.bind(&cover.inner);
         self.left.extend(cover.inner.iter().map(|&v| (Host::Facet(id), v)));
         self.pieces.insert(id, cover.pieces);
         for [a, b] in sides(self.triangles[id as usize]) {
@@ -92,8 +93,18 @@ impl<'a> Push<'a> {
     /// Takes a segment whose facets are there; its vertices have to go. Returns their number.
     pub(super) fn add_segment(&mut self, id: u32) -> usize {
         let chain = &self.segments.list[id as usize].chain;
-        self.left.extend(chain[1..chain.len() - 1].iter().map(|&v| (Host::Segment(id), v)));
-        chain.len() - 2
+        let inner = chain[1..chain.len() - 1].to_vec();
+        self.bind(&inner);
+        self.left.extend(inner.iter().map(|&v| (Host::Segment(id), v)));
+        inner.len()
+    }
+
+    /// Vertices that lay on something by chance are free no longer.
+    fn bind(&mut self, on: &[u32]) {
+        let met: Vec<u32> = on.iter().copied().filter(|&v| !self.s.is_implicit(v)).collect();
+        if !met.is_empty() {
+            self.free.retain(|v| !met.contains(v));
+        }
     }
 
     /// Takes a facet that has been covered and is only a helper.
@@ -112,9 +123,11 @@ impl<'a> Push<'a> {
                 }
             }
         }
+        self.bind(&inner);
         self.left.extend(inner.into_iter().map(|v| (Host::Free(v), v)));
         for id in segments {
             let chain = self.segments.forget(id);
+            self.bind(&chain[1..chain.len() - 1]);
             self.left.extend(chain[1..chain.len() - 1].iter().map(|&v| (Host::Free(v), v)));
             // The corners beside the edge are free, and may go as well.
             self.free.extend(chain.last());
