@@ -2,7 +2,6 @@
 //! and elements stand in the file, which is that of their tags.
 
 use super::surfaces::Surfaces;
-use super::write::Volume;
 use crate::geometry::Point3;
 use crate::mesh::beside::{Beside, Column};
 use crate::mesh::source::MeshSource;
@@ -70,7 +69,7 @@ pub(super) fn write_values_2(out: &mut impl Write, mesh: &dyn MeshSource, values
 }
 
 /// Values of nodes and elements of version 4.1, which stand surface by surface: two passes over the points, one over faces and
-/// tetrahedra for each column.
+/// tetrahedra for each column. `regions` are those of the volumes, in order; none is all tetrahedra.
 ///
 /// # Errors
 /// What the writer `out` or reading the mesh reports.
@@ -79,7 +78,7 @@ pub(super) fn write_values(
     mesh: &dyn MeshSource,
     values: &dyn Beside,
     surfaces: &Surfaces,
-    volumes: &[Volume],
+    regions: &[Option<i32>],
 ) -> io::Result<()> {
     let counts = mesh.counts();
     let faces: usize = surfaces.list.iter().map(|surface| surface.faces).sum();
@@ -102,8 +101,8 @@ pub(super) fn write_values(
             }
             let others = surfaces.list.iter().skip(1).flat_map(|surface| surfaces.faces_of(surface.patch));
             add(&others.map(|held| held.corners).collect::<Vec<_>>())?;
-            for volume in volumes {
-                let Some(region) = volume.region else {
+            for region in regions {
+                let Some(region) = *region else {
                     mesh.each_tet_corners(|tets| rows.add(&values.in_tets(column, tets)))?;
                     continue;
                 };

@@ -13,13 +13,13 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// Part of the tetrahedra: a volume.
-pub(super) struct Volume {
+struct Volume {
     /// The physical group, and the name of it; none for regions whose id can be no physical tag.
     group: Option<(i32, String)>,
     /// How many tetrahedra it has.
     tets: usize,
     /// The region whose tetrahedra these are; none for all.
-    pub region: Option<i32>,
+    region: Option<i32>,
 }
 
 /// One volume for all, or one for each region.
@@ -71,7 +71,8 @@ pub(in crate::io::volume) fn write(
     write_nodes(out, mesh, &surfaces, &tags)?;
     write_elements(out, mesh, &surfaces, &volumes, &mut tags)?;
     if let Some(values) = values {
-        write_values(out, mesh, values, &surfaces, &volumes)?;
+        let regions: Vec<Option<i32>> = volumes.iter().map(|volume| volume.region).collect();
+        write_values(out, mesh, values, &surfaces, &regions)?;
     }
     writeln!(out, "${SECTION}")?;
     serde_json::to_writer(&mut *out, &Extra::of(mesh.patches(), notes))?;
