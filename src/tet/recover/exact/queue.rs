@@ -2,10 +2,10 @@
 //! orders, and with cavities of the other kind: what was in its way has changed by then.
 
 use super::level::level_out;
+use super::one::{ExactSummary, about_input, recover_part};
 use super::parts::{Missing, Part, parts};
 use super::push::Push;
 use super::ways::Way;
-use super::{ExactSummary, about_input, recover_part};
 use crate::mesh::TriMesh;
 use crate::tet::error::{Stuck, TetError};
 use crate::tet::input::SurfaceEdges;
