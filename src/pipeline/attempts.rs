@@ -71,9 +71,6 @@ impl Way {
         }
     }
 
-    /// Those in which a large cluster is tried again and again.
-    const FEW: [Self; 3] = [Self::Usual, Self::Even, Self::FinerNarrower];
-
     /// Whether it may keep vessels apart that come close to each other.
     fn may_part(self) -> bool {
         matches!(self, Self::Usual | Self::Shifted | Self::Even | Self::FinerNarrower | Self::Finest)
@@ -111,12 +108,7 @@ struct Attempt {
 /// may. If neither another grid nor a finer one with a narrower kernel keeps them apart they are taken as one, at once if
 /// that is what is wanted. `first`: the first of the ways that is tried.
 fn attempts(plan: &MeshPlan, overlapping: bool, first: Way) -> Vec<Attempt> {
-    attempts_of(plan, overlapping, &Way::ALL.into_iter().filter(|&way| way >= first).collect::<Vec<_>>())
-}
-
-/// The same in some of the ways.
-fn attempts_of(plan: &MeshPlan, overlapping: bool, ways: &[Way]) -> Vec<Attempt> {
-    let ways = || ways.iter().copied();
+    let ways = || Way::ALL.into_iter().filter(move |&way| way >= first);
     let apart = ways().filter(|way| !overlapping || (!plan.fuse && way.may_part()));
     let apart = apart.map(|way| Attempt { name: way.name().into(), params: way.params(plan) });
     let fused = ways().filter(|_| overlapping).map(|way| Attempt {
@@ -125,9 +117,6 @@ fn attempts_of(plan: &MeshPlan, overlapping: bool, ways: &[Way]) -> Vec<Attempt>
     });
     apart.chain(fused).collect()
 }
-
-/// A cluster of more tubes is moved in few ways only: each costs seconds.
-const LARGE: usize = 24;
 
 /// A block with a smaller radius ratio is tried in other ways, too.
 const FLAT: f64 = 0.1;
@@ -188,15 +177,11 @@ pub fn cluster(
     watch: &Watch,
 ) -> Tried {
     let name = format!("cluster {}", id.0);
-    let made = |cluster: &Cluster, attempts: Vec<Attempt>| {
+    let made = |cluster: &Cluster| {
         let make = |params: &BlockParams| once::cluster(id, cluster, params, &original, watch);
-        first_good(&name, attempts, make)
+        first_good(&name, attempts(plan, overlapping, first), make)
     };
-    let all = || attempts(plan, overlapping, first);
-    let tried = made(cluster, all());
-    let is_large = cluster.tubes.len() > LARGE;
-    let again = || if is_large { attempts_of(plan, overlapping, &Way::FEW) } else { all() };
-    let made = |cluster: &Cluster| made(cluster, again());
+    let tried = made(cluster);
     let open = tips::uncapped(cluster, &tried.result, &tried.failures);
     let Some((block, way, failures)) =
         [false, true].into_iter().find_map(|all| with_tips_moved(cluster, &open, all, made))
