@@ -288,6 +288,20 @@ fn a_hundred_thousand_points_are_resampled_within_their_bounds() {
 }
 
 #[test]
+fn noise_that_is_evened_out_leaves_fewer_points_within_the_same_bounds() {
+    let noise = |i: i32| (f64::from(i) * 12.9898).sin() * 43758.5453 % 1.0;
+    let line: Vec<_> = (0..2000).map(|i| [f64::from(i) * 0.02, 0.04 * noise(i), 0.04 * noise(i + 5000)]).collect();
+    let s = lines(&[line], 1.0);
+    let resampled = |smooth| {
+        let made = done(&s, &only(|p| (p.resample, p.smooth) = (true, smooth)));
+        assert!(made.report.resample.furthest <= 0.05 && furthest(&s, &made.skeleton) <= 0.0501);
+        made.report.result.nodes
+    };
+    let [rough, even] = [false, true].map(resampled);
+    assert!(even < rough, "{rough} {even}");
+}
+
+#[test]
 fn rings_and_vessels_beside_each_other_survive_resampling() {
     let mut s = lines(&[vec![[0.0; 3], [5.0, 0.01, 0.0], [10.0, 0.0, 0.0]], vec![[5.0, -0.01, 0.0]]], 1.0);
     for (a, b) in [(0, 3), (3, 2)] {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::exit::Failure;
 use super::units::Units;
 use crate::io::network::{NetworkFile, NetworkNote, NetworkOptions, NodeNames, read_network};
-use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare};
+use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare_lines};
 use crate::report::inlets::{Inlets, NoTerminal};
 use crate::report::prepare::text;
 use crate::skeleton::{CleanReport, NodeId, Skeleton, clean};
@@ -98,7 +98,7 @@ impl NetworkArgs {
     /// Reads the network and applies cures to it.
     pub fn prepared(&self, params: &PrepareParams) -> Result<PreparedNetwork, Failure> {
         let file = self.file(params.radii)?;
-        let prepared = prepare(&file.skeleton, params);
+        let prepared = prepare_lines(&file.skeleton, &file.groups, params);
         let prepared =
             prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;
         let Prepared { skeleton, given, outline, report } = prepared;

@@ -46,6 +46,9 @@ pub struct CureArgs {
     /// Leave points as they are
     #[arg(long)]
     keep_points: bool,
+    /// Even out the noise of points that are closer than half a radius, by half of the two tolerances
+    #[arg(long, conflicts_with_all = ["as_is", "keep_points"])]
+    smooth_noise: bool,
     /// Leave tips so close to their branch point that their cap lies in another vessel of it
     #[arg(long)]
     keep_short_tips: bool,
@@ -98,6 +101,7 @@ impl CureArgs {
         params.spurs &= !self.keep_spurs;
         params.join &= !self.keep_joints;
         params.resample &= !self.keep_points;
+        params.smooth |= self.smooth_noise;
         params.short_tips &= !self.keep_short_tips;
         params.touching = match self.touching {
             _ if self.as_is => Touching::Keep,

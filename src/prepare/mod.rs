@@ -13,6 +13,7 @@ mod radii;
 mod report;
 mod resample;
 mod short_tips;
+mod smooth;
 mod spurs;
 mod touching;
 
@@ -27,7 +28,7 @@ pub use short_tips::ShortTip;
 pub use spurs::{Spur, SpurReason};
 pub use touching::{TouchedBy, Touching, TouchingTip, take_back};
 
-use crate::skeleton::{Skeleton, SkeletonError, clean};
+use crate::skeleton::{LineGroup, Skeleton, SkeletonError, clean};
 
 /// Which cures are applied, and their bounds. Lengths are in radii of the vessel concerned.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -52,6 +53,9 @@ pub struct PrepareParams {
     pub drop_islands: usize,
     /// Resample polylines.
     pub resample: bool,
+    /// Even out the noise of polylines that are resampled, by half of the two bounds that follow. Not by default: a lumen
+    /// around an axis that steps from voxel to voxel loses 2 % of its volume with the steps.
+    pub smooth: bool,
     /// How far a resampled axis may be from the given one, in radii.
     pub axis_tolerance: f64,
     /// How much a resampled radius may differ from the given one, as a share of it.
@@ -87,6 +91,7 @@ impl PrepareParams {
             touching: Touching::Keep,
             drop_islands: 0,
             resample: false,
+            smooth: false,
             axis_tolerance: 0.05,
             radius_tolerance: 0.02,
         }
@@ -116,6 +121,15 @@ pub struct Prepared {
 /// When a number cannot be used (with `radii`, only positions and networks without any usable radius), an edge names a
 /// node that does not exist, or no vessel remains.
 pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, SkeletonError> {
+    prepare_lines(raw, &[], params)
+}
+
+/// The same for a network whose file says of its nodes which vessel their lines are drawn for (empty: of none).
+pub(crate) fn prepare_lines(
+    raw: &Skeleton,
+    groups: &[Option<LineGroup>],
+    params: &PrepareParams,
+) -> Result<Prepared, SkeletonError> {
     let mut report = PrepareReport { given: Size::of(raw), ..PrepareReport::default() };
     let filled;
     let mut source = raw;
@@ -130,7 +144,7 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
     let given = skeleton.clone();
     let defaults = PrepareParams::default();
     let outline = if report.measured {
-        resample::resample(&given, defaults.axis_tolerance, defaults.radius_tolerance)?.0
+        resample::resample(&given, defaults.axis_tolerance, defaults.radius_tolerance, false)?.0
     } else {
         given.clone()
     };
@@ -141,7 +155,7 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
         params.clone()
     };
     if params.merge {
-        (skeleton, report.merge) = merge::merge(&skeleton)?;
+        (skeleton, report.merge) = merge::merge(&skeleton, groups)?;
     }
     if params.spurs {
         (skeleton, report.spurs) = spurs::take_off(&skeleton)?;
@@ -157,7 +171,8 @@ pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, Skele
         (skeleton, report.islands) = islands::drop(&skeleton, params.drop_islands)?;
     }
     if params.resample {
-        (skeleton, report.resample) = resample::resample(&skeleton, params.axis_tolerance, params.radius_tolerance)?;
+        (skeleton, report.resample) =
+            resample::resample(&skeleton, params.axis_tolerance, params.radius_tolerance, params.smooth)?;
     }
     report.result = Size::of(&skeleton);
     Ok(Prepared { skeleton, given, outline, report })

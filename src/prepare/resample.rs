@@ -3,12 +3,17 @@
 //! Of each branch those points stay between which straight tapering tubes follow it: every point left out lies within a
 //! share of its radius of the chord (so the axis does, for a tube is convex), and its radius within a share of the
 //! chord's there. Chords are found by doubling and bisection, so that the work is linear in the points but for a
-//! logarithm, whatever the chords' lengths.
+//! logarithm, whatever the chords' lengths. Where points are dense their noise can be evened out first, by half of what
+//! is allowed; the given points are what the result is held against.
 
+use super::smooth::smoothed;
 use crate::geometry::{Point3, point_segment};
 use crate::skeleton::{Branch, Edge, NodeId, Skeleton, SkeletonError, clean};
 use rustc_hash::FxHashSet;
 use serde::Serialize;
+
+/// The share of its bounds by which noise may be evened out.
+const FOR_NOISE: f64 = 0.5;
 
 /// What resampling did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -23,18 +28,20 @@ pub struct ResampleReport {
     pub radius: f64,
 }
 
-/// Resamples all branches.
+/// Resamples all branches, with noise evened out or not.
 pub(super) fn resample(
     skeleton: &Skeleton,
     axis: f64,
     radius: f64,
+    smooth: bool,
 ) -> Result<(Skeleton, ResampleReport), SkeletonError> {
+    let share = if smooth { FOR_NOISE } else { 0.0 };
     let branches = skeleton.branches(&skeleton.adjacency());
     let mut report = ResampleReport { before: skeleton.nodes.len(), ..ResampleReport::default() };
-    let mut edges = Vec::new();
+    let (mut nodes, mut edges) = (skeleton.nodes.clone(), Vec::new());
     let mut joined: FxHashSet<[NodeId; 2]> = FxHashSet::default();
     for branch in &branches.list {
-        let line = Line::new(skeleton, branch);
+        let line = Line::new(skeleton, branch, [share * axis, share * radius]);
         let mut stay = line.simplified([axis, radius]);
         if branch.is_closed() {
             stay = at_least(stay, branch.nodes.len(), 4);
@@ -54,8 +61,13 @@ pub(super) fn resample(
                 radii: [line.radii[ends[0]], line.radii[ends[1]]],
             });
         }
+        for &at in &stay[1..stay.len() - 1] {
+            let node = &mut nodes[branch.nodes[at].index()];
+            node.position = line.points[at];
+            node.radius = line.radii[at];
+        }
     }
-    let (result, _) = clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?;
+    let (result, _) = clean(&Skeleton { nodes, edges })?;
     report.after = result.nodes.len();
     Ok((result, report))
 }
@@ -71,23 +83,28 @@ fn at_least(stay: Vec<usize>, points: usize, count: usize) -> Vec<usize> {
     more
 }
 
+/// A branch as it is given and with its noise evened out.
 struct Line {
+    given: Vec<Point3>,
+    given_radii: Vec<f64>,
     points: Vec<Point3>,
     radii: Vec<f64>,
 }
 
 impl Line {
-    fn new(skeleton: &Skeleton, branch: &Branch) -> Self {
-        let points = branch.nodes.iter().map(|&n| skeleton.node(n).position).collect();
-        let mut radii: Vec<f64> = branch.tubes(skeleton).map(|t| t.ra).collect();
-        radii.extend(branch.tubes(skeleton).last().map(|t| t.rb));
-        Self { points, radii }
+    fn new(skeleton: &Skeleton, branch: &Branch, noise: [f64; 2]) -> Self {
+        let given: Vec<Point3> = branch.nodes.iter().map(|&n| skeleton.node(n).position).collect();
+        let mut given_radii: Vec<f64> = branch.tubes(skeleton).map(|t| t.ra).collect();
+        given_radii.extend(branch.tubes(skeleton).last().map(|t| t.rb));
+        let (points, radii) = smoothed(&given, &given_radii, noise);
+        Self { given, given_radii, points, radii }
     }
 
-    /// Largest distance of the points between two from their chord, in radii, and of their radii from the chord's.
+    /// Largest distance of the given points from one to another from the chord, in radii, and of their radii from the
+    /// chord's.
     fn worst(&self, a: usize, b: usize) -> [f64; 2] {
         let mut worst = [0.0_f64; 2];
-        for i in a + 1..b {
+        for i in a..=b {
             let [off, radius] = self.off(a, b, i);
             worst = [worst[0].max(off), worst[1].max(radius)];
         }
@@ -95,9 +112,9 @@ impl Line {
     }
 
     fn off(&self, a: usize, b: usize, i: usize) -> [f64; 2] {
-        let (t, distance) = point_segment(&self.points[i], &self.points[a], &self.points[b]);
+        let (t, distance) = point_segment(&self.given[i], &self.points[a], &self.points[b]);
         let radius = self.radii[a] + (self.radii[b] - self.radii[a]) * t;
-        [distance / self.radii[i], (radius - self.radii[i]).abs() / self.radii[i]]
+        [distance / self.given_radii[i], (radius - self.given_radii[i]).abs() / self.given_radii[i]]
     }
 
     fn follows(&self, a: usize, b: usize, bounds: [f64; 2]) -> bool {
@@ -105,7 +122,7 @@ impl Line {
             let off = self.off(a, b, i);
             off[0] <= bounds[0] && off[1] <= bounds[1]
         };
-        self.points[a] != self.points[b] && (a + 1..b).all(within)
+        self.points[a] != self.points[b] && (a..=b).all(within)
     }
 
     /// The points that stay, the ends among them.

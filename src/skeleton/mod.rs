@@ -12,6 +12,7 @@ mod extend;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod graph;
+mod groups;
 mod measured;
 mod metrics;
 mod overlap;
@@ -28,9 +29,11 @@ pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};
 pub use error::{LARGEST, SkeletonError};
 pub use extend::Extended;
 pub use graph::{Adjacency, Component};
+pub use groups::LineGroup;
 pub use metrics::{Barrier, Metrics, NARROW, Share};
 pub use overlap::{Overlap, Overlaps};
 
+pub(crate) use groups::Kinship;
 pub(crate) use metrics::paper_unit;
 pub(crate) use overlap::{JOINED, deepest_apart};
 pub use walk::LocalDistances;

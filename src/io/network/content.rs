@@ -1,7 +1,7 @@
 //! What a network file holds, how it is read, and what goes into it beside the network.
 
 use crate::geometry::Point3;
-use crate::skeleton::{NodeId, Skeleton};
+use crate::skeleton::{LineGroup, NodeId, Skeleton};
 use serde::Serialize;
 use std::fmt;
 
@@ -32,6 +32,8 @@ pub struct NetworkFile {
     pub names: NodeNames,
     /// Nodes that the file says to be where its trees begin, in its order.
     pub roots: Vec<NodeId>,
+    /// Of each node, the vessel that its line is drawn for; empty where the file says nothing of it.
+    pub groups: Vec<Option<LineGroup>>,
 }
 
 /// What a file calls its nodes.
@@ -96,6 +98,11 @@ pub enum NetworkNote {
         /// The arrays.
         arrays: Vec<String>,
     },
+    /// Lines say which vessel they are drawn for, in arrays `GroupIds` and `Blanking`.
+    Grouped {
+        /// How many vessels they are, without the insides of branchings.
+        vessels: usize,
+    },
     /// Cells that are no lines were ignored.
     OtherCells {
         /// How many.
@@ -154,6 +161,7 @@ impl fmt::Display for NetworkNote {
                     arrays.join(", ")
                 )
             }
+            Self::Grouped { vessels } => write!(f, "arrays GroupIds and Blanking: lines of {vessels} vessels"),
             Self::OtherCells { count } => write!(f, "{count} cells that are no lines were ignored"),
             Self::Planar => write!(f, "no coordinates z: all nodes lie in the plane z = 0"),
             Self::Diameters => write!(f, "radii taken for diameters, as asked: halved"),

@@ -1,8 +1,9 @@
 //! Polylines over points become nodes and edges, with the radii that the file has: for nodes, for lines, or for each point
 //! of each line.
 
+use super::content::{NetworkFile, NetworkNote};
 use crate::geometry::Point3;
-use crate::skeleton::{Edge, Node, NodeId, Skeleton};
+use crate::skeleton::{Edge, LineGroup, Node, NodeId, Skeleton};
 
 /// Vessels as lines through points.
 #[derive(Debug, Default)]
@@ -58,6 +59,22 @@ impl Polylines {
         skeleton.nodes.len() + self.points.len() < most && skeleton.edges.len() + self.path.len() < most
     }
 
+    /// The groups of the points, by those of the lines and whether these are blanked: of points on lines of several
+    /// groups, none.
+    pub(super) fn groups(&self, of_lines: &[[i64; 2]]) -> Vec<Option<LineGroup>> {
+        let mut seen: Vec<Option<Option<LineGroup>>> = vec![None; self.points.len()];
+        let mut start = 0;
+        for (&end, &[group, blanked]) in self.ends.iter().zip(of_lines) {
+            let group = Some(LineGroup { group, blanked: blanked != 0 });
+            for &point in &self.path[start..end] {
+                let seen = &mut seen[point as usize];
+                *seen = Some(if seen.is_none_or(|s| s == group) { group } else { None });
+            }
+            start = end;
+        }
+        seen.into_iter().map(Option::flatten).collect()
+    }
+
     /// Adds nodes and edges to a network.
     pub(super) fn append_to(&self, skeleton: &mut Skeleton, radii: &Radii) {
         let (base, first_edge) = (skeleton.nodes.len(), skeleton.edges.len());
@@ -94,5 +111,15 @@ fn node_radii_from_edges(nodes: &mut [Node], base: usize, edges: &[Edge]) {
     }
     for node in nodes.iter_mut().filter(|n| n.radius <= 0.0) {
         node.radius = 1.0;
+    }
+}
+
+/// Tells which vessels the lines of a network are drawn for, if its file says so of any.
+pub(super) fn tell_groups(network: &mut NetworkFile) {
+    let mut vessels: Vec<i64> = network.groups.iter().flatten().filter(|g| !g.blanked).map(|g| g.group).collect();
+    vessels.sort_unstable();
+    vessels.dedup();
+    if !vessels.is_empty() {
+        network.notes.push(NetworkNote::Grouped { vessels: vessels.len() });
     }
 }

@@ -5,6 +5,9 @@ use super::content::{NetworkNote, NetworkOptions};
 /// Name of the cell array with the radii at both ends of each line.
 pub(super) const END_RADII: &str = "EndRadii";
 
+/// Names of VMTK's cell arrays with the vessel that each line is drawn for.
+pub(super) const GROUPS: [&str; 2] = ["GroupIds", "Blanking"];
+
 /// Why no array can be taken for the radius.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]

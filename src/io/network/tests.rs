@@ -6,6 +6,7 @@ use super::vtp::VtpError;
 use super::*;
 use crate::io::file::FileError;
 use crate::io::vtk_xml::VtkError;
+use crate::skeleton::LineGroup;
 use proptest::prelude::*;
 
 const TREE_VTP: &[u8] = include_bytes!("../../../fixtures/tree_30.vtp");
@@ -76,13 +77,13 @@ fn swc_errors_name_line_and_id() {
 }
 
 /// Parts of a small VTP file: three points on one polyline after one vertex cell.
-struct Vtp {
-    points: &'static str,
-    point_data: &'static str,
-    cell_data: &'static str,
-    connectivity: &'static str,
-    offsets: &'static str,
-    kind: &'static str,
+struct Vtp<'a> {
+    points: &'a str,
+    point_data: &'a str,
+    cell_data: &'a str,
+    connectivity: &'a str,
+    offsets: &'a str,
+    kind: &'a str,
 }
 
 const SMALL: Vtp = Vtp {
@@ -94,7 +95,7 @@ const SMALL: Vtp = Vtp {
     kind: "Int64",
 };
 
-impl Vtp {
+impl Vtp<'_> {
     fn text(&self) -> String {
         let Self { points, point_data, cell_data, connectivity, offsets, kind } = self;
         format!(
@@ -221,4 +222,25 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn lines_say_which_vessel_they_are_drawn_for() {
+    let array = |name: &str, values: &str| {
+        format!("<DataArray type=\"Int32\" Name=\"{name}\" format=\"ascii\">{values}</DataArray>")
+    };
+    let read = |cell_data: &str| Vtp { cell_data, ..SMALL }.read(None);
+    let both = array("GroupIds", "9 4") + &array("Blanking", "0 0");
+    let network = read(&both).unwrap();
+    // The first cell is a vertex.
+    assert_eq!(network.groups, vec![Some(LineGroup { group: 4, blanked: false }); 3]);
+    assert!(network.notes.contains(&NetworkNote::Grouped { vessels: 1 }));
+    let inside = read(&(array("GroupIds", "9 4") + &array("Blanking", "0 1"))).unwrap();
+    assert!(inside.groups.iter().flatten().all(|g| g.blanked));
+    assert!(!inside.notes.iter().any(|n| matches!(n, NetworkNote::Grouped { .. })));
+    assert!(read(&array("GroupIds", "9 4")).unwrap().groups.is_empty());
+    assert!(matches!(
+        read(&(array("GroupIds", "9 4 4") + &array("Blanking", "0 0"))),
+        Err(VtpError::WrongLength { expected: 2, found: 3, .. })
+    ));
 }

@@ -11,7 +11,7 @@ mod meet;
 mod runs;
 
 use crate::geometry::Point3;
-use crate::skeleton::{Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError, clean};
+use crate::skeleton::{Edge, EdgeId, LineGroup, Node, NodeId, Skeleton, SkeletonError, clean};
 use line::{Line, lines_of};
 use rayon::prelude::*;
 use runs::{Course, Foot, Kept, Run, runs};
@@ -57,8 +57,12 @@ pub struct MergeReport {
     pub gave_up: bool,
 }
 
-/// Merges lines that run together. The result satisfies `Skeleton::check`.
-pub(super) fn merge(skeleton: &Skeleton) -> Result<(Skeleton, MergeReport), SkeletonError> {
+/// Merges lines that run together; `groups` says of the file's nodes which vessel their lines are drawn for, where it says
+/// so. The result satisfies `Skeleton::check`.
+pub(super) fn merge(
+    skeleton: &Skeleton,
+    groups: &[Option<LineGroup>],
+) -> Result<(Skeleton, MergeReport), SkeletonError> {
     let (skeleton, met) = meet::join(skeleton)?;
     let skeleton = &skeleton;
     let adjacency = skeleton.adjacency();
@@ -68,7 +72,7 @@ pub(super) fn merge(skeleton: &Skeleton) -> Result<(Skeleton, MergeReport), Skel
     // A stable sort: the earlier of equals comes first.
     lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
     let mut report = MergeReport { lines: lines.len(), met, ..MergeReport::default() };
-    let mut kept = Kept::new(skeleton);
+    let mut kept = Kept::new(skeleton, LineGroup::of_edges(skeleton, groups));
     let mut changes = Changes::new(skeleton);
     for line in &lines {
         let feet = kept.feet(line);
@@ -174,5 +178,58 @@ impl<'a> Changes<'a> {
             edge.nodes = edge.nodes.map(|n| last(&onto, n));
         }
         Skeleton { nodes, edges }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two straight lines of 30 points beside each other, so many radii apart.
+    fn beside(apart: f64) -> Skeleton {
+        let mut s = Skeleton::default();
+        for line in 0..2 {
+            for i in 0..30 {
+                let id = s.nodes.len() as u32;
+                let position = Point3::new(f64::from(i) * 0.5, f64::from(line) * apart, 0.0);
+                s.nodes.push(Node { position, radius: 1.0, original: id });
+                if i > 0 {
+                    s.edges.push(Edge { nodes: [NodeId(id - 1), NodeId(id)], radii: [1.0; 2] });
+                }
+            }
+        }
+        s
+    }
+
+    fn groups(of_lines: [i64; 2], blanked: bool) -> Vec<Option<LineGroup>> {
+        (0..60).map(|i| Some(LineGroup { group: of_lines[i / 30], blanked })).collect()
+    }
+
+    fn lines_left(apart: f64, groups: &[Option<LineGroup>]) -> usize {
+        let (merged, _) = merge(&beside(apart), groups).unwrap();
+        merged.branches(&merged.adjacency()).list.len()
+    }
+
+    #[test]
+    fn groups_go_before_geometry() {
+        let geometry = [lines_left(0.8, &[]), lines_left(0.8, &groups([3, 4], true))];
+        assert_eq!(geometry, [1, 1], "within each other, and nothing is said of the inside of a branching");
+        assert_eq!(lines_left(0.8, &groups([3, 4], false)), 2);
+    }
+
+    #[test]
+    fn one_of_two_radii_is_enough_within_a_group() {
+        let mut s = beside(1.2);
+        for node in &mut s.nodes[..30] {
+            node.radius = 2.0;
+        }
+        for edge in &mut s.edges[..29] {
+            edge.radii = [2.0; 2];
+        }
+        let left = |groups: &[Option<LineGroup>]| {
+            let (merged, _) = merge(&s, groups).unwrap();
+            merged.branches(&merged.adjacency()).list.len()
+        };
+        assert_eq!((left(&[]), left(&groups([3, 3], false))), (2, 1));
     }
 }

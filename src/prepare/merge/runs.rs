@@ -2,7 +2,7 @@
 
 use super::line::Line;
 use crate::geometry::{Aabb, Bvh, DisjointSets, Point3, Vec3, point_segment};
-use crate::skeleton::{EdgeId, NodeId, Skeleton};
+use crate::skeleton::{EdgeId, Kinship, LineGroup, NodeId, Skeleton};
 
 /// Vessels that enclose less than 45 degrees have the same direction.
 const SAME_WAY: f64 = 0.707;
@@ -46,6 +46,8 @@ pub(super) struct Kept<'a> {
     skeleton: &'a Skeleton,
     tree: Bvh,
     tangents: Vec<Vec3>,
+    /// The vessel that each edge is drawn for, where the file says so.
+    groups: Vec<Option<LineGroup>>,
     /// Whether an edge belongs to a line that is kept, and at which of its ends the line ends.
     state: Vec<Option<[bool; 2]>>,
     /// Nodes that what is kept connects.
@@ -54,7 +56,7 @@ pub(super) struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    pub(super) fn new(skeleton: &'a Skeleton) -> Self {
+    pub(super) fn new(skeleton: &'a Skeleton, groups: Vec<Option<LineGroup>>) -> Self {
         let boxes = skeleton.edge_ids().map(|e| {
             let tube = skeleton.tube(e);
             Aabb::of_points([&tube.a, &tube.b]).grown(tube.max_radius())
@@ -65,6 +67,7 @@ impl<'a> Kept<'a> {
             skeleton,
             tree,
             tangents: vec![Vec3::zeros(); edges],
+            groups,
             state: vec![None; edges],
             pieces: DisjointSets::new(skeleton.nodes.len()),
             looks: 0,
@@ -89,18 +92,22 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// The place closest to a point of a line, on a line that is kept, runs the same way there and is within the radius of
-    /// this one as this is within that one's.
-    fn foot(&mut self, point: &Point3, radius: f64, tangent: &Vec3) -> Option<Foot> {
-        let Self { skeleton, tree, tangents, state, pieces, looks } = self;
+    /// The place closest to a point of an edge of a line, on a line that is kept, runs the same way there and is within the
+    /// radius of this one as this is within that one's. Where the file says that both are one vessel, one of the two is
+    /// enough; where it says that they are two, they do not run together.
+    fn foot(&mut self, point: &Point3, radius: f64, tangent: &Vec3, of: EdgeId) -> Option<Foot> {
+        let Self { skeleton, tree, tangents, groups, state, pieces, looks } = self;
+        let group = groups[of.index()];
+        let reach = if group.is_some() { radius } else { 0.0 };
         let mut best: Option<Foot> = None;
         if *looks >= MOST_LOOKS {
             return None;
         }
-        tree.query(&Aabb::of_points([point]), |id| {
+        tree.query(&Aabb::of_points([point]).grown(reach), |id| {
             *looks += 1;
             let Some(ends) = state[id as usize] else { return };
-            if tangents[id as usize].dot(tangent).abs() < SAME_WAY {
+            let kinship = LineGroup::kinship(group, groups[id as usize]);
+            if kinship == Kinship::Different || tangents[id as usize].dot(tangent).abs() < SAME_WAY {
                 return;
             }
             let tube = skeleton.tube(EdgeId(id));
@@ -109,7 +116,11 @@ impl<'a> Kept<'a> {
             // Where a line goes on, another one begins at its end: that is no double.
             let key = |f: &Foot| (f.distance, f.edge.0);
             let foot = Foot { edge: EdgeId(id), t, distance, at_end: at_end && distance > 0.0, piece: 0 };
-            if distance < radius.min(tube.radius(t)) && best.is_none_or(|b| key(&foot) < key(&b)) {
+            let within = match kinship {
+                Kinship::Same => radius.max(tube.radius(t)),
+                _ => radius.min(tube.radius(t)),
+            };
+            if distance < within && best.is_none_or(|b| key(&foot) < key(&b)) {
                 best = Some(foot);
             }
         });
@@ -132,7 +143,8 @@ impl<'a> Kept<'a> {
             let between = |k: usize| k as f64 / count;
             along.push((1..count as usize).all(|k| {
                 let t = between(k);
-                self.foot(&(a + (b - a) * t), ra + (rb - ra) * t, &line.tangents[piece]).is_some_and(|f| !f.at_end)
+                let of = line.edges[piece];
+                self.foot(&(a + (b - a) * t), ra + (rb - ra) * t, &line.tangents[piece], of).is_some_and(|f| !f.at_end)
             }));
         }
         along
@@ -142,7 +154,7 @@ impl<'a> Kept<'a> {
     pub(super) fn feet(&mut self, line: &Line) -> Vec<Option<Foot>> {
         let feet = (0..line.nodes.len()).map(|i| {
             let point = self.skeleton.node(line.nodes[i]).position;
-            self.foot(&point, line.radii[i], &line.tangents[i])
+            self.foot(&point, line.radii[i], &line.tangents[i], line.edges[i.min(line.edges.len() - 1)])
         });
         feet.collect()
     }

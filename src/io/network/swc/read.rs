@@ -45,7 +45,7 @@ pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Re
         roots: roots.collect(),
         names: NodeNames::Ids(rows.iter().map(|row| row.id).collect()),
         skeleton: Skeleton { nodes, edges },
-        notes: Vec::new(),
+        ..NetworkFile::default()
     })
 }
 

@@ -5,8 +5,8 @@ use super::error::VtkLegacyError;
 use super::sections::{CellList, LISTS, Sections};
 use crate::geometry::Point3;
 use crate::io::network::content::{NetworkFile, NetworkNote, NetworkOptions};
-use crate::io::network::polylines::{Polylines, Radii};
-use crate::io::network::radii::Choice;
+use crate::io::network::polylines::{Polylines, Radii, tell_groups};
+use crate::io::network::radii::{Choice, GROUPS};
 
 /// Types of cells that are lines.
 const LINE_TYPES: [i64; 2] = [3, 4];
@@ -38,6 +38,11 @@ pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Re
     if others > 0 {
         network.notes.push(NetworkNote::OtherCells { count: others });
     }
+    if let Some(groups) = groups(&sections.cell_data, all)? {
+        let of_lines: Vec<[i64; 2]> = cells.index.iter().map(|&cell| groups[cell]).collect();
+        network.groups = polylines.groups(&of_lines);
+        tell_groups(&mut network);
+    }
     polylines.append_to(&mut network.skeleton, &Radii { nodes, lines, corners: None });
     Ok(network)
 }
@@ -54,6 +59,19 @@ fn radii(
         return Err(VtkLegacyError::WrongLength { array: array.name.clone(), expected, found: array.count });
     }
     Ok(Some(choice.radii(&array.name, array.floats()?)))
+}
+
+/// Group and blanking of each cell; none where the file does not have both, as integers.
+fn groups(arrays: &[Array], expected: usize) -> Result<Option<Vec<[i64; 2]>>, VtkLegacyError> {
+    let find = |name| arrays.iter().find(|a: &&Array| a.name == name);
+    let [Some(groups), Some(blanked)] = GROUPS.map(find) else { return Ok(None) };
+    for array in [groups, blanked] {
+        if array.count != expected {
+            return Err(VtkLegacyError::WrongLength { array: array.name.clone(), expected, found: array.count });
+        }
+    }
+    let (Ok(groups), Ok(blanked)) = (groups.integers(), blanked.integers()) else { return Ok(None) };
+    Ok(Some(groups.into_iter().zip(blanked).map(<[i64; 2]>::from).collect()))
 }
 
 /// The cells that are lines.

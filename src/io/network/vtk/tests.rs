@@ -72,3 +72,15 @@ fn a_binary_file_that_is_cut_has_its_byte() {
         }
     }
 }
+
+#[test]
+fn groups_are_those_of_the_cells_that_are_lines() {
+    let arrays = "SCALARS GroupIds int 1\nLOOKUP_TABLE default\n0 7 8 9\nSCALARS Blanking int 1\nLOOKUP_TABLE default\n0 0 1 0\n";
+    let network = text(&TEXT.replacen("SCALARS order", &format!("{arrays}SCALARS order"), 1)).unwrap();
+    let group = |n: usize| network.groups[n].map(|g| (g.group, g.blanked));
+    // The second point is on both lines.
+    assert_eq!([0, 1, 2, 3].map(group), [Some((7, false)), None, Some((7, false)), Some((8, true))]);
+    assert!(network.notes.contains(&NetworkNote::Grouped { vessels: 1 }));
+    let short = TEXT.replacen("SCALARS order", &format!("{}SCALARS order", arrays.replace("0 0 1 0", "0 0 one 0")), 1);
+    assert!(text(&short).unwrap().groups.is_empty());
+}

@@ -3,10 +3,9 @@
 use super::error::VtpError;
 use crate::geometry::Point3;
 use crate::io::network::content::{NetworkFile, NetworkNote, NetworkOptions};
-use crate::io::network::polylines::{Astray, Polylines, Radii};
-use crate::io::network::radii::{Choice, END_RADII, RadiusFault};
+use crate::io::network::polylines::{Astray, Polylines, Radii, tell_groups};
+use crate::io::network::radii::{Choice, END_RADII, GROUPS, RadiusFault};
 use crate::io::vtk_xml::{ElementId, VtkXml};
-use crate::skeleton::Skeleton;
 
 pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtpError> {
     let document = VtkXml::parse(bytes, "PolyData")?;
@@ -21,7 +20,7 @@ pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Re
     let mut network = NetworkFile { notes: choice.notes(), ..NetworkFile::default() };
     let mut others = Others::default();
     for piece in pieces {
-        read_piece(&document, piece, &choice, &mut network.skeleton, &mut others)?;
+        read_piece(&document, piece, &choice, &mut network, &mut others)?;
     }
     if others.lines == 0 {
         return Err(VtpError::NoLines { polygons: others.polygons, vertices: others.vertices });
@@ -29,6 +28,7 @@ pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Re
     if others.polygons + others.vertices > 0 {
         network.notes.push(NetworkNote::OtherCells { count: others.polygons + others.vertices });
     }
+    tell_groups(&mut network);
     Ok(network)
 }
 
@@ -44,7 +44,7 @@ fn read_piece(
     document: &VtkXml,
     piece: ElementId,
     choice: &Choice,
-    skeleton: &mut Skeleton,
+    network: &mut NetworkFile,
     others: &mut Others,
 ) -> Result<(), VtpError> {
     let points = read_points(document, piece)?;
@@ -58,7 +58,7 @@ fn read_piece(
     let count = points.len();
     let astray = |a: Astray| VtpError::UnknownPoint { line: others.lines + a.line, point: a.point, points: count };
     let polylines = Polylines::checked(points, lines, &connectivity).map_err(astray)?;
-    if !polylines.fits(skeleton) {
+    if !polylines.fits(&network.skeleton) {
         return Err(VtpError::TooMany);
     }
     // Cell data run over vertex cells first, then lines.
@@ -67,7 +67,11 @@ fn read_piece(
     if let Some(ends) = end_radii {
         radii.corners = Some(corner_radii(&polylines, &ends[vertices..], &radii));
     }
-    polylines.append_to(skeleton, &radii);
+    if let Some(groups) = read_groups(document, piece, cells)? {
+        network.groups.resize(network.skeleton.nodes.len(), None);
+        network.groups.extend(polylines.groups(&groups[vertices..]));
+    }
+    polylines.append_to(&mut network.skeleton, &radii);
     let lines = &polylines.ends;
     others.lines += lines.len();
     others.vertices += vertices;
@@ -114,6 +118,22 @@ fn read_end_radii(
         });
     }
     Ok(Some(array.into_floats().as_chunks::<2>().0.to_vec()))
+}
+
+/// Group and blanking of each cell; none where the piece does not have both, as integers.
+fn read_groups(document: &VtkXml, piece: ElementId, cells: usize) -> Result<Option<Vec<[i64; 2]>>, VtpError> {
+    let Some(section) = document.child(piece, "CellData") else { return Ok(None) };
+    let mut arrays = [Vec::new(), Vec::new()];
+    for (name, values) in GROUPS.into_iter().zip(&mut arrays) {
+        let Some((_, element)) = document.arrays(section).find(|(n, _)| *n == name) else { return Ok(None) };
+        let Some(read) = document.read(element)?.into_ints() else { return Ok(None) };
+        if read.len() != cells {
+            return Err(VtpError::WrongLength { array: name.to_owned(), expected: cells, found: read.len() });
+        }
+        *values = read;
+    }
+    let [groups, blanked] = arrays;
+    Ok(Some(groups.into_iter().zip(blanked).map(<[i64; 2]>::from).collect()))
 }
 
 fn read_points(document: &VtkXml, piece: ElementId) -> Result<Vec<Point3>, VtpError> {

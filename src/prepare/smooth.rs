@@ -1,0 +1,133 @@
+//! Noise of a measured line evened out, within a bound.
+//!
+//! Segmentation moves the points of a centreline by a share of a voxel to and fro. Where points are closer than half a radius
+//! such noise has no meaning: each is put to the mean of its line over a radius, which is taken twice and corrected by
+//! what it takes from the mean itself (Tukey's twicing, 'Exploratory Data Analysis', 1977), so that bends stay. No point
+//! moves by more than a share of its radius.
+
+use crate::geometry::Point3;
+use nalgebra::Vector4;
+
+/// Half the length of line over which is averaged, in radii.
+const REACH: f64 = 0.5;
+
+/// Position and radius along a line.
+type Values = Vec<Vector4<f64>>;
+
+/// Evens a line out: positions by `bounds[0]` radii at most, radii by `bounds[1]` of their own. Ends stay.
+pub(super) fn smoothed(points: &[Point3], radii: &[f64], bounds: [f64; 2]) -> (Vec<Point3>, Vec<f64>) {
+    let arc = arc_lengths(points);
+    let half = half_widths(&arc, radii);
+    // Relative to the start, so that what lies far from the origin loses nothing.
+    let given: Values = points.iter().zip(radii).map(|(p, r)| (p - points[0]).push(*r)).collect();
+    let mean = |values: &Values| means(&means(values, &arc, &half), &arc, &half);
+    let once = mean(&given);
+    let rest: Values = given.iter().zip(&once).map(|(g, m)| g - m).collect();
+    let corrections = mean(&rest);
+    let moved = (0..points.len()).map(|i| {
+        if half[i] == 0.0 {
+            return (points[i], radii[i]);
+        }
+        let change = once[i] + corrections[i] - given[i];
+        let (shift, widen) = (change.xyz(), change.w);
+        let (most, widest) = (bounds[0] * radii[i], bounds[1] * radii[i]);
+        let share = (most / shift.norm()).min(1.0);
+        (points[i] + shift * share, radii[i] + widen.clamp(-widest, widest))
+    });
+    moved.unzip()
+}
+
+fn arc_lengths(points: &[Point3]) -> Vec<f64> {
+    let mut arc = vec![0.0];
+    arc.extend(points.windows(2).scan(0.0, |sum, p| {
+        *sum += (p[1] - p[0]).norm();
+        Some(*sum)
+    }));
+    arc
+}
+
+/// Over how much of the line to each side a point is averaged: nothing where its neighbours are further off than that.
+fn half_widths(arc: &[f64], radii: &[f64]) -> Vec<f64> {
+    let last = arc.len() - 1;
+    let half = |i: usize| {
+        if i == 0 || i == last {
+            return 0.0;
+        }
+        let half = (REACH * radii[i]).min(arc[i]).min(arc[last] - arc[i]);
+        let wide = (arc[i + 1] - arc[i]).max(arc[i] - arc[i - 1]);
+        if wide < half { half } else { 0.0 }
+    };
+    (0..=last).map(half).collect()
+}
+
+/// The mean of the line through values over each point's window.
+fn means(values: &Values, arc: &[f64], half: &[f64]) -> Values {
+    let mut sums = vec![Vector4::zeros()];
+    for i in 1..values.len() {
+        sums.push(sums[i - 1] + (values[i - 1] + values[i]) * (0.5 * (arc[i] - arc[i - 1])));
+    }
+    let integral = |s: f64| {
+        let i = arc.partition_point(|&a| a <= s).clamp(1, arc.len() - 1);
+        let (from, length) = (s - arc[i - 1], arc[i] - arc[i - 1]);
+        let share = if length > 0.0 { from / length } else { 0.0 };
+        sums[i - 1] + (values[i - 1] + (values[i] - values[i - 1]) * (0.5 * share)) * from
+    };
+    let mean = |i: usize| match half[i] {
+        0.0 => values[i],
+        h => (integral(arc[i] + h) - integral(arc[i] - h)) / (2.0 * h),
+    };
+    (0..values.len()).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers between -1 and 1 that look like noise.
+    fn noise(i: usize) -> f64 {
+        (i as f64 * 12.9898).sin() * 43758.5453 % 1.0
+    }
+
+    /// A bend of three radii with noise, and how far its points are from the circle in the mean.
+    fn bend(amplitude: f64) -> (Vec<Point3>, Vec<f64>) {
+        let at = |i: usize| {
+            let (angle, off) = (i as f64 * 0.02, 3.0 + amplitude * noise(i));
+            Point3::new(off * angle.cos(), off * angle.sin(), amplitude * noise(i + 1000))
+        };
+        ((0..=100).map(at).collect(), (0..=100).map(|i| 1.0 + amplitude * noise(i + 2000)).collect())
+    }
+
+    fn off_circle(points: &[Point3]) -> f64 {
+        let off = |p: &Point3| (p.x.hypot(p.y) - 3.0).hypot(p.z);
+        points.iter().map(off).sum::<f64>() / points.len() as f64
+    }
+
+    #[test]
+    fn noise_goes_and_bends_stay() {
+        let (points, radii) = bend(0.02);
+        let (smooth, even) = smoothed(&points, &radii, [0.025, 0.03]);
+        assert!(off_circle(&smooth) < 0.4 * off_circle(&points), "{} {}", off_circle(&smooth), off_circle(&points));
+        let uneven = |r: &[f64]| r.iter().map(|r| (r - 1.0).abs()).sum::<f64>();
+        assert!(uneven(&even) < 0.4 * uneven(&radii));
+        let (points, radii) = bend(0.0);
+        let bent = off_circle(&smoothed(&points, &radii, [0.025, 0.01]).0);
+        assert!(bent < 2e-3, "{bent}");
+    }
+
+    #[test]
+    fn nothing_moves_further_than_its_bound_and_ends_stay() {
+        let (points, radii) = bend(0.3);
+        let (smooth, even) = smoothed(&points, &radii, [0.025, 0.01]);
+        for i in 0..points.len() {
+            assert!((smooth[i] - points[i]).norm() <= 0.025 * radii[i] * (1.0 + 1e-12));
+            assert!((even[i] - radii[i]).abs() <= 0.01 * radii[i] * (1.0 + 1e-12));
+        }
+        assert_eq!((smooth[0], smooth[100]), (points[0], points[100]));
+    }
+
+    #[test]
+    fn lines_of_few_points_stay() {
+        let points: Vec<Point3> = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]].map(Point3::from).to_vec();
+        assert_eq!(smoothed(&points, &[1.0; 3], [0.025, 0.01]), (points, vec![1.0; 3]));
+    }
+}
