@@ -1,12 +1,14 @@
 //! Volume of the given lumen: of the union of its tubes.
 //!
 //! Each tube is sampled; a sample that lies in n tubes counts for 1/n of its share, so that what tubes have in common is
-//! counted once. At inner nodes a ball fills the wedge between tubes that meet at an angle.
+//! counted once. At inner nodes a ball fills the wedge between tubes that meet at an angle, but for what of it lies beyond
+//! the end of a vessel.
 
 use super::tubes::Tubes;
-use crate::geometry::{Aabb, Point3, Section, point_segment};
+use crate::geometry::{Aabb, Point3, Section, Vec3, point_segment};
 use crate::skeleton::{Adjacency, EdgeId, NodeId, Skeleton};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 use std::f64::consts::{PI, TAU};
 
 /// Samples over all tubes, about, and bounds of those in each.
@@ -24,7 +26,10 @@ const EVEN: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_
 /// Volume of the union of the tubes and of the balls at the inner nodes of a network.
 pub(super) fn volume(network: &Skeleton, tubes: &Tubes) -> f64 {
     let adjacency = network.adjacency();
-    let lumen = Lumen { network, tubes, adjacency: &adjacency };
+    let mut lumen = Lumen { network, tubes, adjacency: &adjacency, ends: FxHashMap::default() };
+    for tip in adjacency.terminals() {
+        lumen.end(tip);
+    }
     let count = (SAMPLES / network.edges.len().max(1)).clamp(LEAST, MOST);
     let edges: Vec<EdgeId> = network.edge_ids().collect();
     let nodes: Vec<NodeId> = network.node_ids().filter(|&n| adjacency.valence(n) > 1).collect();
@@ -37,9 +42,39 @@ struct Lumen<'a> {
     network: &'a Skeleton,
     tubes: &'a Tubes,
     adjacency: &'a Adjacency,
+    /// The ends of vessels (a point and the direction outwards) that are within reach of a node's ball.
+    ends: FxHashMap<NodeId, Vec<(Point3, Vec3)>>,
 }
 
 impl Lumen<'_> {
+    /// Ends the balls of the nodes before a tip at its plane.
+    fn end(&mut self, tip: NodeId) {
+        let place = self.network.node(tip).position;
+        let (mut node, mut before, mut within) = (tip, None, Vec::new());
+        let mut outwards = None;
+        while let Some(&edge) = self.adjacency.edges(node).iter().find(|&&e| Some(e) != before) {
+            (node, before) = (self.network.edge(edge).other(node), Some(edge));
+            let from = place - self.network.node(node).position;
+            // The direction over the last radius: edges much shorter than that have none worth the name.
+            if outwards.is_none() || from.norm() <= self.network.node(tip).radius {
+                outwards = from.try_normalize(0.0);
+            }
+            if from.norm() >= self.network.tube(edge).max_radius() || self.adjacency.valence(node) != 2 {
+                break;
+            }
+            within.push(node);
+        }
+        let Some(outwards) = outwards else { return };
+        for node in within {
+            self.ends.entry(node).or_default().push((place, outwards));
+        }
+    }
+
+    /// Whether a point that a node's ball holds lies beyond the end of its vessel.
+    fn beyond(&self, node: NodeId, point: &Point3) -> bool {
+        self.ends.get(&node).is_some_and(|ends| ends.iter().any(|(place, way)| (point - place).dot(way) > 0.0))
+    }
+
     /// What a tube adds: its volume, less what is counted for others.
     fn of_tube(&self, edge: EdgeId, count: usize) -> f64 {
         let tube = self.network.tube(edge);
@@ -63,8 +98,10 @@ impl Lumen<'_> {
         for [x, y, z] in evenly(node.index(), count) {
             let (r, height, angle) = (radius * x.cbrt(), 2.0 * y - 1.0, TAU * z);
             let across = (1.0 - height * height).sqrt();
-            let way = crate::geometry::Vec3::new(across * angle.cos(), across * angle.sin(), height);
-            sum += 1.0 / self.holders(&(center + way * r), radius, &mut seen);
+            let point = center + Vec3::new(across * angle.cos(), across * angle.sin(), height) * r;
+            if !self.beyond(node, &point) {
+                sum += 1.0 / self.holders(&point, radius, &mut seen);
+            }
         }
         4.0 / 3.0 * PI * radius.powi(3) * sum / count as f64
     }
@@ -97,7 +134,8 @@ impl Lumen<'_> {
         });
         seen.sort_unstable();
         seen.dedup();
-        let holds = |&n: &NodeId| (point - self.network.node(n).position).norm() < self.ball(n);
+        let holds =
+            |&n: &NodeId| (point - self.network.node(n).position).norm() < self.ball(n) && !self.beyond(n, point);
         count += seen.iter().filter(|n| holds(n)).count() as u32;
         f64::from(count.max(1))
     }
