@@ -5,8 +5,10 @@ use super::corners::part_corners;
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::faithful::Astray;
+use super::lone_tube::lone_tube;
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
+use super::template::FilledTube;
 use crate::geometry::{Section, Tube};
 use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
@@ -76,6 +78,10 @@ pub(crate) fn mesh_cluster_watched(
     params: &BlockParams,
     watch: &Watch,
 ) -> Result<ClusterMesh, BlockError> {
+    params.check()?;
+    if let Some(tube) = lone_tube(cluster, params) {
+        return of_tube(id, cluster, tube, params);
+    }
     let (surface, voxel, astray) = cluster_surface(id, cluster, params)?;
     let edge = surface.mesh.mean_edge();
     let (filled, hull) = if params.hollow {
@@ -109,14 +115,32 @@ pub(crate) fn mesh_cluster_watched(
         filled: all.all - loops,
         ends: Vec::new(),
     };
-    match params.ends {
-        EndStyle::Open => {}
-        EndStyle::Disc => out.ends = disc_ends(id, cluster, &surface, &out.mesh)?,
-        EndStyle::Shared => {
-            out.ends = disc_ends(id, cluster, &surface, &out.mesh)?;
-            check_shared(id, cluster, &out, params.rho)?;
-        }
+    if params.ends != EndStyle::Open {
+        out.ends = disc_ends(id, cluster, |end| faces_of(&surface, end), &out.mesh)?;
     }
+    if params.ends == EndStyle::Shared {
+        check_shared(id, cluster, &out, params.rho)?;
+    }
+    Ok(out)
+}
+
+/// A cluster that is one tube, by template.
+fn of_tube(id: ClusterId, cluster: &Cluster, tube: FilledTube, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
+    let surface_triangles = tube.ends[0].len() + tube.ends[1].len() + tube.wall.len();
+    let caps = (0..).zip(&cluster.ends).filter_map(|(i, end): (usize, _)| match end.kind {
+        EndKind::Terminal(node) => Some(CapFaces { node, section: end.section, triangles: tube.ends[i].clone() }),
+        EndKind::Cut { .. } => None,
+    });
+    let voxel = 2.0 * smallest_radius(cluster) / params.rho;
+    let mut out = ClusterMesh { caps: caps.collect(), voxel, surface_triangles, ..ClusterMesh::default() };
+    if params.hollow {
+        let TriMesh { points, triangles } = tube.hull();
+        (out.mesh.points, out.hull) = (points, triangles);
+    } else {
+        out.mesh = tube.mesh;
+    }
+    out.ends = disc_ends(id, cluster, |end| tube.ends[end as usize].clone(), &out.mesh)?;
+    check_shared(id, cluster, &out, params.rho)?;
     Ok(out)
 }
 
@@ -260,14 +284,14 @@ pub(crate) fn cut_ends(cluster: &Cluster) -> Vec<(u32, CutEnd)> {
 fn disc_ends(
     id: ClusterId,
     cluster: &Cluster,
-    surface: &CappedSurface,
+    faces: impl Fn(u32) -> Vec<[u32; 3]>,
     mesh: &TetMesh,
 ) -> Result<Vec<EndSurface>, BlockError> {
     cut_ends(cluster)
         .into_iter()
         .map(|(i, end)| {
             let failed = || BlockError::at_end(id, i, &end, FlattenFailure::NotADisc);
-            let triangles = faces_of(surface, i);
+            let triangles = faces(i);
             let rim = disc_rim(&triangles).ok_or_else(failed)?;
             let surface = EndSurface { cut: end.cut, side: end.side, section: end.section, triangles, rim };
             surface.check(&mesh.points).map_err(|_| failed())?;

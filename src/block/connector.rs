@@ -1,16 +1,15 @@
 //! One connector: the tube between two end surfaces, filled (3.2.3).
 
 use super::connector_surface::{
-    ConnectorEnd, ConnectorFault, ConnectorSurface, Division, EndVertex, connector_surface,
+    ConnectorEnd, ConnectorSurface, Division, EndVertex, connector_surface,
 };
-use super::end_surface::EndSurface;
 use super::error::BlockError;
 use super::error::{ConnectorAttempt, ConnectorFailure};
+use super::free_ends::FreeEnds;
 use super::params::{BlockParams, filling};
-use crate::geometry::Section;
+use super::template::{self, FilledTube};
 use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cut, CutId};
-use crate::surface::SharedDisc;
 use crate::tet::tetrahedralize;
 
 /// A meshed connector.
@@ -72,7 +71,7 @@ pub fn mesh_connector(
 }
 
 /// Meshes one connector between the two discs that the vessel alone gives; no cluster is needed. `shared` counts the
-/// discs' vertices.
+/// discs' vertices. By template where the vessel lets it.
 ///
 /// # Errors
 /// As [`mesh_connector`].
@@ -84,36 +83,24 @@ pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result
         attempts: vec![ConnectorAttempt { division: IN_ORDER[0], failure: ConnectorFailure::Surface(fault) }],
     };
     let ends = FreeEnds::new(id, cut, params).map_err(failed)?;
+    if params.by_template()
+        && let Some(tube) = template::tube(&cut.path, &ends.discs, [false; 2], params.rho)
+    {
+        return Ok(image(tube, params.hollow));
+    }
     mesh_connector(id, cut, ends.both(), params)
 }
 
-/// The end surfaces between which [`mesh_free_connector`] makes its connector; none where the vessel gives no disc.
-pub fn shared_ends(id: CutId, cut: &Cut, params: &BlockParams) -> Option<[EndSurface; 2]> {
-    FreeEnds::new(id, cut, params).ok().map(|ends| ends.surfaces)
-}
-
-/// The discs at the two ends of a connector, which the vessel alone gives.
-pub(super) struct FreeEnds {
-    discs: [SharedDisc; 2],
-    surfaces: [EndSurface; 2],
-}
-
-impl FreeEnds {
-    pub(super) fn new(id: CutId, cut: &Cut, params: &BlockParams) -> Result<Self, ConnectorFault> {
-        let (Some(first), Some(last)) = (cut.path.first(), cut.path.last()) else { return Err(ConnectorFault::Path) };
-        let outward = [*first, Section { axis: -last.axis, ..*last }];
-        let disc = |side: u8| {
-            SharedDisc::at_end(&outward[usize::from(side)], side, params.rho).ok_or(ConnectorFault::Disc(side))
-        };
-        let discs = [disc(0)?, disc(1)?];
-        let surfaces =
-            [0_u8, 1].map(|side| EndSurface::of_disc(&discs[usize::from(side)], id, side, outward[usize::from(side)]));
-        Ok(Self { discs, surfaces })
+/// A connector by template.
+fn image(tube: FilledTube, hollow: bool) -> ConnectorMesh {
+    let ends = |side| (0..tube.disc).map(move |vertex| EndVertex { side, vertex });
+    let shared = ends(0).chain(ends(1)).collect();
+    let (rings, failed) = (tube.rings, Vec::new());
+    if !hollow {
+        return ConnectorMesh { mesh: tube.mesh, hull: Vec::new(), shared, rings, failed };
     }
-
-    pub(super) fn both(&self) -> [ConnectorEnd<'_>; 2] {
-        [0, 1].map(|side| ConnectorEnd { surface: &self.surfaces[side], points: &self.discs[side].points })
-    }
+    let TriMesh { points, triangles } = tube.hull();
+    ConnectorMesh { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, shared, rings, failed }
 }
 
 fn filled(surface: ConnectorSurface, mesh: TetMesh, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {

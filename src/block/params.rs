@@ -76,6 +76,12 @@ impl BlockParams {
         Self { rho, ..Self::default() }
     }
 
+    /// Whether nothing is tried in another way than usual: blocks that can be had by template are.
+    pub(super) fn by_template(&self) -> bool {
+        let Self { rho, follow, ends, allow_fused, hollow, .. } = *self;
+        *self == Self { rho, follow, ends, allow_fused, hollow, ..Self::default() }
+    }
+
     pub(super) fn check(&self) -> Result<(), BlockError> {
         let positive =
             [("rho", self.rho), ("voxel_factor", self.voxel_factor), ("kappa", self.kappa), ("depth", self.depth)];

@@ -62,6 +62,30 @@ impl AxisPath {
         self.stations[self.stations.len() - 1].s
     }
 
+    /// Length in radii up to each station: ∫ ds / r.
+    pub fn radii(&self) -> Vec<f64> {
+        let pieces = self.stations.windows(2).scan(0.0, |sum, pair| {
+            *sum += radii_between(&pair[0], &pair[1]);
+            Some(*sum)
+        });
+        std::iter::once(0.0).chain(pieces).collect()
+    }
+
+    /// The arc length with so many radii before it; `radii` is what the function of that name gives.
+    pub fn arc_of(&self, radii: &[f64], sought: f64) -> f64 {
+        let k = radii.partition_point(|&x| x <= sought).clamp(1, radii.len() - 1);
+        let [a, b] = [&self.stations[k - 1], &self.stations[k]];
+        let of_piece = ((sought - radii[k - 1]) / (radii[k] - radii[k - 1])).clamp(0.0, 1.0);
+        a.s + (b.s - a.s) * share(a.radius, b.radius, of_piece)
+    }
+
+    /// By how much the frame that came along is turned against that of the last section, about the axis.
+    pub fn twist(&self) -> f64 {
+        let last = &self.stations[self.stations.len() - 1];
+        let (u, _) = Section { origin: last.origin, axis: last.axis, radius: last.radius }.frame();
+        u.dot(&last.axis.cross(&last.u)).atan2(u.dot(&last.u))
+    }
+
     /// The place at arc length `s`; straight beyond either end.
     pub fn at(&self, s: f64) -> Place {
         let k = self.stations.partition_point(|x| x.s <= s).clamp(1, self.stations.len() - 1);
@@ -91,6 +115,20 @@ impl Place {
     pub fn point(&self, theta: f64, distance: f64) -> Point3 {
         self.origin + (self.u * theta.cos() + self.w * theta.sin()) * distance
     }
+}
+
+/// Length in radii between two stations, the radius linear: l ln(b / a) / (b − a), by a series where they are all but equal.
+fn radii_between(from: &Station, to: &Station) -> f64 {
+    let (length, ratio) = (to.s - from.s, to.radius / from.radius);
+    let x = ratio - 1.0;
+    let mean = if x.abs() < 1e-5 { 1.0 - x / 2.0 + x * x / 3.0 } else { ratio.ln() / x };
+    length / from.radius * mean
+}
+
+/// Which share of the arc length between two radii lies behind with a share of the radii there are.
+fn share(a: f64, b: f64, of_radii: f64) -> f64 {
+    let ratio = b / a;
+    if (ratio - 1.0).abs() < 1e-5 { of_radii } else { (ratio.powf(of_radii) - 1.0) / (ratio - 1.0) }
 }
 
 /// Carries a frame vector to the next station by two reflections (Wang, Jüttler, Zheng, Liu 2008).

@@ -144,7 +144,7 @@ impl Assembly<'_> {
             self.cut_of_slot[i] = self.partition.cuts.len() as u32;
             self.partition.cuts.push(Cut {
                 branch: BranchId(slot.branch),
-                sides: [(ClusterId(NONE), NONE); 2],
+                sides: Cut::NOWHERE,
                 path: path(&self.settler.courses[slot.branch as usize], slot.planes),
             });
             self.partition.cut_arcs.push(slot.planes);

@@ -27,7 +27,9 @@ pub struct PartitionParams {
     /// What a terminal's overrun may be shortened to when another vessel is in its way. At 0.4 the wall is 3 % thinner
     /// at the plane than the vessel (with κ = 0.4), and its tip no longer than the ball at the vessel's end.
     pub shortest_overrun: f64,
-    /// A branch with a terminal is cut when it is longer than this; a longer piece of any branch is cut again.
+    /// Branches with a terminal are cut wherever there is room: what lies between forks and caps is then tubes.
+    pub cut_terminals: bool,
+    /// Else a branch with a terminal is cut when it is longer than this; a longer piece of any branch is cut again.
     pub long: f64,
     /// A branch with a terminal is also cut when its radii differ by more than this factor.
     pub taper: f64,
@@ -55,6 +57,7 @@ impl Default for PartitionParams {
             overrun: 1.0,
             overrun_voxels: 1.6,
             shortest_overrun: 0.4,
+            cut_terminals: false,
             long: 30.0,
             taper: 2.0,
             longest_connector: 200.0,

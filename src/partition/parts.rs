@@ -144,3 +144,8 @@ pub struct Cut {
     /// between two consecutive sections the axis is straight (or turns by little) and the radius linear.
     pub path: Vec<Section>,
 }
+
+impl Cut {
+    /// The sides of a cut between no clusters.
+    pub(crate) const NOWHERE: [(ClusterId, u32); 2] = [(ClusterId(u32::MAX), u32::MAX); 2];
+}

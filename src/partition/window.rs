@@ -49,7 +49,7 @@ impl<'a> Cutter<'a> {
             return Some(UncutReason::Forbidden);
         }
         let ends = course.branch.ends().map(|n| BranchEnd::of(self.adjacency, n));
-        if ends.contains(&BranchEnd::Terminal) && !self.terminal_wants_cut(course) {
+        if ends.contains(&BranchEnd::Terminal) && !self.params.cut_terminals && !self.terminal_wants_cut(course) {
             return Some(UncutReason::Terminal);
         }
         let eager = self.eager.as_ref().filter(|_| self.params.eager.contains(&BranchId(branch)));

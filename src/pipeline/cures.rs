@@ -35,6 +35,7 @@ pub(super) fn partition_params(
         rho: plan.rho,
         kappa: plan.block_params().kappa,
         together: together.clone(),
+        cut_terminals: plan.joint == JointStyle::Disc,
         ..PartitionParams::default()
     };
     if plan.joint == JointStyle::None {

@@ -1,0 +1,37 @@
+//! The discs at the two ends of a connector, which the vessel alone gives: no cluster is needed for them.
+
+use super::connector_surface::{ConnectorEnd, ConnectorFault};
+use super::end_surface::EndSurface;
+use super::params::BlockParams;
+use crate::geometry::Section;
+use crate::partition::{Cut, CutId};
+use crate::surface::SharedDisc;
+
+/// Both discs, and as the end surfaces of the clusters that end in them.
+pub(super) struct FreeEnds {
+    pub discs: [SharedDisc; 2],
+    pub surfaces: [EndSurface; 2],
+}
+
+impl FreeEnds {
+    pub(super) fn new(id: CutId, cut: &Cut, params: &BlockParams) -> Result<Self, ConnectorFault> {
+        let (Some(first), Some(last)) = (cut.path.first(), cut.path.last()) else { return Err(ConnectorFault::Path) };
+        let outward = [*first, Section { axis: -last.axis, ..*last }];
+        let disc = |side: u8| {
+            SharedDisc::at_end(&outward[usize::from(side)], side, params.rho).ok_or(ConnectorFault::Disc(side))
+        };
+        let discs = [disc(0)?, disc(1)?];
+        let surfaces =
+            [0_u8, 1].map(|side| EndSurface::of_disc(&discs[usize::from(side)], id, side, outward[usize::from(side)]));
+        Ok(Self { discs, surfaces })
+    }
+
+    pub(super) fn both(&self) -> [ConnectorEnd<'_>; 2] {
+        [0, 1].map(|side| ConnectorEnd { surface: &self.surfaces[side], points: &self.discs[side].points })
+    }
+}
+
+/// The end surfaces between which a connector without clusters is made; none where the vessel gives no disc.
+pub fn shared_ends(id: CutId, cut: &Cut, params: &BlockParams) -> Option<[EndSurface; 2]> {
+    FreeEnds::new(id, cut, params).ok().map(|ends| ends.surfaces)
+}

@@ -1,0 +1,52 @@
+//! Clusters that are one tube: the end of a vessel beyond its last cut, or what lies between two cuts of one vessel.
+
+use super::params::{BlockParams, EndStyle};
+use super::template::{self, FilledTube};
+use crate::geometry::{Section, Vec3};
+use crate::partition::{Cluster, EndKind};
+use crate::surface::SharedDisc;
+
+/// A vessel that turns by more than this from one tube to the next, in radians, is left to the field, which rounds it.
+const STRAIGHT: f64 = 0.35;
+
+/// The tube that such a cluster is, by template; none where it is no such cluster, or no template fits.
+pub(super) fn lone_tube(cluster: &Cluster, params: &BlockParams) -> Option<FilledTube> {
+    if params.ends != EndStyle::Shared || !params.by_template() {
+        return None;
+    }
+    let path = path(cluster)?;
+    let disc = |end: usize| -> Option<SharedDisc> {
+        let section = if end == 0 { path.first()? } else { path.last()? };
+        SharedDisc::new(section, params.rho)
+    };
+    let caps = [0, 1].map(|end| matches!(cluster.ends[end].kind, EndKind::Terminal(_)));
+    template::tube(&path, &[disc(0)?, disc(1)?], caps, params.rho)
+}
+
+/// The sections from the first end to the second, if one vessel leads from it to there and there is nothing else.
+fn path(cluster: &Cluster) -> Option<Vec<Section>> {
+    let [first, last] = cluster.ends.as_slice() else { return None };
+    let mut overruns = [first.overrun as usize, last.overrun as usize];
+    overruns.sort_unstable();
+    let tubes = cluster.tubes.get(..overruns[0])?;
+    if overruns != [tubes.len(), tubes.len() + 1] || cluster.tubes.len() != tubes.len() + 2 {
+        return None;
+    }
+    let (begin, end) = (tubes.first()?, tubes.last()?);
+    let whole = begin.a == first.section.origin && end.b == last.section.origin;
+    if !whole || tubes.windows(2).any(|pair| pair[0].b != pair[1].a) {
+        return None;
+    }
+    let ways: Option<Vec<Vec3>> = tubes.iter().map(|t| (t.b - t.a).try_normalize(0.0)).collect();
+    let ways = ways?;
+    let mut path = vec![Section { axis: -first.section.axis, ..first.section }];
+    for (pair, ways) in tubes.windows(2).zip(ways.windows(2)) {
+        if ways[0].angle(&ways[1]) > STRAIGHT {
+            return None;
+        }
+        let axis = (ways[0] + ways[1]).normalize();
+        path.push(Section { origin: pair[1].a, axis, radius: 0.5 * (pair[0].rb + pair[1].ra) });
+    }
+    path.push(last.section);
+    Some(path)
+}

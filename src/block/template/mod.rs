@@ -1,0 +1,151 @@
+//! Tubes between two discs as images of templates.
+//!
+//! With edges that follow the radius every disc of one ρ has the same corners. Then a vessel between two discs is the image
+//! of a straight tube of radius 1 under the map that takes (radii along the axis, place in the disc in radii) to the vessel,
+//! and nothing has to be filled. A longer vessel is several images of one template, one after the other. Where taper, bend
+//! or twist spoil a tetrahedron there is no image, and the tube is made by itself.
+
+mod canonical;
+
+use super::path::AxisPath;
+use crate::geometry::{Point3, Section};
+use crate::mesh::quality::radius_ratio;
+use crate::mesh::{Kept, TetMesh, TriMesh};
+use crate::surface::SharedDisc;
+use canonical::Template;
+
+/// Longest template, in radii: discs inside a tube are flat, and their neighbours a little worse than others.
+const LONGEST: f64 = 12.0;
+/// Shortest, in radii.
+const SHORTEST: f64 = 0.5;
+/// Most that a template is twisted, in radians for each radius of length, so that it ends in the frame of its second disc.
+const TWIST: f64 = 0.1;
+/// Smallest radius ratio of an image's tetrahedra.
+const LEAST: f64 = 0.3;
+
+/// A tube filled with tetrahedra.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilledTube {
+    /// Points and tetrahedra; the points begin with those of the two discs.
+    pub mesh: TetMesh,
+    /// Points of each disc.
+    pub disc: u32,
+    /// Triangles of the two discs, outwards.
+    pub ends: [Vec<[u32; 3]>; 2],
+    /// Triangles of the wall, outwards.
+    pub wall: Vec<[u32; 3]>,
+    /// Rings between the rims.
+    pub rings: u32,
+}
+
+impl FilledTube {
+    /// Its closed surface alone; the points begin with those of the two discs.
+    pub fn hull(&self) -> TriMesh {
+        let triangles: Vec<[u32; 3]> = self.ends.iter().chain([&self.wall]).flatten().copied().collect();
+        let kept = Kept::used(&triangles, self.mesh.points.len(), 0);
+        TriMesh { points: kept.select(&self.mesh.points), triangles: triangles.iter().map(|t| kept.cell(t)).collect() }
+    }
+}
+
+/// The tube along a path between the two discs that its sections give at resolution ρ, of which some are caps; none where no
+/// template fits.
+pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], rho: f64) -> Option<FilledTube> {
+    let corners = discs[0].rim.len();
+    if discs[1].rim.len() != corners || discs[0].points.len() != discs[1].points.len() {
+        return None;
+    }
+    let path = AxisPath::new(path)?;
+    let (radii, twist) = (path.radii(), path.twist());
+    let length = radii[radii.len() - 1];
+    if !(length.is_finite() && length >= SHORTEST && twist.abs() <= TWIST * length) {
+        return None;
+    }
+    let pieces = (length / LONGEST).ceil();
+    if pieces > 1.0 && caps != [false; 2] {
+        return None;
+    }
+    let image = |template: &Template| {
+        let image = Image { template, path: &path, radii: &radii, discs, twist, pieces: pieces as u32 };
+        image.tube()
+    };
+    canonical::with(rho, corners as u32, length / pieces, caps, image).flatten()
+}
+
+/// A template and the vessel that it is mapped to.
+struct Image<'a> {
+    template: &'a Template,
+    path: &'a AxisPath,
+    discs: &'a [SharedDisc; 2],
+    /// Length of the path in radii up to each of its stations.
+    radii: &'a [f64],
+    twist: f64,
+    pieces: u32,
+}
+
+impl Image<'_> {
+    fn tube(&self) -> Option<FilledTube> {
+        let Template { disc, tets, wall, ends, rings, .. } = self.template;
+        let numbers = |list: &[[u32; 3]], piece: u32| -> Vec<[u32; 3]> {
+            list.iter().map(|t| t.map(|v| self.number(piece, v))).collect()
+        };
+        let last = self.pieces - 1;
+        let all = |piece: u32| tets.iter().map(move |t| t.map(|v| self.number(piece, v)));
+        let mesh = TetMesh { points: self.points(), tets: (0..self.pieces).flat_map(all).collect() };
+        good(&mesh).then(|| FilledTube {
+            disc: *disc,
+            ends: [numbers(&ends[0], 0), numbers(&ends[1], last)],
+            wall: (0..self.pieces).flat_map(|piece| numbers(wall, piece)).collect(),
+            rings: (rings + 1) * self.pieces - 1,
+            mesh,
+        })
+    }
+
+    /// The number of a point of the template in a piece of the tube: the points of the two discs come first, then for each
+    /// piece what it has alone, and the disc at its end unless it is the last.
+    fn number(&self, piece: u32, v: u32) -> u32 {
+        let Template { disc, points, .. } = self.template;
+        let alone = points.len() as u32 - 2 * disc;
+        let begin = |piece: u32| 2 * disc + piece * (alone + disc);
+        match v {
+            _ if v >= 2 * disc => begin(piece) + v - 2 * disc,
+            _ if v >= *disc && piece + 1 == self.pieces => v,
+            _ if v >= *disc => begin(piece) + alone + v - disc,
+            _ if piece == 0 => v,
+            _ => begin(piece - 1) + alone + v,
+        }
+    }
+
+    fn points(&self) -> Vec<Point3> {
+        let Template { disc, points, .. } = self.template;
+        let (discs, alone) = points.split_at(2 * *disc as usize);
+        let mut out: Vec<Point3> = self.discs.iter().flat_map(|d| d.points.iter().copied()).collect();
+        for piece in 0..self.pieces {
+            out.extend(alone.iter().map(|p| self.map(piece, p)));
+            if piece + 1 < self.pieces {
+                out.extend(discs[*disc as usize..].iter().map(|p| self.map(piece, p)));
+            }
+        }
+        out
+    }
+
+    /// A point of the template in a piece of the tube.
+    fn map(&self, piece: u32, p: &Point3) -> Point3 {
+        let share = (f64::from(piece) + p.z) / f64::from(self.pieces);
+        let place = self.path.at(self.path.arc_of(self.radii, share * self.radii[self.radii.len() - 1]));
+        let (x, y) = if self.twist == 0.0 {
+            (p.x, p.y)
+        } else {
+            let (sine, cosine) = (self.twist * share).sin_cos();
+            (cosine * p.x - sine * p.y, sine * p.x + cosine * p.y)
+        };
+        place.origin + (place.u * x + place.w * y) * place.radius
+    }
+}
+
+/// Whether no tetrahedron is much worse than a template's are.
+fn good(mesh: &TetMesh) -> bool {
+    mesh.tets.iter().all(|t| {
+        let [a, b, c, d] = t.map(|v| &mesh.points[v as usize]);
+        radius_ratio(a, b, c, d) >= LEAST
+    })
+}
