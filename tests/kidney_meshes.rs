@@ -62,13 +62,13 @@ fn subtree_289_clear_is_valid() {
     let Some(meshed) = kidney("subtree_289_clear.vtp", 3.0) else { return };
     assert_clear(&meshed);
     let quality = meshed.check.quality.as_ref().expect("sound arrays");
-    assert!(quality.mean >= 0.835, "mean radius ratio {}", quality.mean);
-    assert!(quality.percentile_1 >= 0.40, "1st percentile {}", quality.percentile_1);
+    assert!(quality.mean >= 0.87, "mean radius ratio {}", quality.mean);
+    assert!(quality.percentile_1 >= 0.60, "1st percentile {}", quality.percentile_1);
     assert!(quality.dihedral_min >= 8.0, "smallest dihedral {}°", quality.dihedral_min);
     let report = &meshed.report;
     assert!(report.blocks.clusters >= 120, "{} clusters", report.blocks.clusters);
-    // Edges in proportion to the radius: wide vessels need fewer than that one makes.
-    assert!(report.mesh.wall_triangles * 100 >= WALL_OF_BASELINE * 65, "{} triangles", report.mesh.wall_triangles);
+    // Edges in proportion to the radius, and rings of tubes a little further from each other than theirs.
+    assert!(report.mesh.wall_triangles * 100 >= WALL_OF_BASELINE * 55, "{} triangles", report.mesh.wall_triangles);
 }
 
 #[test]

@@ -368,38 +368,38 @@ fn verbs_help_and_version() {
 #[test]
 fn a_block_that_fails_ends_the_run_with_its_input_kept() {
     let folder = folder();
-    let (network, out) = (folder.path().join("hopeless.swc"), folder.path().join("out.vtu"));
+    let (network, out) = (folder.path().join("hopeless.vtp"), folder.path().join("out.vtu"));
     fs::write(&network, HOPELESS).expect("a file");
     fs::write(&out, "precious").expect("a file");
     let failed = mesh(&network, &out, &["--quiet"]);
     assert_code(&failed, STAGE_FAILED);
     let said = stderr(&failed);
     assert!(
-        said.contains("FAILED cluster ") && said.contains("(nodes [2, 3])") && said.contains("--keep-going"),
+        said.contains("FAILED cluster ") && said.contains("(nodes [2, 3, 4, 5])") && said.contains("--keep-going"),
         "{said}"
     );
     assert_eq!(fs::read(&out).expect("the file"), b"precious");
-    assert_eq!(entries(folder.path()), ["hopeless.swc", "out.vtu", "out.vtu.failed"]);
+    assert_eq!(entries(folder.path()), ["hopeless.vtp", "out.vtu", "out.vtu.failed"]);
     let dumps = entries(&folder.path().join("out.vtu.failed"));
     assert!(!dumps.is_empty());
     let dump = fs::read(folder.path().join("out.vtu.failed").join(&dumps[0])).expect("the dump");
     assert!(serde_json::from_slice::<Value>(&dump).is_ok());
     let report = json(&mesh(&network, &out, &["--json"]));
-    assert_eq!(report["run"]["failed"][0]["nodes"], serde_json::json!([2, 3]));
+    assert_eq!(report["run"]["failed"][0]["nodes"], serde_json::json!([2, 3, 4, 5]));
     assert!(report["check"].is_null());
 }
 
 #[test]
 fn blocks_that_fail_are_left_out_on_request() {
     let folder = folder();
-    let (network, out) = (folder.path().join("hopeless.swc"), folder.path().join("out.vtu"));
+    let (network, out) = (folder.path().join("hopeless.vtp"), folder.path().join("out.vtu"));
     fs::write(&network, HOPELESS).expect("a file");
     let dumps = folder.path().join("dumps");
     let options = ["--keep-going", "--dump-dir", dumps.to_str().expect("text")];
     let failed = mesh(&network, &out, &options);
     assert_code(&failed, STAGE_FAILED);
     assert!(stderr(&failed).contains("FAILED cluster "), "{}", stderr(&failed));
-    assert_eq!(entries(folder.path()), ["dumps", "hopeless.swc", "out.vtu", "out_patches.csv"]);
+    assert_eq!(entries(folder.path()), ["dumps", "hopeless.vtp", "out.vtu", "out_patches.csv"]);
     let checked = run("check", &[&out], &[]);
     assert_code(&checked, GATE_NOT_MET);
     let said = stdout(&checked);

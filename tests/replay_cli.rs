@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// The dump that a network with a hopeless vessel leaves.
 fn failing(folder: &Path) -> PathBuf {
-    let network = folder.join("hopeless.swc");
+    let network = folder.join("hopeless.vtp");
     fs::write(&network, HOPELESS).expect("a file");
     assert_code(&mesh(&network, &folder.join("out.vtu"), &["-q"]), STAGE_FAILED);
     let dumps = folder.join("out.vtu.failed");
@@ -26,14 +26,16 @@ fn changed(dump: &Path, name: &str, change: impl FnOnce(&mut Value)) -> PathBuf 
     path
 }
 
+/// In place of the fork a straight vessel.
 fn thicken(content: &mut Value) {
+    let tube = |a: f64, b: f64| value!({"a": [50.0, 0.0, a], "b": [50.0, 0.0, b], "ra": 1.0, "rb": 1.0});
+    let end = |z: f64, way: f64, node: u32| {
+        let section = value!({"origin": [50.0, 0.0, z], "axis": [0.0, 0.0, way], "radius": 1.0});
+        value!({"section": section, "kind": {"terminal": node}, "overrun": node - 1})
+    };
     let cluster = &mut content["input"]["cluster"]["cluster"];
-    for tube in 0..3 {
-        cluster["tubes"][tube]["ra"] = 1.0.into();
-        cluster["tubes"][tube]["rb"] = 1.0.into();
-    }
-    cluster["tubes"][1]["b"] = value!([50.0, 0.0, -1.0]);
-    cluster["ends"][0]["section"]["radius"] = 1.0.into();
+    cluster["tubes"] = value!([tube(0.0, 9.0), tube(0.0, -1.0), tube(9.0, 10.0)]);
+    cluster["ends"] = value!([end(0.0, -1.0, 2), end(9.0, 1.0, 3)]);
 }
 
 #[test]
@@ -42,12 +44,12 @@ fn a_block_fails_again_in_the_same_place() {
     let dump = failing(folder.path());
     let out = folder.path().join("block.vtu");
     let again = run("replay", &[&dump, Path::new("-o"), &out], &[]);
-    assert_says(&again, STAGE_FAILED, &["cluster 1 (nodes [2, 3])", "'wall'", "grid cells, more than the limit"]);
+    assert_says(&again, STAGE_FAILED, &["cluster 2 (nodes [2, 3, 4, 5])", "'wall'", "grid cells, more than the limit"]);
     assert!(!out.exists());
     let again = run("replay", &[&dump], &["--json"]);
     assert_code(&again, STAGE_FAILED);
     let said = json(&again);
-    assert_eq!((&said["block"], &said["nodes"]), (&"cluster 1".into(), &value!([2, 3])));
+    assert_eq!((&said["block"], &said["nodes"]), (&"cluster 2".into(), &value!([2, 3, 4, 5])));
     assert_eq!((&said["failed"]["stage"], &said["mesh"]), (&"wall".into(), &Value::Null));
     assert!(said["written_by"].as_str().is_some_and(|by| by.starts_with("anastomesh ")));
 }

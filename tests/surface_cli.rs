@@ -93,10 +93,10 @@ fn what_cannot_be_written_is_refused_before_any_work() {
     let network = fixture("tree_30.swc");
     assert_says(&surface(&network, &folder.path().join("wall.vtu"), &[]), BAD_INPUT, &["wall.vtu", ".glb"]);
     assert_says(&surface(&network, &folder.path().join("wall.stl"), &["--rho", "1"]), USAGE, &["rho"]);
-    let hopeless = folder.path().join("hopeless.swc");
+    let hopeless = folder.path().join("hopeless.vtp");
     fs::write(&hopeless, HOPELESS).expect("written");
     assert_says(&surface(&hopeless, &folder.path().join("wall.stl"), &[]), STAGE_FAILED, &["FAILED", "--keep-going"]);
-    assert_eq!(entries(folder.path()), ["hopeless.swc"]);
+    assert_eq!(entries(folder.path()), ["hopeless.vtp"]);
 }
 
 #[test]

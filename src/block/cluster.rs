@@ -125,7 +125,12 @@ pub(crate) fn mesh_cluster_watched(
 }
 
 /// A cluster that is one tube, by template.
-fn of_tube(id: ClusterId, cluster: &Cluster, tube: FilledTube, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
+fn of_tube(
+    id: ClusterId,
+    cluster: &Cluster,
+    tube: FilledTube,
+    params: &BlockParams,
+) -> Result<ClusterMesh, BlockError> {
     let surface_triangles = tube.ends[0].len() + tube.ends[1].len() + tube.wall.len();
     let caps = (0..).zip(&cluster.ends).filter_map(|(i, end): (usize, _)| match end.kind {
         EndKind::Terminal(node) => Some(CapFaces { node, section: end.section, triangles: tube.ends[i].clone() }),

@@ -1,8 +1,6 @@
 //! One connector: the tube between two end surfaces, filled (3.2.3).
 
-use super::connector_surface::{
-    ConnectorEnd, ConnectorSurface, Division, EndVertex, connector_surface,
-};
+use super::connector_surface::{ConnectorEnd, ConnectorSurface, Division, EndVertex, connector_surface};
 use super::error::BlockError;
 use super::error::{ConnectorAttempt, ConnectorFailure};
 use super::free_ends::FreeEnds;
@@ -84,7 +82,7 @@ pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result
     };
     let ends = FreeEnds::new(id, cut, params).map_err(failed)?;
     if params.by_template()
-        && let Some(tube) = template::tube(&cut.path, &ends.discs, [false; 2], params.rho)
+        && let Some(tube) = template::tube(&cut.path, &ends.discs, [false; 2], params)
     {
         return Ok(image(tube, params.hollow));
     }

@@ -20,7 +20,7 @@ pub(super) fn lone_tube(cluster: &Cluster, params: &BlockParams) -> Option<Fille
         SharedDisc::new(section, params.rho)
     };
     let caps = [0, 1].map(|end| matches!(cluster.ends[end].kind, EndKind::Terminal(_)));
-    template::tube(&path, &[disc(0)?, disc(1)?], caps, params.rho)
+    template::tube(&path, &[disc(0)?, disc(1)?], caps, params)
 }
 
 /// The sections from the first end to the second, if one vessel leads from it to there and there is nothing else.

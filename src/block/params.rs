@@ -47,9 +47,16 @@ pub struct BlockParams {
     pub allow_fused: bool,
     /// How deep below its plane an end surface may go, in radii of the cut.
     pub depth: f64,
+    /// How much longer than wide tetrahedra of tubes by template are, along the vessel.
+    #[serde(default = "unstretched")]
+    pub stretch: f64,
     /// Stop at the closed surface, and do not fill it.
     #[serde(default)]
     pub hollow: bool,
+}
+
+fn unstretched() -> f64 {
+    1.0
 }
 
 impl Default for BlockParams {
@@ -65,6 +72,7 @@ impl Default for BlockParams {
             relax_ends: true,
             allow_fused: false,
             depth: 1.5,
+            stretch: unstretched(),
             hollow: false,
         }
     }
@@ -78,8 +86,8 @@ impl BlockParams {
 
     /// Whether nothing is tried in another way than usual: blocks that can be had by template are.
     pub(super) fn by_template(&self) -> bool {
-        let Self { rho, follow, ends, allow_fused, hollow, .. } = *self;
-        *self == Self { rho, follow, ends, allow_fused, hollow, ..Self::default() }
+        let Self { rho, follow, ends, allow_fused, hollow, stretch, .. } = *self;
+        *self == Self { rho, follow, ends, allow_fused, hollow, stretch, ..Self::default() }
     }
 
     pub(super) fn check(&self) -> Result<(), BlockError> {
@@ -92,6 +100,9 @@ impl BlockParams {
         }
         if !(0.0..=1.0).contains(&self.follow) {
             return Err(BlockError::Parameter { name: "follow", value: self.follow });
+        }
+        if !(self.stretch >= 1.0 && self.stretch.is_finite()) {
+            return Err(BlockError::Parameter { name: "stretch", value: self.stretch });
         }
         match self.shift.iter().find(|x| x.is_nan() || x.abs() > 1.0) {
             Some(&value) => Err(BlockError::Parameter { name: "shift", value }),

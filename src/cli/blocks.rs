@@ -13,6 +13,9 @@ pub struct BlockArgs {
     /// so that all of a cluster is as fine as its thinnest vessel
     #[arg(long, default_value_t = FOLLOW, allow_negative_numbers = true)]
     pub follow: f64,
+    /// How much longer than wide tetrahedra are along vessels, in tubes between forks and caps: 1 to 20
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    pub stretch: f64,
     /// Memory that may be used, such as 2GiB or 500MB, however large the network
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
     pub memory: u64,
@@ -30,6 +33,7 @@ impl BlockArgs {
         MeshPlan {
             rho: self.rho,
             follow: self.follow,
+            stretch: self.stretch,
             memory: self.memory,
             fuse: self.refine.is_some() && fuse,
             keep_going: self.keep_going,
@@ -40,6 +44,7 @@ impl BlockArgs {
     /// What of them a mesh depends on, as they are typed.
     pub fn typed(&self) -> String {
         let refine = self.refine.map_or_else(String::new, |n| format!(" --refine {n}"));
-        format!("--rho {} --follow {}{refine}", self.rho, self.follow)
+        let stretch = if self.stretch == 1.0 { String::new() } else { format!(" --stretch {}", self.stretch) };
+        format!("--rho {} --follow {}{stretch}{refine}", self.rho, self.follow)
     }
 }

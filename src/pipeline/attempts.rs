@@ -118,7 +118,7 @@ fn attempts(plan: &MeshPlan, overlapping: bool, first: Way) -> Vec<Attempt> {
     apart.chain(fused).collect()
 }
 
-/// A block with a smaller radius ratio is tried in other ways, too.
+/// A block with a smaller radius ratio is tried in other ways, too; a stretched one, with one that is smaller by as much.
 const FLAT: f64 = 0.1;
 
 /// Makes a block in the first way that does it well: nothing fails, no tetrahedron is all but flat, and the block's own check
@@ -137,7 +137,7 @@ fn first_good(
             break;
         }
         match make(&attempt.params) {
-            Ok(made) if goodness(&made) >= (true, FLAT) => {
+            Ok(made) if goodness(&made) >= (true, FLAT / attempt.params.stretch) => {
                 return Tried { result: Ok(made), failures, way: attempt.name };
             }
             Ok(made) => {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::plan::MeshPlan;
+use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
 use crate::block::{BlockDump, BlockInput, BlockParams};
 use crate::geometry::Tube;
@@ -13,6 +13,10 @@ use crate::skeleton::Skeleton;
 /// subtrees at ρ = 3, 4 and 5.
 const TETS: f64 = 3.9;
 const POWER: f64 = 2.85;
+
+/// The same for tubes by template: fitted to straight tubes at ρ = 3 to 12.
+const TETS_OF_TUBE: f64 = 4.4;
+const POWER_OF_TUBE: f64 = 2.94;
 
 /// Bytes that a block takes per tetrahedron while it is made, and whatever its size.
 const BYTES_PER_TET: f64 = 420.0;
@@ -147,6 +151,11 @@ fn gibibytes(bytes: u64) -> String {
 }
 
 pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
+    // The end of a vessel, or a piece between two cuts.
+    if cluster.ends.len() == 2 && plan.joint == JointStyle::Disc {
+        let tubes = cluster.tubes.iter().filter(|t| t.length() > 0.0);
+        return tube_cost(tubes.map(|t| (t.length(), 0.5 * (t.ra + t.rb))), plan);
+    }
     let thin = cluster.tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
     cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan)
 }
@@ -154,9 +163,18 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
 pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
     let pieces = cut.path.windows(2).map(|pair| {
         let radius = 0.5 * (pair[0].radius + pair[1].radius);
-        ((pair[1].origin - pair[0].origin).norm(), radius, radius)
+        ((pair[1].origin - pair[0].origin).norm(), radius)
     });
-    cost(pieces, plan)
+    if plan.joint == JointStyle::Disc {
+        return tube_cost(pieces, plan);
+    }
+    cost(pieces.map(|(length, radius)| (length, radius, radius)), plan)
+}
+
+/// Of pieces of tubes by template: length, radius.
+fn tube_cost(pieces: impl Iterator<Item = (f64, f64)>, plan: &MeshPlan) -> Cost {
+    let radii: f64 = pieces.map(|(length, radius)| length / radius).sum();
+    of_tets(TETS_OF_TUBE * plan.rho.powf(POWER_OF_TUBE) * radii / plan.stretch)
 }
 
 /// Of pieces of vessel: length, radius, thinnest radius of their block.
@@ -164,7 +182,10 @@ fn cost(pieces: impl Iterator<Item = (f64, f64, f64)>, plan: &MeshPlan) -> Cost 
     // Without following the radius, a wide vessel has the short edges of the thinnest one.
     let finer = 3.0 * (1.0 - plan.follow);
     let one = |(length, radius, thin): (f64, f64, f64)| length / radius * (radius / thin).powf(finer);
-    let tets = TETS * plan.rho.powf(POWER) * pieces.map(one).sum::<f64>();
+    of_tets(TETS * plan.rho.powf(POWER) * pieces.map(one).sum::<f64>())
+}
+
+fn of_tets(tets: f64) -> Cost {
     // Casts of what is too large, or no number, end at the largest integer.
     Cost { tets, bytes: (BYTES_PER_BLOCK + BYTES_PER_TET * tets) as u64 }
 }

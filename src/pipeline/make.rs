@@ -146,6 +146,7 @@ pub fn joints_of_cut(partition: &Partition, cut: &Cut) -> [JointPlace; 2] {
 fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     key.float(plan.rho);
     key.float(plan.follow);
+    key.float(plan.stretch);
     key.id(u32::from(plan.hollow));
     key.id(match plan.joint {
         JointStyle::Disc => 0,
@@ -207,6 +208,7 @@ mod tests {
         let others = [
             MeshPlan { rho: 4.0, ..plan.clone() },
             MeshPlan { follow: 0.5, ..plan.clone() },
+            MeshPlan { stretch: 2.0, ..plan.clone() },
             MeshPlan { joint: JointStyle::Woven, ..plan.clone() },
             MeshPlan { fuse: true, ..plan.clone() },
             MeshPlan { hollow: true, ..plan.clone() },

@@ -36,6 +36,8 @@ pub struct MeshPlan {
     /// How far edges follow the radius of wider vessels: they grow with it to this power. 1: ρ voxels across every vessel;
     /// 0: edges are as short all over a cluster as its thinnest vessel asks for.
     pub follow: f64,
+    /// How much longer than wide tetrahedra are, along vessels, in what is made by template: tubes between forks and caps.
+    pub stretch: f64,
     /// How blocks meet at a cut.
     pub joint: JointStyle,
     /// Leave woven joints as the blocks have them instead of smoothing across them.
@@ -64,6 +66,7 @@ impl Default for MeshPlan {
         Self {
             rho: RHO,
             follow: FOLLOW,
+            stretch: 1.0,
             joint: JointStyle::default(),
             frozen_joints: false,
             memory: 2 << 30,
@@ -86,7 +89,18 @@ pub enum PlanError {
     /// The power outside of what makes sense.
     #[error("follow = {0} is not usable: it must lie between 0 (edges as short everywhere) and 1 (in proportion)")]
     Follow(f64),
+    /// A stretch outside of what makes sense.
+    #[error("stretch = {0} is not usable: it must lie between 1 (as long as wide) and {MOST_STRETCH}")]
+    Stretch(f64),
+    /// Woven joints, or none, have no tubes by template.
+    #[error(
+        "stretch = {0} needs joints by discs: no vessel is a tube by template where joints are woven or nothing is cut"
+    )]
+    StretchWoven(f64),
 }
+
+/// Edges longer than this, in edges across, follow no taper and no bend.
+pub const MOST_STRETCH: f64 = 20.0;
 
 impl MeshPlan {
     /// Whether joints are smoothed once the blocks are together.
@@ -100,7 +114,8 @@ impl MeshPlan {
             JointStyle::Woven | JointStyle::None => EndStyle::Disc,
             JointStyle::Disc => EndStyle::Shared,
         };
-        BlockParams { follow: self.follow, ends, hollow: self.hollow, ..BlockParams::with_rho(self.rho) }
+        let Self { follow, stretch, hollow, .. } = *self;
+        BlockParams { follow, stretch, ends, hollow, ..BlockParams::with_rho(self.rho) }
     }
 
     /// # Errors
@@ -110,6 +125,14 @@ impl MeshPlan {
         if !(2.5..f64::INFINITY).contains(&self.rho) {
             return Err(PlanError::Rho(self.rho));
         }
-        if (0.0..=1.0).contains(&self.follow) { Ok(()) } else { Err(PlanError::Follow(self.follow)) }
+        if !(0.0..=1.0).contains(&self.follow) {
+            return Err(PlanError::Follow(self.follow));
+        }
+        match self.stretch {
+            1.0 => Ok(()),
+            stretch if !(1.0..=MOST_STRETCH).contains(&stretch) => Err(PlanError::Stretch(stretch)),
+            stretch if self.joint != JointStyle::Disc => Err(PlanError::StretchWoven(stretch)),
+            _ => Ok(()),
+        }
     }
 }

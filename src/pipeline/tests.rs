@@ -43,11 +43,12 @@ fn h(middle: f64) -> Skeleton {
 #[test]
 fn two_clusters_and_a_connector_make_one_valid_mesh() {
     let meshed = run(&h(12.0), &MeshPlan::default()).expect("meshed");
-    assert_eq!((meshed.report.blocks.clusters, meshed.report.blocks.connectors), (2, 1));
+    // Two forks, four ends of vessels.
+    assert_eq!((meshed.report.blocks.clusters, meshed.report.blocks.connectors), (6, 5));
     assert!(meshed.check.is_valid(), "{:?}", meshed.check.failed().collect::<Vec<_>>());
     assert!(meshed.report.retries.is_empty() && meshed.report.failed.is_empty());
     let blocks: std::collections::BTreeSet<i32> = meshed.mesh.tet_block.iter().copied().collect();
-    assert_eq!(blocks.into_iter().collect::<Vec<_>>(), [0, 1, 2]);
+    assert_eq!(blocks.into_iter().collect::<Vec<_>>(), (0..11).collect::<Vec<_>>());
     let names: Vec<&str> = meshed.mesh.patches.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["wall", "inlet", "outlet_0", "outlet_1", "outlet_2"]);
     assert!(meshed.mesh.boundary_patch.contains(&WALL));
@@ -85,7 +86,11 @@ fn every_kind_of_joint_makes_one_valid_mesh() {
                 pool.install(|| run(&uneven(), &plan)).expect("meshed")
             };
             let meshed = mesh(2);
-            let blocks = if joint == JointStyle::None { (1, 0) } else { (2, 1) };
+            let blocks = match joint {
+                JointStyle::Disc => (6, 5),
+                JointStyle::Woven => (2, 1),
+                JointStyle::None => (1, 0),
+            };
             assert_eq!((meshed.report.blocks.clusters, meshed.report.blocks.connectors), blocks);
             assert!(meshed.check.is_valid(), "{:?}", meshed.check.failed().collect::<Vec<_>>());
             assert!(meshed.report.retries.is_empty() && meshed.report.failed.is_empty(), "{:?}", meshed.report.retries);

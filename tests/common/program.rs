@@ -33,8 +33,13 @@ pub fn fill(surface: &Path, out: &Path, options: &[&str]) -> Output {
     run("tetrahedralize", &[surface, Path::new("--output"), out], options)
 }
 
-/// A good vessel, and one that is so thin for its length that its wall cannot be stored.
-pub const HOPELESS: &str = "1 1 0 0 0 1 -1\n2 1 0 0 9 1 1\n3 1 50 0 0 1e-7 -1\n4 1 50 0 9 1 3\n";
+/// A good vessel, and a fork with a hair so thin that its wall cannot be stored. As VTP: the others keep their radius there.
+pub const HOPELESS: &str = r#"<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="6" NumberOfLines="4">
+<CellData><DataArray type="Float64" Name="EdgeRadius" format="ascii">1 1 1 1e-3</DataArray></CellData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+0 0 0 0 0 9 50 0 0 50 0 6 50 6 0 50 -1 -1</DataArray></Points>
+<Lines><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 2 4 2 5</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">2 4 6 8</DataArray></Lines></Piece></PolyData></VTKFile>"#;
 
 pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("text")

@@ -7,8 +7,8 @@ use crate::block::corners::part_corners;
 use crate::block::free_ends::FreeEnds;
 use crate::block::params::BlockParams;
 use crate::geometry::{Point3, Section, Vec3};
-use crate::mesh::quality::radius_ratio;
 use crate::mesh::TetMesh;
+use crate::mesh::quality::radius_ratio;
 use crate::partition::{Cut, CutId};
 use crate::skeleton::BranchId;
 use crate::tet::optimize::{Effort, OptimizeOptions, optimize};
@@ -20,11 +20,10 @@ use std::sync::{Arc, LazyLock, OnceLock, RwLock};
 /// Lengths of templates, in radii, are powers of this: a tube is stretched or shrunk by half of the step at most.
 const STEP: f64 = 1.05;
 
-/// The divisions of the wall of which the better is taken.
-const DIVISIONS: [Division; 2] = [Division::Rings(0.9), Division::Rings(1.0)];
+/// Rings of the wall are a little further from each other than triangles of equal sides have it: with the rings inside as far
+/// from each other, tetrahedra come out rounder.
+const DIVISION: Division = Division::Rings(0.8);
 
-/// Distance of the rings inside, in edges of the wall.
-const ROW: f64 = 1.0;
 /// No ring inside is nearer to a disc than this, in rows.
 const CLEAR: f64 = 0.3;
 /// Points in a ring inside for each of the wall and each share of its radius: they are a little further from each other.
@@ -70,13 +69,7 @@ static TEMPLATES: LazyLock<RwLock<FxHashMap<Key, Kept>>> = LazyLock::new(RwLock:
 
 /// The template of a length near to `length` radii, for discs of resolution ρ that have so many corners. Ends that are caps are
 /// on the boundary of the whole.
-pub fn with<R>(
-    rho: f64,
-    corners: u32,
-    length: f64,
-    caps: [bool; 2],
-    then: impl FnOnce(&Template) -> R,
-) -> Option<R> {
+pub fn with<R>(rho: f64, corners: u32, length: f64, caps: [bool; 2], then: impl FnOnce(&Template) -> R) -> Option<R> {
     let power = (length.ln() / STEP.ln()).round() as i32;
     let kept = slot((corners, power, caps));
     kept.get_or_init(|| Template::best(rho, STEP.powi(power), caps)).as_ref().map(then)
@@ -91,10 +84,9 @@ fn slot(key: Key) -> Kept {
 }
 
 impl Template {
-    /// The best of what the divisions of the wall and the ways to place points inside give, improved.
+    /// The best of what the ways to place points inside give, improved.
     fn best(rho: f64, length: f64, caps: [bool; 2]) -> Option<Self> {
-        let made = DIVISIONS.into_iter().filter_map(|division| Filled::new(rho, length, division)).flatten();
-        let best = made.reduce(|a, b| if b.worth > a.worth { b } else { a })?;
+        let best = Filled::all(rho, length)?.reduce(|a, b| if b.worth > a.worth { b } else { a })?;
         let Filled { surface: ConnectorSurface { surface, end_triangles, rings, shared }, mut mesh, .. } = best;
         let boundary = surface.points.len();
         // What cannot be improved stays as it is.
@@ -124,14 +116,14 @@ struct Filled {
 
 impl Filled {
     /// All ways to place points inside.
-    fn new(rho: f64, length: f64, division: Division) -> Option<impl Iterator<Item = Self>> {
+    fn all(rho: f64, length: f64) -> Option<impl Iterator<Item = Self>> {
         let section = |z| Section { origin: Point3::new(0.0, 0.0, z), axis: Vec3::z(), radius: 1.0 };
         let cut = Cut { branch: BranchId(0), sides: Cut::NOWHERE, path: vec![section(0.0), section(length)] };
         let ends = FreeEnds::new(CutId(0), &cut, &BlockParams::with_rho(rho)).ok()?;
         let corners = ends.discs[0].rim.len() as u32;
-        let surface = connector_surface(&cut.path, ends.both(), division).ok()?;
+        let surface = connector_surface(&cut.path, ends.both(), DIVISION).ok()?;
         let lattice = (corners >= LATTICE.0).then_some(LATTICE.1);
-        let ways = [0, 1].map(|shift| Interior::Points(rows(corners, length, shift)));
+        let ways = [0, 1].map(|shift| Interior::Points(rings(corners, length, surface.rings + 1, shift)));
         Some(ways.into_iter().chain(lattice).filter_map(move |interior| {
             let options = TetOptions::default().interior(interior).effort(Effort::Quick).certify(false);
             let mesh = tetrahedralize(&surface.surface, &options).ok()?;
@@ -140,13 +132,12 @@ impl Filled {
     }
 }
 
-/// Points inside a tube of radius 1, in rings round its axis, each turned by half a step against the one before it. Rings next
-/// to each other across the tube stand at half a row from each other, beginning with that next to the wall (`shift`: from the
-/// first row or half a row later).
-fn rows(corners: u32, length: f64, shift: u32) -> Vec<Point3> {
+/// Points inside a tube of radius 1, in rings round its axis, each turned by half a step against the one before it, in as many
+/// rows as the wall has strips. Rings next to each other across the tube stand at half a row from each other, beginning with
+/// that next to the wall (`shift`: from the first row or half a row later).
+fn rings(corners: u32, length: f64, rows: u32, shift: u32) -> Vec<Point3> {
     let edge = TAU / f64::from(corners);
     let layers = (1.0 / (0.87 * edge)).round().max(1.0) as u32;
-    let rows = (length / (ROW * edge)).round().max(1.0) as u32;
     let row = length / f64::from(rows);
     let mut points = Vec::new();
     for layer in 0..layers {

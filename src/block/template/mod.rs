@@ -6,7 +6,10 @@
 //! or twist spoil a tetrahedron there is no image, and the tube is made by itself.
 
 mod canonical;
+#[cfg(test)]
+mod tests;
 
+use super::params::BlockParams;
 use super::path::AxisPath;
 use crate::geometry::{Point3, Section};
 use crate::mesh::quality::radius_ratio;
@@ -48,8 +51,8 @@ impl FilledTube {
 }
 
 /// The tube along a path between the two discs that its sections give at resolution ρ, of which some are caps; none where no
-/// template fits.
-pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], rho: f64) -> Option<FilledTube> {
+/// template fits. Of the parameters, ρ and the stretch count.
+pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: &BlockParams) -> Option<FilledTube> {
     let corners = discs[0].rim.len();
     if discs[1].rim.len() != corners || discs[0].points.len() != discs[1].points.len() {
         return None;
@@ -60,15 +63,17 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], rho: f64
     if !(length.is_finite() && length >= SHORTEST && twist.abs() <= TWIST * length) {
         return None;
     }
-    let pieces = (length / LONGEST).ceil();
+    // A short tube is stretched by what leaves it a radius of template.
+    let stretch = params.stretch.min(length).max(1.0);
+    let pieces = (length / (LONGEST * stretch)).ceil();
     if pieces > 1.0 && caps != [false; 2] {
         return None;
     }
     let image = |template: &Template| {
-        let image = Image { template, path: &path, radii: &radii, discs, twist, pieces: pieces as u32 };
+        let image = Image { template, path: &path, radii: &radii, discs, twist, stretch, pieces: pieces as u32 };
         image.tube()
     };
-    canonical::with(rho, corners as u32, length / pieces, caps, image).flatten()
+    canonical::with(params.rho, corners as u32, length / (pieces * stretch), caps, image).flatten()
 }
 
 /// A template and the vessel that it is mapped to.
@@ -79,6 +84,7 @@ struct Image<'a> {
     /// Length of the path in radii up to each of its stations.
     radii: &'a [f64],
     twist: f64,
+    stretch: f64,
     pieces: u32,
 }
 
@@ -91,7 +97,7 @@ impl Image<'_> {
         let last = self.pieces - 1;
         let all = |piece: u32| tets.iter().map(move |t| t.map(|v| self.number(piece, v)));
         let mesh = TetMesh { points: self.points(), tets: (0..self.pieces).flat_map(all).collect() };
-        good(&mesh).then(|| FilledTube {
+        self.is_good(&mesh).then(|| FilledTube {
             disc: *disc,
             ends: [numbers(&ends[0], 0), numbers(&ends[1], last)],
             wall: (0..self.pieces).flat_map(|piece| numbers(wall, piece)).collect(),
@@ -140,12 +146,18 @@ impl Image<'_> {
         };
         place.origin + (place.u * x + place.w * y) * place.radius
     }
-}
 
-/// Whether no tetrahedron is much worse than a template's are.
-fn good(mesh: &TetMesh) -> bool {
-    mesh.tets.iter().all(|t| {
-        let [a, b, c, d] = t.map(|v| &mesh.points[v as usize]);
-        radius_ratio(a, b, c, d) >= LEAST
-    })
+    /// Whether no tetrahedron is much worse than a template's are, once what is stretched is shrunk again along the axis.
+    fn is_good(&self, mesh: &TetMesh) -> bool {
+        let shrunk = |p: &[Point3; 4]| -> [Point3; 4] {
+            let path = (p[0] - self.path.at(0.0).origin).norm();
+            let axis = self.path.at(path.min(self.path.length())).axis;
+            p.map(|q| q - axis * ((q - p[0]).dot(&axis) * (1.0 - 1.0 / self.stretch)))
+        };
+        mesh.tets.iter().all(|t| {
+            let corners = t.map(|v| mesh.points[v as usize]);
+            let [a, b, c, d] = if self.stretch > 1.0 { shrunk(&corners) } else { corners };
+            radius_ratio(&a, &b, &c, &d) >= LEAST
+        })
+    }
 }

@@ -1,0 +1,121 @@
+use super::*;
+use crate::block::end_surface::EndSurface;
+use crate::block::{ConnectorMesh, Finished, mesh_free_connector, shared_ends};
+use crate::geometry::Vec3;
+use crate::mesh::quality::{TetQuality, volume6};
+use crate::partition::{Cut, CutId};
+use crate::skeleton::BranchId;
+use std::f64::consts::PI;
+
+fn section(z: f64, radius: f64) -> Section {
+    Section { origin: Point3::new(1.0, 2.0, z), axis: Vec3::z(), radius }
+}
+
+/// Sections along an arc of a circle of this radius, from angle 0 to this one.
+fn arc(bend: f64, angle: f64) -> Vec<Section> {
+    let at = |i: u32| angle * f64::from(i) / 12.0;
+    let place = |t: f64| Section {
+        origin: Point3::new(bend * t.cos(), bend * t.sin(), 0.0),
+        axis: Vec3::new(-t.sin(), t.cos(), 0.0),
+        radius: 1.0,
+    };
+    (0..=12).map(at).map(place).collect()
+}
+
+fn discs(path: &[Section], rho: f64) -> [SharedDisc; 2] {
+    [path[0], path[path.len() - 1]].map(|section| SharedDisc::new(&section, rho).expect("a disc"))
+}
+
+fn along(path: &[Section], params: &BlockParams) -> Option<FilledTube> {
+    tube(path, &discs(path, params.rho), [false; 2], params)
+}
+
+/// The block that a connector along a path becomes, with its certificate.
+fn block(path: Vec<Section>, params: &BlockParams) -> Finished {
+    let cut = Cut { branch: BranchId(0), sides: Cut::NOWHERE, path };
+    let mesh: ConnectorMesh = mesh_free_connector(CutId(0), &cut, params).expect("a connector");
+    let ends: [EndSurface; 2] = shared_ends(CutId(0), &cut, params).expect("its ends");
+    Finished::of_connector(mesh, ends.each_ref()).expect("its ends are on its boundary")
+}
+
+fn volume(mesh: &TetMesh) -> f64 {
+    let of = |t: &[u32; 4]| {
+        let [a, b, c, d] = t.map(|v| &mesh.points[v as usize]);
+        volume6(a, b, c, d) / 6.0
+    };
+    mesh.tets.iter().map(of).sum()
+}
+
+#[test]
+fn tubes_of_all_lengths_and_resolutions_are_sound_and_round() {
+    for rho in [2.5, 3.0, 4.0, 6.0] {
+        for length in [0.6, 1.0, 2.3, 7.0, 11.9, 12.1, 40.0] {
+            let params = BlockParams::with_rho(rho);
+            let path = vec![section(0.0, 2.0), section(2.0 * length, 2.0)];
+            let found = along(&path, &params).expect("a tube");
+            let quality = TetQuality::of(&found.mesh);
+            assert!(quality.min > 0.3 && quality.mean > 0.8, "{rho} {length}: {quality:?}");
+            assert!(block(path, &params).certificate.is_sound(), "{rho} {length}");
+        }
+    }
+}
+
+#[test]
+fn discs_are_taken_over_bit_for_bit_and_the_lumen_is_that_of_the_vessel() {
+    let path = vec![section(0.0, 1.0), section(15.0, 1.4)];
+    let [first, second] = discs(&path, 3.0);
+    let tube = along(&path, &BlockParams::default()).expect("a tube");
+    let points = first.points.iter().chain(&second.points);
+    assert!(points.eq(&tube.mesh.points[..2 * tube.disc as usize]));
+    let cone = PI * 15.0 * (1.0 + 1.4 + 1.96) / 3.0;
+    let volume = volume(&tube.mesh);
+    assert!((volume / cone - 1.0).abs() < 0.01, "{volume} {cone}");
+}
+
+#[test]
+fn bends_are_followed_until_they_spoil_a_tetrahedron() {
+    let wide = arc(6.0, 1.0);
+    assert!(along(&wide, &BlockParams::default()).is_some());
+    assert!(block(wide, &BlockParams::default()).certificate.is_sound());
+    // Where no image is good, the tube is made by itself.
+    let narrow = arc(1.6, 1.5);
+    assert!(along(&narrow, &BlockParams::default()).is_none());
+    assert!(block(narrow, &BlockParams::default()).certificate.is_sound());
+}
+
+#[test]
+fn steep_tapers_have_no_image() {
+    let path = vec![section(0.0, 1.0), section(1.0, 4.0)];
+    assert!(along(&path, &BlockParams::default()).is_none());
+}
+
+#[test]
+fn stretched_tubes_have_fewer_tetrahedra_and_the_same_discs() {
+    let path = vec![section(0.0, 1.0), section(30.0, 1.0)];
+    let of = |stretch| {
+        let params = BlockParams { stretch, ..BlockParams::default() };
+        assert!(block(path.clone(), &params).certificate.is_sound());
+        along(&path, &params).expect("a tube")
+    };
+    let [plain, stretched] = [1.0, 4.0].map(of);
+    let [n, m] = [&plain, &stretched].map(|tube| tube.mesh.tets.len());
+    assert!(m * 7 < n * 2, "{n} {m}");
+    let shared = 2 * plain.disc as usize;
+    assert_eq!(plain.mesh.points[..shared], stretched.mesh.points[..shared]);
+}
+
+#[test]
+fn hulls_are_the_boundary() {
+    let path = vec![section(0.0, 1.0), section(30.0, 1.0)];
+    let params = BlockParams { hollow: true, ..BlockParams::default() };
+    let hollow = block(path.clone(), &params);
+    assert!(hollow.mesh.tets.is_empty() && hollow.certificate.is_sound());
+    let filled = block(path, &BlockParams::default());
+    let enclosed: f64 = hollow
+        .hull
+        .iter()
+        .map(|t| t.map(|v| hollow.mesh.points[v as usize].coords))
+        .map(|[a, b, c]| a.cross(&b).dot(&c) / 6.0)
+        .sum();
+    assert!((enclosed / volume(&filled.mesh) - 1.0).abs() < 1e-12);
+}
