@@ -149,7 +149,13 @@ impl BlockDump {
     /// # Errors
     /// Text that is no dump, or one that no run can have written.
     pub fn from_json(text: &[u8]) -> Result<Self, DumpError> {
-        let fault = |e: serde_json::Error| if e.is_eof() { DumpError::CutOff(e) } else { DumpError::Other(e) };
+        // A number that is cut off is no number where the text ends.
+        let ends = |e: &serde_json::Error| {
+            let last = text.split(|&byte| byte == b'\n').enumerate().last();
+            last.is_some_and(|(line, rest)| e.line() == line + 1 && e.column() >= rest.len())
+        };
+        let cut_off = |e: &serde_json::Error| e.is_eof() || e.is_syntax() && ends(e);
+        let fault = |e: serde_json::Error| if cut_off(&e) { DumpError::CutOff(e) } else { DumpError::Other(e) };
         // The format is looked at first: what else another version writes cannot be known.
         match serde_json::from_slice(text).map_err(fault)? {
             Head { format: None, .. } => Err(DumpError::NoFormat),

@@ -86,8 +86,8 @@ impl BlockParams {
 
     /// Whether nothing is tried in another way than usual: blocks that can be had by template are.
     pub(super) fn by_template(&self) -> bool {
-        let Self { rho, follow, ends, allow_fused, hollow, stretch, .. } = *self;
-        *self == Self { rho, follow, ends, allow_fused, hollow, stretch, ..Self::default() }
+        let Self { rho, follow, ends, allow_fused, stretch, hollow, .. } = *self;
+        *self == Self { rho, follow, ends, allow_fused, stretch, hollow, ..Self::default() }
     }
 
     pub(super) fn check(&self) -> Result<(), BlockError> {

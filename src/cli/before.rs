@@ -8,7 +8,7 @@ use crate::mesh::check::{CheckReport, Line};
 use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_into};
 use crate::prepare::{PrepareReport, TouchedBy, take_back};
 use crate::progress::Progress;
-use crate::refine::{RefineReport, Refined, split};
+use crate::refine::{self, RefineParams, RefineReport, Refined, split};
 use crate::report::fidelity::displaced;
 use crate::report::prepare::touching;
 use crate::skeleton::{Branch, EdgeId, NodeId, Skeleton};
@@ -21,6 +21,9 @@ const FURTHEST: f64 = 1.0;
 /// A refined network whose lumen is larger or smaller by this share is tried as it was, too, if only vessels overlap there
 /// that leave one branch point: those may be kept apart.
 const SWOLLEN: f64 = 0.05;
+/// With how much more clearance a network is refined again whose walls are joined though its vessels do not overlap: walls come
+/// closer to each other than tubes do, by the width of the field's kernel.
+const WIDER: f64 = 1.2;
 const NOT_VALID: &str = "no valid mesh";
 
 /// How often tips that could not be capped are drawn back.
@@ -47,9 +50,9 @@ pub struct Before {
     prepare: PrepareReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     refine: Option<RefineReport>,
-    /// What was to be meshed before it was refined.
+    /// What was to be meshed before it was refined, and how it was.
     #[serde(skip)]
-    unrefined: Option<Skeleton>,
+    unrefined: Option<(Skeleton, RefineParams)>,
 }
 
 /// A mesh whose blocks are in a store, and what it was made of.
@@ -84,10 +87,10 @@ pub struct Meshing<'a, 'b> {
 }
 
 impl Before {
-    pub fn new(prepared: PreparedNetwork, refined: Option<Refined>) -> Self {
+    pub fn new(prepared: PreparedNetwork, refined: Option<(Refined, RefineParams)>) -> Self {
         let PreparedNetwork { given, outline, skeleton, report: prepare, names, .. } = prepared;
         let (network, refine, unrefined) = match refined {
-            Some(Refined { skeleton: moved, report, .. }) => (moved, Some(report), Some(skeleton)),
+            Some((Refined { skeleton: moved, report, .. }, params)) => (moved, Some(report), Some((skeleton, params))),
             None => (skeleton, None, None),
         };
         let meshed = split(&network).0;
@@ -100,7 +103,7 @@ impl Before {
     }
 
     /// Meshes it into a store. Refinement is not to end in something worse than none: where the refined network gives no
-    /// sound mesh, or one of another volume, it is tried as it was.
+    /// sound mesh, or one of another volume, it is tried as it was; where that is not sound either, refined with more clearance.
     pub fn mesh<'a>(self, how: Meshing<'a, '_>) -> Result<Made<'a>, (RunError, Box<Self>)> {
         let first = self.mesh_alone(how);
         let (second, fault, least) = match &first {
@@ -121,6 +124,27 @@ impl Before {
                 how.bars.note(&format!(
                     "refined, the network gives {fault}; as it was, it gives a valid mesh: that is kept"
                 ));
+                Ok(made)
+            }
+            None if fault == NOT_VALID => Self::wider(first, how),
+            None => first,
+        }
+    }
+
+    /// What came of a network, or what comes of it once it is refined with more clearance, if that is sound.
+    fn wider<'a>(
+        first: Result<Made<'a>, (RunError, Box<Self>)>,
+        how: Meshing<'a, '_>,
+    ) -> Result<Made<'a>, (RunError, Box<Self>)> {
+        let before = match &first {
+            Ok(made) => &made.before,
+            Err((_, before)) => &**before,
+        };
+        let sound = |before: Self| before.mesh_alone(how).ok().filter(|made| made.is_sound(how.plan));
+        match before.with_more_room(how.bars).and_then(sound) {
+            Some(made) => {
+                how.bars
+                    .note("the network was refined again, with more clearance: walls were joined that are to be apart");
                 Ok(made)
             }
             None => first,
@@ -154,17 +178,30 @@ impl Before {
 
     /// The same without refinement; none if it was not refined.
     fn as_it_was(&self) -> Option<Self> {
-        let network = self.unrefined.clone()?;
-        Some(Self {
+        let (network, _) = self.unrefined.clone()?;
+        Some(self.with(network, None))
+    }
+
+    /// The same refined with more clearance; none if it was not refined, or is not to be any more.
+    fn with_more_room(&self, bars: &Bars) -> Option<Self> {
+        let (network, params) = self.unrefined.as_ref()?;
+        let params = RefineParams { clearance: WIDER * params.clearance, ..params.clone() };
+        let Refined { skeleton, report, .. } = refine::refine(network, &params, bars).ok()?;
+        Some(self.with(skeleton, Some(report)))
+    }
+
+    /// The same with another network to be meshed.
+    fn with(&self, network: Skeleton, refine: Option<RefineReport>) -> Self {
+        Self {
             given: self.given.clone(),
             outline: self.outline.clone(),
             meshed: split(&network).0,
             network,
             names: self.names.clone(),
             prepare: self.prepare.clone(),
-            refine: None,
+            refine,
             unrefined: None,
-        })
+        }
     }
 
     /// Draws tips back; says which, and whether there were any.

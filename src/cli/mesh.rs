@@ -29,7 +29,7 @@ use crate::pipeline::{
     self, Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, Outlets, RunError, Stored, TooLarge, VesselData,
 };
 use crate::progress::{Progress, Stage};
-use crate::refine::Refined;
+use crate::refine::{RefineParams, Refined};
 use crate::report::advice::advice;
 use crate::report::caps;
 use crate::skeleton::Skeleton;
@@ -347,17 +347,18 @@ impl Args {
     }
 
     /// The network refined, if that was asked for.
-    fn refined(&self, network: &PreparedNetwork, stop: &Stop) -> Result<Option<Refined>, Failure> {
+    fn refined(&self, network: &PreparedNetwork, stop: &Stop) -> Result<Option<(Refined, RefineParams)>, Failure> {
         let Some(iterations) = self.blocks.refine else { return Ok(None) };
-        let refined = super::refine::moved(network, &self.how.params(iterations), self.common.quiet, stop)?;
+        let moved = super::refine::moved(network, self.how.params(iterations), self.common.quiet, stop)?;
+        let refined = &moved.0;
         if let Some(path) = &self.refined {
             stop.keep();
-            super::refine::write(path, &refined)?;
+            super::refine::write(path, refined)?;
         }
         if !self.common.quiet && !self.common.json {
             eprint!("{}", refined.report);
         }
-        Ok(Some(refined))
+        Ok(Some(moved))
     }
 
     fn print(

@@ -44,7 +44,7 @@ struct Args {
 #[derive(Debug, Subcommand)]
 enum Verb {
     /// Mesh a network: skeleton in, labelled tetrahedral mesh out
-    Mesh(mesh::Args),
+    Mesh(Box<mesh::Args>),
     /// Make the wall of a network alone, for pictures and printers: STL, PLY, OBJ, GLB, 3MF
     Surface(surface::Args),
     /// Make a measured network one graph: doubled lines merged, spurs off, radii filled, points as needed

@@ -155,24 +155,24 @@ struct Output<'a> {
     report: &'a RefineReport,
 }
 
-/// Refines a network, with a bar.
+/// Refines a network, with a bar; and with which parameters that was done in the end.
 pub(super) fn moved(
     network: &PreparedNetwork,
-    params: &RefineParams,
+    mut params: RefineParams,
     quiet: bool,
     stop: &Stop,
-) -> Result<Refined, Failure> {
-    let mut params = params.clone();
+) -> Result<(Refined, RefineParams), Failure> {
     // Polylines that were resampled do not look measured any more.
     if params.freedom == Freedom::Auto && network.report.measured {
         params.freedom = Freedom::Measured;
     }
     let refined = refine::refine(&network.skeleton, &params, &Bars::new(quiet, stop.clone()));
-    refined.map_err(|e| match e {
+    let refined = refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
         RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
         _ => Failure::usage(e.to_string()),
-    })
+    });
+    Ok((refined?, params))
 }
 
 /// Refines a network and writes it.
@@ -187,7 +187,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
     let stop = Stop::listen(args.common.quiet)?;
-    let refined = pool.install(|| moved(&network, &params, args.common.quiet, &stop))?;
+    let (refined, params) = pool.install(|| moved(&network, params, args.common.quiet, &stop))?;
     stop.keep();
     write(&args.output, &refined)?;
     let report = &refined.report;

@@ -67,10 +67,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let moved = |iterations| {
         let params = args.how.params(iterations);
-        pool.install(|| super::refine::moved(&network, &params, args.common.quiet, &stop))
+        pool.install(|| super::refine::moved(&network, params, args.common.quiet, &stop))
     };
     let refined = args.blocks.refine.map(moved).transpose()?;
-    if let Some(refined) = refined.as_ref().filter(|_| !args.common.quiet && !args.common.json) {
+    if let Some((refined, _)) = refined.as_ref().filter(|_| !args.common.quiet && !args.common.json) {
         eprint!("{}", refined.report);
     }
     let before = Before::new(network, refined);

@@ -115,7 +115,7 @@ impl MeshPlan {
             JointStyle::Disc => EndStyle::Shared,
         };
         let Self { follow, stretch, hollow, .. } = *self;
-        BlockParams { follow, stretch, ends, hollow, ..BlockParams::with_rho(self.rho) }
+        BlockParams { follow, ends, stretch, hollow, ..BlockParams::with_rho(self.rho) }
     }
 
     /// # Errors

@@ -15,7 +15,7 @@ use crate::tet::optimize::{Effort, OptimizeOptions, optimize};
 use crate::tet::{Interior, TetOptions, tetrahedralize};
 use rustc_hash::FxHashMap;
 use std::f64::consts::TAU;
-use std::sync::{Arc, LazyLock, OnceLock, RwLock};
+use std::sync::{Arc, LazyLock, OnceLock, PoisonError, RwLock};
 
 /// Lengths of templates, in radii, are powers of this: a tube is stretched or shrunk by half of the step at most.
 const STEP: f64 = 1.05;
@@ -77,10 +77,10 @@ pub fn with<R>(rho: f64, corners: u32, length: f64, caps: [bool; 2], then: impl 
 
 fn slot(key: Key) -> Kept {
     // A thread that panicked left whole entries only.
-    if let Some(kept) = TEMPLATES.read().unwrap_or_else(|e| e.into_inner()).get(&key) {
+    if let Some(kept) = TEMPLATES.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
         return Arc::clone(kept);
     }
-    Arc::clone(TEMPLATES.write().unwrap_or_else(|e| e.into_inner()).entry(key).or_default())
+    Arc::clone(TEMPLATES.write().unwrap_or_else(PoisonError::into_inner).entry(key).or_default())
 }
 
 impl Template {
