@@ -58,39 +58,107 @@ impl EdgeRing {
     }
 }
 
+/// Tetrahedra around a vertex that are looked at before those around another one are looked at as well.
+const LARGE: usize = 1024;
+
 /// Tetrahedra around a vertex; keeps its buffers from one walk to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Star {
-    stamp: Vec<u32>,
-    now: u32,
-    tets: Vec<u32>,
+    walk: Walk,
+    /// A second one, beside the first.
+    other: Walk,
 }
 
 impl Star {
     /// All tetrahedra at vertex `v`, ghosts included; empty when it has none.
     pub fn around(&mut self, c: &Complex, v: u32) -> &[u32] {
-        self.tets.clear();
-        let start = c.vertex_tet(v);
-        if start == NONE {
-            return &self.tets;
+        self.walk.start(c, v);
+        while self.walk.next(c).is_some() {}
+        &self.walk.tets
+    }
+
+    /// The first tetrahedron at vertex `v`, in the order of [`Star::around`], of which there is something to say.
+    pub fn find<T>(&mut self, c: &Complex, v: u32, look: impl Fn(u32) -> Option<T>) -> Option<T> {
+        self.walk.start(c, v);
+        while let Some(t) = self.walk.next(c) {
+            let found = look(t);
+            if found.is_some() {
+                return found;
+            }
         }
-        self.begin(c.slots());
-        self.stamp[start as usize] = self.now;
-        self.tets.push(start);
-        let mut head = 0;
-        while let Some(&t) = self.tets.get(head) {
-            head += 1;
-            let cell = c.cell(t);
-            for (&w, &mate) in cell.verts.iter().zip(&cell.mates) {
-                let n = mate >> 2;
-                let stamp = &mut self.stamp[n as usize];
-                if w != v && *stamp != self.now {
-                    *stamp = self.now;
-                    self.tets.push(n);
+        None
+    }
+
+    /// A tetrahedron (perhaps a ghost) with edge `a, b`.
+    pub fn find_edge(&mut self, c: &Complex, a: u32, b: u32) -> Option<u32> {
+        self.find_either(c, [a, b], |t| c.slot_of(t, a).is_some() && c.slot_of(t, b).is_some())
+    }
+
+    /// A half-face with the vertices `a, b, d`, in any rotation or orientation.
+    pub fn find_face(&mut self, c: &Complex, face: [u32; 3]) -> Option<u32> {
+        let t = self.find_either(c, [face[0], face[1]], |t| face.iter().all(|&v| c.slot_of(t, v).is_some()))?;
+        (0..4).find(|&i| !face.contains(&c.verts(t)[i])).map(|i| 4 * t + i as u32)
+    }
+
+    /// A tetrahedron that both vertices have and that is looked for. A few vertices may have most of the complex around
+    /// them: there the tetrahedra around the other one are fewer.
+    fn find_either(&mut self, c: &Complex, [a, b]: [u32; 2], wanted: impl Fn(u32) -> bool) -> Option<u32> {
+        let Self { walk, other } = self;
+        walk.start(c, a);
+        for _ in 0..LARGE {
+            let t = walk.next(c)?;
+            if wanted(t) {
+                return Some(t);
+            }
+        }
+        other.start(c, b);
+        loop {
+            for t in [walk.next(c)?, other.next(c)?] {
+                if wanted(t) {
+                    return Some(t);
                 }
             }
         }
-        &self.tets
+    }
+}
+
+/// A walk over the tetrahedra around a vertex, breadth first.
+#[derive(Clone, Debug, Default)]
+struct Walk {
+    vertex: u32,
+    stamp: Vec<u32>,
+    now: u32,
+    tets: Vec<u32>,
+    head: usize,
+}
+
+impl Walk {
+    fn start(&mut self, c: &Complex, v: u32) {
+        self.vertex = v;
+        self.tets.clear();
+        self.head = 0;
+        let start = c.vertex_tet(v);
+        if start != NONE {
+            self.begin(c.slots());
+            self.stamp[start as usize] = self.now;
+            self.tets.push(start);
+        }
+    }
+
+    #[inline]
+    fn next(&mut self, c: &Complex) -> Option<u32> {
+        let t = *self.tets.get(self.head)?;
+        self.head += 1;
+        let cell = c.cell(t);
+        for (&w, &mate) in cell.verts.iter().zip(&cell.mates) {
+            let n = mate >> 2;
+            let stamp = &mut self.stamp[n as usize];
+            if w != self.vertex && *stamp != self.now {
+                *stamp = self.now;
+                self.tets.push(n);
+            }
+        }
+        Some(t)
     }
 
     fn begin(&mut self, slots: usize) {
@@ -102,22 +170,5 @@ impl Star {
             self.now = 0;
         }
         self.now += 1;
-    }
-
-    /// A tetrahedron (perhaps a ghost) with edge `a, b`.
-    pub fn find_edge(&mut self, c: &Complex, a: u32, b: u32) -> Option<u32> {
-        self.around(c, a).iter().copied().find(|&t| c.slot_of(t, b).is_some())
-    }
-
-    /// A half-face with the vertices `a, b, d`, in any rotation or orientation.
-    pub fn find_face(&mut self, c: &Complex, [a, b, d]: [u32; 3]) -> Option<u32> {
-        self.around(c, a).iter().find_map(|&t| {
-            let v = c.verts(t);
-            if v.contains(&b) && v.contains(&d) {
-                (0..4).find(|&i| v[i] != a && v[i] != b && v[i] != d).map(|i| 4 * t + i as u32)
-            } else {
-                None
-            }
-        })
     }
 }

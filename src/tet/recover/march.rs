@@ -21,40 +21,42 @@ pub(super) enum Crossing {
 
 /// Finds what the segment from `a` to `b` meets first.
 pub(super) fn first_crossing(c: &Complex, star: &mut Star, a: u32, b: u32) -> Crossing {
-    let tets = star.around(c, a);
-    if tets.iter().any(|&t| c.slot_of(t, b).is_some()) {
+    if star.find_edge(c, a, b).is_some() {
         return Crossing::Exists;
     }
+    star.find(c, a, |t| ahead(c, t, [a, b])).unwrap_or(Crossing::Nothing)
+}
+
+/// What the line from corner `a` of a tetrahedron to `b` meets on the other side of it.
+fn ahead(c: &Complex, t: u32, [a, b]: [u32; 2]) -> Option<Crossing> {
+    let i = c.slot_of(t, a)?;
+    if c.is_ghost(t) {
+        return None;
+    }
     let (pa, pb) = (&c.points[a as usize], &c.points[b as usize]);
-    for &t in tets {
-        let Some(i) = c.slot_of(t, a) else { continue };
-        if c.is_ghost(t) {
-            continue;
-        }
-        let half = 4 * t + i as u32;
-        let f = c.face(half);
-        let p = f.map(|v| &c.points[v as usize]);
-        let s = [orient3d(pa, pb, p[1], p[2]), orient3d(pa, pb, p[2], p[0]), orient3d(pa, pb, p[0], p[1])];
-        if s.iter().any(|&x| x < 0.0) {
-            continue;
-        }
-        // The line through a also points into the opposite cone: all signs are reversed there, so this is the right
-        // one unless two of them vanish, when the line runs along an edge at a.
-        let zeros: Vec<usize> = (0..3).filter(|&k| s[k] == 0.0).collect();
-        match zeros[..] {
-            [] => return Crossing::Face(half),
-            [k] => return Crossing::Edge(t, f[(k + 1) % 3], f[(k + 2) % 3]),
-            [k, l] => {
-                let v = f[3 - k - l];
-                let along = (c.points[v as usize] - pa).dot(&(pb - pa)) > 0.0;
-                if along {
-                    return Crossing::Vertex(v);
-                }
-            }
-            _ => {}
+    let half = 4 * t + i as u32;
+    let f = c.face(half);
+    let p = f.map(|v| &c.points[v as usize]);
+    let mut s = [0.0; 3];
+    for k in 0..3 {
+        s[k] = orient3d(pa, pb, p[(k + 1) % 3], p[(k + 2) % 3]);
+        if s[k] < 0.0 {
+            return None;
         }
     }
-    Crossing::Nothing
+    // The line through a also points into the opposite cone: all signs are reversed there, so this is the right one
+    // unless two of them vanish, when the line runs along an edge at a.
+    let zeros: Vec<usize> = (0..3).filter(|&k| s[k] == 0.0).collect();
+    match zeros[..] {
+        [] => Some(Crossing::Face(half)),
+        [k] => Some(Crossing::Edge(t, f[(k + 1) % 3], f[(k + 2) % 3])),
+        [k, l] => {
+            let v = f[3 - k - l];
+            let along = (c.points[v as usize] - pa).dot(&(pb - pa)) > 0.0;
+            along.then_some(Crossing::Vertex(v))
+        }
+        _ => None,
+    }
 }
 
 /// Crossings listed for one segment at most.

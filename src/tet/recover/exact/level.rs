@@ -24,8 +24,9 @@ use std::collections::VecDeque;
 /// Edges in the way of one, at most.
 const FAR: usize = 1024;
 
-/// Vertices put into a plane for one edge at most: a long one crosses many edges that pierce the plane.
-const PIERCED: usize = 128;
+/// Vertices put into a plane for one edge at most: a long one crosses many edges that pierce the plane. One that needs more
+/// seldom comes in the end, and its vertices are in the way of all that follows.
+const PIERCED: usize = 32;
 
 /// Tetrahedra that are added to one half of a ring at most.
 const STEPS: usize = 6;
@@ -36,8 +37,8 @@ const HIGHEST: usize = 12;
 /// Least distance of such a corner from what it sees, over its height.
 const MARGIN: f64 = 1e-3;
 
-/// Tetrahedra at most that go as well, so that it sees all: among needles these are many, and still fewer than those
-/// that vertices lower down would cost.
+/// Tetrahedra at most that go as well, so that it sees all, looked at for all of these corners: among needles these are
+/// many, and still fewer than those that vertices lower down would cost.
 const IN_VIEW: usize = 1000;
 
 /// What an exchange that is refused costs, in exchanges.
@@ -71,6 +72,12 @@ const MEASURES: [Measure; 4] = [
 
 /// Share of the edges that have to come with one measure, for the next to be tried.
 const GAIN: f64 = 0.1;
+
+/// Share of the edges, and at least so many, that tell how many of the others will come.
+const SAMPLE: f64 = 0.25;
+
+/// See [`SAMPLE`].
+const MANY: usize = 64;
 
 /// Exchanges for one edge, over the number of edges in its way and on top of it.
 const WORK: (usize, usize) = (8, 32);
@@ -108,13 +115,18 @@ pub(super) struct Level<'a> {
     pub within: FxHashSet<u32>,
 }
 
-/// Recovers what lies in planes of faces but for rounding. Returns the edges and triangles that are still missing.
+/// Edges and triangles.
+type Left = (Vec<[u32; 2]>, Vec<u32>);
+
+/// Recovers what lies in planes of faces but for rounding. Returns the edges and triangles that are still missing; nothing
+/// if these are more than a share of all edges, as soon as that is to be seen.
 pub(super) fn level_out(
     push: &mut Push,
     keep: &SurfaceEdges,
     missing: Missing,
+    share: f64,
     watch: &Watch,
-) -> Result<(Vec<[u32; 2]>, Vec<u32>), TetError> {
+) -> Result<Option<Left>, TetError> {
     let mut facets: FxHashMap<[u32; 2], Vec<[u32; 3]>> = FxHashMap::default();
     for &t in missing.triangles {
         let triangle = push.triangles[t as usize];
@@ -124,14 +136,24 @@ pub(super) fn level_out(
     }
     let mut level = Level::new(push, keep, facets);
     let mut left = missing.edges.to_vec();
-    for measure in MEASURES {
+    let goal = share * left.len() as f64;
+    for (measure, others) in MEASURES.into_iter().zip((0..MEASURES.len()).rev()) {
         level.look(measure);
         let before = left.len();
+        // The next measures seldom gain more than the one before.
+        let hopeless = |tried: usize, failed: usize| {
+            let lost = failed as f64 / tried as f64 * before as f64;
+            let told = tried >= MANY && tried as f64 >= SAMPLE * before as f64;
+            told && lost - others as f64 * (before as f64 - lost) > goal
+        };
         let mut again = Vec::new();
-        for edge in left {
+        for (tried, edge) in left.into_iter().enumerate() {
             watch.ask()?;
             if !level.insert(edge) {
                 again.push(edge);
+            }
+            if hopeless(tried + 1, again.len()) {
+                return Ok(None);
             }
         }
         let gained = before - again.len();
@@ -139,6 +161,10 @@ pub(super) fn level_out(
         if (gained as f64) < GAIN * left.len() as f64 {
             break;
         }
+    }
+    left.retain(|&[a, b]| !level.s.has_edge(a, b));
+    if left.len() as f64 > goal {
+        return Ok(None);
     }
     level.leave();
     let made = level.made;
@@ -151,7 +177,7 @@ pub(super) fn level_out(
             None => lost_triangles.push(t),
         }
     }
-    Ok((lost_edges, lost_triangles))
+    Ok(Some((lost_edges, lost_triangles)))
 }
 
 impl<'a> Level<'a> {
@@ -415,9 +441,10 @@ impl<'a> Level<'a> {
         high.retain(|&(height, _)| height > self.clearance);
         high.sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         let free = |v: u32| (v as usize) >= self.points && !self.within.contains(&v);
+        let mut purse = IN_VIEW;
         high.into_iter().take(HIGHEST).find_map(|(height, w)| {
             let least = (MARGIN * height).max(self.clearance);
-            wider.seen_from(sector, w, (least, IN_VIEW), free).map(|sector| (sector, Apex::Vertex(w)))
+            wider.seen_from(sector, w, (least, &mut purse), free).map(|sector| (sector, Apex::Vertex(w)))
         })
     }
 

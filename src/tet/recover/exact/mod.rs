@@ -65,17 +65,18 @@ pub(in crate::tet) fn recover_exact(
     let segments = Segments::new(edges, surface.points.len());
     let push = Push::new(Space::new(c.clone(), flat), segments, surface.triangles.clone());
     let start = Start { push, edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
-    let mut level: Option<Start> = None;
+    let mut level: Option<Option<Start>> = None;
     let mut last = TetError::NotRecovered { edges: start.edges.clone(), triangles: start.triangles.clone() };
     for &way in ways {
         let start = match &mut level {
             _ if !way.level => &start,
-            Some(level) => level,
-            none => none.insert(start.leveled(edges, watch)?),
+            Some(Some(level)) => level,
+            Some(None) => continue,
+            none => match none.insert(start.leveled(edges, watch)?) {
+                Some(level) => level,
+                None => continue,
+            },
         };
-        if way.level && start.edges.len() as f64 > WORTHWHILE * missing.edges.len() as f64 {
-            continue;
-        }
         let left = Missing { edges: &start.edges, triangles: &start.triangles };
         let budget = way.budget(start.edges.len());
         match Queue::new(start.push.clone(), (surface, edges), (way, budget), watch).run(left) {
@@ -96,12 +97,12 @@ struct Start<'a> {
 }
 
 impl Start<'_> {
-    /// With what lies in planes of faces recovered.
-    fn leveled(&self, edges: &SurfaceEdges, watch: &Watch) -> Result<Self, TetError> {
+    /// With what lies in planes of faces recovered; nothing where that is not worthwhile.
+    fn leveled(&self, edges: &SurfaceEdges, watch: &Watch) -> Result<Option<Self>, TetError> {
         let mut push = self.push.clone();
         let missing = Missing { edges: &self.edges, triangles: &self.triangles };
-        let (edges, triangles) = level_out(&mut push, edges, missing, watch)?;
-        Ok(Self { push, edges, triangles })
+        let left = level_out(&mut push, edges, missing, WORTHWHILE, watch)?;
+        Ok(left.map(|(edges, triangles)| Self { push, edges, triangles }))
     }
 }
 

@@ -50,6 +50,8 @@ struct Ears<'a> {
     turn: Vec<Option<i32>>,
     /// Corners where it turns inwards, the best-shaped first.
     convex: BTreeSet<(Reverse<u64>, usize)>,
+    /// A corner in the triangle of each, where one was found: as long as it is there, the first is no ear.
+    inside: Vec<Option<usize>>,
 }
 
 impl<'a> Ears<'a> {
@@ -57,7 +59,16 @@ impl<'a> Ears<'a> {
         let n = polygon.len();
         let (before, after) = ((0..n).map(|k| (k + n - 1) % n).collect(), (0..n).map(|k| (k + 1) % n).collect());
         let above = Site { at: above, on: None };
-        let mut ears = Self { s, polygon, above, before, after, turn: vec![None; n], convex: BTreeSet::new() };
+        let mut ears = Self {
+            s,
+            polygon,
+            above,
+            before,
+            after,
+            turn: vec![None; n],
+            convex: BTreeSet::new(),
+            inside: vec![None; n],
+        };
         (0..n).for_each(|k| ears.look(k));
         ears
     }
@@ -78,6 +89,7 @@ impl<'a> Ears<'a> {
     fn look(&mut self, k: usize) {
         let turn = self.turn_of(self.corner(k));
         self.turn[k] = Some(turn);
+        self.inside[k] = None;
         if turn > 0 {
             self.convex.insert(self.key(k));
         }
@@ -85,17 +97,26 @@ impl<'a> Ears<'a> {
 
     /// The best-shaped corner whose triangle has no other corner in it. Where one lies in it, one at which the polygon
     /// does not turn inwards does.
-    fn next_ear(&self) -> Option<usize> {
-        let blunt: Vec<u32> = (0..self.polygon.len())
-            .filter(|&k| self.turn[k].is_some_and(|t| t <= 0))
-            .map(|k| self.polygon[k])
-            .collect();
-        let is_ear = |k: usize| {
+    fn next_ear(&mut self) -> Option<usize> {
+        let is_blunt = |turn: Option<i32>| turn.is_some_and(|t| t <= 0);
+        let mut blunt: Option<Vec<usize>> = None;
+        let mut ear = None;
+        for &(_, k) in &self.convex {
+            if self.inside[k].is_some_and(|w| is_blunt(self.turn[w])) {
+                continue;
+            }
+            let blunt = blunt.get_or_insert_with(|| (0..self.turn.len()).filter(|&w| is_blunt(self.turn[w])).collect());
             let [p, q, r] = self.corner(k);
-            let outside = |w: u32| [[r, p, w], [p, q, w], [q, r, w]].into_iter().any(|turn| self.turn_of(turn) < 0);
-            blunt.iter().all(|&w| [p, q, r].contains(&w) || outside(w))
-        };
-        self.convex.iter().map(|&(_, k)| k).find(|&k| is_ear(k))
+            let within = |w: u32| {
+                ![p, q, r].contains(&w) && [[r, p, w], [p, q, w], [q, r, w]].into_iter().all(|t| self.turn_of(t) >= 0)
+            };
+            self.inside[k] = blunt.iter().copied().find(|&w| within(self.polygon[w]));
+            if self.inside[k].is_none() {
+                ear = Some(k);
+                break;
+            }
+        }
+        ear
     }
 
     fn cut(&mut self, k: usize) {

@@ -20,6 +20,9 @@ use std::ops::Range;
 /// Tetrahedra that are added to one sector at most.
 const STEPS: usize = 24;
 
+/// Where one in so many goes or fewer, the others are given less room: each look at them takes as long.
+const SLOW: usize = 64;
+
 /// Place in [`LEVELS`] of the room that wider cavities have to have: they cost most, and are for what is left.
 const WIDER_FROM: usize = 3;
 
@@ -181,11 +184,12 @@ impl<'a> Push<'a> {
             let before = left.len();
             // Vertices that go without a trace give room to the others, so they come first.
             self.pass(left, level, Way::Corners)?;
-            if left.len() == before {
+            let slow = |left: &[(Host, u32)]| (before - left.len()) * SLOW < before;
+            if slow(left) {
                 self.relax(LEVELS[level]);
                 self.pass(left, level, Way::Points)?;
             }
-            level = if left.len() == before { level + 1 } else { level };
+            level = if slow(left) { level + 1 } else { level };
         }
         Ok(())
     }

@@ -90,8 +90,10 @@ impl<'a, 'b> Queue<'a, 'b> {
         let missing = Missing { edges: &edges, triangles: &triangles };
         let flat = self.push.s.flat;
         dissolve_flat(&mut self.push.s.c, self.surface, self.edges, flat);
-        let left = level_out(&mut self.push, self.edges, missing, self.watch);
-        let (edges, triangles) = left.map_err(|error| Failed { error, again: false })?;
+        let left = level_out(&mut self.push, self.edges, missing, f64::INFINITY, self.watch);
+        let Some((edges, triangles)) = left.map_err(|error| Failed { error, again: false })? else {
+            return Ok(waiting.to_vec());
+        };
         Ok(parts(&self.surface.triangles, Missing { edges: &edges, triangles: &triangles }))
     }
 

@@ -46,12 +46,12 @@ impl<'a> Wider<'a> {
     }
 
     /// A sector that is made wider, by so many tetrahedra at most, until a vertex sees all its faces from further than
-    /// `least`. Vertices that are free may go.
+    /// `least`; tells how many are left then. Vertices that are free may go.
     pub(super) fn seen_from(
         &mut self,
         sector: &Sector,
         w: u32,
-        (least, steps): (f64, usize),
+        (least, steps): (f64, &mut usize),
         free: impl Fn(u32) -> bool,
     ) -> Option<Sector> {
         let s = self.s;
@@ -62,7 +62,8 @@ impl<'a> Wider<'a> {
         };
         let facets = &sector.faces[sector.halves.len()..];
         let before = self.cavity.len();
-        let halves = if facets.iter().all(|&f| sees(f)) { self.grow(&sector.halves, sees, steps) } else { None };
+        let halves = if facets.iter().all(|&f| sees(f)) { self.grow(&sector.halves, sees, *steps) } else { None };
+        *steps -= self.cavity.len() - before;
         let wide = halves.map(|halves| {
             let faces = halves.iter().map(|&half| s.wall(half)).chain(facets.iter().copied()).collect();
             Sector { faces, halves }
