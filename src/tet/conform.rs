@@ -63,7 +63,8 @@ fn exactly(
     let flat = flat_height(&r.surface.points);
     let single = flat_height_in_single(&r.surface.points);
     let go_on = |ways: &[Way]| go_on(r, complex, points.len(), missing, (ways, flat));
-    let anew = |flat| anew(r, points, flat);
+    let anew_in = |flat, ways: &[Way]| anew(r, points, flat, ways);
+    let anew = |flat| anew_in(flat, &Way::TURNED);
     let rounded = single.filter(|&coarse| lies_turned(r.surface, missing.edges, coarse));
     let planes = lies_in_planes(r.surface, missing.edges, flat);
     let turned = planes || lies_turned(r.surface, missing.edges, flat) || has_flat(complex, flat, missing.edges.len());
@@ -77,7 +78,8 @@ fn exactly(
         None if turned || rounded.is_some() => go_on(&Way::FIRST),
         None => anew(flat),
     });
-    again(second, || go_on(&Way::OTHERS))
+    let third = again(second, || go_on(&Way::OTHERS));
+    again(third, || anew_in(rounded.unwrap_or(flat), &Way::LAST))
 }
 
 /// Whether flips have left more flat tetrahedra than edges: they have met with flat parts.
@@ -105,14 +107,14 @@ fn go_on(
     Ok((complex, RecoverySummary { missing_edges, missing_triangles, steiner_points: before + exact.steiner_points }))
 }
 
-/// Begins anew, and makes nothing that is thinner than `flat`.
-fn anew(r: &Request, points: &[Point3], flat: f64) -> Result<(Complex, RecoverySummary), TetError> {
+/// Begins anew, and makes nothing that is thinner than `flat`; then goes on in some ways.
+fn anew(r: &Request, points: &[Point3], flat: f64, ways: &[Way]) -> Result<(Complex, RecoverySummary), TetError> {
     let mut complex = delaunay::delaunay_watched(points, r.watch)?;
     match recover::recover(&mut complex, r.surface, r.edges, Rule::Thick(flat), r.watch) {
         Ok(summary) => Ok((complex, summary)),
         Err(TetError::NotRecovered { edges, triangles }) => {
             let missing = Missing { edges: &edges, triangles: &triangles };
-            go_on(r, &complex, points.len(), missing, (&Way::TURNED, flat))
+            go_on(r, &complex, points.len(), missing, (ways, flat))
         }
         Err(error) => Err(error),
     }

@@ -66,7 +66,7 @@ fn twice(pairs: &[[u32; 2]], count: usize) -> String {
 pub enum Stuck {
     /// The surface meets itself there.
     Intersection,
-    /// No floating-point number leaves room between the parts of the surface that meet there.
+    /// No place for a vertex was found off the parts of the surface that meet there; that proves nothing.
     Precision,
     /// The edge has fewer than two triangles, and no room was found beside it.
     Dangling,
@@ -78,7 +78,9 @@ impl std::fmt::Display for Stuck {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str(match self {
             Self::Intersection => "the surface meets itself there",
-            Self::Precision => "floating-point numbers leave no room between the parts that meet there",
+            Self::Precision => {
+                "no room for a vertex was found between the parts that meet there, in any of the ways that there are"
+            }
             Self::Dangling => "it has fewer than two triangles and no room was found beside it",
             Self::Budget => "the budget of work was used up",
         })

@@ -24,9 +24,8 @@ use std::collections::VecDeque;
 /// Edges in the way of one, at most.
 const FAR: usize = 1024;
 
-/// Vertices put into a plane for one edge at most: a long one crosses many edges that pierce the plane. One that needs more
-/// seldom comes in the end, and its vertices are in the way of all that follows.
-const PIERCED: usize = 32;
+/// Vertices put into a plane for one edge at most: a long one crosses many edges that pierce the plane.
+const PIERCED: usize = 128;
 
 /// Tetrahedra that are added to one half of a ring at most.
 const STEPS: usize = 6;

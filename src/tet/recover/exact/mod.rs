@@ -43,10 +43,6 @@ use segments::Segments;
 use space::Space;
 pub(in crate::tet) use ways::Way;
 
-/// Edges of those missing that may be left when what lies in planes is recovered; beyond that it gains nothing, and new
-/// vertices are in the way.
-const WORTHWHILE: f64 = 0.2;
-
 /// Recovers what is missing in a complex that has all the rest of the surface, its triangles frozen, in the first of the
 /// ways that succeeds. The surface may not meet itself; its triangles may share whole edges and vertices in any way, well
 /// inside the complex. What is thinner than `flat` counts as flat where that chooses between ways.
@@ -68,11 +64,11 @@ pub(in crate::tet) fn recover_exact(
     let mut level: Option<Option<Start>> = None;
     let mut last = TetError::NotRecovered { edges: start.edges.clone(), triangles: start.triangles.clone() };
     for &way in ways {
-        let start = match &mut level {
-            _ if !way.level => &start,
-            Some(Some(level)) => level,
-            Some(None) => continue,
-            none => match none.insert(start.leveled(edges, watch)?) {
+        let start = match (way.level, &mut level) {
+            (None, _) => &start,
+            (Some(_), Some(Some(level))) => level,
+            (Some(_), Some(None)) => continue,
+            (Some(share), none) => match none.insert(start.leveled(edges, share, watch)?) {
                 Some(level) => level,
                 None => continue,
             },
@@ -97,11 +93,11 @@ struct Start<'a> {
 }
 
 impl Start<'_> {
-    /// With what lies in planes of faces recovered; nothing where that is not worthwhile.
-    fn leveled(&self, edges: &SurfaceEdges, watch: &Watch) -> Result<Option<Self>, TetError> {
+    /// With what lies in planes of faces recovered; nothing where more than a share of the edges would be left.
+    fn leveled(&self, edges: &SurfaceEdges, share: f64, watch: &Watch) -> Result<Option<Self>, TetError> {
         let mut push = self.push.clone();
         let missing = Missing { edges: &self.edges, triangles: &self.triangles };
-        let left = level_out(&mut push, edges, missing, WORTHWHILE, watch)?;
+        let left = level_out(&mut push, edges, missing, share, watch)?;
         Ok(left.map(|(edges, triangles)| Self { push, edges, triangles }))
     }
 }

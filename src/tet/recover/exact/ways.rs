@@ -9,11 +9,16 @@ const VERTICES_DEEP: (usize, usize) = (64, 100_000);
 /// The same where other ways are left that may need fewer.
 const VERTICES_FIRST: (usize, usize) = (4, 25_000);
 
+/// Share of the missing edges that may be left when what lies in planes is recovered; beyond that it gains little, and new
+/// vertices are in the way.
+const WORTHWHILE: f64 = 0.2;
+
 /// A way to recover what is missing.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::tet) struct Way {
-    /// Whether edges in planes of faces are turned first.
-    pub level: bool,
+    /// Whether edges in planes of faces are turned first; then the share of those missing that may be left for the others
+    /// to be gone on with.
+    pub level: Option<f64>,
     /// Whether cavities are to be deep, not only seen.
     pub deep: bool,
     /// Chooses the order in which edges are cut.
@@ -34,16 +39,33 @@ impl Way {
     pub(in crate::tet) const OTHERS: [Self; 4] =
         [Self::seen(0), Self::seen(1), Self::deep(true, 2), Self::deep(false, 3)];
 
+    /// What is tried at last, for parts that may be flat: edges in planes are turned, be it worthwhile or not, and then
+    /// there are other orders.
+    pub(in crate::tet) const LAST: [Self; 7] = [
+        Self::deep(true, 0).in_any_case(),
+        Self::level(1).in_any_case(),
+        Self::deep(true, 2).in_any_case(),
+        Self::level(3).in_any_case(),
+        Self::deep(false, 4),
+        Self::deep(false, 5),
+        Self::deep(false, 6),
+    ];
+
     const fn seen(salt: u64) -> Self {
-        Self { level: false, deep: false, salt, vertices: VERTICES }
+        Self { level: None, deep: false, salt, vertices: VERTICES }
     }
 
     const fn level(salt: u64) -> Self {
-        Self { level: true, ..Self::seen(salt) }
+        Self { level: Some(WORTHWHILE), ..Self::seen(salt) }
     }
 
     const fn deep(level: bool, salt: u64) -> Self {
-        Self { level, deep: true, salt, vertices: VERTICES_DEEP }
+        let way = if level { Self::level(salt) } else { Self::seen(salt) };
+        Self { deep: true, vertices: VERTICES_DEEP, ..way }
+    }
+
+    const fn in_any_case(self) -> Self {
+        Self { level: Some(f64::INFINITY), ..self }
     }
 
     /// Implicit vertices allowed for so many missing edges.
