@@ -137,14 +137,10 @@ fn of_tube(
         EndKind::Cut { .. } => None,
     });
     let voxel = 2.0 * smallest_radius(cluster) / params.rho;
-    let mut out = ClusterMesh { caps: caps.collect(), voxel, surface_triangles, ..ClusterMesh::default() };
-    if params.hollow {
-        let TriMesh { points, triangles } = tube.hull();
-        (out.mesh.points, out.hull) = (points, triangles);
-    } else {
-        out.mesh = tube.mesh;
-    }
-    out.ends = disc_ends(id, cluster, |end| tube.ends[end as usize].clone(), &out.mesh)?;
+    let (caps, ends) = (caps.collect(), tube.ends.clone());
+    let (mesh, hull) = tube.kept(params.hollow);
+    let mut out = ClusterMesh { mesh, hull, caps, voxel, surface_triangles, ..ClusterMesh::default() };
+    out.ends = disc_ends(id, cluster, |end| ends[end as usize].clone(), &out.mesh)?;
     check_shared(id, cluster, &out, params.rho)?;
     Ok(out)
 }

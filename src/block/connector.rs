@@ -93,12 +93,9 @@ pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result
 fn image(tube: FilledTube, hollow: bool) -> ConnectorMesh {
     let ends = |side| (0..tube.disc).map(move |vertex| EndVertex { side, vertex });
     let shared = ends(0).chain(ends(1)).collect();
-    let (rings, failed) = (tube.rings, Vec::new());
-    if !hollow {
-        return ConnectorMesh { mesh: tube.mesh, hull: Vec::new(), shared, rings, failed };
-    }
-    let TriMesh { points, triangles } = tube.hull();
-    ConnectorMesh { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, shared, rings, failed }
+    let rings = tube.rings;
+    let (mesh, hull) = tube.kept(hollow);
+    ConnectorMesh { mesh, hull, shared, rings, failed: Vec::new() }
 }
 
 fn filled(surface: ConnectorSurface, mesh: TetMesh, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {

@@ -13,7 +13,7 @@ use super::params::BlockParams;
 use super::path::AxisPath;
 use crate::geometry::{Point3, Section};
 use crate::mesh::quality::radius_ratio;
-use crate::mesh::{Kept, TetMesh, TriMesh};
+use crate::mesh::{Kept, TetMesh};
 use crate::surface::SharedDisc;
 use canonical::Template;
 
@@ -42,11 +42,16 @@ pub struct FilledTube {
 }
 
 impl FilledTube {
-    /// Its closed surface alone; the points begin with those of the two discs.
-    pub fn hull(&self) -> TriMesh {
+    /// What a block keeps of it: points and tetrahedra; or, if it is to be hollow, points and its closed surface. The points
+    /// begin with those of the two discs.
+    pub fn kept(self, hollow: bool) -> (TetMesh, Vec<[u32; 3]>) {
+        if !hollow {
+            return (self.mesh, Vec::new());
+        }
         let triangles: Vec<[u32; 3]> = self.ends.iter().chain([&self.wall]).flatten().copied().collect();
         let kept = Kept::used(&triangles, self.mesh.points.len(), 0);
-        TriMesh { points: kept.select(&self.mesh.points), triangles: triangles.iter().map(|t| kept.cell(t)).collect() }
+        let points = kept.select(&self.mesh.points);
+        (TetMesh { points, tets: Vec::new() }, triangles.iter().map(|t| kept.cell(t)).collect())
     }
 }
 

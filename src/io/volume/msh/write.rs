@@ -48,9 +48,9 @@ fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> 
 /// Writes a mesh as MSH 4.1. Blocks that are regions become volumes; other blocks are not written: the format has no
 /// place for them.
 ///
-/// Points and boundary are read three times, tetrahedra once, and each once more for every column of values. What is held is two bits for each point, and the faces and
-/// points of all surfaces but that of lowest id (the wall). Each region costs a
-/// pass over the tetrahedra of its own, or, of a mesh in memory, all together 8 bytes for each tetrahedron.
+/// Points and boundary are read three times, tetrahedra once, and each once more for every column of values. What is held is
+/// two bits for each point, and the faces and points of all surfaces but that of lowest id (the wall). Each region costs a pass
+/// over the tetrahedra of its own, or, of a mesh in memory, all together 8 bytes for each tetrahedron.
 ///
 /// # Errors
 /// What the writer `out` or reading the mesh reports.
