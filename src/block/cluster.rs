@@ -7,6 +7,7 @@ use super::error::{BlockError, FlattenFailure};
 use super::faithful::Astray;
 use super::lone_tube::lone_tube;
 use super::loops::Loops;
+use super::layered::{ThinLayers, Walled, disc_at_end};
 use super::params::{BlockParams, EndStyle, filling};
 use super::template::FilledTube;
 use crate::geometry::{Section, Tube};
@@ -17,7 +18,8 @@ use crate::surface::{
     CapError, CapFailure, CappedSurface, Closing, Field, SharedDisc, SurfaceParams, cap_terminals,
     euler_characteristic, vessel_wall,
 };
-use crate::tet::{Watch, tetrahedralize_watched};
+use crate::tet::layers::Inset;
+use crate::tet::{TetError, Watch, tetrahedralize_watched};
 
 /// The flat disc that closes a terminal.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +60,8 @@ pub struct ClusterMesh {
     pub loops: i64,
     /// Loops of the skeleton that are filled by their own lumen.
     pub filled: i64,
+    /// Where layers are thinner than asked for.
+    pub thin: Option<ThinLayers>,
 }
 
 /// Meshes one cluster.
@@ -84,25 +88,16 @@ pub(crate) fn mesh_cluster_watched(
     }
     let (surface, voxel, astray) = cluster_surface(id, cluster, params)?;
     let edge = surface.mesh.mean_edge();
-    let (filled, hull) = if params.hollow {
-        let TriMesh { points, triangles } = surface.mesh.clone();
-        (TetMesh { points, tets: Vec::new() }, triangles)
-    } else {
-        let filled = tetrahedralize_watched(&surface.mesh, &filling(&surface.mesh), watch);
-        let mut filled = filled.map_err(|source| BlockError::Tetrahedra { cluster: id, source })?;
-        // Discs at cuts are on no boundary of the whole.
-        let of_cut = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Cut { .. });
-        part_corners(&mut filled, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
-        (filled, Vec::new())
-    };
-    let caps = caps(cluster, &surface);
+    let failed = |source| BlockError::Tetrahedra { cluster: id, source };
+    let Inside { mesh, hull, discs, thin } = inside(cluster, &surface, params, watch).map_err(failed)?;
+    let caps = caps(cluster, &discs);
     let surface_triangles = surface.mesh.triangles.len();
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
     let all = Loops::of(cluster);
     let loops = all.expected(handles);
     let uncapped = uncapped(cluster, &caps);
     let mut out = ClusterMesh {
-        mesh: filled,
+        mesh,
         hull,
         caps,
         uncapped,
@@ -113,15 +108,54 @@ pub(crate) fn mesh_cluster_watched(
         handles,
         loops,
         filled: all.all - loops,
+        thin,
         ends: Vec::new(),
     };
     if params.ends != EndStyle::Open {
-        out.ends = disc_ends(id, cluster, |end| faces_of(&surface, end), &out.mesh)?;
+        out.ends = disc_ends(id, cluster, |end| discs[end as usize].clone(), &out.mesh)?;
     }
     if params.ends == EndStyle::Shared {
-        check_shared(id, cluster, &out, params.rho)?;
+        check_shared(id, cluster, &out, params)?;
     }
     Ok(out)
+}
+
+/// What lies within the surface of a cluster.
+struct Inside {
+    /// Points and tetrahedra, or points alone where it is to be hollow.
+    mesh: TetMesh,
+    /// The closed surface where it is to be hollow; else empty.
+    hull: Vec<[u32; 3]>,
+    /// For each end its triangles; none where it is not closed.
+    discs: Vec<Vec<[u32; 3]>>,
+    /// Where layers are thin.
+    thin: Option<ThinLayers>,
+}
+
+fn inside(
+    cluster: &Cluster,
+    surface: &CappedSurface,
+    params: &BlockParams,
+    watch: &Watch,
+) -> Result<Inside, TetError> {
+    let discs: Vec<Vec<[u32; 3]>> = (0..cluster.ends.len() as u32).map(|end| faces_of(surface, end)).collect();
+    let fill = |surface: &TriMesh| tetrahedralize_watched(surface, &filling(surface), watch);
+    if let Some(layers) = &params.layers {
+        let caps = surface.cap.iter().map(|cap| cap.map(|end| cluster.ends[end as usize].section.origin)).collect();
+        let axes = cluster.tubes.iter().map(|tube| [tube.a, tube.b]).collect();
+        let (Inset { mesh, numbers, .. }, thin) = Walled { surface: &surface.mesh, caps, axes }.fill(layers, fill)?;
+        let discs = discs.iter().map(|disc| numbers.disc(disc)).collect();
+        return Ok(Inside { mesh, hull: Vec::new(), discs, thin });
+    }
+    if params.hollow {
+        let TriMesh { points, triangles } = surface.mesh.clone();
+        return Ok(Inside { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, discs, thin: None });
+    }
+    let mut mesh = fill(&surface.mesh)?;
+    // Discs at cuts are on no boundary of the whole.
+    let of_cut = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Cut { .. });
+    part_corners(&mut mesh, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
+    Ok(Inside { mesh, hull: Vec::new(), discs, thin: None })
 }
 
 /// A cluster that is one tube, by template.
@@ -132,16 +166,13 @@ fn of_tube(
     params: &BlockParams,
 ) -> Result<ClusterMesh, BlockError> {
     let surface_triangles = tube.ends[0].len() + tube.ends[1].len() + tube.wall.len();
-    let caps = (0..).zip(&cluster.ends).filter_map(|(i, end): (usize, _)| match end.kind {
-        EndKind::Terminal(node) => Some(CapFaces { node, section: end.section, triangles: tube.ends[i].clone() }),
-        EndKind::Cut { .. } => None,
-    });
     let voxel = 2.0 * smallest_radius(cluster) / params.rho;
-    let (caps, ends) = (caps.collect(), tube.ends.clone());
+    let ends = tube.ends.clone();
+    let caps = caps(cluster, &ends);
     let (mesh, hull) = tube.kept(params.hollow);
     let mut out = ClusterMesh { mesh, hull, caps, voxel, surface_triangles, ..ClusterMesh::default() };
     out.ends = disc_ends(id, cluster, |end| ends[end as usize].clone(), &out.mesh)?;
-    check_shared(id, cluster, &out, params.rho)?;
+    check_shared(id, cluster, &out, params)?;
     Ok(out)
 }
 
@@ -250,11 +281,11 @@ fn faces_of(surface: &CappedSurface, end: u32) -> Vec<[u32; 3]> {
     surface.mesh.triangles.iter().zip(&surface.cap).filter(|(_, c)| **c == Some(end)).map(|(t, _)| *t).collect()
 }
 
-fn caps(cluster: &Cluster, surface: &CappedSurface) -> Vec<CapFaces> {
-    (0..)
-        .zip(&cluster.ends)
-        .filter_map(|(i, end)| match end.kind {
-            EndKind::Terminal(node) => Some(CapFaces { node, section: end.section, triangles: faces_of(surface, i) }),
+/// The caps; `discs` are the triangles of each end.
+fn caps(cluster: &Cluster, discs: &[Vec<[u32; 3]>]) -> Vec<CapFaces> {
+    (cluster.ends.iter().zip(discs))
+        .filter_map(|(end, triangles)| match end.kind {
+            EndKind::Terminal(node) => Some(CapFaces { node, section: end.section, triangles: triangles.clone() }),
             EndKind::Cut { .. } => None,
         })
         .filter(|cap| !cap.triangles.is_empty())
@@ -301,15 +332,29 @@ fn disc_ends(
         .collect()
 }
 
-/// Whether every shared disc is in the mesh as the vessel gives it: the same points in the same order, the same triangles.
-fn check_shared(id: ClusterId, cluster: &Cluster, mesh: &ClusterMesh, rho: f64) -> Result<(), BlockError> {
+/// Triangles, each beginning with its smallest vertex, in order.
+fn sorted(triangles: impl Iterator<Item = [u32; 3]>) -> Vec<[u32; 3]> {
+    let mut turned: Vec<[u32; 3]> = triangles
+        .map(|mut t| {
+            let least = (0..3).min_by_key(|&i| t[i]).unwrap_or_default();
+            t.rotate_left(least);
+            t
+        })
+        .collect();
+    turned.sort_unstable();
+    turned
+}
+
+/// Whether every shared disc is in the mesh as the vessel gives it: the same points in the same order, the same
+/// triangles.
+fn check_shared(id: ClusterId, cluster: &Cluster, mesh: &ClusterMesh, params: &BlockParams) -> Result<(), BlockError> {
     for ((i, end), surface) in cut_ends(cluster).iter().zip(&mesh.ends) {
         let vertices = surface.vertices();
-        let same = SharedDisc::at_end(&end.section, end.side, rho).is_some_and(|disc| {
+        let same = disc_at_end(&end.section, end.side, params).is_some_and(|disc| {
             let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
             let points = vertices.iter().map(|&v| mesh.mesh.points[v as usize]);
             points.eq(disc.points.iter().copied())
-                && surface.triangles.iter().map(|t| t.map(local)).eq(disc.triangles.iter().copied())
+                && sorted(surface.triangles.iter().map(|t| t.map(local))) == sorted(disc.triangles.iter().copied())
         });
         if !same {
             return Err(BlockError::at_end(id, *i, end, FlattenFailure::NotShared));

@@ -4,11 +4,14 @@ use super::connector_surface::{ConnectorEnd, ConnectorSurface, Division, EndVert
 use super::error::BlockError;
 use super::error::{ConnectorAttempt, ConnectorFailure};
 use super::free_ends::FreeEnds;
+use super::layered::{ThinLayers, Walled, discs_first, renumbered};
 use super::params::{BlockParams, filling};
 use super::template::{self, FilledTube};
+use crate::geometry::Section;
 use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cut, CutId};
-use crate::tet::tetrahedralize;
+use crate::tet::layers::Inset;
+use crate::tet::{TetError, tetrahedralize};
 
 /// A meshed connector.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +25,8 @@ pub struct ConnectorMesh {
     pub shared: Vec<EndVertex>,
     /// Rings between the two rims.
     pub rings: u32,
+    /// Where layers are thinner than asked for.
+    pub thin: Option<ThinLayers>,
     /// Attempts that failed before this one.
     pub failed: Vec<ConnectorAttempt>,
 }
@@ -55,8 +60,8 @@ pub fn mesh_connector(
                 if params.hollow {
                     return Ok(hollow(surface, failed));
                 }
-                match tetrahedralize(&surface.surface, &filling(&surface.surface)) {
-                    Ok(mesh) => return Ok(filled(surface, mesh, failed)),
+                match filled(surface, &cut.path, params) {
+                    Ok(mesh) => return Ok(ConnectorMesh { failed, ..mesh }),
                     Err(e) => ConnectorFailure::Tetrahedra(e),
                 }
             }
@@ -80,29 +85,55 @@ pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result
         at: cut.path.first().map_or([f64::NAN; 3], |s| s.origin.coords.into()),
         attempts: vec![ConnectorAttempt { division: IN_ORDER[0], failure: ConnectorFailure::Surface(fault) }],
     };
-    let ends = FreeEnds::new(id, cut, params).map_err(failed)?;
+    let free = |params| FreeEnds::new(id, cut, params).map_err(failed);
+    let ends = free(params)?;
     if params.by_template()
         && let Some(tube) = template::tube(&cut.path, &ends.discs, [false; 2], params)
     {
         return Ok(image(tube, params.hollow));
     }
-    mesh_connector(id, cut, ends.both(), params)
+    // Layers come in when the tube is filled.
+    let plain = if params.layers.is_some() { free(&BlockParams { layers: None, ..*params })? } else { ends };
+    mesh_connector(id, cut, plain.both(), params)
 }
 
 /// A connector by template.
 fn image(tube: FilledTube, hollow: bool) -> ConnectorMesh {
-    let ends = |side| (0..tube.disc).map(move |vertex| EndVertex { side, vertex });
-    let shared = ends(0).chain(ends(1)).collect();
+    let shared = sides([tube.disc; 2]).collect();
     let rings = tube.rings;
     let (mesh, hull) = tube.kept(hollow);
-    ConnectorMesh { mesh, hull, shared, rings, failed: Vec::new() }
+    ConnectorMesh { mesh, hull, shared, rings, thin: None, failed: Vec::new() }
 }
 
-fn filled(surface: ConnectorSurface, mesh: TetMesh, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {
-    ConnectorMesh { mesh, hull: Vec::new(), shared: surface.shared, rings: surface.rings, failed }
+/// The tube of a connector along a path, filled.
+fn filled(tube: ConnectorSurface, path: &[Section], params: &BlockParams) -> Result<ConnectorMesh, TetError> {
+    let fill = |surface: &TriMesh| tetrahedralize(surface, &filling(surface));
+    let ConnectorSurface { surface, shared, end_triangles, rings } = tube;
+    let (hull, failed) = (Vec::new(), Vec::new());
+    let Some(layers) = &params.layers else {
+        return Ok(ConnectorMesh { mesh: fill(&surface)?, hull, shared, rings, thin: None, failed });
+    };
+    let centres = [path.first(), path.last()].map(|section| section.map(|s| s.origin));
+    let cap = |(i, triangle): (u32, &[u32; 3])| {
+        let side = shared.get(triangle[0] as usize).filter(|_| i < end_triangles)?.side;
+        centres[usize::from(side)]
+    };
+    let caps = (0..).zip(&surface.triangles).map(cap).collect();
+    let axes = path.windows(2).map(|pair| [pair[0].origin, pair[1].origin]).collect();
+    let (Inset { mesh, numbers, .. }, thin) = Walled { surface: &surface, caps, axes }.fill(layers, fill)?;
+    let first = shared.partition_point(|v| v.side == 0) as u32;
+    let plain = [0..first, first..shared.len() as u32];
+    let (counts, renamed) = discs_first(&numbers, plain, layers.count, mesh.points.len());
+    let shared = sides(counts).collect();
+    Ok(ConnectorMesh { mesh: renumbered(mesh, &renamed), hull, shared, rings, thin, failed })
+}
+
+/// The points of two discs, one after the other.
+fn sides(counts: [u32; 2]) -> impl Iterator<Item = EndVertex> {
+    [0, 1].into_iter().zip(counts).flat_map(|(side, count)| (0..count).map(move |vertex| EndVertex { side, vertex }))
 }
 
 fn hollow(surface: ConnectorSurface, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {
     let ConnectorSurface { surface: TriMesh { points, triangles }, shared, rings, .. } = surface;
-    ConnectorMesh { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, shared, rings, failed }
+    ConnectorMesh { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, shared, rings, thin: None, failed }
 }

@@ -8,6 +8,7 @@ use super::cluster::ClusterMesh;
 use super::connector::ConnectorMesh;
 use super::end_surface::{EndSurface, StoredEnd, disc_rim};
 use super::faithful::Astray;
+use super::layered::ThinLayers;
 use crate::geometry::Section;
 use crate::mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
 use crate::mesh::check::parts::{Certificate, PartView, certify_hollow, certify_with};
@@ -76,6 +77,9 @@ pub struct About {
     pub loops: i64,
     /// Loops of its skeleton that are filled by their own lumen.
     pub filled: i64,
+    /// Where layers are thinner than asked for.
+    #[serde(default)]
+    pub thin: Option<ThinLayers>,
     /// What helped, where it failed before.
     pub cured: Option<Cured>,
 }
@@ -95,7 +99,7 @@ impl Finished {
     /// # Errors
     /// When an end or a cap is not on the boundary.
     pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
-        let ClusterMesh { mesh, hull, ends, caps, uncapped, astray, handles, loops, filled, .. } = cluster;
+        let ClusterMesh { mesh, hull, ends, caps, uncapped, astray, handles, loops, filled, thin, .. } = cluster;
         let mut faces = Faces::new(&mesh, &hull);
         let joints = ends.iter().map(|end| faces.joint(&end.triangles)).collect::<Result<_, _>>()?;
         let cap = |cap: &super::CapFaces| {
@@ -103,7 +107,7 @@ impl Finished {
         };
         let caps = caps.iter().map(cap).collect::<Result<_, _>>()?;
         let uncapped = uncapped.iter().map(|n| n.0).collect();
-        let about = About { uncapped, astray, handles, loops, filled, ..About::default() };
+        let about = About { uncapped, astray, handles, loops, filled, thin, ..About::default() };
         let (wall, adjacency) = faces.rest();
         Ok(Self { mesh, hull, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
     }
@@ -113,7 +117,8 @@ impl Finished {
     /// # Errors
     /// When an end is not on the boundary.
     pub fn of_connector(connector: ConnectorMesh, ends: [&EndSurface; 2]) -> Result<Self, NotOnBoundary> {
-        let ConnectorMesh { mesh, hull, shared, .. } = connector;
+        let ConnectorMesh { mesh, hull, shared, thin, .. } = connector;
+        let about = About { thin, ..About::default() };
         let mut faces = Faces::new(&mesh, &hull);
         let mut joints = Vec::with_capacity(2);
         let mut base = 0;
@@ -126,7 +131,7 @@ impl Finished {
             base += vertices.len() as u32;
         }
         let (wall, adjacency) = faces.rest();
-        let connector = Self { mesh, hull, shared: shared.len() as u32, wall, joints, ..Self::default() };
+        let connector = Self { mesh, hull, shared: shared.len() as u32, wall, joints, about, ..Self::default() };
         Ok(connector.certified(adjacency, |node| node.0))
     }
 

@@ -2,6 +2,7 @@
 
 use super::connector_surface::{ConnectorEnd, ConnectorFault};
 use super::end_surface::EndSurface;
+use super::layered::disc_at_end;
 use super::params::BlockParams;
 use crate::geometry::Section;
 use crate::partition::{Cut, CutId};
@@ -18,7 +19,7 @@ impl FreeEnds {
         let (Some(first), Some(last)) = (cut.path.first(), cut.path.last()) else { return Err(ConnectorFault::Path) };
         let outward = [*first, Section { axis: -last.axis, ..*last }];
         let disc = |side: u8| {
-            SharedDisc::at_end(&outward[usize::from(side)], side, params.rho).ok_or(ConnectorFault::Disc(side))
+            disc_at_end(&outward[usize::from(side)], side, params).ok_or(ConnectorFault::Disc(side))
         };
         let discs = [disc(0)?, disc(1)?];
         let surfaces =

@@ -1,5 +1,6 @@
 //! Clusters that are one tube: the end of a vessel beyond its last cut, or what lies between two cuts of one vessel.
 
+use super::layered::disc_at_end;
 use super::params::{BlockParams, EndStyle};
 use super::template::{self, FilledTube};
 use crate::geometry::{Section, Vec3};
@@ -17,7 +18,7 @@ pub(super) fn lone_tube(cluster: &Cluster, params: &BlockParams) -> Option<Fille
     let path = path(cluster)?;
     let disc = |end: usize| -> Option<SharedDisc> {
         let section = if end == 0 { path.first()? } else { path.last()? };
-        SharedDisc::new(section, params.rho)
+        disc_at_end(section, 0, params)
     };
     let caps = [0, 1].map(|end| matches!(cluster.ends[end].kind, EndKind::Terminal(_)));
     template::tube(&path, &[disc(0)?, disc(1)?], caps, params)

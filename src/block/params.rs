@@ -4,7 +4,7 @@ use super::error::BlockError;
 use crate::mesh::TriMesh;
 use crate::skeleton::resolution::{FOLLOW, KAPPA, RHO};
 use crate::tet::optimize::Effort;
-use crate::tet::{Interior, TetOptions};
+use crate::tet::{Interior, Layers, TetOptions};
 
 /// How a cluster ends at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -50,6 +50,9 @@ pub struct BlockParams {
     /// How much longer than wide tetrahedra of tubes by template are, along the vessel.
     #[serde(default = "unstretched")]
     pub stretch: f64,
+    /// Layers along the wall; only with [`EndStyle::Shared`].
+    #[serde(default)]
+    pub layers: Option<Layers>,
     /// Stop at the closed surface, and do not fill it.
     #[serde(default)]
     pub hollow: bool,
@@ -73,6 +76,7 @@ impl Default for BlockParams {
             allow_fused: false,
             depth: 1.5,
             stretch: unstretched(),
+            layers: None,
             hollow: false,
         }
     }
@@ -86,8 +90,8 @@ impl BlockParams {
 
     /// Whether nothing is tried in another way than usual: blocks that can be had by template are.
     pub(super) fn by_template(&self) -> bool {
-        let Self { rho, follow, ends, allow_fused, stretch, hollow, .. } = *self;
-        *self == Self { rho, follow, ends, allow_fused, stretch, hollow, ..Self::default() }
+        let Self { rho, follow, ends, allow_fused, stretch, layers, hollow, .. } = *self;
+        *self == Self { rho, follow, ends, allow_fused, stretch, layers, hollow, ..Self::default() }
     }
 
     pub(super) fn check(&self) -> Result<(), BlockError> {
@@ -103,6 +107,12 @@ impl BlockParams {
         }
         if !(self.stretch >= 1.0 && self.stretch.is_finite()) {
             return Err(BlockError::Parameter { name: "stretch", value: self.stretch });
+        }
+        if let Some(layers) = self.layers {
+            let usable = layers.check().is_ok() && self.ends == EndStyle::Shared && !self.hollow;
+            if !usable {
+                return Err(BlockError::Parameter { name: "layers", value: f64::from(layers.count) });
+            }
         }
         match self.shift.iter().find(|x| x.is_nan() || x.abs() > 1.0) {
             Some(&value) => Err(BlockError::Parameter { name: "shift", value }),

@@ -11,6 +11,7 @@ use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
+use super::layers::LayerArgs;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::prepare::CureArgs;
 use super::progress::Bars;
@@ -47,6 +48,8 @@ pub struct Args {
     format: FormatArgs,
     #[command(flatten)]
     blocks: BlockArgs,
+    #[command(flatten)]
+    layers: LayerArgs,
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
     /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
     /// vessel is cut
@@ -132,7 +135,7 @@ struct Output<'a> {
 
 /// Meshes a network and writes the mesh.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let mut plan = args.plan();
+    let mut plan = args.plan()?;
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
     if plan.smooths_joints() && args.work_dir.is_some() {
         return Err(Failure::usage(
@@ -175,10 +178,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
-    fn plan(&self) -> MeshPlan {
+    fn plan(&self) -> Result<MeshPlan, Failure> {
         let mut beside = self.output.clone().into_os_string();
         beside.push(".failed");
-        MeshPlan {
+        Ok(MeshPlan {
+            layers: self.layers.asked()?,
             joint: match self.joint {
                 Joint::Woven => JointStyle::Woven,
                 Joint::Disc => JointStyle::Disc,
@@ -187,7 +191,7 @@ impl Args {
             frozen_joints: self.frozen_joints,
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
             ..self.blocks.plan(self.how.fuses())
-        }
+        })
     }
 
     /// Joints are to be smoothed: the mesh is held.
@@ -340,7 +344,7 @@ impl Args {
         MeshNotes {
             expectation: Some(expectation),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: format!("mesh {}", self.blocks.typed()),
+            options: format!("mesh {}{}", self.blocks.typed(), self.layers.typed()),
             regions: false,
             flow: Some(caps.flow()),
         }

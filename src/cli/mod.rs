@@ -13,6 +13,7 @@ mod format;
 mod generate;
 mod grid;
 mod info;
+mod layers;
 mod man;
 mod mesh;
 mod network;

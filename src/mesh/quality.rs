@@ -192,9 +192,14 @@ pub struct TetQuality {
 impl TetQuality {
     /// Measures a mesh. A mesh without tetrahedra has zeros everywhere.
     pub fn of(mesh: &TetMesh) -> Self {
-        let mut ratios = Vec::with_capacity(mesh.tets.len());
+        Self::of_tets(mesh, &mesh.tets)
+    }
+
+    /// Measures some tetrahedra over the points of a mesh.
+    pub fn of_tets(mesh: &TetMesh, tets: &[[u32; 4]]) -> Self {
+        let mut ratios = Vec::with_capacity(tets.len());
         let mut sum = QualitySum::default();
-        for t in &mesh.tets {
+        for t in tets {
             ratios.push(sum.include(t.map(|v| &mesh.points[v as usize])));
         }
         Self { percentile_1: percentile(&mut ratios, 0.01), ..sum.quality() }

@@ -118,8 +118,15 @@ fn attempts(plan: &MeshPlan, overlapping: bool, first: Way) -> Vec<Attempt> {
     apart.chain(fused).collect()
 }
 
-/// A block with a smaller radius ratio is tried in other ways, too; a stretched one, with one that is smaller by as much.
+/// A block with a smaller radius ratio is tried in other ways, too; a stretched one, with one that is smaller by as much,
 const FLAT: f64 = 0.1;
+/// and one with layers, which are flat.
+const FLAT_LAYERS: f64 = 1e-3;
+
+/// The smallest radius ratio of a block that is taken at once.
+fn flat(params: &BlockParams) -> f64 {
+    if params.layers.is_some() { FLAT_LAYERS } else { FLAT / params.stretch }
+}
 
 /// Makes a block in the first way that does it well: nothing fails, no tetrahedron is all but flat, and the block's own check
 /// finds no fault. Else the best of those that came out is taken. When nothing helps, the failure of the first way counts: it
@@ -137,7 +144,7 @@ fn first_good(
             break;
         }
         match make(&attempt.params) {
-            Ok(made) if goodness(&made) >= (true, FLAT / attempt.params.stretch) => {
+            Ok(made) if goodness(&made) >= (true, flat(&attempt.params)) => {
                 return Tried { result: Ok(made), failures, way: attempt.name };
             }
             Ok(made) => {

@@ -6,7 +6,7 @@ use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{Made, Workshop};
 use super::plan::{JointStyle, MeshPlan};
-use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, RunReport};
+use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, RunReport, ThinBlock};
 use super::tips;
 use crate::block::{About, Astray, BlockDump};
 use crate::partition::{ClusterId, CutId};
@@ -102,6 +102,9 @@ pub(super) fn describe_blocks(
             });
         }
     }
+    if shop.plan.layers.is_some() {
+        report.thin_layers = thin_layers(skeleton, shop, blocks, clusters)?;
+    }
     for (i, (cut, made)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
         let Some(Err(error)) = made else { continue };
         let id = CutId(i as u32);
@@ -124,6 +127,25 @@ pub(super) fn describe_blocks(
         });
     }
     Ok(())
+}
+
+/// Lists the blocks with thin layers, the thinnest first.
+fn thin_layers(skeleton: &Skeleton, shop: &Workshop, blocks: &Blocks, clusters: &Clusters) -> io::Result<Vec<ThinBlock>> {
+    let mut thin = Vec::new();
+    let partition = &blocks.partition;
+    for (i, (cluster, about)) in partition.clusters.iter().zip(&clusters.0).enumerate() {
+        let nodes = || original_nodes(skeleton, cluster.nodes.iter().copied());
+        let layers = about.as_ref().and_then(|about| about.thin);
+        thin.extend(layers.map(|layers| ThinBlock { block: format!("cluster {i}"), nodes: nodes(), layers }));
+    }
+    for (i, (cut, made)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
+        let Some(Ok(kept)) = made else { continue };
+        let nodes = || cut_nodes(skeleton, partition, cut);
+        let layers = shop.about(kept)?.thin;
+        thin.extend(layers.map(|layers| ThinBlock { block: format!("connector {i}"), nodes: nodes(), layers }));
+    }
+    thin.sort_by(|a, b| a.layers.share.total_cmp(&b.layers.share));
+    Ok(thin)
 }
 
 /// Writes the input of a failed block; none when there is no folder for it or it cannot be written.

@@ -147,6 +147,8 @@ fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     key.float(plan.rho);
     key.float(plan.follow);
     key.float(plan.stretch);
+    key.id(plan.layers.map_or(0, |layers| layers.count));
+    plan.layers.iter().flat_map(|layers| [layers.growth, layers.thickness]).for_each(|x| key.float(x));
     key.id(u32::from(plan.hollow));
     key.id(match plan.joint {
         JointStyle::Disc => 0,

@@ -36,7 +36,7 @@ pub use estimate::{Estimate, TooLarge};
 #[cfg(feature = "cli")]
 pub use once::replay;
 pub use plan::{JointStyle, MeshPlan};
-pub use report::RunReport;
+pub use report::{RunReport, ThinBlock};
 #[cfg(test)]
 pub use report::{FailedBlock, Meeting};
 pub use run::{Meshed, Stored, mesh_into, mesh_network};

@@ -2,6 +2,7 @@
 
 use crate::block::{BlockParams, EndStyle};
 use crate::skeleton::resolution::{FOLLOW, RHO};
+use crate::tet::{Layers, LayersError};
 
 /// How blocks meet at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -38,6 +39,9 @@ pub struct MeshPlan {
     pub follow: f64,
     /// How much longer than wide tetrahedra are, along vessels, in what is made by template: tubes between forks and caps.
     pub stretch: f64,
+    /// Layers along the wall.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layers: Option<Layers>,
     /// How blocks meet at a cut.
     pub joint: JointStyle,
     /// Leave woven joints as the blocks have them instead of smoothing across them.
@@ -67,6 +71,7 @@ impl Default for MeshPlan {
             rho: RHO,
             follow: FOLLOW,
             stretch: 1.0,
+            layers: None,
             joint: JointStyle::default(),
             frozen_joints: false,
             memory: 2 << 30,
@@ -97,6 +102,12 @@ pub enum PlanError {
         "stretch = {0} needs joints by discs: no vessel is a tube by template where joints are woven or nothing is cut"
     )]
     StretchWoven(f64),
+    /// Layers that cannot be.
+    #[error(transparent)]
+    Layers(#[from] LayersError),
+    /// Layers are in filled blocks that meet in discs.
+    #[error("layers need joints by discs, and blocks that are filled")]
+    LayersWoven,
 }
 
 /// Edges longer than this, in edges across, follow no taper and no bend.
@@ -114,8 +125,8 @@ impl MeshPlan {
             JointStyle::Woven | JointStyle::None => EndStyle::Disc,
             JointStyle::Disc => EndStyle::Shared,
         };
-        let Self { follow, stretch, hollow, .. } = *self;
-        BlockParams { follow, ends, stretch, hollow, ..BlockParams::with_rho(self.rho) }
+        let Self { follow, stretch, layers, hollow, .. } = *self;
+        BlockParams { follow, ends, stretch, layers, hollow, ..BlockParams::with_rho(self.rho) }
     }
 
     /// # Errors
@@ -127,6 +138,12 @@ impl MeshPlan {
         }
         if !(0.0..=1.0).contains(&self.follow) {
             return Err(PlanError::Follow(self.follow));
+        }
+        if let Some(layers) = &self.layers {
+            layers.check()?;
+            if self.joint != JointStyle::Disc || self.hollow {
+                return Err(PlanError::LayersWoven);
+            }
         }
         match self.stretch {
             1.0 => Ok(()),

@@ -1,7 +1,7 @@
 //! What a run of the mesher did.
 
 use super::timing::{BlockTimes, StageTime};
-use crate::block::Astray;
+use crate::block::{Astray, ThinLayers};
 use serde::Serialize;
 
 /// A block that did not come out at the first try.
@@ -61,6 +61,18 @@ pub struct FilledLoops {
     pub nodes: Vec<u32>,
     /// How many of its loops.
     pub loops: i64,
+}
+
+/// A block in which layers are thinner than asked for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ThinBlock {
+    /// `cluster 12` or `connector 7`.
+    pub block: String,
+    /// Nodes of the block, as indices in the file that was read (the first 20).
+    pub nodes: Vec<u32>,
+    /// How thin, and where.
+    #[serde(flatten)]
+    pub layers: ThinLayers,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -137,6 +149,8 @@ pub struct RunReport {
     pub anastomoses: i64,
     /// Clusters with loops that are filled by their own lumen, which are none of the mesh.
     pub filled: Vec<FilledLoops>,
+    /// Blocks in which layers, where they were asked for, are less than half as thick at some place; the thinnest first.
+    pub thin_layers: Vec<ThinBlock>,
     /// Blocks that are missing from the mesh.
     pub failed: Vec<FailedBlock>,
     /// Size of the mesh.

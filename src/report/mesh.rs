@@ -1,6 +1,7 @@
 //! What a run of the mesher did, for people.
 
-use crate::pipeline::RunReport;
+use crate::block::ThinLayers;
+use crate::pipeline::{RunReport, ThinBlock};
 use std::fmt;
 
 /// For people: blocks, retries, failures, sizes and times.
@@ -46,6 +47,7 @@ impl fmt::Display for RunReport {
                 f.loops, f.block, f.nodes
             )?;
         }
+        self.write_thin_layers(out)?;
         for failed in &self.failed {
             writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason)?;
             if let Some(dump) = &failed.dump {
@@ -59,5 +61,32 @@ impl fmt::Display for RunReport {
         writeln!(out, "{points} points, {wall} wall triangles, {caps} cap triangles")?;
         let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
         writeln!(out, "{}", times.join(", "))
+    }
+}
+
+impl RunReport {
+    /// Blocks whose thin layers are told to people.
+    const THIN: usize = 3;
+
+    fn write_thin_layers(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let all = &self.thin_layers;
+        if all.is_empty() {
+            return Ok(());
+        }
+        let sum = |of: fn(&ThinLayers) -> u32| all.iter().map(|thin| u64::from(of(&thin.layers))).sum::<u64>();
+        writeln!(
+            out,
+            "  layers less than half as thick as asked for, for want of room: at {} points of the wall in {} blocks; \
+             none at {} points",
+            sum(|thin| thin.points),
+            all.len(),
+            sum(|thin| thin.without)
+        )?;
+        for ThinBlock { block, nodes, layers } in all.iter().take(Self::THIN) {
+            let [x, y, z] = layers.at;
+            let share = 100.0 * layers.share;
+            writeln!(out, "    {block} (nodes {nodes:?}): {share:.1} % at {x:.4} {y:.4} {z:.4}")?;
+        }
+        Ok(())
     }
 }

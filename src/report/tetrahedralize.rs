@@ -5,6 +5,7 @@ use crate::mesh::quality::{TetQuality, dihedral_range, volume6};
 use crate::mesh::{Bounds, face_key};
 use crate::mesh::{TET_FACES, TetMesh};
 use crate::pipeline::StageTime;
+use crate::tet::LayerSummary;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -158,6 +159,65 @@ impl SizeUnmet {
     }
 }
 
+/// What became of layers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LayerReport {
+    /// How many tetrahedra are in layers.
+    pub tets: usize,
+    /// Shape of all others.
+    pub inside: TetQuality,
+    /// Points of the surface where there was no room for half of the thickness asked for.
+    pub thin: usize,
+    /// The point with the thinnest layers, and how much of what was asked for they are.
+    pub thinnest: Option<(u32, f64)>,
+    /// Points of the surface without layers.
+    pub without: Vec<u32>,
+}
+
+impl LayerReport {
+    /// Points without layers that are named to people.
+    const NAMED: usize = 5;
+
+    /// `name`: the number in the file of a point.
+    pub fn of(made: &LayerSummary, mesh: &TetMesh, name: impl Fn(u32) -> u32) -> Self {
+        Self {
+            tets: made.tets,
+            inside: TetQuality::of_tets(mesh, &mesh.tets[made.tets..]),
+            thin: made.thin,
+            thinnest: made.thinnest.map(|(v, share)| (name(v), share)),
+            without: made.without.iter().map(|&v| name(v)).collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let Self { tets, inside: q, thin, thinnest, without } = self;
+        let mut out = format!(
+            "layers: {tets} tetrahedra; inside of them radius ratio: mean {:.4}, 1st percentile {:.4}, min {:.4}; \
+             dihedral angles {:.2}° to {:.2}°\n",
+            q.mean, q.percentile_1, q.min, q.dihedral_min, q.dihedral_max
+        );
+        if let Some((point, share)) = thinnest {
+            let _ = writeln!(
+                out,
+                "  less than half as thick as asked for at {thin} points, for want of room; thinnest at point {point}: \
+                 {:.2} % of it",
+                100.0 * share
+            );
+        }
+        if !without.is_empty() {
+            let named: Vec<String> = without.iter().take(Self::NAMED).map(ToString::to_string).collect();
+            let more = if without.len() > Self::NAMED { ", …" } else { "" };
+            let _ = writeln!(
+                out,
+                "  none at {} points, from which no way in leads away from all triangles: {}{more}",
+                without.len(),
+                named.join(", ")
+            );
+        }
+        out
+    }
+}
+
 /// Everything that a tetrahedralization has to say.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TetReport {
@@ -171,6 +231,9 @@ pub struct TetReport {
     pub left_out: LeftOut,
     /// Shape of the tetrahedra.
     pub quality: Option<TetQuality>,
+    /// What became of layers, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layers: Option<LayerReport>,
     /// The bounds asked for.
     pub bounds: Vec<BoundResult>,
     /// Where the input does not let the wished length of edges be met.
@@ -323,6 +386,7 @@ impl TetReport {
                 q.mean, q.percentile_1, q.min, q.dihedral_min, q.dihedral_max
             );
         }
+        out.push_str(&self.layers.as_ref().map_or_else(String::new, LayerReport::text));
         self.write_bounds(&mut out);
         let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
         let peak = self.peak_memory.map_or_else(String::new, |b| format!("; peak memory {:.0} MB", b as f64 / 1e6));

@@ -5,6 +5,7 @@ use super::complex::Complex;
 use super::contacts;
 use super::error::TetError;
 use super::fill::fill;
+use super::layers::{LayerSummary, Layers, layered};
 use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
 use super::outside::without;
@@ -39,6 +40,7 @@ pub struct Tetrahedralizer {
     refinement: Option<Refinement>,
     sizing: Sizing,
     boundary: Boundary,
+    layers: Option<Layers>,
     optimize: bool,
     effort: Effort,
     strict: bool,
@@ -84,6 +86,8 @@ pub struct Summary {
     /// Triangles and segments of the input that lie outside of what is filled, or in a hole: the mesh does not have
     /// them. There are none in a strict run.
     pub left_out: LeftOut,
+    /// What became of layers, where they were asked for.
+    pub layers: Option<LayerSummary>,
 }
 
 impl Default for Tetrahedralizer {
@@ -95,6 +99,7 @@ impl Default for Tetrahedralizer {
             refinement: None,
             sizing: Sizing::default(),
             boundary: Boundary::default(),
+            layers: None,
             optimize,
             effort: Effort::Full,
             strict: false,
@@ -142,6 +147,14 @@ impl Tetrahedralizer {
     #[must_use]
     pub fn boundary(mut self, boundary: Boundary) -> Self {
         self.boundary = boundary;
+        self
+    }
+
+    /// Layers of thin tetrahedra along a closed surface, in place of the same as everywhere. What else is asked for holds inside
+    /// of them.
+    #[must_use]
+    pub fn layers(mut self, layers: Option<Layers>) -> Self {
+        self.layers = layers;
         self
     }
 
@@ -195,11 +208,12 @@ impl Tetrahedralizer {
         let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
         let edges = input::validate(&surface, &plc.edges, self.kind)?;
         watch.report(Stage::Validate, 1, 1)?;
+        self.check_layers(plc)?;
         if self.boundary == Boundary::Split {
             sized::check(self.refinement.as_ref(), &self.sizing, plc.points.len())?;
             return self.run_split(plc);
         }
-        let filled = fill(&Request {
+        let request = Request {
             surface: &surface,
             edges: &edges,
             segments: &plc.edges,
@@ -215,7 +229,11 @@ impl Tetrahedralizer {
             strict: self.strict,
             label: true,
             watch: &watch,
-        })?;
+        };
+        let (filled, layers) = match &self.layers {
+            Some(layers) => layered(&request, layers).map(|(filled, about)| (filled, Some(about)))?,
+            None => (fill(&request)?, None),
+        };
         let outward = |(t, place): (&[u32; 3], &Place)| match place {
             Place::Reversed => [t[0], t[2], t[1]],
             Place::Boundary | Place::Inside => *t,
@@ -236,10 +254,24 @@ impl Tetrahedralizer {
                 reversed: count(Place::Reversed),
                 interior_faces: count(Place::Inside),
                 left_out: filled.left_out,
+                layers,
             },
             mesh: filled.mesh,
             regions: filled.regions,
         })
+    }
+
+    /// Whether the layers that are asked for make sense, and with what they are asked for.
+    fn check_layers(&self, plc: &Plc) -> Result<(), TetError> {
+        let Some(layers) = &self.layers else { return Ok(()) };
+        layers.check()?;
+        let along = |what| Err(TetError::LayersAlong(what));
+        match () {
+            () if self.boundary == Boundary::Split => along("they may not be split"),
+            () if self.kind == InputKind::Plc => along("this is a complex of facets"),
+            () if !plc.edges.is_empty() => along("there are segments besides"),
+            () => Ok(()),
+        }
     }
 
     /// Checks an input without meshing it: all that [`Tetrahedralizer::run`] checks, and that no points coincide, no

@@ -24,12 +24,28 @@ const STEP: usize = 4096;
 /// # Errors
 /// [`TetError::SelfIntersection`]; [`TetError::Cancelled`].
 pub(super) fn no_contacts(surface: &TriMesh, watch: &Watch) -> Result<(), TetError> {
+    let mut found: Offenders<[u32; 2]> = Offenders { named: Vec::new(), count: 0 };
+    let complete = each_contact(surface, watch, |pair| found.add(pair))?;
+    if found.count == 0 {
+        return Ok(());
+    }
+    Err(TetError::SelfIntersection { pairs: found.named, count: found.count, complete })
+}
+
+/// The pairs of triangles that have more in common than that; not all where there are very many.
+pub(super) fn contacts(surface: &TriMesh) -> Vec<[u32; 2]> {
+    let mut found = Vec::new();
+    // Nobody watches, so nothing is cancelled.
+    let _ = each_contact(surface, &Watch::NOBODY, |pair| found.push(pair));
+    found
+}
+
+/// Calls `found` for each such pair; whether these are all.
+fn each_contact(surface: &TriMesh, watch: &Watch, mut found: impl FnMut([u32; 2])) -> Result<bool, TetError> {
     let (points, triangles) = (&surface.points, &surface.triangles);
     let boxes = boxes_of(surface);
     let tree = Bvh::new(&boxes);
-    let mut found: Offenders<[u32; 2]> = Offenders { named: Vec::new(), count: 0 };
-    let (mut near, mut tests) = (Vec::new(), 0_usize);
-    let mut complete = true;
+    let (mut near, mut tests, mut any) = (Vec::new(), 0_usize, false);
     for (i, aabb) in boxes.iter().enumerate() {
         if i.is_multiple_of(STEP) {
             watch.report(Stage::Validate, i, boxes.len())?;
@@ -44,18 +60,15 @@ pub(super) fn no_contacts(surface: &TriMesh, watch: &Watch) -> Result<(), TetErr
         tests += near.len() + 1;
         for &j in &near {
             if let Contact::Improper(_) = classify(points, triangles[i], triangles[j as usize]) {
-                found.add([i as u32, j]);
+                any = true;
+                found([i as u32, j]);
             }
         }
-        if tests > MOST || (tests > ENOUGH && found.count > 0) {
-            complete = i + 1 == boxes.len();
-            break;
+        if tests > MOST || (tests > ENOUGH && any) {
+            return Ok(i + 1 == boxes.len());
         }
     }
-    if found.count == 0 {
-        return Ok(());
-    }
-    Err(TetError::SelfIntersection { pairs: found.named, count: found.count, complete })
+    Ok(true)
 }
 
 /// Checks that no point that is none of a triangle's vertices lies in a triangle.

@@ -72,6 +72,8 @@ pub enum Stuck {
     Dangling,
     /// The budget of work was used up.
     Budget,
+    /// Layers at a triangle of the wall would turn over, and its corners may be nowhere else.
+    Layer,
 }
 
 impl std::fmt::Display for Stuck {
@@ -83,6 +85,7 @@ impl std::fmt::Display for Stuck {
             }
             Self::Dangling => "it has fewer than two triangles and no room was found beside it",
             Self::Budget => "the budget of work was used up",
+            Self::Layer => "layers along it would turn over, and its corners may be nowhere else further in",
         })
     }
 }
@@ -274,6 +277,12 @@ pub enum TetError {
         /// Its value.
         value: f64,
     },
+    /// Layers that cannot be.
+    #[error(transparent)]
+    Layers(#[from] super::LayersError),
+    /// Layers are put along closed surfaces that stay as they are, and nothing else.
+    #[error("layers are made along closed surfaces whose triangles stay as they are: {0}")]
+    LayersAlong(&'static str),
     /// The surface meets itself: pairs of triangles have more in common than the vertices that they share.
     #[error(
         "the surface meets itself: {}{count} pairs of triangles intersect: {}",

@@ -55,8 +55,8 @@ impl FilledTube {
     }
 }
 
-/// The tube along a path between the two discs that its sections give at resolution ρ, of which some are caps; none where no
-/// template fits. Of the parameters, ρ and the stretch count.
+/// The tube along a path between the two discs that its sections give, of which some are caps; none where no template fits. Of the
+/// parameters, ρ, stretch and layers count.
 pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: &BlockParams) -> Option<FilledTube> {
     let corners = discs[0].rim.len();
     if discs[1].rim.len() != corners || discs[0].points.len() != discs[1].points.len() {
@@ -78,7 +78,7 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: 
         let image = Image { template, path: &path, radii: &radii, discs, twist, stretch, pieces: pieces as u32 };
         image.tube()
     };
-    canonical::with(params.rho, corners as u32, length / (pieces * stretch), caps, image).flatten()
+    canonical::with(params, corners as u32, length / (pieces * stretch), caps, image).flatten()
 }
 
 /// A template and the vessel that it is mapped to.
@@ -159,10 +159,12 @@ impl Image<'_> {
             let axis = self.path.at(path.min(self.path.length())).axis;
             p.map(|q| q - axis * ((q - p[0]).dot(&axis) * (1.0 - 1.0 / self.stretch)))
         };
-        mesh.tets.iter().all(|t| {
+        let Template { tets, layers, least, .. } = self.template;
+        mesh.tets.iter().enumerate().all(|(i, t)| {
             let corners = t.map(|v| mesh.points[v as usize]);
             let [a, b, c, d] = if self.stretch > 1.0 { shrunk(&corners) } else { corners };
-            radius_ratio(&a, &b, &c, &d) >= LEAST
+            let bound = if i % tets.len() < *layers { LEAST * least } else { LEAST };
+            radius_ratio(&a, &b, &c, &d) >= bound
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::format::{InputFormat, StreamFormat};
 use crate::cli::common::Common;
+use crate::cli::layers::LayerArgs;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -54,6 +55,8 @@ pub struct Args {
     /// TetGen's switches instead of these options, such as pYq1.4a0.1
     #[arg(long, value_name = "SWITCHES", allow_hyphen_values = true)]
     pub tetgen: Option<String>,
+    #[command(flatten)]
+    pub layers: LayerArgs,
     #[command(flatten)]
     pub common: Common,
 }

@@ -19,7 +19,7 @@ use super::exit::{Exit, Failure};
 use super::stop::Stop;
 use crate::mesh::quality::TetQuality;
 use crate::report::tetrahedralize::{
-    BoundResult, InputSize, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
+    BoundResult, InputSize, LayerReport, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
 use crate::tet::{Boundary, LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
 pub use args::Args;
@@ -121,6 +121,8 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     };
     report.left_out = left_out(made, input);
     report.quality = Some(TetQuality::of(mesh));
+    let of_layers = |layers| LayerReport::of(layers, mesh, |v| input.numbers.point(v));
+    report.layers = made.summary.layers.as_ref().map(of_layers);
     if !input.only_points {
         report.bounds = BoundResult::of(&plan.bounds, mesh, &made.faces);
         let plc = Some(&input.plc).filter(|_| !plan.split);

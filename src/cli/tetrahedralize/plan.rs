@@ -5,7 +5,7 @@ use super::format::{InputFormat, Target};
 use super::switches::Switches;
 use crate::cli::exit::Failure;
 use crate::mesh::{Bounds, REGULAR_DIHEDRAL};
-use crate::tet::{Boundary, InputKind, Interior, Refinement, Sizing, Tetrahedralizer};
+use crate::tet::{Boundary, InputKind, Interior, Layers, Refinement, Sizing, Tetrahedralizer};
 use serde::Serialize;
 
 /// Side of the lattice's cubes in edge lengths: what gives a body-centred lattice edges of about that length.
@@ -25,6 +25,9 @@ pub struct TetPlan {
     pub size: Option<f64>,
     /// Whether the triangles of the input may be split.
     pub split: bool,
+    /// Layers along the surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layers: Option<Layers>,
     /// Whether tetrahedra are improved.
     pub optimize: bool,
     /// Whether the orientation is mended and exact duplicates are joined first.
@@ -85,6 +88,7 @@ impl TetPlan {
         plan.check_only |= args.check_only;
         plan.repair = args.repair;
         plan.strict = args.strict;
+        plan.layers = args.layers.asked()?;
         Self::validate(args)?;
         Ok((plan, notes))
     }
@@ -97,6 +101,7 @@ impl TetPlan {
             bounds: bounds_of(args),
             size: args.size,
             split: args.split,
+            layers: None,
             optimize: refine,
             repair: false,
             strict: false,
@@ -120,6 +125,7 @@ impl TetPlan {
             bounds: Bounds { max_volume: s.max_volume, ..s.quality.unwrap_or_default() },
             size: None,
             split: !s.keep_boundary,
+            layers: None,
             optimize: refine && !s.no_optimization,
             repair: false,
             strict: false,
@@ -157,6 +163,7 @@ impl TetPlan {
             .refine(bounded.then_some(refinement))
             .sizing(self.size.filter(|_| bounded || self.split).map_or(Sizing::Surface, Sizing::Constant))
             .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
+            .layers(self.layers)
             .optimize(self.optimize)
             .strict(self.strict)
     }
