@@ -35,6 +35,33 @@ fn the_fixture_becomes_a_valid_mesh_in_both_formats() {
 }
 
 #[test]
+fn layers_go_all_along_the_wall_and_caps_stay_flat() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    let sizes = |options: &[&str]| {
+        let made = mesh(&fixture("tree_30.vtp"), &out, &[&["--json"], options].concat());
+        assert_code(&made, FINE);
+        let run = &json(&made)["run"];
+        assert!(run["failed"].as_array().is_some_and(Vec::is_empty), "{run}");
+        assert!(run["thin_layers"].as_array().is_some_and(Vec::is_empty), "{run}");
+        ["tets", "wall_triangles"].map(|name| run["mesh"][name].as_u64().expect("a count"))
+    };
+    let [_, wall] = sizes(&[]);
+    let [tets, same] = sizes(&["--layers", "3"]);
+    assert_eq!(same, wall);
+    assert!(tets > 9 * wall, "{tets} {wall}");
+    assert_code(&run("check", &[&out], &[]), FINE);
+    sizes(&["--layers", "2", "--stretch", "4", "--core", "1.5"]);
+    for (options, words) in [
+        (&["--layers", "3", "--layer-thickness", "1"][..], &["0.001 to 0.8"][..]),
+        (&["--layers", "3", "--joint", "woven"], &["discs"]),
+        (&["--core", "0"], &["core", "0.5"]),
+    ] {
+        assert_says(&mesh(&fixture("tree_30.vtp"), &out, options), USAGE, words);
+    }
+}
+
+#[test]
 fn both_fixtures_are_one_network() {
     let infos = ["tree_30.vtp", "tree_30.swc"].map(|name| {
         let output = run("info", &[&fixture(name)], &["--json"]);

@@ -284,3 +284,29 @@ fn an_input_is_not_overwritten() {
     assert_eq!(fs::read(&input).expect("a file"), before);
     assert_eq!(entries(folder.path()), ["a.node"]);
 }
+
+#[test]
+fn layers_are_made_and_what_cannot_be_is_refused() {
+    let folder = folder();
+    let input = save(&folder, "c.off", &cube());
+    let out = folder.path().join("out.vtu");
+    let report = &report(&input, &out, &["--layers", "2", "--layer-growth", "2", "--layer-thickness", "0.3"])["report"];
+    assert_eq!(report["layers"]["tets"], 2 * 3 * 12);
+    assert_eq!(report["layers"]["without"], serde_json::json!([]));
+    assert_code(&check(&out), FINE);
+    for (options, words) in [
+        (&["--layers", "0"][..], &["1 to 30"][..]),
+        (&["--layers", "3", "--layer-growth", "-1"], &["0.2 to 5"]),
+        (&["--layers", "3", "--layer-thickness", "1.5"], &["0.001 to 0.8"]),
+        (&["--layers", "29", "--layer-growth", "3"], &["fewer layers"]),
+        (&["--layers", "3", "--split"], &["may not be split"]),
+        (&["--layers", "3", "--plc"], &["complex"]),
+        (&["--layer-growth", "2"], &["--layers"]),
+    ] {
+        assert_says(
+            &run("tetrahedralize", &[&input], &[&["-o", out.to_str().expect("text")], options].concat()),
+            USAGE,
+            words,
+        );
+    }
+}

@@ -5,9 +5,9 @@ use super::corners::part_corners;
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::faithful::Astray;
+use super::layered::{ThinLayers, Walled, disc_at_end};
 use super::lone_tube::lone_tube;
 use super::loops::Loops;
-use super::layered::{ThinLayers, Walled, disc_at_end};
 use super::params::{BlockParams, EndStyle, filling};
 use super::template::FilledTube;
 use crate::geometry::{Section, Tube};
@@ -132,14 +132,9 @@ struct Inside {
     thin: Option<ThinLayers>,
 }
 
-fn inside(
-    cluster: &Cluster,
-    surface: &CappedSurface,
-    params: &BlockParams,
-    watch: &Watch,
-) -> Result<Inside, TetError> {
+fn inside(cluster: &Cluster, surface: &CappedSurface, params: &BlockParams, watch: &Watch) -> Result<Inside, TetError> {
     let discs: Vec<Vec<[u32; 3]>> = (0..cluster.ends.len() as u32).map(|end| faces_of(surface, end)).collect();
-    let fill = |surface: &TriMesh| tetrahedralize_watched(surface, &filling(surface), watch);
+    let fill = |surface: &TriMesh| tetrahedralize_watched(surface, &filling(surface, params.core), watch);
     if let Some(layers) = &params.layers {
         let caps = surface.cap.iter().map(|cap| cap.map(|end| cluster.ends[end as usize].section.origin)).collect();
         let axes = cluster.tubes.iter().map(|tube| [tube.a, tube.b]).collect();

@@ -107,7 +107,7 @@ fn image(tube: FilledTube, hollow: bool) -> ConnectorMesh {
 
 /// The tube of a connector along a path, filled.
 fn filled(tube: ConnectorSurface, path: &[Section], params: &BlockParams) -> Result<ConnectorMesh, TetError> {
-    let fill = |surface: &TriMesh| tetrahedralize(surface, &filling(surface));
+    let fill = |surface: &TriMesh| tetrahedralize(surface, &filling(surface, params.core));
     let ConnectorSurface { surface, shared, end_triangles, rings } = tube;
     let (hull, failed) = (Vec::new(), Vec::new());
     let Some(layers) = &params.layers else {

@@ -18,9 +18,7 @@ impl FreeEnds {
     pub(super) fn new(id: CutId, cut: &Cut, params: &BlockParams) -> Result<Self, ConnectorFault> {
         let (Some(first), Some(last)) = (cut.path.first(), cut.path.last()) else { return Err(ConnectorFault::Path) };
         let outward = [*first, Section { axis: -last.axis, ..*last }];
-        let disc = |side: u8| {
-            disc_at_end(&outward[usize::from(side)], side, params).ok_or(ConnectorFault::Disc(side))
-        };
+        let disc = |side: u8| disc_at_end(&outward[usize::from(side)], side, params).ok_or(ConnectorFault::Disc(side));
         let discs = [disc(0)?, disc(1)?];
         let surfaces =
             [0_u8, 1].map(|side| EndSurface::of_disc(&discs[usize::from(side)], id, side, outward[usize::from(side)]));

@@ -6,11 +6,11 @@
 
 use super::params::BlockParams;
 use crate::geometry::{Point3, Section, point_segment};
-use std::ops::Range;
 use crate::mesh::{TetMesh, TriMesh};
 use crate::surface::SharedDisc;
 use crate::tet::TetError;
 use crate::tet::layers::{Directions, Inset, Layers, Numbers, Places, inset, rims, toward};
+use std::ops::Range;
 
 /// Layers are called thin below this share of what was asked for: curved walls and forks take some.
 const THIN: f64 = 0.5;
@@ -86,21 +86,29 @@ impl Walled<'_> {
         };
         let wanted = points.iter().zip(&ways.ways).zip(&centres).map(wanted).collect();
         let is_rim = rims(self.surface, is_wall);
-        let places = Places { surface: self.surface, wall: &wall, is_rim, wanted, is_held };
+        let places = Places { surface: self.surface, wall: &wall, is_rim, wanted, is_held, is_narrow: false };
         let made = inset(&places, &layers.depths(), fill)?;
-        let thin = thin(points, &made.shares);
+        let mut shares = made.shares.clone();
+        // Those without a way in, too.
+        wall.iter().flatten().filter(|&&v| made.numbers.copy(v, 1) == v).for_each(|&v| shares[v as usize] = 0.0);
+        let thin = thin(points, &shares);
         Ok((made, thin))
     }
 
     /// Distance to the nearest axis.
     fn radius(&self, p: &Point3) -> f64 {
-        self.axes.iter().map(|[a, b]| point_segment(p, a, b).0).fold(f64::INFINITY, f64::min)
+        self.axes.iter().map(|[a, b]| point_segment(p, a, b).1).fold(f64::INFINITY, f64::min)
     }
 }
 
 /// New numbers for the points of a tube's mesh, so that those of its two discs come first, one disc after the other. `plain`:
 /// where points of the discs are without their copies. How many each disc has, and the new number of each point.
-pub(super) fn discs_first(numbers: &Numbers, plain: [Range<u32>; 2], layers: u32, points: usize) -> ([u32; 2], Vec<u32>) {
+pub(super) fn discs_first(
+    numbers: &Numbers,
+    plain: [Range<u32>; 2],
+    layers: u32,
+    points: usize,
+) -> ([u32; 2], Vec<u32>) {
     let mut order: Vec<u32> = Vec::with_capacity(points);
     let counts = plain.map(|range| {
         let before = order.len();
@@ -130,7 +138,8 @@ pub(super) fn renumbered(mesh: TetMesh, renamed: &[u32]) -> TetMesh {
 
 /// Where layers are thin; none where they are as asked for everywhere.
 fn thin(points: &[Point3], shares: &[f64]) -> Option<ThinLayers> {
-    let (at, &share) = shares.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, share)| **share < THIN)?;
+    let (at, &share) =
+        shares.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, share)| **share < THIN)?;
     let below = |most: f64| shares.iter().filter(|share| **share <= most).count() as u32;
     Some(ThinLayers { share, at: points[at].coords.into(), points: below(THIN), without: below(0.0) })
 }

@@ -50,6 +50,9 @@ pub struct BlockParams {
     /// How much longer than wide tetrahedra of tubes by template are, along the vessel.
     #[serde(default = "unstretched")]
     pub stretch: f64,
+    /// How much longer than at the wall edges are on the axis of a vessel.
+    #[serde(default = "unstretched")]
+    pub core: f64,
     /// Layers along the wall; only with [`EndStyle::Shared`].
     #[serde(default)]
     pub layers: Option<Layers>,
@@ -76,6 +79,7 @@ impl Default for BlockParams {
             allow_fused: false,
             depth: 1.5,
             stretch: unstretched(),
+            core: 1.0,
             layers: None,
             hollow: false,
         }
@@ -90,8 +94,8 @@ impl BlockParams {
 
     /// Whether nothing is tried in another way than usual: blocks that can be had by template are.
     pub(super) fn by_template(&self) -> bool {
-        let Self { rho, follow, ends, allow_fused, stretch, layers, hollow, .. } = *self;
-        *self == Self { rho, follow, ends, allow_fused, stretch, layers, hollow, ..Self::default() }
+        let Self { rho, follow, ends, allow_fused, stretch, core, layers, hollow, .. } = *self;
+        *self == Self { rho, follow, ends, allow_fused, stretch, core, layers, hollow, ..Self::default() }
     }
 
     pub(super) fn check(&self) -> Result<(), BlockError> {
@@ -104,6 +108,9 @@ impl BlockParams {
         }
         if !(0.0..=1.0).contains(&self.follow) {
             return Err(BlockError::Parameter { name: "follow", value: self.follow });
+        }
+        if !(self.core > 0.0 && self.core.is_finite()) {
+            return Err(BlockError::Parameter { name: "core", value: self.core });
         }
         if !(self.stretch >= 1.0 && self.stretch.is_finite()) {
             return Err(BlockError::Parameter { name: "stretch", value: self.stretch });
@@ -126,15 +133,15 @@ impl BlockParams {
 const CELL: f64 = 1.38;
 const CLEARANCE: f64 = 0.37;
 
-/// In wide blocks, where most tetrahedra are good because they are far from the wall, the cubes are larger: by up to so
-/// much, from one radius (in mean edge lengths) to another.
-const WIDER: f64 = 0.8;
-const WIDE: [f64; 2] = [2.8, 5.3];
+/// A block is as wide as its core is far from its wall: from one radius (in mean edge lengths) to another, cubes become longer
+/// or shorter there, all that they are to.
+const WIDE: [f64; 2] = [1.0, 3.0];
 
-/// How a block is filled. There is no certificate: the whole mesh is checked in the end.
-pub(super) fn filling(surface: &TriMesh) -> TetOptions {
+/// How a block is filled whose edges are `core` times as long on the axes of its vessels as at the wall. There is no
+/// certificate: the whole mesh is checked in the end.
+pub(super) fn filling(surface: &TriMesh, core: f64) -> TetOptions {
     let wide = ((half_width(surface) / surface.mean_edge() - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
-    let interior = Interior::Local { cell: CELL * (1.0 + WIDER * wide), clearance: CLEARANCE };
+    let interior = Interior::Local { cell: CELL * (1.0 + (core - 1.0) * wide), clearance: CLEARANCE };
     TetOptions::default().interior(interior).effort(Effort::Quick).certify(false)
 }
 

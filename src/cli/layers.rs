@@ -20,7 +20,9 @@ pub struct LayerArgs {
 impl LayerArgs {
     /// What is asked for, as it is typed.
     pub fn typed(&self) -> String {
-        let with = |n| format!(" --layers {n} --layer-growth {} --layer-thickness {}", self.layer_growth, self.layer_thickness);
+        let with = |n| {
+            format!(" --layers {n} --layer-growth {} --layer-thickness {}", self.layer_growth, self.layer_thickness)
+        };
         self.layers.map_or_else(String::new, with)
     }
 

@@ -48,6 +48,9 @@ pub struct Args {
     format: FormatArgs,
     #[command(flatten)]
     blocks: BlockArgs,
+    /// How much longer edges are on the axes of vessels than at the wall: 0.5 to 4
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
+    core: f64,
     #[command(flatten)]
     layers: LayerArgs,
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
@@ -182,6 +185,7 @@ impl Args {
         let mut beside = self.output.clone().into_os_string();
         beside.push(".failed");
         Ok(MeshPlan {
+            core: self.core,
             layers: self.layers.asked()?,
             joint: match self.joint {
                 Joint::Woven => JointStyle::Woven,
@@ -341,10 +345,11 @@ impl Args {
         if self.flow.outlets() != Outlets::Separate {
             expectation.terminals = caps.alone();
         }
+        let core = if self.core == 1.0 { String::new() } else { format!(" --core {}", self.core) };
         MeshNotes {
             expectation: Some(expectation),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: format!("mesh {}{}", self.blocks.typed(), self.layers.typed()),
+            options: format!("mesh {}{core}{}", self.blocks.typed(), self.layers.typed()),
             regions: false,
             flow: Some(caps.flow()),
         }

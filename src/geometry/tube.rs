@@ -54,13 +54,15 @@ pub struct Section {
 }
 
 impl Section {
-    /// Two unit vectors that span the plane; `(u, w, axis)` is right-handed and depends on `axis` alone.
+    /// Two unit vectors that span the plane; `(u, w, axis)` is right-handed and depends on `axis` alone: it is the frame of
+    /// the coordinates, turned the shortest way from z to the axis. Where a vessel bends it turns little about the axis, but
+    /// near −z, where no frame can be without a jump.
     pub fn frame(&self) -> (Vec3, Vec3) {
-        let i = self.axis.iamin();
-        let mut e = Vec3::zeros();
-        e[i] = 1.0;
-        let u = (e - self.axis * self.axis.dot(&e)).normalize();
-        (u, self.axis.cross(&u))
+        let n = self.axis;
+        let turned = Vec3::x() - (Vec3::z() + n) * (n.x / (1.0 + n.z));
+        let u = (turned - n * n.dot(&turned)).try_normalize(0.0).filter(|u| u.norm_squared().is_finite());
+        let u = u.unwrap_or(Vec3::x());
+        (u, n.cross(&u))
     }
 
     /// Signed distance of `p` from the plane, positive on the side to which `axis` points.

@@ -130,7 +130,12 @@ pub(super) fn describe_blocks(
 }
 
 /// Lists the blocks with thin layers, the thinnest first.
-fn thin_layers(skeleton: &Skeleton, shop: &Workshop, blocks: &Blocks, clusters: &Clusters) -> io::Result<Vec<ThinBlock>> {
+fn thin_layers(
+    skeleton: &Skeleton,
+    shop: &Workshop,
+    blocks: &Blocks,
+    clusters: &Clusters,
+) -> io::Result<Vec<ThinBlock>> {
     let mut thin = Vec::new();
     let partition = &blocks.partition;
     for (i, (cluster, about)) in partition.clusters.iter().zip(&clusters.0).enumerate() {

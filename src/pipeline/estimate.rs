@@ -18,6 +18,9 @@ const POWER: f64 = 2.85;
 const TETS_OF_TUBE: f64 = 4.4;
 const POWER_OF_TUBE: f64 = 2.94;
 
+/// Triangles of the wall, likewise; they grow with the square of ρ.
+const WALL: f64 = 4.1;
+
 /// Bytes that a block takes per tetrahedron while it is made, and whatever its size.
 const BYTES_PER_TET: f64 = 420.0;
 const BYTES_PER_BLOCK: f64 = 4e6;
@@ -174,7 +177,8 @@ pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
 /// Of pieces of tubes by template: length, radius.
 fn tube_cost(pieces: impl Iterator<Item = (f64, f64)>, plan: &MeshPlan) -> Cost {
     let radii: f64 = pieces.map(|(length, radius)| length / radius).sum();
-    of_tets(TETS_OF_TUBE * plan.rho.powf(POWER_OF_TUBE) * radii / plan.stretch)
+    let layers = of_layers(radii, plan) / plan.stretch;
+    of_tets(TETS_OF_TUBE * plan.rho.powf(POWER_OF_TUBE) * radii / plan.stretch + layers)
 }
 
 /// Of pieces of vessel: length, radius, thinnest radius of their block.
@@ -182,7 +186,14 @@ fn cost(pieces: impl Iterator<Item = (f64, f64, f64)>, plan: &MeshPlan) -> Cost 
     // Without following the radius, a wide vessel has the short edges of the thinnest one.
     let finer = 3.0 * (1.0 - plan.follow);
     let one = |(length, radius, thin): (f64, f64, f64)| length / radius * (radius / thin).powf(finer);
-    of_tets(TETS * plan.rho.powf(POWER) * pieces.map(one).sum::<f64>())
+    let radii = pieces.map(one).sum::<f64>();
+    of_tets(TETS * plan.rho.powf(POWER) * radii + of_layers(radii, plan))
+}
+
+/// Tetrahedra of layers along so many radii.
+fn of_layers(radii: f64, plan: &MeshPlan) -> f64 {
+    let layers = plan.layers.map_or(0, |layers| layers.count);
+    3.0 * f64::from(layers) * WALL * plan.rho * plan.rho * radii
 }
 
 fn of_tets(tets: f64) -> Cost {

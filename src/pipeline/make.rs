@@ -147,6 +147,7 @@ fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     key.float(plan.rho);
     key.float(plan.follow);
     key.float(plan.stretch);
+    key.float(plan.core);
     key.id(plan.layers.map_or(0, |layers| layers.count));
     plan.layers.iter().flat_map(|layers| [layers.growth, layers.thickness]).for_each(|x| key.float(x));
     key.id(u32::from(plan.hollow));
@@ -202,6 +203,7 @@ fn connector_key(cut: &Cut, plan: &MeshPlan, ends: &[StoredEnd]) -> Key {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tet::Layers;
 
     #[test]
     fn a_cluster_is_found_only_by_all_that_it_depends_on() {
@@ -211,6 +213,9 @@ mod tests {
             MeshPlan { rho: 4.0, ..plan.clone() },
             MeshPlan { follow: 0.5, ..plan.clone() },
             MeshPlan { stretch: 2.0, ..plan.clone() },
+            MeshPlan { core: 2.0, ..plan.clone() },
+            MeshPlan { layers: Some(Layers::default()), ..plan.clone() },
+            MeshPlan { layers: Some(Layers { growth: 1.5, ..Layers::default() }), ..plan.clone() },
             MeshPlan { joint: JointStyle::Woven, ..plan.clone() },
             MeshPlan { fuse: true, ..plan.clone() },
             MeshPlan { hollow: true, ..plan.clone() },

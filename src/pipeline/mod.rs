@@ -36,9 +36,9 @@ pub use estimate::{Estimate, TooLarge};
 #[cfg(feature = "cli")]
 pub use once::replay;
 pub use plan::{JointStyle, MeshPlan};
-pub use report::{RunReport, ThinBlock};
 #[cfg(test)]
 pub use report::{FailedBlock, Meeting};
+pub use report::{RunReport, ThinBlock};
 pub use run::{Meshed, Stored, mesh_into, mesh_network};
 pub use store::{Manifest, Store};
 #[cfg(feature = "cli")]

@@ -39,6 +39,8 @@ pub struct MeshPlan {
     pub follow: f64,
     /// How much longer than wide tetrahedra are, along vessels, in what is made by template: tubes between forks and caps.
     pub stretch: f64,
+    /// How much longer than at the wall edges are on the axis of a vessel.
+    pub core: f64,
     /// Layers along the wall.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<Layers>,
@@ -71,6 +73,7 @@ impl Default for MeshPlan {
             rho: RHO,
             follow: FOLLOW,
             stretch: 1.0,
+            core: 1.0,
             layers: None,
             joint: JointStyle::default(),
             frozen_joints: false,
@@ -102,6 +105,10 @@ pub enum PlanError {
         "stretch = {0} needs joints by discs: no vessel is a tube by template where joints are woven or nothing is cut"
     )]
     StretchWoven(f64),
+    /// Edges in the core outside of what makes sense.
+    #[error("core = {0} is not usable: it must lie between {least} (half as long on axes as at the wall) and {most}",
+        least = CORES[0], most = CORES[1])]
+    Core(f64),
     /// Layers that cannot be.
     #[error(transparent)]
     Layers(#[from] LayersError),
@@ -112,6 +119,8 @@ pub enum PlanError {
 
 /// Edges longer than this, in edges across, follow no taper and no bend.
 pub const MOST_STRETCH: f64 = 20.0;
+/// How much longer edges may be on axes than at the wall.
+const CORES: [f64; 2] = [0.5, 4.0];
 
 impl MeshPlan {
     /// Whether joints are smoothed once the blocks are together.
@@ -125,8 +134,8 @@ impl MeshPlan {
             JointStyle::Woven | JointStyle::None => EndStyle::Disc,
             JointStyle::Disc => EndStyle::Shared,
         };
-        let Self { follow, stretch, layers, hollow, .. } = *self;
-        BlockParams { follow, ends, stretch, layers, hollow, ..BlockParams::with_rho(self.rho) }
+        let Self { follow, stretch, core, layers, hollow, .. } = *self;
+        BlockParams { follow, ends, stretch, core, layers, hollow, ..BlockParams::with_rho(self.rho) }
     }
 
     /// # Errors
@@ -138,6 +147,9 @@ impl MeshPlan {
         }
         if !(0.0..=1.0).contains(&self.follow) {
             return Err(PlanError::Follow(self.follow));
+        }
+        if !(CORES[0]..=CORES[1]).contains(&self.core) {
+            return Err(PlanError::Core(self.core));
         }
         if let Some(layers) = &self.layers {
             layers.check()?;

@@ -12,6 +12,7 @@ use crate::progress::{Progress, Stage, StopsAfter};
 use crate::refine::{Figures, Freedom, RefineError, RefineParams, refine};
 use crate::skeleton::fixtures::tangle;
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
+use crate::tet::Layers;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use store::Store;
 
@@ -63,6 +64,46 @@ fn the_threads_do_not_show_in_the_mesh() {
     let one = mesh(1);
     assert_eq!(one, mesh(2));
     assert_eq!(one, mesh(7));
+}
+
+#[test]
+fn layers_go_through_forks_tubes_joints_and_caps() {
+    let plain = run(&h(12.0), &MeshPlan::default()).expect("meshed");
+    for layers in [Layers::default(), Layers { count: 5, growth: 1.0, thickness: 0.5 }] {
+        let plan = MeshPlan { layers: Some(layers), ..MeshPlan::default() };
+        let meshed = run(&h(12.0), &plan).expect("meshed");
+        assert!(meshed.check.is_valid(), "{:?}", meshed.check.failed().collect::<Vec<_>>());
+        assert!(meshed.report.retries.is_empty() && meshed.report.failed.is_empty(), "{:?}", meshed.report.retries);
+        assert!(meshed.report.thin_layers.is_empty(), "{:?}", meshed.report.thin_layers);
+        // The wall is the same; caps have rings in addition.
+        let rings = 2 * layers.count as usize * (plain.mesh.patches.len() - 1);
+        let more = meshed.report.mesh.cap_triangles - plain.report.mesh.cap_triangles;
+        assert_eq!(meshed.report.mesh.wall_triangles, plain.report.mesh.wall_triangles);
+        assert!(more >= 8 * rings && more.is_multiple_of(2 * layers.count as usize), "{more}");
+        let prisms = 3 * layers.count as usize * plain.report.mesh.wall_triangles;
+        assert!(meshed.report.mesh.tets > prisms);
+    }
+}
+
+#[test]
+fn layers_need_discs() {
+    for plan in
+        [MeshPlan { joint: JointStyle::Woven, ..MeshPlan::default() }, MeshPlan { hollow: true, ..MeshPlan::default() }]
+    {
+        let plan = MeshPlan { layers: Some(Layers::default()), ..plan };
+        assert!(matches!(run(&h(12.0), &plan), Err(RunError::Plan(_))));
+    }
+}
+
+#[test]
+fn tetrahedra_grow_towards_axes_as_asked() {
+    let of = |core| {
+        let meshed = run(&h(12.0), &MeshPlan { core, rho: 6.0, ..MeshPlan::default() }).expect("meshed");
+        assert!(meshed.check.is_valid());
+        meshed.report.mesh.tets
+    };
+    let [fine, plain, coarse] = [0.7, 1.0, 2.0].map(of);
+    assert!(fine * 5 > plain * 6 && coarse * 6 < plain * 5, "{fine} {plain} {coarse}");
 }
 
 /// Two junctions, thin vessels at one side only: where edges do not follow radii, the clusters' walls are of different

@@ -8,8 +8,8 @@ use crate::block::free_ends::FreeEnds;
 use crate::block::layered::{Walled, discs_first, renumbered};
 use crate::block::params::BlockParams;
 use crate::geometry::{Point3, Section, Vec3};
-use crate::mesh::{TetMesh, TriMesh};
 use crate::mesh::quality::radius_ratio;
+use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cut, CutId};
 use crate::skeleton::BranchId;
 use crate::tet::layers::{Inset, Layers};
@@ -31,7 +31,7 @@ const CLEAR: f64 = 0.3;
 /// Points in a ring inside for each of the wall and each share of its radius: they are a little further from each other.
 const SPARSER: f64 = 0.9;
 /// Side and clearance of the lattice that is tried, too, where discs have so many corners: of wide tubes it fills the core.
-const LATTICE: (u32, Interior) = (16, Interior::Local { cell: 1.2, clearance: 0.3 });
+const LATTICE: (u32, [f64; 2]) = (16, [1.2, 0.3]);
 
 /// How a template is improved: every tetrahedron, with everything there is.
 const HARD: OptimizeOptions = OptimizeOptions {
@@ -67,19 +67,25 @@ pub struct Template {
 }
 
 /// What a template is found by: the number of corners of its discs, the power of its length, which of its ends are caps, and
-/// its layers: how many, and the bits of growth and thickness.
-type Key = (u32, i32, [bool; 2], Option<(u32, [u64; 2])>);
+/// its layers: how many, and the bits of growth and thickness; and the bits of how long edges are on its axis.
+type Key = (u32, i32, [bool; 2], Option<(u32, [u64; 2])>, u64);
 /// None: it cannot be made.
 type Kept = Arc<OnceLock<Option<Template>>>;
 
 static TEMPLATES: LazyLock<RwLock<FxHashMap<Key, Kept>>> = LazyLock::new(RwLock::default);
 
 /// The template of a length near to `length` radii, for discs that have so many corners. Ends that are caps are on the boundary
-/// of the whole. Of the parameters, ρ and layers count.
-pub fn with<R>(params: &BlockParams, corners: u32, length: f64, caps: [bool; 2], then: impl FnOnce(&Template) -> R) -> Option<R> {
+/// of the whole. Of the parameters, ρ, core and layers count.
+pub fn with<R>(
+    params: &BlockParams,
+    corners: u32,
+    length: f64,
+    caps: [bool; 2],
+    then: impl FnOnce(&Template) -> R,
+) -> Option<R> {
     let power = (length.ln() / STEP.ln()).round() as i32;
     let layers = params.layers.map(|layers| (layers.count, [layers.growth, layers.thickness].map(f64::to_bits)));
-    let kept = slot((corners, power, caps, layers));
+    let kept = slot((corners, power, caps, layers, params.core.to_bits()));
     kept.get_or_init(|| Template::best(params, STEP.powi(power), caps)).as_ref().map(then)
 }
 
@@ -99,12 +105,12 @@ impl Template {
         let ends = FreeEnds::new(CutId(0), &cut, &BlockParams::with_rho(params.rho)).ok()?;
         let corners = ends.discs[0].rim.len() as u32;
         let tube = connector_surface(&cut.path, ends.both(), DIVISION).ok()?;
-        let rows = tube.rings + 1;
+        let rings = Rings { corners, length, rows: tube.rings + 1, radius: 1.0, core: params.core };
         let inside = match &params.layers {
-            None => Inside::plain(&tube, |surface| core(surface, &Rings { corners, length, rows, radius: 1.0 }), caps),
+            None => Inside::plain(&tube, |surface| core(surface, &rings), caps),
             Some(layers) => {
-                let radius = 1.0 - layers.thickness;
-                Inside::layered(&tube, &cut.path, layers, |surface| core(surface, &Rings { corners, length, rows, radius }))
+                let rings = Rings { radius: 1.0 - layers.thickness, ..rings };
+                Inside::layered(&tube, &cut.path, layers, |surface| core(surface, &rings))
             }
         };
         let Inside { mesh, disc, ends, wall, layers } = inside.ok()??;
@@ -161,7 +167,13 @@ impl Inside {
         let (ends, wall) = faces(tube);
         let rename = |list: Vec<[u32; 3]>| list.into_iter().map(|t| t.map(|v| renamed[v as usize])).collect();
         let ends = ends.map(|disc| rename(numbers.disc(&disc)));
-        Ok(Some(Self { mesh: renumbered(mesh, &renamed), disc: counts[0], ends, wall: rename(wall), layers: of_layers }))
+        Ok(Some(Self {
+            mesh: renumbered(mesh, &renamed),
+            disc: counts[0],
+            ends,
+            wall: rename(wall),
+            layers: of_layers,
+        }))
     }
 }
 
@@ -174,13 +186,16 @@ fn faces(tube: &ConnectorSurface) -> ([Vec<[u32; 3]>; 2], Vec<[u32; 3]>) {
 
 /// A tube filled in the best of all ways to place points inside, and improved.
 fn core(surface: &TriMesh, inside: &Rings) -> Result<TetMesh, TetError> {
-    let lattice = (inside.corners >= LATTICE.0).then_some(LATTICE.1);
+    let (corners, [cell, clearance]) = LATTICE;
+    let lattice = (inside.corners >= corners).then_some(Interior::Local { cell: cell * inside.core, clearance });
     let ways = [0, 1].map(|shift| Interior::Points(inside.points(shift)));
     let mut best: Result<(f64, TetMesh), TetError> = Err(TetError::Flat);
     for interior in ways.into_iter().chain(lattice) {
         let options = TetOptions::default().interior(interior).effort(Effort::Quick).certify(false);
         let made = tetrahedralize(surface, &options).map(|mesh| (worth(&mesh), mesh));
-        if best.as_ref().map_or(f64::NEG_INFINITY, |best| best.0) < made.as_ref().map_or(f64::NEG_INFINITY, |made| made.0) {
+        if best.as_ref().map_or(f64::NEG_INFINITY, |best| best.0)
+            < made.as_ref().map_or(f64::NEG_INFINITY, |made| made.0)
+        {
             best = made;
         }
     }
@@ -198,6 +213,8 @@ struct Rings {
     /// Strips of the wall.
     rows: u32,
     radius: f64,
+    /// How much longer than at the wall edges are on the axis; in between, in proportion.
+    core: f64,
 }
 
 impl Rings {
@@ -205,16 +222,19 @@ impl Rings {
     /// other across the tube stand at half a row from each other, beginning with that next to the wall (`shift`: from the first
     /// row or half a row later).
     fn points(&self, shift: u32) -> Vec<Point3> {
-        let Self { corners, length, rows, radius: wall } = *self;
+        let Self { corners, length, rows, radius: wall, .. } = *self;
         // Between that along the wall, which layers leave as it is, and that round it, which they shorten.
         let edge = TAU * wall.sqrt() / f64::from(corners);
-        let layers = (wall / (0.87 * edge)).round().max(1.0) as u32;
-        let row = length / f64::from(rows);
+        let layers = (wall * self.steps() / (0.87 * edge)).round().max(1.0) as u32;
         let mut points = Vec::new();
         for layer in 0..layers {
-            let share = f64::from(layer) / f64::from(layers);
-            let count = ((SPARSER * share * f64::from(corners)).round() as u32).max(if layer == 0 { 1 } else { 4 });
+            let share = self.share(f64::from(layer) / f64::from(layers));
+            let longer = self.core + (1.0 - self.core) * share;
+            let count =
+                ((SPARSER * share * f64::from(corners) / longer).round() as u32).max(if layer == 0 { 1 } else { 4 });
             let half = 0.5 * f64::from((layers - 1 - layer + shift) % 2);
+            let rows = (f64::from(rows) / longer).round().max(1.0) as u32;
+            let row = length / f64::from(rows);
             for k in 0..=rows {
                 let z = (f64::from(k) + half) * row;
                 if z < CLEAR * row || z > length - CLEAR * row {
@@ -226,6 +246,16 @@ impl Rings {
             }
         }
         points
+    }
+
+    /// From the axis to the wall in edges, which grow inwards, over the same in edges as at the wall.
+    fn steps(&self) -> f64 {
+        if self.core == 1.0 { 1.0 } else { self.core.ln() / (self.core - 1.0) }
+    }
+
+    /// How much of the radius lies within this share of these edges.
+    fn share(&self, of_steps: f64) -> f64 {
+        if self.core == 1.0 { of_steps } else { self.core * (1.0 - self.core.powf(-of_steps)) / (self.core - 1.0) }
     }
 }
 

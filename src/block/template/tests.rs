@@ -1,6 +1,6 @@
 use super::*;
 use crate::block::end_surface::EndSurface;
-use crate::block::{ConnectorMesh, Finished, mesh_free_connector, shared_ends};
+use crate::block::{ConnectorMesh, EndStyle, Finished, mesh_free_connector, shared_ends};
 use crate::geometry::Vec3;
 use crate::mesh::quality::{TetQuality, volume6};
 use crate::partition::{Cut, CutId};
@@ -115,4 +115,27 @@ fn hulls_are_the_boundary() {
         .map(|[a, b, c]| a.cross(&b).dot(&c) / 6.0)
         .sum();
     assert!((enclosed / volume(&filled.mesh) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn layers_are_rings_of_the_discs_and_as_thick_as_asked() {
+    let layers = crate::tet::layers::Layers::default();
+    let path = vec![section(0.0, 2.0), section(30.0, 2.0)];
+    for stretch in [1.0, 4.0] {
+        let params = BlockParams { layers: Some(layers), stretch, ends: EndStyle::Shared, ..BlockParams::default() };
+        let plain = along(&path, &BlockParams { stretch, ..BlockParams::default() }).expect("a tube");
+        let made = block(path.clone(), &params);
+        assert!(made.certificate.is_sound());
+        assert_eq!(made.wall.len(), plain.wall.len());
+        let rim = SharedDisc::new(&path[0], params.rho).expect("a disc").rim.len();
+        let vertices = &made.joints[0].vertices;
+        assert_eq!(vertices.len(), plain.disc as usize + rim * layers.count as usize);
+        // The first of the rim and its copies, by their distance from the axis.
+        let radius = |v: u32| (made.mesh.points[v as usize] - path[0].origin).norm();
+        let copies = &vertices[plain.disc as usize..plain.disc as usize + layers.count as usize];
+        for (&copy, depth) in copies.iter().zip(layers.depths()) {
+            let expected = radius(vertices[0]) * (1.0 - layers.thickness * depth);
+            assert!((radius(copy) - expected).abs() < 1e-12, "{stretch}");
+        }
+    }
 }

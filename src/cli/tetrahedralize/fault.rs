@@ -69,10 +69,9 @@ fn place(error: &TetError, input: &Input) -> String {
 /// Whose fault it is.
 fn exit(error: &TetError) -> Exit {
     match error {
-        TetError::BadOption { .. }
-        | TetError::Unsupported { .. }
-        | TetError::Layers(_)
-        | TetError::LayersAlong(_) => Exit::Usage,
+        TetError::BadOption { .. } | TetError::Unsupported { .. } | TetError::Layers(_) | TetError::LayersAlong(_) => {
+            Exit::Usage
+        }
         TetError::NotRecovered { .. } | TetError::NotCertified(_) | TetError::Broken(_) | TetError::TooLarge { .. } => {
             Exit::StageFailed
         }

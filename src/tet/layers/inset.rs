@@ -12,6 +12,9 @@ const DRAWN_BACK: f64 = 0.6;
 const LEAST: f64 = 2e-3;
 /// Ways in of neighbours differ by this much of their distance at most, where one has been drawn back.
 const GRADE: f64 = 0.5;
+/// The same where the surface does not meet itself and yet is not kept, which takes long to find out: one time after the other, then
+/// nothing.
+const STUCK: [f64; 3] = [0.5, 0.2, 0.2];
 /// Rounds after which what is in the way is drawn back on to the wall at once, and rounds at most.
 const PATIENT: usize = 40;
 const ROUNDS: usize = 100;
@@ -27,6 +30,8 @@ pub(crate) struct Places<'a> {
     pub wanted: Vec<Point3>,
     /// Vertices that may be nowhere else.
     pub is_held: Vec<bool>,
+    /// Whether the surface further in is likely to meet itself: that is asked first then, as filling it takes longer.
+    pub is_narrow: bool,
 }
 
 /// A mesh with layers.
@@ -55,6 +60,7 @@ pub(crate) fn inset(
     let outer = &places.surface.points;
     let mut ways = Ways::new(places);
     let mut round = 0;
+    let mut failures = STUCK.into_iter();
     loop {
         round += 1;
         ways.drawn_back = if round < PATIENT { DRAWN_BACK } else { 0.0 };
@@ -68,6 +74,11 @@ pub(crate) fn inset(
             continue;
         }
         let inside = TriMesh { points: inner, triangles: places.surface.triangles.clone() };
+        let meeting =
+            || -> Vec<u32> { contacts(&inside).iter().flatten().flat_map(|&t| inside.triangles[t as usize]).collect() };
+        if places.is_narrow && ways.draw_back(&meeting()) {
+            continue;
+        }
         match fill(&inside) {
             Ok(core) => {
                 let numbers = stack.numbers.clone();
@@ -76,14 +87,35 @@ pub(crate) fn inset(
             }
             Err(TetError::Cancelled) => return Err(TetError::Cancelled),
             Err(error) => {
-                let meeting: Vec<u32> = contacts(&inside).iter().flatten().flat_map(|&t| inside.triangles[t as usize]).collect();
-                let all: Vec<u32> = if meeting.is_empty() { (0..outer.len() as u32).collect() } else { meeting };
-                if round > ROUNDS || !ways.draw_back(&all) {
+                let meeting = if places.is_narrow { Vec::new() } else { meeting() };
+                ways.drawn_back = if meeting.is_empty() { failures.next().unwrap_or(0.0) } else { DRAWN_BACK };
+                let in_the_way = if meeting.is_empty() { stuck(&error, &inside) } else { meeting };
+                let all = || (0..outer.len() as u32).collect::<Vec<u32>>();
+                if round > ROUNDS || !(ways.draw_back(&in_the_way) || ways.draw_back(&all())) {
                     return Err(error);
                 }
             }
         }
     }
+}
+
+/// The vertices of what could not be kept of a surface.
+fn stuck(error: &TetError, surface: &TriMesh) -> Vec<u32> {
+    let of = |part: &Obstacle| match *part {
+        Obstacle::Point(v) => vec![v],
+        Obstacle::Edge(edge) => edge.to_vec(),
+        Obstacle::Triangle(triangle) => triangle.to_vec(),
+    };
+    let vertices = match error {
+        TetError::Stuck { part, .. } => of(part),
+        TetError::EdgeMeets { edge, obstacle } => [edge.to_vec(), of(obstacle)].concat(),
+        TetError::NotRecovered { edges, triangles } => {
+            let corners = triangles.iter().flat_map(|&t| surface.triangles[t as usize]);
+            edges.iter().flatten().copied().chain(corners).collect()
+        }
+        _ => Vec::new(),
+    };
+    vertices.into_iter().filter(|&v| (v as usize) < surface.points.len()).collect()
 }
 
 /// How far in each vertex is.

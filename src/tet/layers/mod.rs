@@ -63,7 +63,8 @@ pub enum LayersError {
     /// The thinnest of them is too thin.
     #[error(
         "the thinnest of {count} layers would be {thinnest:.1e} of the radius; there is room for {} and more: fewer layers, \
-         a growth nearer to 1, or thicker ones", Layers::THINNEST
+         a growth nearer to 1, or thicker ones",
+        Layers::THINNEST
     )]
     Thin {
         /// How many layers.
@@ -76,7 +77,7 @@ pub enum LayersError {
 impl Default for Layers {
     /// Three, so thin at the wall that wall shear comes out within some percents with linear elements.
     fn default() -> Self {
-        Self { count: 3, growth: 2.0, thickness: 0.25 }
+        Self { count: 3, growth: 2.5, thickness: 0.12 }
     }
 }
 
@@ -94,7 +95,8 @@ impl Layers {
     pub fn depths(&self) -> Vec<f64> {
         let sizes = (0..self.count as i32).map(|i| self.growth.powi(i));
         let all: f64 = sizes.clone().sum();
-        let mut depths: Vec<f64> = sizes.scan(0.0, |sum, size| Some(std::mem::replace(sum, *sum + size) + size)).collect();
+        let mut depths: Vec<f64> =
+            sizes.scan(0.0, |sum, size| Some(std::mem::replace(sum, *sum + size) + size)).collect();
         depths.iter_mut().for_each(|depth| *depth /= all);
         // The last one is the whole, whatever rounding makes of the sum.
         depths.pop();

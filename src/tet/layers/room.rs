@@ -32,7 +32,9 @@ pub(super) fn half_widths(surface: &TriMesh, ways: &[Vec3]) -> Vec<f64> {
         }
         furthest
     };
-    let half = |(v, (from, way)): (u32, (&Point3, &Vec3))| if *way == Vec3::zeros() { 0.0 } else { 0.5 * across(v, from, way) };
+    let half = |(v, (from, way)): (u32, (&Point3, &Vec3))| {
+        if *way == Vec3::zeros() { 0.0 } else { 0.5 * across(v, from, way) }
+    };
     (0..).zip(surface.points.iter().zip(ways)).map(half).collect()
 }
 

@@ -46,7 +46,8 @@ impl Numbers {
     /// The surface's vertices and their copies, each `depths[i]` of the way to its place further in; vertices without copies
     /// at that place.
     pub fn points(&self, outer: &[Point3], inner: &[Point3], depths: &[f64]) -> Vec<Point3> {
-        let own = self.slot.iter().zip(outer.iter().zip(inner)).map(|(slot, (o, i))| if slot.is_some() { *o } else { *i });
+        let own =
+            self.slot.iter().zip(outer.iter().zip(inner)).map(|(slot, (o, i))| if slot.is_some() { *o } else { *i });
         let both = self.slot.iter().zip(outer.iter().zip(inner)).filter(|(slot, _)| slot.is_some());
         own.chain(both.flat_map(|(_, (o, i))| depths.iter().map(|&depth| toward(o, i, depth)))).collect()
     }
@@ -66,8 +67,13 @@ impl Numbers {
         let rim = sides.iter().filter(|[a, b]| sides.binary_search(&[*b, *a]).is_err());
         for &[a, b] in rim {
             for layer in 0..self.layers {
-                let [a0, a1, b0, b1] = [(a, layer), (a, layer + 1), (b, layer), (b, layer + 1)].map(|(v, i)| self.copy(v, i));
-                let two = if self.rank(a) < self.rank(b) { [[a0, b0, b1], [a0, b1, a1]] } else { [[a0, b0, a1], [b0, b1, a1]] };
+                let [a0, a1, b0, b1] =
+                    [(a, layer), (a, layer + 1), (b, layer), (b, layer + 1)].map(|(v, i)| self.copy(v, i));
+                let two = if self.rank(a) < self.rank(b) {
+                    [[a0, b0, b1], [a0, b1, a1]]
+                } else {
+                    [[a0, b0, a1], [b0, b1, a1]]
+                };
                 out.extend(two.into_iter().filter(|[a, b, c]| a != b && b != c && c != a));
             }
         }

@@ -69,7 +69,7 @@ fn places<'a>(surface: &'a TriMesh, layers: &Layers) -> (Places<'a>, Vec<f64>) {
     let wanted = points.iter().zip(ways.iter().zip(&heights)).map(|(p, (way, height))| p + way * *height);
     let none = vec![false; points.len()];
     let wanted = wanted.collect();
-    (Places { surface, wall: &surface.triangles, is_rim: none.clone(), wanted, is_held: none }, asked)
+    (Places { surface, wall: &surface.triangles, is_rim: none.clone(), wanted, is_held: none, is_narrow: true }, asked)
 }
 
 fn summary(asked: &[f64], reached: impl Fn(usize) -> f64, tets: usize, wall: &[[u32; 3]]) -> LayerSummary {
@@ -97,7 +97,9 @@ fn regions(mesh: &TetMesh, plain: &Filled) -> Vec<i32> {
     }
     let boundary = |mesh: &TetMesh| tet_adjacency(&mesh.tets, mesh.points.len());
     let before = boundary(&plain.mesh);
-    let named = before.boundary().map(|half| (face_key(face_vertices(&plain.mesh.tets, half)), plain.regions[half as usize / 4]));
+    let named = before
+        .boundary()
+        .map(|half| (face_key(face_vertices(&plain.mesh.tets, half)), plain.regions[half as usize / 4]));
     let of_face: FxHashMap<[u32; 3], i32> = named.collect();
     let adjacency = boundary(mesh);
     let mut regions: Vec<Option<i32>> = vec![None; mesh.tets.len()];
