@@ -42,7 +42,9 @@ pub(super) fn disc_at_end(outward: &Section, side: u8, params: &BlockParams) -> 
 fn layered_disc(disc: SharedDisc, centre: &Point3, layers: &Layers) -> SharedDisc {
     let SharedDisc { points, triangles, rim, edge } = disc;
     let mut is_rim = vec![false; points.len()];
-    rim.iter().for_each(|&v| is_rim[v as usize] = true);
+    for &v in &rim {
+        is_rim[v as usize] = true;
+    }
     let inner: Vec<Point3> = points.iter().map(|p| toward(p, centre, layers.thickness)).collect();
     let numbers = Numbers::new(is_rim.clone(), is_rim, layers.count);
     let points = numbers.points(&points, &inner, &layers.depths());
@@ -70,7 +72,9 @@ impl Walled<'_> {
         let wall: Vec<[u32; 3]> = (0..triangles.len()).filter(|&i| is_wall(i)).map(|i| triangles[i]).collect();
         let mut centres: Vec<Option<Point3>> = vec![None; points.len()];
         for (triangle, cap) in triangles.iter().zip(&self.caps).filter(|(_, cap)| cap.is_some()) {
-            triangle.iter().for_each(|&v| centres[v as usize] = *cap);
+            for &v in triangle {
+                centres[v as usize] = *cap;
+            }
         }
         let is_held: Vec<bool> = centres.iter().map(Option::is_some).collect();
         let mut ways = Directions::new(points, &wall);

@@ -27,7 +27,9 @@ impl Directions {
         for triangle in wall {
             let [a, b, c] = triangle.map(|v| points[v as usize].coords);
             let normal = unit_normal(a, b, c);
-            triangle.iter().for_each(|&v| normals[v as usize].push(normal));
+            for &v in triangle {
+                normals[v as usize].push(normal);
+            }
         }
         let ways = normals.iter().map(|of_vertex| way_in(of_vertex)).collect();
         Self { ways, normals }

@@ -82,7 +82,7 @@ pub(crate) fn inset(
         match fill(&inside) {
             Ok(core) => {
                 let numbers = stack.numbers.clone();
-                let (mesh, of_layers) = stack.around(core);
+                let (mesh, of_layers) = stack.around(&core);
                 return Ok(Inset { mesh, of_layers, numbers, shares: ways.shares });
             }
             Err(TetError::Cancelled) => return Err(TetError::Cancelled),

@@ -97,7 +97,9 @@ impl Layers {
         let all: f64 = sizes.clone().sum();
         let mut depths: Vec<f64> =
             sizes.scan(0.0, |sum, size| Some(std::mem::replace(sum, *sum + size) + size)).collect();
-        depths.iter_mut().for_each(|depth| *depth /= all);
+        for depth in &mut depths {
+            *depth /= all;
+        }
         // The last one is the whole, whatever rounding makes of the sum.
         depths.pop();
         depths.push(1.0);

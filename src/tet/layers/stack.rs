@@ -133,7 +133,7 @@ impl<'a> Stack<'a> {
 
     /// All layers and the mesh inside them, whose points begin with the places further in. Its points begin with the surface's:
     /// those off the wall are at their place further in. The tetrahedra of the layers come first; how many they are.
-    pub fn around(self, core: TetMesh) -> (TetMesh, usize) {
+    pub fn around(self, core: &TetMesh) -> (TetMesh, usize) {
         let given = self.numbers.slot.len() as u32;
         let mut tets: Vec<[u32; 4]> = self.wall.iter().flat_map(|&triangle| self.tets_at(triangle)).collect();
         let of_layers = tets.len();
