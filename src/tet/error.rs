@@ -1,6 +1,7 @@
 //! What can go wrong in the tetrahedralizer.
 
 use super::complex::{ComplexError, face_key};
+use super::layer::LayersError;
 use crate::geometry::Point3;
 
 /// A part of the surface that another part meets; ids are those of the surface's points.
@@ -279,7 +280,7 @@ pub enum TetError {
     },
     /// Layers that cannot be.
     #[error(transparent)]
-    Layers(#[from] super::LayersError),
+    Layers(#[from] LayersError),
     /// Layers are put along closed surfaces that stay as they are, and nothing else.
     #[error("layers are made along closed surfaces whose triangles stay as they are: {0}")]
     LayersAlong(&'static str),

@@ -119,7 +119,7 @@ fn hulls_are_the_boundary() {
 
 #[test]
 fn layers_are_rings_of_the_discs_and_as_thick_as_asked() {
-    let layers = crate::tet::layers::Layers::default();
+    let layers = crate::tet::Layers::default();
     let path = vec![section(0.0, 2.0), section(30.0, 2.0)];
     for stretch in [1.0, 4.0] {
         let params = BlockParams { layers: Some(layers), stretch, ends: EndStyle::Shared, ..BlockParams::default() };

@@ -1,6 +1,6 @@
 //! The surface further in: places of its vertices that let every prism be positive and the surface be filled.
 
-use super::stack::{Numbers, Stack};
+use super::stack::{Numbers, Stack, toward};
 use crate::geometry::Point3;
 use crate::mesh::{TetMesh, TriMesh};
 use crate::tet::contacts::contacts;
@@ -134,7 +134,7 @@ impl<'a> Ways<'a> {
     fn inner(&self) -> Vec<Point3> {
         let Places { surface, wanted, .. } = self.places;
         let all = surface.points.iter().zip(wanted).zip(&self.shares);
-        all.map(|((outer, wanted), &share)| super::toward(outer, wanted, share)).collect()
+        all.map(|((outer, wanted), &share)| toward(outer, wanted, share)).collect()
     }
 
     /// Draws vertices back towards the wall, and those round them as far as neighbours may differ; whether there was any that

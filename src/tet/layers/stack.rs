@@ -1,6 +1,5 @@
 //! The prisms between a wall and its places further in, cut into layers of tetrahedra.
 
-use super::toward;
 use crate::geometry::Point3;
 use crate::geometry::predicates::orient3d;
 use crate::mesh::{TetMesh, TriMesh};
@@ -143,6 +142,11 @@ impl<'a> Stack<'a> {
         points.extend_from_slice(&core.points[given as usize..]);
         (TetMesh { points, tets }, of_layers)
     }
+}
+
+/// The point a share of the way from one to another; bit for bit `to` at 1.
+pub(crate) fn toward(from: &Point3, to: &Point3, share: f64) -> Point3 {
+    if share == 1.0 { *to } else { from + (to - from) * share }
 }
 
 /// Which vertices both triangles of the wall and others have.

@@ -1,7 +1,7 @@
-use super::*;
-use crate::geometry::Vec3;
+use crate::geometry::{Point3, Vec3};
 use crate::mesh::TriMesh;
 use crate::mesh::shapes::sphere_surface;
+use crate::tet::layer::Layers;
 use crate::tet::{Boundary, InputKind, Plc, TetError, Tetrahedralization, Tetrahedralizer};
 
 const THREE: Layers = Layers { count: 3, growth: 1.5, thickness: 0.3 };

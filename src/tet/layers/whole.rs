@@ -1,14 +1,15 @@
 //! Layers along all of a closed surface.
 
+use super::direction::Directions;
 use super::inset::{Inset, Places, inset, lower};
 use super::room::half_widths;
-use super::{Directions, Layers};
 use crate::mesh::adjacency::{face_vertices, tet_adjacency};
 use crate::mesh::{TetMesh, TriMesh, face_key};
 use crate::tet::certify::{Place, certify_facets};
 use crate::tet::error::TetError;
 use crate::tet::fill::fill;
 use crate::tet::input;
+use crate::tet::layer::Layers;
 use crate::tet::options::Interior;
 use crate::tet::plc::InputKind;
 use crate::tet::request::{Filled, Request};
