@@ -17,7 +17,7 @@ const MEMORY_PER_BYTE: u64 = 8;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The mesh: VTU, PVTU, MSH 4.1, Medit .mesh, or TetGen's .ele
+    /// The mesh: VTU, PVTU, MSH 4.1, Medit .mesh, TetGen's .ele, or .npyd (`NumPy`'s arrays)
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is checked block by block. All other

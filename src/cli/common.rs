@@ -1,6 +1,7 @@
 //! The options of every verb that works for a while, and what several verbs do alike.
 
 use super::exit::Failure;
+use super::progress::ProgressFormat;
 use std::io::Write as _;
 use std::num::NonZeroUsize;
 
@@ -16,6 +17,10 @@ pub struct Common {
     /// Print nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
+    /// Tell progress as lines of JSON on standard error, for programs: the stage, how much of it is done, and of how much (0:
+    /// not known). A run whose lines nobody reads any more ends
+    #[arg(long, value_name = "FORMAT")]
+    pub progress: Option<ProgressFormat>,
 }
 
 /// As many threads as were asked for, or as there are cores.

@@ -12,6 +12,7 @@ use super::grid::GridArgs;
 use super::progress::Bars;
 use super::room;
 use super::stop::{NOTHING_KEPT, Stop};
+use crate::io::npy;
 use crate::io::network::{NetworkFormat, NetworkOptions, ensure_tree_writable, read_network, write_tree};
 use crate::io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
@@ -32,12 +33,12 @@ const MEMORY_PER_BYTE: u64 = 4;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off) or a network (.swc, .vtp, .vtk,
-    /// .am, .csv, .graphml, .gxl, .net, .json, .in)
+    /// A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele, .npyd), a surface (.stl, .ply, .obj, .off) or a network (.swc, .vtp, .vtk,
+    /// .am, .csv, .graphml, .gxl, .net, .json, .npyd, .in)
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// What it becomes: a volume mesh the same in another format, or its boundary (.stl, .ply, .obj, .off, .glb, .3mf, .vtp); a
-    /// surface one of these; a network .vtp or, if it is a tree, .swc
+    /// surface one of these; a network .vtp, .npyd or, if it is a tree, .swc
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
@@ -79,6 +80,10 @@ impl Kind {
     fn of(path: &Path) -> Result<Self, Failure> {
         if SurfaceFormat::of(path).is_ok() {
             return Ok(Self::Surface);
+        }
+        // Of a folder of arrays these tell.
+        if npy::holds(path, "tets") {
+            return Ok(Self::Mesh);
         }
         if NetworkFormat::of(path).is_ok() {
             return Ok(Self::Network);
@@ -146,7 +151,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let to = args.target(from)?;
     let pool = thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
-    let bars = Bars::new(args.common.quiet, stop.clone());
+    let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     stop.keep();
     let counts = pool.install(|| match from {
         Kind::Mesh => args.convert_mesh(to, &bars),
@@ -169,6 +174,7 @@ impl Args {
         // A .vtp holds a network or a surface, as what becomes of it asks.
         let to = match Kind::of(path) {
             _ if self.format.format.is_some() => Kind::Mesh,
+            _ if npy::is_folder(path) => from,
             // Pictures and printers have formats that are not read.
             Ok(Kind::Network) | Err(_) if from != Kind::Network => Kind::Surface,
             found => found?,

@@ -7,7 +7,7 @@ use std::path::Path;
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct FormatArgs {
     /// Format of the mesh, whatever its extension: vtu, pvtu, msh (Gmsh 4.1), msh2 (Gmsh 2.2, text; programs that read it want
-    /// .msh), medit, openfoam, simvascular or tetgen
+    /// .msh), medit, openfoam, simvascular, npy or tetgen
     #[arg(long, value_name = "FORMAT", value_parser = named)]
     pub format: Option<MeshFormat>,
 }

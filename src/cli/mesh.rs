@@ -40,8 +40,8 @@ pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
     /// Where the mesh goes: .vtu, .pvtu (pieces in a folder beside it), .msh (Gmsh 4.1), .msh2 (Gmsh 2.2, text),
-    /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), or .ele
-    /// (TetGen's family of files)
+    /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), .ele
+    /// (TetGen's family of files), or .npyd (a folder of `NumPy`'s arrays)
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
     #[command(flatten)]
@@ -85,7 +85,7 @@ pub struct Args {
     /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
-    /// What VTU, PVTU and MSH say of each place: radius and distance along the branch at points; branch, generation, strahler, node
+    /// What VTU, PVTU, MSH and .npyd say of each place: radius and distance along the branch at points; branch, generation, strahler, node
     /// (the nearer one) and ratio (the cell's radius ratio) in cells; several with commas between them
     #[arg(long, value_name = "DATA", value_delimiter = ',', value_parser = datum)]
     data: Vec<Datum>,
@@ -148,7 +148,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let format = args.format.of(&args.output)?;
     if !args.data.is_empty() && !format.holds_values() {
         return Err(Failure::usage(
-            "--data is for .vtu, .pvtu, .msh and .msh2; the other formats have no place for it",
+            "--data is for .vtu, .pvtu, .msh, .msh2 and .npyd; the other formats have no place for it",
         ));
     }
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
@@ -162,7 +162,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let cut_short = pool.install(|| args.flow.extend(&mut network, &inlets));
     plan.roots.clone_from(&inlets.roots);
     let stop = Stop::listen(args.common.quiet)?;
-    let bars = Bars::new(args.common.quiet, stop.clone());
+    let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     for remark in network.remarks().into_iter().chain(inlets.remarks()).chain(cut_short) {
         bars.note(&remark);
     }
@@ -358,7 +358,7 @@ impl Args {
     /// The network refined, if that was asked for.
     fn refined(&self, network: &PreparedNetwork, stop: &Stop) -> Result<Option<(Refined, RefineParams)>, Failure> {
         let Some(iterations) = self.blocks.refine else { return Ok(None) };
-        let moved = super::refine::moved(network, self.how.params(iterations), self.common.quiet, stop)?;
+        let moved = super::refine::moved(network, self.how.params(iterations), &self.common, stop)?;
         let refined = &moved.0;
         if let Some(path) = &self.refined {
             stop.keep();

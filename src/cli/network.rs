@@ -14,7 +14,7 @@ use crate::skeleton::{CleanReport, NodeId, Skeleton, clean};
 #[derive(Debug, clap::Args)]
 pub struct NetworkArgs {
     /// The network: .swc; .vtp or .vtk with lines; .am (Amira, text); .csv (nodes and edges); .graphml, .gxl; .net (Pajek);
-    /// .json (node-link); .in (SimVascular 1D)
+    /// .json (node-link); .npyd (`NumPy`'s arrays, a folder); .in (SimVascular 1D)
     #[arg(value_name = "NETWORK")]
     pub network: PathBuf,
     /// Array, column or attribute that holds the radius, on nodes or vessels (default: found by its name)

@@ -21,7 +21,7 @@ use crate::report::refine::{csv, panels};
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the refined network goes: .vtp, with the arrays `OriginalNode`, `Displacement`, `Radius` and `EdgeRadius`
+    /// Where the refined network goes: .vtp (or .npyd, arrays in a folder), with the arrays `OriginalNode`, `Displacement`, `Radius` and `EdgeRadius`
     #[arg(short, long, value_name = "NETWORK")]
     output: PathBuf,
     /// Iterations at most; it stops earlier when nothing is left to do
@@ -159,14 +159,14 @@ struct Output<'a> {
 pub(super) fn moved(
     network: &PreparedNetwork,
     mut params: RefineParams,
-    quiet: bool,
+    common: &Common,
     stop: &Stop,
 ) -> Result<(Refined, RefineParams), Failure> {
     // Polylines that were resampled do not look measured any more.
     if params.freedom == Freedom::Auto && network.report.measured {
         params.freedom = Freedom::Measured;
     }
-    let refined = refine::refine(&network.skeleton, &params, &Bars::new(quiet, stop.clone()));
+    let refined = refine::refine(&network.skeleton, &params, &Bars::new(common.quiet, common.progress, stop.clone()));
     let refined = refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
         RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
@@ -187,7 +187,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
     let stop = Stop::listen(args.common.quiet)?;
-    let (refined, params) = pool.install(|| moved(&network, params, args.common.quiet, &stop))?;
+    let (refined, params) = pool.install(|| moved(&network, params, &args.common, &stop))?;
     stop.keep();
     write(&args.output, &refined)?;
     let report = &refined.report;

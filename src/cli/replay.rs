@@ -74,7 +74,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pool = super::common::thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
-    let bars = Bars::new(true, stop.clone());
+    let bars = Bars::new(true, args.common.progress, stop.clone());
     match pool.install(|| replay(&dump, &Watch::asking(&bars))) {
         Err(BlockError::Tetrahedra { source: TetError::Cancelled, .. }) => Err(Failure::stopped(NOTHING_KEPT)),
         Err(error) => args.fails_again(&dump, &error),

@@ -61,13 +61,13 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = thread_pool(args.common.threads)?;
     let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     let stop = Stop::listen(args.common.quiet)?;
-    let bars = Bars::new(args.common.quiet, stop.clone());
+    let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     for remark in network.remarks() {
         bars.note(&remark);
     }
     let moved = |iterations| {
         let params = args.how.params(iterations);
-        pool.install(|| super::refine::moved(&network, params, args.common.quiet, &stop))
+        pool.install(|| super::refine::moved(&network, params, &args.common, &stop))
     };
     let refined = args.blocks.refine.map(moved).transpose()?;
     if let Some((refined, _)) = refined.as_ref().filter(|_| !args.common.quiet && !args.common.json) {

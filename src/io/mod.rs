@@ -17,6 +17,7 @@
 mod damage;
 mod file;
 pub(crate) mod network;
+pub(crate) mod npy;
 mod patches;
 pub(crate) mod surface;
 #[doc(hidden)]

@@ -7,12 +7,12 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A closed surface (.off, .ply, .stl, .obj), a complex of facets (TetGen's .poly, .smesh), or points (.node);
-    /// `-` for standard input
+    /// A closed surface (.off, .ply, .stl, .obj), a complex of facets (TetGen's .poly, .smesh), points (.node), or any of
+    /// these as arrays (.npyd, a folder); `-` for standard input
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// Where the mesh goes: .vtu, .pvtu (pieces), .msh (Gmsh 4.1), .mesh (Medit), .ele (TetGen's files .node .ele .face
-    /// .edge .neigh); `-` for standard output
+    /// .edge .neigh), .npyd (a folder of `NumPy`'s arrays); `-` for standard output
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Format of the input, whatever its extension

@@ -24,6 +24,8 @@ pub enum InputFormat {
     Poly,
     /// `TetGen`'s complexes of simple facets
     Smesh,
+    /// Arrays of `NumPy`, a folder
+    Npyd,
 }
 
 /// A format that can be written to a stream.
@@ -53,7 +55,7 @@ impl InputFormat {
             Ok(format) => Ok(format),
             Err(_) => Err(Failure::input(format!(
                 "{}: the extension names no format that is read here \
-                 (known: .off, .ply, .stl, .obj, .node, .poly, .smesh); name the format with --from",
+                 (known: .off, .ply, .stl, .obj, .node, .poly, .smesh, .npyd); name the format with --from",
                 path.display()
             ))),
         }
@@ -71,7 +73,7 @@ impl InputFormat {
             Self::Ply => Some(SurfaceFormat::Ply),
             Self::Stl => Some(SurfaceFormat::Stl),
             Self::Obj => Some(SurfaceFormat::Obj),
-            Self::Node | Self::Poly | Self::Smesh => None,
+            Self::Node | Self::Poly | Self::Smesh | Self::Npyd => None,
         }
     }
 
@@ -124,7 +126,16 @@ impl Target {
 
     /// Makes sure that none of the files of the input is replaced.
     pub fn ensure_apart(&self, input: &[PathBuf]) -> Result<(), Failure> {
-        let Self::Family(base) = self else { return Ok(()) };
+        let base = match self {
+            Self::Family(base) => base,
+            Self::File(path) if input.contains(path) => {
+                return Err(Failure::usage(format!(
+                    "{} is the input and would be replaced: name another output",
+                    path.display()
+                )));
+            }
+            _ => return Ok(()),
+        };
         match MeshFamily::paths(base).iter().find(|written| input.contains(written)) {
             Some(written) => Err(Failure::usage(format!(
                 "{} belongs to the input and would be replaced: name another output, such as {}",

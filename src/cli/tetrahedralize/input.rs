@@ -8,7 +8,9 @@ use super::format::{InputFormat, is_stream};
 use super::numbers::{Counted, FileNumbers};
 use super::plan::TetPlan;
 use crate::cli::exit::Failure;
-use crate::io::surface::{SurfaceContent, read_content_as, read_content_from};
+use crate::io::surface::{
+    ArrayComplex, ArrayRegion, SurfaceContent, read_complex, read_content_as, read_content_from,
+};
 use crate::io::tetgen::{self, Nodes};
 use crate::mesh::TriMesh;
 use crate::mesh::facets::{self, FacetTriangles};
@@ -51,6 +53,7 @@ impl Input {
         let mut files = vec![path.to_path_buf()];
         let input = match source {
             Source::Surface(content) => Self::of_surface(content),
+            Source::Arrays(complex) => Self::of_arrays(complex, plan),
             Source::Points(nodes) => Self::of_points(nodes),
             Source::Complex(plc) => {
                 if plc.points_beside {
@@ -119,6 +122,9 @@ impl Input {
         if let Some(surface) = format.surface() {
             return Ok(Source::Surface(read_content_as(path, surface).map_err(|e| failed(&e))?));
         }
+        if format == InputFormat::Npyd {
+            return Ok(Source::Arrays(read_complex(path).map_err(|e| failed(&e))?));
+        }
         match format.complex() {
             Some(format) => Ok(Source::Complex(tetgen::read_plc_as(path, format).map_err(|e| failed(&e))?)),
             None => Ok(Source::Points(tetgen::read_nodes_as(path).map_err(|e| failed(&e))?)),
@@ -126,6 +132,9 @@ impl Input {
     }
 
     fn of_stream(format: InputFormat) -> Result<Source, Failure> {
+        if format == InputFormat::Npyd {
+            return Err(Failure::usage("arrays are a folder, which standard input cannot be: name its path"));
+        }
         let mut bytes = Vec::new();
         let failed = |e: &dyn std::fmt::Display| Failure::input(format!("standard input: {e}"));
         std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| failed(&e))?;
@@ -152,6 +161,29 @@ impl Input {
             attribute_count: nodes.attribute_count,
             ..Self::default()
         }
+    }
+
+    fn of_arrays(complex: ArrayComplex, plan: &TetPlan) -> Self {
+        let ArrayComplex { mesh, markers, segments, holes, regions } = complex;
+        let region = |ArrayRegion { point: seed, id, max_volume }| Region {
+            seed,
+            id,
+            max_volume: max_volume.filter(|_| plan.region_volumes),
+        };
+        let mut input = Self {
+            marked: !markers.is_empty(),
+            only_points: mesh.triangles.is_empty() && segments.is_empty(),
+            plc: mesh.into(),
+            ..Self::default()
+        };
+        let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        input.plc.edges = segments.into_iter().map(ordered).filter(|[a, b]| a != b).collect();
+        input.plc.edges.sort_unstable();
+        input.plc.edges.dedup();
+        input.plc.markers = markers;
+        input.plc.holes = holes;
+        input.plc.regions = regions.into_iter().map(region).collect();
+        input
     }
 
     fn of_complex(mut file: tetgen::Plc, plan: &TetPlan) -> Result<Self, ComplexError> {
@@ -194,6 +226,7 @@ impl Input {
 enum Source {
     Surface(SurfaceContent),
     Points(Nodes),
+    Arrays(ArrayComplex),
     Complex(tetgen::Plc),
 }
 

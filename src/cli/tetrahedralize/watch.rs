@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 
-use crate::cli::progress::{shows_bars, stage_bar};
+use crate::cli::progress::{Lines, ProgressFormat, shows_bars, stage_bar};
 use crate::cli::stop::Stop;
 use crate::pipeline::StageTime;
 use crate::progress::{Progress, Stage};
@@ -14,6 +14,7 @@ use crate::progress::{Progress, Stage};
 #[derive(Debug)]
 pub struct Watch {
     shown: bool,
+    lines: Option<Lines>,
     state: Mutex<State>,
 }
 
@@ -26,20 +27,23 @@ struct State {
 
 impl Watch {
     /// No bars when `quiet`, nor without a terminal.
-    pub fn new(quiet: bool) -> Self {
-        Self { shown: shows_bars(quiet), state: Mutex::default() }
+    pub fn new(quiet: bool, told: Option<ProgressFormat>) -> Self {
+        Self { shown: shows_bars(quiet, told), lines: Lines::asked_for(told), state: Mutex::default() }
     }
 
     /// Runs a stage of the program's own.
     pub fn time<T>(&self, stage: &'static str, run: impl FnOnce() -> T) -> T {
-        self.enter(stage, 0);
+        self.enter(stage, 0, 0);
         let result = run();
         self.leave();
         result
     }
 
     /// A stage begins, where it is not the current one; the one before it ends.
-    fn enter(&self, stage: &'static str, total: u64) {
+    fn enter(&self, stage: &'static str, done: u64, total: u64) {
+        if let Some(lines) = &self.lines {
+            lines.tell(stage, done, total);
+        }
         let Ok(mut state) = self.state.lock() else { return };
         if state.current.is_some_and(|(name, _)| name == stage) {
             if let Some(bar) = state.bar.as_ref().filter(|_| total > 1) {
@@ -89,7 +93,7 @@ pub struct Listener(pub Arc<Watch>, pub Stop);
 impl Progress for Listener {
     fn at(&self, stage: Stage, done: u64, total: u64) {
         let Self(watch, _) = self;
-        watch.enter(stage.name(), total);
+        watch.enter(stage.name(), done, total);
         if let Ok(state) = watch.state.lock()
             && let Some(bar) = &state.bar
         {
@@ -98,7 +102,8 @@ impl Progress for Listener {
     }
 
     fn is_cancelled(&self) -> bool {
-        self.1.is_asked()
+        let Self(watch, stop) = self;
+        stop.is_asked() || watch.lines.as_ref().is_some_and(Lines::is_unheard)
     }
 }
 

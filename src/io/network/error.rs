@@ -4,6 +4,7 @@ use super::amira::AmiraError;
 use super::csv::CsvError;
 use super::graph_xml::GraphXmlError;
 use super::json::JsonError;
+use super::npy::NpyNetworkError;
 use super::pajek::PajekError;
 use super::sv1d::Sv1dError;
 use super::swc::SwcError;
@@ -14,7 +15,7 @@ use crate::skeleton::{NodeId, SkeletonError};
 use std::path::PathBuf;
 
 /// The extensions that are known, for messages.
-pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .am, .csv, .graphml, .gxl, .net, .json, .in";
+pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .am, .csv, .graphml, .gxl, .net, .json, .npyd, .in";
 
 /// Why a network could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -30,7 +31,7 @@ pub enum NetworkFileError {
         path: PathBuf,
     },
     /// Networks are not written in this format.
-    #[error("{}: networks are written as .vtp; name a file with this extension", path.display())]
+    #[error("{}: networks are written as .vtp or .npyd; name a file with one of these extensions", path.display())]
     NotWritten {
         /// The file.
         path: PathBuf,
@@ -81,6 +82,12 @@ pub enum NetworkFault {
     /// It is no usable node-link data.
     #[error(transparent)]
     Json(#[from] JsonError),
+    /// It is no usable folder of arrays.
+    #[error(transparent)]
+    Npy(#[from] NpyNetworkError),
+    /// Networks of this format are several files.
+    #[error("a network of this format is a folder: name its path")]
+    SeveralFiles,
     /// It is no usable input of a one-dimensional solver.
     #[error(transparent)]
     Sv1d(#[from] Sv1dError),

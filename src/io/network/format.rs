@@ -24,12 +24,14 @@ pub enum NetworkFormat {
     Pajek,
     /// Node-link data of NetworkX: `.json`.
     Json,
+    /// Arrays of `NumPy`, a folder: `.npyd`.
+    Npy,
     /// Input of SimVascular's one-dimensional solver: `.in`.
     Sv1d,
 }
 
 /// Extensions, in lower case.
-const EXTENSIONS: [(&str, NetworkFormat); 12] = [
+const EXTENSIONS: [(&str, NetworkFormat); 13] = [
     ("swc", NetworkFormat::Swc),
     ("vtp", NetworkFormat::Vtp),
     ("vtk", NetworkFormat::Vtk),
@@ -41,6 +43,7 @@ const EXTENSIONS: [(&str, NetworkFormat); 12] = [
     ("xml", NetworkFormat::GraphXml),
     ("net", NetworkFormat::Pajek),
     ("json", NetworkFormat::Json),
+    ("npyd", NetworkFormat::Npy),
     ("in", NetworkFormat::Sv1d),
 ];
 

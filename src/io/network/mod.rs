@@ -11,6 +11,7 @@ mod graph;
 mod graph_tests;
 mod graph_xml;
 mod json;
+mod npy;
 mod pajek;
 mod polylines;
 mod radii;
@@ -27,7 +28,7 @@ mod write;
 pub use content::{NetworkArray, NetworkFile, NetworkNote, NetworkOptions, NodeNames, refinement_arrays};
 pub use error::NetworkFileError;
 pub use format::NetworkFormat;
-pub use read::{read_network, read_network_from};
+pub use read::{read_network, read_network_arrays, read_network_from};
 #[cfg(feature = "cli")]
 pub use write::{ensure_network_writable, ensure_tree_writable};
 pub use write::{write_network, write_tree};

@@ -4,8 +4,9 @@ use super::content::{NetworkFile, NetworkNote, NetworkOptions};
 use super::error::{NetworkFault, NetworkFileError};
 use super::format::NetworkFormat;
 use super::scale::scale;
-use super::{amira, csv, graph_xml, json, pajek, sv1d, swc, vtk, vtp};
+use super::{amira, csv, graph_xml, json, npy, pajek, sv1d, swc, vtk, vtp};
 use crate::io::file::{FileError, read_bytes};
+use crate::io::npy::Arrays;
 use std::path::Path;
 
 /// Reads a network file; the extension gives the format. A table of nodes or edges is read together with the other one,
@@ -22,10 +23,16 @@ use std::path::Path;
 /// # Errors
 /// When the file cannot be read, or is no usable network.
 pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile, NetworkFileError> {
-    if path.is_dir() {
+    let format = NetworkFormat::of(path);
+    if path.is_dir() && !matches!(format, Ok(NetworkFormat::Npy)) {
         return Err(NetworkFileError::Directory { path: path.to_path_buf() });
     }
-    let format = NetworkFormat::of(path)?;
+    let format = format?;
+    if format == NetworkFormat::Npy {
+        let arrays = Arrays::read(path, &npy::ARRAYS, None)?;
+        let read = npy::read(&arrays, options).map_err(NetworkFault::from);
+        return Ok(read.and_then(|network| finished(network, options)).map_err(FileError::content(path))?);
+    }
     if let (NetworkFormat::Csv, Some((other, has_edges))) = (format, csv::partner(path)) {
         return read_tables(path, &other, has_edges, options);
     }
@@ -76,9 +83,18 @@ pub fn read_network_from(
         NetworkFormat::GraphXml => graph_xml::read(bytes, options)?,
         NetworkFormat::Pajek => pajek::read(bytes, options)?,
         NetworkFormat::Json => json::read(bytes, options)?,
+        NetworkFormat::Npy => return Err(NetworkFault::SeveralFiles),
         NetworkFormat::Sv1d => sv1d::read(bytes, options)?,
     };
     finished(network, options)
+}
+
+/// Reads a network from the bytes of the files of a folder `.npyd`.
+///
+/// # Errors
+/// When they are no usable network.
+pub fn read_network_arrays(files: &[(&str, &[u8])], options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
+    finished(npy::read(&Arrays::of(files), options)?, options)
 }
 
 /// What holds for every format: lengths multiplied as asked for, numbers that can be used.

@@ -3,13 +3,13 @@
 use super::content::NetworkArray;
 use super::error::NetworkFileError;
 use super::format::NetworkFormat;
-use super::{swc, vtp};
+use super::{npy, swc, vtp};
 use crate::io::file::{AtomicFile, write_whole};
 use crate::skeleton::Skeleton;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes a network to a `.vtp` file: whole or not at all.
+/// Writes a network to a `.vtp` file or a folder `.npyd`: whole or not at all.
 ///
 /// Points carry `Radius`, lines (one per edge) `EdgeRadius`, the mean of the radii at their ends, and `EndRadii`, both of
 /// them; the reader prefers the latter.
@@ -28,6 +28,9 @@ use std::path::Path;
 /// # Errors
 /// When the name has another extension, or the file cannot be written.
 pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> Result<(), NetworkFileError> {
+    if is(path, NetworkFormat::Npy) {
+        return npy::write(path, skeleton, arrays).map_err(|source| unwritten(path, source));
+    }
     ensure_vtp(path)?;
     write(path, |file| file.write_all(&vtp::bytes_of(skeleton, arrays)?))
 }
@@ -47,7 +50,7 @@ pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) 
 /// # Errors
 /// When the name has another extension, the file cannot be written, or two edges of an SWC file lead to one node.
 pub fn write_tree(path: &Path, tree: &Skeleton, arrays: &[NetworkArray]) -> Result<(), NetworkFileError> {
-    if !is_swc(path) {
+    if !is(path, NetworkFormat::Swc) {
         return write_network(path, tree, arrays);
     }
     let not_a_tree = |node| NetworkFileError::NotATree { path: path.to_path_buf(), node };
@@ -58,9 +61,12 @@ pub fn write_tree(path: &Path, tree: &Skeleton, arrays: &[NetworkArray]) -> Resu
 /// Checks, before any work, that a network can be written to a path.
 ///
 /// # Errors
-/// When the name has another extension than `.vtp`, or its folder does not exist.
+/// When the name has another extension than `.vtp` or `.npyd`, or its folder does not exist.
 #[cfg(feature = "cli")]
 pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
+    if is(path, NetworkFormat::Npy) {
+        return npy::ensure_writable(path).map_err(|source| unwritten(path, source));
+    }
     ensure_vtp(path)?;
     ensure_folder(path)
 }
@@ -68,25 +74,26 @@ pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
 /// Checks, before any work, that a tree can be written to a path.
 ///
 /// # Errors
-/// When the name has another extension than `.vtp` or `.swc`, or its folder does not exist.
+/// When the name has another extension than `.vtp`, `.npyd` or `.swc`, or its folder does not exist.
 #[cfg(feature = "cli")]
 pub fn ensure_tree_writable(path: &Path) -> Result<(), NetworkFileError> {
-    if is_swc(path) { ensure_folder(path) } else { ensure_network_writable(path) }
+    if is(path, NetworkFormat::Swc) { ensure_folder(path) } else { ensure_network_writable(path) }
 }
 
 fn write(path: &Path, write: impl FnOnce(&mut AtomicFile) -> io::Result<()>) -> Result<(), NetworkFileError> {
-    write_whole(path, write).map_err(|source| NetworkFileError::Write { path: path.to_path_buf(), source })
+    write_whole(path, write).map_err(|source| unwritten(path, source))
 }
 
-fn is_swc(path: &Path) -> bool {
-    matches!(NetworkFormat::of(path), Ok(NetworkFormat::Swc))
+fn unwritten(path: &Path, source: io::Error) -> NetworkFileError {
+    NetworkFileError::Write { path: path.to_path_buf(), source }
+}
+
+fn is(path: &Path, format: NetworkFormat) -> bool {
+    NetworkFormat::of(path).is_ok_and(|found| found == format)
 }
 
 fn ensure_vtp(path: &Path) -> Result<(), NetworkFileError> {
-    match NetworkFormat::of(path) {
-        Ok(NetworkFormat::Vtp) => Ok(()),
-        _ => Err(NetworkFileError::NotWritten { path: path.to_path_buf() }),
-    }
+    if is(path, NetworkFormat::Vtp) { Ok(()) } else { Err(NetworkFileError::NotWritten { path: path.to_path_buf() }) }
 }
 
 /// Checks that a file can be made at a path.
@@ -95,7 +102,7 @@ fn ensure_folder(path: &Path) -> Result<(), NetworkFileError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() || !folder.is_dir() {
         let kind = if path.is_dir() { io::ErrorKind::IsADirectory } else { io::ErrorKind::NotFound };
-        return Err(NetworkFileError::Write { path: path.to_path_buf(), source: kind.into() });
+        return Err(unwritten(path, kind.into()));
     }
     Ok(())
 }

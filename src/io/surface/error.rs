@@ -2,6 +2,7 @@
 //! are the same.
 
 use crate::io::file::FileError;
+use crate::io::npy::NpyError;
 use crate::io::text::{Place, TextFault, shown};
 use crate::mesh::facets::FacetError;
 
@@ -16,6 +17,9 @@ pub enum SurfaceFault {
     /// Its words are not those of the format.
     #[error(transparent)]
     Text(#[from] TextFault),
+    /// An array is missing or wrong.
+    #[error(transparent)]
+    Npy(#[from] NpyError),
     /// A face has too few corners, or in a format that knows only triangles too many.
     #[error("{place}: face {face} has {corners} corners, which make no triangle: correct or remove it")]
     NotATriangle {

@@ -6,6 +6,7 @@ mod error;
 mod faces;
 mod format;
 mod glb;
+mod npy;
 mod obj;
 mod off;
 mod ply;
@@ -20,5 +21,6 @@ pub use boundary::{ensure_boundary_writable, write_boundary, write_boundary_watc
 pub use content::SurfaceContent;
 pub use error::SurfaceFileError;
 pub use format::SurfaceFormat;
+pub use npy::{ArrayComplex, ArrayRegion, read_complex, read_complex_arrays};
 pub use read::{read_content_as, read_content_from, read_surface, read_surface_from};
 pub use write::write_surface;

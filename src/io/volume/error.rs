@@ -5,6 +5,7 @@ use super::msh::MshFault;
 use super::pvtu::PvtuFault;
 use super::vtu::VtuFault;
 use crate::io::file::FileError;
+use crate::io::npy::NpyError;
 use crate::io::tetgen::TetgenFault;
 
 /// Why a mesh file could not be read or written.
@@ -29,10 +30,13 @@ pub enum MeshFault {
     /// It is no mesh of `TetGen`'s.
     #[error(transparent)]
     Tetgen(#[from] TetgenFault),
+    /// Arrays are missing or wrong.
+    #[error(transparent)]
+    Npy(#[from] NpyError),
     /// Meshes of this format are written alone.
     #[error("cases of solvers are written, not read: name the same mesh as .vtu or .msh")]
     NotRead,
     /// The format spreads a mesh over several files.
-    #[error("a mesh of this format is several files: name the path of its .ele or .pvtu file")]
+    #[error("a mesh of this format is several files: name the path of its .ele or .pvtu file, or of its folder .npyd")]
     SeveralFiles,
 }

@@ -22,12 +22,14 @@ pub enum MeshFormat {
     OpenFoam,
     /// The `mesh-complete` folder of `SimVascular` and `svMultiPhysics`; `.svmesh`.
     SimVascular,
+    /// Arrays of `NumPy`, a folder; `.npyd`.
+    Npy,
     /// `TetGen`'s family of files, named by its `.ele` or `.node`.
     Tetgen,
 }
 
 /// Extensions, in lower case.
-const EXTENSIONS: [(&str, MeshFormat); 9] = [
+const EXTENSIONS: [(&str, MeshFormat); 10] = [
     ("vtu", MeshFormat::Vtu),
     ("pvtu", MeshFormat::Pvtu),
     ("msh", MeshFormat::Msh),
@@ -35,13 +37,14 @@ const EXTENSIONS: [(&str, MeshFormat); 9] = [
     ("mesh", MeshFormat::Medit),
     ("foam", MeshFormat::OpenFoam),
     ("svmesh", MeshFormat::SimVascular),
+    ("npyd", MeshFormat::Npy),
     ("ele", MeshFormat::Tetgen),
     ("node", MeshFormat::Tetgen),
 ];
 
 /// What formats are called where the extension does not tell.
 #[cfg(feature = "cli")]
-const NAMES: [(&str, MeshFormat); 8] = [
+const NAMES: [(&str, MeshFormat); 9] = [
     ("vtu", MeshFormat::Vtu),
     ("pvtu", MeshFormat::Pvtu),
     ("msh", MeshFormat::Msh),
@@ -49,6 +52,7 @@ const NAMES: [(&str, MeshFormat); 8] = [
     ("medit", MeshFormat::Medit),
     ("openfoam", MeshFormat::OpenFoam),
     ("simvascular", MeshFormat::SimVascular),
+    ("npy", MeshFormat::Npy),
     ("tetgen", MeshFormat::Tetgen),
 ];
 
@@ -73,7 +77,7 @@ impl MeshFormat {
         by_extension(path, &EXTENSIONS).ok_or_else(|| FileError::UnknownFormat {
             path: path.to_path_buf(),
             kind: "known mesh format",
-            known: ".vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .ele",
+            known: ".vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .npyd, .ele",
         })
     }
 
@@ -84,12 +88,12 @@ impl MeshFormat {
 
     /// Whether it has a place for values at points and in cells.
     pub fn holds_values(self) -> bool {
-        self.is_grid() || matches!(self, Self::Msh | Self::Msh2)
+        self.is_grid() || matches!(self, Self::Msh | Self::Msh2 | Self::Npy)
     }
 
-    /// Whether a mesh is a folder; none of these is read.
+    /// Whether a mesh is a folder.
     pub(super) fn is_folder(self) -> bool {
-        matches!(self, Self::OpenFoam | Self::SimVascular)
+        matches!(self, Self::OpenFoam | Self::SimVascular | Self::Npy)
     }
 
     /// Whether a mesh can be written without being held in memory as a whole.

@@ -3,7 +3,7 @@
 use super::content::MeshFile;
 use super::error::{MeshFault, MeshFileError};
 use super::format::MeshFormat;
-use super::{medit, msh, pvtu, vtu};
+use super::{medit, msh, npy, pvtu, vtu};
 use crate::io::file::{FileError, read_bytes};
 use crate::io::tetgen;
 use std::io;
@@ -19,6 +19,7 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
     }
     match MeshFormat::of(path)? {
         MeshFormat::Tetgen => tetgen::read_mesh(path).map(MeshFile::from).map_err(FileError::widen),
+        MeshFormat::Npy => npy::read(path).map_err(FileError::widen),
         MeshFormat::Pvtu => pvtu::read(path).map_err(FileError::widen),
         format if format.is_folder() => Err(FileError::content(path)(MeshFault::NotRead)),
         format => read_mesh_from(&read_bytes(path)?, format).map_err(FileError::content(path)),
@@ -36,6 +37,6 @@ pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, Mesh
         MeshFormat::Msh | MeshFormat::Msh2 => Ok(msh::read(bytes)?),
         MeshFormat::Medit => Ok(medit::read(bytes)?.into()),
         MeshFormat::OpenFoam | MeshFormat::SimVascular => Err(MeshFault::NotRead),
-        MeshFormat::Tetgen | MeshFormat::Pvtu => Err(MeshFault::SeveralFiles),
+        MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::Npy => Err(MeshFault::SeveralFiles),
     }
 }

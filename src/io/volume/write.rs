@@ -5,7 +5,7 @@ use super::error::MeshFileError;
 use super::format::MeshFormat;
 use super::options::{GridOptions, WriteOptions, boundary_beside};
 use super::pvtu::{PieceFolder, Pieces};
-use super::{medit, msh, openfoam, pvtu, simvascular, vtu};
+use super::{medit, msh, npy, openfoam, pvtu, simvascular, vtu};
 use crate::io::file::{Asked, AtomicFile, FileError, write_whole};
 use crate::io::tetgen::MeshFamily;
 use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
@@ -32,6 +32,7 @@ pub fn ensure_writable_as(format: MeshFormat, path: &Path) -> Result<(), MeshFil
     match format {
         MeshFormat::OpenFoam => openfoam::ensure_writable(path),
         MeshFormat::SimVascular => simvascular::ensure_writable(path),
+        MeshFormat::Npy => npy::ensure_writable(path),
         MeshFormat::Pvtu => file().and_then(|()| PieceFolder::ensure_replaceable(path)),
         _ => file(),
     }
@@ -81,6 +82,7 @@ pub fn write_mesh_with(
             pvtu::write(path, mesh, notes, Pieces { memory, grid, values: options.values, ..usual }, progress)
         }
         MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, progress),
+        MeshFormat::Npy => npy::write(path, mesh, notes, options.values, progress),
         MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
         MeshFormat::Vtu => {
             write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid, options.values))
@@ -182,7 +184,11 @@ pub(super) fn write_format(
         MeshFormat::Msh => msh::write(out, mesh, notes, None),
         MeshFormat::Msh2 => msh::write_2(out, mesh, notes, None),
         MeshFormat::Medit => medit::write(out, mesh),
-        MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::OpenFoam | MeshFormat::SimVascular => {
+        MeshFormat::Tetgen
+        | MeshFormat::Pvtu
+        | MeshFormat::Npy
+        | MeshFormat::OpenFoam
+        | MeshFormat::SimVascular => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
         }
     }

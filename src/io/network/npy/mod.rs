@@ -1,0 +1,10 @@
+//! Networks as arrays in a folder `.npyd`.
+
+mod read;
+mod write;
+
+pub use read::NpyNetworkError;
+pub(super) use read::{ARRAYS, read};
+pub(super) use write::write;
+#[cfg(feature = "cli")]
+pub(super) use write::ensure_writable;

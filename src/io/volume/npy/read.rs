@@ -1,0 +1,55 @@
+//! Reads meshes.
+
+use super::array::{ALL, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
+use super::notes::Notes;
+use crate::io::file::FileError;
+use crate::io::npy::{Arrays, NpyError, NpyFault};
+use crate::io::patches::usual_patches;
+use crate::io::volume::content::{MeshFile, MeshNotes};
+use crate::mesh::{TetMesh, VolumeMesh};
+use std::path::Path;
+
+/// Reads a folder.
+///
+/// # Errors
+/// `Read` with the system's reason, or `Content` with the array and the row that is wrong.
+pub(in crate::io::volume) fn read(folder: &Path) -> Result<MeshFile, FileError<NpyError>> {
+    mesh_of(&Arrays::read(folder, &ALL, Some(super::NOTES))?).map_err(FileError::content(folder))
+}
+
+/// Reads a mesh from the bytes of the files of a folder.
+///
+/// # Errors
+/// The array and the row that is wrong.
+pub fn read_mesh_arrays(files: &[(&str, &[u8])]) -> Result<MeshFile, NpyError> {
+    mesh_of(&Arrays::of(files))
+}
+
+/// Points and tetrahedra are needed, all else may be missing; patches without names get their usual ones.
+fn mesh_of(arrays: &Arrays) -> Result<MeshFile, NpyError> {
+    let points = arrays.points(POINTS)?;
+    let of_points = ("points.npy", points.len());
+    let tets = arrays.indices::<4>(TETS, of_points)?;
+    let tet_block = arrays.labels(TET_BLOCKS, ("tets.npy", tets.len()))?;
+    let labelled = arrays.has(TRIANGLES);
+    let boundary = if labelled { arrays.indices::<3>(TRIANGLES, of_points)? } else { Vec::new() };
+    let of_faces = ("triangles.npy", boundary.len());
+    let boundary_patch = arrays.labels(TRIANGLE_PATCHES, of_faces)?;
+    let boundary_block = arrays.labels(TRIANGLE_BLOCKS, of_faces)?;
+    let notes = arrays.other(super::NOTES).map(serde_json::from_slice::<Notes>).transpose();
+    let notes = notes.map_err(|e| NpyFault::Json { reason: e.to_string() }.of(super::NOTES))?;
+    let (notes, mut patches) = notes.map_or_else(|| (MeshNotes::default(), Vec::new()), Notes::into_parts);
+    let boundary_patch = boundary_patch.unwrap_or_else(|| vec![0; boundary.len()]);
+    if patches.is_empty() {
+        patches = usual_patches(&boundary_patch);
+    }
+    let volume = VolumeMesh {
+        tet_block: tet_block.unwrap_or_else(|| vec![0; tets.len()]),
+        boundary_block: boundary_block.unwrap_or_else(|| vec![0; boundary.len()]),
+        mesh: TetMesh { points, tets },
+        boundary,
+        boundary_patch,
+        patches,
+    };
+    Ok(MeshFile { labelled: labelled && !volume.boundary.is_empty(), volume, notes })
+}
