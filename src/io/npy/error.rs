@@ -96,13 +96,13 @@ pub enum NpyFault {
         /// The first such row.
         row: usize,
     },
-    /// A number with more than 32 bits.
-    #[error("row {row} has {value}, which does not fit into 32 bits")]
-    Wide {
+    /// A label that is none.
+    #[error("row {row} has {value}, and an integer of 32 bits is needed")]
+    NoLabel {
         /// The first such row.
         row: usize,
-        /// The number.
-        value: i64,
+        /// What it has.
+        value: String,
     },
     /// What stands beside the arrays is no JSON, or other than it has to be.
     #[error("cannot be read: {reason}; write the mesh again, or remove this file")]

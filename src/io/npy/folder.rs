@@ -137,7 +137,7 @@ impl Arrays {
         let fault = |fault: NpyFault| fault.of(file(name));
         let rows = self.array(name)?.ints::<1>().map_err(fault)?;
         self.ensure_rows(name, rows.len(), (of, wanted))?;
-        let narrow = |(row, value): (usize, i64)| i32::try_from(value).map_err(|_| fault(NpyFault::Wide { row, value }));
+        let narrow = |(row, value): (usize, i64)| i32::try_from(value).map_err(|_| fault(NpyFault::NoLabel { row, value: value.to_string() }));
         rows.into_iter().flatten().enumerate().map(narrow).collect::<Result<_, _>>().map(Some)
     }
 

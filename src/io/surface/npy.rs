@@ -78,7 +78,7 @@ fn regions(arrays: &Arrays) -> Result<Vec<ArrayRegion>, NpyError> {
             return Err(fault(NpyFault::NotFinite { row }));
         }
         if id.fract() != 0.0 || id.abs() > f64::from(i32::MAX) {
-            return Err(fault(NpyFault::Wide { row, value: id as i64 }));
+            return Err(fault(NpyFault::NoLabel { row, value: id.to_string() }));
         }
         Ok(ArrayRegion { point: Point3::new(x, y, z), id: id as i32, max_volume: Some(volume).filter(|v| *v > 0.0) })
     })

@@ -1,6 +1,8 @@
 //! Networks as arrays in a folder `.npyd`.
 
 mod read;
+#[cfg(test)]
+mod tests;
 mod write;
 
 pub use read::NpyNetworkError;

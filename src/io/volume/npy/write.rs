@@ -9,7 +9,8 @@ use crate::io::volume::content::MeshNotes;
 use crate::mesh::beside::{Beside, Column};
 use crate::mesh::source::MeshSource;
 use crate::progress::Progress;
-use std::io::{self, Write};
+use rayon::prelude::*;
+use std::io;
 use std::path::Path;
 
 /// What values beside the mesh are called: at points, in tetrahedra, in boundary faces.
@@ -38,7 +39,7 @@ pub(in crate::io::volume) fn write(
     progress: &dyn Progress,
 ) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
-    let writer = Writer { folder: &folder, progress };
+    let mut writer = Writer { folder: &folder, progress, complete: Vec::new() };
     let counts = mesh.counts();
     writer.array::<f64>(POINTS, counts.points, 3, |out| {
         mesh.each_points(|points| points.iter().try_for_each(|p| p.iter().try_for_each(|x| x.put(out))))
@@ -52,6 +53,7 @@ pub(in crate::io::volume) fn write(
     if let Some(values) = values {
         writer.values(mesh, values)?;
     }
+    writer.complete.into_par_iter().try_for_each(AtomicFile::commit)?;
     let text = serde_json::to_string_pretty(&Notes::new(notes, mesh.patches()))?;
     folder.put(super::NOTES, text.as_bytes())?;
     folder.commit()
@@ -61,6 +63,8 @@ pub(in crate::io::volume) fn write(
 struct Writer<'a> {
     folder: &'a AtomicFolder,
     progress: &'a dyn Progress,
+    /// What only has to reach the disk; all at once, as waiting for it takes as long for one as for all.
+    complete: Vec<AtomicFile>,
 }
 
 /// What an array is written to.
@@ -68,7 +72,7 @@ type Out<'a> = Asked<'a, AtomicFile>;
 
 impl Writer<'_> {
     fn array<T: Item>(
-        &self,
+        &mut self,
         name: &str,
         rows: usize,
         columns: usize,
@@ -77,12 +81,12 @@ impl Writer<'_> {
         let mut out = Asked { out: self.folder.file(&format!("{name}.npy"))?, progress: self.progress };
         head::<T>(&mut out, rows, columns)?;
         fill(&mut out)?;
-        out.flush()?;
-        out.out.commit()
+        self.complete.push(out.out);
+        Ok(())
     }
 
     /// The corners of tetrahedra and boundary faces.
-    fn cells<T: Item>(&self, mesh: &dyn MeshSource, number: impl Fn(u32) -> T) -> io::Result<()> {
+    fn cells<T: Item>(&mut self, mesh: &dyn MeshSource, number: impl Fn(u32) -> T) -> io::Result<()> {
         let counts = mesh.counts();
         self.array::<T>(TETS, counts.tets, 4, |out| {
             mesh.each_tets(|piece| piece.tets.as_flattened().iter().try_for_each(|&v| number(v).put(out)))
@@ -93,7 +97,7 @@ impl Writer<'_> {
     }
 
     /// Blocks and patches.
-    fn labels(&self, mesh: &dyn MeshSource) -> io::Result<()> {
+    fn labels(&mut self, mesh: &dyn MeshSource) -> io::Result<()> {
         let counts = mesh.counts();
         self.array::<i32>(TET_BLOCKS, counts.tets, 1, |out| {
             mesh.each_tet_labels(|piece| put_labels(out, &piece.blocks, piece.count))
@@ -106,7 +110,7 @@ impl Writer<'_> {
         })
     }
 
-    fn values(&self, mesh: &dyn MeshSource, values: &dyn Beside) -> io::Result<()> {
+    fn values(&mut self, mesh: &dyn MeshSource, values: &dyn Beside) -> io::Result<()> {
         let counts = mesh.counts();
         let [at_points, in_tets, in_faces] = VALUES;
         for (i, column) in values.columns().iter().enumerate() {
@@ -124,7 +128,7 @@ impl Writer<'_> {
     }
 
     fn column(
-        &self,
+        &mut self,
         prefix: &str,
         column: &Column,
         rows: usize,
