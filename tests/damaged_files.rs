@@ -33,7 +33,9 @@ struct Sample {
 
 impl Sample {
     fn of(path: &Path) -> Option<Self> {
-        let read: Reader = if let Ok(format) = NetworkFormat::of(path) {
+        let read: Reader = if path.ends_with("npy/mesh.json") || path.extension().is_some_and(|e| e == "npy") {
+            Self::of_arrays(path)
+        } else if let Ok(format) = NetworkFormat::of(path) {
             Box::new(move |bytes| {
                 if let Ok(file) = read_network_from(bytes, format, &NetworkOptions::default()) {
                     let _ = clean(&file.skeleton);
@@ -52,6 +54,26 @@ impl Sample {
         };
         let bytes = fs::read(path).unwrap_or_default();
         Some(Self { name: path.display().to_string(), bytes, read })
+    }
+
+    /// Reads one file of a folder of arrays, among the others, as everything that they may be.
+    fn of_arrays(path: &Path) -> Reader {
+        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let beside = path.parent().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+        let others = beside.map(|entry| entry.path()).filter(|other| other != path);
+        let others: Vec<_> = others.map(|other| (name(&other), fs::read(other).unwrap_or_default())).collect();
+        let own = name(path);
+        Box::new(move |bytes| {
+            let mut files: Vec<(&str, &[u8])> = others.iter().map(|(name, bytes)| (&**name, &**bytes)).collect();
+            files.push((&own, bytes));
+            if let Ok(file) = read_mesh_arrays(&files) {
+                let _ = check_volume(&file.volume, None);
+            }
+            if let Ok(file) = read_network_arrays(&files, &NetworkOptions::default()) {
+                let _ = clean(&file.skeleton);
+            }
+            drop(read_complex_arrays(&files));
+        })
     }
 
     /// Tells of the damage when reading panics, or takes long.

@@ -84,7 +84,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// The mesh; none when the input is only checked.
 fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetrahedralization>, TetError> {
-    let tetrahedralizer = plan.tetrahedralizer().progress(listener);
+    let tetrahedralizer = plan.tetrahedralizer(&input.plc.regions).progress(listener);
     if plan.check_only && !input.only_points {
         return tetrahedralizer.check(&input.plc).map(|()| None);
     }

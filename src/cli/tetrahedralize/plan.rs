@@ -5,7 +5,7 @@ use super::format::{InputFormat, Target};
 use super::switches::Switches;
 use crate::cli::exit::Failure;
 use crate::mesh::{Bounds, REGULAR_DIHEDRAL};
-use crate::tet::{Boundary, InputKind, Interior, Layers, Refinement, Sizing, Tetrahedralizer};
+use crate::tet::{Boundary, InputKind, Interior, Layers, Refinement, Region, Sizing, Tetrahedralizer};
 use serde::Serialize;
 
 /// Side of the lattice's cubes in edge lengths: what gives a body-centred lattice edges of about that length.
@@ -152,11 +152,11 @@ impl TetPlan {
         }
     }
 
-    /// The tetrahedralizer that does it.
-    pub fn tetrahedralizer(&self) -> Tetrahedralizer {
+    /// The tetrahedralizer that does it for an input with these regions.
+    pub fn tetrahedralizer(&self, regions: &[Region]) -> Tetrahedralizer {
         let refinement = Refinement { bounds: self.bounds, ..Refinement::default() };
         let lattice = Interior::Lattice { cell: self.size.map(|size| LATTICE_CELL * size), clearance: None };
-        let bounded = self.bounds != Bounds::default();
+        let bounded = self.bounds != Bounds::default() || regions.iter().any(|region| region.max_volume.is_some());
         Tetrahedralizer::new()
             .kind(if self.plc { InputKind::Plc } else { InputKind::Closed })
             .interior(if self.refine { lattice } else { Interior::None })

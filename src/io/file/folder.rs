@@ -2,7 +2,7 @@
 
 use super::atomic::{AtomicFile, locked, make_hidden, remove_left};
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 /// A folder under a temporary name beside its target; `commit` moves it there, dropping it removes it.
@@ -48,6 +48,11 @@ impl AtomicFolder {
     /// A new file of the folder, by its path in it.
     pub(in crate::io) fn file(&self, name: &str) -> io::Result<AtomicFile> {
         AtomicFile::create(&self.place(name)?)
+    }
+
+    /// A new file of the folder whose bytes the disk is not waited for: of a format that tells when some are missing.
+    pub(in crate::io) fn quick_file(&self, name: &str) -> io::Result<BufWriter<File>> {
+        Ok(BufWriter::with_capacity(1 << 18, File::create(self.place(name)?)?))
     }
 
     /// Puts a small file into the folder. The disk is not waited for: with thousands of them that would take minutes.

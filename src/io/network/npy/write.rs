@@ -5,7 +5,7 @@ use crate::io::file::AtomicFolder;
 use crate::io::network::content::NetworkArray;
 use crate::io::npy::{Item, write_array};
 use crate::skeleton::{Edge, Node, Skeleton};
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 
 /// Files of the folder beside those of the network itself.
@@ -45,7 +45,7 @@ pub(in crate::io::network) fn write(path: &Path, skeleton: &Skeleton, arrays: &[
 }
 
 fn put<T: Item, const N: usize>(folder: &AtomicFolder, name: &str, rows: &[[T; N]]) -> io::Result<()> {
-    let mut file = folder.file(&format!("{name}.npy"))?;
+    let mut file = folder.quick_file(&format!("{name}.npy"))?;
     write_array(&mut file, rows)?;
-    file.commit()
+    file.flush()
 }

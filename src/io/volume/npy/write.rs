@@ -3,14 +3,14 @@
 use super::array::{ALL, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
 use super::notes::Notes;
 use crate::geometry::Point3;
-use crate::io::file::{Asked, AtomicFile, AtomicFolder};
+use crate::io::file::{Asked, AtomicFolder};
 use crate::io::npy::{Item, head};
 use crate::io::volume::content::MeshNotes;
 use crate::mesh::beside::{Beside, Column};
 use crate::mesh::source::MeshSource;
 use crate::progress::Progress;
-use rayon::prelude::*;
-use std::io;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 /// What values beside the mesh are called: at points, in tetrahedra, in boundary faces.
@@ -39,7 +39,7 @@ pub(in crate::io::volume) fn write(
     progress: &dyn Progress,
 ) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
-    let mut writer = Writer { folder: &folder, progress, complete: Vec::new() };
+    let writer = Writer { folder: &folder, progress };
     let counts = mesh.counts();
     writer.array::<f64>(POINTS, counts.points, 3, |out| {
         mesh.each_points(|points| points.iter().try_for_each(|p| p.iter().try_for_each(|x| x.put(out))))
@@ -53,7 +53,6 @@ pub(in crate::io::volume) fn write(
     if let Some(values) = values {
         writer.values(mesh, values)?;
     }
-    writer.complete.into_par_iter().try_for_each(AtomicFile::commit)?;
     let text = serde_json::to_string_pretty(&Notes::new(notes, mesh.patches()))?;
     folder.put(super::NOTES, text.as_bytes())?;
     folder.commit()
@@ -63,30 +62,27 @@ pub(in crate::io::volume) fn write(
 struct Writer<'a> {
     folder: &'a AtomicFolder,
     progress: &'a dyn Progress,
-    /// What only has to reach the disk; all at once, as waiting for it takes as long for one as for all.
-    complete: Vec<AtomicFile>,
 }
 
 /// What an array is written to.
-type Out<'a> = Asked<'a, AtomicFile>;
+type Out<'a> = Asked<'a, BufWriter<File>>;
 
 impl Writer<'_> {
     fn array<T: Item>(
-        &mut self,
+        &self,
         name: &str,
         rows: usize,
         columns: usize,
         fill: impl FnOnce(&mut Out) -> io::Result<()>,
     ) -> io::Result<()> {
-        let mut out = Asked { out: self.folder.file(&format!("{name}.npy"))?, progress: self.progress };
+        let mut out = Asked { out: self.folder.quick_file(&format!("{name}.npy"))?, progress: self.progress };
         head::<T>(&mut out, rows, columns)?;
         fill(&mut out)?;
-        self.complete.push(out.out);
-        Ok(())
+        out.flush()
     }
 
     /// The corners of tetrahedra and boundary faces.
-    fn cells<T: Item>(&mut self, mesh: &dyn MeshSource, number: impl Fn(u32) -> T) -> io::Result<()> {
+    fn cells<T: Item>(&self, mesh: &dyn MeshSource, number: impl Fn(u32) -> T) -> io::Result<()> {
         let counts = mesh.counts();
         self.array::<T>(TETS, counts.tets, 4, |out| {
             mesh.each_tets(|piece| piece.tets.as_flattened().iter().try_for_each(|&v| number(v).put(out)))
@@ -97,7 +93,7 @@ impl Writer<'_> {
     }
 
     /// Blocks and patches.
-    fn labels(&mut self, mesh: &dyn MeshSource) -> io::Result<()> {
+    fn labels(&self, mesh: &dyn MeshSource) -> io::Result<()> {
         let counts = mesh.counts();
         self.array::<i32>(TET_BLOCKS, counts.tets, 1, |out| {
             mesh.each_tet_labels(|piece| put_labels(out, &piece.blocks, piece.count))
@@ -110,7 +106,7 @@ impl Writer<'_> {
         })
     }
 
-    fn values(&mut self, mesh: &dyn MeshSource, values: &dyn Beside) -> io::Result<()> {
+    fn values(&self, mesh: &dyn MeshSource, values: &dyn Beside) -> io::Result<()> {
         let counts = mesh.counts();
         let [at_points, in_tets, in_faces] = VALUES;
         for (i, column) in values.columns().iter().enumerate() {
@@ -128,7 +124,7 @@ impl Writer<'_> {
     }
 
     fn column(
-        &mut self,
+        &self,
         prefix: &str,
         column: &Column,
         rows: usize,
