@@ -5,6 +5,7 @@ mod common;
 use anastomesh::io::{NetworkOptions, read_mesh, read_network};
 use common::fixture;
 use common::program::*;
+use common::surfaces::sphere;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -83,15 +84,34 @@ fn a_complex_as_arrays_has_markers_and_bounded_regions() {
     let folder = folder();
     let (input, out) = (cube(folder.path()), folder.path().join("out.npyd"));
     save(&input, "markers.npy", "<i4", "(12,)", &ints(&[5, 5, 6, 6, 7, 7, 8, 8, 9, 9, 10, 10]));
-    save(&input, "regions.npy", "<f8", "(1, 5)", &floats(&[0.5, 0.5, 0.5, 3.0, 0.005]));
+    save(&input, "regions.npy", "<f8", "(1, 5)", &floats(&[0.5, 0.5, 0.5, 3.0, 0.0]));
     assert_code(&fill(&input, &out, &["--plc", "-q"]), FINE);
     let file = read_mesh(&out).expect("a mesh");
     let mut markers = file.volume.boundary_patch.clone();
     markers.dedup();
     assert_eq!(markers, [5, 6, 7, 8, 9, 10]);
     assert!(file.volume.tet_block.iter().all(|&region| region == 3));
-    assert!(file.volume.mesh.tets.len() > 200, "volumes are bounded");
     assert_says(&fill(&input, &input, &[]), USAGE, &["is the input and would be replaced"]);
+}
+
+#[test]
+fn a_bound_on_a_region_is_enough_to_refine() {
+    let folder = folder();
+    let ball = sphere(3);
+    let path = folder.path().join("ball.npyd");
+    let points: Vec<f64> = ball.points.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+    let corners: Vec<i32> = ball.triangles.as_flattened().iter().map(|&v| v as i32).collect();
+    save(&path, "points.npy", "<f8", &format!("({}, 3)", ball.points.len()), &floats(&points));
+    save(&path, "triangles.npy", "<i4", &format!("({}, 3)", ball.triangles.len()), &ints(&corners));
+    let tets = |volume: f64| {
+        save(&path, "regions.npy", "<f8", "(1, 5)", &floats(&[0.0, 0.0, 0.0, 3.0, volume]));
+        let out = folder.path().join("out.npyd");
+        assert_code(&fill(&path, &out, &["--plc", "-q"]), FINE);
+        read_mesh(&out).expect("a mesh").volume.mesh.tets.len()
+    };
+    let usual = tets(0.0);
+    let volume = 4.0 / usual as f64;
+    assert!(tets(0.5 * volume) > usual * 3 / 2);
 }
 
 #[test]

@@ -208,7 +208,8 @@ def _refuse(others: dict[str, Any], order: int) -> None:
         if name in _REFUSED:
             usual, instead = _REFUSED[name]
             if value is not usual and value != usual:
-                raise NotImplementedError(f"{name}={value!r} is not supported: {instead}")
+                shown = repr(value) if isinstance(value, (bool, int, float, str)) else type(value).__name__
+                raise NotImplementedError(f"{name}={shown} is not supported: {instead}")
         elif name not in _WITHOUT_EFFECT:
             raise TypeError(f"{name} is no keyword of TetGen.tetrahedralize")
         elif name == "steinerleft" and value >= 0 and value != 100000:

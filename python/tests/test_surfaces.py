@@ -51,16 +51,24 @@ def test_markers_regions_holes_and_segments_of_a_complex(cube):
     both = np.concatenate([points, inner])
     faces = np.concatenate([triangles, triangles + 8])
     markers = np.arange(24) - 5
-    regions = [([0.1, 0.1, 0.1], 7), ([0.5, 0.5, 0.5], 9, 0.001)]
+    regions = [([0.1, 0.1, 0.1], 7), ([0.5, 0.5, 0.5], 9)]
     mesh = anastomesh.tetrahedralize(both, faces, plc=True, markers=markers, regions=regions, segments=[[0, 8]])
     assert set(np.unique(mesh.regions)) == {7, 9}
-    assert volumes(mesh.points, mesh.tets)[mesh.regions == 9].max() <= 0.001
+    assert volumes(mesh.points, mesh.tets)[mesh.regions == 9].sum() == pytest.approx(1 / 8)
     by_face = {tuple(sorted(t)): m for t, m in zip(mesh.triangles.tolist(), mesh.markers.tolist())}
     assert [by_face[tuple(sorted(t))] for t in faces.tolist()] == markers.tolist()
     edges = {tuple(sorted(pair)) for t in mesh.tets.tolist() for pair in [(t[i], t[j]) for i in range(4) for j in range(i)]}
     assert (0, 8) in edges
     hollow = anastomesh.tetrahedralize(both, faces, plc=True, holes=[[0.5, 0.5, 0.5]])
     assert volumes(hollow.points, hollow.tets).sum() == pytest.approx(1 - 1 / 8)
+
+
+def test_a_region_may_have_a_bound_on_its_volumes():
+    sphere = pyvista.Icosphere(nsub=3)
+    usual = anastomesh.tetrahedralize(sphere, plc=True, regions=[([0, 0, 0], 3)])
+    bounded = anastomesh.tetrahedralize(sphere, plc=True, regions=[([0, 0, 0], 3, 5e-4)])
+    of = [np.median(volumes(mesh.points, mesh.tets)) for mesh in (usual, bounded)]
+    assert len(bounded.tets) > 1.5 * len(usual.tets) and of[1] < 5e-4 < volumes(usual.points, usual.tets).max()
 
 
 def test_points_alone_become_their_delaunay_tetrahedra():

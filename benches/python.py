@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""The Python package beside PyPI's `tetgen` and beside the bare program, as tables in Markdown.
+
+    python benches/python.py replace SURFACE.off...    the same call of tetgen.TetGen and of anastomesh.TetGen
+    python benches/python.py overhead SURFACE.off... NETWORK...    the same run from Python and by the program alone
+
+Needs both packages (`pip install tetgen anastomesh pyvista meshio`); `ANASTOMESH_BINARY` names another program. Times are wall
+time, the least of some runs. A surface is kept when each of its triangles is a face of a tetrahedron. Each call of tetgen's runs
+in a process of its own, as some end the process.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+import anastomesh
+
+CALL = {"nobisect": True, "minratio": 1.4, "order": 1}
+
+
+def surface_of(path):
+    import meshio
+
+    mesh = meshio.read(path)
+    return np.ascontiguousarray(mesh.points, np.float64), mesh.cells_dict["triangle"].astype(np.int32)
+
+
+def seconds(run, times):
+    """The least of some runs."""
+    best = np.inf
+    for _ in range(times):
+        start = time.perf_counter()
+        run()
+        best = min(best, time.perf_counter() - start)
+    return best
+
+
+def kept(triangles, tets):
+    """How many of the triangles are faces of tetrahedra."""
+    faces = np.sort(np.concatenate([tets[:, [i for i in range(4) if i != k]] for k in range(4)]), axis=1)
+    key = lambda rows: {row.tobytes() for row in np.ascontiguousarray(rows, np.int64)}
+    return len(key(np.sort(triangles, axis=1)) & key(faces))
+
+
+def smallest_angle(points, tets):
+    """The smallest dihedral angle, in degrees."""
+    corners = points[tets]
+    least = 180.0
+    for i, j in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]:
+        k, l = (v for v in range(4) if v not in (i, j))
+        axis = corners[:, j] - corners[:, i]
+        sides = [np.cross(axis, corners[:, v] - corners[:, i]) for v in (k, l)]
+        lengths = np.linalg.norm(sides[0], axis=1) * np.linalg.norm(sides[1], axis=1)
+        cosine = np.einsum("ij,ij->i", *sides) / np.where(lengths > 0, lengths, 1)
+        least = min(least, float(np.degrees(np.arccos(np.clip(cosine, -1, 1))).min()))
+    return least
+
+
+def one(package, path):
+    """What one package makes of a surface, as JSON."""
+    if package == "tetgen":
+        from tetgen import TetGen
+    else:
+        from anastomesh import TetGen
+    points, triangles = surface_of(path)
+
+    def run():
+        tet = TetGen(points, triangles)
+        tet.tetrahedralize(**CALL)
+        return tet
+
+    tet = run()
+    report = {
+        "seconds": seconds(run, 3),
+        "tets": len(tet.elem),
+        "kept": kept(triangles, tet.elem),
+        "triangles": len(triangles),
+        "same": bool(np.array_equal(tet.node[: len(points)], points)),
+        "angle": smallest_angle(tet.node, tet.elem),
+    }
+    print(json.dumps(report))
+
+
+def replace(paths):
+    print(f"`TetGen(points, triangles).tetrahedralize({', '.join(f'{k}={v}' for k, v in CALL.items())})`\n")
+    print("| surface | triangles | kept: tetgen, ours | tetrahedra | smallest angle | seconds | ratio |")
+    print("|---|---|---|---|---|---|---|")
+    for path in paths:
+        made = []
+        for package in ("tetgen", "anastomesh"):
+            done = subprocess.run([sys.executable, __file__, "one", package, path], capture_output=True, text=True, timeout=900)
+            lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+            made.append(json.loads(lines[-1]) if lines else None)
+            if not lines:
+                print(f"{package}, {path}: {done.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
+        said = lambda key, form: ", ".join("failed" if m is None else form(m[key], m) for m in made)
+        ratio = f"{made[1]['seconds'] / made[0]['seconds']:.2f}" if all(made) else ""
+        count = next((f"{m['triangles']:,}" for m in made if m), "")
+        all_kept = said("kept", lambda n, m: "all" if n == m["triangles"] and m["same"] else f"{n:,}")
+        print(
+            f"| {pathlib.Path(path).stem} | {count} | {all_kept} | {said('tets', lambda n, _: f'{n:_}')} "
+            f"| {said('angle', lambda a, _: f'{a:.2f}°')} | {said('seconds', lambda s, _: f'{s:.2f}')} | {ratio} |"
+        )
+
+
+def overhead(paths):
+    program = anastomesh.binary()
+    print("| input | program, seconds | from Python, seconds | more |")
+    print("|---|---|---|---|")
+    for path in paths:
+        is_surface = pathlib.Path(path).suffix == ".off"
+        arrays = surface_of(path) if is_surface else None
+        verb = "tetrahedralize" if is_surface else "mesh"
+        with tempfile.TemporaryDirectory() as folder:
+            command = [program, verb, path, "-o", os.path.join(folder, "mesh.vtu"), "--quiet"]
+            bare = lambda: subprocess.run(command, check=True)
+            python = lambda: anastomesh.tetrahedralize(*arrays) if is_surface else anastomesh.mesh(path)
+            # In turns, as other work on the machine comes and goes.
+            times = np.array([(seconds(bare, 1), seconds(python, 1)) for _ in range(9)]).min(axis=0)
+        more = times[1] - times[0]
+        print(f"| {pathlib.Path(path).name} | {times[0]:.3f} | {times[1]:.3f} | {1e3 * more:.0f} ms, {more / times[0]:.1%} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=["replace", "overhead", "one"])
+    parser.add_argument("paths", nargs="+")
+    arguments = parser.parse_args()
+    if arguments.what == "one":
+        one(*arguments.paths)
+    else:
+        {"replace": replace, "overhead": overhead}[arguments.what](arguments.paths)
+
+
+if __name__ == "__main__":
+    main()
