@@ -97,7 +97,7 @@ fn a_complex_as_arrays_has_markers_and_bounded_regions() {
 #[test]
 fn a_bound_on_a_region_is_enough_to_refine() {
     let folder = folder();
-    let ball = sphere(3);
+    let ball = sphere(8);
     let path = folder.path().join("ball.npyd");
     let points: Vec<f64> = ball.points.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
     let corners: Vec<i32> = ball.triangles.as_flattened().iter().map(|&v| v as i32).collect();
