@@ -18,9 +18,8 @@ import sys
 import tempfile
 import time
 
-import numpy as np
-
 import anastomesh
+import numpy as np
 
 CALL = {"nobisect": True, "minratio": 1.4, "order": 1}
 
@@ -45,7 +44,10 @@ def seconds(run, times):
 def kept(triangles, tets):
     """How many of the triangles are faces of tetrahedra."""
     faces = np.sort(np.concatenate([tets[:, [i for i in range(4) if i != k]] for k in range(4)]), axis=1)
-    key = lambda rows: {row.tobytes() for row in np.ascontiguousarray(rows, np.int64)}
+
+    def key(rows):
+        return {row.tobytes() for row in np.ascontiguousarray(rows, np.int64)}
+
     return len(key(np.sort(triangles, axis=1)) & key(faces))
 
 
@@ -54,9 +56,9 @@ def smallest_angle(points, tets):
     corners = points[tets]
     least = 180.0
     for i, j in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]:
-        k, l = (v for v in range(4) if v not in (i, j))
+        others = [v for v in range(4) if v not in (i, j)]
         axis = corners[:, j] - corners[:, i]
-        sides = [np.cross(axis, corners[:, v] - corners[:, i]) for v in (k, l)]
+        sides = [np.cross(axis, corners[:, v] - corners[:, i]) for v in others]
         lengths = np.linalg.norm(sides[0], axis=1) * np.linalg.norm(sides[1], axis=1)
         cosine = np.einsum("ij,ij->i", *sides) / np.where(lengths > 0, lengths, 1)
         least = min(least, float(np.degrees(np.arccos(np.clip(cosine, -1, 1))).min()))
@@ -93,39 +95,58 @@ def replace(paths):
     print("| surface | triangles | kept: tetgen, ours | tetrahedra | smallest angle | seconds | ratio |")
     print("|---|---|---|---|---|---|---|")
     for path in paths:
-        made = []
-        for package in ("tetgen", "anastomesh"):
-            done = subprocess.run([sys.executable, __file__, "one", package, path], capture_output=True, text=True, timeout=900)
-            lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
-            made.append(json.loads(lines[-1]) if lines else None)
-            if not lines:
-                print(f"{package}, {path}: {done.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
-        said = lambda key, form: ", ".join("failed" if m is None else form(m[key], m) for m in made)
-        ratio = f"{made[1]['seconds'] / made[0]['seconds']:.2f}" if all(made) else ""
-        count = next((f"{m['triangles']:,}" for m in made if m), "")
-        all_kept = said("kept", lambda n, m: "all" if n == m["triangles"] and m["same"] else f"{n:,}")
-        print(
-            f"| {pathlib.Path(path).stem} | {count} | {all_kept} | {said('tets', lambda n, _: f'{n:_}')} "
-            f"| {said('angle', lambda a, _: f'{a:.2f}°')} | {said('seconds', lambda s, _: f'{s:.2f}')} | {ratio} |"
-        )
+        print(row(path, [in_process(package, path) for package in ("tetgen", "anastomesh")]), flush=True)
+
+
+def in_process(package, path):
+    """What one package reports of a surface; nothing where its process ends without a report."""
+    command = [sys.executable, __file__, "one", package, path]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900)
+    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+    if not lines:
+        print(f"{package}, {path}: {done.returncode} {done.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
+    return json.loads(lines[-1]) if lines else None
+
+
+def row(path, made):
+    def said(form):
+        return ", ".join("failed" if m is None else form(m) for m in made)
+
+    def of_surface(m):
+        return "all" if m["kept"] == m["triangles"] and m["same"] else f"{m['kept']:,}"
+
+    cells = [
+        pathlib.Path(path).stem,
+        next((f"{m['triangles']:,}" for m in made if m), ""),
+        said(of_surface),
+        said(lambda m: str(m["tets"])),
+        said(lambda m: f"{m['angle']:.2f}°"),
+        said(lambda m: f"{m['seconds']:.2f}"),
+        f"{made[1]['seconds'] / made[0]['seconds']:.2f}" if all(made) else "",
+    ]
+    return f"| {' | '.join(cells)} |"
 
 
 def overhead(paths):
-    program = anastomesh.binary()
     print("| input | program, seconds | from Python, seconds | more |")
     print("|---|---|---|---|")
     for path in paths:
-        is_surface = pathlib.Path(path).suffix == ".off"
-        arrays = surface_of(path) if is_surface else None
-        verb = "tetrahedralize" if is_surface else "mesh"
-        with tempfile.TemporaryDirectory() as folder:
-            command = [program, verb, path, "-o", os.path.join(folder, "mesh.vtu"), "--quiet"]
-            bare = lambda: subprocess.run(command, check=True)
-            python = lambda: anastomesh.tetrahedralize(*arrays) if is_surface else anastomesh.mesh(path)
-            # In turns, as other work on the machine comes and goes.
-            times = np.array([(seconds(bare, 1), seconds(python, 1)) for _ in range(9)]).min(axis=0)
-        more = times[1] - times[0]
-        print(f"| {pathlib.Path(path).name} | {times[0]:.3f} | {times[1]:.3f} | {1e3 * more:.0f} ms, {more / times[0]:.1%} |")
+        bare, python = seconds_both(path)
+        more = python - bare
+        print(f"| {pathlib.Path(path).name} | {bare:.3f} | {python:.3f} | {1e3 * more:.0f} ms, {more / bare:.1%} |")
+
+
+def seconds_both(path):
+    """Of the program, from file to file, and from Python: arrays to arrays of a surface, the file of a network to arrays."""
+    is_surface = pathlib.Path(path).suffix == ".off"
+    arrays = surface_of(path) if is_surface else (path,)
+    make = anastomesh.tetrahedralize if is_surface else anastomesh.mesh
+    verb = "tetrahedralize" if is_surface else "mesh"
+    with tempfile.TemporaryDirectory() as folder:
+        command = [anastomesh.binary(), verb, path, "-o", os.path.join(folder, "mesh.vtu"), "--quiet"]
+        runs = (lambda: subprocess.run(command, check=True)), (lambda: make(*arrays))
+        # In turns, as other work on the machine comes and goes.
+        return np.array([[seconds(run, 1) for run in runs] for _ in range(9)]).min(axis=0)
 
 
 def main():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import Any, TypeVar, Union
 
 import numpy as np
 
@@ -35,8 +35,8 @@ def tetrahedralize(
     ``points`` (n, 3) and ``triangles`` (m, 3), whose corners are rows of ``points``; or a ``pyvista.PolyData``, or the path of a
     file (.off, .ply, .stl, .obj, .poly, .smesh, .node) instead of both. Without triangles points become their Delaunay
     tetrahedralization. ``markers`` (m,) are handed on to ``Mesh.markers``. With ``plc=True`` facets may lie inside, ``segments``
-    (k, 2) are kept, ``holes`` (h, 3) are points in parts that stay empty, ``regions`` a sequence of ``(point, id)`` or ``(point, id,
-    max_volume)``.
+    (k, 2) are kept, ``holes`` (h, 3) are points in parts that stay empty, ``regions`` a sequence of ``(point, id)`` or
+    ``(point, id, max_volume)``.
 
     ``options`` are those of ``anastomesh tetrahedralize``: ``refine=False``, ``max_radius_edge=1.4``, ``min_dihedral=``,
     ``max_volume=``, ``size=``, ``plc=``, ``split=``, ``repair=``, ``strict=``, ``tetgen="pYq1.4"``, ``threads=``.
@@ -60,12 +60,12 @@ def tetrahedralize(
         return _made(done, out)
 
 
-def mesh(network: NetworkLike, *, roots: Optional[Sequence[Any]] = None, progress: ProgressLike = None, **options: Any) -> Mesh:
+def mesh(network: NetworkLike, *, roots: Sequence[Any] | None = None, progress: ProgressLike = None, **options: Any) -> Mesh:
     """Meshes a network of vessels: one valid tetrahedral mesh, its boundary labelled as wall, inlets and outlets.
 
-    ``network`` is a :class:`Network`, a tuple ``(nodes, edges, radii)``, a dict of its arrays, a graph of networkx, or the path of a
-    file. ``roots`` are the nodes that become inlets, as the network calls them (default: in each component the terminal of largest
-    radius).
+    ``network`` is a :class:`Network`, a tuple ``(nodes, edges, radii)``, a dict of its arrays, a graph of networkx, or the path
+    of a file. ``roots`` are the nodes that become inlets, as the network calls them (default: in each component the terminal of
+    largest radius).
 
     ``options`` are those of ``anastomesh mesh``: ``rho=3``, ``refine=True`` or a number of iterations, ``data=["radius"]``,
     ``keep_going=``, ``memory="4GiB"``, ``work_dir=``, ``inflow=``, ``units="um:m"``, ``threads=`` and all others.
@@ -83,11 +83,11 @@ def mesh(network: NetworkLike, *, roots: Optional[Sequence[Any]] = None, progres
 
 
 def refine(network: NetworkLike, *, progress: ProgressLike = None, **options: Any) -> Network:
-    """Moves the nodes of a network until its vessels do not overlap and can be cut; ``original_node`` and ``displacement`` of what
-    comes back say where each node was.
+    """Moves the nodes of a network until its vessels do not overlap and can be cut; ``original_node`` and ``displacement``
+    of what comes back say where each node was.
 
-    ``options`` are those of ``anastomesh refine``: ``iterations=200``, ``residual="shrink"``, ``free_terminals=``, ``max_move=`` ...
-    Raises :class:`InvalidError` where vessels overlap in the end, with the network as ``result``.
+    ``options`` are those of ``anastomesh refine``: ``iterations=200``, ``residual="shrink"``, ``free_terminals=``, ``max_move=``
+    and so on. Raises :class:`InvalidError` where vessels overlap in the end, with the network as ``result``.
     """
     with work_folder() as folder:
         given = None if isinstance(network, (str, os.PathLike)) else Network.of(network)
@@ -98,7 +98,7 @@ def refine(network: NetworkLike, *, progress: ProgressLike = None, **options: An
         return _or_raise(done, made)
 
 
-def check(mesh: Union[Mesh, _Path], **options: Any) -> CheckReport:
+def check(mesh: Mesh | _Path, **options: Any) -> CheckReport:
     """Verifies a mesh, or the file of one, line by line; what is not valid is no error. ``options``: ``memory=``."""
     with work_folder() as folder:
         path = mesh._write(folder) if isinstance(mesh, Mesh) else os.fspath(mesh)
@@ -112,7 +112,10 @@ def _made(done: Done, out: str) -> Mesh:
     return _or_raise(done, Mesh._read(out, done.report) if os.path.isdir(out) else None)
 
 
-def _or_raise(done: Done, result: Any) -> Any:
+_Made = TypeVar("_Made", Mesh, Network)
+
+
+def _or_raise(done: Done, result: _Made | None) -> _Made:
     if done.code:
         raise done.error(result)
     if result is None:
@@ -138,9 +141,7 @@ def _surface(points: Any, triangles: Any) -> tuple[Any, Any]:
     return points, triangles
 
 
-def _write_surface(
-    folder: str, points: Any, triangles: Any, markers: Any, segments: Any, holes: Any, regions: Any
-) -> str:
+def _write_surface(folder: str, points: Any, triangles: Any, markers: Any, segments: Any, holes: Any, regions: Any) -> str:
     points = _arrays.floats("points", points, 3)
     named = ("points", len(points))
     triangles = None if triangles is None else _arrays.indices("triangles", triangles, 3, *named)
@@ -170,7 +171,7 @@ def _regions(regions: Sequence[Any]) -> _arrays.Floats:
     return _arrays.floats("regions", np.array(rows, dtype=np.float64).reshape(-1, 5), 5)
 
 
-def _write_network(folder: str, network: NetworkLike, options: dict[str, Any], roots: Optional[Sequence[Any]]) -> str:
+def _write_network(folder: str, network: NetworkLike, options: dict[str, Any], roots: Sequence[Any] | None) -> str:
     """Where the network is; roots become options."""
     if isinstance(network, (str, os.PathLike)):
         if roots is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,7 @@ def _shown(row: Any) -> str:
     return str(np.asarray(row).tolist())
 
 
-def _array(name: str, values: Any, columns: Optional[int], rows: Optional[tuple[str, int]]) -> Array:
+def _array(name: str, values: Any, columns: int | None, rows: tuple[str, int] | None) -> Array:
     array = np.asarray(values)
     wanted = f"(n, {columns})" if columns else "(n,)"
     if array.ndim != (2 if columns else 1) or (columns and array.shape[1] != columns):
@@ -30,7 +30,7 @@ def _array(name: str, values: Any, columns: Optional[int], rows: Optional[tuple[
     return array
 
 
-def floats(name: str, values: Any, columns: Optional[int] = None, rows: Optional[tuple[str, int]] = None) -> Floats:
+def floats(name: str, values: Any, columns: int | None = None, rows: tuple[str, int] | None = None) -> Floats:
     """Finite numbers, as float64."""
     array = _array(name, values, columns, rows)
     if array.dtype.kind not in "fiu":
@@ -43,7 +43,7 @@ def floats(name: str, values: Any, columns: Optional[int] = None, rows: Optional
     return array
 
 
-def ints(name: str, values: Any, columns: Optional[int] = None, rows: Optional[tuple[str, int]] = None) -> Ints:
+def ints(name: str, values: Any, columns: int | None = None, rows: tuple[str, int] | None = None) -> Ints:
     """Integers of any width."""
     array = _array(name, values, columns, rows)
     if not array.size:
@@ -63,7 +63,7 @@ def labels(name: str, values: Any, rows: tuple[str, int]) -> Ints:
     return array.astype(np.int32, copy=False)
 
 
-def indices(name: str, values: Any, columns: Optional[int], of: str, count: int) -> Ints:
+def indices(name: str, values: Any, columns: int | None, of: str, count: int) -> Ints:
     """Rows that name those of another array, which has ``count``."""
     array = ints(name, values, columns)
     outside = (array < 0) | (array >= count)
@@ -74,7 +74,7 @@ def indices(name: str, values: Any, columns: Optional[int], of: str, count: int)
     return array
 
 
-def write(folder: str, **arrays: Optional[Array]) -> None:
+def write(folder: str, **arrays: Array | None) -> None:
     """Writes those that are there, each as ``NAME.npy``."""
     for name, array in arrays.items():
         if array is not None:

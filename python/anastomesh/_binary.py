@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import shutil
 import sysconfig
-from functools import lru_cache
+from functools import cache
 
 NAME = "anastomesh" + (sysconfig.get_config_var("EXE") or "")
 
 
-@lru_cache(maxsize=None)
+@cache
 def _installed() -> str:
     # The folder of scripts of the environment, of the user, and that of `pip install --target`.
     schemes = [sysconfig.get_path("scripts"), sysconfig.get_path("scripts", f"{os.name}_user")]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any
 
 
 class Error(RuntimeError):
@@ -18,10 +18,10 @@ class Error(RuntimeError):
         self,
         message: str,
         *,
-        report: Optional[dict[str, Any]] = None,
+        report: dict[str, Any] | None = None,
         result: Any = None,
         messages: tuple[str, ...] = (),
-        exit_code: Optional[int] = None,
+        exit_code: int | None = None,
     ) -> None:
         super().__init__(message)
         self.report = report

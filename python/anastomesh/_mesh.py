@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union
+from typing import Any
 
 import numpy as np
 
@@ -27,11 +27,11 @@ class Patch:
     id: int
     name: str
     #: The terminal node that the disc closes, in the order of the network that was given.
-    node: Optional[int] = None
-    center: Optional[tuple[float, float, float]] = None
+    node: int | None = None
+    center: tuple[float, float, float] | None = None
     #: Out of the mesh, of length 1.
-    normal: Optional[tuple[float, float, float]] = None
-    radius: Optional[float] = None
+    normal: tuple[float, float, float] | None = None
+    radius: float | None = None
 
 
 @dataclass(eq=False)
@@ -40,20 +40,21 @@ class Mesh:
 
     ``triangles`` (k, 3) are its boundary, seen from outside counter-clockwise, with ``markers`` (k,), the patch of each; of a
     surface that was filled they are its triangles in their order. ``regions`` (m,) are the regions of the tetrahedra, or the
-    blocks that the mesh of a network is made of. ``report`` is what the program says of the run, ``terminals`` what it knows of each
-    inlet and outlet (place, area, flow, pressure, ...), ``values`` what ``data=`` asked for, as ``{("point", "radius"): array}``.
+    blocks that the mesh of a network is made of. ``report`` is what the program says of the run, ``terminals`` what it knows of
+    each inlet and outlet (place, area, flow, pressure, ...), ``values`` what ``data=`` asked for, as
+    ``{("point", "radius"): array}``.
     """
 
     points: Floats
     tets: Ints
     triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), np.int32))
-    markers: Optional[Ints] = None
-    regions: Optional[Ints] = None
+    markers: Ints | None = None
+    regions: Ints | None = None
     patches: list[Patch] = field(default_factory=list)
     terminals: list[dict[str, Any]] = field(default_factory=list, repr=False)
     values: dict[tuple[str, str], Array] = field(default_factory=dict, repr=False)
-    report: Optional[dict[str, Any]] = field(default=None, repr=False)
-    _blocks: Optional[Ints] = field(default=None, repr=False)
+    report: dict[str, Any] | None = field(default=None, repr=False)
+    _blocks: Ints | None = field(default=None, repr=False)
     _notes: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def patch(self, name: str) -> Ints:
@@ -61,7 +62,8 @@ class Mesh:
         ids = [patch.id for patch in self.patches if patch.name == name]
         if not ids or self.markers is None:
             raise KeyError(f"there is no patch {name!r}; there are {', '.join(p.name for p in self.patches)}")
-        return self.triangles[self.markers == ids[0]]
+        chosen: Ints = self.triangles[self.markers == ids[0]]
+        return chosen
 
     def to_pyvista(self) -> Any:
         """The tetrahedra as a ``pyvista.UnstructuredGrid``, with the cell array ``block`` and ``values``."""
@@ -74,7 +76,7 @@ class Mesh:
         """The boundary as a ``pyvista.PolyData`` on all points, with the cell arrays ``patch`` and ``block`` and ``values``."""
         import pyvista
 
-        surface = pyvista.PolyData.from_regular_faces(self.points, self.triangles)
+        surface = pyvista.PolyData.from_regular_faces(self.points, self.triangles.astype(int))
         return self._with_data(surface, {name: of_triangles for name, (_, of_triangles) in self._cell_data().items()})
 
     def _with_data(self, data_set: Any, of_cells: dict[str, Array]) -> Any:
@@ -93,13 +95,13 @@ class Mesh:
             [(kind, cell) for kind, cell in cells if len(cell)],
             point_data=self._values("point"),
             cell_data={
-                name: [values for values, (_, cell) in zip(both, cells) if len(cell)]
+                name: [values for values, (_, cell) in zip(both, cells, strict=False) if len(cell)]
                 for name, both in self._cell_data().items()
             },
             field_data={patch.name: np.array([patch.id, 2]) for patch in self.patches},
         )
 
-    def save(self, path: Union[str, os.PathLike[str]], **options: Any) -> None:
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Writes it in any format of ``anastomesh convert``: .vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .ele, .npyd, or the
         boundary as .stl, .ply, .obj, .off, .glb, .3mf, .vtp."""
         with work_folder() as folder:
@@ -108,7 +110,7 @@ class Mesh:
                 raise done.error()
 
     @classmethod
-    def load(cls, path: Union[str, os.PathLike[str]]) -> Mesh:
+    def load(cls, path: str | os.PathLike[str]) -> Mesh:
         """Reads a mesh in any format that the program reads."""
         if os.path.isdir(path) and os.fspath(path).endswith(".npyd"):
             return cls._read(os.fspath(path), None)
@@ -157,7 +159,7 @@ class Mesh:
         return path
 
     @classmethod
-    def _read(cls, folder: str, report: Optional[dict[str, Any]]) -> Mesh:
+    def _read(cls, folder: str, report: dict[str, Any] | None) -> Mesh:
         """Reads what the program has written."""
         files = [name for name, kind in map(os.path.splitext, sorted(os.listdir(folder))) if kind == ".npy"]
         parts = {name: _arrays.read(folder, name) for name in _PARTS if name in files}

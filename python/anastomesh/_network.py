@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union
+from typing import Any, Union
 
 import numpy as np
 
@@ -27,14 +27,14 @@ class Network:
 
     nodes: Floats
     edges: Ints
-    radii: Optional[Floats] = None
-    edge_radii: Optional[Floats] = None
-    roots: Optional[Ints] = None
+    radii: Floats | None = None
+    edge_radii: Floats | None = None
+    roots: Ints | None = None
     #: What the nodes are called, where they come from a graph.
-    labels: Optional[list[Any]] = field(default=None, repr=False)
-    original_node: Optional[Ints] = field(default=None, repr=False)
-    displacement: Optional[Floats] = field(default=None, repr=False)
-    report: Optional[dict[str, Any]] = field(default=None, repr=False)
+    labels: list[Any] | None = field(default=None, repr=False)
+    original_node: Ints | None = field(default=None, repr=False)
+    displacement: Floats | None = field(default=None, repr=False)
+    report: dict[str, Any] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         self.nodes = _arrays.floats("nodes", self.nodes, 3)
@@ -73,10 +73,10 @@ class Network:
         labels = list(graph.nodes)
         number = {label: i for i, label in enumerate(labels)}
         data = [graph.nodes[label] for label in labels]
-        nodes = np.array([_position(label, of) for label, of in zip(labels, data)], dtype=np.float64).reshape(-1, 3)
+        nodes = np.array([_position(label, of) for label, of in zip(labels, data, strict=False)], dtype=np.float64).reshape(-1, 3)
         listed = list(graph.edges(data=True))
         edges = np.array([(number[a], number[b]) for a, b, _ in listed], dtype=np.int64).reshape(-1, 2)
-        radii = _attribute("node", list(zip(labels, data)), _RADII)
+        radii = _attribute("node", list(zip(labels, data, strict=False)), _RADII)
         edge_radii = _attribute("edge", [((a, b), of) for a, b, of in listed], _RADII)
         return cls(nodes, edges, radii, edge_radii, labels=labels)
 
@@ -107,12 +107,12 @@ class Network:
         """Writes it for the program; returns the path."""
         path = os.path.join(folder, "network.npyd")
         os.mkdir(path)
-        arrays: dict[str, Optional[Array]] = {"nodes": self.nodes, "edges": self.edges, "radii": self.radii}
+        arrays: dict[str, Array | None] = {"nodes": self.nodes, "edges": self.edges, "radii": self.radii}
         _arrays.write(path, **arrays, edge_radii=self.edge_radii, roots=self.roots)
         return path
 
     @classmethod
-    def load(cls, folder: str, report: Optional[dict[str, Any]], given: Optional[Network]) -> Network:
+    def load(cls, folder: str, report: dict[str, Any] | None, given: Network | None) -> Network:
         """Reads what the program has written."""
         parts = ("nodes", "edges", "radii", "edge_radii", "original_node", "displacement")
         arrays = {name: _arrays.read(folder, name) for name in parts}
@@ -130,7 +130,7 @@ class Network:
 NetworkLike = Union[Network, Mapping[str, Any], tuple[Any, Any, Any], "os.PathLike[str]", str, Any]
 
 
-def _radii(name: str, values: Any, columns: Optional[int], rows: tuple[str, int]) -> Floats:
+def _radii(name: str, values: Any, columns: int | None, rows: tuple[str, int]) -> Floats:
     # Radii that cannot be used are filled by the program, which says so.
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
@@ -151,7 +151,7 @@ def _position(label: Any, of: Mapping[str, Any]) -> Any:
     return found
 
 
-def _attribute(kind: str, items: list[tuple[Any, Mapping[str, Any]]], names: tuple[str, ...]) -> Optional[Floats]:
+def _attribute(kind: str, items: list[tuple[Any, Mapping[str, Any]]], names: tuple[str, ...]) -> Floats | None:
     """What all items have under one of the names; None where none of them has it."""
     for name in names:
         have = [name in of for _, of in items]

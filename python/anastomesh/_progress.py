@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, NamedTuple, Optional, Union
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 
 class Progress(NamedTuple):
@@ -13,13 +14,13 @@ class Progress(NamedTuple):
     total: int
 
     @property
-    def fraction(self) -> Optional[float]:
+    def fraction(self) -> float | None:
         """The share of the stage that is done, from 0 to 1; None where that is not known."""
         return min(self.done / self.total, 1.0) if self.total else None
 
 
 #: What ``progress=`` takes: a function that is called with each :class:`Progress`, True for bars of tqdm, False for none.
-ProgressLike = Union[bool, Callable[[Progress], Any], None]
+ProgressLike = bool | Callable[[Progress], Any] | None
 
 
 class _Bars:
@@ -32,7 +33,7 @@ class _Bars:
             raise ImportError("progress=True shows bars of tqdm: pip install tqdm, or give a function instead") from error
         self._tqdm: Any = tqdm
         self._bar: Any = None
-        self._stage: Optional[str] = None
+        self._stage: str | None = None
 
     def __call__(self, progress: Progress) -> None:
         if progress.stage != self._stage:
@@ -49,7 +50,7 @@ class _Bars:
             self._bar = None
 
 
-def listener(progress: ProgressLike) -> tuple[Optional[Callable[[Progress], Any]], Callable[[], None]]:
+def listener(progress: ProgressLike) -> tuple[Callable[[Progress], Any] | None, Callable[[], None]]:
     """What is called with each progress, and what is called in the end."""
     if progress is True:
         bars = _Bars()

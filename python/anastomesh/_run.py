@@ -8,9 +8,9 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any, Callable, NamedTuple, Optional
+from typing import Any, NamedTuple
 
 from ._binary import binary
 from ._errors import error_of
@@ -27,7 +27,7 @@ class Done(NamedTuple):
     """A run that has ended."""
 
     code: int
-    report: Optional[dict[str, Any]]
+    report: dict[str, Any] | None
     #: The lines that it has said.
     messages: tuple[str, ...]
 
@@ -76,9 +76,7 @@ def arguments(options: Mapping[str, Any]) -> list[str]:
     return words
 
 
-def run(
-    verb: str, words: Sequence[str], progress: ProgressLike = None, *, folder: str = "", tells: bool = True
-) -> Done:
+def run(verb: str, words: Sequence[str], progress: ProgressLike = None, *, folder: str = "", tells: bool = True) -> Done:
     """Runs a verb to its end. ``folder``: that of the arrays, which messages need not name; ``tells``: whether the verb knows
     ``--progress``."""
     hear, close = listener(progress)
@@ -88,9 +86,7 @@ def run(
         command += ["--progress", "json"]
     with tempfile.TemporaryFile() as out:
         # In a session of its own: Ctrl-C in a terminal reaches this process alone, which passes it on once.
-        process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.PIPE, start_new_session=True
-        )
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.PIPE, start_new_session=True)
         try:
             messages = _listen(process, hear)
             code = process.wait()
@@ -105,7 +101,7 @@ def run(
         return Done(code, _report(out.read()), tuple(line.replace(folder + os.sep, "") for line in messages))
 
 
-def _listen(process: subprocess.Popen[bytes], hear: Optional[Callable[[Progress], Any]]) -> tuple[str, ...]:
+def _listen(process: subprocess.Popen[bytes], hear: Callable[[Progress], Any] | None) -> tuple[str, ...]:
     messages = []
     assert process.stderr is not None
     for raw in process.stderr:
@@ -121,10 +117,8 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
     """Ends the program as Ctrl-C does: it leaves nothing partial."""
     if process.stderr is not None:
         process.stderr.close()
-    for ask in (lambda: process.send_signal(signal.SIGINT), lambda: process.send_signal(signal.SIGINT), process.kill):
-        if process.poll() is not None:
-            return
-        ask()
+    for how in (signal.SIGINT, signal.SIGINT, signal.SIGKILL):
+        process.send_signal(how)
         try:
             process.wait(_PATIENCE)
             return
@@ -137,7 +131,7 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
             return
 
 
-def _report(text: bytes) -> Optional[dict[str, Any]]:
+def _report(text: bytes) -> dict[str, Any] | None:
     try:
         report = json.loads(text)
     except ValueError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Sequence
-from typing import Any, Optional, Union
+from typing import Any
 
 import numpy as np
 
@@ -54,7 +54,7 @@ class TetGen:
         self._regions: list[tuple[Sequence[float], int, float]] = []
         self._repairs = False
         self._all_edges = self._all_faces = False
-        self._made: Optional[Mesh] = None
+        self._made: Mesh | None = None
         if isinstance(arg0, (str, os.PathLike)):
             import pyvista
 
@@ -166,7 +166,7 @@ class TetGen:
         known = np.zeros(len(self._mesh.triangles), np.int32) if markers is None else markers
         if not self._all_faces:
             return known
-        by_face = dict(zip(map(tuple, np.sort(self._mesh.triangles, axis=1).tolist()), known.tolist()))
+        by_face = dict(zip(map(tuple, np.sort(self._mesh.triangles, axis=1).tolist()), known.tolist(), strict=False))
         return np.array([by_face.get(tuple(face), 0) for face in self.trifaces.tolist()], np.int32)
 
     @property
@@ -189,13 +189,13 @@ class TetGen:
         """The surface as a ``pyvista.PolyData``."""
         import pyvista
 
-        return pyvista.PolyData.from_regular_faces(self.v, self.f)
+        return pyvista.PolyData.from_regular_faces(self.v, self.f.astype(int))
 
     def plot(self, **options: Any) -> Any:
         """Shows the mesh."""
         return self.grid.plot(**options)
 
-    def write(self, filename: Union[str, os.PathLike[str]], binary: bool = True) -> None:
+    def write(self, filename: str | os.PathLike[str], binary: bool = True) -> None:
         """Writes the mesh by pyvista: .vtk or .vtu."""
         self.grid.save(os.fspath(filename), binary=binary)
 

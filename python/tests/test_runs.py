@@ -110,6 +110,8 @@ def test_the_program_is_on_the_path():
 
 
 def test_types_hold(tmp_path: Path):
+    whole = [sys.executable, "-m", "mypy", "-p", "anastomesh", f"--config-file={Path(__file__).parents[2] / 'pyproject.toml'}"]
+    assert subprocess.run(whole, cwd=tmp_path, check=False).returncode == 0
     used = tmp_path / "used.py"
     used.write_text(
         "import anastomesh\n"

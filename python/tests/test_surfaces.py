@@ -55,7 +55,7 @@ def test_markers_regions_holes_and_segments_of_a_complex(cube):
     mesh = anastomesh.tetrahedralize(both, faces, plc=True, markers=markers, regions=regions, segments=[[0, 8]])
     assert set(np.unique(mesh.regions)) == {7, 9}
     assert volumes(mesh.points, mesh.tets)[mesh.regions == 9].sum() == pytest.approx(1 / 8)
-    by_face = {tuple(sorted(t)): m for t, m in zip(mesh.triangles.tolist(), mesh.markers.tolist())}
+    by_face = {tuple(sorted(t)): m for t, m in zip(mesh.triangles.tolist(), mesh.markers.tolist(), strict=False)}
     assert [by_face[tuple(sorted(t))] for t in faces.tolist()] == markers.tolist()
     edges = {tuple(sorted(pair)) for t in mesh.tets.tolist() for pair in [(t[i], t[j]) for i in range(4) for j in range(i)]}
     assert (0, 8) in edges
