@@ -117,12 +117,10 @@ class Network:
         parts = ("nodes", "edges", "radii", "edge_radii", "original_node", "displacement")
         arrays = {name: _arrays.read(folder, name) for name in parts}
         labels = None
-        if given is not None and given.labels is not None:
-            # Nodes that refinement has put in have no name but their number.
-            kept = min(len(arrays["nodes"]), len(given.labels))
-            named = [given.labels[i] for i in arrays["original_node"]]
-            labels = named if len(set(map(repr, named))) == len(named) else None
-            labels = labels if kept else None
+        original = arrays["original_node"]
+        # Where a node was split, or put in, names would not tell the new ones apart.
+        if given is not None and given.labels is not None and len(np.unique(original)) == len(original):
+            labels = [given.labels[i] for i in original] if original.max(initial=0) < len(given.labels) else None
         return cls(**arrays, labels=labels, report=report)
 
 
