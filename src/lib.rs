@@ -69,7 +69,9 @@ pub mod testing {
         Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,
     };
     pub use crate::grow::{Dual, GenerateError, GenerateParams, Morphometry, Organ, RAT_KIDNEY, dual, generate};
-    pub use crate::io::network::{NetworkFormat, read_network_arrays, read_network_from, refinement_arrays, write_tree};
+    pub use crate::io::network::{
+        NetworkFormat, read_network_arrays, read_network_from, refinement_arrays, write_tree,
+    };
     pub use crate::io::surface::{SurfaceFormat, read_complex_arrays, read_surface_from};
     pub use crate::io::volume::{MeshFormat, read_mesh_arrays, read_mesh_from, write_mesh_to};
     pub use crate::mesh::Bounds;

@@ -73,7 +73,10 @@ fn a_network_as_arrays_is_the_network() {
     for (input, out) in [(fixture("tree_30.vtp"), "of_file.vtu"), (at("a.npyd"), "of_arrays.vtu")] {
         assert_code(&mesh(&input, &at(out), &["-q", "--root", "0"]), FINE);
     }
-    assert_eq!(read_mesh(&at("of_file.vtu")).expect("a mesh").volume, read_mesh(&at("of_arrays.vtu")).expect("a mesh").volume);
+    assert_eq!(
+        read_mesh(&at("of_file.vtu")).expect("a mesh").volume,
+        read_mesh(&at("of_arrays.vtu")).expect("a mesh").volume
+    );
     assert_code(&run("refine", &[&at("a.npyd"), Path::new("-o"), &at("b.npyd")], &["-q"]), FINE);
     assert!(at("b.npyd/original_node.npy").exists() && at("b.npyd/displacement.npy").exists());
     assert_code(&run("info", &[&at("b.npyd")], &[]), FINE);

@@ -12,8 +12,8 @@ use super::grid::GridArgs;
 use super::progress::Bars;
 use super::room;
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::io::npy;
 use crate::io::network::{NetworkFormat, NetworkOptions, ensure_tree_writable, read_network, write_tree};
+use crate::io::npy;
 use crate::io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
 };

@@ -57,7 +57,9 @@ impl Lines {
         let is_over = done > 0 && done == total;
         match *last {
             // Threads may tell in another order than that in which they count.
-            Some((at, before, when)) if at == stage && (done <= before || !(is_over || when.elapsed() >= LINE_EVERY)) => {
+            Some((at, before, when))
+                if at == stage && (done <= before || !(is_over || when.elapsed() >= LINE_EVERY)) =>
+            {
                 return;
             }
             _ => *last = Some((stage, done, Instant::now())),

@@ -2,7 +2,7 @@
 //!
 //! Three families of files, each with a folder per format: `volume` (tetrahedral meshes), `network` and `surface`. `tetgen`
 //! stands apart because its files are more than one of these. What formats share: `file` (paths, whole files), `text` (words
-//! and numbers with their lines), `vtk_xml`, `npy` (arrays of NumPy), `patches` (names).
+//! and numbers with their lines), `vtk_xml`, `npy` (arrays of `NumPy`), `patches` (names).
 //!
 //! A new format of a family takes
 //! 1. a folder with `error` (an enum of what can be wrong with such a file), `read` and `write`: from bytes or a path to the

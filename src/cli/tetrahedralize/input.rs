@@ -8,9 +8,7 @@ use super::format::{InputFormat, is_stream};
 use super::numbers::{Counted, FileNumbers};
 use super::plan::TetPlan;
 use crate::cli::exit::Failure;
-use crate::io::surface::{
-    ArrayComplex, ArrayRegion, SurfaceContent, read_complex, read_content_as, read_content_from,
-};
+use crate::io::surface::{ArrayComplex, ArrayRegion, SurfaceContent, read_complex, read_content_as, read_content_from};
 use crate::io::tetgen::{self, Nodes};
 use crate::mesh::TriMesh;
 use crate::mesh::facets::{self, FacetTriangles};

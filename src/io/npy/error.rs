@@ -17,12 +17,6 @@ pub enum NpyFault {
     /// The array that has to be there is not.
     #[error("is missing: write it with numpy.save")]
     Missing,
-    /// The operating system refused to read.
-    #[error("cannot be read: {reason}; check the path and its permissions")]
-    Unread {
-        /// Its reason.
-        reason: String,
-    },
     /// It does not begin as such files do.
     #[error("is no .npy file: write it with numpy.save")]
     NotNpy,

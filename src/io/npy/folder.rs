@@ -45,7 +45,11 @@ impl Arrays {
     ///
     /// # Errors
     /// `Read` with the system's reason.
-    pub(in crate::io) fn read<F: Error>(folder: &Path, names: &[&str], other: Option<&str>) -> Result<Self, FileError<F>> {
+    pub(in crate::io) fn read<F: Error>(
+        folder: &Path,
+        names: &[&str],
+        other: Option<&str>,
+    ) -> Result<Self, FileError<F>> {
         // Of a folder that does not exist this tells why.
         std::fs::read_dir(folder).map_err(FileError::read(folder))?;
         let mut files = BTreeMap::new();
@@ -67,6 +71,15 @@ impl Arrays {
     /// Whether an array is there.
     pub(in crate::io) fn has(&self, name: &str) -> bool {
         self.files.contains_key(&file(name))
+    }
+
+    /// An array that may be missing, and is empty then.
+    pub(in crate::io) fn if_there<T>(
+        &self,
+        name: &str,
+        read: impl FnOnce(&Self, &str) -> Result<Vec<T>, NpyError>,
+    ) -> Result<Vec<T>, NpyError> {
+        if self.has(name) { read(self, name) } else { Ok(Vec::new()) }
     }
 
     /// The names among these that are there.
@@ -136,18 +149,19 @@ impl Arrays {
         }
         let fault = |fault: NpyFault| fault.of(file(name));
         let rows = self.array(name)?.ints::<1>().map_err(fault)?;
-        self.ensure_rows(name, rows.len(), (of, wanted))?;
-        let narrow = |(row, value): (usize, i64)| i32::try_from(value).map_err(|_| fault(NpyFault::NoLabel { row, value: value.to_string() }));
+        ensure_rows(name, rows.len(), (of, wanted))?;
+        let narrow = |(row, value): (usize, i64)| {
+            i32::try_from(value).map_err(|_| fault(NpyFault::NoLabel { row, value: value.to_string() }))
+        };
         rows.into_iter().flatten().enumerate().map(narrow).collect::<Result<_, _>>().map(Some)
     }
+}
 
-    /// Makes sure that an array has as many rows as another one.
-    pub(in crate::io) fn ensure_rows(
-        &self,
-        name: &str,
-        found: usize,
-        (of, wanted): (&'static str, usize),
-    ) -> Result<(), NpyError> {
-        if found == wanted { Ok(()) } else { Err(NpyFault::Rows { found, of, wanted }.of(file(name))) }
-    }
+/// Makes sure that an array has as many rows as another one.
+pub(in crate::io) fn ensure_rows(
+    name: &str,
+    found: usize,
+    (of, wanted): (&'static str, usize),
+) -> Result<(), NpyError> {
+    if found == wanted { Ok(()) } else { Err(NpyFault::Rows { found, of, wanted }.of(file(name))) }
 }

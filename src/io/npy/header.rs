@@ -39,7 +39,7 @@ impl Header {
             let key = words.quoted().ok_or("a key is no word in quotes")?;
             words.expect(':', "a key has no value")?;
             match key {
-                "descr" => descr = Some(words.quoted().ok_or("the type is that of records, not of numbers")?.to_owned()),
+                "descr" => descr = Some(words.quoted().ok_or("the type is that of records, not of numbers")?),
                 "fortran_order" => fortran = Some(words.truth().ok_or("the order is neither True nor False")?),
                 "shape" => shape = Some(words.counts()?),
                 _ => return Err("it has an unknown key"),
@@ -50,7 +50,9 @@ impl Header {
             }
         }
         match (descr, fortran, shape) {
-            (Some(descr), Some(fortran), Some(shape)) if words.0.trim().is_empty() => Ok(Self { descr, fortran, shape }),
+            (Some(descr), Some(fortran), Some(shape)) if words.0.trim().is_empty() => {
+                Ok(Self { descr: descr.to_owned(), fortran, shape })
+            }
             (Some(_), Some(_), Some(_)) => Err("something stands behind the dictionary"),
             _ => Err("'descr', 'fortran_order' and 'shape' are needed"),
         }

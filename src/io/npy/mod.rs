@@ -10,7 +10,7 @@ mod tests;
 mod write;
 
 pub use error::{NpyError, NpyFault};
-pub(super) use folder::Arrays;
+pub(super) use folder::{Arrays, ensure_rows};
 #[cfg(feature = "cli")]
 pub(crate) use folder::{holds, is_folder};
 pub(super) use write::{Item, head, write_array};

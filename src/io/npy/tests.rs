@@ -56,7 +56,10 @@ fn headers_are_held_against_the_file() {
     }
     assert_eq!(fault(b"no array"), NpyFault::NotNpy);
     assert_eq!(fault(&npy(4, "", b"")), NpyFault::Version { major: 4 });
-    assert_eq!(fault(&npy(1, &dict("<f8", false, "(4,)"), &data)), NpyFault::Shape { found: vec![4], wanted: "(n, 2)".into() });
+    assert_eq!(
+        fault(&npy(1, &dict("<f8", false, "(4,)"), &data)),
+        NpyFault::Shape { found: vec![4], wanted: "(n, 2)".into() }
+    );
     let object = fault(&npy(1, &dict("|O", false, "(2, 2)"), &data));
     assert!(matches!(object, NpyFault::Type { .. }), "{object}");
     for header in [

@@ -35,12 +35,14 @@ impl Item for u32 {
     }
 }
 
+/// Bytes before the text of the header: what the file is, its version, and the length of the text.
+const BEFORE: usize = 10;
+
 /// What stands before the items: so many rows of so many columns; with one column there is one dimension.
 pub(in crate::io) fn head<T: Item>(out: &mut impl Write, rows: usize, columns: usize) -> io::Result<()> {
     let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
     let mut text = format!("{{'descr': '{}', 'fortran_order': False, 'shape': {shape}, }}", T::DESCR);
     // Items begin at a multiple of 64, so that they can be mapped; the line ends in a newline.
-    const BEFORE: usize = 10;
     let padding = (BEFORE + text.len() + 1).next_multiple_of(64) - BEFORE - text.len() - 1;
     text.extend(std::iter::repeat_n(' ', padding));
     text.push('\n');

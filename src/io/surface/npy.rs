@@ -55,12 +55,11 @@ pub fn read_complex_arrays(files: &[(&str, &[u8])]) -> Result<ArrayComplex, NpyE
 fn complex_of(arrays: &Arrays) -> Result<ArrayComplex, NpyError> {
     let points = arrays.points("points")?;
     let of_points = ("points.npy", points.len());
-    let rows = |name| if arrays.has(name) { arrays.indices(name, of_points) } else { Ok(Vec::new()) };
-    let triangles = rows("triangles")?;
+    let triangles = arrays.if_there("triangles", |arrays, name| arrays.indices(name, of_points))?;
     let markers = arrays.labels("markers", ("triangles.npy", triangles.len()))?;
-    let segments = if arrays.has("segments") { arrays.indices("segments", of_points)? } else { Vec::new() };
-    let holes = if arrays.has("holes") { arrays.points("holes")? } else { Vec::new() };
-    let regions = if arrays.has("regions") { regions(arrays)? } else { Vec::new() };
+    let segments = arrays.if_there("segments", |arrays, name| arrays.indices(name, of_points))?;
+    let holes = arrays.if_there("holes", Arrays::points)?;
+    let regions = arrays.if_there("regions", regions)?;
     Ok(ArrayComplex {
         mesh: TriMesh { points, triangles },
         markers: markers.unwrap_or_default(),
@@ -70,9 +69,9 @@ fn complex_of(arrays: &Arrays) -> Result<ArrayComplex, NpyError> {
     })
 }
 
-fn regions(arrays: &Arrays) -> Result<Vec<ArrayRegion>, NpyError> {
-    let fault = |fault: NpyFault| fault.of("regions.npy");
-    let rows = arrays.floats::<5>("regions")?.into_iter().enumerate();
+fn regions(arrays: &Arrays, name: &str) -> Result<Vec<ArrayRegion>, NpyError> {
+    let fault = |fault: NpyFault| fault.of(format!("{name}.npy"));
+    let rows = arrays.floats::<5>(name)?.into_iter().enumerate();
     rows.map(|(row, [x, y, z, id, volume])| {
         if ![x, y, z, id].iter().all(|x| x.is_finite()) {
             return Err(fault(NpyFault::NotFinite { row }));

@@ -25,9 +25,9 @@ pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOL
 pub use content::{MeshFile, MeshNotes};
 pub use error::MeshFileError;
 pub use format::MeshFormat;
+pub use npy::read_mesh_arrays;
 pub use options::GridOptions;
 pub use options::WriteOptions;
-pub use npy::read_mesh_arrays;
 pub use read::{read_mesh, read_mesh_from};
 pub(in crate::io) use vtu::write_boundary as write_poly_data;
 pub use vtu::{VtuPieces, VtuPiecesError};

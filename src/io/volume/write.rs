@@ -184,11 +184,7 @@ pub(super) fn write_format(
         MeshFormat::Msh => msh::write(out, mesh, notes, None),
         MeshFormat::Msh2 => msh::write_2(out, mesh, notes, None),
         MeshFormat::Medit => medit::write(out, mesh),
-        MeshFormat::Tetgen
-        | MeshFormat::Pvtu
-        | MeshFormat::Npy
-        | MeshFormat::OpenFoam
-        | MeshFormat::SimVascular => {
+        MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::Npy | MeshFormat::OpenFoam | MeshFormat::SimVascular => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
         }
     }

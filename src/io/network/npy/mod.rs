@@ -7,6 +7,6 @@ mod write;
 
 pub use read::NpyNetworkError;
 pub(super) use read::{ARRAYS, read};
-pub(super) use write::write;
 #[cfg(feature = "cli")]
 pub(super) use write::ensure_writable;
+pub(super) use write::write;

@@ -3,7 +3,7 @@
 use crate::io::network::content::{NetworkFile, NetworkOptions};
 use crate::io::network::polylines::{Polylines, Radii};
 use crate::io::network::radii::{Choice, RadiusFault};
-use crate::io::npy::{Arrays, NpyError, NpyFault};
+use crate::io::npy::{Arrays, NpyError, NpyFault, ensure_rows};
 use crate::skeleton::{NodeId, Skeleton};
 
 /// The arrays that are read.
@@ -36,22 +36,22 @@ pub(in crate::io::network) fn read(arrays: &Arrays, options: &NetworkOptions) ->
     let mut radii = Radii::default();
     if let Some(name) = &choice.points {
         let values = arrays.values(name)?;
-        arrays.ensure_rows(name, values.len(), of_nodes)?;
+        ensure_rows(name, values.len(), of_nodes)?;
         radii.nodes = Some(values);
     }
     if let Some(name) = &choice.cells {
         let of_edges = ("edges.npy", edges.len());
         if arrays.columns(name)? == 2 {
             let rows = arrays.floats::<2>(name)?;
-            arrays.ensure_rows(name, rows.len(), of_edges)?;
+            ensure_rows(name, rows.len(), of_edges)?;
             radii.corners = Some(rows.into_flattened());
         } else {
             let values = arrays.values(name)?;
-            arrays.ensure_rows(name, values.len(), of_edges)?;
+            ensure_rows(name, values.len(), of_edges)?;
             radii.lines = Some(values);
         }
     }
-    let roots = if arrays.has(ROOTS) { arrays.indices::<1>(ROOTS, of_nodes)? } else { Vec::new() };
+    let roots = arrays.if_there(ROOTS, |arrays, name| arrays.indices::<1>(name, of_nodes))?;
     let ends = (1..=edges.len()).map(|i| 2 * i).collect();
     let lines = Polylines { points, ends, path: edges.into_flattened() };
     let mut skeleton = Skeleton::default();

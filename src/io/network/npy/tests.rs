@@ -2,8 +2,8 @@
 
 use super::{read, write};
 use crate::io::network::content::{NetworkArray, NetworkOptions};
-use crate::io::network::{read_network, read_network_from};
 use crate::io::network::format::NetworkFormat;
+use crate::io::network::{read_network, read_network_from};
 use crate::io::npy::{Arrays, write_array};
 use crate::skeleton::NodeId;
 

@@ -41,8 +41,7 @@ struct Disc {
 
 impl Notes {
     pub(super) fn new(notes: &MeshNotes, patches: &[Patch]) -> Self {
-        let expected =
-            notes.expectation.clone().map(|Expectation { loops, terminals }| Expected { loops, terminals });
+        let expected = notes.expectation.clone().map(|Expectation { loops, terminals }| Expected { loops, terminals });
         let disc = |cap: Cap| Disc {
             node: cap.node,
             center: cap.center.into(),

@@ -31,8 +31,7 @@ fn mesh_of(arrays: &Arrays) -> Result<MeshFile, NpyError> {
     let of_points = ("points.npy", points.len());
     let tets = arrays.indices::<4>(TETS, of_points)?;
     let tet_block = arrays.labels(TET_BLOCKS, ("tets.npy", tets.len()))?;
-    let labelled = arrays.has(TRIANGLES);
-    let boundary = if labelled { arrays.indices::<3>(TRIANGLES, of_points)? } else { Vec::new() };
+    let boundary = arrays.if_there(TRIANGLES, |arrays, name| arrays.indices::<3>(name, of_points))?;
     let of_faces = ("triangles.npy", boundary.len());
     let boundary_patch = arrays.labels(TRIANGLE_PATCHES, of_faces)?;
     let boundary_block = arrays.labels(TRIANGLE_BLOCKS, of_faces)?;
@@ -51,5 +50,5 @@ fn mesh_of(arrays: &Arrays) -> Result<MeshFile, NpyError> {
         boundary_patch,
         patches,
     };
-    Ok(MeshFile { labelled: labelled && !volume.boundary.is_empty(), volume, notes })
+    Ok(MeshFile { labelled: !volume.boundary.is_empty(), volume, notes })
 }

@@ -34,7 +34,9 @@ fn points_and_tetrahedra_are_enough() {
         fs::remove_file(path.join(file)).unwrap();
     }
     let back = read(&path).unwrap();
-    assert!(back.labelled && back.volume.boundary == volume.boundary && back.volume.boundary_patch.iter().all(|&p| p == 0));
+    assert!(
+        back.labelled && back.volume.boundary == volume.boundary && back.volume.boundary_patch.iter().all(|&p| p == 0)
+    );
     fs::remove_file(path.join("triangles.npy")).unwrap();
     let back = read(&path).unwrap();
     assert!(!back.labelled && back.volume.mesh == volume.mesh);
