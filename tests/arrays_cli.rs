@@ -94,6 +94,11 @@ fn a_complex_as_arrays_has_markers_and_bounded_regions() {
     markers.dedup();
     assert_eq!(markers, [5, 6, 7, 8, 9, 10]);
     assert!(file.volume.tet_block.iter().all(|&region| region == 3));
+    // What of the input is no part of a mesh is not replaced, nor is the rest of it.
+    assert_says(&fill(&input, &input, &[]), BAD_INPUT, &["also holds"]);
+    for name in ["markers.npy", "regions.npy"] {
+        fs::remove_file(input.join(name)).expect("a file");
+    }
     assert_says(&fill(&input, &input, &[]), USAGE, &["is the input and would be replaced"]);
 }
 

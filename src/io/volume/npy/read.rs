@@ -1,6 +1,6 @@
 //! Reads meshes.
 
-use super::array::{ALL, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
+use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
 use super::notes::Notes;
 use crate::io::file::FileError;
 use crate::io::npy::{Arrays, NpyError, NpyFault};
@@ -14,7 +14,7 @@ use std::path::Path;
 /// # Errors
 /// `Read` with the system's reason, or `Content` with the array and the row that is wrong.
 pub(in crate::io::volume) fn read(folder: &Path) -> Result<MeshFile, FileError<NpyError>> {
-    mesh_of(&Arrays::read(folder, &ALL, Some(super::NOTES))?).map_err(FileError::content(folder))
+    mesh_of(&Arrays::read(folder, &ARRAYS, Some(NOTES))?).map_err(FileError::content(folder))
 }
 
 /// Reads a mesh from the bytes of the files of a folder.
@@ -35,8 +35,8 @@ fn mesh_of(arrays: &Arrays) -> Result<MeshFile, NpyError> {
     let of_faces = ("triangles.npy", boundary.len());
     let boundary_patch = arrays.labels(TRIANGLE_PATCHES, of_faces)?;
     let boundary_block = arrays.labels(TRIANGLE_BLOCKS, of_faces)?;
-    let notes = arrays.other(super::NOTES).map(serde_json::from_slice::<Notes>).transpose();
-    let notes = notes.map_err(|e| NpyFault::Json { reason: e.to_string() }.of(super::NOTES))?;
+    let notes = arrays.other(NOTES).map(serde_json::from_slice::<Notes>).transpose();
+    let notes = notes.map_err(|e| NpyFault::Json { reason: e.to_string() }.of(NOTES))?;
     let (notes, mut patches) = notes.map_or_else(|| (MeshNotes::default(), Vec::new()), Notes::into_parts);
     let boundary_patch = boundary_patch.unwrap_or_else(|| vec![0; boundary.len()]);
     if patches.is_empty() {

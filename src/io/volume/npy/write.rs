@@ -1,6 +1,6 @@
 //! Writes meshes.
 
-use super::array::{ALL, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
+use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
 use super::notes::Notes;
 use crate::geometry::Point3;
 use crate::io::file::{Asked, AtomicFolder};
@@ -17,8 +17,8 @@ use std::path::Path;
 const VALUES: [&str; 3] = ["point_", "tet_", "triangle_"];
 
 fn is_ours(file: &str) -> bool {
-    let is_array = |name: &str| ALL.contains(&name) || VALUES.iter().any(|prefix| name.starts_with(prefix));
-    file == super::NOTES || file.strip_suffix(".npy").is_some_and(is_array)
+    let is_array = |name: &str| ARRAYS.contains(&name) || VALUES.iter().any(|prefix| name.starts_with(prefix));
+    file == NOTES || file.strip_suffix(".npy").is_some_and(is_array)
 }
 
 /// Makes sure that the folder can be made or replaced. Leaves nothing behind.
@@ -54,7 +54,7 @@ pub(in crate::io::volume) fn write(
         writer.values(mesh, values)?;
     }
     let text = serde_json::to_string_pretty(&Notes::new(notes, mesh.patches()))?;
-    folder.put(super::NOTES, text.as_bytes())?;
+    folder.put(NOTES, text.as_bytes())?;
     folder.commit()
 }
 

@@ -1,0 +1,14 @@
+//! What writer and reader have to agree on.
+
+pub(super) const POINTS: &str = "points";
+pub(super) const TETS: &str = "tets";
+pub(super) const TET_BLOCKS: &str = "tet_blocks";
+pub(super) const TRIANGLES: &str = "triangles";
+pub(super) const TRIANGLE_PATCHES: &str = "triangle_patches";
+pub(super) const TRIANGLE_BLOCKS: &str = "triangle_blocks";
+
+/// All arrays of a mesh.
+pub(super) const ARRAYS: [&str; 6] = [POINTS, TETS, TET_BLOCKS, TRIANGLES, TRIANGLE_PATCHES, TRIANGLE_BLOCKS];
+
+/// The file with what is no array.
+pub(super) const NOTES: &str = "mesh.json";
