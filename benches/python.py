@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """The Python package beside PyPI's `tetgen` and beside the bare program, as tables in Markdown.
 
-    python benches/python.py replace SURFACE.off...    the same call of tetgen.TetGen and of anastomesh.TetGen
+    python benches/python.py plain SURFACE.off...      the same call of tetgen.TetGen and of anastomesh.TetGen: no points
+                                                       but those that the surface needs
+    python benches/python.py quality SURFACE.off...    the same with a bound on the shape
     python benches/python.py overhead SURFACE.off... NETWORK...    the same run from Python and by the program alone
 
 Needs both packages (`pip install tetgen anastomesh pyvista meshio`); `ANASTOMESH_BINARY` names another program. Times are wall
@@ -21,7 +23,10 @@ import time
 import anastomesh
 import numpy as np
 
-CALL = {"nobisect": True, "minratio": 1.4, "order": 1}
+CALLS = {
+    "plain": {"nobisect": True, "quality": False},
+    "quality": {"nobisect": True, "minratio": 1.4},
+}
 
 
 def surface_of(path):
@@ -65,7 +70,7 @@ def smallest_angle(points, tets):
     return least
 
 
-def one(package, path):
+def one(call, package, path):
     """What one package makes of a surface, as JSON."""
     if package == "tetgen":
         from tetgen import TetGen
@@ -75,7 +80,7 @@ def one(package, path):
 
     def run():
         tet = TetGen(points, triangles)
-        tet.tetrahedralize(**CALL)
+        tet.tetrahedralize(**CALLS[call])
         return tet
 
     tet = run()
@@ -90,17 +95,17 @@ def one(package, path):
     print(json.dumps(report))
 
 
-def replace(paths):
-    print(f"`TetGen(points, triangles).tetrahedralize({', '.join(f'{k}={v}' for k, v in CALL.items())})`\n")
+def replace(call, paths):
+    print(f"`TetGen(points, triangles).tetrahedralize({', '.join(f'{k}={v}' for k, v in CALLS[call].items())})`\n")
     print("| surface | triangles | kept: tetgen, ours | tetrahedra | smallest angle | seconds | ratio |")
     print("|---|---|---|---|---|---|---|")
     for path in paths:
-        print(row(path, [in_process(package, path) for package in ("tetgen", "anastomesh")]), flush=True)
+        print(row(path, [in_process(call, package, path) for package in ("tetgen", "anastomesh")]), flush=True)
 
 
-def in_process(package, path):
+def in_process(call, package, path):
     """What one package reports of a surface; nothing where its process ends without a report."""
-    command = [sys.executable, __file__, "one", package, path]
+    command = [sys.executable, __file__, "one", call, package, path]
     done = subprocess.run(command, capture_output=True, text=True, timeout=900)
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     if not lines:
@@ -151,13 +156,16 @@ def seconds_both(path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["replace", "overhead", "one"])
+    parser.add_argument("what", choices=[*CALLS, "overhead", "one"])
     parser.add_argument("paths", nargs="+")
     arguments = parser.parse_args()
-    if arguments.what == "one":
-        one(*arguments.paths)
-    else:
-        {"replace": replace, "overhead": overhead}[arguments.what](arguments.paths)
+    match arguments.what:
+        case "one":
+            one(*arguments.paths)
+        case "overhead":
+            overhead(arguments.paths)
+        case call:
+            replace(call, arguments.paths)
 
 
 if __name__ == "__main__":
