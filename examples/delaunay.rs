@@ -8,6 +8,7 @@ use anastomesh::io::tetgen::read_nodes;
 use anastomesh::tet::Tetrahedralizer;
 use anastomesh::{Progress, Stage};
 use std::error::Error;
+use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -30,7 +31,11 @@ impl Progress for Times {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("which .node file?")?;
-    let points = read_nodes(path.as_ref())?.points;
+    timed(path.as_ref())
+}
+
+fn timed(path: &Path) -> Result<(), Box<dyn Error>> {
+    let points = read_nodes(path)?.points;
     let times = Times::default();
     let made = Tetrahedralizer::new().progress(times.clone()).delaunay(&points)?;
     println!("{} points, {} tetrahedra", points.len(), made.mesh.tets.len());
@@ -50,4 +55,12 @@ fn user_seconds() -> Option<f64> {
     let (_, fields) = stat.rsplit_once(") ")?;
     let ticks: f64 = fields.split(' ').nth(11)?.parse().ok()?;
     Some(ticks / 100.0)
+}
+
+#[test]
+fn it_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.node");
+    std::fs::write(&path, "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n").unwrap();
+    timed(&path).unwrap();
 }
