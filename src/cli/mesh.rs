@@ -18,6 +18,7 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
+use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::Fidelity;
 use crate::io::network::{NodeNames, ensure_network_writable};
 use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
@@ -27,13 +28,12 @@ use crate::mesh::check::{CheckReport, Expectation};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
 use crate::pipeline::{
-    self, Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, Outlets, RunError, Stored, TooLarge, VesselData,
+    self, Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, Outlets, RunError, Shard, Stored, TooLarge, VesselData,
 };
 use crate::progress::{Progress, Stage};
 use crate::refine::{RefineParams, Refined};
 use crate::report::advice::advice;
 use crate::report::caps;
-use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -61,12 +61,8 @@ pub struct Args {
     /// Leave woven joints as the blocks have them instead of smoothing across them
     #[arg(long)]
     frozen_joints: bool,
-    /// Folder that keeps finished blocks: a run that was stopped goes on there when it is started again
-    #[arg(long, value_name = "DIR")]
-    work_dir: Option<PathBuf>,
-    /// Throw away what the work directory holds if it is of another network, other options or another version
-    #[arg(long, requires = "work_dir")]
-    restart: bool,
+    #[command(flatten)]
+    work: WorkArgs,
     /// Write the refined network
     #[arg(long, value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
@@ -140,11 +136,12 @@ struct Output<'a> {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let mut plan = args.plan()?;
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
-    if plan.smooths_joints() && args.work_dir.is_some() {
+    if plan.smooths_joints() && args.work.dir.is_some() {
         return Err(Failure::usage(
             "--work-dir cannot keep joints that are smoothed: give --joint disc or --frozen-joints",
         ));
     }
+    let shard = args.work.shard(&plan)?;
     let format = args.format.of(&args.output)?;
     if !args.data.is_empty() && !format.holds_values() {
         return Err(Failure::usage(
@@ -166,17 +163,22 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     for remark in network.remarks().into_iter().chain(inlets.remarks()).chain(cut_short) {
         bars.note(&remark);
     }
-    let read = network.skeleton.clone();
-    let refined = pool.install(|| args.refined(&network, &stop))?;
+    let work = args.work.open(shard, &network.skeleton, || args.options(&plan))?;
+    let refined = pool.install(|| args.refined(&network, work.as_ref(), shard, &stop))?;
     let before = Before::new(network, refined);
     // Blocks are kept as soon as they are done.
     stop.keep();
-    pool.install(|| {
-        if plan.smooths_joints() {
-            args.run_in_memory(&plan, &before, &bars)
-        } else {
-            args.run_in_store(&read, &plan, before, &bars)
+    if let Some(dir) = &args.work.dir {
+        work::note(dir, &bars);
+    }
+    pool.install(|| match (work, shard) {
+        (Some(work), Some(shard)) => {
+            let made = work.make_shard(shard, (&before.network, &plan), &bars);
+            let made = made.map_err(|e| args.explain(e, &plan, &before))?;
+            work::told(shard, &made, args.common.json, args.common.quiet)
         }
+        _ if plan.smooths_joints() => args.run_in_memory(&plan, &before, &bars),
+        (work, _) => args.run_in_store(work, &plan, before, &bars),
     })
 }
 
@@ -215,20 +217,20 @@ impl Args {
     }
 
     /// Blocks go to where they are kept, and the mesh from there to its file.
-    fn run_in_store(&self, read: &Skeleton, plan: &MeshPlan, before: Before, bars: &Bars) -> Result<Exit, Failure> {
-        let rough = Estimate::rough(&before.network, plan);
-        let place = BlockPlace::choose(self.work_dir.as_deref(), self.restart, &self.output, &rough, plan.memory);
-        let store = place.open(read, || self.options(plan))?;
+    fn run_in_store(
+        &self,
+        work: Option<WorkDir>,
+        plan: &MeshPlan,
+        before: Before,
+        bars: &Bars,
+    ) -> Result<Exit, Failure> {
+        let (place, store) = match work {
+            Some(WorkDir { place, store }) => (place, store),
+            None => BlockPlace::beside(&self.output, &Estimate::rough(&before.network, plan), plan.memory)?,
+        };
         let kept = store.bytes_on_disk();
         let format = self.format.of(&self.output)?;
         let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, (&self.output, format));
-        if let Some(dir) = &self.work_dir {
-            // Whoever kills the program cannot be told afterwards.
-            let dir = dir.display();
-            bars.note(&format!(
-                "finished blocks are kept in {dir}: the same command goes on there if this run is stopped"
-            ));
-        }
         let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
         let Made { stored, before } = before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;
         let Stored { whole, expectation, check, report } = stored;
@@ -313,7 +315,7 @@ impl Args {
 
     /// What is left of a run that was stopped, and how it goes on.
     fn stopped(&self) -> Failure {
-        Failure::stopped(match &self.work_dir {
+        Failure::stopped(match &self.work.dir {
             Some(dir) => {
                 let (dir, command) = (dir.display(), stop::command_line());
                 format!("stopped; finished blocks are kept in {dir}. Go on from there with\n  {command}")
@@ -355,19 +357,31 @@ impl Args {
         }
     }
 
-    /// The network refined, if that was asked for.
-    fn refined(&self, network: &PreparedNetwork, stop: &Stop) -> Result<Option<(Refined, RefineParams)>, Failure> {
+    /// The network refined, if that was asked for. Shards write to no file that others write to.
+    fn refined(
+        &self,
+        network: &PreparedNetwork,
+        work: Option<&WorkDir>,
+        shard: Option<Shard>,
+        stop: &Stop,
+    ) -> Result<Option<(Refined, RefineParams)>, Failure> {
         let Some(iterations) = self.blocks.refine else { return Ok(None) };
-        let moved = super::refine::moved(network, self.how.params(iterations), &self.common, stop)?;
-        let refined = &moved.0;
-        if let Some(path) = &self.refined {
-            stop.keep();
-            super::refine::write(path, refined)?;
+        let params = super::refine::fitting(network, self.how.params(iterations));
+        let make = || super::refine::moved_so(network, &params, &self.common, stop);
+        let refined = match work {
+            Some(work) => work.refined(&network.skeleton, &params, &Bars::new(true, false, stop.clone()), make)?,
+            None => make()?,
+        };
+        if shard.is_none() {
+            if let Some(path) = &self.refined {
+                stop.keep();
+                super::refine::write(path, &refined)?;
+            }
+            if !self.common.quiet && !self.common.json {
+                eprint!("{}", refined.report);
+            }
         }
-        if !self.common.quiet && !self.common.json {
-            eprint!("{}", refined.report);
-        }
-        Ok(Some(moved))
+        Ok(Some((refined, params)))
     }
 
     fn print(

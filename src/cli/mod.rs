@@ -26,6 +26,7 @@ mod stop;
 mod surface;
 mod tetrahedralize;
 mod units;
+mod work;
 
 use std::process::ExitCode;
 

@@ -158,21 +158,35 @@ struct Output<'a> {
 /// Refines a network, with a bar; and with which parameters that was done in the end.
 pub(super) fn moved(
     network: &PreparedNetwork,
-    mut params: RefineParams,
+    params: RefineParams,
     common: &Common,
     stop: &Stop,
 ) -> Result<(Refined, RefineParams), Failure> {
-    // Polylines that were resampled do not look measured any more.
+    let params = fitting(network, params);
+    Ok((moved_so(network, &params, common, stop)?, params))
+}
+
+/// Parameters that know whether the network was measured: polylines that were resampled do not look so any more.
+pub(super) fn fitting(network: &PreparedNetwork, params: RefineParams) -> RefineParams {
     if params.freedom == Freedom::Auto && network.report.measured {
-        params.freedom = Freedom::Measured;
+        return RefineParams { freedom: Freedom::Measured, ..params };
     }
-    let refined = refine::refine(&network.skeleton, &params, &Bars::new(common.quiet, common.progress, stop.clone()));
-    let refined = refined.map_err(|e| match e {
+    params
+}
+
+/// Refines a network with parameters that fit it, with a bar.
+pub(super) fn moved_so(
+    network: &PreparedNetwork,
+    params: &RefineParams,
+    common: &Common,
+    stop: &Stop,
+) -> Result<Refined, Failure> {
+    let refined = refine::refine(&network.skeleton, params, &Bars::new(common.quiet, common.progress, stop.clone()));
+    refined.map_err(|e| match e {
         RefineError::Skeleton(_) => Failure::input(e.to_string()),
         RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
         _ => Failure::usage(e.to_string()),
-    });
-    Ok((refined?, params))
+    })
 }
 
 /// Refines a network and writes it.

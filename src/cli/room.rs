@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::exit::Failure;
 use crate::io::volume::MeshFormat;
-use crate::pipeline::{Estimate, MeshPlan, TooLarge};
-use crate::pipeline::{Manifest, Store};
-use crate::skeleton::Skeleton;
+use crate::pipeline::{Estimate, MeshPlan, Store, TooLarge};
 
 /// Reads a size such as `2GiB`, `500M` or `1.5 GB`.
 pub fn size(text: &str) -> Result<u64, String> {
@@ -48,12 +46,7 @@ pub enum BlockPlace {
     /// In a file without a name in this folder.
     Passing(PathBuf),
     /// In a work directory.
-    Folder {
-        /// The directory.
-        path: PathBuf,
-        /// Whether blocks of something else there are thrown away.
-        restart: bool,
-    },
+    Folder(PathBuf),
 }
 
 /// Bytes of memory per tetrahedron of a mesh that is gathered to be written.
@@ -63,29 +56,20 @@ const GATHERED_PER_TET: f64 = 60.0;
 const KEPT_IN_MEMORY: u64 = 8;
 
 impl BlockPlace {
-    /// A work directory where one is given, else memory for what is small, else a file beside the output.
-    pub fn choose(work_dir: Option<&Path>, restart: bool, output: &Path, estimate: &Estimate, memory: u64) -> Self {
-        match work_dir {
-            Some(path) => Self::Folder { path: path.to_path_buf(), restart },
-            None if estimate.stored_bytes < memory / KEPT_IN_MEMORY => Self::Memory,
-            None => Self::Passing(folder_of(output)),
+    /// Opens memory for what is small, else a file beside the output.
+    pub fn beside(output: &Path, estimate: &Estimate, memory: u64) -> Result<(Self, Store), Failure> {
+        if estimate.stored_bytes < memory / KEPT_IN_MEMORY {
+            return Ok((Self::Memory, Store::in_memory()));
         }
-    }
-
-    /// Opens the store there. What a work directory belongs to is told by the network and everything in `options`.
-    pub fn open(&self, network: &Skeleton, options: impl Fn() -> serde_json::Value) -> Result<Store, Failure> {
-        match self {
-            Self::Memory => Ok(Store::in_memory()),
-            Self::Passing(folder) => Store::in_passing(folder),
-            Self::Folder { path, restart } => Store::in_folder(path, &Manifest::new(network, options()), *restart),
-        }
-        .map_err(|e| Failure::input(e.to_string()))
+        let folder = folder_of(output);
+        let store = Store::in_passing(&folder)?;
+        Ok((Self::Passing(folder), store))
     }
 
     fn folder(&self) -> Option<&Path> {
         match self {
             Self::Memory => None,
-            Self::Passing(folder) | Self::Folder { path: folder, .. } => Some(folder),
+            Self::Passing(folder) | Self::Folder(folder) => Some(folder),
         }
     }
 }
@@ -98,6 +82,12 @@ pub fn folder_of(file: &Path) -> PathBuf {
     }
 }
 
+/// Refuses blocks that the memory that is allowed cannot hold.
+pub fn block_fits(estimate: &Estimate, plan: &MeshPlan) -> Result<(), TooLarge> {
+    let (estimate, memory) = (*estimate, plan.memory);
+    if estimate.largest_block_bytes > memory { Err(TooLarge::Block { estimate, memory }) } else { Ok(()) }
+}
+
 /// Refuses what the memory that is allowed, or the room on the disks, cannot hold. `kept`: bytes of blocks that an earlier run
 /// left at their place.
 pub fn fits(
@@ -107,10 +97,8 @@ pub fn fits(
     kept: u64,
     (output, format): (&Path, MeshFormat),
 ) -> Result<(), TooLarge> {
+    block_fits(estimate, plan)?;
     let (estimate, memory) = (*estimate, plan.memory);
-    if estimate.largest_block_bytes > memory {
-        return Err(TooLarge::Block { estimate, memory });
-    }
     if !format.is_written_in_passes() {
         let bytes = (estimate.tets * GATHERED_PER_TET) as u64;
         if bytes > memory {

@@ -12,13 +12,13 @@ use super::network::NetworkArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::room::BlockPlace;
+use super::room::{self, BlockPlace};
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::surface::{ensure_boundary_writable, write_boundary_watched};
 use crate::io::volume::MeshNotes;
 use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 use crate::mesh::check::CheckReport;
-use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport, TooLarge};
+use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport};
 use crate::progress::{Progress, Stage};
 use crate::report::advice::advice;
 
@@ -81,12 +81,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 impl Args {
     fn make(&self, before: Before, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
         let rough = Estimate::rough(&before.network, plan);
-        let place = BlockPlace::choose(None, false, &self.output, &rough, plan.memory);
-        let store = place.open(&before.network, || serde_json::Value::Null)?;
-        let fits = |estimate: &Estimate| {
-            let (estimate, memory) = (*estimate, plan.memory);
-            if estimate.largest_block_bytes > memory { Err(TooLarge::Block { estimate, memory }) } else { Ok(()) }
-        };
+        let (_, store) = BlockPlace::beside(&self.output, &rough, plan.memory)?;
+        let fits = |estimate: &Estimate| room::block_fits(estimate, plan);
         let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
         let Made { stored: mut made, before } =
             before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;

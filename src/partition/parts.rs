@@ -14,7 +14,7 @@ pub struct ClusterId(pub u32);
 pub struct CutId(pub u32);
 
 /// The network cut into clusters.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Partition {
     /// Clusters, by `ClusterId`.
     pub clusters: Vec<Cluster>,
@@ -40,7 +40,7 @@ impl Partition {
 }
 
 /// A piece of a branch in a cluster.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Piece {
     pub cluster: ClusterId,
     pub branch: BranchId,
@@ -51,7 +51,7 @@ pub struct Piece {
 }
 
 /// Why a branch is not cut.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum UncutReason {
     /// It ends in a terminal and is not long.
@@ -72,7 +72,7 @@ pub enum UncutReason {
 }
 
 /// Something that a cluster's mesh may suffer from.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum PartitionWarning {
     /// A terminal's overrun was shortened, as a vessel is in its way.

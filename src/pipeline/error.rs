@@ -29,7 +29,7 @@ pub enum RunError {
     TooLarge(#[from] TooLarge),
     /// Finished blocks cannot be kept or read.
     #[error(transparent)]
-    Store(#[from] StoreError),
+    Store(StoreError),
     /// Blocks failed to the end; the report lists them.
     #[error("{} block(s) could not be meshed", .0.failed.len())]
     BlocksFailed(Box<RunReport>),
@@ -41,11 +41,17 @@ pub enum RunError {
     Cancelled,
 }
 
+impl From<StoreError> for RunError {
+    fn from(error: StoreError) -> Self {
+        match error {
+            StoreError::Read(error) if Cancelled::is_in(&error) => Self::Cancelled,
+            error => Self::Store(error),
+        }
+    }
+}
+
 impl From<io::Error> for RunError {
     fn from(error: io::Error) -> Self {
-        if Cancelled::is_in(&error) {
-            return Self::Cancelled;
-        }
         StoreError::from(error).into()
     }
 }

@@ -19,6 +19,7 @@ mod rounds;
 mod routes;
 mod run;
 mod schedule;
+mod share;
 mod store;
 mod terminals;
 #[cfg(test)]
@@ -40,6 +41,10 @@ pub use plan::{JointStyle, MeshPlan};
 pub use report::{FailedBlock, Meeting};
 pub use report::{RunReport, ThinBlock};
 pub use run::{Meshed, Stored, mesh_into, mesh_network};
+#[cfg(feature = "cli")]
+pub use share::{ShareReport, make_share};
+#[cfg(feature = "cli")]
+pub use store::{KeyMaker, NoShard, Role, Shard, StoreError, fingerprint, two_numbers};
 pub use store::{Manifest, Store};
 #[cfg(feature = "cli")]
 pub use timing::Clock;

@@ -123,9 +123,14 @@ pub const MOST_STRETCH: f64 = 20.0;
 const CORES: [f64; 2] = [0.5, 4.0];
 
 impl MeshPlan {
+    /// Whether connectors are made between the ends of their clusters, and so after them.
+    pub fn weaves_joints(&self) -> bool {
+        self.joint == JointStyle::Woven
+    }
+
     /// Whether joints are smoothed once the blocks are together.
     pub fn smooths_joints(&self) -> bool {
-        self.joint == JointStyle::Woven && !self.frozen_joints
+        self.weaves_joints() && !self.frozen_joints
     }
 
     /// Parameters of a block as it is first tried. The partition has to know the kernel's width, too.

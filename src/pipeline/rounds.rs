@@ -15,7 +15,7 @@ use super::plan::JointStyle;
 use super::report::Retry;
 use super::routes::{branch_pairs, tangled_clusters};
 use super::schedule::{Cost, costliest_first};
-use super::store::{RecordId, StoreError};
+use super::store::{KeyMaker, RecordId, StoreError, fingerprint};
 use super::timing::{BlockTimes, Clock};
 use crate::block::Cured;
 use crate::partition::{self, ClusterId, Cut, CutId, Partition};
@@ -51,15 +51,12 @@ impl Run<'_> {
     ) -> Result<Blocks, RunError> {
         let plan = self.shop.plan;
         let mut cures: BTreeMap<BranchId, Cure> = uncut.iter().map(|&branch| (branch, Cure::NotCut)).collect();
-        let overlapping = self.overlaps.pairs.iter().filter(|_| plan.fuse).map(|o| o.edges);
-        let together: BTreeSet<_> = branch_pairs(self.shop.skeleton, overlapping).into_iter().collect();
+        let together = self.together();
         let mut notes = Notes::default();
         let mut times = BlockTimes::default();
         let mut round = 0;
         loop {
-            let params = partition_params(self.shop.skeleton, plan, &cures, &together);
-            let cut = || partition::partition(self.shop.skeleton, &params);
-            let partition = self.clock.time(self.progress, Stage::Partition, 0, cut)?;
+            let partition = self.partition(&cures, &together)?;
             if round == 0 {
                 fits(&Estimate::of(&partition, plan))?;
             }
@@ -75,13 +72,43 @@ impl Run<'_> {
         }
     }
 
+    /// Branches that are to be in one cluster, as their vessels overlap.
+    pub(super) fn together(&self) -> BTreeSet<[BranchId; 2]> {
+        let overlapping = self.overlaps.pairs.iter().filter(|_| self.shop.plan.fuse).map(|o| o.edges);
+        branch_pairs(self.shop.skeleton, overlapping).into_iter().collect()
+    }
+
+    /// Cuts the network, unless another run has done so in this work directory.
+    pub(super) fn partition(
+        &mut self,
+        cures: &BTreeMap<BranchId, Cure>,
+        together: &BTreeSet<[BranchId; 2]>,
+    ) -> Result<Partition, RunError> {
+        let (Workshop { skeleton, plan, store }, progress) = (self.shop, self.progress);
+        let params = partition_params(skeleton, plan, cures, together);
+        let key = || {
+            let mut key = KeyMaker::new("partition");
+            key.text(&format!("{:?} {params:?}", fingerprint(skeleton)));
+            key.finish()
+        };
+        let cut = || partition::partition(skeleton, &params).map_err(RunError::from);
+        let kept = || store.once(("partition", key), progress, cut);
+        self.clock.time(progress, Stage::Partition, 0, kept)
+    }
+
+    /// What blocks are expected to take: clusters by their ids, then connectors.
+    pub(super) fn costs(&self, partition: &Partition) -> Vec<Cost> {
+        let plan = self.shop.plan;
+        let clusters = partition.clusters.iter().map(|c| cluster_cost(c, plan));
+        clusters.chain(partition.cuts.iter().map(|cut| connector_cost(cut, plan))).collect()
+    }
+
     /// All blocks of a partition; none needs another, unless joints are woven.
     fn pass(&mut self, partition: &Partition, times: &mut BlockTimes) -> Result<Pass, RunError> {
         let (plan, shop) = (self.shop.plan, self.shop);
         let tangled = tangled_clusters(self.shop.skeleton, partition, self.overlaps);
         let count = partition.clusters.len();
-        let mut costs: Vec<Cost> = partition.clusters.iter().map(|c| cluster_cost(c, plan)).collect();
-        costs.extend(partition.cuts.iter().map(|cut| connector_cost(cut, plan)));
+        let costs = self.costs(partition);
         let progress = self.progress;
         let watch = Watch::asking(progress);
         let cluster =

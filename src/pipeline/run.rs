@@ -235,7 +235,7 @@ fn mesh_size(mesh: &dyn MeshSource) -> io::Result<MeshSize> {
 }
 
 /// Splits nodes of high valence and looks for vessels that overlap.
-fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
+pub(super) fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
     let (skeleton, splits) = split(network);
     report.network = [skeleton.nodes.len(), skeleton.edges.len()];
     report.nodes_split = splits.nodes.len();

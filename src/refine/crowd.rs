@@ -3,7 +3,7 @@
 
 use super::params::{Crowded, RefineParams};
 use crate::skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How far terminals are moved apart, in sums of their radii: their walls must not fuse either.
 const APART: f64 = 1.2;
@@ -14,7 +14,7 @@ const SHARED_APART: f64 = 2.0;
 const SWEEPS: usize = 100;
 
 /// Two terminals closer than the sum of their radii, and what became of them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrowdedPair {
     /// The two, as indices into the input.
     pub nodes: [u32; 2],

@@ -1,10 +1,10 @@
 //! The figures of one state, and which of two states is worse in what.
 
 use crate::skeleton::{Metrics, Overlaps, Share, Skeleton};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Metrics and numbers of overlaps of one state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Figures {
     pub metrics: Metrics,
@@ -19,7 +19,7 @@ pub struct Figures {
 }
 
 /// A metric that a caller may ask to be held: the result is not worse in it than what was given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Metric {

@@ -2,10 +2,10 @@
 
 use crate::geometry::Point3;
 use crate::skeleton::{Metrics, Skeleton};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The metrics after some iterations.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// How many iterations.
     pub iteration: usize,
@@ -17,7 +17,7 @@ pub struct Sample {
 }
 
 /// How far nodes have moved, in the unit of the skeleton unless it says otherwise.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Displacement {
     pub mean: f64,
     pub median: f64,

@@ -5,7 +5,7 @@ use super::params::Freedom;
 use crate::geometry::{Point3, Total};
 use crate::skeleton::{EdgeId, NodeId, Overlaps, Skeleton};
 use rustc_hash::FxHashSet;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -22,7 +22,7 @@ const CLOSE: f64 = 1.02;
 const DEMANDED: f64 = 2.0;
 
 /// A node that moved far.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FarNode {
     /// The node, as in the input.
     pub node: u32,

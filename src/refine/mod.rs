@@ -31,10 +31,10 @@ use crate::geometry::Point3;
 use crate::progress::Progress;
 use crate::skeleton::Skeleton;
 use leash::Leashes;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A refined skeleton.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Refined {
     /// The skeleton. Nodes keep their `original`.
@@ -42,11 +42,27 @@ pub struct Refined {
     /// Where each node was before it moved: after splitting; for a bend, the place on the straight vessel.
     pub origin: Vec<Point3>,
     /// What was found and done.
+    #[serde(with = "as_text")]
     pub report: RefineReport,
 }
 
+/// A report as bytes of JSON, whatever the rest is kept as: parts of it are flattened, which formats without names have no way
+/// to read.
+mod as_text {
+    use super::RefineReport;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
+
+    pub fn serialize<S: Serializer>(report: &RefineReport, to: S) -> Result<S::Ok, S::Error> {
+        serde_json::to_vec(report).map_err(ser::Error::custom)?.serialize(to)
+    }
+
+    pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<RefineReport, D::Error> {
+        serde_json::from_slice(&Vec::<u8>::deserialize(from)?).map_err(de::Error::custom)
+    }
+}
+
 /// What a refinement found and did.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RefineReport {
     /// Nodes and edges before.

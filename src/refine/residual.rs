@@ -4,7 +4,7 @@ use super::params::{RefineParams, Residual};
 use crate::geometry::{Point3, Tube};
 use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Skeleton};
 use rustc_hash::{FxHashMap, FxHashSet};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Rounds of shrinking at most: a vessel may have several others in its way, and one of them is looked at in a round.
 const ROUNDS: usize = 12;
@@ -14,7 +14,7 @@ const TAPER: f64 = 3.0;
 const SHORTEST: f64 = 2.0;
 
 /// What became of a pair of vessels that still overlapped.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "treatment", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Treatment {
@@ -32,7 +32,7 @@ pub enum Treatment {
 }
 
 /// A pair of vessels that still overlapped when the nodes had come to rest.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResidualPair {
     /// The nodes of both edges, as indices into the input.
     pub edges: [[u32; 2]; 2],
@@ -48,7 +48,7 @@ pub struct ResidualPair {
 }
 
 /// What was done about the pairs that were left.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ResidualReport {
     /// The pairs, in the order in which they were found.
     pub pairs: Vec<ResidualPair>,

@@ -15,7 +15,7 @@ pub struct EdgeId(pub u32);
 pub struct BranchId(pub u32);
 
 /// A node: a point on the axis of a vessel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Node {
     /// Position.
     pub position: Point3,
@@ -27,7 +27,7 @@ pub struct Node {
 }
 
 /// An edge: a straight piece of vessel between two nodes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Edge {
     /// Its two nodes.
     pub nodes: [NodeId; 2],
@@ -47,7 +47,7 @@ pub struct Edge {
 /// let vessel = Skeleton { nodes: vec![node(0.0, 0), node(9.0, 1)], edges };
 /// assert!(vessel.check().is_ok());
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Skeleton {
     /// Nodes, by `NodeId`.
     pub nodes: Vec<Node>,

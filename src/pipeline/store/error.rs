@@ -4,6 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
+use super::shards::Shard;
+
 /// Why blocks cannot be kept.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -17,10 +19,74 @@ pub enum StoreError {
         source: io::Error,
     },
     /// Another run uses the folder.
-    #[error("{}: another run is using this work directory; wait for it, or name another one", path.display())]
+    #[error(
+        "{}: another run is using this work directory, alone or as a shard; wait for it, or name another one",
+        path.display()
+    )]
     Locked {
         /// The folder.
         path: PathBuf,
+    },
+    /// Another run makes the same shard.
+    #[error("{}: shard {shard} is being made by another run; wait for it, or end it", path.display())]
+    ShardLocked {
+        /// The folder.
+        path: PathBuf,
+        /// Which one.
+        shard: Shard,
+    },
+    /// Nothing keeps two runs from writing to one file.
+    #[error(
+        "{}: the file system of this work directory has no locks ({why}), so two runs could write to one file; name a \
+         folder on another one, or have it mounted with locks that hold on all machines",
+        path.display()
+    )]
+    NoLocks {
+        /// The folder.
+        path: PathBuf,
+        /// What the system says.
+        why: String,
+    },
+    /// The folder has another number of shards.
+    #[error(
+        "{}: this work directory was begun with {was} shards, and {shard} is none of them; give each run of a folder the \
+         same number, or name another folder",
+        path.display()
+    )]
+    OtherShards {
+        /// The folder.
+        path: PathBuf,
+        /// How many there are.
+        was: u32,
+        /// The one that is none of them.
+        shard: Shard,
+    },
+    /// Shards have not been made to their end.
+    #[error(
+        "{}: {} not been made to the end; run {}, or give --make-missing to have this run make what is not there",
+        path.display(), listed(shards), if shards.len() == 1 { "it" } else { "them" }
+    )]
+    Missing {
+        /// The folder.
+        path: PathBuf,
+        /// Which ones.
+        shards: Vec<Shard>,
+    },
+    /// A shard's file is not what it was when the shard ended.
+    #[error(
+        "{}: of {bytes} bytes only the first {end} are whole records; run shard {shard} again, which makes the others, or \
+         give --make-missing to have this run make them",
+        path.display()
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Whose it is.
+        shard: Shard,
+        /// Where its whole records end.
+        end: u64,
+        /// Where they should.
+        bytes: u64,
     },
     /// The folder holds the blocks of another version of the program, another network or other options.
     #[error(
@@ -52,10 +118,26 @@ pub enum StoreError {
 pub enum Difference {
     /// Another version of the program, or what is there is no manifest.
     Version(String),
+    /// Another processor or C library, whose functions give other last bits.
+    Arithmetic,
     /// Another network.
     Network,
     /// Another option.
     Option { name: String, was: String, is: String },
+}
+
+/// So many shards are listed.
+const LISTED: usize = 10;
+
+fn listed(shards: &[Shard]) -> String {
+    let mut names: Vec<String> = shards.iter().take(LISTED).map(Shard::to_string).collect();
+    if shards.len() > LISTED {
+        names.push(format!("{} more", shards.len() - LISTED));
+    }
+    match &names[..] {
+        [one] => format!("shard {one} has"),
+        _ => format!("shards {} have", names.join(", ")),
+    }
 }
 
 fn advice(source: &io::Error) -> &'static str {
@@ -71,6 +153,9 @@ impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Version(program) => write!(f, "another version ({program})"),
+            Self::Arithmetic => f.write_str(
+                "other last bits of numbers, on a machine with another processor or C library, whose blocks do not fit these",
+            ),
             Self::Network => f.write_str("another network"),
             Self::Option { name, was, is } => write!(f, "another option: {name} was {was} and is now {is}"),
         }

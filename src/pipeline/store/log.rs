@@ -23,7 +23,7 @@ pub(super) struct LogFile {
     reader: File,
     extents: RwLock<Vec<Range<u64>>>,
     /// Held as long as the file is in use.
-    _lock: Option<File>,
+    _locks: Vec<File>,
 }
 
 #[derive(Debug)]
@@ -36,24 +36,30 @@ impl LogFile {
     /// A file without a name.
     pub(super) fn in_passing(folder: &Path) -> io::Result<Self> {
         let file = tempfile::tempfile_in(folder)?;
-        Self::new(format!("{} (a file without a name)", folder.display()), file, 0, Vec::new(), None)
+        Self::new(format!("{} (a file without a name)", folder.display()), file, 0, Vec::new(), Vec::new())
     }
 
-    /// Opens a file with what it holds; the keys of the records, in their order. `lock` is held for as long.
-    pub(super) fn open(path: &Path, lock: File) -> io::Result<(Self, Vec<Key>)> {
+    /// Opens a file with what it holds; the keys of the records, in their order. `locks` are held for as long.
+    pub(super) fn open(path: &Path, locks: Vec<File>) -> io::Result<(Self, Vec<Key>)> {
         let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
         let length = file.metadata()?.len();
-        let (records, end) = scan(&file, length)?;
+        let Scanned { records, end, length } = scan(&file, length)?;
         if end < length {
             file.set_len(end)?;
         }
         let (keys, extents) = records.into_iter().unzip();
-        Ok((Self::new(path.display().to_string(), file, end, extents, Some(lock))?, keys))
+        Ok((Self::new(path.display().to_string(), file, end, extents, locks)?, keys))
     }
 
-    fn new(name: String, file: File, end: u64, extents: Vec<Range<u64>>, lock: Option<File>) -> io::Result<Self> {
+    fn new(name: String, file: File, end: u64, extents: Vec<Range<u64>>, locks: Vec<File>) -> io::Result<Self> {
         let reader = file.try_clone()?;
-        Ok(Self { name, writer: Mutex::new(Writer { file, end }), reader, extents: RwLock::new(extents), _lock: lock })
+        Ok(Self {
+            name,
+            writer: Mutex::new(Writer { file, end }),
+            reader,
+            extents: RwLock::new(extents),
+            _locks: locks,
+        })
     }
 
     /// Where it is, for people.
@@ -66,11 +72,25 @@ impl LogFile {
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).end
     }
 
+    /// How many records it holds.
+    pub(super) fn len(&self) -> usize {
+        self.extents.read().unwrap_or_else(PoisonError::into_inner).len()
+    }
+
+    /// Waits until the disk has all of it.
+    pub(super) fn sync(&self) -> io::Result<()> {
+        self.writer.lock().unwrap_or_else(PoisonError::into_inner).file.sync_data()
+    }
+
     /// Appends a record; its number. When that fails, the file is as it was.
     pub(super) fn append(&self, key: Key, bytes: &[u8]) -> io::Result<usize> {
         let head = head_of(key, bytes);
         let mut writer = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
         let start = writer.end;
+        // Locks of some file systems hold on one machine only.
+        if writer.file.metadata()?.len() != start {
+            return Err(io::Error::other("another run has written to it, too; its locks hold on one machine only"));
+        }
         let written = write_at(&mut writer.file, start, &[&head, bytes]);
         if let Err(error) = written {
             // What is left of the record would be cut off by the next run as well.
@@ -96,17 +116,28 @@ impl LogFile {
 
     #[cfg(unix)]
     fn read_at(&self, bytes: &mut [u8], offset: u64) -> io::Result<()> {
-        std::os::unix::fs::FileExt::read_exact_at(&self.reader, bytes, offset)
+        read_exact_at(&self.reader, bytes, offset)
     }
 
     /// Without reads at a place, readers take turns with the writer, whose position they share.
     #[cfg(not(unix))]
     fn read_at(&self, bytes: &mut [u8], offset: u64) -> io::Result<()> {
         let _turn = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut reader = &self.reader;
-        reader.seek(SeekFrom::Start(offset))?;
-        reader.read_exact(bytes)
+        read_exact_at(&self.reader, bytes, offset)
     }
+}
+
+/// Reads at a place.
+#[cfg(unix)]
+pub(super) fn read_exact_at(file: &File, bytes: &mut [u8], offset: u64) -> io::Result<()> {
+    std::os::unix::fs::FileExt::read_exact_at(file, bytes, offset)
+}
+
+/// Reads at a place, which moves the file's position: callers take turns.
+#[cfg(not(unix))]
+pub(super) fn read_exact_at(mut file: &File, bytes: &mut [u8], offset: u64) -> io::Result<()> {
+    file.seek(SeekFrom::Start(offset))?;
+    file.read_exact(bytes)
 }
 
 fn write_at(file: &mut File, start: u64, pieces: &[&[u8]]) -> io::Result<()> {
@@ -129,10 +160,25 @@ fn head_of(key: Key, bytes: &[u8]) -> [u8; HEAD] {
     head
 }
 
-type Found = Vec<(Key, Range<u64>)>;
+/// The sound records at the beginning of a file.
+pub(super) struct Scanned {
+    pub records: Vec<(Key, Range<u64>)>,
+    /// Where they end.
+    pub end: u64,
+    /// Where the file ends.
+    pub length: u64,
+}
 
-/// The sound records at the beginning of a file, and where they end.
-fn scan(file: &File, length: u64) -> io::Result<(Found, u64)> {
+/// The records of a file; none where there is no file.
+pub(super) fn scan_path(path: &Path) -> io::Result<Scanned> {
+    match File::open(path) {
+        Ok(file) => scan(&file, file.metadata()?.len()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Scanned { records: Vec::new(), end: 0, length: 0 }),
+        Err(error) => Err(error),
+    }
+}
+
+fn scan(file: &File, length: u64) -> io::Result<Scanned> {
     let mut input = BufReader::with_capacity(1 << 20, file);
     input.seek(SeekFrom::Start(0))?;
     let (mut found, mut end, mut bytes) = (Vec::new(), 0, Vec::new());
@@ -155,5 +201,5 @@ fn scan(file: &File, length: u64) -> io::Result<(Found, u64)> {
         end = first + size;
         found.push((key, first..end));
     }
-    Ok((found, end))
+    Ok(Scanned { records: found, end, length })
 }

@@ -1,22 +1,20 @@
 //! What a work directory was begun with: a run goes on only with blocks of the same network, options and version.
 
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::io;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::error::{Difference, StoreError};
+use super::arithmetic;
+use super::error::Difference;
 use super::key::{Key, KeyMaker};
-use super::log::LogFile;
 use crate::skeleton::Skeleton;
 
 /// Version of what is in a work directory.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
-const MANIFEST: &str = "anastomesh.json";
-const LOCK: &str = "anastomesh.lock";
-const BLOCKS: &str = "anastomesh.blocks";
+pub(super) const MANIFEST: &str = "anastomesh.json";
 
 /// What a work directory belongs to.
 ///
@@ -40,6 +38,8 @@ const BLOCKS: &str = "anastomesh.blocks";
 pub struct Manifest {
     format: u32,
     program: String,
+    /// How the machine computes: other results in the last bits are other discs at joints.
+    arithmetic: String,
     network: String,
     options: serde_json::Value,
 }
@@ -48,12 +48,30 @@ impl Manifest {
     /// Of a network as it was read; `options` is an object with everything else that the mesh depends on.
     pub fn new(network: &Skeleton, options: serde_json::Value) -> Self {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
-        Self { format: FORMAT, program, network: format!("{:032x}", fingerprint(network).0), options }
+        let arithmetic = format!("{:032x}", arithmetic::fingerprint().0);
+        Self { format: FORMAT, program, arithmetic, network: format!("{:032x}", fingerprint(network).0), options }
+    }
+
+    /// What a folder was begun with.
+    pub(super) fn begun(&self, folder: &Path) -> io::Result<Begun> {
+        let text = match fs::read(folder.join(MANIFEST)) {
+            Ok(text) => text,
+            // Blocks without a manifest: killed between the two, or not ours; nothing says what they belong to.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Begun::Nothing),
+            Err(error) => return Err(error),
+        };
+        Ok(match serde_json::from_slice::<Self>(&text) {
+            Ok(before) => self.difference(&before).map_or(Begun::Same, Begun::Other),
+            Err(_) => Begun::Other(Difference::Version("its manifest cannot be read".into())),
+        })
     }
 
     fn difference(&self, before: &Self) -> Option<Difference> {
         if (before.format, &before.program) != (self.format, &self.program) {
             return Some(Difference::Version(format!("{}, format {}", before.program, before.format)));
+        }
+        if before.arithmetic != self.arithmetic {
+            return Some(Difference::Arithmetic);
         }
         if before.network != self.network {
             return Some(Difference::Network);
@@ -63,7 +81,7 @@ impl Manifest {
 }
 
 /// A key of all that a network holds.
-fn fingerprint(network: &Skeleton) -> Key {
+pub fn fingerprint(network: &Skeleton) -> Key {
     let mut key = KeyMaker::new("network");
     key.count(network.nodes.len());
     for node in &network.nodes {
@@ -96,55 +114,9 @@ fn first_difference(name: &str, was: &serde_json::Value, is: &serde_json::Value)
     Some(Difference::Option { name: name.into(), was: was.to_string(), is: is.to_string() })
 }
 
-/// Takes hold of a work directory: its log, and the keys of what is in there.
-pub(super) fn claim(folder: &Path, manifest: &Manifest, restart: bool) -> Result<(LogFile, Vec<Key>), StoreError> {
-    let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
-    fs::create_dir_all(folder).map_err(failed)?;
-    let lock = File::options().write(true).create(true).truncate(false).open(folder.join(LOCK)).map_err(failed)?;
-    match lock.try_lock() {
-        Ok(()) => {}
-        Err(TryLockError::WouldBlock) => return Err(StoreError::Locked { path: folder.to_path_buf() }),
-        Err(TryLockError::Error(source)) => return Err(failed(source)),
-    }
-    match difference(folder, manifest).map_err(failed)? {
-        Found::Same => {}
-        Found::Nothing => begin(folder, manifest).map_err(failed)?,
-        Found::Other(_) if restart => begin(folder, manifest).map_err(failed)?,
-        Found::Other(difference) => return Err(StoreError::Other { path: folder.to_path_buf(), difference }),
-    }
-    LogFile::open(&folder.join(BLOCKS), lock).map_err(failed)
-}
-
-enum Found {
+/// What a work directory was begun with.
+pub(super) enum Begun {
     Nothing,
     Same,
     Other(Difference),
-}
-
-fn difference(folder: &Path, manifest: &Manifest) -> io::Result<Found> {
-    let text = match fs::read(folder.join(MANIFEST)) {
-        Ok(text) => text,
-        // Blocks without a manifest: killed between the two, or not ours; nothing says what they belong to.
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Found::Nothing),
-        Err(error) => return Err(error),
-    };
-    Ok(match serde_json::from_slice::<Manifest>(&text) {
-        Ok(before) => manifest.difference(&before).map_or(Found::Same, Found::Other),
-        Err(_) => Found::Other(Difference::Version("its manifest cannot be read".into())),
-    })
-}
-
-/// Empties the directory of blocks, then says what the next ones belong to.
-fn begin(folder: &Path, manifest: &Manifest) -> io::Result<()> {
-    for name in [MANIFEST, BLOCKS] {
-        match fs::remove_file(folder.join(name)) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-            _ => {}
-        }
-    }
-    let text = serde_json::to_vec_pretty(manifest)?;
-    // Under its name only when it is whole: half a manifest would look like another version's.
-    let part = folder.join("anastomesh.json.part");
-    fs::write(&part, text)?;
-    fs::rename(part, folder.join(MANIFEST))
 }

@@ -3,27 +3,39 @@
 //! Whoever asks for a block looks for its key first. So a block that does not change when others are cut anew is not
 //! meshed again, and a run that was killed goes on where it was: it does everything again and finds nearly all of it done.
 
+mod arithmetic;
 mod error;
+mod folder;
 mod key;
+mod locks;
 mod log;
 mod manifest;
+mod once;
+mod shards;
+mod shelf;
 #[cfg(test)]
 mod tests;
 
 use std::collections::hash_map::Entry;
 use std::io;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use rustc_hash::FxHashMap;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 pub use error::StoreError;
+pub use folder::Role;
 pub use key::{Key, KeyMaker};
 use log::LogFile;
-pub use manifest::Manifest;
+pub use manifest::{Manifest, fingerprint};
+pub use shards::{NoShard, Shard, two_numbers};
+use shelf::Shelf;
 
 use crate::block::Bytes;
+use crate::progress::Progress;
 
 /// A record of the store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -40,6 +52,8 @@ pub struct Store {
 enum Place {
     Memory(RwLock<Vec<Arc<[u8]>>>),
     File(LogFile),
+    /// A work directory: its path, what others have written there, and the file that this run writes to.
+    Folder(PathBuf, Shelf, LogFile),
 }
 
 impl Store {
@@ -62,11 +76,49 @@ impl Store {
     /// or another version instead of refusing them.
     ///
     /// # Errors
-    /// When the folder cannot be used, is in use, or belongs to something else.
+    /// When the folder cannot be used, is in use, belongs to something else, or shards there have not come to their end.
     pub fn in_folder(folder: &Path, manifest: &Manifest, restart: bool) -> Result<Self, StoreError> {
-        let (log, found) = manifest::claim(folder, manifest, restart)?;
-        let known = found.into_iter().zip(0..).map(|(key, i)| (key, RecordId(i))).collect();
-        Ok(Self { place: Place::File(log), known: Mutex::new(known) })
+        Self::in_folder_as(Role::Alone { restart, make_missing: false }, folder, manifest)
+    }
+
+    /// In a work directory, alone or as a shard among others.
+    ///
+    /// # Errors
+    /// When the folder cannot be used, is in use, belongs to something else, or shards there have not come to their end.
+    pub fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
+        let folder::Opened { own, others, keys } = folder::open(folder, manifest, role)?;
+        let known = keys.into_iter().zip(0..).map(|(key, i)| (key, RecordId(i))).collect();
+        Ok(Self { place: Place::Folder(folder.to_path_buf(), others, own), known: Mutex::new(known) })
+    }
+
+    /// Something that is the same for all runs in a work directory: what one of them has made, or what `make` gives, which
+    /// is then kept. `of` says what it is called, and all that it depends on. Elsewhere it is made.
+    ///
+    /// # Errors
+    /// That of `make`, and when the folder cannot be used.
+    pub(crate) fn once<T: Serialize + DeserializeOwned, E: From<StoreError>>(
+        &self,
+        (what, key): (&str, impl FnOnce() -> Key),
+        progress: &dyn Progress,
+        make: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        match &self.place {
+            Place::Folder(folder, ..) => once::once(folder, (what, key()), progress, make),
+            Place::Memory(_) | Place::File(_) => make(),
+        }
+    }
+
+    /// Says that all blocks of a shard are made, as far as they can be.
+    ///
+    /// # Errors
+    /// When that cannot be written.
+    pub(crate) fn mark_done(&self, shard: Shard) -> Result<(), StoreError> {
+        let Place::Folder(folder, _, own) = &self.place else { return Ok(()) };
+        let write = || {
+            own.sync()?;
+            shards::mark(folder, shard, own.length())
+        };
+        write().map_err(|source| StoreError::Write { place: own.place(), source })
     }
 
     /// The record under a key.
@@ -90,11 +142,18 @@ impl Store {
                 records.push(bytes.into());
                 records.len() - 1
             }
-            Place::File(log) => {
-                log.append(key, &bytes).map_err(|source| StoreError::Write { place: log.place(), source })?
-            }
+            Place::File(log) => append(log, key, &bytes)?,
+            Place::Folder(_, others, own) => others.len() + append(own, key, &bytes)?,
         };
         Ok(*slot.insert(RecordId(id as u32)))
+    }
+
+    /// How many records this run, and those before it in its place, have kept.
+    pub(crate) fn own_records(&self) -> usize {
+        match &self.place {
+            Place::Memory(records) => records.read().unwrap_or_else(PoisonError::into_inner).len(),
+            Place::File(log) | Place::Folder(_, _, log) => log.len(),
+        }
     }
 
     /// Bytes that the records take on a disk.
@@ -102,6 +161,7 @@ impl Store {
         match &self.place {
             Place::Memory(_) => 0,
             Place::File(log) => log.length(),
+            Place::Folder(_, others, own) => others.bytes() + own.length(),
         }
     }
 
@@ -109,6 +169,10 @@ impl Store {
     pub(crate) fn bytes(&self, id: RecordId) -> StoredBytes<'_> {
         StoredBytes { store: self, id }
     }
+}
+
+fn append(log: &LogFile, key: Key, bytes: &[u8]) -> Result<usize, StoreError> {
+    log.append(key, bytes).map_err(|source| StoreError::Write { place: log.place(), source })
 }
 
 /// The bytes of a record in a store.
@@ -127,6 +191,10 @@ impl Bytes for StoredBytes<'_> {
                 Bytes::get(record, range)
             }
             Place::File(log) => log.read(self.id.0 as usize, range),
+            Place::Folder(_, others, own) => match (self.id.0 as usize).checked_sub(others.len()) {
+                None => others.read(self.id.0 as usize, range),
+                Some(record) => own.read(record, range),
+            },
         }
     }
 }

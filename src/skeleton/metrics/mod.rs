@@ -9,7 +9,7 @@ use super::course::Course;
 use super::cuttability::{BranchEnd, CUT_DISTANCE, CutRules, Cuttability, separation};
 use super::{Adjacency, Branches, EdgeId, NodeId, Skeleton};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Least angle between vessels at a node that the paper counts (Fig. 11), in radians.
 pub const NARROW: f64 = std::f64::consts::PI / 10.0;
@@ -18,7 +18,7 @@ pub const NARROW: f64 = std::f64::consts::PI / 10.0;
 pub const FOLD: f64 = std::f64::consts::PI / 6.0;
 
 /// A count and what it is counted of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
     /// How many.
     pub count: usize,
@@ -34,7 +34,7 @@ impl Share {
 }
 
 /// What is measured of a skeleton besides its overlaps. All of it is free of units.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
     /// Barrier potential (equations 1 to 6) over all pairs of edges that share no node, each pair once, in units of
     /// 1 / (sum of the radii)².

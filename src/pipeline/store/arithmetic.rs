@@ -1,0 +1,22 @@
+//! How a machine computes. The functions of the C library differ in the last bit between versions, and between processors
+//! with and without fused multiplication; blocks that two such machines make have other discs where they meet.
+
+use super::key::{Key, KeyMaker};
+
+/// So many values of each function: where two libraries differ at all, they do so at one argument in some hundreds.
+const SAMPLES: u32 = 4096;
+
+/// A key of what the functions give that meshing uses.
+pub(super) fn fingerprint() -> Key {
+    let mut key = KeyMaker::new("arithmetic");
+    for i in 1..=SAMPLES {
+        // Arguments of the usual sizes, with all of their bits in use.
+        let x = f64::from(i) * 0.001_370_359_991_773;
+        let unit = (x * 0.179).min(1.0);
+        for y in [x.exp(), x.ln(), x.sin(), x.cos(), x.cbrt(), x.powf(2.85), unit.acos(), unit.asin(), x.atan2(2.5 - x)]
+        {
+            key.float(y);
+        }
+    }
+    key.finish()
+}

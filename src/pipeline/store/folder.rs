@@ -1,0 +1,116 @@
+//! Work directories: who may be in one, and what it is begun with.
+//!
+//! Every run holds the directory's lock, alone or, a shard, together with others. What is written for all of them (the
+//! manifest, the number of shards) is written under a lock that is held for as long as that takes.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::error::StoreError;
+use super::key::Key;
+use super::locks::{Hold, try_lock, wait_for};
+use super::log::{LogFile, scan_path};
+use super::manifest::{Begun, MANIFEST, Manifest};
+use super::shards::{self, Shard};
+use super::shelf::Shelf;
+
+const LOCK: &str = "anastomesh.lock";
+const BEGIN: &str = "anastomesh.begin.lock";
+const BLOCKS: &str = "anastomesh.blocks";
+
+/// As what a run comes to a work directory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Role {
+    /// Alone, with the blocks that it or shards have made before.
+    Alone {
+        /// Throw away what is of another network, other options or another version instead of refusing it.
+        restart: bool,
+        /// Make what shards have left undone instead of refusing it.
+        make_missing: bool,
+    },
+    /// As one of several that make a share of the blocks each.
+    Shard(Shard),
+}
+
+/// What is in a work directory.
+pub(super) struct Opened {
+    /// The file that this run writes to.
+    pub own: LogFile,
+    /// What others have written.
+    pub others: Shelf,
+    /// Keys of what others have written, then of what is in the own file.
+    pub keys: Vec<Key>,
+}
+
+/// Takes hold of a work directory.
+pub(super) fn open(folder: &Path, manifest: &Manifest, role: Role) -> Result<Opened, StoreError> {
+    let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
+    fs::create_dir_all(folder).map_err(failed)?;
+    let hold = match role {
+        Role::Alone { .. } => Hold::Alone,
+        Role::Shard(_) => Hold::Shared,
+    };
+    let lock = try_lock(folder, LOCK, hold)?.ok_or_else(|| StoreError::Locked { path: folder.to_path_buf() })?;
+    let begin_lock = wait_for(folder, BEGIN, &())?;
+    let restart = matches!(role, Role::Alone { restart: true, .. });
+    match manifest.begun(folder).map_err(failed)? {
+        Begun::Same => {}
+        Begun::Nothing => begin(folder, manifest).map_err(failed)?,
+        Begun::Other(_) if restart => begin(folder, manifest).map_err(failed)?,
+        Begun::Other(difference) => return Err(StoreError::Other { path: folder.to_path_buf(), difference }),
+    }
+    if let Role::Shard(shard) = role {
+        shards::join(folder, shard)?;
+    }
+    drop(begin_lock);
+    match role {
+        Role::Alone { make_missing, .. } => alone(folder, lock, make_missing),
+        Role::Shard(shard) => shard_of(folder, lock, shard),
+    }
+}
+
+fn alone(folder: &Path, lock: File, make_missing: bool) -> Result<Opened, StoreError> {
+    let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
+    let (others, mut keys) = shards::read_all(folder, make_missing)?;
+    let (own, found) = LogFile::open(&folder.join(BLOCKS), vec![lock]).map_err(failed)?;
+    keys.extend(found);
+    Ok(Opened { own, others, keys })
+}
+
+/// A shard finds what a run that was alone has made before.
+fn shard_of(folder: &Path, lock: File, shard: Shard) -> Result<Opened, StoreError> {
+    let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
+    let busy = || StoreError::ShardLocked { path: folder.to_path_buf(), shard };
+    let own_lock = try_lock(folder, &shard.lock(), Hold::Alone)?.ok_or_else(busy)?;
+    shards::unmark(folder, shard).map_err(failed)?;
+    let path = folder.join(BLOCKS);
+    let (mut keys, extents): (Vec<Key>, Vec<_>) = scan_path(&path).map_err(failed)?.records.into_iter().unzip();
+    let mut others = Shelf::default();
+    others.add(path, extents.into_iter());
+    let (own, found) = LogFile::open(&folder.join(shard.records()), vec![lock, own_lock]).map_err(failed)?;
+    keys.extend(found);
+    Ok(Opened { own, others, keys })
+}
+
+/// Empties the directory of all that is ours, then says what the next blocks belong to.
+fn begin(folder: &Path, manifest: &Manifest) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if name.starts_with("anastomesh.") && !name.ends_with(".lock") {
+            fs::remove_file(&path)?;
+        }
+    }
+    write_whole(&folder.join(MANIFEST), &serde_json::to_vec_pretty(manifest)?)
+}
+
+/// Writes a file that has its name only when it is whole.
+pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let folder = path.parent().unwrap_or_else(|| Path::new("."));
+    let mut part = tempfile::Builder::new().prefix("anastomesh.part-").tempfile_in(folder)?;
+    part.write_all(bytes)?;
+    part.as_file().sync_all()?;
+    part.persist(path).map(drop).map_err(|e| e.error)
+}

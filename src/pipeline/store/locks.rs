@@ -1,0 +1,103 @@
+//! Locks of a work directory: held by an open file, so that they go when the program does, however it ends.
+
+use std::fs::{File, TryLockError};
+use std::io;
+use std::path::Path;
+use std::time::Duration;
+
+use super::error::StoreError;
+use crate::progress::{Cancelled, Progress};
+
+/// How often a lock that others hold is asked for again.
+const AGAIN: Duration = Duration::from_millis(20);
+
+/// How a lock is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hold {
+    /// By one run alone.
+    Alone,
+    /// By any number of runs, none of which holds it alone.
+    Shared,
+}
+
+/// Takes a lock; none when others have it.
+///
+/// # Errors
+/// When the folder cannot be used, or its file system has no locks.
+pub(super) fn try_lock(folder: &Path, name: &str, hold: Hold) -> Result<Option<File>, StoreError> {
+    let path = folder.join(name);
+    let open = || File::options().write(true).create(true).truncate(false).open(&path);
+    let unusable = |source| StoreError::Folder { path: folder.to_path_buf(), source };
+    let file = open().map_err(unusable)?;
+    let taken = match hold {
+        Hold::Alone => file.try_lock(),
+        Hold::Shared => file.try_lock_shared(),
+    };
+    if !is_taken(folder, taken)? {
+        return Ok(None);
+    }
+    // Some file systems grant every lock. A lock that does not keep this second file out keeps nobody out.
+    let second = open().map_err(unusable)?;
+    if is_taken(folder, second.try_lock())? {
+        return Err(StoreError::NoLocks { path: folder.to_path_buf(), why: "it grants one lock twice".into() });
+    }
+    Ok(Some(file))
+}
+
+/// Takes a lock alone, as soon as nobody else has it.
+///
+/// # Errors
+/// As [`try_lock`]; and when the run is told to stop.
+pub(super) fn wait_for(folder: &Path, name: &str, progress: &dyn Progress) -> Result<File, StoreError> {
+    loop {
+        if let Some(lock) = try_lock(folder, name, Hold::Alone)? {
+            return Ok(lock);
+        }
+        if progress.is_cancelled() {
+            return Err(io::Error::other(Cancelled).into());
+        }
+        std::thread::sleep(AGAIN);
+    }
+}
+
+/// Whether a lock was granted.
+fn is_taken(folder: &Path, answer: Result<(), TryLockError>) -> Result<bool, StoreError> {
+    match answer {
+        Ok(()) => Ok(true),
+        Err(TryLockError::WouldBlock) => Ok(false),
+        Err(TryLockError::Error(source)) => {
+            Err(StoreError::NoLocks { path: folder.to_path_buf(), why: source.to_string() })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lock_keeps_others_out_until_it_is_dropped() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let take = |hold| try_lock(folder.path(), "lock", hold).expect("locks");
+        let shared = [take(Hold::Shared), take(Hold::Shared)];
+        assert!(shared.iter().all(Option::is_some) && take(Hold::Alone).is_none());
+        drop(shared);
+        let alone = take(Hold::Alone);
+        assert!(alone.is_some() && take(Hold::Shared).is_none());
+        drop(alone);
+        assert!(wait_for(folder.path(), "lock", &()).is_ok());
+    }
+
+    #[test]
+    fn a_file_system_without_locks_is_named() {
+        // What NFS without its lock service answers, and file systems that know no locks at all.
+        for kind in [io::ErrorKind::Unsupported, io::ErrorKind::Other] {
+            let error = is_taken("there".as_ref(), Err(TryLockError::Error(kind.into()))).expect_err("no locks");
+            assert!(matches!(error, StoreError::NoLocks { .. }));
+            assert!(
+                error.to_string().starts_with("there: the file system of this work directory has no locks"),
+                "{error}"
+            );
+        }
+    }
+}
