@@ -90,3 +90,25 @@ fn what_cannot_be_grown_is_a_usage_error() {
     let refused = run(&["generate", "--terminals", "100", "-o"], &folder.path().join("net.obj"));
     assert_eq!(refused.status.code(), Some(3));
 }
+
+#[test]
+fn capillaries_close_arteries_and_veins_to_loops() {
+    let folder = tempfile::tempdir().unwrap();
+    let grow = |name: &str, more: &[&str]| {
+        let path = folder.path().join(name);
+        let base = ["generate", "--terminals", "60", "--organ", "ellipsoid", "--capillaries", "--json"];
+        (run(&[&base[..], more, &["-o"]].concat(), &path), path)
+    };
+    let (done, path) = grow("bed.vtp", &[]);
+    let grown = json(&done);
+    let info = json(&run(&["info", "--json"], &path));
+    assert_eq!(
+        (&info["nodes"], &info["edges"], &info["components"]),
+        (&grown["nodes"], &grown["edges"], &Value::from(1))
+    );
+    assert!(info["loops"].as_u64() > Some(200), "{info}");
+    assert!(grow("swc.swc", &[]).0.status.code() == Some(3));
+    assert!(grow("thick.vtp", &["--capillary-radius", "9"]).0.status.code() == Some(2));
+    let kidney = run(&["generate", "--terminals", "60", "--capillaries", "-o"], &folder.path().join("kidney.vtp"));
+    assert_eq!(kidney.status.code(), Some(2));
+}

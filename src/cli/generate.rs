@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
-use crate::grow::{GenerateParams, Morphometry, Organ, RAT_KIDNEY, generate};
-use crate::io::network::{ensure_tree_writable, write_tree};
+use crate::grow::{BedParams, GenerateParams, Looped, Morphometry, Organ, RAT_KIDNEY, generate, looped};
+use crate::io::network::{NetworkArray, ensure_network_writable, ensure_tree_writable, write_network, write_tree};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -21,15 +21,25 @@ pub struct Args {
     /// Seed of the random numbers; the same seed gives the same network
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Mean radius of the terminals, in um
-    #[arg(long, value_name = "R", default_value_t = GenerateParams::new(Organ::Kidney, 2).terminal_radius, allow_negative_numbers = true)]
-    terminal_radius: f64,
+    /// Mean radius of the terminals, in um (default: 10.08, as in a rat's kidney; 4 with --capillaries)
+    #[arg(long, value_name = "R", allow_negative_numbers = true)]
+    terminal_radius: Option<f64>,
     /// Exponent p of Murray's law r0^p = r1^p + r2^p (default: 3.2 for a kidney, as measured, and 3 for an ellipsoid)
     #[arg(long, value_name = "P", allow_negative_numbers = true)]
     exponent: Option<f64>,
     /// Longest extent of the organ, in um (default: terminals as dense as in a rat's kidney)
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     size: Option<f64>,
+    /// Grow veins beside the arteries, with as many terminals, and a looped bed of capillaries between the two, by default
+    /// as in the cortex of mice (needs --organ ellipsoid; some 35 vessels for each terminal)
+    #[arg(long)]
+    capillaries: bool,
+    /// Mean radius of the capillaries, in um
+    #[arg(long, value_name = "R", requires = "capillaries", default_value_t = BedParams::default().radius, allow_negative_numbers = true)]
+    capillary_radius: f64,
+    /// Mean length of the capillaries, in um
+    #[arg(long, value_name = "L", requires = "capillaries", default_value_t = BedParams::default().length, allow_negative_numbers = true)]
+    capillary_length: f64,
     /// Where the network goes, in um: .vtp, or .swc (node radii only)
     #[arg(short, long, value_name = "NETWORK")]
     output: PathBuf,
@@ -68,7 +78,11 @@ impl Args {
         let usual = GenerateParams::new(organ, self.terminals);
         GenerateParams {
             seed: self.seed,
-            terminal_radius: self.terminal_radius,
+            terminal_radius: self.terminal_radius.unwrap_or(if self.capillaries {
+                ARTERIOLE
+            } else {
+                usual.terminal_radius
+            }),
             exponent: self.exponent.unwrap_or(usual.exponent),
             size: self.size,
             ..usual
@@ -76,8 +90,48 @@ impl Args {
     }
 }
 
+/// Radius of the thinnest arteries and veins beside capillaries, um.
+const ARTERIOLE: f64 = 4.0;
+
+/// What was grown with capillaries.
+#[derive(Serialize)]
+struct GrownLooped<'a> {
+    program: &'static str,
+    parameters: &'a GenerateParams,
+    capillaries: &'a BedParams,
+    nodes: usize,
+    edges: usize,
+    joined: usize,
+    open: usize,
+}
+
+/// Grows arteries, veins and capillaries, and writes them.
+fn run_looped(args: &Args) -> Result<Exit, Failure> {
+    ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    let (params, bed) = (args.params(), BedParams { radius: args.capillary_radius, length: args.capillary_length });
+    let pool = thread_pool(args.common.threads)?;
+    let Looped { skeleton, kind, joined, open } =
+        pool.install(|| looped(&params, &bed)).map_err(|e| Failure::usage(e.to_string()))?;
+    let (nodes, edges) = (skeleton.nodes.len(), skeleton.edges.len());
+    write_network(&args.output, &skeleton, &[NetworkArray::NodeInts("Kind", kind)])
+        .map_err(|e| Failure::input(e.to_string()))?;
+    let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
+    if args.common.json {
+        let grown = GrownLooped { program, parameters: &params, capillaries: &bed, nodes, edges, joined, open };
+        print(true, &grown, String::new)?;
+    } else if !args.common.quiet {
+        eprintln!(
+            "{nodes} nodes, {edges} edges; {joined} ends of arteries and veins are joined to capillaries, {open} are open"
+        );
+    }
+    Ok(Exit::Fine)
+}
+
 /// Grows a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
+    if args.capillaries {
+        return run_looped(args);
+    }
     ensure_tree_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     let params = args.params();
     let pool = thread_pool(args.common.threads)?;

@@ -34,6 +34,7 @@ use crate::progress::{Progress, Stage};
 use crate::refine::{RefineParams, Refined};
 use crate::report::advice::advice;
 use crate::report::caps;
+use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -165,20 +166,22 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let work = args.work.open(shard, &network.skeleton, || args.options(&plan))?;
     let refined = pool.install(|| args.refined(&network, work.as_ref(), shard, &stop))?;
+    if let (Some(work), Some(shard)) = (&work, shard) {
+        let skeleton = match refined {
+            Some((refined, _)) => refined.skeleton,
+            None => network.skeleton,
+        };
+        return args.run_shard(work, shard, (skeleton, &plan), &pool, (&stop, &bars));
+    }
     let before = Before::new(network, refined);
     // Blocks are kept as soon as they are done.
     stop.keep();
     if let Some(dir) = &args.work.dir {
         work::note(dir, &bars);
     }
-    pool.install(|| match (work, shard) {
-        (Some(work), Some(shard)) => {
-            let made = work.make_shard(shard, (&before.network, &plan), &bars);
-            let made = made.map_err(|e| args.explain(e, &plan, &before))?;
-            work::told(shard, &made, args.common.json, args.common.quiet)
-        }
+    pool.install(|| match work {
         _ if plan.smooths_joints() => args.run_in_memory(&plan, &before, &bars),
-        (work, _) => args.run_in_store(work, &plan, before, &bars),
+        work => args.run_in_store(work, &plan, before, &bars),
     })
 }
 
@@ -198,6 +201,23 @@ impl Args {
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
             ..self.blocks.plan(self.how.fuses())
         })
+    }
+
+    /// A share of the blocks, of which nothing but the network has to be known.
+    fn run_shard(
+        &self,
+        work: &WorkDir,
+        shard: Shard,
+        (network, plan): (Skeleton, &MeshPlan),
+        pool: &rayon::ThreadPool,
+        (stop, bars): (&Stop, &Bars),
+    ) -> Result<Exit, Failure> {
+        stop.keep();
+        if let Some(dir) = &self.work.dir {
+            work::note(dir, bars);
+        }
+        let made = pool.install(|| work.make_shard(shard, (network, plan), bars));
+        work::told(shard, &made.map_err(|e| self.explain_alone(&e))?, self.common.json, self.common.quiet)
     }
 
     /// Joints are to be smoothed: the mesh is held.
@@ -306,6 +326,13 @@ impl Args {
                     report.failed.len()
                 ))
             }
+            error => self.explain_alone(&error),
+        }
+    }
+
+    /// The same of what ends a run before there are blocks to speak of.
+    fn explain_alone(&self, error: &RunError) -> Failure {
+        match error {
             RunError::Cancelled => self.stopped(),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
             RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),
@@ -369,7 +396,7 @@ impl Args {
         let params = super::refine::fitting(network, self.how.params(iterations));
         let make = || super::refine::moved_so(network, &params, &self.common, stop);
         let refined = match work {
-            Some(work) => work.refined(&network.skeleton, &params, &Bars::new(true, false, stop.clone()), make)?,
+            Some(work) => work.refined(&network.skeleton, &params, &Bars::new(true, None, stop.clone()), make)?,
             None => make()?,
         };
         if shard.is_none() {

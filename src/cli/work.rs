@@ -95,7 +95,7 @@ impl WorkDir {
     pub fn make_shard(
         &self,
         shard: Shard,
-        (network, plan): (&Skeleton, &MeshPlan),
+        (network, plan): (Skeleton, &MeshPlan),
         bars: &Bars,
     ) -> Result<ShareReport, RunError> {
         let fits = |estimate: &_| room::block_fits(estimate, plan);

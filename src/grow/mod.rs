@@ -10,7 +10,9 @@
 //! The published morphometry, and what a network has of it, is in `morphometry`.
 
 mod dual;
+mod looped;
 mod morphometry;
+mod net;
 mod organ;
 mod params;
 mod random;
@@ -21,6 +23,7 @@ mod tests;
 mod tree;
 
 pub use dual::{Dual, dual};
+pub use looped::{BedParams, Looped, looped};
 pub use morphometry::{Morphometry, RAT_KIDNEY};
 
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};

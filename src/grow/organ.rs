@@ -6,7 +6,7 @@ use crate::geometry::{Point3, Vec3};
 
 /// Half the extent of the organ along x, y, z; z is the longest. That of the published rat kidney
 /// (14.2 × 11.3 × 21.8 mm).
-const SEMI_AXES: [f64; 3] = [0.651, 0.518, 1.0];
+pub(super) const SEMI_AXES: [f64; 3] = [0.651, 0.518, 1.0];
 
 /// Longest extent of a rat's kidney with so many terminals of such a radius, µm.
 const KIDNEY: f64 = 21_800.0;

@@ -111,6 +111,20 @@ pub enum GenerateError {
         /// Number of terminals.
         terminals: u32,
     },
+    /// Capillaries that are too thick for their length.
+    #[error(
+        "capillaries of radius {radius} and length {length} µm: the radius must be above 0, and the length at least twelve \
+         times as large"
+    )]
+    BadBed {
+        /// Mean radius, µm.
+        radius: f64,
+        /// Mean length, µm.
+        length: f64,
+    },
+    /// A bed in a kidney.
+    #[error("capillaries fill a piece of tissue evenly: give --organ ellipsoid")]
+    BedOfKidney,
     /// The organ could not be filled.
     #[error("only {placed} of {terminals} terminals found a place")]
     NoRoom {

@@ -20,6 +20,10 @@ pub enum Stream {
     Split,
     /// Radius of a terminal.
     Radius,
+    /// Where the nodes of a bed of capillaries are, and how thick its vessels.
+    Bed,
+    /// How thick a vessel is that joins a tree to the bed.
+    Joint,
 }
 
 /// Source of the numbers of one seed.

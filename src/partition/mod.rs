@@ -1,8 +1,9 @@
 //! Floor 3: 3.2.1 of the paper. Long vessels are cut; what stays together is a cluster.
 
-mod assemble;
 mod check;
 mod clearance;
+mod layout;
+mod near;
 mod params;
 mod parts;
 mod path;
@@ -13,11 +14,14 @@ mod window;
 #[cfg(test)]
 mod tests;
 
-use crate::skeleton::course::Course;
+use std::sync::Arc;
+
+use crate::skeleton::course::Courses;
 use crate::skeleton::cuttability::BranchEnd;
 use crate::skeleton::{BranchId, Skeleton};
 
 pub use check::check_partition;
+pub use layout::Layout;
 pub use params::{PartitionError, PartitionParams};
 #[cfg(test)]
 pub(crate) use parts::PartitionWarning;
@@ -33,27 +37,34 @@ pub use summary::PartitionSummary;
 /// # Errors
 /// If a parameter is not positive or the skeleton has an edge without length, radius or node.
 pub fn partition(skeleton: &Skeleton, params: &PartitionParams) -> Result<Partition, PartitionError> {
+    Ok(lay_out(&Arc::new(skeleton.clone()), params)?.explicit())
+}
+
+/// The same, held as where the skeleton is cut.
+///
+/// # Errors
+/// As [`partition`].
+pub fn lay_out(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Result<Layout, PartitionError> {
     params.check()?;
     params::check_skeleton(skeleton)?;
     let mut params = params.clone();
     params.forbidden_cuts.extend(params.together.iter().flatten());
     let usual = cut(skeleton, &params);
-    let large: Vec<BranchId> = usual.in_clusters_above(params.large).collect();
+    let large = usual.in_clusters_above(params.large);
     if large.is_empty() {
         return Ok(usual);
     }
     params.eager.extend(large);
     let eager = cut(skeleton, &params);
-    let largest = |p: &Partition| p.clusters.iter().map(|c| c.nodes.len()).max();
-    Ok(if largest(&eager) < largest(&usual) { eager } else { usual })
+    Ok(if eager.largest_nodes() < usual.largest_nodes() { eager } else { usual })
 }
 
-fn cut(skeleton: &Skeleton, params: &PartitionParams) -> Partition {
+fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Layout {
     let adjacency = skeleton.adjacency();
-    let branches = skeleton.branches(&adjacency);
-    let courses: Vec<_> = branches.list.iter().map(|b| Course::new(skeleton, b)).collect();
-    let cutter = window::Cutter::new(skeleton, &adjacency, &courses, params);
-    let mut slots = Vec::new();
+    let chains = skeleton.chains(&adjacency);
+    let courses = Courses { skeleton, chains: &chains };
+    let cutter = window::Cutter::new(&adjacency, courses, params);
+    let mut slots = Vec::with_capacity(courses.len());
     let mut uncut = Vec::new();
     for branch in 0..courses.len() as u32 {
         if let Some(reason) = cutter.slots(branch, &mut slots) {
@@ -63,8 +74,10 @@ fn cut(skeleton: &Skeleton, params: &PartitionParams) -> Partition {
     // Large networks ask for the room.
     drop(cutter);
     let terminal = |node| BranchEnd::of(&adjacency, node) == BranchEnd::Terminal;
-    let terminals = courses.iter().map(|c| c.branch.ends().map(terminal)).collect();
-    let mut settler = settle::Settler::new(skeleton.nodes.len(), &courses, params, slots, terminals);
+    let terminals = (0..courses.len() as u32).map(|branch| chains.ends(branch).map(terminal)).collect();
+    drop(adjacency);
+    let mut settler = settle::Settler::new(skeleton.nodes.len(), courses, params, slots, terminals);
     uncut.extend(settler.settle());
-    assemble::assemble(settler, uncut)
+    let layout = Layout::new(Arc::clone(skeleton), settler, uncut);
+    layout.with(chains)
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::summary::PartitionSummary;
 use crate::geometry::{Section, Tube};
 use crate::skeleton::{BranchId, NodeId};
 
@@ -14,7 +15,7 @@ pub struct ClusterId(pub u32);
 pub struct CutId(pub u32);
 
 /// The network cut into clusters.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Partition {
     /// Clusters, by `ClusterId`.
     pub clusters: Vec<Cluster>,
@@ -29,18 +30,18 @@ pub struct Partition {
     pub uncut: Vec<(BranchId, UncutReason)>,
     /// What may go wrong in a cluster.
     pub warnings: Vec<PartitionWarning>,
+    pub(super) summary: PartitionSummary,
 }
 
 impl Partition {
-    /// The branches that run through clusters of more than so many nodes.
-    pub(super) fn in_clusters_above(&self, nodes: usize) -> impl Iterator<Item = BranchId> {
-        let large = move |piece: &&Piece| self.clusters[piece.cluster.0 as usize].nodes.len() > nodes;
-        self.pieces.iter().filter(large).map(|piece| piece.branch)
+    /// All of it in figures.
+    pub fn summary(&self) -> PartitionSummary {
+        self.summary
     }
 }
 
 /// A piece of a branch in a cluster.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     pub cluster: ClusterId,
     pub branch: BranchId,

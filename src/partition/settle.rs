@@ -5,12 +5,15 @@
 //! is no such place are given up, which joins two clusters. Both only ever go one way, so it ends.
 
 use super::clearance::{Tip, tip_middle};
+use super::near::{Kind, Near, Obstacle, terminal_overrun};
 use super::params::PartitionParams;
 use super::parts::UncutReason;
 use super::window::Slot;
-use crate::geometry::{Aabb, Bvh, DisjointSets, Section, Tube};
-use crate::skeleton::course::{Course, Way};
+use crate::geometry::{DisjointSets, Section};
+use crate::skeleton::course::{Course, Courses, Way};
 use crate::skeleton::{BranchId, NodeId};
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
 
 /// A piece of a branch that is in one cluster.
 #[derive(Clone, Copy, Debug)]
@@ -22,23 +25,8 @@ pub(super) struct Run {
     pub root: u32,
 }
 
-/// Something in the way: a part of a branch, or the overrun beyond its terminal.
-#[derive(Clone, Copy, Debug)]
-struct Obstacle {
-    branch: u32,
-    kind: Kind,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    /// The edge of this index in the branch.
-    Edge(u32),
-    /// The overrun at the branch's start or end.
-    Overrun(Way),
-}
-
 pub(super) struct Settler<'a> {
-    pub courses: &'a [Course<'a>],
+    pub courses: Courses<'a>,
     pub params: &'a PartitionParams,
     pub slots: Vec<Slot>,
     /// The slots of each branch are `first_slot[branch]..first_slot[branch + 1]`.
@@ -46,15 +34,20 @@ pub(super) struct Settler<'a> {
     pub runs: Vec<Run>,
     /// The runs of each branch are `first_run[branch]..first_run[branch + 1]`.
     pub first_run: Vec<u32>,
+    /// The runs by cluster.
+    by_root: Vec<u32>,
     /// Terminals at the branch's start and end.
     pub terminals: Vec<[bool; 2]>,
     union: DisjointSets,
     /// Smallest radius of each cluster, by root.
     r_min: Vec<f64>,
-    obstacles: Vec<Obstacle>,
-    tree: Bvh,
+    /// What may be in the way in large clusters, by root.
+    large: FxHashMap<u32, Rc<Near>>,
     blending: f64,
 }
+
+/// In clusters of more runs than this, what may be in the way is listed once for all of their ends.
+const LARGE: usize = 24;
 
 /// How far before its plane, in radii, a vessel only leads to its own tip. A straight vessel's axis is clear of the tip from
 /// 2.8 radii on (half a radius of tip behind the plane, one radius, and the margin for two vessels side by side of 1.3
@@ -69,7 +62,7 @@ const STEADY_STEPS: u32 = 24;
 impl<'a> Settler<'a> {
     pub fn new(
         nodes: usize,
-        courses: &'a [Course<'a>],
+        courses: Courses<'a>,
         params: &'a PartitionParams,
         slots: Vec<Slot>,
         terminals: Vec<[bool; 2]>,
@@ -77,7 +70,6 @@ impl<'a> Settler<'a> {
         let first_slot: Vec<u32> =
             (0..=courses.len() as u32).map(|b| slots.partition_point(|s| s.branch < b) as u32).collect();
         let blending = params.blending();
-        let (obstacles, tree) = obstacles(courses, &terminals, params, blending);
         let union = DisjointSets::new(slots.len() + courses.len() + nodes);
         let mut settler = Self {
             courses,
@@ -88,9 +80,9 @@ impl<'a> Settler<'a> {
             first_slot,
             runs: Vec::new(),
             first_run: Vec::new(),
+            by_root: Vec::new(),
             terminals,
-            obstacles,
-            tree,
+            large: FxHashMap::default(),
             blending,
         };
         settler.join_pieces();
@@ -109,7 +101,7 @@ impl<'a> Settler<'a> {
 
     fn join_pieces(&mut self) {
         for branch in 0..self.courses.len() as u32 {
-            let [a, b] = self.courses[branch as usize].branch.ends();
+            let [a, b] = self.courses.chains.ends(branch);
             let count = self.first_slot[branch as usize + 1] - self.first_slot[branch as usize];
             self.union.join(self.piece(branch, 0), self.node(a));
             self.union.join(self.piece(branch, count), self.node(b));
@@ -131,12 +123,17 @@ impl<'a> Settler<'a> {
                 if !dirty[root as usize] {
                     continue;
                 }
+                let is_alive = |slot: Option<u32>| slot.is_some_and(|s| self.slots[s as usize].alive);
+                if !slots.into_iter().any(is_alive) {
+                    continue;
+                }
+                let near = self.near(root);
                 for (way, slot) in [(Way::Back, slots[0]), (Way::Onward, slots[1])] {
                     let Some(slot) = slot.map(|s| s as usize).filter(|&s| self.slots[s].alive) else { continue };
                     let stands = self.slots[slot].planes[way.side()];
-                    let Err(reason) = self.clear_at(run, way, stands) else { continue };
+                    let Err(reason) = self.clear_at(&near, run, way, stands) else { continue };
                     changed.push(slot as u32);
-                    if let Some(s) = self.clear_place(run, way, slot) {
+                    if let Some(s) = self.clear_place(&near, run, way, slot) {
                         self.slots[slot].planes[way.side()] = s;
                     } else {
                         self.slots[slot].alive = false;
@@ -192,20 +189,55 @@ impl<'a> Settler<'a> {
         }
         self.first_run.push(self.runs.len() as u32);
         self.r_min.fill(f64::INFINITY);
-        for run in &self.runs {
-            let [lo, hi] = self.range(run);
-            let least = self.courses[run.branch as usize].radius_range(lo, hi)[0];
-            let r = &mut self.r_min[run.root as usize];
-            *r = r.min(least);
+        for branch in 0..self.courses.len() {
+            let course = self.courses.get(branch as u32);
+            for run in self.first_run[branch] as usize..self.first_run[branch + 1] as usize {
+                let run = self.runs[run];
+                let [lo, hi] = self.range(&run, &course);
+                let r = &mut self.r_min[run.root as usize];
+                *r = r.min(course.radius_range(lo, hi)[0]);
+            }
         }
+        self.by_root.clear();
+        self.by_root.extend(0..self.runs.len() as u32);
+        let runs = &self.runs;
+        self.by_root.sort_unstable_by_key(|&run| (runs[run as usize].root, run));
+        self.large.clear();
     }
 
-    /// Where a run starts and ends.
-    pub fn range(&self, run: &Run) -> [f64; 2] {
+    /// The runs of a cluster, ascending.
+    pub fn runs_of(&self, root: u32) -> &[u32] {
+        let from = self.by_root.partition_point(|&run| self.runs[run as usize].root < root);
+        let count = self.by_root[from..].partition_point(|&run| self.runs[run as usize].root == root);
+        &self.by_root[from..from + count]
+    }
+
+    /// What may be in the way of the ends of a cluster.
+    pub fn near(&mut self, root: u32) -> Rc<Near> {
+        if let Some(near) = self.large.get(&root) {
+            return Rc::clone(near);
+        }
+        let runs = self.runs_of(root);
+        let mut branches: Vec<u32> = runs.iter().map(|&run| self.runs[run as usize].branch).collect();
+        branches.dedup();
+        let is_large = runs.len() > LARGE;
+        let near = Rc::new(Near::new(self.courses, &self.terminals, &branches, self.params, self.blending));
+        if is_large {
+            self.large.insert(root, Rc::clone(&near));
+        }
+        near
+    }
+
+    /// Where a run of a course starts and ends.
+    pub fn range(&self, run: &Run, course: &Course) -> [f64; 2] {
         let lo = run.slots[0].map_or(0.0, |s| self.slots[s as usize].planes[1]);
-        let hi = run.slots[1]
-            .map_or_else(|| self.courses[run.branch as usize].length(), |s| self.slots[s as usize].planes[0]);
+        let hi = run.slots[1].map_or_else(|| course.length(), |s| self.slots[s as usize].planes[0]);
         [lo, hi]
+    }
+
+    /// Smallest radius of a cluster.
+    pub fn r_min(&self, root: u32) -> f64 {
+        self.r_min[root as usize]
     }
 
     /// Length of the overrun of a vessel of radius `radius` in the cluster `root`.
@@ -214,9 +246,9 @@ impl<'a> Settler<'a> {
     }
 
     /// Next place for a plane, away from its cluster, at which its vessel is clear.
-    fn clear_place(&self, run: usize, way: Way, slot: usize) -> Option<f64> {
+    fn clear_place(&self, near: &Near, run: usize, way: Way, slot: usize) -> Option<f64> {
         let Slot { branch, planes, .. } = self.slots[slot];
-        let course = &self.courses[branch as usize];
+        let course = near.course(branch);
         let mut planes = planes;
         let mut step = STEP * course.radius(planes[way.side()], way);
         for i in 0..STEPS {
@@ -224,7 +256,7 @@ impl<'a> Settler<'a> {
             if planes[1] - planes[0] < self.params.rules(branch).room_between(course, planes[0], planes[1]) {
                 return None;
             }
-            if self.clear_at(run, way, planes[way.side()]).is_ok() {
+            if self.clear_at(near, run, way, planes[way.side()]).is_ok() {
                 return Some(planes[way.side()]);
             }
             if i >= STEADY_STEPS {
@@ -234,42 +266,44 @@ impl<'a> Settler<'a> {
         None
     }
 
-    /// Lets go of what `tip_clear` needs.
-    pub fn forget_obstacles(&mut self) {
-        self.obstacles = Vec::new();
-        self.tree = Bvh::new(&[]);
-    }
-
     /// Whether a run that ended at `s` would be clear of the other vessels of its cluster there; if not, one of these.
-    fn clear_at(&self, run: usize, way: Way, s: f64) -> Result<(), BranchId> {
+    fn clear_at(&self, near: &Near, run: usize, way: Way, s: f64) -> Result<(), BranchId> {
         let Run { branch, root, .. } = self.runs[run];
-        let section = self.courses[branch as usize].section(s, way);
-        self.tip_clear(run, way, s, &section, self.overrun(section.radius, root))
+        let section = near.course(branch).section(s, way);
+        self.tip_clear(near, run, way, s, &section, self.overrun(section.radius, root))
     }
 
     /// The same for an end with a given overrun.
-    pub fn tip_clear(&self, run: usize, way: Way, s: f64, section: &Section, overrun: f64) -> Result<(), BranchId> {
+    pub fn tip_clear(
+        &self,
+        near: &Near,
+        run: usize,
+        way: Way,
+        s: f64,
+        section: &Section,
+        overrun: f64,
+    ) -> Result<(), BranchId> {
         let tip = Tip::new(*section, overrun);
-        let mut near = None;
-        self.tree.query(&tip.aabb(self.blending), |i| {
-            let obstacle = self.obstacles[i as usize];
-            if near.is_none_or(|b| obstacle.branch < b) && self.in_the_way(run, way, s, &tip, &obstacle) {
-                near = Some(obstacle.branch);
+        let mut first = None;
+        near.query(&tip.aabb(self.blending), |obstacle| {
+            if first.is_none_or(|b| obstacle.branch < b)
+                && self.in_the_way(near.course(obstacle.branch), run, way, s, &tip, obstacle)
+            {
+                first = Some(obstacle.branch);
             }
         });
-        near.map_or(Ok(()), |b| Err(BranchId(b)))
+        first.map_or(Ok(()), |b| Err(BranchId(b)))
     }
 
-    fn in_the_way(&self, own: usize, way: Way, s: f64, tip: &Tip, obstacle: &Obstacle) -> bool {
+    fn in_the_way(&self, course: &Course, own: usize, way: Way, s: f64, tip: &Tip, obstacle: &Obstacle) -> bool {
         let root = self.runs[own].root;
         let branch = obstacle.branch as usize;
-        let course = &self.courses[branch];
         for run in self.first_run[branch] as usize..self.first_run[branch + 1] as usize {
             if self.runs[run].root != root {
                 continue;
             }
             let slots = self.runs[run].slots;
-            let mut reach = self.range(&self.runs[run]);
+            let mut reach = self.range(&self.runs[run], course);
             if run == own {
                 reach[way.end_index()] = s;
             }
@@ -306,41 +340,4 @@ impl<'a> Settler<'a> {
         }
         false
     }
-}
-
-/// The axis of the tip beyond a terminal, with the longest overrun that it may have.
-fn terminal_overrun(course: &Course, end: Way, params: &PartitionParams) -> Tube {
-    let s = if end == Way::Onward { course.length() } else { 0.0 };
-    let section = course.section(s, end);
-    let r = section.radius;
-    let length = tip_middle(r, params.overrun_length(r, r));
-    Tube { a: section.origin, b: section.origin + section.axis * length, ra: r, rb: r }
-}
-
-fn obstacles(
-    courses: &[Course],
-    terminals: &[[bool; 2]],
-    params: &PartitionParams,
-    blending: f64,
-) -> (Vec<Obstacle>, Bvh) {
-    let count = courses.iter().map(|c| c.radii.len() + 2).sum();
-    let mut list = Vec::with_capacity(count);
-    let mut boxes = Vec::with_capacity(count);
-    for (branch, course) in courses.iter().enumerate() {
-        let mut add = |kind: Kind, tube: &Tube| {
-            list.push(Obstacle { branch: branch as u32, kind });
-            boxes.push(Aabb::of_points([&tube.a, &tube.b]).grown(blending * tube.max_radius()));
-        };
-        for (i, [ra, rb]) in course.radii.iter().enumerate() {
-            let tube = Tube { a: course.points[i], b: course.points[i + 1], ra: *ra, rb: *rb };
-            add(Kind::Edge(i as u32), &tube);
-        }
-        for (end, terminal) in Way::BOTH.into_iter().zip(terminals[branch]) {
-            if terminal {
-                add(Kind::Overrun(end), &terminal_overrun(course, end, params));
-            }
-        }
-    }
-    let tree = Bvh::new(&boxes);
-    (list, tree)
 }

@@ -1,6 +1,8 @@
 //! A partition in figures.
 
-use super::parts::{Partition, PartitionWarning, UncutReason};
+use super::Layout;
+use super::parts::{ClusterId, PartitionWarning, UncutReason};
+use crate::skeleton::BranchId;
 
 /// What the pipeline prints of a partition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -40,11 +42,33 @@ pub struct UncutCounts {
     pub clearance: usize,
 }
 
-impl Partition {
+impl Layout {
     /// The partition in figures.
     pub fn summary(&self) -> PartitionSummary {
-        let mut uncut = UncutCounts::default();
-        for (_, reason) in &self.uncut {
+        let mut summary = PartitionSummary {
+            clusters: self.clusters_len(),
+            largest_nodes: self.largest_nodes(),
+            cuts: self.cuts_len(),
+            uncut: UncutCounts::of(self.uncut()),
+            ..PartitionSummary::default()
+        };
+        for (i, cluster) in (0..).zip(self.clusters()) {
+            // A cluster without a junction is one piece; every other has three pieces or a piece that closes on a junction.
+            let pieces = self.pieces_in(ClusterId(i));
+            summary.junction_clusters += usize::from(pieces > 2 || (pieces == 2 && cluster.ends.len() != 2));
+            summary.largest_tubes = summary.largest_tubes.max(cluster.tubes.len());
+        }
+        let short = |w: &&PartitionWarning| matches!(w, PartitionWarning::ShortOverrun { .. });
+        summary.short_overruns = self.warnings().iter().filter(short).count();
+        summary.caps_not_clear = self.warnings().len() - summary.short_overruns;
+        summary
+    }
+}
+
+impl UncutCounts {
+    fn of(branches: &[(BranchId, UncutReason)]) -> Self {
+        let mut uncut = Self::default();
+        for (_, reason) in branches {
             *match reason {
                 UncutReason::Terminal => &mut uncut.terminal,
                 UncutReason::Forbidden => &mut uncut.forbidden,
@@ -54,26 +78,6 @@ impl Partition {
                 UncutReason::Clearance { .. } => &mut uncut.clearance,
             } += 1;
         }
-        let short = |w: &&PartitionWarning| matches!(w, PartitionWarning::ShortOverrun { .. });
-        let short_overruns = self.warnings.iter().filter(short).count();
-        PartitionSummary {
-            clusters: self.clusters.len(),
-            junction_clusters: self.junction_clusters(),
-            largest_nodes: self.clusters.iter().map(|c| c.nodes.len()).max().unwrap_or(0),
-            largest_tubes: self.clusters.iter().map(|c| c.tubes.len()).max().unwrap_or(0),
-            cuts: self.cuts.len(),
-            uncut,
-            short_overruns,
-            caps_not_clear: self.warnings.len() - short_overruns,
-        }
-    }
-
-    /// A cluster without a junction is one piece; every other has three pieces or a piece that closes on a junction.
-    fn junction_clusters(&self) -> usize {
-        let mut pieces = vec![0_usize; self.clusters.len()];
-        for piece in &self.pieces {
-            pieces[piece.cluster.0 as usize] += 1;
-        }
-        self.clusters.iter().zip(pieces).filter(|(c, n)| *n > 2 || (*n == 2 && c.ends.len() != 2)).count()
+        uncut
     }
 }

@@ -2,9 +2,9 @@
 
 use super::params::PartitionParams;
 use super::parts::UncutReason;
-use crate::skeleton::course::{Course, Way};
+use crate::skeleton::course::{Course, Courses, Way};
 use crate::skeleton::cuttability::{BranchEnd, Cuttability, Uncuttable};
-use crate::skeleton::{Adjacency, BranchId, Skeleton};
+use crate::skeleton::{Adjacency, BranchId};
 
 /// A place for one cut: the planes may stand anywhere in `window` with room for the connector between them.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,7 @@ pub(super) struct Slot {
 
 /// Looks for places to cut, branch by branch.
 pub(super) struct Cutter<'a> {
-    courses: &'a [Course<'a>],
+    courses: Courses<'a>,
     params: &'a PartitionParams,
     adjacency: &'a Adjacency,
     usual: Cuttability<'a>,
@@ -31,20 +31,15 @@ pub(super) struct Cutter<'a> {
 const SHORTEST_PIECE: f64 = 4.0;
 
 impl<'a> Cutter<'a> {
-    pub fn new(
-        skeleton: &'a Skeleton,
-        adjacency: &'a Adjacency,
-        courses: &'a [Course<'a>],
-        params: &'a PartitionParams,
-    ) -> Self {
-        let cuttability = |rules| Cuttability::new(skeleton, adjacency, courses, rules);
+    pub fn new(adjacency: &'a Adjacency, courses: Courses<'a>, params: &'a PartitionParams) -> Self {
+        let cuttability = |rules| Cuttability::new(adjacency, courses, rules);
         let eager = (!params.eager.is_empty()).then(|| cuttability(params.eager_cuts));
         Self { courses, params, adjacency, usual: cuttability(params.cuts), eager }
     }
 
     /// The places where `branch` is to be cut, in order along it, or why there is none.
     pub fn slots(&self, branch: u32, out: &mut Vec<Slot>) -> Option<UncutReason> {
-        let course = &self.courses[branch as usize];
+        let course = &self.courses.get(branch);
         if self.params.forbidden_cuts.contains(&BranchId(branch)) {
             return Some(UncutReason::Forbidden);
         }
@@ -60,7 +55,7 @@ impl<'a> Cutter<'a> {
             Err(Uncuttable::Bend) => return Some(UncutReason::Bend),
         };
         let start = out.len();
-        self.choose(branch, window.reach, &window.straight, out);
+        self.choose(course, branch, window.reach, &window.straight, out);
         out[start..].sort_by(|a, b| a.window[0].total_cmp(&b.window[0]));
         None
     }
@@ -71,8 +66,7 @@ impl<'a> Cutter<'a> {
     }
 
     /// Takes the longest straight part of [lo, hi]; then, where a long piece is left beside it, the same there.
-    fn choose(&self, branch: u32, [lo, hi]: [f64; 2], parts: &[[f64; 2]], out: &mut Vec<Slot>) {
-        let course = &self.courses[branch as usize];
+    fn choose(&self, course: &Course, branch: u32, [lo, hi]: [f64; 2], parts: &[[f64; 2]], out: &mut Vec<Slot>) {
         // Stretches to search, each with the piece of vessel that stays whole unless a cut is found in it.
         let mut pending = vec![(lo, hi, 0.0, course.length())];
         while let Some((lo, hi, piece_lo, piece_hi)) = pending.pop() {
@@ -86,7 +80,7 @@ impl<'a> Cutter<'a> {
                 if b[1] - b[0] > (a[1] - a[0]) * (1.0 + 1e-9) { b } else { a }
             });
             let Some(window) = best else { continue };
-            self.divide(branch, window, out);
+            self.divide(course, branch, window, out);
             let gap = |s: f64| SHORTEST_PIECE * course.radius(s, Way::Onward).max(course.radius(s, Way::Back));
             for (from, to, piece) in [
                 (lo, window[0] - gap(window[0]), [piece_lo, window[0]]),
@@ -101,8 +95,7 @@ impl<'a> Cutter<'a> {
     }
 
     /// Makes a slot of a window, or several with short pieces between them if it is longer than a connector may be.
-    fn divide(&self, branch: u32, window: [f64; 2], out: &mut Vec<Slot>) {
-        let course = &self.courses[branch as usize];
+    fn divide(&self, course: &Course, branch: u32, window: [f64; 2], out: &mut Vec<Slot>) {
         let radius = course.radius_range(window[0], window[1])[1];
         let length = window[1] - window[0];
         let piece = 1.5 * SHORTEST_PIECE * radius;

@@ -10,7 +10,7 @@ use super::estimate::cluster_cost;
 use super::report::Retry;
 use super::rounds::Run;
 use super::routes::{Overlapping, tangled_clusters};
-use crate::partition::{ClusterId, Partition};
+use crate::partition::{ClusterId, CutId, Layout};
 use crate::progress::Stage;
 use crate::skeleton::BranchId;
 use crate::tet::Watch;
@@ -34,15 +34,16 @@ const ROUNDS: usize = 2;
 
 impl Apart {
     /// Decides what is done about meetings; no when nothing is left to try. `partition`: of the blocks that met.
-    pub fn part(&mut self, mut meetings: Meetings, partition: &Partition, overlapping: &Overlapping) -> bool {
+    pub fn part(&mut self, mut meetings: Meetings, partition: &Layout, overlapping: &Overlapping) -> bool {
         meetings.retain(|pair| !overlapping.do_overlap(*pair));
-        let clusters = partition.clusters.len();
+        let clusters = partition.clusters_len();
         let is_cluster = |block: u32| (block as usize) < clusters;
         let tried = self.met.len() == Way::APART.len();
         // Connectors are not made finer.
         let stuck = meetings.iter().filter(|pair| tried || !is_cluster(pair[0]));
         let connectors = stuck.flatten().filter(|&&block| !is_cluster(block));
-        let branches: Vec<BranchId> = connectors.map(|&i| partition.cuts[i as usize - clusters].branch).collect();
+        let branches: Vec<BranchId> =
+            connectors.map(|&i| partition.branch_of_cut(CutId(i - clusters as u32))).collect();
         if !branches.is_empty() && self.rounds < ROUNDS {
             self.rounds += 1;
             self.uncut.extend(branches);
@@ -72,15 +73,17 @@ impl Run<'_> {
             again.entry(b).or_insert(a);
         }
         let again: Vec<(usize, u32)> = again.into_iter().map(|(block, other)| (block as usize, other)).collect();
-        let clusters = again.partition_point(|(block, _)| *block < partition.clusters.len());
+        let clusters = again.partition_point(|(block, _)| *block < partition.clusters_len());
         let again = &again[..clusters];
         let tangled = tangled_clusters(shop.skeleton, partition, self.overlaps);
-        let costs: Vec<_> = again.iter().map(|(i, _)| cluster_cost(&partition.clusters[*i], plan)).collect();
+        let costs: Vec<_> =
+            again.iter().map(|(i, _)| cluster_cost(&partition.cluster(ClusterId(*i as u32)), plan)).collect();
         let progress = self.progress;
         let watch = Watch::asking(progress);
         let make = |k: usize| {
             let i = again[k].0;
-            shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], way, &watch)
+            let id = ClusterId(i as u32);
+            shop.cluster(id, &partition.cluster(id), tangled[i], way, &watch)
         };
         let (made, _) = self.timed(Stage::Blocks, &costs, make)?;
         for (&(i, other), made) in again.iter().zip(made) {
@@ -90,7 +93,7 @@ impl Run<'_> {
             };
             blocks.retries.push(Retry {
                 block: blocks.name(i as u32),
-                nodes: original_nodes(shop.skeleton, blocks.partition.clusters[i].nodes.iter().copied()),
+                nodes: original_nodes(shop.skeleton, blocks.partition.nodes(ClusterId(i as u32)).iter().copied()),
                 reason: format!("its wall meets that of {}", blocks.name(other)),
                 remedy,
             });

@@ -3,7 +3,7 @@
 use super::make::Made;
 use super::report::Retry;
 use super::timing::BlockTimes;
-use crate::partition::{Cut, Partition};
+use crate::partition::{CutId, Layout};
 use crate::skeleton::{NodeId, Skeleton};
 
 /// How many nodes of a block a report lists.
@@ -13,7 +13,7 @@ const LISTED: usize = 20;
 #[derive(Debug)]
 pub struct Blocks {
     /// The partition that they belong to.
-    pub partition: Partition,
+    pub partition: Layout,
     /// By `ClusterId`; an error for a cluster that failed to the end.
     pub clusters: Vec<Made>,
     /// By `CutId`; none beside a failed cluster.
@@ -44,7 +44,8 @@ pub fn original_nodes(skeleton: &Skeleton, nodes: impl Iterator<Item = NodeId>) 
 }
 
 /// The nodes of the two clusters that a cut separates.
-pub fn cut_nodes(skeleton: &Skeleton, partition: &Partition, cut: &Cut) -> Vec<u32> {
-    let nodes = cut.sides.iter().flat_map(|(cluster, _)| &partition.clusters[cluster.0 as usize].nodes);
+pub fn cut_nodes(skeleton: &Skeleton, partition: &Layout, cut: CutId) -> Vec<u32> {
+    let sides = partition.sides_of_cut(cut);
+    let nodes = sides.iter().flat_map(|(cluster, _)| partition.nodes(*cluster));
     original_nodes(skeleton, nodes.copied())
 }

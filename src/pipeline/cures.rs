@@ -8,7 +8,7 @@ use super::plan::{JointStyle, MeshPlan};
 use super::report::Retry;
 use super::tips::is_buried;
 use crate::block::BlockError;
-use crate::partition::{Cluster, ClusterEnd, EndKind, PartitionParams};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams};
 use crate::skeleton::{BranchId, Skeleton};
 
 /// How far the cure of a branch whose cut gave trouble has gone.
@@ -55,8 +55,9 @@ pub(super) fn partition_params(
 /// Decides what to do about blocks that failed; says so. Nothing when all is well or nothing is left to try.
 pub(super) fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<BranchId, Cure>) -> Vec<Retry> {
     let mut found = Vec::new();
-    for (i, (cluster, mesh)) in blocks.partition.clusters.iter().zip(&blocks.clusters).enumerate() {
+    for (i, mesh) in blocks.clusters.iter().enumerate() {
         let Err(error) = mesh else { continue };
+        let cluster = &blocks.partition.cluster(ClusterId(i as u32));
         if is_buried(error) {
             continue;
         }
@@ -73,12 +74,13 @@ pub(super) fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<Br
             });
         }
     }
-    for (i, (cut, mesh)) in blocks.partition.cuts.iter().zip(&blocks.connectors).enumerate() {
+    for (i, mesh) in blocks.connectors.iter().enumerate() {
         let Some(Err(error)) = mesh else { continue };
+        let cut = &blocks.partition.cut(CutId(i as u32));
         if let Some(remedy) = advance(cures, cut.branch) {
             found.push(Retry {
                 block: format!("connector {i}"),
-                nodes: cut_nodes(skeleton, &blocks.partition, cut),
+                nodes: cut_nodes(skeleton, &blocks.partition, CutId(i as u32)),
                 reason: error.to_string(),
                 remedy,
             });
@@ -90,7 +92,7 @@ pub(super) fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<Br
 /// The branches whose cuts may be the cause of a cluster's failure: the one at which it failed, else all.
 fn troubled_branches(blocks: &Blocks, cluster: &Cluster, error: &BlockError) -> Vec<BranchId> {
     let of_end = |end: &ClusterEnd| match end.kind {
-        EndKind::Cut { cut, .. } => Some(blocks.partition.cuts[cut.0 as usize].branch),
+        EndKind::Cut { cut, .. } => Some(blocks.partition.branch_of_cut(cut)),
         EndKind::Terminal(_) => None,
     };
     if let BlockError::End { end, .. } = error {

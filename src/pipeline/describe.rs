@@ -62,16 +62,17 @@ pub(super) fn describe_blocks(
 ) -> io::Result<()> {
     let partition = &blocks.partition;
     report.blocks = BlockCounts {
-        clusters: partition.clusters.len(),
-        connectors: partition.cuts.len(),
-        largest_cluster_nodes: partition.clusters.iter().map(|c| c.nodes.len()).max().unwrap_or(0),
+        clusters: partition.clusters_len(),
+        connectors: partition.cuts_len(),
+        largest_cluster_nodes: partition.largest_nodes(),
     };
     report.partition = Some(partition.summary());
     report.estimate = Estimate::of(partition, shop.plan);
     report.block_times.clone_from(&blocks.times);
     report.retries.clone_from(&blocks.retries);
-    for (i, (cluster, about)) in partition.clusters.iter().zip(&clusters.0).enumerate() {
-        let nodes = || original_nodes(skeleton, cluster.nodes.iter().copied());
+    for (i, about) in clusters.0.iter().enumerate() {
+        let id = ClusterId(i as u32);
+        let nodes = || original_nodes(skeleton, partition.nodes(id).iter().copied());
         if let Some(filled) = about.as_ref().map(|about| about.filled).filter(|&filled| filled > 0) {
             report.filled.push(FilledLoops { block: format!("cluster {i}"), nodes: nodes(), loops: filled });
         }
@@ -90,8 +91,8 @@ pub(super) fn describe_blocks(
         }
         if let Err(error) = &blocks.clusters[i] {
             let original = |node| skeleton.node(node).original;
-            let params = shop.plan.block_params();
-            let input = BlockDump::of_cluster(ClusterId(i as u32), cluster, params, nodes(), original);
+            let (cluster, params) = (&partition.cluster(id), shop.plan.block_params());
+            let input = BlockDump::of_cluster(id, cluster, params, nodes(), original);
             report.failed.push(FailedBlock {
                 block: format!("cluster {i}"),
                 nodes: nodes(),
@@ -105,11 +106,11 @@ pub(super) fn describe_blocks(
     if shop.plan.layers.is_some() {
         report.thin_layers = thin_layers(skeleton, shop, blocks, clusters)?;
     }
-    for (i, (cut, made)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
+    for (i, made) in blocks.connectors.iter().enumerate() {
         let Some(Err(error)) = made else { continue };
         let id = CutId(i as u32);
-        let params = shop.plan.block_params();
-        let nodes = || cut_nodes(skeleton, partition, cut);
+        let (cut, params) = (&partition.cut(id), shop.plan.block_params());
+        let nodes = || cut_nodes(skeleton, partition, id);
         let input = match shop.plan.joint {
             JointStyle::Woven => {
                 let ends = shop.stored_ends(partition, id, cut, &blocks.clusters)?;

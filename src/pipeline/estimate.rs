@@ -1,12 +1,12 @@
 //! What a network will take, before anything is meshed: tetrahedra, memory, disk.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
 use crate::block::{BlockDump, BlockInput, BlockParams};
 use crate::geometry::Tube;
-use crate::partition::{Cluster, Cut, Partition};
+use crate::partition::{Cluster, Cut, Layout};
 use crate::skeleton::Skeleton;
 
 /// Tetrahedra per unit of length over radius, at ρ = 1, and how they grow with ρ: fitted to meshes of the kidney's
@@ -35,7 +35,7 @@ const WRITTEN_WIDE_PER_TET: f64 = 23.0;
 const NUMBERS_PER_TET: f64 = 4.0;
 
 /// What a run is expected to take.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Tetrahedra of the whole.
     pub tets: f64,
@@ -51,9 +51,9 @@ pub struct Estimate {
 
 impl Estimate {
     /// Of all blocks of a network.
-    pub fn of(partition: &Partition, plan: &MeshPlan) -> Self {
-        let clusters = partition.clusters.iter().map(|cluster| cluster_cost(cluster, plan));
-        let connectors = partition.cuts.iter().map(|cut| connector_cost(cut, plan));
+    pub fn of(partition: &Layout, plan: &MeshPlan) -> Self {
+        let clusters = partition.clusters().map(|cluster| cluster_cost(&cluster, plan));
+        let connectors = partition.cuts().map(|cut| connector_cost(&cut, plan));
         Self::sum(clusters.chain(connectors))
     }
 

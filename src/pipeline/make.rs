@@ -1,12 +1,13 @@
 //! One block made, or found among those that are done.
 
 use std::io;
+use std::sync::Arc;
 
 use super::attempts::{self, Tried, Way};
 use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
 use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, Sizes, StoredEnd, encode};
-use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Partition};
+use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Layout};
 use crate::skeleton::Skeleton;
 use crate::tet::Watch;
 
@@ -25,7 +26,7 @@ pub type Made = Result<Kept, BlockError>;
 /// What every block of a run is made from, and the store that takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Workshop<'a> {
-    pub skeleton: &'a Skeleton,
+    pub skeleton: &'a Arc<Skeleton>,
     pub plan: &'a MeshPlan,
     pub store: &'a Store,
 }
@@ -109,16 +110,16 @@ impl Workshop<'_> {
     /// When they cannot be read.
     pub fn stored_ends(
         &self,
-        partition: &Partition,
+        partition: &Layout,
         id: CutId,
         cut: &Cut,
         clusters: &[Made],
     ) -> io::Result<Option<[StoredEnd; 2]>> {
         let mut ends = Vec::with_capacity(2);
-        for (side, place) in joints_of_cut(partition, cut).into_iter().enumerate() {
+        for (side, place) in joints_of_cut(partition, id).into_iter().enumerate() {
             let Ok(kept) = &clusters[place.part as usize] else { return Ok(None) };
             let block = Record::open(&self.store.bytes(kept.record))?.block()?;
-            let section = partition.clusters[place.part as usize].ends[cut.sides[side].1 as usize].section;
+            let section = partition.cluster(ClusterId(place.part)).ends[cut.sides[side].1 as usize].section;
             let end = block.end_surface(place.joint as usize, id, side as u8, section);
             ends.push(end.ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?);
         }
@@ -135,12 +136,10 @@ pub struct JointPlace {
 }
 
 /// The joints of the two clusters at a cut, side 0 first.
-pub fn joints_of_cut(partition: &Partition, cut: &Cut) -> [JointPlace; 2] {
-    cut.sides.map(|(cluster, end)| {
-        let before = &partition.clusters[cluster.0 as usize].ends[..end as usize];
-        let joint = before.iter().filter(|e| matches!(e.kind, EndKind::Cut { .. })).count() as u32;
-        JointPlace { part: cluster.0, joint }
-    })
+pub fn joints_of_cut(partition: &Layout, cut: CutId) -> [JointPlace; 2] {
+    let joint =
+        |(cluster, end): (ClusterId, u32)| JointPlace { part: cluster.0, joint: partition.cuts_before(cluster, end) };
+    partition.sides_of_cut(cut).map(joint)
 }
 
 fn options(key: &mut KeyMaker, plan: &MeshPlan) {

@@ -4,6 +4,7 @@
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::attempts::Way;
@@ -18,7 +19,7 @@ use super::schedule::{Cost, costliest_first};
 use super::store::{KeyMaker, RecordId, StoreError, fingerprint};
 use super::timing::{BlockTimes, Clock};
 use crate::block::Cured;
-use crate::partition::{self, ClusterId, Cut, CutId, Partition};
+use crate::partition::{self, ClusterId, CutId, Layout};
 use crate::progress::{Progress, Stage};
 use crate::skeleton::{BranchId, Overlaps};
 use crate::tet::Watch;
@@ -83,7 +84,7 @@ impl Run<'_> {
         &mut self,
         cures: &BTreeMap<BranchId, Cure>,
         together: &BTreeSet<[BranchId; 2]>,
-    ) -> Result<Partition, RunError> {
+    ) -> Result<Layout, RunError> {
         let (Workshop { skeleton, plan, store }, progress) = (self.shop, self.progress);
         let params = partition_params(skeleton, plan, cures, together);
         let key = || {
@@ -91,42 +92,44 @@ impl Run<'_> {
             key.text(&format!("{:?} {params:?}", fingerprint(skeleton)));
             key.finish()
         };
-        let cut = || partition::partition(skeleton, &params).map_err(RunError::from);
-        let kept = || store.once(("partition", key), progress, cut);
+        let cut = || partition::lay_out(skeleton, &params).map_err(RunError::from);
+        let kept = || Ok(store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton)));
         self.clock.time(progress, Stage::Partition, 0, kept)
     }
 
     /// What blocks are expected to take: clusters by their ids, then connectors.
-    pub(super) fn costs(&self, partition: &Partition) -> Vec<Cost> {
+    pub(super) fn costs(&self, partition: &Layout) -> Vec<Cost> {
         let plan = self.shop.plan;
-        let clusters = partition.clusters.iter().map(|c| cluster_cost(c, plan));
-        clusters.chain(partition.cuts.iter().map(|cut| connector_cost(cut, plan))).collect()
+        let clusters = partition.clusters().map(|c| cluster_cost(&c, plan));
+        clusters.chain(partition.cuts().map(|cut| connector_cost(&cut, plan))).collect()
     }
 
     /// All blocks of a partition; none needs another, unless joints are woven.
-    fn pass(&mut self, partition: &Partition, times: &mut BlockTimes) -> Result<Pass, RunError> {
+    fn pass(&mut self, partition: &Layout, times: &mut BlockTimes) -> Result<Pass, RunError> {
         let (plan, shop) = (self.shop.plan, self.shop);
         let tangled = tangled_clusters(self.shop.skeleton, partition, self.overlaps);
-        let count = partition.clusters.len();
+        let count = partition.clusters_len();
         let costs = self.costs(partition);
         let progress = self.progress;
         let watch = Watch::asking(progress);
-        let cluster =
-            |i: usize| shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], Way::Usual, &watch);
+        let cluster = |i: usize| {
+            let id = ClusterId(i as u32);
+            shop.cluster(id, &partition.cluster(id), tangled[i], Way::Usual, &watch)
+        };
         if plan.joint != JointStyle::Woven {
-            let connector = |i: usize| shop.free_connector(CutId(i as u32), &partition.cuts[i]);
+            let connector = |i: usize| shop.free_connector(CutId(i as u32), &partition.cut(CutId(i as u32)));
             let one = |i: usize| if i < count { cluster(i) } else { connector(i - count) };
             let (mut clusters, seconds) = self.timed(Stage::Blocks, &costs, one)?;
             times.add(&seconds, count);
             let connectors = clusters.split_off(count);
-            let beside = |cut: &Cut| cut.sides.iter().all(|(cluster, _)| clusters[cluster.0 as usize].is_ok());
-            let connectors = connectors.into_iter().zip(&partition.cuts);
-            let connectors = connectors.map(|(made, cut)| beside(cut).then_some(made)).collect();
+            let is_made = |(cluster, _): (ClusterId, u32)| clusters[cluster.0 as usize].is_ok();
+            let beside = |cut: u32| partition.sides_of_cut(CutId(cut)).into_iter().all(is_made);
+            let connectors = (0..).zip(connectors).map(|(cut, made)| beside(cut).then_some(made)).collect();
             return Ok((clusters, connectors));
         }
         let (clusters, mut seconds) = self.timed(Stage::Clusters, &costs[..count], cluster)?;
         let woven = |i: usize| {
-            let (id, cut) = (CutId(i as u32), &partition.cuts[i]);
+            let (id, cut) = (CutId(i as u32), &partition.cut(CutId(i as u32)));
             let ends = shop.stored_ends(partition, id, cut, &clusters)?;
             ends.map(|ends| shop.woven_connector(id, cut, &ends)).transpose()
         };
@@ -172,17 +175,17 @@ impl Notes {
     fn take(
         &mut self,
         run: &Run,
-        partition: &Partition,
+        partition: &Layout,
         clusters: &[Made],
         connectors: &[Option<Made>],
     ) -> io::Result<()> {
         for (i, kept) in clusters.iter().enumerate().filter_map(|(i, made)| Some((i, made.as_ref().ok()?))) {
-            let nodes = || original_nodes(run.shop.skeleton, partition.clusters[i].nodes.iter().copied());
+            let nodes = || original_nodes(run.shop.skeleton, partition.nodes(ClusterId(i as u32)).iter().copied());
             self.hear(run, kept, &format!("cluster {i}"), nodes)?;
         }
         for (i, made) in connectors.iter().enumerate() {
             let Some(Ok(kept)) = made else { continue };
-            let nodes = || cut_nodes(run.shop.skeleton, partition, &partition.cuts[i]);
+            let nodes = || cut_nodes(run.shop.skeleton, partition, CutId(i as u32));
             self.hear(run, kept, &format!("connector {i}"), nodes)?;
         }
         Ok(())

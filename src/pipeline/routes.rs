@@ -1,6 +1,6 @@
 //! Which blocks the branches run through.
 
-use crate::partition::Partition;
+use crate::partition::{CutId, Layout};
 use crate::skeleton::{BranchId, EdgeId, Overlaps, Skeleton};
 
 /// The branches of pairs of edges: each pair once, the lower branch first, ascending.
@@ -22,18 +22,19 @@ pub fn branch_pairs(skeleton: &Skeleton, edges: impl Iterator<Item = [EdgeId; 2]
 
 /// Each branch with each block that it runs through, ascending; blocks by their numbers: clusters by their ids, then
 /// connectors.
-fn routes(partition: &Partition) -> Vec<(BranchId, u32)> {
-    let connectors = (partition.clusters.len() as u32..).zip(&partition.cuts);
-    let mut routes: Vec<(BranchId, u32)> = partition.pieces.iter().map(|p| (p.branch, p.cluster.0)).collect();
-    routes.extend(connectors.map(|(block, cut)| (cut.branch, block)));
+fn routes(partition: &Layout) -> Vec<(BranchId, u32)> {
+    let connectors = (partition.clusters_len() as u32..).zip(0..partition.cuts_len() as u32);
+    let mut routes: Vec<(BranchId, u32)> =
+        partition.branches_of_clusters().map(|(b, cluster)| (b, cluster.0)).collect();
+    routes.extend(connectors.map(|(block, cut)| (partition.branch_of_cut(CutId(cut)), block)));
     routes.sort_unstable();
     routes.dedup();
     routes
 }
 
 /// For each cluster, whether two vessels overlap, or meet at all, whose branches both run through it.
-pub fn tangled_clusters(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Vec<bool> {
-    let mut tangled = vec![false; partition.clusters.len()];
+pub fn tangled_clusters(skeleton: &Skeleton, partition: &Layout, overlaps: &Overlaps) -> Vec<bool> {
+    let mut tangled = vec![false; partition.clusters_len()];
     let edges = overlaps.pairs.iter().map(|o| o.edges).chain(overlaps.unconnected.iter().copied());
     let pairs = branch_pairs(skeleton, edges);
     if pairs.is_empty() {
@@ -63,7 +64,7 @@ pub struct Overlapping {
 
 impl Overlapping {
     /// Of all blocks of a partition.
-    pub fn of(skeleton: &Skeleton, partition: &Partition, overlaps: &Overlaps) -> Self {
+    pub fn of(skeleton: &Skeleton, partition: &Layout, overlaps: &Overlaps) -> Self {
         if overlaps.pairs.is_empty() {
             return Self::default();
         }

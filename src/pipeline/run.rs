@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io;
+use std::sync::Arc;
 
 use super::apart::Apart;
 use super::attempts::Way;
@@ -22,7 +23,7 @@ use crate::mesh::check::parts::PartsCheck;
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
-use crate::partition::Partition;
+use crate::partition::{ClusterId, CutId, Layout};
 use crate::progress::{Progress, Stage, ask};
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
@@ -144,7 +145,7 @@ struct Joined<'a> {
     whole: Whole<'a>,
     expectation: Expectation,
     overlapping: Overlapping,
-    partition: Partition,
+    partition: Layout,
     report: RunReport,
 }
 
@@ -235,7 +236,7 @@ fn mesh_size(mesh: &dyn MeshSource) -> io::Result<MeshSize> {
 }
 
 /// Splits nodes of high valence and looks for vessels that overlap.
-pub(super) fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, Overlaps) {
+fn prepare(network: &Skeleton, report: &mut RunReport) -> (Arc<Skeleton>, Overlaps) {
     let (skeleton, splits) = split(network);
     report.network = [skeleton.nodes.len(), skeleton.edges.len()];
     report.nodes_split = splits.nodes.len();
@@ -251,7 +252,7 @@ pub(super) fn prepare(network: &Skeleton, report: &mut RunReport) -> (Skeleton, 
     let overlaps = skeleton.overlaps(&adjacency);
     report.overlaps = overlaps.pairs.iter().map(meeting).collect();
     report.unconnected = overlaps.unconnected.iter().map(|e| e.map(|e| skeleton.edge(e).nodes.map(original))).collect();
-    (skeleton, overlaps)
+    (Arc::new(skeleton), overlaps)
 }
 
 /// What the network asks of its mesh. Loops that are filled by their own lumen are none of the mesh.
@@ -259,8 +260,8 @@ fn expectation(skeleton: &Skeleton, blocks: &Blocks, clusters: &Clusters) -> Exp
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);
     let mut loops: Vec<u32> = components.list.iter().map(|c| c.loops() as u32).collect();
-    for (cluster, about) in blocks.partition.clusters.iter().zip(&clusters.0) {
-        if let (Some(node), Some(about)) = (cluster.nodes.first(), about) {
+    for (cluster, about) in (0..).zip(&clusters.0) {
+        if let (Some(node), Some(about)) = (blocks.partition.nodes(ClusterId(cluster)).first(), about) {
             let of_component = &mut loops[components.of_node[node.index()] as usize];
             *of_component = of_component.saturating_sub(u32::try_from(about.filled).unwrap_or(0));
         }
@@ -271,8 +272,8 @@ fn expectation(skeleton: &Skeleton, blocks: &Blocks, clusters: &Clusters) -> Exp
 /// Loops of each connected piece when vessels are meshed together on purpose: the handles of its clusters, and the loops
 /// of the graph in which clusters are nodes and connectors are edges. Sorted, as pieces have no other name.
 fn fused_loops(blocks: &Blocks, about: &Clusters) -> Vec<u32> {
-    let clusters = &blocks.partition.clusters;
-    let mut piece: Vec<usize> = (0..clusters.len()).collect();
+    let sides = || (0..blocks.partition.cuts_len() as u32).map(|cut| blocks.partition.sides_of_cut(CutId(cut)));
+    let mut piece: Vec<usize> = (0..blocks.partition.clusters_len()).collect();
     let root = |piece: &mut [usize], mut i: usize| {
         while piece[i] != i {
             piece[i] = piece[piece[i]];
@@ -280,8 +281,8 @@ fn fused_loops(blocks: &Blocks, about: &Clusters) -> Vec<u32> {
         }
         i
     };
-    for cut in &blocks.partition.cuts {
-        let [a, b] = cut.sides.map(|(cluster, _)| root(&mut piece, cluster.0 as usize));
+    for cut in sides() {
+        let [a, b] = cut.map(|(cluster, _)| root(&mut piece, cluster.0 as usize));
         piece[a.max(b)] = a.min(b);
     }
     let mut loops: BTreeMap<usize, i64> = BTreeMap::new();
@@ -289,8 +290,8 @@ fn fused_loops(blocks: &Blocks, about: &Clusters) -> Vec<u32> {
         let handles = about.as_ref().map_or(0, |about| about.handles);
         *loops.entry(root(&mut piece, i)).or_insert(1) += handles - 1;
     }
-    for cut in &blocks.partition.cuts {
-        *loops.entry(root(&mut piece, cut.sides[0].0.0 as usize)).or_insert(1) += 1;
+    for [(cluster, _), _] in sides() {
+        *loops.entry(root(&mut piece, cluster.0 as usize)).or_insert(1) += 1;
     }
     let mut loops: Vec<u32> = loops.into_values().map(|n| u32::try_from(n).unwrap_or(0)).collect();
     loops.sort_unstable();

@@ -1,26 +1,26 @@
 //! A shard: the share of the blocks that one of several runs in a work directory makes.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::attempts::Way;
 use super::error::RunError;
-use super::estimate::{Estimate, TooLarge};
+use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::Workshop;
 use super::plan::MeshPlan;
-use super::report::RunReport;
 use super::rounds::Run;
 use super::routes::tangled_clusters;
-use super::run::prepare;
 use super::schedule::Cost;
-use super::store::{Shard, Store};
+use super::store::{KeyMaker, Shard, Store, fingerprint};
 use super::timing::{Clock, StageTime};
 use crate::partition::{ClusterId, CutId};
 use crate::progress::{Progress, Stage};
-use crate::skeleton::Skeleton;
+use crate::refine::split;
+use crate::skeleton::{BranchId, Overlaps, Skeleton};
 use crate::tet::Watch;
 
 /// What a shard did.
@@ -36,6 +36,8 @@ pub struct ShareReport {
     pub failed: usize,
     /// Seconds that its blocks took.
     pub seconds: f64,
+    /// What all blocks are expected to take.
+    pub estimate: Estimate,
     /// Wall time.
     pub stages: Vec<StageTime>,
 }
@@ -47,7 +49,7 @@ pub struct ShareReport {
 /// See [`RunError`]; a block that fails is none.
 pub fn make_share(
     store: &Store,
-    network: &Skeleton,
+    network: Skeleton,
     plan: &MeshPlan,
     shard: Shard,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
@@ -55,58 +57,102 @@ pub fn make_share(
 ) -> Result<ShareReport, RunError> {
     plan.validate()?;
     let mut clock = Clock::default();
-    let (skeleton, overlaps) = clock.time(progress, Stage::Prepare, 0, || prepare(network, &mut RunReport::default()));
+    let skeleton = Arc::new(split(&network).0);
+    // Large networks ask for the room.
+    drop(network);
     let shop = Workshop { skeleton: &skeleton, plan, store };
-    let mut run = Run { overlaps: &overlaps, shop, progress, clock: &mut clock };
-    let mut report = run.share(shard, fits)?;
+    let tasks = clock.time(progress, Stage::Prepare, 0, || Tasks::of(&shop, progress))?;
+    let mut run = Run { overlaps: &Overlaps::default(), shop, progress, clock: &mut clock };
+    let mut report = run.share(shard, &tasks, fits)?;
     store.mark_done(shard)?;
     report.stages = clock.stages();
     Ok(report)
+}
+
+/// What all shards have to know of the first round besides its partition. One of them finds it out.
+#[derive(Debug, Serialize, Deserialize)]
+struct Tasks {
+    /// Branches that are to be in one cluster.
+    together: BTreeSet<[BranchId; 2]>,
+    /// Of each cluster, whether vessels overlap in it.
+    tangled: Vec<bool>,
+    /// How much there is to do for each block: clusters by their ids, then connectors.
+    weights: Vec<u64>,
+    estimate: Estimate,
+}
+
+impl Tasks {
+    fn of(shop: &Workshop, progress: &dyn Progress) -> Result<Self, RunError> {
+        let key = || {
+            let mut key = KeyMaker::new("tasks");
+            // Memory and places of dumps say nothing about it.
+            let plan = MeshPlan { memory: 0, dump_dir: None, ..shop.plan.clone() };
+            key.text(&format!("{:?} {plan:?}", fingerprint(shop.skeleton)));
+            key.finish()
+        };
+        let find = || {
+            let overlaps = shop.skeleton.overlaps(&shop.skeleton.adjacency());
+            let mut run = Run { overlaps: &overlaps, shop: *shop, progress, clock: &mut Clock::default() };
+            let together = run.together();
+            let partition = run.partition(&BTreeMap::new(), &together)?;
+            let weights = run.costs(&partition).iter().map(|cost| 1 + cost.tets as u64).collect();
+            let tangled = tangled_clusters(shop.skeleton, &partition, &overlaps);
+            Ok(Self { together, tangled, weights, estimate: Estimate::of(&partition, shop.plan) })
+        };
+        shop.store.once(("tasks", key), progress, find)
+    }
 }
 
 impl Run<'_> {
     fn share(
         &mut self,
         shard: Shard,
+        tasks: &Tasks,
         fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     ) -> Result<ShareReport, RunError> {
         let (shop, progress) = (self.shop, self.progress);
-        let together = self.together();
-        let partition = self.partition(&BTreeMap::new(), &together)?;
-        fits(&Estimate::of(&partition, shop.plan))?;
-        let tangled = tangled_clusters(shop.skeleton, &partition, self.overlaps);
-        let costs = self.costs(&partition);
-        let own = dealt(&costs, shard);
-        let own_costs: Vec<Cost> = own.iter().map(|&i| costs[i as usize]).collect();
+        let partition = self.partition(&BTreeMap::new(), &tasks.together)?;
+        fits(&tasks.estimate)?;
+        let clusters = partition.clusters_len();
+        let own = dealt(&tasks.weights, shard);
+        let cost = |&i: &u32| match i.checked_sub(clusters as u32) {
+            None => cluster_cost(&partition.cluster(ClusterId(i)), shop.plan),
+            Some(cut) => connector_cost(&partition.cut(CutId(cut)), shop.plan),
+        };
+        let costs: Vec<Cost> = own.iter().map(cost).collect();
         let (watch, failed) = (Watch::asking(progress), AtomicUsize::new(0));
         let before = shop.store.own_records();
         let one = |k: usize| {
-            let i = own[k] as usize;
-            let made = match i.checked_sub(partition.clusters.len()) {
-                None => shop.cluster(ClusterId(i as u32), &partition.clusters[i], tangled[i], Way::Usual, &watch)?,
-                Some(cut) => shop.free_connector(CutId(cut as u32), &partition.cuts[cut])?,
+            let i = own[k];
+            let made = match i.checked_sub(clusters as u32) {
+                None => {
+                    let (id, tangled) = (ClusterId(i), tasks.tangled[i as usize]);
+                    shop.cluster(id, &partition.cluster(id), tangled, Way::Usual, &watch)?
+                }
+                Some(cut) => shop.free_connector(CutId(cut), &partition.cut(CutId(cut)))?,
             };
             failed.fetch_add(usize::from(made.is_err()), Ordering::Relaxed);
             Ok(())
         };
-        let (_, seconds) = self.timed(Stage::Blocks, &own_costs, one)?;
+        let (_, seconds) = self.timed(Stage::Blocks, &costs, one)?;
         let failed = failed.into_inner();
         Ok(ShareReport {
-            blocks: costs.len(),
+            blocks: tasks.weights.len(),
             share: own.len(),
             found: own.len() - failed - (shop.store.own_records() - before),
             failed,
             seconds: seconds.iter().sum(),
+            estimate: tasks.estimate,
             stages: Vec::new(),
         })
     }
 }
 
 /// The blocks of a shard, ascending: the costliest are dealt first, each to the shard that has least.
-fn dealt(costs: &[Cost], shard: Shard) -> Vec<u32> {
-    let weight = |i: u32| 1 + costs[i as usize].tets as u64;
-    let mut order: Vec<u32> = (0..costs.len() as u32).collect();
-    order.sort_by_key(|&i| (Reverse(weight(i)), i));
+fn dealt(weights: &[u64], shard: Shard) -> Vec<u32> {
+    let weight = |i: u32| weights[i as usize];
+    let mut order: Vec<u32> = (0..weights.len() as u32).collect();
+    order.sort_unstable_by_key(|&i| (Reverse(weight(i)), i));
     let mut shards: BinaryHeap<Reverse<(u64, usize)>> = (0..shard.of()).map(|s| Reverse((0, s))).collect();
     let mut own = Vec::new();
     for i in order {
@@ -128,15 +174,16 @@ mod tests {
     fn each_block_is_dealt_once_and_shards_have_as_much_to_do() {
         let costs: Vec<Cost> = (0..1000).map(|i| Cost { tets: f64::from(i * 7919 % 1000).powi(2), bytes: 0 }).collect();
         for of in [1, 2, 7, 64] {
-            let shards: Vec<Vec<u32>> = (1..=of).map(|i| dealt(&costs, Shard::new(i, of).expect("a shard"))).collect();
+            let shards: Vec<Vec<u32>> =
+                (1..=of).map(|i| dealt(&weights, Shard::new(i, of).expect("a shard"))).collect();
             let mut all = shards.concat();
             all.sort_unstable();
             assert_eq!(all, (0..1000).collect::<Vec<_>>());
-            let load = |own: &Vec<u32>| own.iter().map(|&i| costs[i as usize].tets).sum::<f64>();
-            let mean = costs.iter().map(|c| c.tets).sum::<f64>() / f64::from(of);
+            let load = |own: &Vec<u32>| own.iter().map(|&i| weights[i as usize] as f64).sum::<f64>();
+            let mean = weights.iter().sum::<u64>() as f64 / f64::from(of);
             assert!(shards.iter().all(|own| (load(own) / mean - 1.0).abs() < 0.02), "{of}");
         }
         // More shards than blocks leave some with nothing.
-        assert!(dealt(&costs[..3], Shard::new(4, 5).expect("a shard")).is_empty());
+        assert!(dealt(&weights[..3], Shard::new(4, 5).expect("a shard")).is_empty());
     }
 }

@@ -16,6 +16,7 @@ use crate::mesh::check::Expectation;
 use crate::mesh::check::parts::{Certificate, FacesApart, Parts, PartsCheck, check_parts};
 use crate::mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
 use crate::mesh::{Patch, WALL};
+use crate::partition::CutId;
 use crate::progress::{Progress, ask};
 use crate::skeleton::Skeleton;
 
@@ -90,10 +91,10 @@ impl<'a> Whole<'a> {
         for (block, made) in (0..).zip(&blocks.clusters) {
             part_of.push(made.as_ref().ok().map(|kept| whole.add(*kept, block, None)).transpose()?);
         }
-        let connectors = blocks.partition.cuts.iter().zip(&blocks.connectors).enumerate();
+        let connectors = blocks.connectors.iter().enumerate();
         let mut next = terminals.of.values().map(|(id, _)| *id).max().unwrap_or(WALL) + 1;
-        for (block, (number, (cut, made))) in (blocks.clusters.len() as i32..).zip(connectors) {
-            let sides = joints_of_cut(&blocks.partition, cut);
+        for (block, (number, made)) in (blocks.clusters.len() as i32..).zip(connectors) {
+            let sides = joints_of_cut(&blocks.partition, CutId(number as u32));
             let sides = sides.map(|place| part_of[place.part as usize].map(|part| JointPlace { part, ..place }));
             match (made, sides) {
                 (Some(Ok(kept)), [Some(a), Some(b)]) => {

@@ -109,7 +109,7 @@ impl Figures {
         let adjacency = skeleton.adjacency();
         let overlaps = skeleton.overlaps(&adjacency);
         let figures = Self {
-            metrics: skeleton.metrics(&adjacency, &skeleton.branches(&adjacency)),
+            metrics: skeleton.metrics(&adjacency),
             overlaps: overlaps.pairs.len(),
             beside: overlaps.pairs.iter().filter(|o| o.shares_node()).count(),
             unconnected: overlaps.unconnected.len(),

@@ -262,7 +262,7 @@ impl<'a> Solver<'a> {
 
     fn sample(&self, iteration: usize, asked: usize) -> Sample {
         let (skeleton, adjacency) = (&self.frame.skeleton, &self.frame.adjacency);
-        let metrics = skeleton.metrics(adjacency, &skeleton.branches(adjacency));
+        let metrics = skeleton.metrics(adjacency);
         Sample { iteration, displacement: Displacement::of(skeleton, &self.frame.origin), metrics, asked }
     }
 }

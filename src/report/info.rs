@@ -155,7 +155,7 @@ impl NetworkInfo {
         let adjacency = skeleton.adjacency();
         let components = skeleton.components(&adjacency).list;
         let branches = skeleton.branches(&adjacency);
-        let metrics = skeleton.metrics(&adjacency, &branches);
+        let metrics = skeleton.metrics(&adjacency);
         let branches = branches.list;
         let mut valences = Vec::new();
         for node in skeleton.node_ids() {

@@ -123,54 +123,13 @@ pub struct Branches {
 
 impl Skeleton {
     pub(crate) fn branches(&self, adjacency: &Adjacency) -> Branches {
-        const NONE: (BranchId, u32) = (BranchId(u32::MAX), 0);
-        // Rings come on top; of the others each has two ends.
-        let ends: usize = self.node_ids().map(|node| adjacency.valence(node)).filter(|&valence| valence != 2).sum();
-        let list = Vec::with_capacity(ends.div_ceil(2));
-        let mut walk = Walk { skeleton: self, adjacency, list, of_edge: vec![NONE; self.edges.len()] };
-        for node in self.node_ids() {
-            if adjacency.valence(node) != 2 {
-                for &edge in adjacency.edges(node) {
-                    if walk.of_edge[edge.index()] == NONE {
-                        walk.branch(node, edge);
-                    }
-                }
+        let chains = self.chains(adjacency);
+        let mut of_edge = vec![(BranchId(0), 0); self.edges.len()];
+        for branch in 0..chains.len() as u32 {
+            for (i, edge) in (0..).zip(chains.edges(branch)) {
+                of_edge[edge.index()] = (BranchId(branch), i);
             }
         }
-        for edge in self.edge_ids() {
-            if walk.of_edge[edge.index()] == NONE {
-                walk.branch(self.edge(edge).nodes[0], edge);
-            }
-        }
-        Branches { list: walk.list, of_edge: walk.of_edge }
-    }
-}
-
-struct Walk<'a> {
-    skeleton: &'a Skeleton,
-    adjacency: &'a Adjacency,
-    list: Vec<Branch>,
-    of_edge: Vec<(BranchId, u32)>,
-}
-
-impl Walk<'_> {
-    /// Follows the chain that leaves `start` by `first` until it ends or closes.
-    fn branch(&mut self, start: NodeId, first: EdgeId) {
-        let id = BranchId(self.list.len() as u32);
-        let mut branch = Branch { nodes: vec![start], edges: Vec::new(), arc: vec![0.0] };
-        let (mut node, mut edge) = (start, first);
-        loop {
-            self.of_edge[edge.index()] = (id, branch.edges.len() as u32);
-            node = self.skeleton.edge(edge).other(node);
-            branch.edges.push(edge);
-            branch.nodes.push(node);
-            branch.arc.push(branch.length() + self.skeleton.length(edge));
-            if node == start || self.adjacency.valence(node) != 2 {
-                break;
-            }
-            let pair = self.adjacency.edges(node);
-            edge = if pair[0] == edge { pair[1] } else { pair[0] };
-        }
-        self.list.push(branch);
+        Branches { list: (0..chains.len() as u32).map(|branch| chains.branch(self, branch)).collect(), of_edge }
     }
 }

@@ -1,6 +1,6 @@
 //! The axis of a branch by arc length, and its direction where a plane crosses it.
 
-use super::{Branch, Skeleton};
+use super::{Branch, Chains, Skeleton};
 use crate::geometry::{Point3, Section, Tube, Vec3};
 
 /// Which way along a branch.
@@ -41,17 +41,39 @@ impl Way {
     }
 }
 
+/// The courses of all branches, each made when it is looked at.
+#[derive(Clone, Copy)]
+pub(crate) struct Courses<'a> {
+    pub skeleton: &'a Skeleton,
+    pub chains: &'a Chains,
+}
+
+impl<'a> Courses<'a> {
+    /// How many there are.
+    pub fn len(self) -> usize {
+        self.chains.len()
+    }
+
+    pub fn get(self, branch: u32) -> Course {
+        Course::new(self.skeleton, self.chains.branch(self.skeleton, branch))
+    }
+
+    pub fn iter(self) -> impl Iterator<Item = Course> + 'a {
+        (0..self.len() as u32).map(move |branch| self.get(branch))
+    }
+}
+
 /// A branch with its geometry at hand.
-pub(crate) struct Course<'a> {
-    pub branch: &'a Branch,
+pub(crate) struct Course {
+    pub branch: Branch,
     /// Positions of `branch.nodes`.
     pub points: Vec<Point3>,
     /// Radii of each edge at its start and end, in the direction of the branch.
     pub radii: Vec<[f64; 2]>,
 }
 
-impl<'a> Course<'a> {
-    pub fn new(skeleton: &Skeleton, branch: &'a Branch) -> Self {
+impl Course {
+    pub fn new(skeleton: &Skeleton, branch: Branch) -> Self {
         let points = branch.nodes.iter().map(|n| skeleton.nodes[n.0 as usize].position).collect();
         let radii = branch.tubes(skeleton).map(|t| [t.ra, t.rb]).collect();
         Self { branch, points, radii }

@@ -1,7 +1,7 @@
 //! Whether a branch may be cut, and where: equations 11 and 12 of the paper, measured along the branch, with room for a
 //! connector, and straight enough for it. What a report calls cuttable is what the partition decides.
 
-use super::course::{Course, Way};
+use super::course::{Course, Courses, Way};
 use super::{Adjacency, NodeId, Skeleton};
 use crate::geometry::Vec3;
 
@@ -140,9 +140,8 @@ impl Leaving {
 
 /// Says of each branch of a skeleton where it may be cut.
 pub(crate) struct Cuttability<'a> {
-    skeleton: &'a Skeleton,
     adjacency: &'a Adjacency,
-    courses: &'a [Course<'a>],
+    courses: Courses<'a>,
     rules: CutRules,
     /// What leaves each node: a range of `leaving`.
     first: Vec<u32>,
@@ -151,15 +150,11 @@ pub(crate) struct Cuttability<'a> {
 
 impl<'a> Cuttability<'a> {
     /// `courses`: all branches of the skeleton.
-    pub(crate) fn new(
-        skeleton: &'a Skeleton,
-        adjacency: &'a Adjacency,
-        courses: &'a [Course<'a>],
-        rules: CutRules,
-    ) -> Self {
+    pub(crate) fn new(adjacency: &'a Adjacency, courses: Courses<'a>, rules: CutRules) -> Self {
+        let skeleton = courses.skeleton;
         let mut first = vec![0_u32; skeleton.nodes.len() + 1];
-        for course in courses {
-            for node in course.branch.ends() {
+        for branch in 0..courses.len() as u32 {
+            for node in courses.chains.ends(branch) {
                 first[node.index() + 1] += 1;
             }
         }
@@ -169,19 +164,19 @@ impl<'a> Cuttability<'a> {
         let mut next = first.clone();
         let blank = Leaving { branch: 0, way: Way::Onward, direction: Vec3::zeros(), radius: 0.0, root_radius: 0.0 };
         let mut leaving = vec![blank; 2 * courses.len()];
-        for (branch, course) in courses.iter().enumerate() {
+        for (branch, course) in (0..).zip(courses.iter()) {
             for (node, way) in course.branch.ends().into_iter().zip([Way::Onward, Way::Back]) {
                 let at = &mut next[node.index()];
-                leaving[*at as usize] = Leaving::of(skeleton, course, branch as u32, node, way);
+                leaving[*at as usize] = Leaving::of(skeleton, &course, branch, node, way);
                 *at += 1;
             }
         }
-        Self { skeleton, adjacency, courses, rules, first, leaving }
+        Self { adjacency, courses, rules, first, leaving }
     }
 
     /// Where a branch may be cut, or why nowhere.
     pub(crate) fn window(&self, branch: u32) -> Result<CutWindow, Uncuttable> {
-        let course = &self.courses[branch as usize];
+        let course = &self.courses.get(branch);
         let [[near0, angle0], [near1, angle1]] = [Way::Onward, Way::Back].map(|way| self.distances(branch, way));
         let reach = [near0.max(angle0), course.length() - near1.max(angle1)];
         if !self.rules.fits(course, reach, 1.0) {
@@ -198,9 +193,8 @@ impl<'a> Cuttability<'a> {
 
     /// Least distances of a plane from the end of `branch` that leaves its node by `way`: by (11), and by (12).
     fn distances(&self, branch: u32, way: Way) -> [f64; 2] {
-        let course = &self.courses[branch as usize];
-        let node = course.branch.ends()[way.side()];
-        let radius = self.skeleton.node(node).radius;
+        let node = self.courses.chains.ends(branch)[way.side()];
+        let radius = self.courses.skeleton.node(node).radius;
         if BranchEnd::of(self.adjacency, node) == BranchEnd::Terminal {
             return [TERMINAL_KEEPS * radius, 0.0];
         }

@@ -7,7 +7,7 @@ use crate::geometry::{Point3, Tube};
 pub struct NodeId(pub u32);
 
 /// Index of an edge in its skeleton.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct EdgeId(pub u32);
 
 /// Index of a branch: a maximal chain of edges through nodes of valence 2.

@@ -1,6 +1,7 @@
 //! Floor 2: the vessel skeleton, a graph whose nodes are points with a radius and whose edges are vessels.
 
 mod branch;
+mod chains;
 mod check;
 mod clean;
 pub(crate) mod course;
@@ -33,6 +34,7 @@ pub use groups::LineGroup;
 pub use metrics::{Barrier, Metrics, NARROW, Share};
 pub use overlap::{Overlap, Overlaps};
 
+pub(crate) use chains::Chains;
 pub(crate) use groups::Kinship;
 pub(crate) use metrics::paper_unit;
 pub(crate) use overlap::{JOINED, deepest_apart};

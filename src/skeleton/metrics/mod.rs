@@ -5,9 +5,9 @@ mod barrier;
 pub use barrier::Barrier;
 pub(crate) use barrier::paper_unit;
 
-use super::course::Course;
+use super::course::Courses;
 use super::cuttability::{BranchEnd, CUT_DISTANCE, CutRules, Cuttability, separation};
-use super::{Adjacency, Branches, EdgeId, NodeId, Skeleton};
+use super::{Adjacency, EdgeId, NodeId, Skeleton};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -60,22 +60,21 @@ pub struct Metrics {
 
 impl Skeleton {
     /// Measures the skeleton.
-    pub(crate) fn metrics(&self, adjacency: &Adjacency, branches: &Branches) -> Metrics {
+    pub(crate) fn metrics(&self, adjacency: &Adjacency) -> Metrics {
         let mut m = Metrics { barrier: Barrier::default().potential(self), ..Metrics::default() };
         self.measure_edges(adjacency, &mut m);
         self.measure_angles(adjacency, &mut m);
-        m.cuttable = self.cuttable(adjacency, branches);
+        m.cuttable = self.cuttable(adjacency);
         m
     }
 
     /// Inner branches, and those of them that the partition may cut.
-    fn cuttable(&self, adjacency: &Adjacency, branches: &Branches) -> Share {
-        let courses: Vec<Course> = branches.list.par_iter().map(|branch| Course::new(self, branch)).collect();
-        let cuttability = Cuttability::new(self, adjacency, &courses, CutRules::default());
-        let is_inner = |course: &Course| {
-            course.branch.ends().iter().all(|&node| BranchEnd::of(adjacency, node) == BranchEnd::Junction)
-        };
-        let inner: Vec<u32> = (0..).zip(&courses).filter(|(_, course)| is_inner(course)).map(|(i, _)| i).collect();
+    fn cuttable(&self, adjacency: &Adjacency) -> Share {
+        let chains = self.chains(adjacency);
+        let cuttability = Cuttability::new(adjacency, Courses { skeleton: self, chains: &chains }, CutRules::default());
+        let is_inner =
+            |branch: &u32| chains.ends(*branch).iter().all(|&n| BranchEnd::of(adjacency, n) == BranchEnd::Junction);
+        let inner: Vec<u32> = (0..chains.len() as u32).filter(is_inner).collect();
         let count = inner.par_iter().filter(|&&branch| cuttability.window(branch).is_ok()).count();
         Share { count, of: inner.len() }
     }

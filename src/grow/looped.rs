@@ -1,0 +1,379 @@
+//! Arteries and veins, and the looped bed of capillaries that joins them.
+//!
+//! Two trees are grown into one ellipsoid, from inlets on opposite sides; where they are in each other's way the thinner
+//! vessel goes, with all behind it. Capillaries are a net through the whole of it (`net`), a little out of shape; those too
+//! close to the trees go, the ends of the trees are joined to what is left, and capillaries that lead nowhere go, too.
+
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::net::{DENSITY, Net};
+use super::organ::SEMI_AXES;
+use super::params::{GenerateError, GenerateParams, Organ};
+use super::random::{Random, Stream};
+use crate::geometry::{Aabb, Bvh, Point3, Tube, Vec3, tube_tube};
+use crate::skeleton::{Edge, EdgeId, Node, NodeId, Skeleton};
+
+/// Axes of vessels that do not meet are further apart than this, in sums of their radii.
+const APART: f64 = 1.5;
+/// Nodes of the net are this far from their places at most, along each axis, in lengths of an edge.
+const JITTER: f64 = 0.12;
+/// Nodes of the net per end of either tree.
+const PER_TERMINAL: f64 = 12.0;
+/// How far away a node may be to which an end of a tree is joined, in lengths of an edge.
+const REACH: f64 = 1.5;
+/// Cosine of the least angle between vessels that are joined.
+const SIDE_BY_SIDE: f64 = 0.6;
+/// Spread of the radii of capillaries, as a share of their mean; none is off by more than three times as much.
+const RADIUS_SPREAD: f64 = 0.14;
+
+/// The bed between two trees. Lengths are in µm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BedParams {
+    /// Mean radius.
+    pub radius: f64,
+    /// Mean length of a vessel.
+    pub length: f64,
+}
+
+impl Default for BedParams {
+    /// As in the cortex of mice, whose capillaries are 2 to 5 µm wide (Sargent et al., 'Endothelial structure contributes to
+    /// heterogeneity in brain capillary diameter', Vasc. Biol. 5 (2023)).
+    fn default() -> Self {
+        Self { radius: 1.75, length: 60.0 }
+    }
+}
+
+/// Arteries, veins and capillaries.
+#[derive(Clone, Debug)]
+pub struct Looped {
+    /// All vessels.
+    pub skeleton: Skeleton,
+    /// 0 for nodes of arteries, 1 for those of veins, 2 for those of capillaries.
+    pub kind: Vec<u32>,
+    /// Ends of the two trees that are joined to the bed.
+    pub joined: usize,
+    /// Ends that are open, as no capillary has room beside them: outlets.
+    pub open: usize,
+}
+
+impl BedParams {
+    /// Longest extent of an ellipsoid with a bed for so many ends of either tree.
+    pub fn usual_size(&self, terminals: u32) -> f64 {
+        let volume = f64::from(terminals) * 2.0 * PER_TERMINAL * self.length.powi(3) / DENSITY;
+        let unit = std::f64::consts::FRAC_PI_6 * SEMI_AXES[0] * SEMI_AXES[1] * SEMI_AXES[2];
+        (volume / unit).cbrt()
+    }
+
+    fn check(&self) -> Result<(), GenerateError> {
+        let thick = self.radius * (1.0 + 3.0 * RADIUS_SPREAD);
+        let fits = self.radius > 0.0 && self.length.is_finite() && self.length >= 8.0 * thick;
+        if fits { Ok(()) } else { Err(GenerateError::BadBed { radius: self.radius, length: self.length }) }
+    }
+}
+
+/// Grows arteries, veins and the bed between them. `params` say what either tree is.
+///
+/// # Errors
+/// When the parameters make no sense.
+pub fn looped(params: &GenerateParams, bed: &BedParams) -> Result<Looped, GenerateError> {
+    bed.check()?;
+    if params.organ != Organ::Ellipsoid {
+        return Err(GenerateError::BedOfKidney);
+    }
+    let size = params.size.unwrap_or_else(|| bed.usual_size(params.terminals));
+    let params = GenerateParams { size: Some(size), ..*params };
+    let arteries = super::generate(&params)?;
+    let mut veins = super::generate(&GenerateParams { seed: !params.seed, ..params })?;
+    veins.nodes.iter_mut().for_each(|node| node.position = -node.position);
+    let (mut network, of_veins) = apart(arteries, veins);
+    let first = network.nodes.len();
+    let terminals: Vec<NodeId> = network.adjacency().terminals();
+    let random = Random::new(params.seed);
+    add_bed(&mut network, bed, size, random);
+    let joined = join(&mut network, &terminals, first, bed, random);
+    let kept = live(&network, first);
+    let open = terminals.len() - joined.len();
+    let mut kind: Vec<u32> = (0..first).map(|i| u32::from(i >= of_veins)).collect();
+    kind.resize(network.nodes.len(), 2);
+    kind.retain({
+        let mut i = 0;
+        let kept = &kept;
+        move |_| {
+            i += 1;
+            kept[i - 1]
+        }
+    });
+    // The two inlets are ends, too.
+    Ok(Looped { skeleton: compact(&network, &kept), kind, joined: joined.len(), open: open.saturating_sub(2) })
+}
+
+/// Both trees in one network, without what is in the way of something thicker; and where the veins begin.
+fn apart(arteries: Skeleton, veins: Skeleton) -> (Skeleton, usize) {
+    let (nodes, edges) = (arteries.nodes.len() as u32, arteries.edges.len());
+    let mut both = arteries;
+    both.nodes.extend(veins.nodes);
+    both.edges.extend(veins.edges.iter().map(|e| Edge { nodes: e.nodes.map(|n| NodeId(n.0 + nodes)), ..*e }));
+    let tubes = Tubes::new(&both, both.edge_ids());
+    let mut goes = vec![false; both.nodes.len()];
+    tubes.tree.self_pairs(|i, j| {
+        let (a, b) = (tubes.list[i as usize], tubes.list[j as usize]);
+        if ((i as usize) < edges) != ((j as usize) < edges) && meet(&a, &b) {
+            let thinner = if a.ra < b.ra { i } else { j };
+            goes[both.edges[thinner as usize].nodes[1].index()] = true;
+        }
+    });
+    // Vessels lead from nodes to later ones.
+    for edge in &both.edges {
+        goes[edge.nodes[1].index()] |= goes[edge.nodes[0].index()];
+    }
+    let kept: Vec<bool> = goes.iter().map(|goes| !goes).collect();
+    let of_veins = kept[..nodes as usize].iter().filter(|kept| **kept).count();
+    (compact(&both, &kept), of_veins)
+}
+
+/// Whether two vessels that share no node are too close to each other.
+fn meet(a: &Tube, b: &Tube) -> bool {
+    let pair = tube_tube(a, b);
+    pair.gap < (APART - 1.0) * (a.radius(pair.s) + b.radius(pair.t))
+}
+
+/// Vessels, and a tree in which those close to a place are found.
+struct Tubes {
+    list: Vec<Tube>,
+    tree: Bvh,
+}
+
+impl Tubes {
+    fn new(network: &Skeleton, edges: impl Iterator<Item = EdgeId>) -> Self {
+        let list: Vec<Tube> = edges.map(|edge| network.tube(edge)).collect();
+        let boxes: Vec<Aabb> = list.iter().map(around).collect();
+        Self { tree: Bvh::new(&boxes), list }
+    }
+
+    /// Whether one of them is too close to a vessel, but for those that begin or end at one of these points.
+    fn meets(&self, vessel: &Tube, but: &[Point3]) -> bool {
+        let mut meets = false;
+        self.tree.query(&around(vessel), |i| {
+            let other = &self.list[i as usize];
+            let shares = but.iter().any(|p| *p == other.a || *p == other.b);
+            meets = meets || (!shares && meet(vessel, other));
+        });
+        meets
+    }
+}
+
+/// Boxes of vessels that are too close to each other overlap.
+fn around(tube: &Tube) -> Aabb {
+    Aabb::of_points([&tube.a, &tube.b]).grown(APART * tube.max_radius())
+}
+
+/// Adds the net, but for what is too close to the trees.
+fn add_bed(network: &mut Skeleton, bed: &BedParams, size: f64, random: Random) {
+    let half = Vec3::from(SEMI_AXES) * (0.5 * size);
+    let net = Net::new(bed.length, &half);
+    let place = |i: u64| {
+        let off = |axis: u64| bed.length * JITTER * (2.0 * random.unit(Stream::Bed, 3 * i + axis) - 1.0);
+        net.point(i) + Vec3::new(off(0), off(1), off(2))
+    };
+    let inside = |p: &Point3| p.coords.component_div(&half).norm_squared() <= 1.0;
+    let trees = Tubes::new(network, network.edge_ids());
+    let clear = |i: u64| -> Vec<[u64; 2]> {
+        let here = place(i);
+        let later = net.joined(i).into_iter().flatten().filter(|&j| j > i && inside(&here));
+        let edges = later.map(|j| (j, place(j))).filter(|(_, there)| inside(there));
+        let thick = bed.radius * (1.0 + 3.0 * RADIUS_SPREAD);
+        let free = edges.filter(|(_, there)| !trees.meets(&Tube { a: here, b: *there, ra: thick, rb: thick }, &[]));
+        free.map(|(j, _)| [i, j]).collect()
+    };
+    let edges: Vec<[u64; 2]> = (0..net.len()).into_par_iter().flat_map_iter(clear).collect();
+    let mut places: Vec<u64> = edges.iter().flatten().copied().collect();
+    places.par_sort_unstable();
+    places.dedup();
+    let first = network.nodes.len();
+    let node = |&i: &u64| Node { position: place(i), radius: bed.radius, original: 0 };
+    network.nodes.extend(places.iter().map(node));
+    let id = |i: u64| NodeId((first + places.partition_point(|&p| p < i)) as u32);
+    network.edges.extend(edges.iter().enumerate().map(|(k, ends)| {
+        let radius = bed.radius * (1.0 + RADIUS_SPREAD * random.bell(Stream::Bed, net.len() * 3 + k as u64));
+        Edge { nodes: ends.map(id), radii: [radius; 2] }
+    }));
+}
+
+/// Joins ends of the trees to nodes of the bed (from `first` on) that have lost a vessel; which ends.
+fn join(network: &mut Skeleton, ends: &[NodeId], first: usize, bed: &BedParams, random: Random) -> Vec<NodeId> {
+    let adjacency = network.adjacency();
+    let places: Vec<NodeId> =
+        network.node_ids().skip(first).filter(|&n| (1..3).contains(&adjacency.valence(n))).collect();
+    let points: Vec<[f64; 3]> = places.iter().map(|&n| network.node(n).position.into()).collect();
+    let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&points) else { return Vec::new() };
+    let all = Tubes::new(network, network.edge_ids());
+    let ways = |n: NodeId| -> Vec<Vec3> {
+        let here = network.node(n).position;
+        let others = adjacency.edges(n).iter().map(|&e| network.edge(e).other(n));
+        others.map(|other| (network.node(other).position - here).normalize()).collect()
+    };
+    let candidates = |&end: &NodeId| -> Vec<NodeId> {
+        let (from, root) = (network.node(end).position, end.index());
+        // The two inlets stay what they are.
+        let edge = network.edge(adjacency.edges(end)[0]);
+        if edge.nodes[0].index() == root {
+            return Vec::new();
+        }
+        let reach = REACH * bed.length;
+        let near = tree.query(&from.into()).within::<SquaredEuclidean<f64>>(reach * reach).unsorted().execute();
+        let mut found: Vec<(f64, NodeId)> = near.into_iter().map(|n| (n.distance, places[n.item as usize])).collect();
+        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found
+            .into_iter()
+            .map(|(_, n)| n)
+            .filter(|&n| {
+                let there = network.node(n).position;
+                let way = (there - from).normalize();
+                let open = |at: NodeId, way: Vec3| ways(at).iter().all(|other| other.dot(&way) < SIDE_BY_SIDE);
+                let vessel = Tube { a: from, b: there, ra: bed.radius, rb: bed.radius };
+                vessel.length() > 4.0 * edge.radii[0]
+                    && open(end, way)
+                    && open(n, -way)
+                    && !all.meets(&vessel, &[from, there])
+            })
+            .collect()
+    };
+    let wanted: Vec<Vec<NodeId>> = ends.par_iter().map(candidates).collect();
+    let (mut taken, mut joined) = (vec![false; network.nodes.len()], Vec::new());
+    for (k, (&end, wanted)) in ends.iter().zip(&wanted).enumerate() {
+        let Some(&to) = wanted.iter().find(|n| !taken[n.index()]) else { continue };
+        taken[to.index()] = true;
+        joined.push(end);
+        let radius = bed.radius * (1.0 + RADIUS_SPREAD * random.bell(Stream::Joint, k as u64));
+        network.edges.push(Edge { nodes: [end, to], radii: [radius; 2] });
+    }
+    joined
+}
+
+/// The nodes that remain: the trees (before `first`), and of what hangs together with the first inlet those from which two
+/// ways lead on.
+fn live(network: &Skeleton, first: usize) -> Vec<bool> {
+    let adjacency = network.adjacency();
+    let mut valence: Vec<usize> = network.node_ids().map(|n| adjacency.valence(n)).collect();
+    let mut pending: Vec<NodeId> = network.node_ids().skip(first).filter(|n| valence[n.index()] == 1).collect();
+    let mut live = vec![true; network.nodes.len()];
+    while let Some(node) = pending.pop() {
+        live[node.index()] = false;
+        for &edge in adjacency.edges(node) {
+            let other = network.edge(edge).other(node);
+            valence[other.index()] -= 1;
+            if other.index() >= first && valence[other.index()] == 1 && live[other.index()] {
+                pending.push(other);
+            }
+        }
+    }
+    let mut reached = vec![false; network.nodes.len()];
+    reached[0] = true;
+    pending.push(NodeId(0));
+    while let Some(node) = pending.pop() {
+        for &edge in adjacency.edges(node) {
+            let other = network.edge(edge).other(node).index();
+            if live[other] && !reached[other] {
+                reached[other] = true;
+                pending.push(NodeId(other as u32));
+            }
+        }
+    }
+    reached
+}
+
+/// The network without the nodes that go; nodes are numbered anew, and have the radius of their thickest vessel.
+fn compact(network: &Skeleton, kept: &[bool]) -> Skeleton {
+    let mut number = vec![u32::MAX; kept.len()];
+    let mut out = Skeleton::default();
+    for (i, node) in network.nodes.iter().enumerate().filter(|(i, _)| kept[*i]) {
+        number[i] = out.nodes.len() as u32;
+        out.nodes.push(Node { radius: 0.0, original: number[i], ..*node });
+    }
+    for edge in &network.edges {
+        if edge.nodes.iter().all(|n| kept[n.index()]) {
+            let nodes = edge.nodes.map(|n| NodeId(number[n.index()]));
+            for n in nodes {
+                let radius = &mut out.nodes[n.index()].radius;
+                *radius = radius.max(edge.radii[0]);
+            }
+            out.edges.push(Edge { nodes, ..*edge });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn small(seed: u64) -> Looped {
+        let params = GenerateParams { seed, terminal_radius: 4.0, ..GenerateParams::new(Organ::Ellipsoid, 150) };
+        looped(&params, &BedParams::default()).expect("possible")
+    }
+
+    #[test]
+    fn the_bed_closes_arteries_and_veins_to_loops() {
+        let made = small(3);
+        let network = &made.skeleton;
+        network.check().expect("a network");
+        assert_eq!(made.kind.len(), network.nodes.len());
+        let adjacency = network.adjacency();
+        let components = network.components(&adjacency).list;
+        assert_eq!(components.len(), 1);
+        let capillaries = made.kind.iter().filter(|kind| **kind == 2).count();
+        assert!(capillaries > 1500 && components[0].loops() > capillaries / 3, "{capillaries}");
+        // Capillaries end nowhere; of the trees' ends most are joined.
+        let terminals = adjacency.terminals();
+        assert!(terminals.iter().all(|n| made.kind[n.index()] < 2) && terminals.len() <= made.open + 2);
+        assert!(made.joined > 3 * made.open, "{} joined, {} open", made.joined, made.open);
+        for kind in 0..2 {
+            assert!(made.kind.iter().filter(|k| **k == kind).count() > 100);
+        }
+    }
+
+    #[test]
+    fn vessels_overlap_nowhere_but_within_a_tree() {
+        let made = small(4);
+        let overlaps = made.skeleton.overlaps(&made.skeleton.adjacency());
+        let bed = overlaps.pairs.iter().filter(|o| o.nodes.as_flattened().iter().any(|n| made.kind[n.index()] == 2));
+        assert_eq!(bed.count(), 0);
+    }
+
+    #[test]
+    fn lengths_and_radii_are_as_asked_for() {
+        let made = small(5);
+        let edges = made.skeleton.edge_ids().zip(&made.skeleton.edges);
+        let bed = edges.filter(|(_, e)| e.nodes.iter().all(|n| made.kind[n.index()] == 2));
+        let (mut count, mut length, mut radius) = (0.0, 0.0, 0.0);
+        for (id, edge) in bed {
+            count += 1.0;
+            length += made.skeleton.length(id);
+            radius += edge.radii[0];
+            assert!((1.0..2.5).contains(&edge.radii[0]));
+        }
+        assert!((length / count / 60.0 - 1.0).abs() < 0.03 && (radius / count / 1.75 - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn a_seed_gives_one_network_for_any_number_of_threads() {
+        let of = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| small(6)).skeleton
+        };
+        assert_eq!(of(1), of(3));
+        assert_ne!(of(1), small(7).skeleton);
+    }
+
+    #[test]
+    fn beds_that_make_no_sense_are_refused() {
+        let params = GenerateParams::new(Organ::Ellipsoid, 50);
+        for bed in [BedParams { radius: 0.0, length: 60.0 }, BedParams { radius: 8.0, length: 60.0 }] {
+            assert!(matches!(looped(&params, &bed), Err(GenerateError::BadBed { .. })));
+        }
+        let kidney = looped(&GenerateParams::new(Organ::Kidney, 50), &BedParams::default());
+        assert!(matches!(kidney, Err(GenerateError::BedOfKidney)));
+    }
+}

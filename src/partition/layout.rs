@@ -1,0 +1,409 @@
+//! A network that is cut, held as where it is cut: what a cluster or a connector is made from is put together when it is
+//! looked at. Of millions of vessels that takes a tenth of the memory of their tubes, ends and paths.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::params::PartitionParams;
+use super::parts::{
+    Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, Piece, UncutReason,
+};
+use super::path::path;
+use super::settle::{Run, Settler};
+use crate::geometry::{Section, Tube};
+use crate::skeleton::course::{Course, Courses, Way};
+use crate::skeleton::{BranchId, Chains, NodeId, Skeleton};
+
+const NONE: u32 = u32::MAX;
+
+/// Where a network is cut. Clusters are ordered by their lowest node, cuts by branch and place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Layout {
+    #[serde(skip)]
+    skeleton: Arc<Skeleton>,
+    chains: Chains,
+    /// What says how long overruns are.
+    overrun: [f64; 3],
+    /// The pieces of branches that the clusters hold, cluster by cluster.
+    pieces: Vec<Placed>,
+    /// Where the pieces of each cluster begin; one more than there are clusters.
+    first_piece: Vec<u32>,
+    /// Smallest radius of each cluster.
+    r_min: Vec<f64>,
+    /// Nodes of the clusters, and where those of each begin.
+    nodes: Vec<NodeId>,
+    first_node: Vec<u32>,
+    cuts: Vec<PlacedCut>,
+    /// Lengths of the overruns beyond an end (0 or 1) of a piece that are not the usual ones.
+    overruns: BTreeMap<(u32, u8), f64>,
+    uncut: Vec<(BranchId, UncutReason)>,
+    warnings: Vec<PartitionWarning>,
+}
+
+/// A piece of a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Placed {
+    branch: u32,
+    /// The cuts at its ends; `NONE` at the branch's own ends.
+    cuts: [u32; 2],
+    /// Whether these are terminals.
+    terminals: [bool; 2],
+}
+
+/// Where a branch is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct PlacedCut {
+    branch: u32,
+    planes: [f64; 2],
+    sides: [(ClusterId, u32); 2],
+}
+
+impl Layout {
+    pub(super) fn new(skeleton: Arc<Skeleton>, mut settler: Settler, mut uncut: Vec<(BranchId, UncutReason)>) -> Self {
+        let found = Clusters::of(&settler);
+        let Shortened { overruns, warnings } = Shortened::of(&mut settler, &found.of_root);
+        let mut cut_of_slot = vec![NONE; settler.slots.len()];
+        let mut cuts = Vec::with_capacity(settler.slots.iter().filter(|s| s.alive).count());
+        for (i, slot) in settler.slots.iter().enumerate().filter(|(_, s)| s.alive) {
+            cut_of_slot[i] = cuts.len() as u32;
+            cuts.push(PlacedCut { branch: slot.branch, planes: slot.planes, sides: Cut::NOWHERE });
+        }
+        // A branch of several cuts may have lost only some of them.
+        let is_cut = |branch: u32| {
+            let slots = settler.first_slot[branch as usize] as usize..settler.first_slot[branch as usize + 1] as usize;
+            settler.slots[slots].iter().any(|s| s.alive)
+        };
+        uncut.retain(|(branch, _)| !is_cut(branch.0));
+        uncut.sort_by_key(|(branch, _)| *branch);
+        uncut.dedup_by_key(|(branch, _)| *branch);
+        let params = settler.params;
+        let mut layout = Self {
+            skeleton,
+            // They belong to the settler still.
+            chains: Chains::default(),
+            overrun: [params.overrun, params.overrun_voxels, params.rho],
+            pieces: Vec::with_capacity(settler.runs.len()),
+            first_piece: Vec::with_capacity(found.count + 1),
+            r_min: Vec::with_capacity(found.count),
+            nodes: found.nodes,
+            first_node: found.first_node,
+            cuts,
+            overruns: BTreeMap::new(),
+            uncut,
+            warnings,
+        };
+        layout.place(&settler, &found.of_root, &cut_of_slot, &overruns);
+        layout
+    }
+
+    /// Places the runs cluster by cluster, and says at which ends the cuts are.
+    fn place(
+        &mut self,
+        settler: &Settler,
+        of_root: &[u32],
+        cut_of_slot: &[u32],
+        overruns: &BTreeMap<(u32, usize), f64>,
+    ) {
+        let cluster_of = |run: u32| of_root[settler.runs[run as usize].root as usize];
+        let mut order: Vec<u32> = (0..settler.runs.len() as u32).collect();
+        order.sort_unstable_by_key(|&run| (cluster_of(run), run));
+        let mut ends = 0;
+        for index in order {
+            let run = settler.runs[index as usize];
+            let cluster = cluster_of(index);
+            if self.first_piece.len() <= cluster as usize {
+                self.first_piece.push(self.pieces.len() as u32);
+                self.r_min.push(settler.r_min(run.root));
+                ends = 0;
+            }
+            let terminals = settler.terminals[run.branch as usize];
+            let terminals = [0, 1].map(|end| run.slots[end].is_none() && terminals[end]);
+            for (end, way) in Way::BOTH.into_iter().enumerate() {
+                if let Some(slot) = run.slots[end] {
+                    let cut = &mut self.cuts[cut_of_slot[slot as usize] as usize];
+                    cut.sides[way.side()] = (ClusterId(cluster), ends);
+                } else if let Some(&length) = overruns.get(&(index, end)) {
+                    self.overruns.insert((self.pieces.len() as u32, end as u8), length);
+                }
+                ends += u32::from(run.slots[end].is_some() || terminals[end]);
+            }
+            let cuts = run.slots.map(|slot| slot.map_or(NONE, |slot| cut_of_slot[slot as usize]));
+            self.pieces.push(Placed { branch: run.branch, cuts, terminals });
+        }
+        self.first_piece.push(self.pieces.len() as u32);
+    }
+
+    /// With the branches that it was made of.
+    pub(super) fn with(self, chains: Chains) -> Self {
+        Self { chains, ..self }
+    }
+}
+
+/// The nodes of the clusters.
+struct Clusters {
+    count: usize,
+    nodes: Vec<NodeId>,
+    first_node: Vec<u32>,
+    /// The cluster of each root.
+    of_root: Vec<u32>,
+}
+
+impl Clusters {
+    /// Ordered by lowest node, those without a node last.
+    fn of(settler: &Settler) -> Self {
+        let mut members: Vec<(u32, NodeId)> = Vec::new();
+        for branch in 0..settler.courses.len() {
+            let course = settler.courses.get(branch as u32);
+            for run in &settler.runs[settler.first_run[branch] as usize..settler.first_run[branch + 1] as usize] {
+                collect_nodes(settler, run, &course, &mut members);
+            }
+        }
+        members.sort_unstable();
+        members.dedup();
+        let mut roots: Vec<(NodeId, u32)> = members.chunk_by(|a, b| a.0 == b.0).map(|m| (m[0].1, m[0].0)).collect();
+        roots.sort_unstable();
+        let size = settler.runs.iter().map(|r| r.root + 1).max().unwrap_or(0);
+        let mut of_root = vec![NONE; size as usize];
+        let mut count = 0;
+        for root in roots.iter().map(|r| r.1).chain(settler.runs.iter().map(|r| r.root)) {
+            if of_root[root as usize] == NONE {
+                of_root[root as usize] = count;
+                count += 1;
+            }
+        }
+        drop(roots);
+        for member in &mut members {
+            member.0 = of_root[member.0 as usize];
+        }
+        members.sort_unstable();
+        let first_node = (0..=count).map(|c| members.partition_point(|m| m.0 < c) as u32).collect();
+        Self { count: count as usize, nodes: members.iter().map(|m| m.1).collect(), first_node, of_root }
+    }
+}
+
+/// Nodes within a run, and those at its ends that no cut takes.
+fn collect_nodes(settler: &Settler, run: &Run, course: &Course, members: &mut Vec<(u32, NodeId)>) {
+    let [lo, hi] = settler.range(run, course);
+    let nodes = &course.branch.nodes;
+    for (i, (&node, &s)) in nodes.iter().zip(&course.branch.arc).enumerate() {
+        let end = i == 0 || i + 1 == nodes.len();
+        if !end && s > lo && s < hi {
+            members.push((run.root, node));
+        }
+    }
+    for (node, slot) in course.branch.ends().into_iter().zip(run.slots) {
+        if slot.is_none() {
+            members.push((run.root, node));
+        }
+    }
+}
+
+/// Terminals with another vessel in their way.
+#[derive(Default)]
+struct Shortened {
+    /// Length of the overrun beyond an end (0 or 1) of a run, if it is not the usual one.
+    overruns: BTreeMap<(u32, usize), f64>,
+    warnings: Vec<PartitionWarning>,
+}
+
+impl Shortened {
+    fn of(settler: &mut Settler, of_root: &[u32]) -> Self {
+        let mut found = Self::default();
+        for index in 0..settler.runs.len() {
+            let run = settler.runs[index];
+            let terminals = settler.terminals[run.branch as usize];
+            for end in (0..2).filter(|&end| run.slots[end].is_none() && terminals[end]) {
+                found.terminal(settler, index as u32, end, ClusterId(of_root[run.root as usize]));
+            }
+        }
+        found
+    }
+
+    fn terminal(&mut self, settler: &mut Settler, index: u32, end: usize, cluster: ClusterId) {
+        let run = settler.runs[index as usize];
+        let near = settler.near(run.root);
+        let course = near.course(run.branch);
+        let (way, s) = (Way::BOTH[end], settler.range(&run, course)[end]);
+        let section = course.section(s, way);
+        let r = section.radius;
+        let full = settler.overrun(r, run.root);
+        let Err(by) = settler.tip_clear(&near, index as usize, way, s, &section, full) else { return };
+        let node = course.branch.ends()[end];
+        let least = (settler.params.shortest_overrun * r).min(full);
+        let mut length = full;
+        while length > least {
+            length = (0.9 * length).max(least);
+            if settler.tip_clear(&near, index as usize, way, s, &section, length).is_ok() {
+                self.overruns.insert((index, end), length);
+                self.warnings.push(PartitionWarning::ShortOverrun { cluster, node, near: by, radii: length / r });
+                return;
+            }
+        }
+        self.overruns.insert((index, end), least);
+        self.warnings.push(PartitionWarning::CapNotClear { cluster, node, near: by });
+    }
+}
+
+impl Layout {
+    /// The same of a skeleton: layouts are kept without theirs.
+    #[must_use]
+    pub fn of(self, skeleton: Arc<Skeleton>) -> Self {
+        Self { skeleton, ..self }
+    }
+
+    /// Number of clusters.
+    pub fn clusters_len(&self) -> usize {
+        self.r_min.len()
+    }
+
+    /// Number of cuts.
+    pub fn cuts_len(&self) -> usize {
+        self.cuts.len()
+    }
+
+    /// All clusters, by `ClusterId`.
+    pub fn clusters(&self) -> impl ExactSizeIterator<Item = Cluster> + '_ {
+        (0..self.clusters_len()).map(|i| self.cluster(ClusterId(i as u32)))
+    }
+
+    /// All cuts, by `CutId`.
+    pub fn cuts(&self) -> impl ExactSizeIterator<Item = Cut> + '_ {
+        (0..self.cuts_len()).map(|i| self.cut(CutId(i as u32)))
+    }
+
+    /// The branches that are in one cluster from end to end, and why.
+    pub(super) fn uncut(&self) -> &[(BranchId, UncutReason)] {
+        &self.uncut
+    }
+
+    /// What may go wrong in a cluster.
+    pub(super) fn warnings(&self) -> &[PartitionWarning] {
+        &self.warnings
+    }
+
+    /// Nodes of the cluster that has most.
+    pub fn largest_nodes(&self) -> usize {
+        self.first_node.windows(2).map(|w| (w[1] - w[0]) as usize).max().unwrap_or(0)
+    }
+
+    /// The branches that run through clusters of more than so many nodes.
+    pub(super) fn in_clusters_above(&self, nodes: usize) -> Vec<BranchId> {
+        let large = |(_, cluster): &(BranchId, ClusterId)| self.nodes(*cluster).len() > nodes;
+        self.branches_of_clusters().filter(large).map(|(branch, _)| branch).collect()
+    }
+
+    /// Each piece of a branch that a cluster holds, cluster by cluster.
+    pub fn branches_of_clusters(&self) -> impl Iterator<Item = (BranchId, ClusterId)> + '_ {
+        let of = |cluster: usize| self.pieces_of(cluster).iter().map(move |p| (p.branch, cluster));
+        (0..self.clusters_len()).flat_map(of).map(|(branch, cluster)| (BranchId(branch), ClusterId(cluster as u32)))
+    }
+
+    /// How many pieces of branches a cluster holds.
+    pub(super) fn pieces_in(&self, cluster: ClusterId) -> usize {
+        self.pieces_of(cluster.0 as usize).len()
+    }
+
+    /// The branch of a cut.
+    pub fn branch_of_cut(&self, cut: CutId) -> BranchId {
+        BranchId(self.cuts[cut.0 as usize].branch)
+    }
+
+    /// The clusters at the two sides of a cut, each with the index of its end there.
+    pub fn sides_of_cut(&self, cut: CutId) -> [(ClusterId, u32); 2] {
+        self.cuts[cut.0 as usize].sides
+    }
+
+    /// The nodes of a cluster.
+    pub fn nodes(&self, cluster: ClusterId) -> &[NodeId] {
+        let i = cluster.0 as usize;
+        &self.nodes[self.first_node[i] as usize..self.first_node[i + 1] as usize]
+    }
+
+    /// How many of a cluster's ends, before the given one, are cuts.
+    pub fn cuts_before(&self, cluster: ClusterId, end: u32) -> u32 {
+        let at = |piece: &Placed, i: usize| (piece.cuts[i] != NONE, piece.cuts[i] != NONE || piece.terminals[i]);
+        let ends = self.pieces_of(cluster.0 as usize).iter().flat_map(|piece| [at(piece, 0), at(piece, 1)]);
+        ends.filter(|(_, is_end)| *is_end).take(end as usize).filter(|(is_cut, _)| *is_cut).count() as u32
+    }
+
+    fn pieces_of(&self, cluster: usize) -> &[Placed] {
+        &self.pieces[self.first_piece[cluster] as usize..self.first_piece[cluster + 1] as usize]
+    }
+
+    fn course(&self, branch: u32) -> Course {
+        Courses { skeleton: &self.skeleton, chains: &self.chains }.get(branch)
+    }
+
+    fn arc_of(&self, piece: &Placed, course: &Course) -> [f64; 2] {
+        let at = |end: usize| (piece.cuts[end] != NONE).then(|| self.cuts[piece.cuts[end] as usize].planes[1 - end]);
+        [at(0).unwrap_or(0.0), at(1).unwrap_or_else(|| course.length())]
+    }
+
+    /// What a connector is made from.
+    pub fn cut(&self, id: CutId) -> Cut {
+        let PlacedCut { branch, planes, sides } = self.cuts[id.0 as usize];
+        Cut { branch: BranchId(branch), sides, path: path(&self.course(branch), planes) }
+    }
+
+    /// What a cluster is made from.
+    pub fn cluster(&self, id: ClusterId) -> Cluster {
+        self.cluster_with(id, |_| {})
+    }
+
+    fn cluster_with(&self, id: ClusterId, mut each: impl FnMut(Piece)) -> Cluster {
+        let mut cluster = Cluster { nodes: self.nodes(id).to_vec(), tubes: Vec::new(), ends: Vec::new() };
+        let r_min = self.r_min[id.0 as usize];
+        for (index, piece) in (self.first_piece[id.0 as usize]..).zip(self.pieces_of(id.0 as usize)) {
+            let course = self.course(piece.branch);
+            let arc = self.arc_of(piece, &course);
+            let flat = [0, 1].map(|end| piece.cuts[end] != NONE || piece.terminals[end]);
+            let first = cluster.tubes.len() as u32;
+            cluster.tubes.extend(course.tubes(arc[0], arc[1], flat));
+            let tubes = first..cluster.tubes.len() as u32;
+            each(Piece { cluster: id, branch: BranchId(piece.branch), arc, tubes });
+            for (end, way) in Way::BOTH.into_iter().enumerate().filter(|(end, _)| flat[*end]) {
+                let section = course.section(arc[end], way);
+                let usual = self.overrun_length(section.radius, r_min);
+                let overrun = self.overruns.get(&(index, end as u8)).copied().unwrap_or(usual);
+                let kind = match piece.cuts[end] {
+                    NONE => EndKind::Terminal(course.branch.ends()[end]),
+                    cut => EndKind::Cut { cut: CutId(cut), side: way.side() as u8 },
+                };
+                add_end(&mut cluster, section, overrun, kind);
+            }
+        }
+        cluster
+    }
+
+    fn overrun_length(&self, radius: f64, r_min: f64) -> f64 {
+        let [overrun, overrun_voxels, rho] = self.overrun;
+        PartitionParams { overrun, overrun_voxels, rho, ..PartitionParams::default() }.overrun_length(radius, r_min)
+    }
+
+    /// All of it at hand.
+    pub(super) fn explicit(&self) -> Partition {
+        let mut pieces = Vec::with_capacity(self.pieces.len());
+        let clusters = (0..self.clusters_len() as u32).map(|i| self.cluster_with(ClusterId(i), |p| pieces.push(p)));
+        let clusters = clusters.collect();
+        pieces.sort_unstable_by(|a, b| a.branch.cmp(&b.branch).then(a.arc[0].total_cmp(&b.arc[0])));
+        Partition {
+            clusters,
+            cuts: self.cuts().collect(),
+            cut_arcs: self.cuts.iter().map(|cut| cut.planes).collect(),
+            pieces,
+            uncut: self.uncut.clone(),
+            warnings: self.warnings.clone(),
+            summary: self.summary(),
+        }
+    }
+}
+
+/// Adds an end and its overrun.
+fn add_end(cluster: &mut Cluster, section: Section, overrun: f64, kind: EndKind) {
+    let tube = cluster.tubes.len() as u32;
+    let Section { origin, axis, radius } = section;
+    cluster.tubes.push(Tube { a: origin, b: origin + axis * overrun, ra: radius, rb: radius });
+    cluster.ends.push(ClusterEnd { section, kind, overrun: tube });
+}

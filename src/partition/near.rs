@@ -1,0 +1,87 @@
+//! What may be in the way of the ends of a cluster: the vessels that it holds, and the overruns beyond their terminals.
+
+use super::clearance::tip_middle;
+use super::params::PartitionParams;
+use crate::geometry::{Aabb, Bvh, Tube};
+use crate::skeleton::course::{Course, Courses, Way};
+
+/// Something in the way: a part of a branch, or the overrun beyond its terminal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Obstacle {
+    pub branch: u32,
+    pub kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    /// The edge of this index in the branch.
+    Edge(u32),
+    /// The overrun at the branch's start or end.
+    Overrun(Way),
+}
+
+/// More obstacles than this are searched by a tree.
+const FEW: usize = 48;
+
+/// The courses of some branches, and what of them may be in the way.
+pub(super) struct Near {
+    /// Ascending.
+    courses: Vec<(u32, Course)>,
+    obstacles: Vec<Obstacle>,
+    boxes: Vec<Aabb>,
+    tree: Option<Bvh>,
+}
+
+impl Near {
+    /// Of these branches, ascending.
+    pub fn new(
+        all: Courses,
+        terminals: &[[bool; 2]],
+        branches: &[u32],
+        params: &PartitionParams,
+        blending: f64,
+    ) -> Self {
+        let courses: Vec<(u32, Course)> = branches.iter().map(|&branch| (branch, all.get(branch))).collect();
+        let (mut obstacles, mut boxes) = (Vec::new(), Vec::new());
+        for (branch, course) in &courses {
+            let mut add = |kind: Kind, tube: &Tube| {
+                obstacles.push(Obstacle { branch: *branch, kind });
+                boxes.push(Aabb::of_points([&tube.a, &tube.b]).grown(blending * tube.max_radius()));
+            };
+            for (i, [ra, rb]) in course.radii.iter().enumerate() {
+                let tube = Tube { a: course.points[i], b: course.points[i + 1], ra: *ra, rb: *rb };
+                add(Kind::Edge(i as u32), &tube);
+            }
+            for (end, terminal) in Way::BOTH.into_iter().zip(terminals[*branch as usize]) {
+                if terminal {
+                    add(Kind::Overrun(end), &terminal_overrun(course, end, params));
+                }
+            }
+        }
+        let tree = (boxes.len() > FEW).then(|| Bvh::new(&boxes));
+        Self { courses, obstacles, boxes, tree }
+    }
+
+    /// One of the branches.
+    pub fn course(&self, branch: u32) -> &Course {
+        &self.courses[self.courses.partition_point(|(b, _)| *b < branch)].1
+    }
+
+    /// Calls `found` for all that has a box which overlaps `aabb`.
+    pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(&Obstacle)) {
+        if let Some(tree) = &self.tree {
+            return tree.query(aabb, |i| found(&self.obstacles[i as usize]));
+        }
+        let near = self.obstacles.iter().zip(&self.boxes).filter(|(_, other)| other.overlaps(aabb));
+        near.for_each(|(obstacle, _)| found(obstacle));
+    }
+}
+
+/// The axis of the tip beyond a terminal, with the longest overrun that it may have.
+pub(super) fn terminal_overrun(course: &Course, end: Way, params: &PartitionParams) -> Tube {
+    let s = if end == Way::Onward { course.length() } else { 0.0 };
+    let section = course.section(s, end);
+    let r = section.radius;
+    let length = tip_middle(r, params.overrun_length(r, r));
+    Tube { a: section.origin, b: section.origin + section.axis * length, ra: r, rb: r }
+}
