@@ -167,10 +167,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let work = args.work.open(shard, &network.skeleton, || args.options(&plan))?;
     let refined = pool.install(|| args.refined(&network, work.as_ref(), shard, &stop))?;
     if let (Some(work), Some(shard)) = (&work, shard) {
-        let skeleton = match refined {
-            Some((refined, _)) => refined.skeleton,
-            None => network.skeleton,
-        };
+        let prepared = network.into_skeleton();
+        let skeleton = refined.map_or(prepared, |(refined, _)| refined.skeleton);
         return args.run_shard(work, shard, (skeleton, &plan), &pool, (&stop, &bars));
     }
     let before = Before::new(network, refined);

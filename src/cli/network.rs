@@ -130,6 +130,11 @@ impl Network {
 }
 
 impl PreparedNetwork {
+    /// Nothing but what is to be meshed: large networks ask for the room of the rest.
+    pub fn into_skeleton(self) -> Skeleton {
+        self.skeleton
+    }
+
     /// The terminals that become inlets, of which some may be asked for as the file calls them.
     pub fn inlets(&self, asked: &[String]) -> Result<Inlets, Failure> {
         inlets(&self.skeleton, &self.names, &self.roots, asked)

@@ -13,7 +13,7 @@ use super::organ::SEMI_AXES;
 use super::params::{GenerateError, GenerateParams, Organ};
 use super::random::{Random, Stream};
 use crate::geometry::{Aabb, Bvh, Point3, Tube, Vec3, tube_tube};
-use crate::skeleton::{Edge, EdgeId, Node, NodeId, Skeleton};
+use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 
 /// Axes of vessels that do not meet are further apart than this, in sums of their radii.
 const APART: f64 = 1.5;
@@ -21,6 +21,8 @@ const APART: f64 = 1.5;
 const JITTER: f64 = 0.12;
 /// Nodes of the net per end of either tree.
 const PER_TERMINAL: f64 = 12.0;
+/// No capillary is closer to an end of a tree than this, in lengths of an edge: those about it then have room for another one.
+const ROOM: f64 = 0.4;
 /// How far away a node may be to which an end of a tree is joined, in lengths of an edge.
 const REACH: f64 = 1.5;
 /// Cosine of the least angle between vessels that are joined.
@@ -91,7 +93,7 @@ pub fn looped(params: &GenerateParams, bed: &BedParams) -> Result<Looped, Genera
     let first = network.nodes.len();
     let terminals: Vec<NodeId> = network.adjacency().terminals();
     let random = Random::new(params.seed);
-    add_bed(&mut network, bed, size, random);
+    add_bed(&mut network, &terminals, bed, size, random);
     let joined = join(&mut network, &terminals, first, bed, random);
     let kept = live(&network, first);
     let open = terminals.len() - joined.len();
@@ -115,7 +117,7 @@ fn apart(arteries: Skeleton, veins: Skeleton) -> (Skeleton, usize) {
     let mut both = arteries;
     both.nodes.extend(veins.nodes);
     both.edges.extend(veins.edges.iter().map(|e| Edge { nodes: e.nodes.map(|n| NodeId(n.0 + nodes)), ..*e }));
-    let tubes = Tubes::new(&both, both.edge_ids());
+    let tubes = Tubes::new(both.edge_ids().map(|edge| both.tube(edge)));
     let mut goes = vec![false; both.nodes.len()];
     tubes.tree.self_pairs(|i, j| {
         let (a, b) = (tubes.list[i as usize], tubes.list[j as usize]);
@@ -146,8 +148,8 @@ struct Tubes {
 }
 
 impl Tubes {
-    fn new(network: &Skeleton, edges: impl Iterator<Item = EdgeId>) -> Self {
-        let list: Vec<Tube> = edges.map(|edge| network.tube(edge)).collect();
+    fn new(vessels: impl Iterator<Item = Tube>) -> Self {
+        let list: Vec<Tube> = vessels.collect();
         let boxes: Vec<Aabb> = list.iter().map(around).collect();
         Self { tree: Bvh::new(&boxes), list }
     }
@@ -169,8 +171,8 @@ fn around(tube: &Tube) -> Aabb {
     Aabb::of_points([&tube.a, &tube.b]).grown(APART * tube.max_radius())
 }
 
-/// Adds the net, but for what is too close to the trees.
-fn add_bed(network: &mut Skeleton, bed: &BedParams, size: f64, random: Random) {
+/// Adds the net, but for what is too close to the trees, and what is in the way where their ends are to be joined to it.
+fn add_bed(network: &mut Skeleton, ends: &[NodeId], bed: &BedParams, size: f64, random: Random) {
     let half = Vec3::from(SEMI_AXES) * (0.5 * size);
     let net = Net::new(bed.length, &half);
     let place = |i: u64| {
@@ -178,12 +180,17 @@ fn add_bed(network: &mut Skeleton, bed: &BedParams, size: f64, random: Random) {
         net.point(i) + Vec3::new(off(0), off(1), off(2))
     };
     let inside = |p: &Point3| p.coords.component_div(&half).norm_squared() <= 1.0;
-    let trees = Tubes::new(network, network.edge_ids());
+    let thick = bed.radius * (1.0 + 3.0 * RADIUS_SPREAD);
+    let room = ROOM * bed.length / APART - thick;
+    let rooms = ends.iter().map(|&end| {
+        let a = network.node(end).position;
+        Tube { a, b: a + Vec3::x() * (0.01 * room), ra: room, rb: room }
+    });
+    let trees = Tubes::new(network.edge_ids().map(|edge| network.tube(edge)).chain(rooms));
     let clear = |i: u64| -> Vec<[u64; 2]> {
         let here = place(i);
         let later = net.joined(i).into_iter().flatten().filter(|&j| j > i && inside(&here));
         let edges = later.map(|j| (j, place(j))).filter(|(_, there)| inside(there));
-        let thick = bed.radius * (1.0 + 3.0 * RADIUS_SPREAD);
         let free = edges.filter(|(_, there)| !trees.meets(&Tube { a: here, b: *there, ra: thick, rb: thick }, &[]));
         free.map(|(j, _)| [i, j]).collect()
     };
@@ -208,7 +215,7 @@ fn join(network: &mut Skeleton, ends: &[NodeId], first: usize, bed: &BedParams, 
         network.node_ids().skip(first).filter(|&n| (1..3).contains(&adjacency.valence(n))).collect();
     let points: Vec<[f64; 3]> = places.iter().map(|&n| network.node(n).position.into()).collect();
     let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&points) else { return Vec::new() };
-    let all = Tubes::new(network, network.edge_ids());
+    let all = Tubes::new(network.edge_ids().map(|edge| network.tube(edge)));
     let ways = |n: NodeId| -> Vec<Vec3> {
         let here = network.node(n).position;
         let others = adjacency.edges(n).iter().map(|&e| network.edge(e).other(n));

@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn three_edges_of_one_length_at_120_degrees_leave_each_node() {
         let net = Net::new(60.0, &Vec3::new(400.0, 300.0, 500.0));
-        let mut inner = 0;
+        let mut inner = 0.0;
         for place in 0..net.len() {
             let here = net.point(place);
             let joined = net.joined(place);
@@ -106,11 +106,11 @@ mod tests {
             assert!(ways.iter().all(|way| (way.norm() - 60.0).abs() < 1e-9));
             assert!(joined.iter().flatten().all(|&other| net.joined(other).contains(&Some(place))));
             if let [a, b, c] = ways[..] {
-                inner += 1;
+                inner += 1.0;
                 assert!((a + b + c).norm() < 1e-9);
             }
         }
-        assert!(inner as f64 > 0.7 * net.len() as f64);
+        assert!(inner > 0.7 * net.len() as f64);
         let volume = (0..3).map(|axis| net.extent(axis) as f64 * net.cell).product::<f64>();
         assert!((net.len() as f64 / volume * 60.0_f64.powi(3) / DENSITY - 1.0).abs() < 1e-9);
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::params::PartitionParams;
+use super::params::Overruns;
 use super::parts::{
     Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, Piece, UncutReason,
 };
@@ -24,8 +24,7 @@ pub struct Layout {
     #[serde(skip)]
     skeleton: Arc<Skeleton>,
     chains: Chains,
-    /// What says how long overruns are.
-    overrun: [f64; 3],
+    overrun: Overruns,
     /// The pieces of branches that the clusters hold, cluster by cluster.
     pieces: Vec<Placed>,
     /// Where the pieces of each cluster begin; one more than there are clusters.
@@ -78,12 +77,11 @@ impl Layout {
         uncut.retain(|(branch, _)| !is_cut(branch.0));
         uncut.sort_by_key(|(branch, _)| *branch);
         uncut.dedup_by_key(|(branch, _)| *branch);
-        let params = settler.params;
         let mut layout = Self {
             skeleton,
             // They belong to the settler still.
             chains: Chains::default(),
-            overrun: [params.overrun, params.overrun_voxels, params.rho],
+            overrun: settler.params.overruns(),
             pieces: Vec::with_capacity(settler.runs.len()),
             first_piece: Vec::with_capacity(found.count + 1),
             r_min: Vec::with_capacity(found.count),
@@ -365,7 +363,7 @@ impl Layout {
             each(Piece { cluster: id, branch: BranchId(piece.branch), arc, tubes });
             for (end, way) in Way::BOTH.into_iter().enumerate().filter(|(end, _)| flat[*end]) {
                 let section = course.section(arc[end], way);
-                let usual = self.overrun_length(section.radius, r_min);
+                let usual = self.overrun.length(section.radius, r_min);
                 let overrun = self.overruns.get(&(index, end as u8)).copied().unwrap_or(usual);
                 let kind = match piece.cuts[end] {
                     NONE => EndKind::Terminal(course.branch.ends()[end]),
@@ -375,11 +373,6 @@ impl Layout {
             }
         }
         cluster
-    }
-
-    fn overrun_length(&self, radius: f64, r_min: f64) -> f64 {
-        let [overrun, overrun_voxels, rho] = self.overrun;
-        PartitionParams { overrun, overrun_voxels, rho, ..PartitionParams::default() }.overrun_length(radius, r_min)
     }
 
     /// All of it at hand.

@@ -82,6 +82,6 @@ pub(super) fn terminal_overrun(course: &Course, end: Way, params: &PartitionPara
     let s = if end == Way::Onward { course.length() } else { 0.0 };
     let section = course.section(s, end);
     let r = section.radius;
-    let length = tip_middle(r, params.overrun_length(r, r));
+    let length = tip_middle(r, params.overruns().length(r, r));
     Tube { a: section.origin, b: section.origin + section.axis * length, ra: r, rb: r }
 }

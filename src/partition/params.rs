@@ -80,9 +80,9 @@ impl PartitionParams {
         1.05 * (1.0 + 2.0 * self.kappa * self.kappa * std::f64::consts::LN_2).sqrt()
     }
 
-    /// Length of the overrun of a vessel of radius `radius` in a cluster whose smallest radius is `r_min`.
-    pub fn overrun_length(&self, radius: f64, r_min: f64) -> f64 {
-        (self.overrun * radius).max(self.overrun_voxels * 2.0 * r_min / self.rho)
+    /// What says how long overruns are.
+    pub(super) fn overruns(&self) -> Overruns {
+        Overruns { radii: self.overrun, voxels: self.overrun_voxels, rho: self.rho }
     }
 
     pub(super) fn check(&self) -> Result<(), PartitionError> {
@@ -104,6 +104,21 @@ impl PartitionParams {
             Some((name, value)) => Err(PartitionError::Parameter { name, value }),
             None => Ok(()),
         }
+    }
+}
+
+/// What says how long overruns are.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) struct Overruns {
+    radii: f64,
+    voxels: f64,
+    rho: f64,
+}
+
+impl Overruns {
+    /// Length of the overrun of a vessel of radius `radius` in a cluster whose smallest radius is `r_min`.
+    pub fn length(self, radius: f64, r_min: f64) -> f64 {
+        (self.radii * radius).max(self.voxels * 2.0 * r_min / self.rho)
     }
 }
 

@@ -242,7 +242,7 @@ impl<'a> Settler<'a> {
 
     /// Length of the overrun of a vessel of radius `radius` in the cluster `root`.
     pub fn overrun(&self, radius: f64, root: u32) -> f64 {
-        self.params.overrun_length(radius, self.r_min[root as usize])
+        self.params.overruns().length(radius, self.r_min[root as usize])
     }
 
     /// Next place for a plane, away from its cluster, at which its vessel is clear.

@@ -20,8 +20,8 @@ pub struct Kept {
     pub sizes: Sizes,
 }
 
-/// A block, or why there is none.
-pub type Made = Result<Kept, BlockError>;
+/// A block, or why there is none: said elsewhere, as there are millions of blocks and few that fail.
+pub type Made = Result<Kept, Box<BlockError>>;
 
 /// What every block of a run is made from, and the store that takes it.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +79,7 @@ impl Workshop<'_> {
     fn keep(&self, key: Key, Tried { result, failures, way }: Tried) -> Result<Made, StoreError> {
         let mut finished = match result {
             Ok(finished) => finished,
-            Err(error) => return Ok(Err(error)),
+            Err(error) => return Ok(Err(Box::new(error))),
         };
         if let Some(first) = failures.first() {
             finished.about.cured = Some(Cured { failure: first.to_string(), remedy: way });

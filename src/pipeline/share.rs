@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn each_block_is_dealt_once_and_shards_have_as_much_to_do() {
-        let costs: Vec<Cost> = (0..1000).map(|i| Cost { tets: f64::from(i * 7919 % 1000).powi(2), bytes: 0 }).collect();
+        let weights: Vec<u64> = (0..1000).map(|i| (i * 7919 % 1000) * (i * 7919 % 1000)).collect();
         for of in [1, 2, 7, 64] {
             let shards: Vec<Vec<u32>> =
                 (1..=of).map(|i| dealt(&weights, Shard::new(i, of).expect("a shard"))).collect();

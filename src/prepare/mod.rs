@@ -131,13 +131,14 @@ pub(crate) fn prepare_lines(
     params: &PrepareParams,
 ) -> Result<Prepared, SkeletonError> {
     let mut report = PrepareReport { given: Size::of(raw), ..PrepareReport::default() };
-    let filled;
-    let mut source = raw;
-    if params.radii {
-        (filled, report.radii) = radii::fill(raw)?;
-        source = &filled;
-    }
-    let (mut skeleton, cleaned) = clean(source)?;
+    // Large networks ask for the room of what is done with.
+    let (mut skeleton, cleaned) = if params.radii {
+        let (filled, radii) = radii::fill(raw)?;
+        report.radii = radii;
+        clean(&filled)?
+    } else {
+        clean(raw)?
+    };
     report.cleaned = cleaned;
     report.read = Size::of(&skeleton);
     report.measured = skeleton.is_measured();

@@ -10,6 +10,7 @@ use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::Xxh3;
 
 use super::error::StoreError;
+use super::folder::part_of;
 use super::key::Key;
 use super::locks::wait_for;
 use crate::progress::Progress;
@@ -73,9 +74,7 @@ impl<R: Read> Read for Summed<R> {
 
 /// The value, then the checksum of its bytes. It has its name only when it is whole.
 fn write<T: Serialize>(path: &Path, value: &T) -> io::Result<()> {
-    let folder = path.parent().unwrap_or_else(|| Path::new("."));
-    let part = tempfile::Builder::new().prefix("anastomesh.part-").tempfile_in(folder)?;
-    let mut out = Summed::new(BufWriter::with_capacity(1 << 18, part));
+    let mut out = Summed::new(BufWriter::with_capacity(1 << 18, part_of(path)?));
     postcard::to_io(value, &mut out).map_err(io::Error::other)?;
     let Summed { inner: mut out, sum } = out;
     out.write_all(&sum.digest().to_le_bytes())?;
