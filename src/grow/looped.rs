@@ -22,9 +22,9 @@ const JITTER: f64 = 0.12;
 /// Nodes of the net per end of either tree.
 const PER_TERMINAL: f64 = 12.0;
 /// No capillary is closer to an end of a tree than this, in lengths of an edge: those about it then have room for another one.
-const ROOM: f64 = 0.4;
+const ROOM: f64 = 0.9;
 /// How far away a node may be to which an end of a tree is joined, in lengths of an edge.
-const REACH: f64 = 1.5;
+const REACH: f64 = 2.2;
 /// Cosine of the least angle between vessels that are joined.
 const SIDE_BY_SIDE: f64 = 0.6;
 /// Spread of the radii of capillaries, as a share of their mean; none is off by more than three times as much.
