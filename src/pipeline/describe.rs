@@ -139,14 +139,14 @@ fn thin_layers(
 ) -> io::Result<Vec<ThinBlock>> {
     let mut thin = Vec::new();
     let partition = &blocks.partition;
-    for (i, (cluster, about)) in partition.clusters.iter().zip(&clusters.0).enumerate() {
-        let nodes = || original_nodes(skeleton, cluster.nodes.iter().copied());
+    for (i, about) in clusters.0.iter().enumerate() {
+        let nodes = || original_nodes(skeleton, partition.nodes(ClusterId(i as u32)).iter().copied());
         let layers = about.as_ref().and_then(|about| about.thin);
         thin.extend(layers.map(|layers| ThinBlock { block: format!("cluster {i}"), nodes: nodes(), layers }));
     }
-    for (i, (cut, made)) in partition.cuts.iter().zip(&blocks.connectors).enumerate() {
+    for (i, made) in blocks.connectors.iter().enumerate() {
         let Some(Ok(kept)) = made else { continue };
-        let nodes = || cut_nodes(skeleton, partition, cut);
+        let nodes = || cut_nodes(skeleton, partition, CutId(i as u32));
         let layers = shop.about(kept)?.thin;
         thin.extend(layers.map(|layers| ThinBlock { block: format!("connector {i}"), nodes: nodes(), layers }));
     }
