@@ -21,7 +21,7 @@ pub struct Args {
     /// Seed of the random numbers; the same seed gives the same network
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Mean radius of the terminals, in um (default: 10.08, as in a rat's kidney; 4 with --capillaries)
+    /// Mean radius of the terminals, in um (default: 10.08, as in a rat's kidney; 4 beside capillaries)
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
     terminal_radius: Option<f64>,
     /// Exponent p of Murray's law r0^p = r1^p + r2^p (default: 3.2 for a kidney, as measured, and 3 for an ellipsoid)
@@ -31,7 +31,7 @@ pub struct Args {
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     size: Option<f64>,
     /// Grow veins beside the arteries, with as many terminals, and a looped bed of capillaries between the two, by default
-    /// as in the cortex of mice (needs --organ ellipsoid; some 35 vessels for each terminal)
+    /// as in the cortex of mice (needs an ellipsoid; some 35 vessels for each terminal)
     #[arg(long)]
     capillaries: bool,
     /// Mean radius of the capillaries, in um

@@ -24,7 +24,7 @@ pub struct WorkArgs {
     #[arg(long, requires = "dir")]
     restart: bool,
     /// Make only the I-th of N shares of the blocks, counted from 1, and write no mesh: any number of these at a time, on any
-    /// number of machines; then the same command without --shard finds all blocks
+    /// number of machines; then the same command without this finds all blocks
     #[arg(long, value_name = "I/N", requires = "dir", conflicts_with = "restart", value_parser = two_numbers)]
     shard: Option<(u32, u32)>,
     /// Make what shards have left undone instead of refusing it
