@@ -1,7 +1,7 @@
 //! `anastomesh convert`: from one format to another of the same kind, and from a volume mesh to its boundary.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::Serialize;
 
@@ -9,27 +9,21 @@ use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::format::FormatArgs;
 use super::grid::GridArgs;
+use super::kind::{Kind, OpenedMesh, boundary_of};
 use super::progress::Bars;
 use super::room;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::io::network::{NetworkFormat, NetworkOptions, ensure_tree_writable, read_network, write_tree};
 use crate::io::npy;
+use crate::io::network::{NetworkOptions, ensure_tree_writable, read_network, write_tree};
 use crate::io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
 };
-use crate::io::volume::{
-    MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, WriteOptions, ensure_writable_as, read_mesh,
-    write_mesh_with,
-};
-use crate::mesh::adjacency::boundary_faces;
+use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
 use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 use crate::mesh::source::{MeshSource, SourceCounts};
-use crate::mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 use crate::prepare::directed;
 use crate::progress::Progress;
-
-/// Bytes of memory that a mesh takes for each byte of its file while it is converted as a whole.
-const MEMORY_PER_BYTE: u64 = 4;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -147,7 +141,7 @@ impl fmt::Display for Written {
 
 /// Converts a file.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let from = Kind::of(&args.input)?;
+    let from = Kind::of(&args.input, "convert")?;
     let to = args.target(from)?;
     let pool = thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
@@ -172,7 +166,7 @@ impl Args {
     fn target(&self, from: Kind) -> Result<Kind, Failure> {
         let path = &self.output;
         // A .vtp holds a network or a surface, as what becomes of it asks.
-        let to = match Kind::of(path) {
+        let to = match Kind::of(path, "convert") {
             _ if self.format.format.is_some() => Kind::Mesh,
             _ if npy::is_folder(path) => from,
             // Pictures and printers have formats that are not read.
@@ -190,36 +184,12 @@ impl Args {
     }
 
     fn convert_mesh(&self, to: Kind, bars: &Bars) -> Result<Written, Failure> {
-        if let Some(pieces) = self.in_pieces()? {
-            return self.write(&pieces, pieces.notes(), to, bars);
+        let stopped = |failure| if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { failure };
+        let mut opened = OpenedMesh::open(&self.input, self.memory).map_err(stopped)?;
+        if to == Kind::Surface {
+            opened.label_boundary();
         }
-        let MeshFile { mut volume, labelled, notes } = read_mesh(&self.input).map_err(|e| failed(&e, bars))?;
-        if to == Kind::Surface && !labelled {
-            volume.boundary = boundary_faces(&volume.mesh);
-            volume.boundary_patch = vec![WALL; volume.boundary.len()];
-        }
-        self.write(&volume, &notes, to, bars)
-    }
-
-    /// A file that is too large to be held; none when it is not, or has to be.
-    fn in_pieces(&self) -> Result<Option<VtuPieces>, Failure> {
-        let length = std::fs::metadata(&self.input).map_or(0, |data| data.len());
-        if length.saturating_mul(MEMORY_PER_BYTE) <= self.memory
-            || MeshFormat::of(&self.input).ok() != Some(MeshFormat::Vtu)
-        {
-            return Ok(None);
-        }
-        let path = self.input.display();
-        match VtuPieces::open(&self.input, (self.memory / 4) as usize) {
-            Ok(pieces) => Ok(Some(pieces)),
-            Err(VtuPiecesError::Read(source)) => {
-                Err(Failure::input(format!("{path}: cannot be read: {source}; write or copy it again")))
-            }
-            Err(why) => {
-                eprintln!("anastomesh: {path} is held as a whole, which may need more than --memory: {why}");
-                Ok(None)
-            }
-        }
+        self.write(opened.source(), opened.notes(), to, bars)
     }
 
     fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: Kind, bars: &Bars) -> Result<Written, Failure> {
@@ -263,17 +233,4 @@ impl Args {
 
 fn failed(error: &dyn fmt::Display, bars: &Bars) -> Failure {
     if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(error.to_string()) }
-}
-
-/// A mesh of nothing but this boundary.
-fn boundary_of(surface: TriMesh) -> VolumeMesh {
-    let TriMesh { points, triangles } = surface;
-    VolumeMesh {
-        mesh: TetMesh { points, tets: Vec::new() },
-        boundary_patch: vec![WALL; triangles.len()],
-        boundary_block: vec![0; triangles.len()],
-        boundary: triangles,
-        patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
-        ..VolumeMesh::default()
-    }
 }

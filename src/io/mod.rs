@@ -28,7 +28,7 @@ mod vtk_xml;
 
 pub use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 #[cfg(feature = "cli")]
-pub(crate) use file::{ensure_text_writable, write_text};
+pub(crate) use file::{ensure_text_writable, write_bytes, write_text};
 pub use network::{NetworkArray, NetworkFile, NetworkFileError, NetworkOptions, read_network, write_network};
 pub use surface::{SurfaceFileError, read_surface, write_boundary, write_surface};
 pub use volume::{MeshFile, MeshFileError, MeshNotes, read_mesh, write_mesh};

@@ -12,4 +12,4 @@ pub use error::FileError;
 pub(super) use folder::AtomicFolder;
 pub(super) use whole::{Writing, by_extension, ensure_sound, extension, read_bytes, write_all_whole, write_whole};
 #[cfg(feature = "cli")]
-pub use whole::{ensure_text_writable, write_text};
+pub use whole::{ensure_text_writable, write_bytes, write_text};

@@ -33,7 +33,16 @@ pub(in crate::io) fn write_whole(path: &Path, write: impl FnOnce(&mut AtomicFile
 /// What the operating system reports.
 #[cfg(feature = "cli")]
 pub fn write_text(path: &Path, text: &str) -> io::Result<()> {
-    write_whole(path, |file| file.write_all(text.as_bytes()))
+    write_bytes(path, text.as_bytes())
+}
+
+/// Writes a file of these bytes: whole or not at all.
+///
+/// # Errors
+/// What the operating system reports.
+#[cfg(feature = "cli")]
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_whole(path, |file| file.write_all(bytes))
 }
 
 /// Makes sure that a text file can be written, and leaves nothing behind.

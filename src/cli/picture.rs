@@ -1,0 +1,250 @@
+//! What is drawn, and how: arguments of every verb that makes pictures.
+
+use std::io;
+use std::path::Path;
+
+use super::exit::Failure;
+use super::network::NetworkArgs;
+use crate::geometry::Point3;
+use crate::mesh::beside::Beside;
+use crate::mesh::source::MeshSource;
+use crate::picture::{
+    Background, Camera, Canvas, Colour, Cut, Direction, Image, Legend, MeshPicture, NetworkPicture, Outline, PlaneWish,
+    Shown,
+};
+use crate::pipeline::{Datum, VesselData};
+use crate::skeleton::{NodeId, Skeleton};
+use rustc_hash::FxHashSet;
+
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Picture")]
+pub struct PictureArgs {
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1200x900", value_parser = size)]
+    size: [usize; 2],
+    /// From where: auto (across the longest two axes), front, back, left, right, top, bottom, or degrees round z from the
+    /// front and above it: 30,20
+    #[arg(long, value_name = "FROM", default_value = "auto", value_parser = direction, allow_hyphen_values = true)]
+    view: Direction,
+    /// How many times closer than all of it just fits
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = above_zero)]
+    zoom: f64,
+    /// Place in the middle of the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
+    at: Option<Point3>,
+    /// What colours tell (default: patch for a mesh, radius for a network)
+    #[arg(long, value_enum)]
+    color: Option<Colours>,
+    /// Background
+    #[arg(long, value_enum, default_value_t = Ground::Light)]
+    background: Ground,
+    /// Take tetrahedra away that are before a plane: x, y, z, -x, -y, -z or view, in the middle of the picture or at a coordinate
+    /// or share: x:12.5, view:40%
+    #[arg(long, value_name = "PLANE", allow_hyphen_values = true)]
+    clip: Option<PlaneWish>,
+    /// Cut the wall open at a plane, to look into the vessels
+    #[arg(long, value_name = "PLANE", allow_hyphen_values = true, conflicts_with = "clip")]
+    cut_away: Option<PlaneWish>,
+    /// Samples per pixel and direction: more are smoother and take more memory (fewer in very large pictures)
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..=4))]
+    samples: u8,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Colours {
+    /// Nothing
+    Plain,
+    /// Wall, inlets, outlets
+    Patch,
+    /// The block (of a network: the branch)
+    Block,
+    /// The radius of the vessel (of a mesh with --network)
+    Radius,
+    /// Strahler's order of the vessel (of a mesh with --network)
+    Order,
+    /// Radius ratios, from bad (red) to good (blue)
+    Quality,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Ground {
+    /// White
+    Light,
+    /// All but black
+    Dark,
+    /// None: transparent
+    None,
+}
+
+impl From<Colours> for Colour {
+    fn from(colours: Colours) -> Self {
+        match colours {
+            Colours::Plain => Self::Plain,
+            Colours::Patch => Self::Patch,
+            Colours::Block => Self::Block,
+            Colours::Radius => Self::Radius,
+            Colours::Order => Self::Order,
+            Colours::Quality => Self::Quality,
+        }
+    }
+}
+
+/// Pixels of a picture, at most.
+const MOST_PIXELS: usize = 64_000_000;
+/// Samples, at most: each takes 16 bytes.
+const MOST_SAMPLES: usize = 100_000_000;
+
+fn size(text: &str) -> Result<[usize; 2], String> {
+    let help = "give width and height in pixels: 1200x900";
+    let (width, height) = text.split_once('x').ok_or(help)?;
+    let size = [width, height].map(|n| n.parse::<usize>().unwrap_or(0));
+    match size {
+        [w, h] if w == 0 || h == 0 => Err(help.into()),
+        [w, h] if w.saturating_mul(h) > MOST_PIXELS => Err("no more than 64 million pixels".into()),
+        size => Ok(size),
+    }
+}
+
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let found: Option<Vec<f64>> =
+        text.split(',').map(|n| n.trim().parse().ok().filter(|x: &f64| x.is_finite())).collect();
+    found?.try_into().ok()
+}
+
+fn direction(text: &str) -> Result<Direction, String> {
+    let [azimuth, elevation] = match text {
+        "auto" => return Ok(Direction::Broadside),
+        "front" => [0.0, 0.0],
+        "right" => [90.0, 0.0],
+        "back" => [180.0, 0.0],
+        "left" => [-90.0, 0.0],
+        "top" => [0.0, 90.0],
+        "bottom" => [0.0, -90.0],
+        _ => numbers(text).ok_or("give auto, front, back, left, right, top, bottom or two angles: 30,20")?,
+    };
+    Ok(Direction::by_angles(azimuth, elevation))
+}
+
+fn place(text: &str) -> Result<Point3, String> {
+    numbers(text).map(|p: [f64; 3]| p.into()).ok_or_else(|| "give three coordinates: 1.5,0,-20".into())
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "a finite number above zero".into())
+}
+
+/// Reads a network and finds its roots.
+pub fn vessels(args: &NetworkArgs) -> Result<(Skeleton, Vec<NodeId>), Failure> {
+    let network = args.read()?;
+    let inlets: FxHashSet<u32> = network.inlets(&[])?.list.iter().map(|inlet| inlet.original).collect();
+    let skeleton = network.skeleton;
+    let roots = skeleton.node_ids().filter(|&n| inlets.contains(&skeleton.node(n).original)).collect();
+    Ok((skeleton, roots))
+}
+
+impl PictureArgs {
+    /// What the colours tell, where they tell something of the network.
+    fn datum(&self) -> Option<Datum> {
+        match self.color {
+            Some(Colours::Radius) => Some(Datum::Radius),
+            Some(Colours::Order) => Some(Datum::Strahler),
+            _ => None,
+        }
+    }
+
+    /// Draws a network.
+    pub fn network(&self, network: &Skeleton, roots: &[NodeId]) -> Result<(Image, Shown), Failure> {
+        if self.clip.is_some() {
+            return Err(Failure::usage(
+                "--clip shows tetrahedra, of which a network has none; --cut-away opens its wall",
+            ));
+        }
+        let picture = NetworkPicture::new(network, self.color.map_or(Colour::Radius, Colour::from), roots);
+        let outline = picture.outline();
+        let mut canvas = self.canvas(&outline);
+        canvas.cut = self.cut_away.map(|wish| wish.plane(&canvas.camera, &outline));
+        picture.draw(&mut canvas);
+        Ok((canvas.finish(self.background()), picture.shown()))
+    }
+
+    /// Draws a mesh, which was made of the network, where that is known.
+    pub fn mesh(
+        &self,
+        path: &Path,
+        mesh: &dyn MeshSource,
+        network: Option<&Skeleton>,
+    ) -> Result<(Image, Shown), Failure> {
+        let failed = |e: io::Error| Failure::input(format!("{}: {e}; run `anastomesh check`", path.display()));
+        let vessels = match (self.datum(), network) {
+            (Some(datum), Some(network)) => {
+                let legend = legend(datum, network, mesh);
+                Some((VesselData::new(vec![datum], network, mesh), legend))
+            }
+            (Some(datum), None) => {
+                let what = datum.name();
+                return Err(Failure::usage(format!("what is coloured by {what} needs the network: --network NETWORK")));
+            }
+            _ => None,
+        };
+        let colour = self.color.map_or(Colour::Patch, Colour::from);
+        let values = vessels.as_ref().map(|(data, legend)| (data as &dyn Beside, *legend));
+        let shown = Shown { colour, legend: values.map(|(_, legend)| legend) };
+        let outline = MeshPicture::outline(mesh).map_err(failed)?;
+        let mut canvas = self.canvas(&outline);
+        let cut = |wish: PlaneWish| wish.plane(&canvas.camera, &outline);
+        let cut = self.clip.map(|wish| Cut::Tets(cut(wish))).or(self.cut_away.map(|wish| Cut::Wall(cut(wish))));
+        MeshPicture { mesh, colour, values }.draw(&mut canvas, cut).map_err(failed)?;
+        Ok((canvas.finish(self.background()), shown))
+    }
+
+    fn canvas(&self, outline: &Outline) -> Canvas {
+        let fits = (MOST_SAMPLES / (self.size[0] * self.size[1])).isqrt();
+        let factor = usize::from(self.samples).min(fits).max(1);
+        let camera = Camera::new(self.view, outline, self.size.map(|n| n * factor), self.zoom, self.at);
+        Canvas::new(camera, factor)
+    }
+
+    fn background(&self) -> Background {
+        match self.background {
+            Ground::Light => Background::Light,
+            Ground::Dark => Background::Dark,
+            Ground::None => Background::None,
+        }
+    }
+}
+
+/// The scale of what is known of a network's vessels.
+fn legend(datum: Datum, network: &Skeleton, mesh: &dyn MeshSource) -> Legend {
+    match datum {
+        Datum::Radius => Legend::of(network.edges.iter().flat_map(|e| e.radii), true),
+        _ => {
+            let data = VesselData::new(vec![datum], network, mesh);
+            let middle = |e| {
+                let tube = network.tube(e);
+                Point3::from((tube.a.coords + tube.b.coords) * 0.5)
+            };
+            let places: Vec<[Point3; 3]> = network.edge_ids().map(|e| [middle(e); 3]).collect();
+            Legend::of(data.in_faces(0, &places).into_iter(), false)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vec3;
+
+    #[test]
+    fn sizes_places_and_directions_are_read() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        for wrong in ["", "640", "0x9", "x", "-1x5", "100000x100000", "99999999999999999999x2"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(place("1, -2,3e2"), Ok(Point3::new(1.0, -2.0, 300.0)));
+        assert!(
+            place("1,2").is_err() && place("1,2,nan").is_err() && direction("1").is_err() && above_zero("0").is_err()
+        );
+        let Ok(Direction::From { towards, .. }) = direction("right") else { panic!("a direction") };
+        assert!((towards - Vec3::x()).norm() < 1e-12);
+    }
+}

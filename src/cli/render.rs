@@ -1,0 +1,103 @@
+//! `anastomesh render`: a picture of a mesh, a surface or a network.
+
+use std::path::{Path, PathBuf};
+
+use super::common::thread_pool;
+use super::exit::{Exit, Failure};
+use super::kind::{Kind, OpenedMesh, boundary_of};
+use super::network::NetworkArgs;
+use super::picture::{PictureArgs, vessels};
+use super::room;
+use crate::io::surface::read_surface;
+use crate::io::{ensure_text_writable, write_bytes};
+use crate::picture::{Colour, Image, Shown};
+use std::num::NonZeroUsize;
+
+#[derive(Debug, clap::Args)]
+#[command(mut_arg("network", |arg| arg.value_name("INPUT").help(
+    "A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off) or a network (as `mesh` reads)")))]
+pub struct Args {
+    #[command(flatten)]
+    input: NetworkArgs,
+    /// Where the picture goes
+    #[arg(short, long, value_name = "PICTURE.png")]
+    output: PathBuf,
+    /// The network that the mesh was made of, for what is coloured by radius or order
+    #[arg(long = "network", value_name = "NETWORK")]
+    made_of: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArgs,
+    /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
+    /// held as a whole
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
+    memory: u64,
+    /// Number of threads (default: all cores); the picture does not depend on it
+    #[arg(short = 'j', long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Draws a file.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let unwritable = |e: std::io::Error| Failure::input(format!("{}: cannot be written: {e}", args.output.display()));
+    if args.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
+        return Err(Failure::input(format!("{}: pictures are written as .png", args.output.display())));
+    }
+    ensure_text_writable(&args.output).map_err(unwritable)?;
+    let kind = Kind::of(&args.input.network, "render")?;
+    let pool = thread_pool(args.threads)?;
+    let (image, shown) = pool.install(|| args.draw(kind))?;
+    let mut bytes = Vec::new();
+    image.write_png(&mut bytes).map_err(unwritable)?;
+    write_bytes(&args.output, &bytes).map_err(unwritable)?;
+    if !args.quiet
+        && let Some(line) = told(shown)
+    {
+        eprintln!("{line}");
+    }
+    Ok(Exit::Fine)
+}
+
+impl Args {
+    fn draw(&self, kind: Kind) -> Result<(Image, Shown), Failure> {
+        let path: &Path = &self.input.network;
+        match kind {
+            Kind::Network => {
+                let (network, roots) = vessels(&self.input)?;
+                self.picture.network(&network, &roots)
+            }
+            Kind::Surface => {
+                let surface = read_surface(path).map_err(|e| Failure::input(e.to_string()))?;
+                self.picture.mesh(path, &boundary_of(surface), self.vessels()?.as_ref())
+            }
+            Kind::Mesh => {
+                let mut opened = OpenedMesh::open(path, self.memory)?;
+                opened.label_boundary();
+                self.picture.mesh(path, opened.source(), self.vessels()?.as_ref())
+            }
+        }
+    }
+
+    /// The network beside the mesh.
+    fn vessels(&self) -> Result<Option<crate::skeleton::Skeleton>, Failure> {
+        let Some(network) = &self.made_of else { return Ok(None) };
+        let args = NetworkArgs { network: network.clone(), ..self.input.clone() };
+        Ok(Some(vessels(&args)?.0))
+    }
+}
+
+/// What the colours say, in words.
+fn told(shown: Shown) -> Option<String> {
+    let scale = |what: &str| {
+        shown.legend.map(|l| format!("colours: {what} from {:.4} (dark violet) to {:.4} (yellow)", l.low, l.high))
+    };
+    match shown.colour {
+        Colour::Radius => scale("radius, in equal ratios,"),
+        Colour::Order => scale("Strahler order"),
+        Colour::Quality => Some("colours: radius ratio from 0 (red) to 1 (blue)".into()),
+        Colour::Patch => Some("colours: wall red, inlets blue, outlets yellow; inside of the mesh cream".into()),
+        Colour::Plain | Colour::Block => None,
+    }
+}

@@ -1,0 +1,181 @@
+//! Meshes of any size, drawn in passes.
+//!
+//! Where tetrahedra are to be seen, those stay of which a corner is behind the plane. The faces that this lays open are then
+//! those with all corners before the plane whose tetrahedron has its fourth behind it: each tetrahedron tells its own, without
+//! its neighbours.
+
+use super::canvas::{Canvas, Facet};
+use super::colours::{Colour, INSIDE, Legend, Rgb, WALL_COLOURS, of_block, of_patch, of_quality};
+use super::outline::Outline;
+use super::plane::Plane;
+use crate::block::{tet_ratio, triangle_ratio};
+use crate::geometry::{Point3, Vec3};
+use crate::mesh::beside::Beside;
+use crate::mesh::source::{FacePiece, MeshSource, TetPiece};
+use crate::mesh::{TET_FACES, face_key};
+use rustc_hash::FxHashMap;
+use std::io;
+
+/// What a plane takes away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cut {
+    /// Tetrahedra, as wholes.
+    Tets(Plane),
+    /// The wall, sharply: the inside of the other side is seen.
+    Wall(Plane),
+}
+
+/// A mesh to be drawn.
+pub struct MeshPicture<'a> {
+    pub mesh: &'a dyn MeshSource,
+    pub colour: Colour,
+    /// Where the colour tells the vessel: its values in the first column, and their scale.
+    pub values: Option<(&'a dyn Beside, Legend)>,
+}
+
+/// A face that a plane lays open.
+struct Open {
+    corners: [Point3; 3],
+    block: i32,
+    ratio: f64,
+}
+
+impl MeshPicture<'_> {
+    /// How large a mesh is.
+    ///
+    /// # Errors
+    /// What reading the mesh fails with.
+    pub fn outline(mesh: &dyn MeshSource) -> io::Result<Outline> {
+        let mut outline = Outline::for_points(mesh.counts().boundary);
+        mesh.each_face_corners(|corners| {
+            corners.iter().for_each(|c| outline.add(&c[0]));
+            Ok(())
+        })?;
+        Ok(outline)
+    }
+
+    /// Draws it.
+    ///
+    /// # Errors
+    /// What reading the mesh fails with.
+    pub fn draw(&self, canvas: &mut Canvas, cut: Option<Cut>) -> io::Result<()> {
+        canvas.cut = None;
+        let plane = match cut {
+            Some(Cut::Tets(plane)) => plane,
+            Some(Cut::Wall(plane)) => {
+                canvas.cut = Some(plane);
+                return self.draw_faces(canvas, |_, _| true);
+            }
+            None => return self.draw_faces(canvas, |_, _| true),
+        };
+        let mut open = self.opened(&plane)?;
+        // Of the boundary before the plane only that stays which stays with its tetrahedron.
+        self.draw_faces(canvas, |face, corners| {
+            corners.iter().any(|p| plane.behind(p) >= 0.0) || open.remove(&face_key(*face)).is_some()
+        })?;
+        let mut inner: Vec<_> = open.into_iter().collect();
+        inner.sort_unstable_by_key(|(key, _)| *key);
+        for (_, open) in inner {
+            let colour = self.inner_colour(&open);
+            canvas.add(Facet::flat(open.corners, colour, colour));
+        }
+        canvas.flush();
+        Ok(())
+    }
+
+    /// The faces of tetrahedra that a plane lays open, those of the boundary among them.
+    fn opened(&self, plane: &Plane) -> io::Result<FxHashMap<[u32; 3], Open>> {
+        let mut open = FxHashMap::default();
+        let read = |part| {
+            let TetPiece { tets, blocks } = self.mesh.tets(part)?;
+            let corners = self.mesh.corners_of(&tets)?;
+            let laid = corners.iter().enumerate().filter_map(|(i, p)| {
+                let behind = p.map(|p| plane.behind(&p) >= 0.0);
+                let apex = (0..4).find(|&apex| (0..4).all(|k| behind[k] == (k == apex)))?;
+                let side = TET_FACES[apex];
+                let face = Open {
+                    corners: side.map(|k| p[k]),
+                    block: blocks.get(i).copied().unwrap_or(0),
+                    ratio: tet_ratio(p),
+                };
+                Some((face_key(side.map(|k| tets[i][k])), face))
+            });
+            Ok(laid.collect::<Vec<_>>())
+        };
+        self.mesh.each_part(read, |laid| {
+            open.extend(laid);
+            Ok(())
+        })?;
+        Ok(open)
+    }
+
+    /// Draws those faces of the boundary that are wanted.
+    fn draw_faces(
+        &self,
+        canvas: &mut Canvas,
+        mut wanted: impl FnMut(&[u32; 3], &[Point3; 3]) -> bool,
+    ) -> io::Result<()> {
+        let read = |part| {
+            let piece = self.mesh.boundary(part)?;
+            let corners = self.mesh.corners_of(&piece.faces)?;
+            let colours = self.colours(&piece, &corners);
+            Ok((piece, corners, colours))
+        };
+        self.mesh.each_part(read, |(piece, corners, colours)| {
+            for ((face, corners), colour) in piece.faces.iter().zip(corners).zip(colours) {
+                if wanted(face, &corners) {
+                    canvas.add(Facet::flat(corners, colour, self.from_inside(colour)));
+                }
+            }
+            Ok(())
+        })?;
+        canvas.flush();
+        Ok(())
+    }
+
+    fn colours(&self, piece: &FacePiece, corners: &[[Point3; 3]]) -> Vec<Rgb> {
+        let at = |values: &[i32], i: usize| values.get(i).copied().unwrap_or(0);
+        let patches = self.mesh.patches();
+        let each = |colour: &dyn Fn(usize) -> Rgb| (0..corners.len()).map(colour).collect();
+        match (self.colour, &self.values) {
+            (Colour::Radius | Colour::Order, Some((beside, legend))) => {
+                // Values of points stand for cells in their middles.
+                let values = if beside.columns().first().is_some_and(|column| column.at_points) {
+                    beside.at_points(0, &corners.iter().map(|c| middle(c)).collect::<Vec<_>>())
+                } else {
+                    beside.in_faces(0, corners)
+                };
+                values.into_iter().map(|value| legend.colour(value)).collect()
+            }
+            (Colour::Block, _) => each(&|i| of_block(at(&piece.blocks, i))),
+            (Colour::Quality, _) => each(&|i| of_quality(triangle_ratio(&corners[i]))),
+            (Colour::Patch, _) => each(&|i| of_patch(patches, at(&piece.patches, i))),
+            _ => vec![WALL_COLOURS[0]; corners.len()],
+        }
+    }
+
+    /// The wall is darker within.
+    fn from_inside(&self, colour: Rgb) -> Rgb {
+        if colour == WALL_COLOURS[0] { WALL_COLOURS[1] } else { colour.map(|c| (u16::from(c) * 5 / 8) as u8) }
+    }
+
+    fn inner_colour(&self, open: &Open) -> Rgb {
+        match (self.colour, &self.values) {
+            (Colour::Block, _) => of_block(open.block),
+            (Colour::Quality, _) => of_quality(open.ratio),
+            (Colour::Radius | Colour::Order, Some((beside, legend))) => {
+                let values = if beside.columns().first().is_some_and(|column| column.at_points) {
+                    beside.at_points(0, &[middle(&open.corners)])
+                } else {
+                    beside.in_faces(0, &[open.corners])
+                };
+                values.first().map_or(INSIDE, |&value| legend.colour(value))
+            }
+            _ => INSIDE,
+        }
+    }
+}
+
+fn middle(corners: &[Point3; 3]) -> Point3 {
+    Point3::from(corners.iter().map(|p| p.coords).sum::<Vec3>() / 3.0)
+}

@@ -1,0 +1,158 @@
+//! Networks as cones and balls.
+
+use super::canvas::{Canvas, Facet};
+use super::colours::{Colour, Legend, MARKED, Rgb, WALL_COLOURS, of_block};
+use super::outline::Outline;
+use crate::flow::{Orders, solve};
+use crate::geometry::{Point3, Section, Tube, Vec3};
+use crate::skeleton::{EdgeId, NodeId, Skeleton};
+use std::f64::consts::TAU;
+
+/// Vessels thinner than this, in samples, are drawn as thick as this.
+const THINNEST: f64 = 0.75;
+
+/// What is shown of a network.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shown {
+    pub colour: Colour,
+    /// The scale of its values, where the colour tells some.
+    pub legend: Option<Legend>,
+}
+
+/// A network to be drawn.
+pub struct NetworkPicture<'a> {
+    network: &'a Skeleton,
+    /// Per edge, at either end.
+    colours: Vec<[Rgb; 2]>,
+    shown: Shown,
+}
+
+impl<'a> NetworkPicture<'a> {
+    /// Of a network. What concerns meshes alone (patches, quality) is drawn plain, blocks as branches.
+    pub fn new(network: &'a Skeleton, colour: Colour, roots: &[NodeId]) -> Self {
+        let radii = || network.edges.iter().map(|e| e.radii);
+        let (legend, colours) = match colour {
+            Colour::Radius => {
+                let legend = Legend::of(radii().flatten(), true);
+                (Some(legend), radii().map(|r| r.map(|x| legend.colour(x))).collect())
+            }
+            Colour::Order => {
+                let orders = orders(network, roots);
+                let legend = Legend::of(orders.iter().map(|&o| f64::from(o)), false);
+                (Some(legend), orders.iter().map(|&o| [legend.colour(f64::from(o)); 2]).collect())
+            }
+            Colour::Block => {
+                let branches = network.branches(&network.adjacency());
+                (None, branches.of_edge.iter().map(|(branch, _)| [of_block(branch.0 as i32); 2]).collect())
+            }
+            Colour::Plain | Colour::Patch | Colour::Quality => (None, vec![[WALL_COLOURS[0]; 2]; network.edges.len()]),
+        };
+        Self { network, colours, shown: Shown { colour, legend } }
+    }
+
+    /// Draws some edges in a colour that nothing else has.
+    pub fn mark(&mut self, edges: &[EdgeId]) {
+        for edge in edges {
+            self.colours[edge.index()] = [MARKED; 2];
+        }
+    }
+
+    /// What its colours tell.
+    pub fn shown(&self) -> Shown {
+        self.shown
+    }
+
+    /// How large it is.
+    pub fn outline(&self) -> Outline {
+        let mut outline = Outline::for_points(6 * self.network.nodes.len());
+        for node in &self.network.nodes {
+            for axis in [Vec3::x(), Vec3::y(), Vec3::z()] {
+                outline.add(&(node.position + axis * node.radius));
+                outline.add(&(node.position - axis * node.radius));
+            }
+        }
+        outline
+    }
+
+    /// Draws it.
+    pub fn draw(&self, canvas: &mut Canvas) {
+        let thinnest = THINNEST / canvas.camera.scale;
+        for (id, colours) in self.network.edge_ids().zip(&self.colours) {
+            let Tube { a, b, ra, rb } = self.network.tube(id);
+            let tube = Tube { a, b, ra: ra.max(thinnest), rb: rb.max(thinnest) };
+            let sides = sides(canvas, tube.max_radius());
+            if tube.length() > 0.0 {
+                cone(canvas, &tube, sides, *colours);
+            }
+            // Balls at both ends close the joints, and the ends.
+            for (centre, radius, colour) in [(tube.a, tube.ra, colours[0]), (tube.b, tube.rb, colours[1])] {
+                if canvas.pixels(radius) > 1.0 {
+                    ball(canvas, &centre, radius, sides, colour);
+                }
+            }
+        }
+        canvas.flush();
+    }
+}
+
+/// Strahler's orders of the edges, from these roots.
+fn orders(network: &Skeleton, roots: &[NodeId]) -> Vec<u32> {
+    let inflow = roots.iter().map(|&node| (node, 1.0)).collect();
+    Orders::of(network, &solve(network, &inflow, 1.0).pressure).strahler
+}
+
+/// As many sides as are told apart.
+fn sides(canvas: &Canvas, radius: f64) -> usize {
+    (5.0 + 2.5 * canvas.pixels(radius).sqrt()).clamp(5.0, 48.0) as usize
+}
+
+/// The wall of a cone.
+fn cone(canvas: &mut Canvas, tube: &Tube, sides: usize, colours: [Rgb; 2]) {
+    let axis = (tube.b - tube.a) / tube.length();
+    let (u, w) = Section { origin: tube.a, axis, radius: tube.ra }.frame();
+    // Normals of a cone lean towards its thin end.
+    let lean = axis * ((tube.ra - tube.rb) / tube.length());
+    let out = |i: usize| {
+        let angle = TAU * i as f64 / sides as f64;
+        u * angle.cos() + w * angle.sin()
+    };
+    // Colours change along the vessel in as many steps as are seen.
+    let steps =
+        if colours[0] == colours[1] { 1 } else { (canvas.pixels(tube.length()) / 6.0).clamp(1.0, 24.0) as usize };
+    for step in 0..steps {
+        let [t0, t1] = [step, step + 1].map(|s| s as f64 / steps as f64);
+        let colour = mixed(colours, f64::midpoint(t0, t1));
+        for i in 0..sides {
+            let [p, q] = [out(i), out(i + 1)];
+            let at = |t: f64, v: Vec3| tube.point(t) + v * tube.radius(t);
+            let [n, m] = [p + lean, q + lean];
+            let quad = [at(t0, p), at(t0, q), at(t1, q), at(t1, p)];
+            facet(canvas, [quad[0], quad[1], quad[2]], [n, m, m], colour);
+            facet(canvas, [quad[0], quad[2], quad[3]], [n, m, n], colour);
+        }
+    }
+}
+
+fn ball(canvas: &mut Canvas, centre: &Point3, radius: f64, sides: usize, colour: Rgb) {
+    let rings = (sides / 2).max(3);
+    let out = |ring: usize, i: usize| {
+        let (polar, angle) = (TAU * ring as f64 / (2 * rings) as f64, TAU * i as f64 / sides as f64);
+        Vec3::new(polar.sin() * angle.cos(), polar.sin() * angle.sin(), polar.cos())
+    };
+    for ring in 0..rings {
+        for i in 0..sides {
+            let n = [out(ring, i), out(ring + 1, i), out(ring + 1, i + 1), out(ring, i + 1)];
+            let at = n.map(|n| centre + n * radius);
+            facet(canvas, [at[0], at[1], at[2]], [n[0], n[1], n[2]], colour);
+            facet(canvas, [at[0], at[2], at[3]], [n[0], n[2], n[3]], colour);
+        }
+    }
+}
+
+fn facet(canvas: &mut Canvas, corners: [Point3; 3], normals: [Vec3; 3], colour: Rgb) {
+    canvas.add(Facet { corners, normals, colour, inside: WALL_COLOURS[1], lined: false });
+}
+
+fn mixed([a, b]: [Rgb; 2], t: f64) -> Rgb {
+    [0, 1, 2].map(|c| (f64::from(a[c]) * (1.0 - t) + f64::from(b[c]) * t).round() as u8)
+}
