@@ -102,6 +102,11 @@ impl Before {
         Compared { given: &self.given, outline: &self.outline, meshed: &self.meshed }
     }
 
+    /// What refinement did, and to what; none if it was not refined.
+    pub fn refinement(&self) -> Option<(&RefineReport, &Skeleton)> {
+        Some((self.refine.as_ref()?, self.unrefined.as_ref().map_or(&self.given, |(network, _)| network)))
+    }
+
     /// Meshes it into a store. Refinement is not to end in something worse than none: where the refined network gives no
     /// sound mesh, or one of another volume, it is tried as it was; where that is not sound either, refined with more clearance.
     pub fn mesh<'a>(self, how: Meshing<'a, '_>) -> Result<Made<'a>, (RunError, Box<Self>)> {

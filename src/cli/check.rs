@@ -4,12 +4,16 @@ use std::path::PathBuf;
 
 use super::common::print;
 use super::exit::{Exit, Failure};
+use super::kind::OpenedMesh;
+use super::page::ReportArgs;
 use super::room;
 use crate::io::volume::{MeshFormat, read_mesh};
 use crate::io::volume::{VtuPieces, VtuPiecesError};
 use crate::mesh::check::parts::{PiecesError, check_pieces};
 use crate::mesh::check::{CheckReport, Verdict, check_tets, check_volume};
+use crate::mesh::dihedral::DihedralHistogram;
 use crate::mesh::{TET_FACES, VolumeMesh};
+use crate::report::page::{self, Section};
 use rustc_hash::FxHashMap;
 
 /// Bytes of memory that the check of a whole takes for each byte of its file.
@@ -24,6 +28,8 @@ pub struct Args {
     /// files are held as a whole
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
     memory: u64,
+    #[command(flatten)]
+    report: ReportArgs,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -31,25 +37,48 @@ pub struct Args {
 
 /// Checks a mesh file and prints the result of every line.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let report = match by_blocks(args)? {
-        Some(report) => report,
+    args.report.ensure_writable()?;
+    let (report, mesh) = match by_blocks(args)? {
+        Some(checked) => checked,
         None => as_a_whole(args)?,
     };
     print(args.json, &report, || report.to_string())?;
+    write_page(args, &report, mesh)?;
     Ok(if report.verdict == Verdict::Invalid { Exit::GateNotMet } else { Exit::Fine })
 }
 
-fn as_a_whole(args: &Args) -> Result<CheckReport, Failure> {
+/// Writes the page of `--report`.
+fn write_page(args: &Args, report: &CheckReport, mut mesh: OpenedMesh) -> Result<(), Failure> {
+    mesh.label_boundary();
+    let (mesh, notes) = (mesh.source(), mesh.notes());
+    args.report.write(&args.mesh, Some(page::headline(report)), &notes.options, |page| {
+        page.add(page::summary(report));
+        page.add(Section::new("At a glance").pictures(&page::mesh_pictures(mesh)?, false)?);
+        page.add(page::validity(report, mesh)?);
+        if let Some(quality) = &report.quality {
+            page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));
+        }
+        page.add(page::named_patches(mesh.patches()));
+        Ok(())
+    })
+}
+
+fn as_a_whole(args: &Args) -> Result<(CheckReport, OpenedMesh), Failure> {
     let mut file = read_mesh(&args.mesh).map_err(|e| Failure::input(e.to_string()))?;
     if file.notes.expectation.is_none() {
         drop_interior_faces(&mut file.volume);
     }
     let expectation = file.notes.expectation.as_ref();
-    Ok(if file.labelled { check_volume(&file.volume, expectation) } else { check_tets(&file.volume.mesh, expectation) })
+    let report = if file.labelled {
+        check_volume(&file.volume, expectation)
+    } else {
+        check_tets(&file.volume.mesh, expectation)
+    };
+    Ok((report, OpenedMesh::Whole(file)))
 }
 
 /// Checks a large file without holding the mesh; none when it is not large, or has to be held.
-fn by_blocks(args: &Args) -> Result<Option<CheckReport>, Failure> {
+fn by_blocks(args: &Args) -> Result<Option<(CheckReport, OpenedMesh)>, Failure> {
     let length = std::fs::metadata(&args.mesh).map_or(0, |data| data.len());
     if length.saturating_mul(MEMORY_PER_BYTE) <= args.memory || MeshFormat::of(&args.mesh).ok() != Some(MeshFormat::Vtu)
     {
@@ -73,7 +102,7 @@ fn by_blocks(args: &Args) -> Result<Option<CheckReport>, Failure> {
         return held(&"it does not say what is expected of it");
     }
     match check_pieces(&pieces, expectation, share) {
-        Ok(report) => Ok(Some(report)),
+        Ok(report) => Ok(Some((report, OpenedMesh::Pieces(pieces)))),
         Err(PiecesError::Read(source)) => Err(refused(source)),
         Err(why) => held(&why),
     }

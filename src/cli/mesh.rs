@@ -13,6 +13,7 @@ use super::format::FormatArgs;
 use super::grid::GridArgs;
 use super::layers::LayerArgs;
 use super::network::{NetworkArgs, PreparedNetwork};
+use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
@@ -20,11 +21,13 @@ use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::Fidelity;
+use crate::fidelity::{Along, Fidelity};
 use crate::io::network::{NodeNames, ensure_network_writable};
 use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
 use crate::io::{ensure_text_writable, write_text};
 use crate::mesh::beside::Beside;
 use crate::mesh::check::{CheckReport, Expectation};
+use crate::mesh::dihedral::DihedralHistogram;
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
 use crate::pipeline::{
@@ -34,6 +37,7 @@ use crate::progress::{Progress, Stage};
 use crate::refine::{RefineParams, Refined};
 use crate::report::advice::advice;
 use crate::report::caps;
+use crate::report::page::{self, Mark, Section};
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -89,6 +93,8 @@ pub struct Args {
     #[command(flatten)]
     grid: GridArgs,
     #[command(flatten)]
+    report: ReportArgs,
+    #[command(flatten)]
     common: Common,
     #[command(flatten)]
     flow: FlowArgs,
@@ -121,6 +127,14 @@ struct Done<'a> {
     report: RunReport,
 }
 
+/// What is known of a mesh that is written.
+struct Found<'a> {
+    mesh: &'a dyn MeshSource,
+    check: &'a CheckReport,
+    fidelity: &'a Fidelity,
+    caps: &'a Caps,
+}
+
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Output<'a> {
@@ -151,6 +165,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
+    args.report.ensure_writable()?;
     if let Some(path) = &args.refined {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
@@ -290,6 +305,7 @@ impl Args {
         self.write_table(&caps, &before.names)?;
         report.stages.extend(clock.stages());
         self.print(plan, before, &report, Some((check, &fidelity)))?;
+        self.write_page(plan, before, &report, Some(Found { mesh: written, check, fidelity: &fidelity, caps: &caps }))?;
         let invalid = !check.is_valid() || !report.keeps_vessels(plan.fuse);
         self.advise(&report, invalid);
         let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
@@ -315,7 +331,8 @@ impl Args {
     fn explain(&self, error: RunError, plan: &MeshPlan, before: &Before) -> Failure {
         match error {
             RunError::BlocksFailed(report) => {
-                if let Err(failure) = self.print(plan, before, &report, None) {
+                let told = self.print(plan, before, &report, None);
+                if let Err(failure) = told.and_then(|()| self.write_page(plan, before, &report, None)) {
                     return failure;
                 }
                 self.advise(&report, true);
@@ -348,6 +365,43 @@ impl Args {
             None => {
                 "stopped; nothing is kept. With --work-dir DIR finished blocks are, and the same command goes on".into()
             }
+        })
+    }
+
+    /// Writes the page of `--report`.
+    fn write_page(
+        &self,
+        plan: &MeshPlan,
+        before: &Before,
+        run: &RunReport,
+        found: Option<Found>,
+    ) -> Result<(), Failure> {
+        let failed = || (Mark::Bad, format!("{} blocks could not be meshed", run.failed.len()));
+        let verdict = found.as_ref().map_or_else(failed, |found| page::headline(found.check));
+        self.report.write(&self.output, Some(verdict), plan, |page| {
+            let Some(Found { mesh, check, fidelity, caps }) = found else {
+                page.add(page::failed_blocks(&before.network, run)?);
+                page.add(page::run(run, &[]));
+                return Ok(());
+            };
+            page.add(page::summary(check));
+            let mut pictures = page::mesh_pictures(mesh)?;
+            pictures.insert(0, page::network_picture(&before.network, &[], "The network by radius."));
+            page.add(Section::new("At a glance").pictures(&pictures, false)?);
+            if !run.failed.is_empty() {
+                page.add(page::failed_blocks(&before.network, run)?);
+            }
+            page.add(page::validity(check, mesh)?);
+            if let Some(quality) = &check.quality {
+                page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));
+            }
+            page.add(page::fidelity(fidelity, &Along::of(before.compared().meshed, mesh)?));
+            if let Some((report, network)) = before.refinement() {
+                page.add(page::refinement(report, network, &before.network)?);
+            }
+            page.add(page::run(run, &page::block_sizes(mesh)?));
+            page.add(page::terminals(caps, &before.names));
+            Ok(())
         })
     }
 

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::common::{Common, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::network::{NetworkArgs, PreparedNetwork};
+use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::stop::{NOTHING_KEPT, Stop};
@@ -14,6 +15,7 @@ use crate::io::network::{ensure_network_writable, refinement_arrays, write_netwo
 use crate::io::write_text;
 use crate::prepare::PrepareReport;
 use crate::refine::{self, Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual};
+use crate::report::page;
 use crate::report::plot::svg;
 use crate::report::refine::{csv, panels};
 
@@ -40,6 +42,8 @@ pub struct Args {
     /// Draw them: displacement, barrier potential, lengths and angles over the iterations
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    report: ReportArgs,
     #[command(flatten)]
     common: Common,
 }
@@ -192,6 +196,7 @@ pub(super) fn moved_so(
 /// Refines a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
+    args.report.ensure_writable()?;
     let pool = thread_pool(args.common.threads)?;
     let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     if !args.common.quiet {
@@ -210,6 +215,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             write_text(path, &text(report)).map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
         }
     }
+    pool.install(|| {
+        args.report.write(&args.output, Some(page::overlaps_left(report)), &params, |page| {
+            page.add(page::refinement(report, &network.skeleton, &refined.skeleton)?);
+            Ok(())
+        })
+    })?;
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
         print(true, &Output { program, parameters: &params, prepare: &network.report, report }, String::new)?;

@@ -4,6 +4,8 @@
 //! nowhere near the radius. So the network as it was given is held against the network that was meshed (its axis, its
 //! volume) and against the wall.
 
+#[cfg(feature = "cli")]
+mod along;
 mod axis;
 mod lumen;
 mod spread;
@@ -16,8 +18,10 @@ use serde::Serialize;
 use spread::Spread;
 use std::io;
 
+#[cfg(feature = "cli")]
+pub use along::Along;
 pub use axis::{Displaced, Displacements};
-pub use tubes::{Nearest, Tubes};
+pub use tubes::Tubes;
 
 /// What a mesh keeps of its network.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -37,6 +37,11 @@ impl Tubes {
         Self { tree: Bvh::new(&boxes), list, extent: (all.max - all.min).norm(), typical }
     }
 
+    /// The tube whose wall is nearest, counted as negative inside.
+    pub fn nearest_wall(&self, place: &Point3) -> Option<Nearest> {
+        self.nearest(place, 0.1 * self.typical, |distance, radius| distance - radius)
+    }
+
     /// The tube of which `measure` (distance of the axis, radius) is least among those near a place; `reach` is how far
     /// off it is looked for first.
     pub fn nearest(&self, place: &Point3, reach: f64, measure: impl Fn(f64, f64) -> f64) -> Option<Nearest> {

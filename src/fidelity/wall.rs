@@ -14,17 +14,22 @@ const POINTS: usize = 50_000;
 
 /// |d − r| / r at points of the wall, d the distance from the axis of the tube whose wall is nearest.
 pub(super) fn spread(tubes: &Tubes, mesh: &dyn MeshSource) -> io::Result<Spread> {
+    Ok(Spread::of(wall_points(mesh)?.par_iter().filter_map(|p| error(tubes, p)).collect()))
+}
+
+/// Some points of the wall.
+pub(super) fn wall_points(mesh: &dyn MeshSource) -> io::Result<Vec<Point3>> {
     // The first of every so many parts, and of them each so many points: evenly over the mesh.
     let stride = mesh.parts().div_ceil(PARTS).max(1);
     let looked_at = mesh.counts().points / stride as usize;
     let every = looked_at.div_ceil(POINTS).max(1);
     let parts: Vec<u32> = (0..mesh.parts()).step_by(stride as usize).collect();
-    let found: Vec<Vec<f64>> =
-        parts.par_iter().map(|&part| of_part(tubes, mesh, part, every)).collect::<io::Result<_>>()?;
-    Ok(Spread::of(found.concat()))
+    let found: Vec<Vec<Point3>> =
+        parts.par_iter().map(|&part| of_part(mesh, part, every)).collect::<io::Result<_>>()?;
+    Ok(found.concat())
 }
 
-fn of_part(tubes: &Tubes, mesh: &dyn MeshSource, part: u32, every: usize) -> io::Result<Vec<f64>> {
+fn of_part(mesh: &dyn MeshSource, part: u32, every: usize) -> io::Result<Vec<Point3>> {
     let boundary = mesh.boundary(part)?;
     let mut ids: Vec<u32> = Vec::new();
     for (i, face) in boundary.faces.iter().enumerate() {
@@ -35,11 +40,10 @@ fn of_part(tubes: &Tubes, mesh: &dyn MeshSource, part: u32, every: usize) -> io:
     ids.sort_unstable();
     ids.dedup();
     let ids: Vec<u32> = ids.into_iter().step_by(every).collect();
-    let points: Vec<Point3> = mesh.points_of(&ids)?;
-    Ok(points.iter().filter_map(|p| error(tubes, p)).collect())
+    mesh.points_of(&ids)
 }
 
 fn error(tubes: &Tubes, point: &Point3) -> Option<f64> {
-    let near = tubes.nearest(point, 0.1 * tubes.typical, |distance, radius| distance - radius)?;
+    let near = tubes.nearest_wall(point)?;
     Some((near.distance - near.radius).abs() / near.radius)
 }

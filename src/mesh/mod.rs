@@ -6,6 +6,8 @@ pub(crate) mod bits;
 pub(crate) mod boundary;
 mod bounds;
 pub mod check;
+#[cfg(feature = "cli")]
+pub(crate) mod dihedral;
 pub mod faces;
 pub mod facets;
 mod keep;

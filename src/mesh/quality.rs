@@ -52,7 +52,7 @@ impl Spokes {
 }
 
 /// The six dihedral angles in radians, in the order of `TET_EDGES`; each in [0, π].
-#[cfg(test)]
+#[cfg(any(test, feature = "cli"))]
 pub fn dihedral_angles(corners: [&Point3; 4]) -> [f64; 6] {
     dihedral_sides(corners).map(|[opposite, adjacent]| opposite.atan2(adjacent))
 }

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use crate::block::{tet_ratio, triangle_ratio};
-use crate::fidelity::{Nearest, Tubes};
+use crate::fidelity::Tubes;
 use crate::flow::{Orders, solve};
 use crate::geometry::{Point3, Vec3};
 use crate::mesh::beside::{Beside, Column};
@@ -84,13 +84,9 @@ impl VesselData {
         Self { data, columns, tubes: Tubes::of(network), edges: edges(network, &inlets(network, mesh)) }
     }
 
-    fn nearest(&self, place: &Point3) -> Option<Nearest> {
-        self.tubes.nearest(place, 0.1 * self.tubes.typical, |distance, radius| distance - radius)
-    }
-
     fn at(&self, datum: Datum, place: &Point3) -> f64 {
         // There is no mesh without a vessel.
-        let Some(near) = self.nearest(place) else { return 0.0 };
+        let Some(near) = self.tubes.nearest_wall(place) else { return 0.0 };
         let edge = &self.edges[near.edge.index()];
         match datum {
             Datum::Radius => near.radius,

@@ -33,7 +33,7 @@ impl fmt::Display for CheckReport {
     }
 }
 
-fn verdict(verdict: Verdict) -> &'static str {
+pub(super) fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Valid => "valid",
         Verdict::NoFaultFound => "no fault found, but not every line could be checked",
@@ -58,7 +58,7 @@ fn write_line(out: &mut fmt::Formatter, result: &LineResult) -> fmt::Result {
     Ok(())
 }
 
-fn reason(why: Skipped) -> String {
+pub(super) fn reason(why: Skipped) -> String {
     match why {
         Skipped::NoLabels => "the boundary has no labels".into(),
         Skipped::NoExpectation => "the file does not say what to expect".into(),
@@ -68,7 +68,7 @@ fn reason(why: Skipped) -> String {
 }
 
 /// How many offenders, or what was expected and what found.
-fn extent(result: &LineResult) -> String {
+pub(super) fn extent(result: &LineResult) -> String {
     match (&result.expected, &result.found) {
         (Some(expected), Some(found)) => format!("expected {}, found {}", list(expected), list(found)),
         _ => format!("{} found", result.count),
@@ -86,7 +86,7 @@ fn list(numbers: &[u32]) -> String {
     }
 }
 
-fn describe(offender: &Offender) -> String {
+pub(super) fn describe(offender: &Offender) -> String {
     let kind = match offender.kind {
         OffenderKind::Point => "point",
         OffenderKind::Edge => "points",

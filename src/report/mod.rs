@@ -10,6 +10,8 @@ pub mod info;
 pub mod inlets;
 pub mod mesh;
 #[cfg(feature = "cli")]
+pub mod page;
+#[cfg(feature = "cli")]
 pub mod plot;
 #[cfg(feature = "cli")]
 pub mod prepare;

@@ -20,6 +20,8 @@ pub struct Panel {
     pub axes: [String; 2],
     /// Whether the vertical axis is logarithmic.
     pub logarithmic: bool,
+    /// The width of bars about the points, which stand in for lines then.
+    pub bars: Option<f64>,
     /// The lines.
     pub series: Vec<Series>,
 }
@@ -83,6 +85,7 @@ impl Axis {
         }
         let step = nice((high - low) / 5.0);
         high = (high / step).ceil() * step;
+        low = (low / step).floor() * step;
         let ticks = (0..=((high - low) / step).round() as usize).map(|i| low + step * i as f64).collect();
         Self { low, high, ticks, logarithmic }
     }
@@ -126,7 +129,9 @@ fn escaped(text: &str) -> String {
 
 fn draw(panel: &Panel, out: &mut String) {
     let points = || panel.series.iter().flat_map(|s| s.points.iter());
-    let across = Axis::new(points().map(|p| p[0]), false);
+    // Bars reach further than their middles.
+    let half = panel.bars.map_or(0.0, |width| 0.5 * width);
+    let across = Axis::new(points().flat_map(|p| [p[0] - half, p[0] + half]), false);
     let up = Axis::new(points().map(|p| p[1]), panel.logarithmic);
     let [left, right, top, bottom] = MARGINS;
     let (w, h) = (WIDTH - left - right, HEIGHT - top - bottom);
@@ -171,6 +176,23 @@ fn draw(panel: &Panel, out: &mut String) {
         top + 0.5 * h,
         escaped(&panel.axes[1])
     );
+    if let Some(width) = panel.bars {
+        for p in panel.series.iter().flat_map(|series| &series.points) {
+            let [from, to] = [-0.5, 0.5].map(|half| across.place(p[0] + half * width));
+            if let (Some(from), Some(to), Some(top), Some(foot)) = (from, to, up.place(p[1]), up.place(0.0)) {
+                let (width, height) = (w * (to - from), h * (top - foot));
+                let _ = writeln!(
+                    out,
+                    "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{}\" stroke=\"white\" \
+                     stroke-width=\"0.6\"/>",
+                    x(from),
+                    y(top),
+                    COLOURS[0]
+                );
+            }
+        }
+        return;
+    }
     for (series, colour) in panel.series.iter().zip(COLOURS.iter().cycle()) {
         let mut path = String::new();
         for p in &series.points {
@@ -221,6 +243,7 @@ mod tests {
             title: "a < b".into(),
             axes: ["iteration".into(), "share (%)".into()],
             logarithmic,
+            bars: None,
             series: vec![Series { label: "one".into(), points: points.to_vec() }],
         }
     }

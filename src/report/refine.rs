@@ -52,6 +52,25 @@ fn text(report: &RefineReport) -> String {
         0.448 * report.unit
     );
     let _ = writeln!(out, "{:26}{:>12}{:>12}{:>12}{:>12}", "", "given", "split", "moved", "result");
+    for row in figures_table(report) {
+        let [name, values @ ..] = &row[..] else { continue };
+        let _ = write!(out, "{name:26}");
+        values.iter().for_each(|value| {
+            let _ = write!(out, "{value:>12}");
+        });
+        out.push('\n');
+    }
+    if !report.worse.is_empty() {
+        let names: Vec<&str> = report.worse.iter().map(|m| m.name()).collect();
+        let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", names.join(", "));
+    }
+    crowded_text(report, &mut out);
+    residual_text(report, &mut out);
+    out
+}
+
+/// The figures as a table: the name of each, and its values as given, after splitting, after moving, in the end.
+pub fn figures_table(report: &RefineReport) -> Vec<Vec<String>> {
     let states = [&report.given, &report.split, &report.moved, &report.result];
     let rows: [Row; 13] = [
         ("overlapping pairs", |f| f.overlaps.to_string()),
@@ -68,20 +87,8 @@ fn text(report: &RefineReport) -> String {
         ("equation 12 met", |f| percent(f.metrics.open_enough.percent())),
         ("inner branches cuttable", |f| percent(f.metrics.cuttable.percent())),
     ];
-    for (name, value) in rows {
-        let _ = write!(out, "{name:26}");
-        for state in states {
-            let _ = write!(out, "{:>12}", value(state));
-        }
-        out.push('\n');
-    }
-    if !report.worse.is_empty() {
-        let names: Vec<&str> = report.worse.iter().map(|m| m.name()).collect();
-        let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", names.join(", "));
-    }
-    crowded_text(report, &mut out);
-    residual_text(report, &mut out);
-    out
+    let row = |(name, value): Row| [vec![name.to_owned()], states.map(value).to_vec()].concat();
+    rows.into_iter().map(row).collect()
 }
 
 fn percent(value: f64) -> String {
@@ -177,6 +184,7 @@ pub fn panels(report: &RefineReport) -> Vec<Panel> {
         title: title.into(),
         axes: ["iteration".into(), vertical.into()],
         logarithmic,
+        bars: None,
         series,
     };
     vec![

@@ -3,6 +3,7 @@
 use super::format::{InputFormat, StreamFormat};
 use crate::cli::common::Common;
 use crate::cli::layers::LayerArgs;
+use crate::cli::page::ReportArgs;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -57,6 +58,7 @@ pub struct Args {
     pub tetgen: Option<String>,
     #[command(flatten)]
     pub layers: LayerArgs,
+    pub report: ReportArgs,
     #[command(flatten)]
     pub common: Common,
 }

@@ -17,7 +17,10 @@ use serde::Serialize;
 use super::common;
 use super::exit::{Exit, Failure};
 use super::stop::Stop;
+use crate::mesh::VolumeMesh;
+use crate::mesh::dihedral::DihedralHistogram;
 use crate::mesh::quality::TetQuality;
+use crate::report::page::{self, Mark, Section};
 use crate::report::tetrahedralize::{
     BoundResult, InputSize, LayerReport, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
@@ -45,6 +48,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         _ => None,
     };
     plan::ensure_fits(&plan, args, target.as_ref())?;
+    args.report.ensure_writable()?;
     if !plan.quiet {
         for note in &notes {
             eprintln!("{note}");
@@ -75,6 +79,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         let written =
             watch.time("write", || pool.install(|| output::write(&target, &volume, &input, &plan, &listener)))?;
         report.files = written.iter().map(|path| path.display().to_string()).collect();
+        pool.install(|| write_page(args, &plan, &report, &volume))?;
     }
     report.stages = watch.stages();
     report.peak_memory = peak_memory();
@@ -97,6 +102,23 @@ fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetr
         made.regions.clear();
     }
     Ok(Some(made).filter(|_| !plan.check_only))
+}
+
+/// Writes the page of `--report`.
+fn write_page(args: &Args, plan: &TetPlan, report: &TetReport, mesh: &VolumeMesh) -> Result<(), Failure> {
+    let verdict = match report.bounds_met() {
+        true => (Mark::Good, "every triangle of the input is a face of the mesh, or a union of faces".into()),
+        false => (Mark::Bad, "a bound is not met".into()),
+    };
+    args.report.write(&args.input, Some(verdict), plan, |page| {
+        page.add(Section::new("Summary").folded("As the terminal shows it", &report.text()));
+        page.add(Section::new("At a glance").pictures(&page::mesh_pictures(mesh)?, false)?);
+        if let Some(quality) = &report.quality {
+            page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));
+        }
+        page.add(page::named_patches(&mesh.patches));
+        Ok(())
+    })
 }
 
 fn size_of(input: &Input) -> InputSize {

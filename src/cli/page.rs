@@ -1,0 +1,49 @@
+//! `--report`: a page of what a verb did, of every verb that makes or checks a mesh.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::exit::Failure;
+use super::stop;
+use crate::io::{ensure_text_writable, write_text};
+use crate::report::page::{Mark, Page, Section};
+
+#[derive(Clone, Debug, clap::Args)]
+pub struct ReportArgs {
+    /// Write a report: pictures, plots, tables and the check, as one page without links to anything else
+    #[arg(long, value_name = "PAGE.html")]
+    report: Option<PathBuf>,
+}
+
+impl ReportArgs {
+    /// Makes sure, before any work is done, that the page can be written.
+    pub fn ensure_writable(&self) -> Result<(), Failure> {
+        self.report.as_deref().map_or(Ok(()), |path| ensure_text_writable(path).map_err(|e| unwritable(path, &e)))
+    }
+
+    /// Writes the page, if one is asked for: about a file, with the sections that `fill` adds, and how the program was called.
+    pub fn write(
+        &self,
+        about: &Path,
+        verdict: Option<(Mark, String)>,
+        plan: &impl Serialize,
+        fill: impl FnOnce(&mut Page) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let Some(path) = &self.report else { return Ok(()) };
+        let mut page = Page::new(about.file_name().unwrap_or(about.as_os_str()).to_string_lossy(), verdict);
+        fill(&mut page).map_err(|e| Failure::input(format!("{}: {e}", about.display())))?;
+        let plan = serde_json::to_string_pretty(plan).unwrap_or_default();
+        page.add(
+            Section::new("How it was made")
+                .text(&stop::command_line())
+                .folded("All options as they were resolved", &plan),
+        );
+        write_text(path, &page.html()).map_err(|e| unwritable(path, &e))
+    }
+}
+
+fn unwritable(path: &Path, why: &io::Error) -> Failure {
+    Failure::input(format!("{}: cannot be written: {why}", path.display()))
+}

@@ -1,0 +1,109 @@
+//! What a run did: sizes and times of blocks, retries, failures.
+
+use super::html::{Mark, Section, grouped};
+use super::pictures::network_picture;
+use super::shape::bars;
+use crate::mesh::source::MeshSource;
+use crate::pipeline::RunReport;
+use crate::report::plot::Panel;
+use crate::skeleton::{EdgeId, Skeleton};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::io;
+
+/// Items of a list that are spelt out.
+const LISTED: usize = 50;
+
+/// Tetrahedra per block: how many blocks have less than 2, 4, 8, …
+///
+/// # Errors
+/// What reading the mesh fails with.
+pub fn block_sizes(mesh: &dyn MeshSource) -> io::Result<Vec<u64>> {
+    let mut sizes: BTreeMap<i32, u64> = BTreeMap::new();
+    mesh.each_tet_labels(|piece| {
+        for run in piece.blocks.chunk_by(|a, b| a == b) {
+            *sizes.entry(run[0]).or_default() += run.len() as u64;
+        }
+        Ok(())
+    })?;
+    let mut bins = Vec::new();
+    for size in sizes.into_values() {
+        let bin = size.ilog2() as usize;
+        bins.resize(bins.len().max(bin + 1), 0);
+        bins[bin] += 1;
+    }
+    Ok(bins)
+}
+
+/// Where the blocks are that failed: the network with their vessels marked.
+///
+/// # Errors
+/// When a picture cannot be compressed.
+pub fn failed_blocks(network: &Skeleton, run: &RunReport) -> io::Result<Section> {
+    let nodes: BTreeSet<u32> = run.failed.iter().flat_map(|failed| failed.nodes.iter().copied()).collect();
+    let is_marked = |&id: &EdgeId| network.edge(id).nodes.iter().any(|&n| nodes.contains(&network.node(n).original));
+    let marked: Vec<EdgeId> = network.edge_ids().filter(is_marked).collect();
+    let picture = network_picture(network, &marked, "Vessels of the blocks that could not be meshed (red).");
+    Section::new("What is missing").pictures(&[picture], false)
+}
+
+/// Blocks, stages, retries and failures.
+pub fn run(run: &RunReport, sizes: &[u64]) -> Section {
+    let (blocks, times) = (&run.blocks, &run.block_times);
+    let seconds: f64 = run.stages.iter().map(|stage| stage.seconds).sum();
+    let stages: Vec<Vec<String>> =
+        run.stages.iter().map(|stage| vec![stage.stage.to_owned(), format!("{:.2} s", stage.seconds)]).collect();
+    let section = Section::new("Blocks and times")
+        .tiles(&[
+            ("clusters", grouped(blocks.clusters)),
+            ("connectors", grouped(blocks.connectors)),
+            ("largest cluster", format!("{} nodes", blocks.largest_cluster_nodes)),
+            ("retried, failed", format!("{}, {}", run.retries.len(), run.failed.len())),
+            ("longest block", format!("{} ({:.2} s)", times.longest, times.longest_seconds)),
+            ("all stages", format!("{seconds:.1} s")),
+        ])
+        .plots(&[
+            powers("Sizes of blocks", "tetrahedra, 2 to the power of", sizes, 0.0),
+            // The first of them ends at a millisecond, or all but.
+            powers("Times of blocks", "milliseconds, 2 to the power of", &times.histogram, -1.0),
+        ])
+        .table(&["stage", "wall time"], &stages);
+    let trouble = trouble(run);
+    if trouble.is_empty() { section } else { section.list(&trouble) }
+}
+
+/// Bins whose borders double; where the first one begins.
+fn powers(title: &str, axis: &str, counts: &[u64], first: f64) -> Panel {
+    let mut panel = bars(title, [axis, "blocks (%)"], 1.0, counts.iter().copied());
+    for point in &mut panel.series[0].points {
+        point[0] += first;
+    }
+    panel
+}
+
+fn trouble(run: &RunReport) -> Vec<(Mark, String)> {
+    let mut items = Vec::new();
+    for failed in &run.failed {
+        let mut text = format!("{} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason);
+        if let Some(dump) = &failed.dump {
+            let _ = write!(text, "; its input is in {dump}");
+        }
+        items.push((Mark::Bad, text));
+    }
+    for fused in run.fused.iter().take(LISTED) {
+        let text = format!(
+            "overlapping vessels in {} (nodes {:?}): {} handles for {} loops, terminals without a cap {:?}",
+            fused.block, fused.nodes, fused.handles, fused.loops, fused.uncapped
+        );
+        items.push((Mark::Bad, text));
+    }
+    for retry in run.retries.iter().take(LISTED) {
+        let text = format!("retried {} (nodes {:?}): {}; {}", retry.block, retry.nodes, retry.reason, retry.remedy);
+        items.push((Mark::Neither, text));
+    }
+    let hidden = run.retries.len().saturating_sub(LISTED) + run.fused.len().saturating_sub(LISTED);
+    if hidden > 0 {
+        items.push((Mark::Below, format!("and {hidden} more (--json lists all)")));
+    }
+    items
+}

@@ -1,0 +1,50 @@
+//! Networks: what overlaps, before refinement and after it.
+
+use super::html::{Mark, Section};
+use super::pictures::network_picture;
+use crate::refine::RefineReport;
+use crate::report::refine::{figures_table, panels};
+use crate::skeleton::{EdgeId, Skeleton};
+use std::io;
+
+/// How a refinement ended, for the head of a page.
+pub fn overlaps_left(report: &RefineReport) -> (Mark, String) {
+    match report.result.overlaps {
+        0 => (Mark::Good, "no vessels overlap".into()),
+        n => (Mark::Bad, format!("{n} pairs of edges overlap")),
+    }
+}
+
+/// Edges whose vessels overlap others.
+fn overlaps(network: &Skeleton) -> Vec<EdgeId> {
+    let pairs = network.overlaps(&network.adjacency()).pairs;
+    let mut edges: Vec<EdgeId> = pairs.iter().flat_map(|pair| pair.edges).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+/// What refinement did: the network before and after it, figures, and their course (Fig. 11 of the paper).
+///
+/// # Errors
+/// When a picture cannot be compressed.
+pub fn refinement(report: &RefineReport, before: &Skeleton, after: &Skeleton) -> io::Result<Section> {
+    let picture = |network, when: &str, pairs: usize| {
+        let caption = format!("{when}: {pairs} pairs of edges overlap (red).");
+        network_picture(network, &overlaps(network), &caption)
+    };
+    let pictures =
+        [picture(before, "As given", report.given.overlaps), picture(after, "Refined", report.result.overlaps)];
+    let d = &report.displacement;
+    Ok(Section::new("Refinement")
+        .tiles(&[
+            ("overlapping pairs, given", report.given.overlaps.to_string()),
+            ("in the end", report.result.overlaps.to_string()),
+            ("nodes moved by, mean", format!("{:.4}", d.mean)),
+            ("99 %, furthest", format!("{:.4}, {:.4}", d.p99, d.max)),
+            ("a median radius is", format!("{:.4}", 0.448 * report.unit)),
+        ])
+        .pictures(&pictures, false)?
+        .table(&["", "given", "split", "moved", "result"], &figures_table(report))
+        .plots(&panels(report)))
+}

@@ -1,0 +1,96 @@
+//! Pictures for a page: on nothing, so that they stand on light and dark.
+
+use crate::geometry::Point3;
+use crate::mesh::check::{CheckReport, Offender, OffenderKind};
+use crate::mesh::source::MeshSource;
+use crate::picture::{Background, Camera, Canvas, Colour, Cut, Direction, Image, MeshPicture, NetworkPicture, Plane};
+use crate::skeleton::{EdgeId, Skeleton};
+use std::io;
+
+use super::places::extents;
+
+const SIZE: [usize; 2] = [720, 540];
+const SAMPLES: usize = 2;
+/// How much closer one looks where tetrahedra are to be seen, at least.
+const CLOSER: f64 = 3.0;
+/// Offenders that are shown, at most.
+const SHOWN: usize = 6;
+
+/// A mesh as a whole, its blocks where it has several, and some tetrahedra.
+///
+/// # Errors
+/// What reading the mesh fails with.
+pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> {
+    let outline = MeshPicture::outline(mesh)?;
+    let size = SIZE.map(|n| n * SAMPLES);
+    let camera = Camera::new(Direction::Broadside, &outline, size, 1.0, None);
+    let mut pictures =
+        vec![(draw(mesh, camera, Colour::Patch, None)?, "The mesh: wall red, inlets blue, outlets yellow.".to_owned())];
+    if mesh.counts().tets == 0 {
+        return Ok(pictures);
+    }
+    // Where the thing itself is: the middle of its box may be nowhere near.
+    let middle = camera.centre;
+    let near = |a: &&Point3, b: &&Point3| (*a - middle).norm_squared().total_cmp(&(*b - middle).norm_squared());
+    let Some(&place) = outline.points().iter().min_by(near) else { return Ok(pictures) };
+    let extent = extents(mesh, &[place])?[0];
+    let zoom = (outline.range(camera.towards)[1] - outline.range(camera.towards)[0]).max(extent) / extent;
+    let close = Camera::new(Direction::Broadside, &outline, size, zoom.max(CLOSER), Some(place));
+    let cut = Plane { normal: close.towards, offset: place.coords.dot(&close.towards) - 0.15 * extent };
+    pictures.push((
+        draw(mesh, close, Colour::Quality, Some(Cut::Tets(cut)))?,
+        "Some of its tetrahedra by their radius ratio, from red (0) to blue (1).".to_owned(),
+    ));
+    Ok(pictures)
+}
+
+/// A network, some of whose edges are marked.
+pub fn network_picture(network: &Skeleton, marked: &[EdgeId], caption: &str) -> (Image, String) {
+    let mut picture = NetworkPicture::new(network, Colour::Radius, &[]);
+    picture.mark(marked);
+    let camera = Camera::new(Direction::Broadside, &picture.outline(), SIZE.map(|n| n * SAMPLES), 1.0, None);
+    let mut canvas = Canvas::new(camera, SAMPLES);
+    picture.draw(&mut canvas);
+    (canvas.finish(Background::None), caption.to_owned())
+}
+
+/// The first offenders of the lines that fail, where they are.
+///
+/// # Errors
+/// What reading the mesh fails with.
+pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> {
+    // One of each line before the second of any.
+    let mut found: Vec<(usize, &Offender, &'static str, Point3)> = Vec::new();
+    for line in check.failed() {
+        let placed = line.offenders.iter().filter_map(|o| Some((o, Point3::from(o.position?))));
+        found.extend(placed.enumerate().map(|(i, (offender, place))| (i, offender, line.line.statement(), place)));
+    }
+    found.sort_by_key(|(i, ..)| *i);
+    found.truncate(SHOWN);
+    if found.is_empty() || mesh.counts().boundary == 0 {
+        return Ok(Vec::new());
+    }
+    let outline = MeshPicture::outline(mesh)?;
+    let extents = extents(mesh, &found.iter().map(|(.., place)| *place).collect::<Vec<_>>())?;
+    let mut pictures = Vec::new();
+    for ((_, offender, statement, place), extent) in found.into_iter().zip(extents) {
+        let mut camera = Camera::new(Direction::Broadside, &outline, SIZE.map(|n| n * SAMPLES), 1.0, Some(place));
+        camera.scale = (camera.size[1] as f64 / (2.0 * extent)).max(camera.scale);
+        let at = place.coords.dot(&camera.towards);
+        let cut = match offender.kind {
+            OffenderKind::Tet | OffenderKind::TetPair => Cut::Tets(Plane { normal: camera.towards, offset: at }),
+            // What stands before it is taken away.
+            _ => Cut::Wall(Plane { normal: camera.towards, offset: at + 0.4 * extent }),
+        };
+        let image = draw(mesh, camera, Colour::Patch, Some(cut))?;
+        let [x, y, z]: [f64; 3] = place.into();
+        pictures.push((image, format!("Not so: {statement}. In the ring: {x:.6} {y:.6} {z:.6}")));
+    }
+    Ok(pictures)
+}
+
+fn draw(mesh: &dyn MeshSource, camera: Camera, colour: Colour, cut: Option<Cut>) -> io::Result<Image> {
+    let mut canvas = Canvas::new(camera, SAMPLES);
+    MeshPicture { mesh, colour, values: None }.draw(&mut canvas, cut)?;
+    Ok(canvas.finish(Background::None))
+}

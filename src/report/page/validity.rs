@@ -1,0 +1,62 @@
+//! What a check found, line by line.
+
+use super::html::{Mark, Section, grouped};
+use super::pictures::offenders;
+use crate::mesh::check::{CheckReport, Outcome, Verdict};
+use crate::mesh::source::MeshSource;
+use crate::report::check::{describe, extent, reason, verdict};
+use std::io;
+
+/// Offenders of a line that are spelt out.
+const LISTED: usize = 3;
+
+/// The verdict for the head of a page.
+pub fn headline(check: &CheckReport) -> (Mark, String) {
+    let mark = match check.verdict {
+        Verdict::Valid => Mark::Good,
+        Verdict::NoFaultFound => Mark::Neither,
+        Verdict::Invalid => Mark::Bad,
+    };
+    (mark, verdict(check.verdict).to_owned())
+}
+
+/// The sizes of what was checked.
+pub fn summary(check: &CheckReport) -> Section {
+    let counts = &check.counts;
+    let mut tiles = vec![
+        ("tetrahedra", grouped(counts.tets)),
+        ("points", grouped(counts.points)),
+        ("boundary faces", grouped(counts.boundary_faces)),
+        ("inlets and outlets", grouped(counts.caps)),
+        ("components", grouped(counts.components)),
+        ("volume", format!("{:.6e}", counts.volume)),
+    ];
+    if let Some(quality) = &check.quality {
+        tiles.push(("mean radius ratio", format!("{:.4}", quality.mean)));
+    }
+    Section::new("Summary").tiles(&tiles)
+}
+
+/// A line per line of the definition, and pictures of what breaks them.
+///
+/// # Errors
+/// What reading the mesh fails with.
+pub fn validity(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Section> {
+    let mut items = Vec::new();
+    for line in &check.lines {
+        let statement = line.line.statement();
+        items.push(match line.outcome {
+            Outcome::Pass => (Mark::Good, statement.to_owned()),
+            Outcome::NotChecked(why) => (Mark::Neither, format!("{statement}: not checked, {}", reason(why))),
+            Outcome::Fail => (Mark::Bad, format!("{statement}: {}", extent(line))),
+        });
+        items.extend(line.offenders.iter().take(LISTED).map(|o| (Mark::Below, describe(o))));
+        let hidden = line.count.saturating_sub(line.offenders.len().min(LISTED) as u64);
+        if hidden > 0 {
+            items.push((Mark::Below, format!("and {hidden} more")));
+        }
+    }
+    let section = Section::new("Validity").list(&items);
+    let pictures = offenders(check, mesh)?;
+    if pictures.is_empty() { Ok(section) } else { section.pictures(&pictures, true) }
+}
