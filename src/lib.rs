@@ -26,6 +26,8 @@ mod grow;
 pub mod io;
 mod mesh;
 mod partition;
+#[cfg(feature = "cli")]
+mod picture;
 mod pipeline;
 mod prepare;
 mod progress;
@@ -34,6 +36,8 @@ mod report;
 mod skeleton;
 mod surface;
 pub mod tet;
+#[cfg(feature = "cli")]
+mod view;
 mod woven;
 
 pub use geometry::{Point3, Vec3};

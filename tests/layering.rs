@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Rooms by floor; a room may import from rooms with a smaller number, and from itself.
-const FLOORS: [(&str, u32); 19] = [
+const FLOORS: [(&str, u32); 21] = [
     ("main", 9),
     ("cli", 8),
     ("report", 7),
     ("pipeline", 6),
     ("woven", 5),
+    ("picture", 5),
+    ("view", 5),
     ("block", 4),
     ("surface", 3),
     ("tet", 3),

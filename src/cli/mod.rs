@@ -14,12 +14,16 @@ mod generate;
 mod grid;
 mod info;
 mod layers;
+mod kind;
 mod man;
 mod mesh;
 mod network;
+mod page;
+mod picture;
 mod prepare;
 mod progress;
 mod refine;
+mod render;
 mod replay;
 mod room;
 mod stop;
@@ -27,6 +31,7 @@ mod surface;
 mod tetrahedralize;
 mod units;
 mod work;
+mod view;
 
 use std::process::ExitCode;
 
@@ -61,6 +66,10 @@ enum Verb {
     Tetrahedralize(tetrahedralize::Args),
     /// Write a volume mesh, a surface or a network in another format, or a volume mesh's boundary
     Convert(convert::Args),
+    /// Draw a mesh, a surface or a network as a PNG picture
+    Render(Box<render::Args>),
+    /// Make a page of a mesh, a surface or a network that turns it in any browser
+    View(Box<view::Args>),
     /// Verify a volume mesh line by line
     Check(check::Args),
     /// Make a block again that failed, from what `mesh` left of it
@@ -93,6 +102,8 @@ pub fn main() -> ExitCode {
         Verb::Generate(args) => generate::run(args),
         Verb::Tetrahedralize(args) => tetrahedralize::run(args),
         Verb::Convert(args) => convert::run(args),
+        Verb::Render(args) => render::run(args),
+        Verb::View(args) => view::run(args),
         Verb::Check(args) => check::run(args),
         Verb::Replay(args) => replay::run(args),
         Verb::Info(args) => info::run(args),

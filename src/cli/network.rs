@@ -11,7 +11,7 @@ use crate::report::prepare::text;
 use crate::skeleton::{CleanReport, NodeId, Skeleton, clean};
 
 /// Arguments of every verb that reads a network.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct NetworkArgs {
     /// The network: .swc; .vtp or .vtk with lines; .am (Amira, text); .csv (nodes and edges); .graphml, .gxl; .net (Pajek);
     /// .json (node-link); .npyd (`NumPy`'s arrays, a folder); .in (SimVascular 1D)

@@ -1,0 +1,215 @@
+//! A surface made coarser by letting edges go, the one that is missed least first.
+
+use super::quadric::{Quadric, relative};
+use crate::geometry::{Point3, Vec3};
+use rustc_hash::FxHashMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeSet, BinaryHeap};
+
+/// A surface in the making.
+pub struct Collapse {
+    points: Vec<Point3>,
+    /// What a point knows of the planes about it.
+    quadrics: Vec<Quadric>,
+    /// Points that stay where they are.
+    fixed: Vec<bool>,
+    /// Changes with each move of a point: candidates of before are stale.
+    moves: Vec<u32>,
+    triangles: Vec<Option<[u32; 3]>>,
+    /// Triangles of each point, gone ones among them.
+    around: Vec<Vec<u32>>,
+    left: usize,
+    centre: Point3,
+}
+
+/// An edge that may go: its cost (bits of a number that is not negative), its ends and their moves.
+type Candidate = Reverse<(u64, [u32; 2], [u32; 2])>;
+
+impl Collapse {
+    /// Of a surface whose `fixed` points are to stay.
+    pub fn new(points: Vec<Point3>, triangles: Vec<[u32; 3]>, fixed: Vec<bool>) -> Self {
+        let centre = points.first().copied().unwrap_or_else(Point3::origin);
+        let mut quadrics = vec![Quadric::default(); points.len()];
+        let mut around = vec![Vec::new(); points.len()];
+        for (i, t) in (0..).zip(&triangles) {
+            let [a, b, c] = t.map(|v| points[v as usize]);
+            let area = (b - a).cross(&(c - a));
+            t.iter().for_each(|&v| around[v as usize].push(i));
+            if let Some(normal) = area.try_normalize(0.0) {
+                let plane = Quadric::plane(&normal, &relative(&a, &centre), area.norm());
+                t.iter().for_each(|&v| quadrics[v as usize] += plane);
+            }
+        }
+        let (left, moves) = (triangles.len(), vec![0; points.len()]);
+        Self {
+            points,
+            quadrics,
+            fixed,
+            moves,
+            triangles: triangles.into_iter().map(Some).collect(),
+            around,
+            left,
+            centre,
+        }
+    }
+
+    /// Lets edges go until so many triangles are left, or none may go. The points that are left, and the triangles.
+    pub fn run(mut self, target: usize) -> (Vec<Point3>, Vec<[u32; 3]>) {
+        let mut heap: BinaryHeap<Candidate> = BinaryHeap::new();
+        let edges: BTreeSet<[u32; 2]> =
+            self.triangles.iter().flatten().flat_map(|t| sides(*t)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        for edge in edges {
+            self.offer(edge, &mut heap);
+        }
+        while self.left > target
+            && let Some(Reverse((_, edge, moves))) = heap.pop()
+        {
+            if edge.map(|v| self.moves[v as usize]) != moves {
+                continue;
+            }
+            let place = self.place(edge);
+            if self.may_go(edge, &place) {
+                self.merge(edge, place, &mut heap);
+            }
+        }
+        self.done()
+    }
+
+    fn offer(&self, edge: [u32; 2], heap: &mut BinaryHeap<Candidate>) {
+        if edge.iter().all(|&v| self.fixed[v as usize]) {
+            return;
+        }
+        let cost = self.cost(edge, &self.place(edge));
+        heap.push(Reverse((cost.to_bits(), edge, edge.map(|v| self.moves[v as usize]))));
+    }
+
+    fn sum([a, b]: [u32; 2], quadrics: &[Quadric]) -> Quadric {
+        let mut sum = quadrics[a as usize];
+        sum += quadrics[b as usize];
+        sum
+    }
+
+    fn cost(&self, edge: [u32; 2], place: &Point3) -> f64 {
+        let [a, b] = edge.map(|v| self.points[v as usize]);
+        // Where nothing is lost, short edges go first.
+        Self::sum(edge, &self.quadrics).at(&relative(place, &self.centre)) + 1e-6 * (b - a).norm_squared().powi(2)
+    }
+
+    /// Where the point is to be that an edge becomes.
+    fn place(&self, edge: [u32; 2]) -> Point3 {
+        let [a, b] = edge.map(|v| self.points[v as usize]);
+        match edge.map(|v| self.fixed[v as usize]) {
+            [true, _] => a,
+            [_, true] => b,
+            _ => {
+                let middle = Point3::from((a.coords + b.coords) * 0.5);
+                let least = Self::sum(edge, &self.quadrics).least().map(|v| self.centre + v);
+                // What is far off is no place for it.
+                least.filter(|p| (p - middle).norm() <= 2.0 * (b - a).norm()).unwrap_or(middle)
+            }
+        }
+    }
+
+    /// Whether no triangle turns over, and the surface stays one.
+    fn may_go(&self, [a, b]: [u32; 2], place: &Point3) -> bool {
+        let ring = |v: u32| -> BTreeSet<u32> { self.alive(v).flat_map(|(_, t)| t).filter(|&w| w != v).collect() };
+        let shared = ring(a).intersection(&ring(b)).count();
+        let both = self.alive(a).filter(|(_, t)| t.contains(&b)).count();
+        if shared != both || both == 0 {
+            return false;
+        }
+        [a, b].into_iter().all(|v| {
+            self.alive(v).filter(|(_, t)| !(t.contains(&a) && t.contains(&b))).all(|(_, t)| {
+                let old = normal(t.map(|w| self.points[w as usize]));
+                let new = normal(t.map(|w| if w == v { *place } else { self.points[w as usize] }));
+                old.dot(&new) > 0.1 * old.norm() * new.norm()
+            })
+        })
+    }
+
+    fn alive(&self, v: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
+        self.around[v as usize].iter().filter_map(|&t| Some((t, self.triangles[t as usize]?)))
+    }
+
+    /// Makes an edge a point.
+    fn merge(&mut self, [a, b]: [u32; 2], place: Point3, heap: &mut BinaryHeap<Candidate>) {
+        let of_b: Vec<(u32, [u32; 3])> = self.alive(b).collect();
+        for (t, corners) in of_b {
+            if corners.contains(&a) {
+                self.triangles[t as usize] = None;
+                self.left -= 1;
+            } else {
+                self.triangles[t as usize] = Some(corners.map(|v| if v == b { a } else { v }));
+                self.around[a as usize].push(t);
+            }
+        }
+        let merged = self.quadrics[b as usize];
+        self.quadrics[a as usize] += merged;
+        self.points[a as usize] = place;
+        self.fixed[a as usize] |= self.fixed[b as usize];
+        self.moves[a as usize] += 1;
+        self.moves[b as usize] += 1;
+        let near: BTreeSet<u32> = self.alive(a).flat_map(|(_, t)| t).filter(|&v| v != a).collect();
+        for v in near {
+            self.offer([a.min(v), a.max(v)], heap);
+        }
+    }
+
+    fn done(self) -> (Vec<Point3>, Vec<[u32; 3]>) {
+        let mut numbers: FxHashMap<u32, u32> = FxHashMap::default();
+        let mut points = Vec::new();
+        let triangles = self.triangles.iter().flatten().map(|t| {
+            t.map(|v| {
+                *numbers.entry(v).or_insert_with(|| {
+                    points.push(self.points[v as usize]);
+                    points.len() as u32 - 1
+                })
+            })
+        });
+        let triangles = triangles.collect();
+        (points, triangles)
+    }
+}
+
+fn normal([a, b, c]: [Point3; 3]) -> Vec3 {
+    (b - a).cross(&(c - a))
+}
+
+fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::rings::rings;
+    use std::f64::consts::TAU;
+
+    /// A tube of radius 1 along z, open at both ends.
+    fn tube(sides: u32, steps: u32) -> (Vec<Point3>, Vec<[u32; 3]>) {
+        let at = |i: u32, j: u32| j * sides + i % sides;
+        let point = |n: u32| {
+            let angle = TAU * f64::from(n % sides) / f64::from(sides);
+            Point3::new(angle.cos(), angle.sin(), 0.4 * f64::from(n / sides))
+        };
+        let quad = |(i, j): (u32, u32)| {
+            [[at(i, j), at(i + 1, j), at(i, j + 1)], [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]]
+        };
+        let cells = (0..steps).flat_map(|j| (0..sides).map(move |i| (i, j)));
+        ((0..sides * (steps + 1)).map(point).collect(), cells.flat_map(quad).collect())
+    }
+
+    #[test]
+    fn a_tube_stays_a_tube() {
+        let (points, triangles) = tube(12, 30);
+        let ends: Vec<bool> = (0..points.len()).map(|v| v < 12 || v >= points.len() - 12).collect();
+        let before = triangles.len();
+        let (points, triangles) = Collapse::new(points, triangles, ends).run(60);
+        assert!(triangles.len() <= 60 && triangles.len() < before / 8, "{}", triangles.len());
+        // Both rings are whole, and all of it is near the cylinder.
+        let rings = rings(&triangles);
+        assert_eq!(rings.iter().map(Vec::len).collect::<Vec<_>>(), [12, 12]);
+        let off = |p: &Point3| (p.x.hypot(p.y) - 1.0).abs();
+        assert!(points.iter().map(off).fold(0.0, f64::max) < 0.2);
+    }
+}

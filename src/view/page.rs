@@ -1,0 +1,80 @@
+//! The page put together.
+
+use super::chunk::pack_wall;
+use super::faults::Fault;
+use super::pack::Pack;
+use super::wall::Wall;
+use crate::mesh::Patch;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Map, Value, json};
+use std::io;
+
+const FRAME: &str = include_str!("page.html");
+const STYLE: &str = include_str!("style.css");
+/// In the order in which they need each other.
+const SCRIPTS: [&str; 5] = [
+    include_str!("data.js"),
+    include_str!("gl.js"),
+    include_str!("scene.js"),
+    include_str!("cut.js"),
+    include_str!("main.js"),
+];
+
+/// A page in the making.
+pub struct Page {
+    pub pack: Pack,
+    facts: Map<String, Value>,
+}
+
+impl Page {
+    /// Of a file.
+    pub fn new(title: &str) -> Self {
+        let mut facts = Map::new();
+        facts.insert("title".into(), json!(title));
+        facts.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
+        Self { pack: Pack::default(), facts }
+    }
+
+    /// Adds what the page is to know under a name.
+    pub fn know(&mut self, name: &str, fact: Value) {
+        self.facts.insert(name.into(), fact);
+    }
+
+    /// Adds the wall of a mesh.
+    pub fn add_wall(&mut self, wall: Wall, patches: &[Patch]) {
+        let fact = pack_wall(wall, &mut self.pack);
+        self.know("wall", fact);
+        let patch = |p: &Patch| json!({ "id": p.id, "name": p.name, "node": p.cap.map(|cap| cap.node) });
+        self.know("patches", patches.iter().map(patch).collect());
+    }
+
+    /// Adds places to fly to.
+    pub fn add_faults(&mut self, faults: &[Fault]) {
+        self.know("faults", json!(faults));
+    }
+
+    /// The file.
+    ///
+    /// # Errors
+    /// When there is no memory for it.
+    pub fn html(mut self) -> io::Result<String> {
+        let entries = self.pack.entries();
+        self.know("arrays", entries);
+        // No text of the input can end the element that it stands in.
+        let facts = Value::Object(self.facts).to_string().replace('<', "\\u003c");
+        let data = STANDARD.encode(self.pack.compressed()?);
+        let parts = [("/*style*/", STYLE.to_owned()), ("/*facts*/", facts), ("/*data*/", data)];
+        let mut rest = FRAME.replace("/*scripts*/", &SCRIPTS.join("\n"));
+        let mut out = String::new();
+        for (mark, text) in parts {
+            if let Some((before, after)) = rest.split_once(mark) {
+                out.push_str(before);
+                out.push_str(&text);
+                rest = after.to_owned();
+            }
+        }
+        out.push_str(&rest);
+        Ok(out)
+    }
+}

@@ -1,0 +1,81 @@
+//! Where the wall of a block ends: rings that it shares with its neighbours.
+//!
+//! Both blocks at a ring keep the same points of it, though neither knows the other: the choice depends on the ring alone.
+
+use rustc_hash::FxHashMap;
+
+/// The rings of a surface whose triangles run counter-clockwise: each as its points in order. Where two rings touch in a
+/// point they may be one.
+pub fn rings(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
+    let mut open: FxHashMap<[u32; 2], ()> = FxHashMap::default();
+    for &[a, b, c] in triangles {
+        for [a, b] in [[a, b], [b, c], [c, a]] {
+            if open.remove(&[b, a]).is_none() {
+                open.insert([a, b], ());
+            }
+        }
+    }
+    let mut edges: Vec<[u32; 2]> = open.into_keys().collect();
+    edges.sort_unstable();
+    let mut next: FxHashMap<u32, u32> = FxHashMap::default();
+    for &[a, b] in &edges {
+        next.entry(a).or_insert(b);
+    }
+    let mut rings = Vec::new();
+    for [start, _] in edges {
+        let mut ring = Vec::new();
+        let mut at = start;
+        while let Some(following) = next.remove(&at) {
+            ring.push(at);
+            at = following;
+        }
+        if ring.len() > 2 {
+            rings.push(ring);
+        }
+    }
+    rings
+}
+
+/// Which of a ring's points are kept, and which of these each point becomes: `keep` of them, evenly, counted from the point
+/// of the lowest number in the whole towards its neighbour of the lower number.
+pub fn thinned(ring: &[u32], keep: usize, number: impl Fn(u32) -> u32) -> Vec<(u32, u32)> {
+    let count = ring.len();
+    if keep >= count {
+        return ring.iter().map(|&v| (v, v)).collect();
+    }
+    let first = (0..count).min_by_key(|&i| number(ring[i])).unwrap_or(0);
+    let forwards = number(ring[(first + 1) % count]) < number(ring[(first + count - 1) % count]);
+    let at = |i: usize| if forwards { ring[(first + i) % count] } else { ring[(first + 2 * count - i) % count] };
+    // The point that stands for the i-th one is the nearest that is kept.
+    let stands = |i: usize| at((2 * i * keep + count) / (2 * count) % keep * count / keep);
+    (0..count).map(|i| (at(i), stands(i))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn a_strip_has_two_rings() {
+        let n = 7;
+        let quad = |i: u32| [[i, (i + 1) % n, n + i], [(i + 1) % n, n + (i + 1) % n, n + i]];
+        let strip: Vec<[u32; 3]> = (0..n).flat_map(quad).collect();
+        let found: Vec<BTreeSet<u32>> = rings(&strip).into_iter().map(|r| r.into_iter().collect()).collect();
+        assert_eq!(found, [(0..n).collect(), (n..2 * n).collect()]);
+    }
+
+    #[test]
+    fn both_sides_keep_the_same() {
+        let ring: Vec<u32> = vec![40, 12, 90, 7, 33, 51, 28, 64, 19, 77, 5];
+        for keep in 3..12 {
+            let mut other: Vec<u32> = ring.iter().rev().copied().collect();
+            other.rotate_left(4);
+            let of = |ring: &[u32]| thinned(ring, keep, |v| v).into_iter().collect::<BTreeSet<_>>();
+            assert_eq!(of(&ring), of(&other));
+            let kept: BTreeSet<u32> = of(&ring).into_iter().map(|(_, to)| to).collect();
+            assert_eq!(kept.len(), keep.min(ring.len()));
+            assert!(of(&ring).iter().all(|(from, to)| !kept.contains(from) || from == to));
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Tetrahedra that a plane can lay open: all of them where they are few, else those of some blocks.
+
+use super::pack::{Grid, Pack};
+use super::wall::Wall;
+use crate::geometry::Point3;
+use crate::mesh::source::{MeshSource, TetPiece};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::io;
+
+/// Tetrahedra that a page holds, at most.
+const MOST: usize = 1_000_000;
+/// And when they are only some of many.
+const SOME: usize = 300_000;
+/// Steps of the grid of their points.
+const STEPS: u32 = 1 << 20;
+
+/// Adds tetrahedra. Of very many those of blocks that the plane across the longest side cuts in the middle, the widest first.
+/// What the page has to know of them.
+///
+/// # Errors
+/// What reading the mesh fails with.
+pub fn add_tets(mesh: &dyn MeshSource, wall: &Wall, pack: &mut Pack) -> io::Result<serde_json::Value> {
+    let count = mesh.counts().tets;
+    let mut held = Held::default();
+    let plane = middle(wall);
+    if count <= MOST {
+        mesh.each_part(
+            |part| held_part(mesh, part),
+            |(piece, corners)| {
+                held.add(&piece, &corners, None);
+                Ok(())
+            },
+        )?;
+    } else {
+        let wanted = crossed(wall, plane);
+        // Each part is a block, or all of them are one part that stands in memory.
+        for part in 0..mesh.parts() {
+            let is_wanted = mesh.parts() == 1 || {
+                let blocks = mesh.face_labels(part)?.blocks;
+                blocks.first().is_some_and(|block| wanted.contains(block))
+            };
+            if is_wanted && held.tets.len() < 4 * SOME {
+                let (piece, corners) = held_part(mesh, part)?;
+                held.add(&piece, &corners, Some(&wanted));
+            }
+        }
+    }
+    let grid = Grid::of(held.points.iter(), STEPS);
+    pack.add("tetPosition", &grid.steps(held.points.iter()), 3);
+    pack.add("tet", &held.tets, 4);
+    pack.add("tetBlock", &held.blocks, 1);
+    Ok(serde_json::json!({ "grid": grid, "shown": held.blocks.len(), "all": count, "plane": plane }))
+}
+
+type Part<'a> = (TetPiece<'a>, Vec<[Point3; 4]>);
+
+fn held_part(mesh: &dyn MeshSource, part: u32) -> io::Result<Part<'_>> {
+    let piece = mesh.tets(part)?;
+    let corners = mesh.corners_of(&piece.tets)?;
+    Ok((piece, corners))
+}
+
+/// Tetrahedra in numbers of their own.
+#[derive(Default)]
+struct Held {
+    numbers: FxHashMap<u32, i32>,
+    points: Vec<Point3>,
+    tets: Vec<i32>,
+    blocks: Vec<i32>,
+}
+
+impl Held {
+    /// Adds those of a part that are wanted.
+    fn add(&mut self, piece: &TetPiece, corners: &[[Point3; 4]], of: Option<&FxHashSet<i32>>) {
+        for (i, (tet, at)) in piece.tets.iter().zip(corners).enumerate() {
+            let block = piece.blocks.get(i).copied().unwrap_or(0);
+            if of.is_some_and(|wanted| !wanted.contains(&block) || self.blocks.len() >= SOME) {
+                continue;
+            }
+            for k in 0..4 {
+                let number = *self.numbers.entry(tet[k]).or_insert_with(|| {
+                    self.points.push(at[k]);
+                    self.points.len() as i32 - 1
+                });
+                self.tets.push(number);
+            }
+            self.blocks.push(block);
+        }
+    }
+}
+
+/// The axis along which a wall is longest, and the middle there.
+fn middle(wall: &Wall) -> (usize, f64) {
+    let points = || wall.pieces.iter().flat_map(|p| &p.groups).flat_map(|g| &g.points);
+    let range = |k: usize| points().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p[k]), h.max(p[k])]);
+    let ranges = [0, 1, 2].map(range);
+    let longest = (0..3).max_by(|&a, &b| {
+        let [a, b] = [a, b].map(|k| ranges[k][1] - ranges[k][0]);
+        a.total_cmp(&b)
+    });
+    let k = longest.unwrap_or(0);
+    let middle = f64::midpoint(ranges[k][0], ranges[k][1]);
+    (k, if middle.is_finite() { middle } else { 0.0 })
+}
+
+/// Blocks whose wall a plane cuts, the widest, as many as have room.
+fn crossed(wall: &Wall, (axis, at): (usize, f64)) -> FxHashSet<i32> {
+    let cuts = |piece: &&super::wall::Piece| {
+        let mut sides = piece.groups.iter().flat_map(|g| &g.points).map(|p| p[axis] < at);
+        let first = sides.next();
+        first.is_some_and(|first| sides.any(|side| side != first))
+    };
+    let mut found: Vec<(f64, i32)> = wall.pieces.iter().filter(cuts).map(|p| (p.radius, p.block)).collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    // Some hundred tetrahedra are the least that a block has.
+    found.truncate(SOME / 300);
+    found.into_iter().map(|(_, block)| block).collect()
+}

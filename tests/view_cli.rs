@@ -1,0 +1,130 @@
+//! `view` as it is run: one page, that a browser shows.
+
+mod common;
+
+use common::fixture;
+use common::program::*;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn view(input: &Path, out: &Path, options: &[&str]) -> Output {
+    run("view", &[input, Path::new("--output"), out], options)
+}
+
+/// What the page knows.
+#[track_caller]
+fn facts(path: &Path) -> Value {
+    let html = fs::read_to_string(path).expect("a page");
+    for outside in ["http:", "https:", "src=", "@import", "import("] {
+        assert!(!html.contains(outside), "{outside}");
+    }
+    let start = html.find("id=\"facts\">").expect("facts") + 11;
+    let end = start + html[start..].find("</script>").expect("their end");
+    serde_json::from_str(&html[start..end]).expect("JSON")
+}
+
+#[test]
+fn a_mesh_a_network_and_a_surface_become_pages() {
+    let folder = folder();
+    let [tree, page] = ["a<b>.vtu", "p.html"].map(|name| folder.path().join(name));
+    let network = fixture("tree_30.vtp");
+    assert_code(&mesh(&network, &tree, &["-q"]), FINE);
+    assert_code(&view(&tree, &page, &["--network", network.to_str().expect("a path")]), FINE);
+    let known = facts(&page);
+    let volume = anastomesh::io::read_mesh(&tree).expect("a mesh").volume;
+    assert_eq!(known["title"], "a<b>.vtu");
+    assert_eq!(known["wall"]["exact"], true);
+    assert_eq!(known["wall"]["faces"], volume.boundary.len());
+    assert_eq!(known["tets"]["shown"], volume.mesh.tets.len());
+    assert_eq!(known["network"]["edges"], 29);
+    assert_eq!(known["patches"].as_array().map(Vec::len), Some(volume.patches.len()));
+    assert_eq!(known["faults"], Value::Array(Vec::new()));
+    assert!(fs::metadata(&page).expect("a page").len() < 1_000_000);
+    assert_code(&view(&network, &page, &["-q"]), FINE);
+    assert!(facts(&page)["wall"].is_null() && facts(&page)["network"]["orders"].as_u64() > Some(2));
+    assert_code(&view(&fixture("torus.off"), &page, &["-q"]), FINE);
+    assert!(facts(&page)["network"].is_null() && facts(&page)["tets"]["all"] == 0);
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_the_threads() {
+    let folder = folder();
+    let tree = folder.path().join("tree.vtu");
+    assert_code(&mesh(&fixture("tree_30.vtp"), &tree, &["-q"]), FINE);
+    let [one, two] = ["1", "2"].map(|threads| {
+        let out = folder.path().join(threads).with_extension("html");
+        assert_code(&view(&tree, &out, &["-j", threads, "-q"]), FINE);
+        fs::read(out).expect("a file")
+    });
+    assert!(one == two);
+}
+
+#[test]
+fn faults_are_listed() {
+    let folder = folder();
+    let [network, page] = ["h.vtp", "h.html"].map(|name| folder.path().join(name));
+    fs::write(&network, HOPELESS).expect("written");
+    assert_code(&mesh(&network, &folder.path().join("m.vtu"), &["-q"]), STAGE_FAILED);
+    let dumps = folder.path().join("m.vtu.failed");
+    assert_code(&view(&network, &page, &["--dump-dir", dumps.to_str().expect("a path")]), FINE);
+    let faults = &facts(&page)["faults"];
+    let failed = faults
+        .as_array()
+        .expect("a list")
+        .iter()
+        .find(|f| f["what"].as_str().is_some_and(|w| w.contains("not meshed: cluster")));
+    let place = failed.and_then(|f| f["place"][0].as_f64()).expect("a failed block");
+    assert!((place - 50.0).abs() < 5.0, "{faults}");
+}
+
+#[test]
+fn what_cannot_be_viewed_is_said() {
+    let folder = folder();
+    let page = folder.path().join("p.html");
+    let network = fixture("tree_30.swc");
+    assert_says(&view(&network, &folder.path().join("p.txt"), &[]), BAD_INPUT, &["p.txt", ".html"]);
+    assert_says(&view(&network, &folder.path().join("no/p.html"), &[]), BAD_INPUT, &["cannot be written"]);
+    assert_says(&view(&folder.path().join("absent.vtu"), &page, &[]), BAD_INPUT, &["absent.vtu"]);
+    assert_says(&view(&network, &page, &["--dump-dir", "absent"]), BAD_INPUT, &["absent", "cannot be read"]);
+    assert!(entries(folder.path()).is_empty());
+}
+
+/// The page as a browser has it once it is ready, a place asked for; none where there is no browser.
+fn shown(page: &Path, at: [f64; 3]) -> Option<String> {
+    let [x, y, z] = at;
+    let address = format!("file://{}#at={x},{y},{z}", page.display());
+    let browser = ["chromium", "chromium-browser", "google-chrome"]
+        .into_iter()
+        .find(|name| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success()))?;
+    let switches = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+    let time = ["--window-size=800,600", "--virtual-time-budget=20000", "--enable-logging=stderr", "--dump-dom"];
+    let made = Command::new(browser).args(switches).args(time).arg(address).output().ok()?;
+    let said = stderr(&made);
+    assert!(!said.lines().any(|l| l.contains("CONSOLE") && l.contains("rror")), "{said}");
+    Some(stdout(&made))
+}
+
+#[test]
+fn a_browser_shows_it_and_names_what_is_there() {
+    let folder = folder();
+    let [tree, page] = ["tree.vtu", "p.html"].map(|name| folder.path().join(name));
+    let network = fixture("tree_30.vtp");
+    assert_code(&mesh(&network, &tree, &["-q"]), FINE);
+    let volume = anastomesh::io::read_mesh(&tree).expect("a mesh").volume;
+    let cap = volume.patches[1].cap.expect("the inlet");
+    let inside = cap.center - cap.normal * cap.radius;
+    assert_code(&view(&tree, &page, &["-q", "--network", network.to_str().expect("a path")]), FINE);
+    let Some(html) = shown(&page, inside.into()) else {
+        eprintln!("skipped: there is no browser (apt-get install chromium)");
+        return;
+    };
+    assert!(html.contains("data-ready=") && !html.contains("cannot be shown"), "{}", &html[..2000.min(html.len())]);
+    for word in ["patch 1: wall", "block ", "vessel (branch)", "nearest node", "radius "] {
+        assert!(html.contains(word), "'{word}'");
+    }
+    assert_code(&view(&network, &page, &["-q"]), FINE);
+    let html = shown(&page, inside.into()).expect("a browser");
+    assert!(html.contains("vessel (branch)") && html.contains("data-ready="));
+}
