@@ -5,6 +5,7 @@ use crate::pipeline::MeshPlan;
 use crate::skeleton::resolution::{FOLLOW, RHO};
 
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Blocks")]
 pub struct BlockArgs {
     /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
     #[arg(long, default_value_t = RHO, allow_negative_numbers = true)]

@@ -2,11 +2,14 @@
 
 use super::exit::Failure;
 use super::progress::ProgressFormat;
+use crate::report::summary::Written;
 use std::io::Write as _;
 use std::num::NonZeroUsize;
+use std::path::Path;
 
 /// How a verb works and what it says of it.
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "General")]
 pub struct Common {
     /// Number of threads (default: all cores); the output does not depend on it
     #[arg(short = 'j', long, value_name = "N")]
@@ -21,6 +24,29 @@ pub struct Common {
     /// not known). A run whose lines nobody reads any more ends
     #[arg(long, value_name = "FORMAT")]
     pub progress: Option<ProgressFormat>,
+    /// Print all there is to say: every retry, every line of the check
+    #[arg(short, long, conflicts_with = "quiet")]
+    pub verbose: bool,
+}
+
+/// Files and folders that are there, with their sizes.
+pub fn written(paths: &[&Path]) -> Vec<Written> {
+    let size = |path: &Path| match path.metadata() {
+        Ok(data) if data.is_dir() => {
+            let inside = std::fs::read_dir(path).into_iter().flatten().flatten();
+            Some(inside.filter_map(|entry| entry.metadata().ok()).map(|data| data.len()).sum())
+        }
+        data => data.ok().map(|data| data.len()),
+    };
+    paths.iter().filter_map(|path| Some((path.display().to_string(), size(path)?))).collect()
+}
+
+/// Most memory that the process has had in use, in bytes; none where the system does not tell.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(1024 * kilobytes)
 }
 
 /// As many threads as were asked for, or as there are cores.

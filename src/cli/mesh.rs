@@ -6,12 +6,13 @@ use serde::Serialize;
 
 use super::before::{Before, Made, Meshing};
 use super::blocks::BlockArgs;
-use super::common::{Common, print, thread_pool};
+use super::common::{Common, peak_memory, print, thread_pool, written};
 use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
 use super::layers::LayerArgs;
+use super::log;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
@@ -32,12 +33,14 @@ use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
 use crate::pipeline::{
     self, Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, Outlets, RunError, Shard, Stored, TooLarge, VesselData,
+    self, Caps, Clock, Datum, Estimate, Forecast, JointStyle, MeshPlan, Outlets, RunError, Stored, TooLarge, VesselData,
 };
 use crate::progress::{Progress, Stage};
 use crate::refine::{RefineParams, Refined};
 use crate::report::advice::advice;
 use crate::report::caps;
 use crate::report::page::{self, Mark, Section};
+use crate::report::summary::{Summary, forecast};
 use crate::skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -90,6 +93,9 @@ pub struct Args {
     /// (the nearer one) and ratio (the cell's radius ratio) in cells; several with commas between them
     #[arg(long, value_name = "DATA", value_delimiter = ',', value_parser = datum)]
     data: Vec<Datum>,
+    /// Say what it would take (blocks, tetrahedra, time, memory, disk), and mesh nothing
+    #[arg(long)]
+    dry_run: bool,
     #[command(flatten)]
     grid: GridArgs,
     #[command(flatten)]
@@ -187,6 +193,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return args.run_shard(work, shard, (skeleton, &plan), &pool, (&stop, &bars));
     }
     let before = Before::new(network, refined);
+    if args.dry_run {
+        let found = pool.install(|| Forecast::of(&before.network, &plan));
+        let found = found.map_err(|e| Failure::stage(e.to_string()))?;
+        print(args.common.json, &found, || forecast(&found, pool.current_num_threads()))?;
+        return Ok(Exit::Fine);
+    }
     // Blocks are kept as soon as they are done.
     stop.keep();
     if let Some(dir) = &args.work.dir {
@@ -310,7 +322,7 @@ impl Args {
         self.advise(&report, invalid);
         let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
         if let Some(words) = &unfaithful {
-            eprint!("{words}");
+            log::note(words);
         }
         Ok(match () {
             () if !report.failed.is_empty() => Exit::StageFailed,
@@ -323,7 +335,7 @@ impl Args {
     /// Says what may help.
     fn advise(&self, run: &RunReport, invalid: bool) {
         for line in advice(run, invalid, self.blocks.refine.is_some(), self.blocks.rho) {
-            eprintln!("{line}");
+            log::note(&line);
         }
     }
 
@@ -461,6 +473,10 @@ impl Args {
             }
         }
         Ok(Some((refined, params)))
+        if self.common.verbose && !self.common.json {
+            log::note(&refined.report.to_string());
+        }
+        Ok(Some(moved))
     }
 
     fn print(
@@ -481,13 +497,13 @@ impl Args {
             || !run.keeps_vessels(plan.fuse)
             || check.is_some_and(|c| !c.is_valid())
         {
-            eprint!("{run}");
-            if let Some(check) = check {
-                eprint!("{check}");
+            if self.common.verbose {
+                let all = [Some(run.to_string()), check.map(ToString::to_string), fidelity.map(ToString::to_string)];
+                log::result(&all.into_iter().flatten().collect::<String>());
             }
-            if let Some(fidelity) = fidelity {
-                eprint!("{fidelity}");
-            }
+            let files = found.map_or_else(Vec::new, |_| written(&[&self.output, &self.table()]));
+            let summary = Summary { run, check, fidelity, files: &files, memory: peak_memory() };
+            log::result(&summary.to_string());
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ mod blocks;
 mod check;
 mod common;
 mod completions;
+mod config;
 mod convert;
 mod dual;
 mod exit;
@@ -15,6 +16,7 @@ mod grid;
 mod info;
 mod layers;
 mod kind;
+mod log;
 mod man;
 mod mesh;
 mod network;
@@ -35,15 +37,31 @@ mod view;
 
 use std::process::ExitCode;
 
-use clap::{Command, CommandFactory, Parser, Subcommand};
+use std::path::PathBuf;
+
+use clap::{ArgMatches, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use exit::{Exit, Failure};
+use log::LogFormat;
 
 /// From the skeleton of a vascular network to one valid tetrahedral volume mesh.
 #[derive(Debug, Parser)]
-#[command(name = "anastomesh", version, propagate_version = true, arg_required_else_help = true)]
+#[command(
+    name = "anastomesh",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true,
+    args_override_self = true
+)]
 #[command(after_help = "Exit codes: 0 fine, 1 a gate is not met (the mesh is not valid), 2 usage, 3 bad input, \
                         4 a stage failed, 70 a fault of the program, 130 stopped by Ctrl-C.")]
 struct Args {
+    /// Take options from a file, by their long names: what is typed comes after it and wins; the resolved plan is written
+    /// beside the output as `OUTPUT_plan.toml`
+    #[arg(long, global = true, value_name = "PLAN.toml", help_heading = "General")]
+    config: Option<PathBuf>,
+    /// How messages are written
+    #[arg(long, global = true, value_enum, default_value_t = LogFormat::Text, help_heading = "General")]
+    log_format: LogFormat,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -85,14 +103,21 @@ enum Verb {
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
     install_panic_note();
-    let args = match Args::try_parse() {
-        Ok(args) => args,
+    let (words, config) = match config::expanded(std::env::args_os().collect(), &definition()) {
+        Ok(expanded) => expanded,
+        Err(failure) => return failed(&failure),
+    };
+    let parsed = Args::command().try_get_matches_from(words);
+    let parsed = parsed.and_then(|matches| Ok((Args::from_arg_matches(&matches)?, matches)));
+    let (args, matches) = match parsed {
+        Ok(parsed) => parsed,
         Err(error) => {
             // Help and version come this way too, and are no errors.
             let exit = if error.use_stderr() { Exit::Usage } else { Exit::Fine };
             return if error.print().is_ok() { exit.into() } else { Exit::BadInput.into() };
         }
     };
+    args.log_format.set();
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
         Verb::Surface(args) => surface::run(args),
@@ -111,13 +136,26 @@ pub fn main() -> ExitCode {
         Verb::Man(args) => man::run(args, &definition()),
     });
     match result {
-        Ok(Ok(exit)) => exit.into(),
-        Ok(Err(Failure { exit, message })) => {
-            eprintln!("anastomesh: {message}");
-            exit.into()
-        }
+        Ok(Ok(exit)) => match config.map_or(Ok(()), |_| write_plan(&matches)) {
+            Ok(()) => exit.into(),
+            Err(failure) => failed(&failure),
+        },
+        Ok(Err(failure)) => failed(&failure),
         Err(_) => Exit::Bug.into(),
     }
+}
+
+/// Says why it ends.
+fn failed(Failure { exit, message }: &Failure) -> ExitCode {
+    log::error(message);
+    (*exit).into()
+}
+
+/// Writes the options as they were resolved.
+fn write_plan(matches: &ArgMatches) -> Result<(), Failure> {
+    let definition = definition();
+    let Some((name, matches)) = matches.subcommand() else { return Ok(()) };
+    definition.find_subcommand(name).map_or(Ok(()), |verb| config::write_resolved(verb, matches))
 }
 
 /// The command line, with the options that every verb has.

@@ -12,6 +12,7 @@ use crate::skeleton::{CleanReport, NodeId, Skeleton, clean};
 
 /// Arguments of every verb that reads a network.
 #[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Network")]
 pub struct NetworkArgs {
     /// The network: .swc; .vtp or .vtk with lines; .am (Amira, text); .csv (nodes and edges); .graphml, .gxl; .net (Pajek);
     /// .json (node-link); .npyd (`NumPy`'s arrays, a folder); .in (SimVascular 1D)

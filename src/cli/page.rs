@@ -11,6 +11,7 @@ use crate::io::{ensure_text_writable, write_text};
 use crate::report::page::{Mark, Page, Section};
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
 pub struct ReportArgs {
     /// Write a report: pictures, plots, tables and the check, as one page without links to anything else
     #[arg(long, value_name = "PAGE.html")]

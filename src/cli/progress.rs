@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::log;
 use super::stop::Stop;
 use crate::progress::{Progress, Stage};
 
@@ -125,8 +126,8 @@ impl Progress for Bars {
             return;
         }
         match self.current() {
-            Some(bar) => bar.suspend(|| eprintln!("{message}")),
-            None => eprintln!("{message}"),
+            Some(bar) => bar.suspend(|| log::note(message)),
+            None => log::note(message),
         }
     }
 

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use super::before::{Before, Made, Meshing};
 use super::blocks::BlockArgs;
-use super::common::{Common, print, thread_pool};
+use super::common::{Common, peak_memory, print, thread_pool, written};
 use super::exit::{Exit, Failure};
+use super::log;
 use super::network::NetworkArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
@@ -21,6 +22,7 @@ use crate::mesh::check::CheckReport;
 use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport};
 use crate::progress::{Progress, Stage};
 use crate::report::advice::advice;
+use crate::report::summary::Summary;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -70,8 +72,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         pool.install(|| super::refine::moved(&network, params, &args.common, &stop))
     };
     let refined = args.blocks.refine.map(moved).transpose()?;
-    if let Some((refined, _)) = refined.as_ref().filter(|_| !args.common.quiet && !args.common.json) {
-        eprint!("{}", refined.report);
+    if let Some((refined, _)) = refined.as_ref().filter(|_| args.common.verbose && !args.common.json) {
+        log::note(&refined.report.to_string());
     }
     let before = Before::new(network, refined);
     stop.keep();
@@ -115,7 +117,7 @@ impl Args {
     /// Says what may help.
     fn advise(&self, run: &RunReport, invalid: bool) {
         for line in advice(run, invalid, self.blocks.refine.is_some(), self.blocks.rho) {
-            eprintln!("{line}");
+            log::note(&line);
         }
     }
 
@@ -153,10 +155,13 @@ impl Args {
         // What is wrong is an error, which --quiet does not silence.
         let is_wrong = !run.failed.is_empty() || !run.keeps_vessels(plan.fuse) || check.is_some_and(|c| !c.is_valid());
         if !self.common.quiet || is_wrong {
-            eprint!("{run}");
-            if let Some(check) = check {
-                eprint!("{check}");
+            if self.common.verbose {
+                let all = [Some(run.to_string()), check.map(ToString::to_string)];
+                log::result(&all.into_iter().flatten().collect::<String>());
             }
+            let files = check.map_or_else(Vec::new, |_| written(&[&self.output]));
+            let summary = Summary { run, check, fidelity: None, files: &files, memory: peak_memory() };
+            log::result(&summary.to_string());
         }
         Ok(())
     }

@@ -11,6 +11,8 @@ mod data;
 mod describe;
 mod error;
 mod estimate;
+#[cfg(feature = "cli")]
+mod forecast;
 mod make;
 mod once;
 mod plan;
@@ -34,6 +36,8 @@ pub use caps::{CapRow, Caps, Fluid, Outlets};
 pub use data::{Datum, VesselData};
 pub use error::RunError;
 pub use estimate::{Estimate, TooLarge};
+#[cfg(feature = "cli")]
+pub use forecast::Forecast;
 #[cfg(feature = "cli")]
 pub use once::replay;
 pub use plan::{JointStyle, MeshPlan};

@@ -17,4 +17,6 @@ pub mod plot;
 pub mod prepare;
 pub mod refine;
 #[cfg(feature = "cli")]
+pub mod summary;
+#[cfg(feature = "cli")]
 pub mod tetrahedralize;

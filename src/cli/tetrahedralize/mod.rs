@@ -29,7 +29,7 @@ pub use args::Args;
 use format::{InputFormat, Target, is_stream};
 use input::Input;
 use plan::TetPlan;
-use watch::{Listener, Watch, peak_memory};
+use watch::{Listener, Watch};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -82,7 +82,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         pool.install(|| write_page(args, &plan, &report, &volume))?;
     }
     report.stages = watch.stages();
-    report.peak_memory = peak_memory();
+    report.peak_memory = common::peak_memory();
     print(args, &plan, &report)?;
     Ok(if report.bounds_met() { Exit::Fine } else { Exit::GateNotMet })
 }

@@ -106,11 +106,3 @@ impl Progress for Listener {
         stop.is_asked() || watch.lines.as_ref().is_some_and(Lines::is_unheard)
     }
 }
-
-/// Most memory that the process has had in use, in bytes; none where the system does not tell.
-pub fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
-    Some(1024 * kilobytes)
-}

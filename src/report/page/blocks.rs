@@ -1,11 +1,12 @@
 //! What a run did: sizes and times of blocks, retries, failures.
 
-use super::html::{Mark, Section, grouped};
+use super::html::{Mark, Section};
 use super::pictures::network_picture;
 use super::shape::bars;
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
 use crate::report::plot::Panel;
+use crate::report::summary::grouped;
 use crate::skeleton::{EdgeId, Skeleton};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

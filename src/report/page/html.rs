@@ -9,19 +9,6 @@ use std::io;
 
 const STYLE: &str = include_str!("style.css");
 
-/// A count with its thousands apart.
-pub fn grouped(count: usize) -> String {
-    let digits = count.to_string();
-    let mut out = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
-}
-
 /// Text that means itself in HTML, in attributes as well.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -215,11 +202,6 @@ impl Page {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn thousands_are_apart() {
-        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
-    }
 
     #[test]
     fn what_comes_from_outside_means_itself() {

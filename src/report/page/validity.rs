@@ -1,10 +1,11 @@
 //! What a check found, line by line.
 
-use super::html::{Mark, Section, grouped};
+use super::html::{Mark, Section};
 use super::pictures::offenders;
 use crate::mesh::check::{CheckReport, Outcome, Verdict};
 use crate::mesh::source::MeshSource;
 use crate::report::check::{describe, extent, reason, verdict};
+use crate::report::summary::grouped;
 use std::io;
 
 /// Offenders of a line that are spelt out.

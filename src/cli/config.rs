@@ -1,0 +1,113 @@
+//! `--config PLAN.toml`: options from a file, and the plan that became of them beside the output.
+//!
+//! The file has the long names of options as keys. What is typed comes after what the file says, and wins.
+
+use std::ffi::{OsStr, OsString};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, ArgAction, ArgMatches, Command};
+use toml::Value;
+
+use super::exit::Failure;
+use crate::io::write_text;
+
+const OPTION: &str = "--config";
+
+/// The command line with what a file says put before what was typed; and the file.
+pub fn expanded(mut words: Vec<OsString>, definition: &Command) -> Result<(Vec<OsString>, Option<PathBuf>), Failure> {
+    let is_option = |word: &OsString| word == OPTION || word.to_string_lossy().starts_with("--config=");
+    let Some(at) = words.iter().position(is_option) else { return Ok((words, None)) };
+    let word = words.remove(at);
+    let file = match word.to_string_lossy().strip_prefix("--config=") {
+        Some(file) => PathBuf::from(file),
+        None if at < words.len() => PathBuf::from(words.remove(at)),
+        None => return Err(Failure::usage("--config needs a file: --config PLAN.toml")),
+    };
+    let verb = words.iter().enumerate().skip(1).find_map(|(i, word)| Some((i, find(definition, word)?)));
+    let Some((place, verb)) = verb else {
+        return Err(Failure::usage("--config goes with a verb: anastomesh mesh --config PLAN.toml …"));
+    };
+    let options = options(&file, verb)?;
+    words.splice(place + 1..=place, options);
+    Ok((words, Some(file)))
+}
+
+fn find<'a>(definition: &'a Command, word: &OsStr) -> Option<&'a Command> {
+    definition.get_subcommands().find(|verb| word == verb.get_name())
+}
+
+/// The options of a file, as they would be typed.
+fn options(file: &Path, verb: &Command) -> Result<Vec<OsString>, Failure> {
+    let path = file.display();
+    let text = std::fs::read_to_string(file).map_err(|e| Failure::input(format!("{path}: cannot be read: {e}")))?;
+    let table: toml::Table = text.parse().map_err(|e| Failure::input(format!("{path}: {e}")))?;
+    let mut words = Vec::new();
+    for (key, value) in &table {
+        if !verb.get_arguments().any(|arg| arg.get_long() == Some(key)) || key == "config" {
+            let name = verb.get_name();
+            return Err(Failure::input(format!("{path}: '{key}' is no option of {name}; `{name} --help` lists them")));
+        }
+        words.extend(typed(key, value).ok_or_else(|| {
+            Failure::input(format!("{path}: '{key}' has to be a number, text, true or false, or a list of these"))
+        })?);
+    }
+    Ok(words)
+}
+
+/// An option as it would be typed; none where a value is no option's.
+fn typed(key: &str, value: &Value) -> Option<Vec<OsString>> {
+    let word = |value: &dyn std::fmt::Display| Some(vec![format!("--{key}={value}").into()]);
+    match value {
+        Value::Boolean(true) => Some(vec![format!("--{key}").into()]),
+        Value::Boolean(false) => Some(Vec::new()),
+        Value::Integer(n) => word(n),
+        Value::Float(x) => word(x),
+        Value::String(text) => word(text),
+        Value::Array(list) => {
+            let all: Option<Vec<_>> = list.iter().map(|value| typed(key, value)).collect();
+            Some(all?.concat())
+        }
+        Value::Datetime(_) | Value::Table(_) => None,
+    }
+}
+
+/// Writes all options of a verb with the values that they had, beside its output.
+pub fn write_resolved(verb: &Command, matches: &ArgMatches) -> Result<(), Failure> {
+    let Ok(Some(output)) = matches.try_get_one::<PathBuf>("output") else { return Ok(()) };
+    let mut name = output.file_stem().unwrap_or_default().to_owned();
+    name.push("_plan.toml");
+    let path = output.with_file_name(name);
+    let mut text = format!("# anastomesh {} {}\n", env!("CARGO_PKG_VERSION"), verb.get_name());
+    for (key, value) in verb.get_arguments().filter_map(|arg| resolved(arg, matches)) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{key} = {value}");
+    }
+    write_text(&path, &text).map_err(|e| Failure::input(format!("{}: cannot be written: {e}", path.display())))
+}
+
+/// An option and its value, if it has one.
+fn resolved<'a>(arg: &'a Arg, matches: &ArgMatches) -> Option<(&'a str, Value)> {
+    let key = arg.get_long().filter(|key| !matches!(*key, "config" | "help" | "version"))?;
+    let id = arg.get_id().as_str();
+    if matches!(arg.get_action(), ArgAction::SetTrue) {
+        return Some((key, Value::Boolean(matches.get_flag(id))));
+    }
+    let values: Vec<Value> = matches.try_get_raw(id).ok()??.map(|raw| value(&raw.to_string_lossy())).collect();
+    match &values[..] {
+        [] => None,
+        [one] => Some((key, one.clone())),
+        _ => Some((key, Value::Array(values))),
+    }
+}
+
+/// A number where it is one.
+fn value(text: &str) -> Value {
+    if let Ok(n) = text.parse::<i64>() {
+        return Value::Integer(n);
+    }
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() => Value::Float(x),
+        _ => Value::String(text.to_owned()),
+    }
+}

@@ -1,0 +1,54 @@
+//! What a network would take: cut into blocks, nothing meshed.
+
+use super::cures::partition_params;
+use super::error::RunError;
+use super::estimate::Estimate;
+use super::plan::MeshPlan;
+use crate::partition;
+use crate::refine::split;
+use crate::skeleton::Skeleton;
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Tetrahedra that a thread makes, checks and writes per second: as measured with kidneys.
+const TETS_PER_SECOND: f64 = 3.1e5;
+/// Memory of the program itself, with a network of some thousand edges.
+const AT_LEAST: u64 = 60_000_000;
+
+/// Blocks, and what they will take.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Forecast {
+    pub clusters: usize,
+    pub connectors: usize,
+    /// Nodes of the largest cluster.
+    pub largest_nodes: usize,
+    pub estimate: Estimate,
+}
+
+impl Forecast {
+    /// Of a network.
+    ///
+    /// # Errors
+    /// When it cannot be partitioned.
+    pub fn of(network: &Skeleton, plan: &MeshPlan) -> Result<Self, RunError> {
+        let (network, _) = split(network);
+        let params = partition_params(&network, plan, &BTreeMap::new(), &BTreeSet::new());
+        let partition = partition::partition(&network, &params)?;
+        Ok(Self {
+            clusters: partition.clusters.len(),
+            connectors: partition.cuts.len(),
+            largest_nodes: partition.clusters.iter().map(|c| c.nodes.len()).max().unwrap_or(0),
+            estimate: Estimate::of(&partition, plan),
+        })
+    }
+
+    /// Seconds on so many threads.
+    pub fn seconds(&self, threads: usize) -> f64 {
+        self.estimate.tets / TETS_PER_SECOND / threads.max(1) as f64
+    }
+
+    /// Bytes of memory on so many threads.
+    pub fn memory(&self, threads: usize) -> u64 {
+        AT_LEAST + self.estimate.largest_block_bytes * threads as u64
+    }
+}

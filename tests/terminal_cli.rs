@@ -1,0 +1,158 @@
+//! What the terminal shows: summaries, forecasts, plans from files, messages for programs.
+
+mod common;
+
+use common::fixture;
+use common::program::*;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn a_summary_says_what_was_done_and_verbose_all_of_it() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    let short = mesh(&fixture("tree_30.vtp"), &out, &[]);
+    assert_code(&short, FINE);
+    let said = stderr(&short);
+    let starts = ["network  30 nodes, 29 edges", "blocks ", "mesh ", "shape ", "vessels ", "file ", "time "];
+    for start in starts {
+        assert!(said.lines().any(|line| line.starts_with(start)), "'{start}' in {said}");
+    }
+    assert!(said.ends_with("\nvalid\n") && said.lines().count() < 15 && !said.contains("  ok   "), "{said}");
+    let long = stderr(&mesh(&fixture("tree_30.vtp"), &out, &["--verbose"]));
+    assert!(long.contains("  ok   every tetrahedron is positive\n") && long.ends_with("\nvalid\n"), "{long}");
+    assert!(stderr(&mesh(&fixture("tree_30.vtp"), &out, &["-q"])).is_empty());
+    assert_says(&mesh(&fixture("tree_30.vtp"), &out, &["-q", "-v"]), USAGE, &["--verbose"]);
+}
+
+#[test]
+fn a_dry_run_meshes_nothing_and_comes_close() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    let dry = mesh(&fixture("tree_30.vtp"), &out, &["--dry-run", "-j", "2", "-q"]);
+    assert_code(&dry, FINE);
+    let said = stdout(&dry);
+    for word in [
+        "blocks ",
+        " clusters (largest ",
+        "about ",
+        " tetrahedra",
+        " on 2 threads",
+        "memory ",
+        "disk ",
+        "nothing was meshed",
+    ] {
+        assert!(said.contains(word), "'{word}' in {said}");
+    }
+    assert!(entries(folder.path()).is_empty());
+    let dry = json(&mesh(&fixture("tree_30.vtp"), &out, &["--dry-run", "--json"]));
+    let made = json(&mesh(&fixture("tree_30.vtp"), &out, &["--json"]));
+    let [about, found] =
+        [&dry["estimate"]["tets"], &made["run"]["mesh"]["tets"]].map(|n| n.as_f64().expect("a number"));
+    assert!((0.5..2.0).contains(&(about / found)), "{about} {found}");
+    assert_eq!(dry["clusters"], made["run"]["blocks"]["clusters"]);
+}
+
+#[test]
+fn options_come_from_a_file_and_the_plan_is_written() {
+    let folder = folder();
+    let [plan, out] = ["plan.toml", "tree.vtu"].map(|name| folder.path().join(name));
+    fs::write(&plan, "rho = 4\nroot = [\"7\"]\nquiet = true\nrefine = false\nformat = \"vtu\"\n").expect("written");
+    let options = ["--config", plan.to_str().expect("a path"), "--root", "9", "--rho", "3.5"];
+    // Roots add up, numbers are replaced: 9 is no terminal, which shows that it was heard.
+    let refused = mesh(&fixture("tree_30.swc"), &out, &options);
+    assert_code(&refused, USAGE);
+    fs::write(&plan, "rho = 4\nquiet = true\nrefine = false\nformat = \"vtu\"\n").expect("written");
+    assert_code(&mesh(&fixture("tree_30.swc"), &out, &[options[0], options[1], "--rho", "3.5"]), FINE);
+    assert_eq!(entries(folder.path()), ["plan.toml", "tree.vtu", "tree_patches.csv", "tree_plan.toml"]);
+    let resolved = fs::read_to_string(folder.path().join("tree_plan.toml")).expect("the plan");
+    for line in ["rho = 3.5", "quiet = true", "format = \"vtu\"", "memory = \"2GiB\"", "keep-going = false"] {
+        assert!(resolved.lines().any(|l| l == line), "'{line}' in {resolved}");
+    }
+    // What was resolved gives the same mesh again.
+    let first = fs::read(&out).expect("a mesh");
+    let again = folder.path().join("tree_plan.toml");
+    let config = ["--config", again.to_str().expect("a path"), "--output", out.to_str().expect("a path")];
+    assert_code(&run("mesh", &[&fixture("tree_30.swc")], &config), FINE);
+    assert!(fs::read(&out).expect("a mesh") == first);
+}
+
+#[test]
+fn files_with_other_keys_are_refused() {
+    let folder = folder();
+    let [plan, out] = ["plan.toml", "tree.vtu"].map(|name| folder.path().join(name));
+    let options = ["--config", plan.to_str().expect("a path")];
+    let refused = |text: &str, words: &[&str]| {
+        fs::write(&plan, text).expect("written");
+        assert_says(&mesh(&fixture("tree_30.swc"), &out, &options), BAD_INPUT, words);
+    };
+    refused("rhoo = 3\n", &["plan.toml", "'rhoo' is no option of mesh"]);
+    refused("[rho]\na = 1\n", &["plan.toml", "'rho' has to be a number"]);
+    refused("rho = = 3\n", &["plan.toml", "line 1"]);
+    refused("config = \"other.toml\"\n", &["'config' is no option"]);
+    fs::remove_file(&plan).expect("removed");
+    assert_says(&mesh(&fixture("tree_30.swc"), &out, &options), BAD_INPUT, &["plan.toml", "cannot be read"]);
+    assert_says(&run("--config", &[], &[]), USAGE, &["--config PLAN.toml"]);
+}
+
+#[test]
+fn messages_are_lines_or_objects_without_colours() {
+    let folder = folder();
+    let out = folder.path().join("tree.vtu");
+    let made = mesh(&fixture("tree_30.swc"), &out, &["--log-format", "json"]);
+    assert_code(&made, FINE);
+    let lines: Vec<Value> = stderr(&made)
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}")))
+        .collect();
+    let level = |line: &Value| line["level"].as_str().expect("a level").to_owned();
+    assert!(lines.iter().any(|line| level(line) == "note"));
+    let result = lines.iter().find(|line| level(line) == "result").expect("a result");
+    assert!(result["message"].as_str().is_some_and(|m| m.ends_with("\nvalid")));
+    let refused = mesh(Path::new("absent.swc"), &out, &["--log-format", "json"]);
+    assert_code(&refused, BAD_INPUT);
+    let error: Value = serde_json::from_str(stderr(&refused).trim()).expect("an object");
+    assert!(level(&error) == "error" && error["message"].as_str().is_some_and(|m| m.contains("absent.swc")));
+    // Nothing of it has colours where no terminal is.
+    assert!(!stderr(&mesh(&fixture("tree_30.swc"), &out, &[])).contains('\u{1b}'));
+    assert!(!stdout(&run("mesh", &[], &["--help"])).contains('\u{1b}'));
+}
+
+/// Options stand under headings: no group is longer than a screen.
+#[test]
+fn help_is_in_groups() {
+    for verb in [
+        "mesh",
+        "surface",
+        "prepare",
+        "refine",
+        "render",
+        "view",
+        "check",
+        "convert",
+        "tetrahedralize",
+        "info",
+        "replay",
+    ] {
+        let help = stdout(&run(verb, &[], &["-h"]));
+        let groups: Vec<&str> = help.split("\n\n").collect();
+        for group in &groups {
+            let options = group.lines().filter(|line| line.trim_start().starts_with('-')).count();
+            assert!(options <= 22, "{verb}: {options} options in\n{group}");
+        }
+    }
+}
+
+/// `docs/options.md` is what the program says of its options.
+#[test]
+fn the_list_of_options_is_that_of_the_program() {
+    let said = stdout(&run("man", &[], &["--markdown"]));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/options.md");
+    if std::env::var_os("ANASTOMESH_WRITE_OPTIONS").is_some() {
+        fs::write(&path, &said).expect("written");
+    }
+    let kept = fs::read_to_string(&path).expect("docs/options.md");
+    assert!(said == kept, "docs/options.md is old: ANASTOMESH_WRITE_OPTIONS=1 cargo test --test terminal_cli");
+    assert!(said.contains("## mesh\n") && said.contains("`--rho <RHO>`") && said.contains("| `3` |"));
+}
