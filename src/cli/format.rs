@@ -5,6 +5,7 @@ use crate::io::volume::MeshFormat;
 use std::path::Path;
 
 #[derive(Clone, Copy, Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
 pub struct FormatArgs {
     /// Format of the mesh, whatever its extension: vtu, pvtu, msh (Gmsh 4.1), msh2 (Gmsh 2.2, text; programs that read it want
     /// .msh), medit, openfoam, simvascular, npy or tetgen

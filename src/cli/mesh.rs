@@ -51,6 +51,9 @@ pub struct Args {
     /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), .ele
     /// (TetGen's family of files), or .npyd (a folder of `NumPy`'s arrays)
     #[arg(short, long, value_name = "MESH")]
+    /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), or .ele
+    /// (TetGen's family of files)
+    #[arg(short, long, value_name = "MESH", help_heading = "Output")]
     output: PathBuf,
     #[command(flatten)]
     format: FormatArgs,

@@ -38,8 +38,8 @@ pub struct PictureArgs {
     /// Background
     #[arg(long, value_enum, default_value_t = Ground::Light)]
     background: Ground,
-    /// Take tetrahedra away that are before a plane: x, y, z, -x, -y, -z or view, in the middle of the picture or at a coordinate
-    /// or share: x:12.5, view:40%
+    /// Take tetrahedra away that are before a plane, as the viewer sees it: x, y, z or view; -x, -y, -z: that are behind it. In the
+    /// middle of the picture or at a coordinate or share: x:12.5, view:40%
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true)]
     clip: Option<PlaneWish>,
     /// Cut the wall open at a plane, to look into the vessels

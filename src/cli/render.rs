@@ -20,7 +20,7 @@ pub struct Args {
     #[command(flatten)]
     input: NetworkArgs,
     /// Where the picture goes
-    #[arg(short, long, value_name = "PICTURE.png")]
+    #[arg(short, long, value_name = "PICTURE.png", help_heading = "Output")]
     output: PathBuf,
     /// The network that the mesh was made of, for what is coloured by radius or order
     #[arg(long = "network", value_name = "NETWORK")]

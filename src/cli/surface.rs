@@ -29,7 +29,7 @@ pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
     /// Where the wall goes: .stl (binary), .ply, .obj, .off, .glb, .3mf or .vtp
-    #[arg(short, long, value_name = "SURFACE")]
+    #[arg(short, long, value_name = "SURFACE", help_heading = "Output")]
     output: PathBuf,
     /// Leave inlets and outlets open instead of closing them with flat caps
     #[arg(long)]

@@ -69,7 +69,9 @@ impl std::str::FromStr for PlaneWish {
 impl PlaneWish {
     /// The plane, once it is known what is looked at, and from where.
     pub fn plane(&self, camera: &Camera, outline: &Outline) -> Plane {
-        let normal = self.axis.unwrap_or(camera.towards);
+        // Of x the viewer's side goes, of −x the other one.
+        let facing = |axis: Vec3| if axis.abs().dot(&camera.towards) < 0.0 { -axis } else { axis };
+        let normal = self.axis.map_or(camera.towards, facing);
         let offset = match self.place {
             Place::Middle => camera.centre.coords.dot(&normal),
             Place::Share(share) => {
@@ -90,6 +92,20 @@ impl PlaneWish {
 mod tests {
     use super::*;
     use crate::picture::Direction;
+
+    #[test]
+    fn the_viewers_side_goes() {
+        let mut outline = Outline::for_points(2);
+        outline.add(&Point3::new(-1.0, -1.0, -1.0));
+        outline.add(&Point3::new(1.0, 1.0, 1.0));
+        for (azimuth, near) in [(0.0, -1.0), (180.0, 1.0)] {
+            let camera = Camera::new(Direction::by_angles(azimuth, 0.0), &outline, [10, 10], 1.0, None);
+            let behind = |text: &str| {
+                text.parse::<PlaneWish>().unwrap().plane(&camera, &outline).behind(&Point3::new(0.0, near, 0.0))
+            };
+            assert!(behind("y") < 0.0 && behind("-y") > 0.0);
+        }
+    }
 
     #[test]
     fn planes_are_read_and_placed() {

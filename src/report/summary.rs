@@ -9,6 +9,9 @@ use std::fmt::{self, Write as _};
 /// Things of a kind that are spelt out.
 const SPELT_OUT: usize = 3;
 
+/// Stages that took a smaller share of the time are not mentioned.
+const MENTIONED: f64 = 0.02;
+
 /// A file that was written, and its size in bytes.
 pub type Written = (String, u64);
 
@@ -46,7 +49,7 @@ impl fmt::Display for Summary<'_> {
         }
         line(out, "time", &self.time())?;
         for failed in check.failed() {
-            line(out, "FAIL", &format!("{}: {}", failed.line.statement(), extent(failed)))?;
+            writeln!(out, "FAIL {}: {}", failed.line.statement(), extent(failed))?;
             let shown: Vec<&Offender> = failed.offenders.iter().take(SPELT_OUT).collect();
             for offender in &shown {
                 line(out, "", &describe(offender))?;
@@ -120,7 +123,7 @@ impl Summary<'_> {
 
     fn time(&self) -> String {
         let all: f64 = self.run.stages.iter().map(|stage| stage.seconds).sum();
-        let mut longest: Vec<_> = self.run.stages.iter().collect();
+        let mut longest: Vec<_> = self.run.stages.iter().filter(|s| s.seconds >= MENTIONED * all).collect();
         longest.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
         let longest: Vec<String> =
             longest.iter().take(SPELT_OUT).map(|s| format!("{} {}", s.stage, seconds_of(s.seconds))).collect();
@@ -225,8 +228,8 @@ mod tests {
             network: [1234, 1233],
             stages: vec![
                 StageTime { stage: "blocks", seconds: 130.0 },
-                StageTime { stage: "write", seconds: 2.25 },
-                StageTime { stage: "check", seconds: 0.5 },
+                StageTime { stage: "write", seconds: 22.5 },
+                StageTime { stage: "check", seconds: 5.0 },
                 StageTime { stage: "split", seconds: 0.01 },
             ],
             ..RunReport::default()
@@ -252,13 +255,10 @@ mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets
         assert!(text.starts_with(expected), "{text}");
         assert!(text.contains("\nfile     tree.vtu (1.0 MB)\n"), "{text}");
         assert!(
-            text.contains("\ntime     2 min (blocks 2 min, write 2.2 s, check 0.5 s); 250.0 MB of memory at most\n"),
+            text.contains("\ntime     3 min (blocks 2 min, write 22 s, check 5.0 s); 250.0 MB of memory at most\n"),
             "{text}"
         );
-        assert!(
-            text.contains("\nFAIL     every tetrahedron is positive: 9 found\n         tetrahedron 0 at "),
-            "{text}"
-        );
+        assert!(text.contains("\nFAIL every tetrahedron is positive: 9 found\n         tetrahedron 0 at "), "{text}");
         assert!(text.contains("\n         and 6 more (-v shows ten, --report where they are)\n"), "{text}");
         assert!(text.ends_with("\nNOT valid\n"), "{text}");
     }
@@ -285,7 +285,7 @@ blocks   0 clusters, 0 connectors, 5 FAILED
   FAILED cluster 2 (nodes [2]): no room
     its input is in d/2.json
     and 2 more (-v lists them)
-time     2 min (blocks 2 min, write 2.2 s, check 0.5 s)
+time     3 min (blocks 2 min, write 22 s, check 5.0 s)
 ";
         assert_eq!(text, expected);
     }
