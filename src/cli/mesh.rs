@@ -320,7 +320,8 @@ impl Args {
         self.write_table(&caps, &before.names)?;
         report.stages.extend(clock.stages());
         self.print(plan, before, &report, Some((check, &fidelity)))?;
-        self.write_page(plan, before, &report, Some(Found { mesh: written, check, fidelity: &fidelity, caps: &caps }))?;
+        let found = Found { mesh: written, check, fidelity: &fidelity, caps: &caps };
+        self.write_page(plan, before, &report, Some(&found))?;
         let invalid = !check.is_valid() || !report.keeps_vessels(plan.fuse);
         self.advise(&report, invalid);
         let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
@@ -389,12 +390,12 @@ impl Args {
         plan: &MeshPlan,
         before: &Before,
         run: &RunReport,
-        found: Option<Found>,
+        found: Option<&Found>,
     ) -> Result<(), Failure> {
         let failed = || (Mark::Bad, format!("{} blocks could not be meshed", run.failed.len()));
-        let verdict = found.as_ref().map_or_else(failed, |found| page::headline(found.check));
+        let verdict = found.map_or_else(failed, |found| page::headline(found.check));
         self.report.write(&self.output, Some(verdict), plan, |page| {
-            let Some(Found { mesh, check, fidelity, caps }) = found else {
+            let Some(&Found { mesh, check, fidelity, caps }) = found else {
                 page.add(page::failed_blocks(&before.network, run)?);
                 page.add(page::run(run, &[]));
                 return Ok(());

@@ -215,18 +215,16 @@ impl PictureArgs {
 
 /// The scale of what is known of a network's vessels.
 fn legend(datum: Datum, network: &Skeleton, mesh: &dyn MeshSource) -> Legend {
-    match datum {
-        Datum::Radius => Legend::of(network.edges.iter().flat_map(|e| e.radii), true),
-        _ => {
-            let data = VesselData::new(vec![datum], network, mesh);
-            let middle = |e| {
-                let tube = network.tube(e);
-                Point3::from((tube.a.coords + tube.b.coords) * 0.5)
-            };
-            let places: Vec<[Point3; 3]> = network.edge_ids().map(|e| [middle(e); 3]).collect();
-            Legend::of(data.in_faces(0, &places).into_iter(), false)
-        }
+    if datum == Datum::Radius {
+        return Legend::of(network.edges.iter().flat_map(|e| e.radii), true);
     }
+    let data = VesselData::new(vec![datum], network, mesh);
+    let middle = |e| {
+        let tube = network.tube(e);
+        Point3::from((tube.a.coords + tube.b.coords) * 0.5)
+    };
+    let places: Vec<[Point3; 3]> = network.edge_ids().map(|e| [middle(e); 3]).collect();
+    Legend::of(data.in_faces(0, &places).into_iter(), false)
 }
 
 #[cfg(test)]

@@ -25,15 +25,13 @@ impl DihedralHistogram {
         let parts: Vec<u32> = (0..mesh.parts()).step_by(stride).collect();
         let counts = parts.par_iter().map(|&part| {
             let corners = mesh.corners_of(&mesh.tets(part)?.tets)?;
-            Ok(corners.par_chunks(1024).map(count).reduce(|| [0; BINS], add))
+            Ok(corners.par_chunks(1024).map(count).reduce(|| [0; BINS], |a, b| add(a, &b)))
         });
-        counts.try_reduce(|| [0; BINS], |a, b| Ok(add(a, b))).map(Self)
+        counts.try_reduce(|| [0; BINS], |a, b| Ok(add(a, &b))).map(Self)
     }
 
     /// Degrees that a bin holds.
-    pub fn width(&self) -> f64 {
-        180.0 / BINS as f64
-    }
+    pub const WIDTH: f64 = 180.0 / BINS as f64;
 
     /// How many angles are in each bin.
     pub fn counts(&self) -> &[u64] {
@@ -51,7 +49,7 @@ fn count(tets: &[[Point3; 4]]) -> [u64; BINS] {
     bins
 }
 
-fn add(mut a: [u64; BINS], b: [u64; BINS]) -> [u64; BINS] {
+fn add(mut a: [u64; BINS], b: &[u64; BINS]) -> [u64; BINS] {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
     a
 }

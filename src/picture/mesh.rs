@@ -48,7 +48,9 @@ impl MeshPicture<'_> {
     pub fn outline(mesh: &dyn MeshSource) -> io::Result<Outline> {
         let mut outline = Outline::for_points(mesh.counts().boundary);
         mesh.each_face_corners(|corners| {
-            corners.iter().for_each(|c| outline.add(&c[0]));
+            for c in corners {
+                outline.add(&c[0]);
+            }
             Ok(())
         })?;
         Ok(outline)
@@ -124,7 +126,7 @@ impl MeshPicture<'_> {
         self.mesh.each_part(read, |(piece, corners, colours)| {
             for ((face, corners), colour) in piece.faces.iter().zip(corners).zip(colours) {
                 if wanted(face, &corners) {
-                    canvas.add(Facet::flat(corners, colour, self.from_inside(colour)));
+                    canvas.add(Facet::flat(corners, colour, seen_from_inside(colour)));
                 }
             }
             Ok(())
@@ -141,7 +143,7 @@ impl MeshPicture<'_> {
             (Colour::Radius | Colour::Order, Some((beside, legend))) => {
                 // Values of points stand for cells in their middles.
                 let values = if beside.columns().first().is_some_and(|column| column.at_points) {
-                    beside.at_points(0, &corners.iter().map(|c| middle(c)).collect::<Vec<_>>())
+                    beside.at_points(0, &corners.iter().map(middle).collect::<Vec<_>>())
                 } else {
                     beside.in_faces(0, corners)
                 };
@@ -152,11 +154,6 @@ impl MeshPicture<'_> {
             (Colour::Patch, _) => each(&|i| of_patch(patches, at(&piece.patches, i))),
             _ => vec![WALL_COLOURS[0]; corners.len()],
         }
-    }
-
-    /// The wall is darker within.
-    fn from_inside(&self, colour: Rgb) -> Rgb {
-        if colour == WALL_COLOURS[0] { WALL_COLOURS[1] } else { colour.map(|c| (u16::from(c) * 5 / 8) as u8) }
     }
 
     fn inner_colour(&self, open: &Open) -> Rgb {
@@ -174,6 +171,11 @@ impl MeshPicture<'_> {
             _ => INSIDE,
         }
     }
+}
+
+/// The wall is darker within.
+fn seen_from_inside(colour: Rgb) -> Rgb {
+    if colour == WALL_COLOURS[0] { WALL_COLOURS[1] } else { colour.map(|c| (u16::from(c) * 5 / 8) as u8) }
 }
 
 fn middle(corners: &[Point3; 3]) -> Point3 {

@@ -6,6 +6,7 @@ use super::canvas::{Canvas, Sample};
 use super::colours::Background;
 use super::image::Image;
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 
 /// Towards the lamp, as the viewer sees it; of length 1.
 const LAMP: [f64; 3] = [-0.408_248, 0.408_248, 0.816_497];
@@ -122,8 +123,8 @@ impl<'a> Light<'a> {
         let normal = sample.normal.map(|x| f64::from(x) / 32_767.0);
         let [width, height] = self.canvas.camera.size;
         // Looks are turned from pixel to pixel, in a pattern of four by four, so that they leave no rings.
-        let turn =
-            f64::from((((x / self.canvas.factor) & 3) * 4 + ((y / self.canvas.factor) & 3)) as u32 * 7 % 16) * 0.392_7;
+        let [column, row] = [x, y].map(|n| (n / self.canvas.factor) & 3);
+        let turn = TAU * ((4 * column + row) * 7 % 16) as f64 / 16.0;
         let (sin, cos) = turn.sin_cos();
         let mut hidden = 0.0;
         for &[u, v] in &self.looks {

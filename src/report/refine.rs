@@ -55,9 +55,9 @@ fn text(report: &RefineReport) -> String {
     for row in figures_table(report) {
         let [name, values @ ..] = &row[..] else { continue };
         let _ = write!(out, "{name:26}");
-        values.iter().for_each(|value| {
+        for value in values {
             let _ = write!(out, "{value:>12}");
-        });
+        }
         out.push('\n');
     }
     if !report.worse.is_empty() {

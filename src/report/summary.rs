@@ -35,7 +35,7 @@ impl fmt::Display for Summary<'_> {
         line(out, "blocks", &self.blocks())?;
         self.troubles(out)?;
         let Some(check) = self.check else { return line(out, "time", &self.time()) };
-        line(out, "mesh", &self.sizes(check))?;
+        line(out, "mesh", &sizes(check))?;
         if let Some(q) = &check.quality {
             let angles = format!("dihedral angles {:.0}° to {:.0}°", q.dihedral_min, q.dihedral_max);
             line(out, "shape", &format!("radius ratio {:.2} in the mean, {:.2} at least; {angles}", q.mean, q.min))?;
@@ -110,17 +110,6 @@ impl Summary<'_> {
         more(out, astray().count())
     }
 
-    fn sizes(&self, check: &CheckReport) -> String {
-        let counts = &check.counts;
-        let tets = if counts.tets > 0 { format!("{} tetrahedra, ", grouped(counts.tets)) } else { String::new() };
-        format!(
-            "{tets}{} points, {} boundary faces, {} inlets and outlets",
-            grouped(counts.points),
-            grouped(counts.boundary_faces),
-            counts.caps
-        )
-    }
-
     fn time(&self) -> String {
         let all: f64 = self.run.stages.iter().map(|stage| stage.seconds).sum();
         let mut longest: Vec<_> = self.run.stages.iter().filter(|s| s.seconds >= MENTIONED * all).collect();
@@ -130,6 +119,17 @@ impl Summary<'_> {
         let memory = self.memory.map_or_else(String::new, |bytes| format!("; {} of memory at most", bytes_of(bytes)));
         format!("{} ({}){memory}", seconds_of(all), longest.join(", "))
     }
+}
+
+fn sizes(check: &CheckReport) -> String {
+    let counts = &check.counts;
+    let tets = if counts.tets > 0 { format!("{} tetrahedra, ", grouped(counts.tets)) } else { String::new() };
+    format!(
+        "{tets}{} points, {} boundary faces, {} inlets and outlets",
+        grouped(counts.points),
+        grouped(counts.boundary_faces),
+        counts.caps
+    )
 }
 
 fn more(out: &mut fmt::Formatter, count: usize) -> fmt::Result {

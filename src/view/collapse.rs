@@ -34,10 +34,14 @@ impl Collapse {
         for (i, t) in (0..).zip(&triangles) {
             let [a, b, c] = t.map(|v| points[v as usize]);
             let area = (b - a).cross(&(c - a));
-            t.iter().for_each(|&v| around[v as usize].push(i));
+            for v in t {
+                around[*v as usize].push(i);
+            }
             if let Some(normal) = area.try_normalize(0.0) {
                 let plane = Quadric::plane(&normal, &relative(&a, &centre), area.norm());
-                t.iter().for_each(|&v| quadrics[v as usize] += plane);
+                for v in t {
+                    quadrics[*v as usize] += plane;
+                }
             }
         }
         let (left, moves) = (triangles.len(), vec![0; points.len()]);

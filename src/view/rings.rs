@@ -2,20 +2,20 @@
 //!
 //! Both blocks at a ring keep the same points of it, though neither knows the other: the choice depends on the ring alone.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The rings of a surface whose triangles run counter-clockwise: each as its points in order. Where two rings touch in a
 /// point they may be one.
 pub fn rings(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
-    let mut open: FxHashMap<[u32; 2], ()> = FxHashMap::default();
+    let mut open: FxHashSet<[u32; 2]> = FxHashSet::default();
     for &[a, b, c] in triangles {
         for [a, b] in [[a, b], [b, c], [c, a]] {
-            if open.remove(&[b, a]).is_none() {
-                open.insert([a, b], ());
+            if !open.remove(&[b, a]) {
+                open.insert([a, b]);
             }
         }
     }
-    let mut edges: Vec<[u32; 2]> = open.into_keys().collect();
+    let mut edges: Vec<[u32; 2]> = open.into_iter().collect();
     edges.sort_unstable();
     let mut next: FxHashMap<u32, u32> = FxHashMap::default();
     for &[a, b] in &edges {

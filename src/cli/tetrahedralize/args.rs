@@ -58,6 +58,7 @@ pub struct Args {
     pub tetgen: Option<String>,
     #[command(flatten)]
     pub layers: LayerArgs,
+    #[command(flatten)]
     pub report: ReportArgs,
     #[command(flatten)]
     pub common: Common,

@@ -106,9 +106,10 @@ fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetr
 
 /// Writes the page of `--report`.
 fn write_page(args: &Args, plan: &TetPlan, report: &TetReport, mesh: &VolumeMesh) -> Result<(), Failure> {
-    let verdict = match report.bounds_met() {
-        true => (Mark::Good, "every triangle of the input is a face of the mesh, or a union of faces".into()),
-        false => (Mark::Bad, "a bound is not met".into()),
+    let verdict = if report.bounds_met() {
+        (Mark::Good, "every triangle of the input is a face of the mesh, or a union of faces".into())
+    } else {
+        (Mark::Bad, "a bound is not met".into())
     };
     args.report.write(&args.input, Some(verdict), plan, |page| {
         page.add(Section::new("Summary").folded("As the terminal shows it", &report.text()));

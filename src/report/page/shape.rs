@@ -15,8 +15,12 @@ pub fn quality(quality: &TetQuality, dihedral: &DihedralHistogram) -> Section {
         width,
         quality.histogram.iter().copied(),
     );
-    let angles =
-        bars("Dihedral angles", ["angle (degrees)", "angles (%)"], dihedral.width(), dihedral.counts().iter().copied());
+    let angles = bars(
+        "Dihedral angles",
+        ["angle (degrees)", "angles (%)"],
+        DihedralHistogram::WIDTH,
+        dihedral.counts().iter().copied(),
+    );
     Section::new("Shape of the tetrahedra")
         .tiles(&[
             ("mean radius ratio", format!("{:.4}", quality.mean)),
