@@ -2,12 +2,24 @@
 
 use crate::block::{BlockDump, BlockInput};
 use crate::geometry::{Point3, Vec3};
-use crate::mesh::check::{CheckReport, LineResult};
+use crate::mesh::check::{CheckReport, LineResult, Offender, OffenderKind};
 use crate::skeleton::{Overlap, Skeleton};
 use serde::Serialize;
 
 /// Faults of a kind that are listed, at most.
 const LISTED: usize = 200;
+/// Numbers of points that an offender is named by, at most.
+const NAMED: usize = 3;
+
+/// What the numbers of an offender are.
+fn ids_of(kind: OffenderKind) -> &'static str {
+    match kind {
+        OffenderKind::Point | OffenderKind::Edge | OffenderKind::Face | OffenderKind::FacePair => "points",
+        OffenderKind::Tet | OffenderKind::TetPair => "tetrahedra",
+        OffenderKind::Patch => "patch",
+        OffenderKind::Node => "node",
+    }
+}
 
 /// A place where something is wrong.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,10 +36,13 @@ impl Fault {
     pub fn of_check(check: &CheckReport) -> Vec<Self> {
         let of_line = |line: &LineResult| {
             let statement = line.line.statement();
-            line.offenders
-                .iter()
-                .filter_map(|o| Some(Self { what: format!("not so: {statement}"), place: o.position?, extent: 0.0 }))
-                .collect::<Vec<_>>()
+            let fault = |o: &Offender| {
+                let ids: Vec<String> = o.ids.iter().take(NAMED).map(ToString::to_string).collect();
+                let more = if o.ids.len() > NAMED { " …" } else { "" };
+                let what = format!("not so: {statement} ({} {}{more})", ids_of(o.kind), ids.join(" "));
+                Some(Self { what, place: o.position?, extent: 0.0 })
+            };
+            line.offenders.iter().filter_map(fault).collect::<Vec<_>>()
         };
         check.failed().flat_map(of_line).collect()
     }

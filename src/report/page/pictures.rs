@@ -13,8 +13,11 @@ const SIZE: [usize; 2] = [720, 540];
 const SAMPLES: usize = 2;
 /// How much closer one looks where tetrahedra are to be seen, at least.
 const CLOSER: f64 = 3.0;
-/// Offenders that are shown, at most.
+/// Offenders that are shown, at most, and those among which they are chosen: of some beside each other one is enough.
 const SHOWN: usize = 6;
+const CANDIDATES: usize = 24;
+/// How close to one that is shown, as a share of the picture, others are not shown.
+const BESIDE: f64 = 0.5;
 
 /// A mesh as a whole, its blocks where it has several, and some tetrahedra.
 ///
@@ -66,14 +69,19 @@ pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(
         found.extend(placed.enumerate().map(|(i, (offender, place))| (i, offender, line.line.statement(), place)));
     }
     found.sort_by_key(|(i, ..)| *i);
-    found.truncate(SHOWN);
+    found.truncate(CANDIDATES);
     if found.is_empty() || mesh.counts().boundary == 0 {
         return Ok(Vec::new());
     }
     let outline = MeshPicture::outline(mesh)?;
     let extents = extents(mesh, &found.iter().map(|(.., place)| *place).collect::<Vec<_>>())?;
     let mut pictures = Vec::new();
+    let mut shown: Vec<Point3> = Vec::new();
     for ((_, offender, statement, place), extent) in found.into_iter().zip(extents) {
+        if shown.len() == SHOWN || shown.iter().any(|other| (other - place).norm() < BESIDE * extent) {
+            continue;
+        }
+        shown.push(place);
         let mut camera = Camera::new(Direction::Broadside, &outline, SIZE.map(|n| n * SAMPLES), 1.0, Some(place));
         camera.scale = (camera.size[1] as f64 / (2.0 * extent)).max(camera.scale);
         let at = place.coords.dot(&camera.towards);
