@@ -6,6 +6,7 @@ use std::ffi::{OsStr, OsString};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use toml::Value;
 
@@ -72,16 +73,19 @@ fn typed(key: &str, value: &Value) -> Option<Vec<OsString>> {
     }
 }
 
-/// Writes all options of a verb with the values that they had, beside its output.
+/// Writes all options of a verb with the values that they had, beside its output: defaults behind a `#`.
 pub fn write_resolved(verb: &Command, matches: &ArgMatches) -> Result<(), Failure> {
     let Ok(Some(output)) = matches.try_get_one::<PathBuf>("output") else { return Ok(()) };
     let mut name = output.file_stem().unwrap_or_default().to_owned();
     name.push("_plan.toml");
     let path = output.with_file_name(name);
     let mut text = format!("# anastomesh {} {}\n", env!("CARGO_PKG_VERSION"), verb.get_name());
-    for (key, value) in verb.get_arguments().filter_map(|arg| resolved(arg, matches)) {
+    for arg in verb.get_arguments() {
+        let Some((key, value)) = resolved(arg, matches) else { continue };
+        // What nobody asked for stays as it is by itself; some of it may only be said together with something else.
+        let asked = matches.value_source(arg.get_id().as_str()) != Some(ValueSource::DefaultValue);
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{key} = {value}");
+        let _ = writeln!(text, "{}{key} = {value}", if asked { "" } else { "# " });
     }
     write_text(&path, &text).map_err(|e| Failure::input(format!("{}: cannot be written: {e}", path.display())))
 }
