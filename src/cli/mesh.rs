@@ -67,37 +67,43 @@ pub struct Args {
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
     /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
     /// vessel is cut
-    #[arg(long, value_enum, default_value_t = Joint::Disc)]
+    #[arg(long, help_heading = "Run", value_enum, default_value_t = Joint::Disc)]
     joint: Joint,
     /// Leave woven joints as the blocks have them instead of smoothing across them
-    #[arg(long)]
+    #[arg(long, help_heading = "Run")]
     frozen_joints: bool,
     #[command(flatten)]
     work: WorkArgs,
+    /// Folder that keeps finished blocks: a run that was stopped goes on there when it is started again
+    #[arg(long, help_heading = "Run", value_name = "DIR")]
+    work_dir: Option<PathBuf>,
+    /// Throw away what the work directory holds if it is of another network, other options or another version
+    #[arg(long, help_heading = "Run", requires = "work_dir")]
+    restart: bool,
     /// Write the refined network
-    #[arg(long, value_name = "NETWORK.vtp", requires = "refine")]
+    #[arg(long, help_heading = "Run", value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
     /// Node that is an inlet, as the file calls it (by its id in SWC, tables and graphs; elsewhere counted from 0 in the
     /// file's order); may be given several times (default: the file's own roots, else in each component the terminal of
     /// largest radius)
-    #[arg(long, value_name = "NODE")]
+    #[arg(long, help_heading = "Run", value_name = "NODE")]
     root: Vec<String>,
     /// How far the meshed axis may be from the given one, in radii: more is exit code 1 (default: 1 in a network whose vessels
     /// are polylines, but where an overlap demands more; no bound in others)
-    #[arg(long, value_name = "R")]
+    #[arg(long, help_heading = "Run", value_name = "R")]
     max_displacement: Option<f64>,
     /// Say so where the axis is further off, and exit as if it were not
-    #[arg(long)]
+    #[arg(long, help_heading = "Run")]
     allow_displaced: bool,
     /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, help_heading = "Run", value_name = "DIR")]
     dump_dir: Option<PathBuf>,
     /// What VTU, PVTU, MSH and .npyd say of each place: radius and distance along the branch at points; branch, generation, strahler, node
     /// (the nearer one) and ratio (the cell's radius ratio) in cells; several with commas between them
-    #[arg(long, value_name = "DATA", value_delimiter = ',', value_parser = datum)]
+    #[arg(long, help_heading = "Run", value_name = "DATA", value_delimiter = ',', value_parser = datum)]
     data: Vec<Datum>,
     /// Say what it would take (blocks, tetrahedra, time, memory, disk), and mesh nothing
-    #[arg(long)]
+    #[arg(long, help_heading = "Run")]
     dry_run: bool,
     #[command(flatten)]
     grid: GridArgs,
