@@ -130,7 +130,7 @@ impl Legend {
         let (low, high) = (place(self.low), place(self.high));
         let share = if high > low { (place(value) - low) / (high - low) } else { 0.5 };
         // The darkest and the lightest are hard to see on what they are drawn on.
-        between(&VIRIDIS, 0.06 + 0.86 * share)
+        between(&VIRIDIS, 0.06 + 0.86 * share.clamp(0.0, 1.0))
     }
 }
 

@@ -46,9 +46,11 @@ pub fn thinned(ring: &[u32], keep: usize, number: impl Fn(u32) -> u32) -> Vec<(u
     let first = (0..count).min_by_key(|&i| number(ring[i])).unwrap_or(0);
     let forwards = number(ring[(first + 1) % count]) < number(ring[(first + count - 1) % count]);
     let at = |i: usize| if forwards { ring[(first + i) % count] } else { ring[(first + 2 * count - i) % count] };
+    let kept = |i: usize| i * count / keep;
+    let way = |a: usize, b: usize| a.abs_diff(b).min(count - a.abs_diff(b));
     // The point that stands for the i-th one is the nearest that is kept.
-    let stands = |i: usize| at((2 * i * keep + count) / (2 * count) % keep * count / keep);
-    (0..count).map(|i| (at(i), stands(i))).collect()
+    let stands = |i: usize| (0..keep).map(kept).min_by_key(|&place| way(i, place)).unwrap_or(0);
+    (0..count).map(|i| (at(i), at(stands(i)))).collect()
 }
 
 #[cfg(test)]

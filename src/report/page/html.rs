@@ -218,7 +218,7 @@ mod tests {
         page.add(Section::new("nothing"));
         let html = page.html();
         assert!(!html.contains("<script") && !html.contains('\u{1b}') && !html.contains("nothing"), "{html}");
-        assert_eq!(html.matches("&lt;script&gt;alert(&#39;1&#39;)").count(), 10);
+        assert_eq!(html.matches("&lt;script&gt;alert(&#39;1&#39;)").count(), 11);
         for outside in ["http:", "https:", "src=\"/", "@import"] {
             assert!(!html.contains(outside), "{outside}");
         }
