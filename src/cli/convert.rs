@@ -13,9 +13,8 @@ use super::kind::{Kind, OpenedMesh, boundary_of};
 use super::progress::Bars;
 use super::room;
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::io::network::{NetworkFormat, NetworkOptions, ensure_tree_writable, read_network, write_tree};
-use crate::io::npy;
 use crate::io::network::{NetworkOptions, ensure_tree_writable, read_network, write_tree};
+use crate::io::npy;
 use crate::io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
 };
@@ -48,47 +47,6 @@ pub struct Args {
     grid: GridArgs,
     #[command(flatten)]
     common: Common,
-}
-
-/// What a file holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-enum Kind {
-    Mesh,
-    Surface,
-    Network,
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Mesh => "a volume mesh",
-            Self::Surface => "a surface",
-            Self::Network => "a network",
-        })
-    }
-}
-
-impl Kind {
-    /// What a file to be read holds, by its extension. Of files without a known one a message about meshes tells.
-    fn of(path: &Path) -> Result<Self, Failure> {
-        if SurfaceFormat::of(path).is_ok() {
-            return Ok(Self::Surface);
-        }
-        // Of a folder of arrays these tell.
-        if npy::holds(path, "tets") {
-            return Ok(Self::Mesh);
-        }
-        if NetworkFormat::of(path).is_ok() {
-            return Ok(Self::Network);
-        }
-        MeshFormat::of(path).map(|_| Self::Mesh).map_err(|_| {
-            Failure::input(format!(
-                "{}: no extension of a volume mesh, a surface or a network; `convert --help` lists them",
-                path.display()
-            ))
-        })
-    }
 }
 
 /// A network has no wall and a surface no inside: other verbs make them.

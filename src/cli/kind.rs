@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::exit::Failure;
 use crate::io::network::NetworkFormat;
+use crate::io::npy;
 use crate::io::surface::SurfaceFormat;
 use crate::io::volume::{MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, read_mesh};
 use crate::mesh::adjacency::boundary_faces;
@@ -40,6 +41,10 @@ impl Kind {
     pub fn of(path: &Path, verb: &str) -> Result<Self, Failure> {
         if SurfaceFormat::of(path).is_ok() {
             return Ok(Self::Surface);
+        }
+        // Of a folder of arrays these tell.
+        if npy::holds(path, "tets") {
+            return Ok(Self::Mesh);
         }
         if NetworkFormat::of(path).is_ok() {
             return Ok(Self::Network);

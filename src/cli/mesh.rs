@@ -21,7 +21,6 @@ use super::refine::RefineArgs;
 use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
-use crate::fidelity::Fidelity;
 use crate::fidelity::{Along, Fidelity};
 use crate::io::network::{NodeNames, ensure_network_writable};
 use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
@@ -32,8 +31,8 @@ use crate::mesh::dihedral::DihedralHistogram;
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
 use crate::pipeline::{
-    self, Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, Outlets, RunError, Shard, Stored, TooLarge, VesselData,
-    self, Caps, Clock, Datum, Estimate, Forecast, JointStyle, MeshPlan, Outlets, RunError, Stored, TooLarge, VesselData,
+    self, Caps, Clock, Datum, Estimate, Forecast, JointStyle, MeshPlan, Outlets, RunError, Shard, Stored, TooLarge,
+    VesselData,
 };
 use crate::progress::{Progress, Stage};
 use crate::refine::{RefineParams, Refined};
@@ -50,9 +49,6 @@ pub struct Args {
     /// Where the mesh goes: .vtu, .pvtu (pieces in a folder beside it), .msh (Gmsh 4.1), .msh2 (Gmsh 2.2, text),
     /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), .ele
     /// (TetGen's family of files), or .npyd (a folder of `NumPy`'s arrays)
-    #[arg(short, long, value_name = "MESH")]
-    /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), or .ele
-    /// (TetGen's family of files)
     #[arg(short, long, value_name = "MESH", help_heading = "Output")]
     output: PathBuf,
     #[command(flatten)]
@@ -74,12 +70,6 @@ pub struct Args {
     frozen_joints: bool,
     #[command(flatten)]
     work: WorkArgs,
-    /// Folder that keeps finished blocks: a run that was stopped goes on there when it is started again
-    #[arg(long, help_heading = "Run", value_name = "DIR")]
-    work_dir: Option<PathBuf>,
-    /// Throw away what the work directory holds if it is of another network, other options or another version
-    #[arg(long, help_heading = "Run", requires = "work_dir")]
-    restart: bool,
     /// Write the refined network
     #[arg(long, help_heading = "Run", value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
@@ -194,7 +184,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     for remark in network.remarks().into_iter().chain(inlets.remarks()).chain(cut_short) {
         bars.note(&remark);
     }
-    let work = args.work.open(shard, &network.skeleton, || args.options(&plan))?;
+    let work = if args.dry_run { None } else { args.work.open(shard, &network.skeleton, || args.options(&plan))? };
     let refined = pool.install(|| args.refined(&network, work.as_ref(), shard, &stop))?;
     if let (Some(work), Some(shard)) = (&work, shard) {
         let prepared = network.into_skeleton();
@@ -478,15 +468,11 @@ impl Args {
                 stop.keep();
                 super::refine::write(path, &refined)?;
             }
-            if !self.common.quiet && !self.common.json {
-                eprint!("{}", refined.report);
+            if self.common.verbose && !self.common.json {
+                log::note(&refined.report.to_string());
             }
         }
         Ok(Some((refined, params)))
-        if self.common.verbose && !self.common.json {
-            log::note(&refined.report.to_string());
-        }
-        Ok(Some(moved))
     }
 
     fn print(

@@ -32,8 +32,8 @@ mod stop;
 mod surface;
 mod tetrahedralize;
 mod units;
-mod work;
 mod view;
+mod work;
 
 use std::process::ExitCode;
 

@@ -24,8 +24,6 @@ pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
     /// Where the refined network goes: .vtp (or .npyd, arrays in a folder), with the arrays `OriginalNode`, `Displacement`, `Radius` and `EdgeRadius`
-    #[arg(short, long, value_name = "NETWORK")]
-    /// Where the refined network goes: .vtp, with the arrays `OriginalNode`, `Displacement`, `Radius` and `EdgeRadius`
     #[arg(short, long, value_name = "NETWORK", help_heading = "Output")]
     output: PathBuf,
     /// Iterations at most; it stops earlier when nothing is left to do

@@ -18,17 +18,17 @@ use crate::skeleton::Skeleton;
 #[derive(Debug, clap::Args)]
 pub struct WorkArgs {
     /// Folder that keeps finished blocks: a run that was stopped goes on there when it is started again
-    #[arg(long = "work-dir", value_name = "DIR")]
+    #[arg(long = "work-dir", help_heading = "Run", value_name = "DIR")]
     pub dir: Option<PathBuf>,
     /// Throw away what the work directory holds if it is of another network, other options or another version
-    #[arg(long, requires = "dir")]
+    #[arg(long, help_heading = "Run", requires = "dir")]
     restart: bool,
     /// Make only the I-th of N shares of the blocks, counted from 1, and write no mesh: any number of these at a time, on any
     /// number of machines; then the same command without this finds all blocks
-    #[arg(long, value_name = "I/N", requires = "dir", conflicts_with = "restart", value_parser = two_numbers)]
+    #[arg(long, help_heading = "Run", value_name = "I/N", requires = "dir", conflicts_with = "restart", value_parser = two_numbers)]
     shard: Option<(u32, u32)>,
     /// Make what shards have left undone instead of refusing it
-    #[arg(long, requires = "dir", conflicts_with = "shard")]
+    #[arg(long, help_heading = "Run", requires = "dir", conflicts_with = "shard")]
     make_missing: bool,
 }
 

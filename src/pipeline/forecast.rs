@@ -9,6 +9,7 @@ use crate::refine::split;
 use crate::skeleton::Skeleton;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Tetrahedra that a thread makes, checks and writes per second: as measured with kidneys.
 const TETS_PER_SECOND: f64 = 3.1e5;
@@ -33,11 +34,11 @@ impl Forecast {
     pub fn of(network: &Skeleton, plan: &MeshPlan) -> Result<Self, RunError> {
         let (network, _) = split(network);
         let params = partition_params(&network, plan, &BTreeMap::new(), &BTreeSet::new());
-        let partition = partition::partition(&network, &params)?;
+        let partition = partition::lay_out(&Arc::new(network), &params)?;
         Ok(Self {
-            clusters: partition.clusters.len(),
-            connectors: partition.cuts.len(),
-            largest_nodes: partition.clusters.iter().map(|c| c.nodes.len()).max().unwrap_or(0),
+            clusters: partition.clusters_len(),
+            connectors: partition.cuts_len(),
+            largest_nodes: partition.largest_nodes(),
             estimate: Estimate::of(&partition, plan),
         })
     }
