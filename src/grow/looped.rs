@@ -8,6 +8,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::generate::generate;
 use super::net::{DENSITY, Net};
 use super::organ::SEMI_AXES;
 use super::params::{GenerateError, GenerateParams, Organ};
@@ -86,8 +87,8 @@ pub fn looped(params: &GenerateParams, bed: &BedParams) -> Result<Looped, Genera
     }
     let size = params.size.unwrap_or_else(|| bed.usual_size(params.terminals));
     let params = GenerateParams { size: Some(size), ..*params };
-    let arteries = super::generate(&params)?;
-    let mut veins = super::generate(&GenerateParams { seed: !params.seed, ..params })?;
+    let arteries = generate(&params)?;
+    let mut veins = generate(&GenerateParams { seed: !params.seed, ..params })?;
     veins.nodes.iter_mut().for_each(|node| node.position = -node.position);
     let (mut network, of_veins) = apart(arteries, veins);
     let first = network.nodes.len();

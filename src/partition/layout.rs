@@ -12,6 +12,7 @@ use super::parts::{
 };
 use super::path::path;
 use super::settle::{Run, Settler};
+use super::summary::{PartitionSummary, UncutCounts};
 use crate::geometry::{Section, Tube};
 use crate::skeleton::course::{Course, Courses, Way};
 use crate::skeleton::{BranchId, Chains, NodeId, Skeleton};
@@ -399,4 +400,44 @@ fn add_end(cluster: &mut Cluster, section: Section, overrun: f64, kind: EndKind)
     let Section { origin, axis, radius } = section;
     cluster.tubes.push(Tube { a: origin, b: origin + axis * overrun, ra: radius, rb: radius });
     cluster.ends.push(ClusterEnd { section, kind, overrun: tube });
+}
+
+impl Layout {
+    /// The partition in figures.
+    pub fn summary(&self) -> PartitionSummary {
+        let mut summary = PartitionSummary {
+            clusters: self.clusters_len(),
+            largest_nodes: self.largest_nodes(),
+            cuts: self.cuts_len(),
+            uncut: UncutCounts::of(self.uncut()),
+            ..PartitionSummary::default()
+        };
+        for (i, cluster) in (0..).zip(self.clusters()) {
+            // A cluster without a junction is one piece; every other has three pieces or a piece that closes on a junction.
+            let pieces = self.pieces_in(ClusterId(i));
+            summary.junction_clusters += usize::from(pieces > 2 || (pieces == 2 && cluster.ends.len() != 2));
+            summary.largest_tubes = summary.largest_tubes.max(cluster.tubes.len());
+        }
+        let short = |w: &&PartitionWarning| matches!(w, PartitionWarning::ShortOverrun { .. });
+        summary.short_overruns = self.warnings().iter().filter(short).count();
+        summary.caps_not_clear = self.warnings().len() - summary.short_overruns;
+        summary
+    }
+}
+
+impl UncutCounts {
+    fn of(branches: &[(BranchId, UncutReason)]) -> Self {
+        let mut uncut = Self::default();
+        for (_, reason) in branches {
+            *match reason {
+                UncutReason::Terminal => &mut uncut.terminal,
+                UncutReason::Forbidden => &mut uncut.forbidden,
+                UncutReason::Length => &mut uncut.length,
+                UncutReason::Angle => &mut uncut.angle,
+                UncutReason::Bend => &mut uncut.bend,
+                UncutReason::Clearance { .. } => &mut uncut.clearance,
+            } += 1;
+        }
+        uncut
+    }
 }

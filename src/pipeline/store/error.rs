@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-use super::shards::Shard;
+use super::shard::Shard;
 
 /// Why blocks cannot be kept.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,7 @@
 //! manifest, the number of shards) is written under a lock that is held for as long as that takes.
 
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 use super::error::StoreError;
@@ -12,8 +12,10 @@ use super::key::Key;
 use super::locks::{Hold, try_lock, wait_for};
 use super::log::{LogFile, scan_path};
 use super::manifest::{Begun, MANIFEST, Manifest};
-use super::shards::{self, Shard};
+use super::shard::Shard;
+use super::shards;
 use super::shelf::Shelf;
+use super::whole_file::write_whole;
 
 const LOCK: &str = "anastomesh.lock";
 const BEGIN: &str = "anastomesh.begin.lock";
@@ -104,22 +106,4 @@ fn begin(folder: &Path, manifest: &Manifest) -> io::Result<()> {
         }
     }
     write_whole(&folder.join(MANIFEST), &serde_json::to_vec_pretty(manifest)?)
-}
-
-/// A file beside `path` that goes unless it is given its name. Others who may read the folder may read it.
-pub(super) fn part_of(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = path.parent().unwrap_or_else(|| Path::new("."));
-    let mut part = tempfile::Builder::new();
-    part.prefix("anastomesh.part-");
-    #[cfg(unix)]
-    part.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    part.tempfile_in(folder)
-}
-
-/// Writes a file that has its name only when it is whole.
-pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut part = part_of(path)?;
-    part.write_all(bytes)?;
-    part.as_file().sync_all()?;
-    part.persist(path).map(drop).map_err(|e| e.error)
 }

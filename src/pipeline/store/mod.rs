@@ -11,10 +11,12 @@ mod locks;
 mod log;
 mod manifest;
 mod once;
+mod shard;
 mod shards;
 mod shelf;
 #[cfg(test)]
 mod tests;
+mod whole_file;
 
 use std::collections::hash_map::Entry;
 use std::io;
@@ -31,7 +33,7 @@ pub use folder::Role;
 pub use key::{Key, KeyMaker};
 use log::LogFile;
 pub use manifest::{Manifest, fingerprint};
-pub use shards::{NoShard, Shard, two_numbers};
+pub use shard::{NoShard, Shard, two_numbers};
 use shelf::Shelf;
 
 use crate::block::Bytes;

@@ -10,9 +10,9 @@ use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::Xxh3;
 
 use super::error::StoreError;
-use super::folder::part_of;
 use super::key::Key;
 use super::locks::wait_for;
+use super::whole_file::part_of;
 use crate::progress::Progress;
 
 /// Reads what is kept in `folder` as `what` under a key, or makes and keeps it. While one run makes it others wait; when
