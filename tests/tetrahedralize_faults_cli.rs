@@ -135,7 +135,7 @@ fn paths_that_cannot_be_used() {
     refused(&directory, &out, "directory");
     let input = save(&folder, "c.off", &cube());
     refused(&input, &folder.path().join("missing/out.ele"), "cannot be written");
-    refused(&input, &folder.path().join("out.stl"), ".mesh, .foam, .svmesh, .ele");
+    refused(&input, &folder.path().join("out.stl"), ".mesh, .foam, .svmesh, .npyd, .ele");
     assert_eq!(entries(folder.path()), ["c.off", "d.off"]);
 }
 

@@ -1,5 +1,8 @@
+use super::organ::Shape;
+use super::random::Random;
 use super::*;
 use crate::geometry::Vec3;
+use crate::skeleton::{NodeId, Skeleton};
 use std::collections::HashSet;
 
 fn params(organ: Organ, terminals: u32, seed: u64) -> GenerateParams {
