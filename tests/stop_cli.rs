@@ -162,8 +162,8 @@ fn the_second_signal_ends_it_at_once() {
     let surface = save(&folder, "s.off", &sphere(40));
     let out = folder.path().join("a.vtu");
     // Held while both are sent: it hears the first so soon that it may have ended before the second is on its way. (Two of
-    // one kind would be one signal to a program that is held.)
-    for (first, second) in [("-INT", "-TERM"), ("-TERM", "-INT")] {
+    // one kind would be one signal to a program that is held.) Whether that one ended it, what it did not say tells.
+    let ended_by_second = |first: &str, second: &str| {
         let mut child = start("tetrahedralize", &[&surface, Path::new("-o"), &out], &["--size", "0.02"]);
         let id = child.id();
         wait_for(&mut child, "listening", || listens(id));
@@ -175,8 +175,13 @@ fn the_second_signal_ends_it_at_once() {
         }
         let (output, took) = ended(child);
         assert_code(&output, STOPPED);
-        assert!(took < Duration::from_secs(10) && !stderr(&output).contains("nothing is kept"), "{took:?}");
+        assert!(took < Duration::from_secs(10), "{took:?}");
         assert!(!out.exists());
+        !stderr(&output).contains("nothing is kept")
+    };
+    // Two threads of it may take one signal each, at the same time: then neither is the second.
+    for (first, second) in [("-INT", "-TERM"), ("-TERM", "-INT")] {
+        assert!((0..6).any(|_| ended_by_second(first, second)), "{first} {second}");
     }
 }
 
