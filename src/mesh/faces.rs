@@ -68,34 +68,95 @@ struct Sorted {
     strays: Vec<Loose>,
 }
 
-impl AsRef<[OuterFace]> for PartFaces {
-    fn as_ref(&self) -> &[OuterFace] {
-        &self.outer
-    }
-}
-
 impl<'a> Faces<'a> {
     /// Looks for the faces that parts have in common: reads tetrahedra and boundary once.
     ///
     /// # Errors
     /// What reading the mesh fails with; `InvalidData` where a face has more than two sides, or one side and no patch.
     pub fn of(mesh: &'a dyn MeshSource) -> io::Result<Self> {
+        Self::look(mesh, |sorted| (sorted.loose(), ()), |_, ()| Ok(()))
+    }
+
+    /// Gives the faces of the boundary: those of each part in order, and at the end what is labelled in one part and a face of
+    /// another. Reads tetrahedra and boundary once.
+    ///
+    /// # Errors
+    /// What reading the mesh or `each` fails with; `InvalidData` as [`of`](Self::of), and when the mesh does not hold as much
+    /// as it says.
+    pub fn each_outer(
+        mesh: &'a dyn MeshSource,
+        mut each: impl FnMut(&[OuterFace]) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let counts = mesh.counts();
+        let (mut inner, mut outer) = (0, 0);
+        let faces = Self::look(
+            mesh,
+            |sorted| (sorted.loose(), (sorted.pairs.len(), sorted.outer(0))),
+            |first, (pairs, mut faces)| {
+                inner += pairs;
+                outer += faces.len();
+                // Whoever writes has said how many there are before they come.
+                if outer > counts.boundary {
+                    return Err(miscounted());
+                }
+                faces.iter_mut().for_each(|face| face.tet += first);
+                each(&faces)
+            },
+        )?;
+        let apart = faces.known.iter().filter(|(_, _, side)| matches!(side, Side::Patch(_))).count();
+        inner += faces.known.len() - apart;
+        if outer + apart != counts.boundary || 2 * inner + counts.boundary != 4 * counts.tets {
+            return Err(miscounted());
+        }
+        if apart == 0 { Ok(()) } else { faces.each_apart(each) }
+    }
+
+    /// Gives the faces of parts whose labels are in other parts.
+    fn each_apart(&self, mut each: impl FnMut(&[OuterFace]) -> io::Result<()>) -> io::Result<()> {
+        for part in 0..self.mesh.parts() {
+            let sorted = Sorted::read(self.mesh, part)?;
+            let first = self.first[part as usize];
+            let outer = |&handle: &u32| match self.other_side(&sorted, first, handle)? {
+                Side::Patch(patch) => Some(sorted.outer_face(first, handle, patch)),
+                Side::Tet(_) => None,
+            };
+            each(&sorted.open.iter().filter_map(outer).collect::<Vec<_>>())?;
+        }
+        Ok(())
+    }
+
+    /// Reads all parts for what they cannot place, and `each` is given the number of the first tetrahedron of each part and
+    /// what `take` has of it beside.
+    fn look<T: Send>(
+        mesh: &'a dyn MeshSource,
+        take: impl Fn(&Sorted) -> (Vec<Loose>, T) + Sync,
+        mut each: impl FnMut(u32, T) -> io::Result<()>,
+    ) -> io::Result<Self> {
         let (mut first, mut tets) = (Vec::with_capacity(mesh.parts() as usize), 0_u32);
         let mut loose: Vec<Loose> = Vec::new();
         mesh.each_part(
-            |part| Sorted::read(mesh, part).map(|sorted| (sorted.tets.len(), sorted.loose())),
-            |(count, found)| {
+            |part| Sorted::read(mesh, part).map(|sorted| (sorted.tets.len(), take(&sorted))),
+            |(count, (found, taken))| {
                 loose.extend(found.into_iter().map(|(key, side)| match side {
                     Side::Tet(tet) => (key, Side::Tet(tets + tet)),
                     patch @ Side::Patch(_) => (key, patch),
                 }));
                 first.push(tets);
+                let start = tets;
                 tets = u32::try_from(count).ok().and_then(|count| tets.checked_add(count)).ok_or_else(miscounted)?;
-                Ok(())
+                each(start, taken)
             },
         )?;
         loose.sort_unstable();
         Ok(Self { mesh, first, known: joined(&loose)? })
+    }
+
+    /// What is on the other side of a face that its part cannot place; none where that has the lower tetrahedron, by which
+    /// alone a face between two parts is known.
+    fn other_side(&self, sorted: &Sorted, first: u32, handle: u32) -> Option<Side> {
+        let at = (first + (handle >> 2), face_key(face_of(&sorted.tets, handle)));
+        let place = self.known.binary_search_by_key(&at, |&(tet, key, _)| (tet, key)).ok()?;
+        Some(self.known[place].2)
     }
 
     /// The faces of a part.
@@ -103,70 +164,42 @@ impl<'a> Faces<'a> {
     /// # Errors
     /// What reading the mesh fails with.
     pub fn of_part(&self, part: u32) -> io::Result<PartFaces> {
-        let (mut faces, _) = self.unordered(part)?;
-        faces.inner.sort_unstable();
-        Ok(faces)
-    }
-
-    /// The faces of a part, those inside in any order, and how many these are.
-    fn unordered(&self, part: u32) -> io::Result<(PartFaces, usize)> {
         let sorted = Sorted::read(self.mesh, part)?;
         let first = self.first[part as usize];
-        let tet = |handle: u32| first + (handle >> 2);
-        let vertices = |handle: u32| face_of(&sorted.tets, handle);
-        let pair = |&[a, b]: &[u32; 2]| InnerFace { tets: [tet(a), tet(b)], vertices: vertices(a) };
-        let label = |&(h, patch): &(u32, i32)| OuterFace { patch, tet: tet(h), vertices: vertices(h) };
-        let mut inner: Vec<InnerFace> = sorted.pairs.iter().map(pair).collect();
-        let mut outer: Vec<OuterFace> = sorted.labelled.iter().map(label).collect();
+        let inner = |handle: u32, tets: [u32; 2]| InnerFace { tets, vertices: face_of(&sorted.tets, handle) };
+        let pair = |&[a, b]: &[u32; 2]| inner(a, [a, b].map(|handle| first + (handle >> 2)));
+        let mut faces = PartFaces { inner: sorted.pairs.iter().map(pair).collect(), outer: sorted.outer(first) };
         for &handle in &sorted.open {
-            let at = (tet(handle), face_key(vertices(handle)));
-            // Of a face between two parts the lower tetrahedron alone is known.
-            let Ok(place) = self.known.binary_search_by_key(&at, |&(tet, key, _)| (tet, key)) else { continue };
-            match self.known[place].2 {
-                Side::Tet(other) => inner.push(InnerFace { tets: [at.0, other], vertices: vertices(handle) }),
-                Side::Patch(patch) => outer.push(OuterFace { patch, tet: at.0, vertices: vertices(handle) }),
+            match self.other_side(&sorted, first, handle) {
+                Some(Side::Tet(other)) => faces.inner.push(inner(handle, [first + (handle >> 2), other])),
+                Some(Side::Patch(patch)) => faces.outer.push(sorted.outer_face(first, handle, patch)),
+                None => {}
             }
         }
-        outer.sort_unstable();
-        let count = inner.len();
-        Ok((PartFaces { inner, outer }, count))
+        faces.inner.sort_unstable();
+        faces.outer.sort_unstable();
+        Ok(faces)
     }
 
     /// Gives the faces of all parts, in order.
     ///
     /// # Errors
     /// What reading the mesh or `each` fails with; `InvalidData` when the mesh does not hold as much as it says.
-    pub fn each(&self, each: impl FnMut(&PartFaces) -> io::Result<()>) -> io::Result<()> {
-        self.each_counted(|part| self.of_part(part).map(|faces| (faces.inner.len(), faces)), each)
-    }
-
-    /// Gives the faces of all parts that are on the boundary, in order.
-    ///
-    /// # Errors
-    /// As [`each`](Self::each).
-    pub fn each_outer(&self, mut each: impl FnMut(&[OuterFace]) -> io::Result<()>) -> io::Result<()> {
-        let read = |part| self.unordered(part).map(|(faces, inner)| (inner, faces.outer));
-        self.each_counted(read, |outer| each(outer))
-    }
-
-    /// Gives what is read of each part, and counts faces: those inside as `read` says.
-    fn each_counted<T: AsRef<[OuterFace]> + Send>(
-        &self,
-        read: impl Fn(u32) -> io::Result<(usize, T)> + Sync,
-        mut each: impl FnMut(&T) -> io::Result<()>,
-    ) -> io::Result<()> {
+    pub fn each(&self, mut each: impl FnMut(&PartFaces) -> io::Result<()>) -> io::Result<()> {
         let counts = self.mesh.counts();
         let (mut sides, mut labelled) = (0, 0);
-        self.mesh.each_part(read, |(inner, faces)| {
-            let outer = faces.as_ref().len();
-            sides += 2 * inner + outer;
-            labelled += outer;
-            // Whoever writes has said how many there are before they come.
-            if sides > 4 * counts.tets || labelled > counts.boundary {
-                return Err(miscounted());
-            }
-            each(&faces)
-        })?;
+        self.mesh.each_part(
+            |part| self.of_part(part),
+            |faces| {
+                sides += 2 * faces.inner.len() + faces.outer.len();
+                labelled += faces.outer.len();
+                // Whoever writes has said how many there are before they come.
+                if sides > 4 * counts.tets || labelled > counts.boundary {
+                    return Err(miscounted());
+                }
+                each(&faces)
+            },
+        )?;
         if sides == 4 * counts.tets && labelled == counts.boundary { Ok(()) } else { Err(miscounted()) }
     }
 }
@@ -270,6 +303,18 @@ impl Sorted {
             }
         }
         Ok(sorted)
+    }
+
+    /// The faces of the boundary that the part places itself, ascending by their tetrahedra.
+    fn outer(&self, first: u32) -> Vec<OuterFace> {
+        let mut outer: Vec<OuterFace> =
+            self.labelled.iter().map(|&(handle, patch)| self.outer_face(first, handle, patch)).collect();
+        outer.sort_unstable();
+        outer
+    }
+
+    fn outer_face(&self, first: u32, handle: u32, patch: i32) -> OuterFace {
+        OuterFace { tet: first + (handle >> 2), patch, vertices: face_of(&self.tets, handle) }
     }
 
     fn loose(&self) -> Vec<Loose> {

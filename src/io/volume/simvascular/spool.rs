@@ -19,7 +19,7 @@ impl Spool {
     pub(super) fn of(mesh: &dyn MeshSource, beside: &Path, progress: &dyn Progress) -> io::Result<Self> {
         let folder = beside.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut out = BufWriter::with_capacity(1 << 18, tempfile::tempfile_in(folder)?);
-        Faces::of(mesh)?.each_outer(|outer| {
+        Faces::each_outer(mesh, |outer| {
             ask(progress)?;
             for OuterFace { patch, tet, vertices: [a, b, c] } in outer {
                 for word in [patch.cast_unsigned(), *tet, *a, *b, *c] {
