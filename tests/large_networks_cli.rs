@@ -186,7 +186,7 @@ fn a_file_is_checked_block_by_block_as_in_memory() {
 }
 
 /// Twelve vessels of a grown kidney (250,000 terminals, seed 0), refined: the web in the crotch of a thick fork meets a thin
-/// vessel that runs through it, though that is 0.2 sums of radii from either branch. No block knows of the vessels of
+/// vessel that runs through it (2.2 times as wide here), though it overlaps neither branch. No block knows of the vessels of
 /// another one, so this is seen in the whole, and the fork is made again, finer.
 #[test]
 fn a_thin_vessel_runs_through_the_crotch_of_a_thick_fork() {

@@ -9,10 +9,10 @@ use crate::geometry::{Aabb, Point3, Section, Tube, segment_segment};
 /// How far a tip reaches back from its end plane, in radii: trimming and flattening work there.
 const BACK: f64 = 0.5;
 
-/// How far the wall goes on, in radii, where the axis of a vessel ends: with σ = κ r = 0.4 r the field on the axis,
-/// exp(r² / 2σ²) Φ(−h / σ), falls to 1 at h = 0.68 r. The wall there is half a sphere about the point at h = −0.32 r,
+/// How far the wall goes on, in radii, where the axis of a vessel ends: with σ = κ r = 0.33 r the field on the axis,
+/// exp(r² / 2σ²) Φ(−h / σ), falls to 1 at h = 0.77 r. The wall there is half a sphere about the point at h = −0.23 r,
 /// within 0.06 r.
-const ROUND: f64 = 0.68;
+const ROUND: f64 = 0.77;
 
 /// How far the middle of the round tip that an overrun gives a vessel lies beyond the end plane.
 pub(super) fn tip_middle(radius: f64, overrun: f64) -> f64 {

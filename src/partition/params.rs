@@ -24,8 +24,8 @@ pub struct PartitionParams {
     pub overrun: f64,
     /// Least length of that piece in voxels.
     pub overrun_voxels: f64,
-    /// What a terminal's overrun may be shortened to when another vessel is in its way. At 0.4 the wall is 3 % thinner
-    /// at the plane than the vessel (with κ = 0.4), and its tip no longer than the ball at the vessel's end.
+    /// What a terminal's overrun may be shortened to when another vessel is in its way. At 0.4 the wall is 1.3 % thinner
+    /// at the plane than the vessel, and its tip no longer than the ball at the vessel's end.
     pub shortest_overrun: f64,
     /// Branches with a terminal are cut wherever there is room: what lies between forks and caps is then tubes.
     pub cut_terminals: bool,

@@ -79,7 +79,7 @@ impl Way {
     fn params(self, plan: &MeshPlan) -> BlockParams {
         let usual = plan.block_params();
         let shifted = BlockParams { shift: [0.37, -0.23, 0.11], ..usual };
-        let narrower = BlockParams { kappa: 0.3, ..usual };
+        let narrower = BlockParams { kappa: 0.25, ..usual };
         let finer = |params| BlockParams { voxel_factor: 0.75, ..params };
         match self {
             Self::Usual => usual,
@@ -88,11 +88,11 @@ impl Way {
             Self::Narrower => narrower,
             Self::Other => match plan.joint {
                 JointStyle::Woven => BlockParams { ends: EndStyle::Open, ..usual },
-                JointStyle::Disc | JointStyle::None => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.35, ..usual },
+                JointStyle::Disc | JointStyle::None => BlockParams { shift: [-0.29, 0.43, 0.31], kappa: 0.29, ..usual },
             },
             Self::FinerShifted => finer(shifted),
             Self::FinerNarrower => finer(narrower),
-            Self::Finest => BlockParams { kappa: 0.22, voxel_factor: 0.5, ..shifted },
+            Self::Finest => BlockParams { kappa: 0.2, voxel_factor: 0.5, ..shifted },
         }
     }
 }

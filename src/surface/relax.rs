@@ -6,6 +6,8 @@ use super::field::Field;
 use super::halfedge::HalfEdges;
 use crate::geometry::{Point3, Vec3};
 
+mod crotch;
+
 /// Where a vertex may go.
 pub(crate) trait Level {
     /// Value (the level is at 1) and gradient of a function that grows outwards; no gradient where there is no level
@@ -113,7 +115,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
         self.project();
     }
 
-    /// Rounds of splitting, collapsing, flipping and smoothing, then the passes that only better the worst angles.
+    /// Rounds of splitting, collapsing, flipping and smoothing, then crotches, then the passes that only better the worst
+    /// angles.
     pub(crate) fn run(&mut self, rounds: usize) {
         for _ in 0..rounds {
             self.split_long();
@@ -121,6 +124,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
             self.flip(Criterion::Valence);
             self.smooth();
         }
+        self.open_crotches();
         self.flip(Criterion::Angle);
         self.smooth();
         self.flip(Criterion::Angle);
@@ -241,19 +245,26 @@ impl<'a, L: Level> Relaxation<'a, L> {
             }
             let (a, b) = (self.surface.from(h), self.surface.to(h));
             if a < b && self.surface.length(h) > SPLIT_ABOVE * self.aim(a, b) {
-                let middle = nalgebra::center(&self.surface.points[a as usize], &self.surface.points[b as usize]);
-                let m = self.surface.split(h, middle);
-                self.normals.push(self.normals[a as usize]);
-                self.sizes.push(self.aim(a, b));
-                if let Some(patch) = &mut self.patch {
-                    self.hold.push(Hold::Free);
-                    patch.vertices.push(m);
-                    let faces = self.surface.len() / 3;
-                    patch.faces.extend([faces - 2, faces - 1]);
-                }
+                let m = self.split(h, self.aim(a, b));
+                let middle = self.surface.points[m as usize];
                 self.surface.points[m as usize] = self.projected(m, middle);
             }
         }
+    }
+
+    /// A vertex amid an edge, not projected.
+    fn split(&mut self, h: u32, size: f64) -> u32 {
+        let [a, b] = [self.surface.from(h), self.surface.to(h)].map(|v| v as usize);
+        let m = self.surface.split(h, nalgebra::center(&self.surface.points[a], &self.surface.points[b]));
+        self.normals.push(self.normals[a]);
+        self.sizes.push(size);
+        if let Some(patch) = &mut self.patch {
+            self.hold.push(Hold::Free);
+            patch.vertices.push(m);
+            let faces = self.surface.len() / 3;
+            patch.faces.extend([faces - 2, faces - 1]);
+        }
+        m
     }
 
     /// An edge that is there and not held by its two ends.
