@@ -6,8 +6,8 @@
     python benches/python.py quality SURFACE.off...    the same with a bound on the shape
     python benches/python.py overhead SURFACE.off... NETWORK...    the same run from Python and by the program alone
 
-Needs both packages (`pip install tetgen anastomesh pyvista meshio`); `ANASTOMESH_BINARY` names another program. Times are wall
-time, the least of some runs. A surface is kept when each of its triangles is a face of a tetrahedron. Each call of tetgen's runs
+Needs both packages (`pip install tetgen anastomesh pyvista meshio`); `ANASTOMESH_BINARY` names another program. Times are the
+least of some runs, the ratio is that of CPU times (`overhead`: medians of pairs in turns). A surface is kept when each of its triangles is a face of a tetrahedron. Each call of tetgen's runs
 in a process of its own, as some end the process.
 """
 
@@ -15,6 +15,7 @@ import argparse
 import json
 import os
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -36,14 +37,16 @@ def surface_of(path):
     return np.ascontiguousarray(mesh.points, np.float64), mesh.cells_dict["triangle"].astype(np.int32)
 
 
-def seconds(run, times):
-    """The least of some runs."""
-    best = np.inf
-    for _ in range(times):
-        start = time.perf_counter()
-        run()
-        best = min(best, time.perf_counter() - start)
-    return best
+def now():
+    """Wall and CPU time, in seconds; of children that have ended, too."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return np.array([time.perf_counter(), sum(u.ru_utime + u.ru_stime for u in used)])
+
+
+def taken(run):
+    start = now()
+    run()
+    return now() - start
 
 
 def kept(triangles, tets):
@@ -85,7 +88,7 @@ def one(call, package, path):
 
     tet = run()
     report = {
-        "seconds": seconds(run, 3),
+        "seconds": np.min([taken(run) for _ in range(3)], axis=0).tolist(),
         "tets": len(tet.elem),
         "kept": kept(triangles, tet.elem),
         "triangles": len(triangles),
@@ -97,8 +100,8 @@ def one(call, package, path):
 
 def replace(call, paths):
     print(f"`TetGen(points, triangles).tetrahedralize({', '.join(f'{k}={v}' for k, v in CALLS[call].items())})`\n")
-    print("| surface | triangles | kept: tetgen, ours | tetrahedra | smallest angle | seconds | ratio |")
-    print("|---|---|---|---|---|---|---|")
+    print("| surface | triangles | kept: tetgen, ours | tetrahedra | smallest angle | wall, s | CPU, s | ratio |")
+    print("|---|---|---|---|---|---|---|---|")
     for path in paths:
         print(row(path, [in_process(call, package, path) for package in ("tetgen", "anastomesh")]), flush=True)
 
@@ -126,32 +129,39 @@ def row(path, made):
         said(of_surface),
         said(lambda m: str(m["tets"])),
         said(lambda m: f"{m['angle']:.2f}°"),
-        said(lambda m: f"{m['seconds']:.2f}"),
-        f"{made[1]['seconds'] / made[0]['seconds']:.2f}" if all(made) else "",
+        said(lambda m: f"{m['seconds'][0]:.2f}"),
+        said(lambda m: f"{m['seconds'][1]:.2f}"),
+        f"{made[1]['seconds'][1] / made[0]['seconds'][1]:.2f}" if all(made) else "",
     ]
     return f"| {' | '.join(cells)} |"
 
 
 def overhead(paths):
-    print("| input | program, seconds | from Python, seconds | more |")
+    print("| input | program, wall and CPU, s | from Python | more |")
     print("|---|---|---|---|")
     for path in paths:
-        bare, python = seconds_both(path)
-        more = python - bare
-        print(f"| {pathlib.Path(path).name} | {bare:.3f} | {python:.3f} | {1e3 * more:.0f} ms, {more / bare:.1%} |")
+        pairs = seconds_both(path)
+        (bare, bare_cpu), (python, python_cpu) = np.median(pairs, axis=0)
+        # Of each pair: other work on the machine comes and goes.
+        more, more_cpu = np.median(pairs[:, 1] - pairs[:, 0], axis=0)
+        shares = f"{1e3 * more:.0f} ms ({more / bare:.1%}), {1e3 * more_cpu:.0f} ms ({more_cpu / bare_cpu:.1%})"
+        print(f"| {pathlib.Path(path).name} | {bare:.3f}, {bare_cpu:.3f} | {python:.3f}, {python_cpu:.3f} | {shares} |", flush=True)
 
 
-def seconds_both(path):
-    """Of the program, from file to file, and from Python: arrays to arrays of a surface, the file of a network to arrays."""
+def seconds_both(path, pairs=21):
+    """Wall time and CPU time of the program, from file to file, and from Python, arrays to arrays of a surface, the file of a
+    network to arrays: (pairs, 2, 2)."""
     is_surface = pathlib.Path(path).suffix == ".off"
     arrays = surface_of(path) if is_surface else (path,)
     make = anastomesh.tetrahedralize if is_surface else anastomesh.mesh
     verb = "tetrahedralize" if is_surface else "mesh"
+
     with tempfile.TemporaryDirectory() as folder:
         command = [anastomesh.binary(), verb, path, "-o", os.path.join(folder, "mesh.vtu"), "--quiet"]
-        runs = (lambda: subprocess.run(command, check=True)), (lambda: make(*arrays))
-        # In turns, as other work on the machine comes and goes.
-        return np.array([[seconds(run, 1) for run in runs] for _ in range(9)]).min(axis=0)
+        runs = [lambda: subprocess.run(command, check=True), lambda: make(*arrays)]
+        turns = [[0, 1], [1, 0]]
+        found = [{k: taken(runs[k]) for k in turns[pair % 2]} for pair in range(pairs)]
+        return np.array([[both[0], both[1]] for both in found])
 
 
 def main():

@@ -14,7 +14,9 @@ import pytest
 
 # A run of many seconds, which says when it has begun.
 LONG = """
-import anastomesh, sys
+import anastomesh, signal, sys
+# Shells have what they start in the background ignore it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 def told(progress):
     if progress.stage == "blocks":
         print("begun", flush=True)

@@ -30,14 +30,14 @@ pub struct Args {
     /// Longest extent of the organ, in um (default: terminals as dense as in a rat's kidney)
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     size: Option<f64>,
-    /// Grow veins beside the arteries, with as many terminals, and a looped bed of capillaries between the two, by default
-    /// as in the cortex of mice (needs an ellipsoid; some 35 vessels for each terminal)
+    /// Grow veins beside the arteries, with as many terminals, and a looped bed of capillaries between the two (needs an
+    /// ellipsoid; some 38 vessels for each terminal)
     #[arg(long)]
     capillaries: bool,
-    /// Mean radius of the capillaries, in um
+    /// Mean radius of the capillaries, in um; by default as measured in the cortex of mice
     #[arg(long, value_name = "R", requires = "capillaries", default_value_t = BedParams::default().radius, allow_negative_numbers = true)]
     capillary_radius: f64,
-    /// Mean length of the capillaries, in um
+    /// Mean length of the capillaries, in um; the default is an assumption, not a measurement
     #[arg(long, value_name = "L", requires = "capillaries", default_value_t = BedParams::default().length, allow_negative_numbers = true)]
     capillary_length: f64,
     /// Where the network goes, in um: .vtp, or .swc (node radii only)

@@ -2,10 +2,16 @@
 //!
 //! Nothing is ever subtracted, so that every pressure is right to some units in the last place, however far conductances lie
 //! apart: those of vessels differ by more than what a sum of them in doubles can tell. A tree is eliminated from its tips and
-//! fills nothing in; loops fill in what their cuts are wide.
+//! fills nothing in; loops fill in what their cuts are wide. A bed of capillaries has cuts of thousands: where many nodes are
+//! left that have many neighbours each, these are solved for by iteration (`iterate`).
 
+use super::iterate::Linked;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+
+/// More nodes than these are not eliminated when each has more neighbours than that.
+const NODES: usize = 2000;
+const NEIGHBOURS: usize = 12;
 
 /// Nodes, what conducts between them and to the ground, and what flows in.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,17 +59,26 @@ impl Conductors {
         let mut next: BinaryHeap<_> = self.around.iter().enumerate().map(|(node, list)| entry(node, list)).collect();
         let mut is_gone = vec![false; self.around.len()];
         let mut gone = Vec::with_capacity(self.around.len());
+        let mut core = Vec::new();
         while let Some(Reverse((degree, node))) = next.pop() {
             // The heap also holds what nodes were before.
             if is_gone[node as usize] || self.around[node as usize].len() != degree as usize {
                 continue;
+            }
+            if degree as usize > NEIGHBOURS && is_gone.len() - gone.len() > NODES {
+                core = (0..is_gone.len() as u32).filter(|&node| !is_gone[node as usize]).collect();
+                break;
             }
             is_gone[node as usize] = true;
             let last = self.eliminate(node);
             next.extend(last.star.iter().map(|&(other, _)| entry(other as usize, &self.around[other as usize])));
             gone.push(last);
         }
+        drop(next);
         let mut pressure = vec![0.0; self.around.len()];
+        for (node, found) in core.iter().zip(self.linked(&core).pressures()) {
+            pressure[*node as usize] = found;
+        }
         for Gone { node, total, star } in gone.iter().rev() {
             let through: f64 = star.iter().map(|&(other, g)| g * pressure[other as usize]).sum();
             if *total > 0.0 {
@@ -71,6 +86,18 @@ impl Conductors {
             }
         }
         pressure
+    }
+
+    /// The nodes that are left, numbered anew; ascending.
+    fn linked(&mut self, core: &[u32]) -> Linked {
+        let number = |node: u32| core.partition_point(|&other| other < node) as u32;
+        let mut linked = Linked::default();
+        for &node in core {
+            let around = std::mem::take(&mut self.around[node as usize]);
+            let around = around.into_iter().map(|(other, g)| (number(other), g));
+            linked.add(around, self.ground[node as usize], self.inflow[node as usize]);
+        }
+        linked
     }
 
     fn eliminate(&mut self, node: u32) -> Gone {
@@ -152,6 +179,38 @@ mod tests {
     #[test]
     fn what_leads_nowhere_has_no_pressure() {
         assert_eq!(pressures(3, &[(0, 1, 1.0), (1, 2, 1.0)], &[], &[]), [0.0; 3]);
+    }
+
+    /// A cube of so many nodes along each side, of conductances that differ a thousandfold; out at one corner.
+    fn cube(side: u32) -> Vec<(u32, u32, f64)> {
+        let at = |x: u32, y: u32, z: u32| x + side * (y + side * z);
+        let mut joined = Vec::new();
+        for (x, y, z) in (0..side.pow(3)).map(|i| (i % side, i / side % side, i / side / side)) {
+            let next = [(x + 1, y, z), (x, y + 1, z), (x, y, z + 1)];
+            for (k, (a, b, c)) in next.into_iter().enumerate().filter(|(_, (a, b, c))| a.max(b).max(c) < &side) {
+                let conductance = 10.0_f64.powi((7 * x + 5 * y + 3 * z + k as u32) as i32 % 4);
+                joined.push((at(x, y, z), at(a, b, c), conductance));
+            }
+        }
+        joined
+    }
+
+    #[test]
+    fn what_flows_into_a_thicket_leaves_it() {
+        let side = 22;
+        let (nodes, joined) = (side * side * side, cube(side));
+        let found = pressures(nodes as usize, &joined, &[(nodes - 1, 2.0)], &[(0, 1.0)]);
+        let mut missing = vec![0.0; nodes as usize];
+        missing[0] = 1.0;
+        missing[nodes as usize - 1] -= 2.0 * found[nodes as usize - 1];
+        for (a, b, g) in joined {
+            let flow = g * (found[a as usize] - found[b as usize]);
+            missing[a as usize] -= flow;
+            missing[b as usize] += flow;
+        }
+        let most = missing.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        assert!(most < 1e-10, "{most}");
+        assert!((found[nodes as usize - 1] - 0.5).abs() < 1e-9);
     }
 
     proptest! {

@@ -2,51 +2,25 @@
 //!
 //! Two trees are grown into one ellipsoid, from inlets on opposite sides; where they are in each other's way the thinner
 //! vessel goes, with all behind it. Capillaries are a net through the whole of it (`net`), a little out of shape; those too
-//! close to the trees go, the ends of the trees are joined to what is left, and capillaries that lead nowhere go, too.
+//! close to the trees go, the ends of the trees are joined to what is left (`ends`), and capillaries that lead nowhere go, too.
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
-use serde::Serialize;
 
+use super::bed::BedParams;
+use super::ends::join;
 use super::generate::generate;
-use super::net::{DENSITY, Net};
+use super::net::Net;
 use super::organ::SEMI_AXES;
 use super::params::{GenerateError, GenerateParams, Organ};
 use super::random::{Random, Stream};
-use crate::geometry::{Aabb, Bvh, Point3, Tube, Vec3, tube_tube};
+use super::tubes::{APART, Tubes, meet};
+use crate::geometry::{Point3, Tube, Vec3};
 use crate::skeleton::{Edge, Node, NodeId, Skeleton};
 
-/// Axes of vessels that do not meet are further apart than this, in sums of their radii.
-const APART: f64 = 1.5;
 /// Nodes of the net are this far from their places at most, along each axis, in lengths of an edge.
 const JITTER: f64 = 0.12;
-/// Nodes of the net per end of either tree.
-const PER_TERMINAL: f64 = 12.0;
 /// No capillary is closer to an end of a tree than this, in lengths of an edge: those about it then have room for another one.
 const ROOM: f64 = 0.4;
-/// How far away a node may be to which an end of a tree is joined, in lengths of an edge.
-const REACH: f64 = 1.5;
-/// Cosine of the least angle between vessels that are joined.
-const SIDE_BY_SIDE: f64 = 0.6;
-/// Spread of the radii of capillaries, as a share of their mean; none is off by more than three times as much.
-const RADIUS_SPREAD: f64 = 0.14;
-
-/// The bed between two trees. Lengths are in µm.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct BedParams {
-    /// Mean radius.
-    pub radius: f64,
-    /// Mean length of a vessel.
-    pub length: f64,
-}
-
-impl Default for BedParams {
-    /// As in the cortex of mice, whose capillaries are 2 to 5 µm wide (Sargent et al., 'Endothelial structure contributes to
-    /// heterogeneity in brain capillary diameter', Vasc. Biol. 5 (2023)).
-    fn default() -> Self {
-        Self { radius: 1.75, length: 60.0 }
-    }
-}
 
 /// Arteries, veins and capillaries.
 #[derive(Clone, Debug)]
@@ -59,21 +33,6 @@ pub struct Looped {
     pub joined: usize,
     /// Ends that are open, as no capillary has room beside them: outlets.
     pub open: usize,
-}
-
-impl BedParams {
-    /// Longest extent of an ellipsoid with a bed for so many ends of either tree.
-    pub fn usual_size(&self, terminals: u32) -> f64 {
-        let volume = f64::from(terminals) * 2.0 * PER_TERMINAL * self.length.powi(3) / DENSITY;
-        let unit = std::f64::consts::FRAC_PI_6 * SEMI_AXES[0] * SEMI_AXES[1] * SEMI_AXES[2];
-        (volume / unit).cbrt()
-    }
-
-    fn check(&self) -> Result<(), GenerateError> {
-        let thick = self.radius * (1.0 + 3.0 * RADIUS_SPREAD);
-        let fits = self.radius > 0.0 && self.length.is_finite() && self.length >= 8.0 * thick;
-        if fits { Ok(()) } else { Err(GenerateError::BadBed { radius: self.radius, length: self.length }) }
-    }
 }
 
 /// Grows arteries, veins and the bed between them. `params` say what either tree is.
@@ -136,42 +95,6 @@ fn apart(arteries: Skeleton, veins: Skeleton) -> (Skeleton, usize) {
     (compact(&both, &kept), of_veins)
 }
 
-/// Whether two vessels that share no node are too close to each other.
-fn meet(a: &Tube, b: &Tube) -> bool {
-    let pair = tube_tube(a, b);
-    pair.gap < (APART - 1.0) * (a.radius(pair.s) + b.radius(pair.t))
-}
-
-/// Vessels, and a tree in which those close to a place are found.
-struct Tubes {
-    list: Vec<Tube>,
-    tree: Bvh,
-}
-
-impl Tubes {
-    fn new(vessels: impl Iterator<Item = Tube>) -> Self {
-        let list: Vec<Tube> = vessels.collect();
-        let boxes: Vec<Aabb> = list.iter().map(around).collect();
-        Self { tree: Bvh::new(&boxes), list }
-    }
-
-    /// Whether one of them is too close to a vessel, but for those that begin or end at one of these points.
-    fn meets(&self, vessel: &Tube, but: &[Point3]) -> bool {
-        let mut meets = false;
-        self.tree.query(&around(vessel), |i| {
-            let other = &self.list[i as usize];
-            let shares = but.iter().any(|p| *p == other.a || *p == other.b);
-            meets = meets || (!shares && meet(vessel, other));
-        });
-        meets
-    }
-}
-
-/// Boxes of vessels that are too close to each other overlap.
-fn around(tube: &Tube) -> Aabb {
-    Aabb::of_points([&tube.a, &tube.b]).grown(APART * tube.max_radius())
-}
-
 /// Adds the net, but for what is too close to the trees, and what is in the way where their ends are to be joined to it.
 fn add_bed(network: &mut Skeleton, ends: &[NodeId], bed: &BedParams, size: f64, random: Random) {
     let half = Vec3::from(SEMI_AXES) * (0.5 * size);
@@ -181,7 +104,7 @@ fn add_bed(network: &mut Skeleton, ends: &[NodeId], bed: &BedParams, size: f64, 
         net.point(i) + Vec3::new(off(0), off(1), off(2))
     };
     let inside = |p: &Point3| p.coords.component_div(&half).norm_squared() <= 1.0;
-    let thick = bed.radius * (1.0 + 3.0 * RADIUS_SPREAD);
+    let thick = bed.thick();
     let room = ROOM * bed.length / APART - thick;
     let rooms = ends.iter().map(|&end| {
         let a = network.node(end).position;
@@ -192,7 +115,8 @@ fn add_bed(network: &mut Skeleton, ends: &[NodeId], bed: &BedParams, size: f64, 
         let here = place(i);
         let later = net.joined(i).into_iter().flatten().filter(|&j| j > i && inside(&here));
         let edges = later.map(|j| (j, place(j))).filter(|(_, there)| inside(there));
-        let free = edges.filter(|(_, there)| !trees.meets(&Tube { a: here, b: *there, ra: thick, rb: thick }, &[]));
+        let free =
+            edges.filter(|(_, there)| !trees.meets(&Tube { a: here, b: *there, ra: thick, rb: thick }, &[], None));
         free.map(|(j, _)| [i, j]).collect()
     };
     let edges: Vec<[u64; 2]> = (0..net.len()).into_par_iter().flat_map_iter(clear).collect();
@@ -204,60 +128,9 @@ fn add_bed(network: &mut Skeleton, ends: &[NodeId], bed: &BedParams, size: f64, 
     network.nodes.extend(places.iter().map(node));
     let id = |i: u64| NodeId((first + places.partition_point(|&p| p < i)) as u32);
     network.edges.extend(edges.iter().enumerate().map(|(k, ends)| {
-        let radius = bed.radius * (1.0 + RADIUS_SPREAD * random.bell(Stream::Bed, net.len() * 3 + k as u64));
+        let radius = bed.any_radius(random, Stream::Bed, net.len() * 3 + k as u64);
         Edge { nodes: ends.map(id), radii: [radius; 2] }
     }));
-}
-
-/// Joins ends of the trees to nodes of the bed (from `first` on) that have lost a vessel; which ends.
-fn join(network: &mut Skeleton, ends: &[NodeId], first: usize, bed: &BedParams, random: Random) -> Vec<NodeId> {
-    let adjacency = network.adjacency();
-    let places: Vec<NodeId> =
-        network.node_ids().skip(first).filter(|&n| (1..3).contains(&adjacency.valence(n))).collect();
-    let points: Vec<[f64; 3]> = places.iter().map(|&n| network.node(n).position.into()).collect();
-    let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&points) else { return Vec::new() };
-    let all = Tubes::new(network.edge_ids().map(|edge| network.tube(edge)));
-    let ways = |n: NodeId| -> Vec<Vec3> {
-        let here = network.node(n).position;
-        let others = adjacency.edges(n).iter().map(|&e| network.edge(e).other(n));
-        others.map(|other| (network.node(other).position - here).normalize()).collect()
-    };
-    let candidates = |&end: &NodeId| -> Vec<NodeId> {
-        let (from, root) = (network.node(end).position, end.index());
-        // The two inlets stay what they are.
-        let edge = network.edge(adjacency.edges(end)[0]);
-        if edge.nodes[0].index() == root {
-            return Vec::new();
-        }
-        let reach = REACH * bed.length;
-        let near = tree.query(&from.into()).within::<SquaredEuclidean<f64>>(reach * reach).unsorted().execute();
-        let mut found: Vec<(f64, NodeId)> = near.into_iter().map(|n| (n.distance, places[n.item as usize])).collect();
-        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        found
-            .into_iter()
-            .map(|(_, n)| n)
-            .filter(|&n| {
-                let there = network.node(n).position;
-                let way = (there - from).normalize();
-                let open = |at: NodeId, way: Vec3| ways(at).iter().all(|other| other.dot(&way) < SIDE_BY_SIDE);
-                let vessel = Tube { a: from, b: there, ra: bed.radius, rb: bed.radius };
-                vessel.length() > 4.0 * edge.radii[0]
-                    && open(end, way)
-                    && open(n, -way)
-                    && !all.meets(&vessel, &[from, there])
-            })
-            .collect()
-    };
-    let wanted: Vec<Vec<NodeId>> = ends.par_iter().map(candidates).collect();
-    let (mut taken, mut joined) = (vec![false; network.nodes.len()], Vec::new());
-    for (k, (&end, wanted)) in ends.iter().zip(&wanted).enumerate() {
-        let Some(&to) = wanted.iter().find(|n| !taken[n.index()]) else { continue };
-        taken[to.index()] = true;
-        joined.push(end);
-        let radius = bed.radius * (1.0 + RADIUS_SPREAD * random.bell(Stream::Joint, k as u64));
-        network.edges.push(Edge { nodes: [end, to], radii: [radius; 2] });
-    }
-    joined
 }
 
 /// The nodes that remain: the trees (before `first`), and of what hangs together with the first inlet those from which two
@@ -333,10 +206,10 @@ mod tests {
         assert_eq!(components.len(), 1);
         let capillaries = made.kind.iter().filter(|kind| **kind == 2).count();
         assert!(capillaries > 1500 && components[0].loops() > capillaries / 3, "{capillaries}");
-        // Capillaries end nowhere; of the ends of the trees a good part is joined.
+        // Capillaries end nowhere; nearly all ends of the trees are joined.
         let terminals = adjacency.terminals();
         assert!(terminals.iter().all(|n| made.kind[n.index()] < 2) && terminals.len() <= made.open + 2);
-        assert!(2 * made.joined > made.open, "{} joined, {} open", made.joined, made.open);
+        assert!(made.joined > 20 * made.open, "{} joined, {} open", made.joined, made.open);
         for kind in 0..2 {
             assert!(made.kind.iter().filter(|k| **k == kind).count() > 100);
         }

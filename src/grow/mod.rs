@@ -9,7 +9,9 @@
 //!
 //! The published morphometry, and what a network has of it, is in `morphometry`.
 
+mod bed;
 mod dual;
+mod ends;
 mod generate;
 mod looped;
 mod morphometry;
@@ -22,9 +24,11 @@ mod split;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod tubes;
 
+pub use bed::BedParams;
 pub use dual::{Dual, dual};
 pub use generate::generate;
-pub use looped::{BedParams, Looped, looped};
+pub use looped::{Looped, looped};
 pub use morphometry::{Morphometry, RAT_KIDNEY};
 pub use params::{GenerateError, GenerateParams, Organ};

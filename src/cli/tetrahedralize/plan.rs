@@ -5,11 +5,15 @@ use super::format::{InputFormat, Target};
 use super::switches::Switches;
 use crate::cli::exit::Failure;
 use crate::mesh::{Bounds, REGULAR_DIHEDRAL};
-use crate::tet::{Boundary, InputKind, Interior, Layers, Refinement, Region, Sizing, Tetrahedralizer};
+use crate::tet::{Boundary, Effort, InputKind, Interior, Layers, Refinement, Region, Sizing, Tetrahedralizer};
 use serde::Serialize;
 
 /// Side of the lattice's cubes in edge lengths: what gives a body-centred lattice edges of about that length.
 const LATTICE_CELL: f64 = 1.08;
+
+/// The lattice of a run that goes by TetGen's switches, in edge lengths of the surface nearby: about as many tetrahedra as
+/// TetGen makes.
+const SPARSE: Interior = Interior::Local { cell: 2.0, clearance: 0.45 };
 
 /// What is to be done.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,6 +34,8 @@ pub struct TetPlan {
     pub layers: Option<Layers>,
     /// Whether tetrahedra are improved.
     pub optimize: bool,
+    /// Whether no more is put inside, and no more improved, than a bound on shapes asks for.
+    pub sparse: bool,
     /// Whether the orientation is mended and exact duplicates are joined first.
     pub repair: bool,
     /// Whether a part of the input that would be left out, or passed over, is an error.
@@ -103,6 +109,7 @@ impl TetPlan {
             split: args.split,
             layers: None,
             optimize: refine,
+            sparse: false,
             repair: false,
             strict: false,
             regions: true,
@@ -127,6 +134,8 @@ impl TetPlan {
             split: !s.keep_boundary,
             layers: None,
             optimize: refine && !s.no_optimization,
+            // With a bound on volumes the lattice follows that; one on angles takes all there is to meet.
+            sparse: s.max_volume.is_none() && !s.region_volumes && !s.quality.is_some_and(bounds_angles),
             repair: false,
             strict: false,
             regions: s.regions,
@@ -155,7 +164,11 @@ impl TetPlan {
     /// The tetrahedralizer that does it for an input with these regions.
     pub fn tetrahedralizer(&self, regions: &[Region]) -> Tetrahedralizer {
         let refinement = Refinement { bounds: self.bounds, ..Refinement::default() };
-        let lattice = Interior::Lattice { cell: self.size.map(|size| LATTICE_CELL * size), clearance: None };
+        let lattice = if self.sparse {
+            SPARSE
+        } else {
+            Interior::Lattice { cell: self.size.map(|size| LATTICE_CELL * size), clearance: None }
+        };
         let bounded = self.bounds != Bounds::default() || regions.iter().any(|region| region.max_volume.is_some());
         Tetrahedralizer::new()
             .kind(if self.plc { InputKind::Plc } else { InputKind::Closed })
@@ -165,6 +178,7 @@ impl TetPlan {
             .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
             .layers(self.layers)
             .optimize(self.optimize)
+            .effort(if self.sparse { Effort::Quick } else { Effort::Full })
             .strict(self.strict)
     }
 }
@@ -172,6 +186,11 @@ impl TetPlan {
 /// The bounds among the flags.
 fn bounds_of(args: &Args) -> Bounds {
     Bounds { max_radius_edge: args.max_radius_edge, min_dihedral: args.min_dihedral, max_volume: args.max_volume }
+}
+
+/// Whether there is a bound on dihedral angles that not all tetrahedra meet.
+fn bounds_angles(bounds: Bounds) -> bool {
+    bounds.min_dihedral.is_some_and(|degrees| degrees > 0.0)
 }
 
 fn not_positive(flag: &str, value: f64) -> Failure {
