@@ -22,7 +22,7 @@ const HEAD: usize = 11;
 const CAP: usize = 2 * 4 + 7 * 8;
 
 /// How much a finished block holds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Sizes {
     /// Points, shared ones included.
     pub points: u32,

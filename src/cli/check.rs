@@ -1,19 +1,24 @@
 //! `anastomesh check`: a volume mesh verified line by line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::common::print;
+use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
-use super::kind::OpenedMesh;
+use super::kind::{OpenedMesh, held, unreadable};
+use super::log;
 use super::page::ReportArgs;
+use super::progress::Bars;
 use super::room;
-use crate::io::volume::{MeshFormat, read_mesh};
-use crate::io::volume::{VtuPieces, VtuPiecesError};
+use super::stop::Stop;
+use crate::io::volume::{MeshFile, MeshFormat, VtuPieces, VtuPiecesError, read_mesh};
 use crate::mesh::check::parts::{PiecesError, check_pieces};
 use crate::mesh::check::{CheckReport, Verdict, check_tets, check_volume};
 use crate::mesh::dihedral::DihedralHistogram;
 use crate::mesh::{TET_FACES, VolumeMesh};
+use crate::progress::Stage;
+use crate::report::check::conditions;
 use crate::report::page::{self, Section};
+use crate::report::summary::{of_check, of_mesh};
 use rustc_hash::FxHashMap;
 
 /// Bytes of memory that the check of a whole takes for each byte of its file.
@@ -30,21 +35,32 @@ pub struct Args {
     memory: u64,
     #[command(flatten)]
     report: ReportArgs,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    common: Common,
 }
 
 /// Checks a mesh file and prints the result of every line.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     args.report.ensure_writable()?;
-    let (report, mesh) = match by_blocks(args)? {
-        Some(checked) => checked,
-        None => as_a_whole(args)?,
-    };
-    print(args.json, &report, || report.to_string())?;
-    write_page(args, &report, mesh)?;
-    Ok(if report.verdict == Verdict::Invalid { Exit::GateNotMet } else { Exit::Fine })
+    let pool = thread_pool(args.common.threads)?;
+    let bar = Bars::new(args.common.quiet, args.common.progress, Stop::deaf());
+    let (report, mesh) = bar.during(Stage::Check, || pool.install(|| checked(args)))?;
+    let is_wrong = report.verdict == Verdict::Invalid;
+    if args.common.json || is_wrong || !args.common.quiet {
+        print(args.common.json, &report, || text(&report, args.common.verbose))?;
+    }
+    pool.install(|| write_page(args, &report, mesh))?;
+    Ok(if is_wrong { Exit::GateNotMet } else { Exit::Fine })
+}
+
+fn checked(args: &Args) -> Result<(CheckReport, OpenedMesh), Failure> {
+    by_blocks(args)?.map_or_else(|| as_a_whole(args), Ok)
+}
+
+/// For people: how large the mesh is, how many conditions hold, and which do not; with `verbose` all of them.
+fn text(report: &CheckReport, verbose: bool) -> String {
+    let all = if verbose { conditions(report) } else { String::new() };
+    format!("{all}{}{}{}", of_mesh(report), ended(&[]).rows(&[]), of_check(report))
 }
 
 /// Writes the page of `--report`.
@@ -68,13 +84,12 @@ fn as_a_whole(args: &Args) -> Result<(CheckReport, OpenedMesh), Failure> {
     if file.notes.expectation.is_none() {
         drop_interior_faces(&mut file.volume);
     }
+    Ok((of_whole(&file), OpenedMesh::Whole(file)))
+}
+
+fn of_whole(file: &MeshFile) -> CheckReport {
     let expectation = file.notes.expectation.as_ref();
-    let report = if file.labelled {
-        check_volume(&file.volume, expectation)
-    } else {
-        check_tets(&file.volume.mesh, expectation)
-    };
-    Ok((report, OpenedMesh::Whole(file)))
+    if file.labelled { check_volume(&file.volume, expectation) } else { check_tets(&file.volume.mesh, expectation) }
 }
 
 /// Checks a large file without holding the mesh; none when it is not large, or has to be held.
@@ -84,28 +99,41 @@ fn by_blocks(args: &Args) -> Result<Option<(CheckReport, OpenedMesh)>, Failure> 
     {
         return Ok(None);
     }
-    let path = args.mesh.display();
-    let held = |why: &dyn std::fmt::Display| {
-        eprintln!("anastomesh: {path} is held as a whole, which may need more than --memory: {why}");
-        Ok(None)
-    };
-    let refused = |source| Failure::input(format!("{path}: cannot be read: {source}; write or copy it again"));
     // A share for blocks of the file, one for walls; what is known of each block takes the rest.
-    let share = (args.memory / 4) as usize;
-    let pieces = match VtuPieces::open(&args.mesh, share) {
-        Ok(pieces) => pieces,
-        Err(VtuPiecesError::Read(source)) => return Err(refused(source)),
-        Err(why) => return held(&why),
+    let report = match VtuPieces::open(&args.mesh, share(args.memory)) {
+        Ok(pieces) => of_pieces(&args.mesh, &pieces, args.memory)?.map(|report| (report, OpenedMesh::Pieces(pieces))),
+        Err(VtuPiecesError::Read(source)) => return Err(unreadable(&args.mesh, &source)),
+        Err(why) => Err(why.to_string()),
     };
+    Ok(report.map_err(|why| held(&args.mesh, &why)).ok())
+}
+
+fn share(memory: u64) -> usize {
+    (memory / 4) as usize
+}
+
+/// Checks pieces; or why they cannot be checked as such.
+fn of_pieces(path: &Path, pieces: &VtuPieces, memory: u64) -> Result<Result<CheckReport, String>, Failure> {
     let expectation = pieces.notes().expectation.as_ref();
     if expectation.is_none() {
-        return held(&"it does not say what is expected of it");
+        return Ok(Err("it does not say what is expected of it".into()));
     }
-    match check_pieces(&pieces, expectation, share) {
-        Ok(report) => Ok(Some((report, OpenedMesh::Pieces(pieces)))),
-        Err(PiecesError::Read(source)) => Err(refused(source)),
-        Err(why) => held(&why),
+    match check_pieces(pieces, expectation, share(memory)) {
+        Ok(report) => Ok(Ok(report)),
+        Err(PiecesError::Read(source)) => Err(unreadable(path, &source)),
+        Err(why) => Ok(Err(why.to_string())),
     }
+}
+
+/// Checks a mesh that is open, without holding it if it is not held; none, with a word, where that cannot be done.
+pub fn check_opened(path: &Path, opened: &OpenedMesh, memory: u64) -> Result<Option<CheckReport>, Failure> {
+    let report = match opened {
+        OpenedMesh::Whole(file) => Ok(of_whole(file)),
+        OpenedMesh::Pieces(pieces) => of_pieces(path, pieces, memory)?,
+    };
+    let unchecked =
+        |why| log::warning(&format!("{} is not checked: {why}; `anastomesh check` does it", path.display()));
+    Ok(report.map_err(unchecked).ok())
 }
 
 /// Leaves out the labelled faces that lie between two tetrahedra: meshes of others, and of complexes of facets, label

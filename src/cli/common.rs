@@ -1,11 +1,22 @@
 //! The options of every verb that works for a while, and what several verbs do alike.
 
 use super::exit::Failure;
+use super::log;
 use super::progress::ProgressFormat;
-use crate::report::summary::Written;
+use crate::report::rows::Ended;
 use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::Path;
+use std::sync::OnceLock;
+use std::time::Instant;
+
+/// When the program began.
+static BEGIN: OnceLock<Instant> = OnceLock::new();
+
+/// The program begins.
+pub fn begin() {
+    BEGIN.get_or_init(Instant::now);
+}
 
 /// How a verb works and what it says of it.
 #[derive(Debug, clap::Args)]
@@ -29,8 +40,14 @@ pub struct Common {
     pub verbose: bool,
 }
 
+/// What is left of a run: files and folders that are there, with their sizes; time and memory.
+pub fn ended(paths: &[&Path]) -> Ended {
+    let seconds = BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64();
+    Ended { files: written(paths), seconds, memory: peak_memory() }
+}
+
 /// Files and folders that are there, with their sizes.
-pub fn written(paths: &[&Path]) -> Vec<Written> {
+fn written(paths: &[&Path]) -> Vec<(String, u64)> {
     let size = |path: &Path| match path.metadata() {
         Ok(data) if data.is_dir() => {
             let inside = std::fs::read_dir(path).into_iter().flatten().flatten();
@@ -58,12 +75,11 @@ pub fn thread_pool(threads: Option<NonZeroUsize>) -> Result<rayon::ThreadPool, F
 
 /// Prints a result for people or, with `--json`, for programs.
 pub fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
-    let out = if json {
-        serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?
-    } else {
-        text()
-    };
-    print_bytes(format!("{}\n", out.trim_end()).as_bytes())
+    if !json {
+        return log::answer(&text());
+    }
+    let out = serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
+    print_bytes(format!("{out}\n").as_bytes())
 }
 
 /// Writes to standard output. A closed pipe is the reader's decision, not an error.

@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::common::{Common, print, thread_pool};
+use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::format::FormatArgs;
 use super::grid::GridArgs;
 use super::kind::{Kind, OpenedMesh, boundary_of};
+use super::log;
 use super::progress::Bars;
 use super::room;
 use super::stop::{NOTHING_KEPT, Stop};
@@ -23,6 +24,8 @@ use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
 use crate::mesh::source::{MeshSource, SourceCounts};
 use crate::prepare::directed;
 use crate::progress::Progress;
+use crate::report::rows::row;
+use crate::report::units::grouped;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -87,13 +90,20 @@ enum Written {
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
+        f.write_str(&match *self {
             Self::Mesh { points, tets, boundary_faces } => {
-                write!(f, "{points} points, {tets} tetrahedra, {boundary_faces} boundary faces")
+                let [tets, points, faces] = [tets, points, boundary_faces].map(grouped);
+                row("mesh", &format!("{tets} tetrahedra, {points} points, {faces} boundary faces"))
             }
-            Self::Surface { points, triangles } => write!(f, "{points} points, {triangles} triangles"),
-            Self::Network { nodes, edges } => write!(f, "{nodes} nodes, {edges} edges"),
-        }
+            Self::Surface { points, triangles } => {
+                let [points, triangles] = [points, triangles].map(grouped);
+                row("surface", &format!("{points} points, {triangles} triangles"))
+            }
+            Self::Network { nodes, edges } => {
+                let [nodes, edges] = [nodes, edges].map(grouped);
+                row("network", &format!("{nodes} nodes, {edges} edges"))
+            }
+        })
     }
 }
 
@@ -114,7 +124,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
         print(true, &Output { program, from, to, counts }, String::new)?;
     } else if !args.common.quiet {
-        eprintln!("{counts}");
+        log::result(&format!("{counts}{}", ended(&[&args.output]).rows(&[])));
     }
     Ok(Exit::Fine)
 }

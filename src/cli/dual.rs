@@ -4,11 +4,14 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::common::print;
+use super::common::{ended, print};
 use super::exit::{Exit, Failure};
+use super::log;
 use super::network::NetworkArgs;
 use crate::grow::dual;
 use crate::io::network::{NetworkArray, ensure_network_writable, write_network};
+use crate::report::rows::row;
+use crate::report::units::grouped;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -42,7 +45,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let network = args.network.read()?;
     if !args.quiet {
         for remark in network.remarks() {
-            eprintln!("{remark}");
+            log::note(&remark);
         }
     }
     let both = dual(&network.skeleton);
@@ -58,10 +61,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.json {
         print(true, &grown, String::new)?;
     } else if !args.quiet {
-        eprintln!(
-            "{} nodes, {} edges, {} shared terminals; `anastomesh refine` separates the two trees",
-            grown.nodes, grown.edges, grown.shared_terminals
-        );
+        let [nodes, edges, shared] = [grown.nodes, grown.edges, grown.shared_terminals].map(grouped);
+        let network = row("network", &format!("{nodes} nodes, {edges} edges, {shared} shared terminals"));
+        let ended = ended(&[&args.output]).rows(&[]);
+        log::result(&format!("{network}{ended}the two trees run into each other: `anastomesh refine` parts them"));
     }
     Ok(Exit::Fine)
 }

@@ -5,10 +5,13 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::common::{Common, print, thread_pool};
+use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::log;
 use crate::grow::{BedParams, GenerateParams, Looped, Morphometry, Organ, RAT_KIDNEY, generate, looped};
 use crate::io::network::{NetworkArray, ensure_network_writable, ensure_tree_writable, write_network, write_tree};
+use crate::report::rows::row;
+use crate::report::units::grouped;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -120,9 +123,10 @@ fn run_looped(args: &Args) -> Result<Exit, Failure> {
         let grown = GrownLooped { program, parameters: &params, capillaries: &bed, nodes, edges, joined, open };
         print(true, &grown, String::new)?;
     } else if !args.common.quiet {
-        eprintln!(
-            "{nodes} nodes, {edges} edges; {joined} ends of arteries and veins are joined to capillaries, {open} are open"
-        );
+        let [nodes, edges, joined, open] = [nodes, edges, joined, open].map(grouped);
+        let network = row("network", &format!("{nodes} nodes, {edges} edges"));
+        let ends = row("ends", &format!("{joined} of arteries and veins are joined to capillaries, {open} are open"));
+        log::result(&format!("{network}{ends}{}", ended(&[&args.output]).rows(&[])));
     }
     Ok(Exit::Fine)
 }
@@ -153,7 +157,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.common.json {
         print(true, &grown, String::new)?;
     } else {
-        eprint!("{}", text(&grown));
+        log::result(&format!("{}{}", text(&grown), ended(&[&args.output]).rows(&[])));
     }
     Ok(Exit::Fine)
 }
@@ -162,14 +166,13 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 fn text(grown: &Grown) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
+    let [nodes, edges, terminals] = [grown.nodes, grown.edges, grown.parameters.terminals as usize].map(grouped);
+    let sizes = format!("{nodes} nodes, {edges} edges, {terminals} terminals");
+    let (radius, size) = (grown.root_radius, grouped(grown.size.round() as usize));
+    out += &row("network", &format!("{sizes}; a root of radius {radius:.1} µm in an organ {size} µm long"));
     let _ = writeln!(
         out,
-        "{} nodes, {} edges, {} terminals and a root of radius {:.1} um in {:.0} um",
-        grown.nodes, grown.edges, grown.parameters.terminals, grown.root_radius, grown.size
-    );
-    let _ = writeln!(
-        out,
-        "order    vessels         radius/um         length/um   (mean +- deviation; below: measured in rats)"
+        "order    vessels         radius/µm         length/µm   (mean +- deviation; below: measured in rats)"
     );
     for (order, figures) in grown.morphometry.orders.iter().enumerate() {
         let f = figures;

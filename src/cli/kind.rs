@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::exit::Failure;
+use super::log;
 use crate::io::network::NetworkFormat;
 use crate::io::npy;
 use crate::io::surface::SurfaceFormat;
@@ -13,6 +14,7 @@ use crate::io::volume::{MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesErr
 use crate::mesh::adjacency::boundary_faces;
 use crate::mesh::source::MeshSource;
 use crate::mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
+use crate::pipeline::LeftWhole;
 
 /// Bytes of memory that a mesh takes for each byte of its file while it is held as a whole.
 const MEMORY_PER_BYTE: u64 = 4;
@@ -106,17 +108,38 @@ fn in_pieces(input: &Path, memory: u64) -> Result<Option<VtuPieces>, Failure> {
     if length.saturating_mul(MEMORY_PER_BYTE) <= memory || MeshFormat::of(input).ok() != Some(MeshFormat::Vtu) {
         return Ok(None);
     }
-    let path = input.display();
     match VtuPieces::open(input, (memory / 4) as usize) {
         Ok(pieces) => Ok(Some(pieces)),
-        Err(VtuPiecesError::Read(source)) => {
-            Err(Failure::input(format!("{path}: cannot be read: {source}; write or copy it again")))
-        }
+        Err(VtuPiecesError::Read(source)) => Err(unreadable(input, &source)),
         Err(why) => {
-            eprintln!("anastomesh: {path} is held as a whole, which may need more than --memory: {why}");
+            held(input, &why);
             Ok(None)
         }
     }
+}
+
+/// Says that a mesh takes more memory than it might.
+pub fn held(path: &Path, why: &dyn fmt::Display) {
+    log::warning(&format!("{} is held as a whole, which may need more than --memory: {why}", path.display()));
+}
+
+/// A file that breaks off, or is none.
+pub fn unreadable(path: &Path, why: &dyn fmt::Display) -> Failure {
+    Failure::input(format!("{}: cannot be read: {why}; write or copy it again", path.display()))
+}
+
+/// The mesh that a run has left in a work directory; none where the path is none.
+pub fn left_in(folder: &Path) -> Result<Option<LeftWhole>, Failure> {
+    if !LeftWhole::may_be_in(folder) {
+        return Ok(None);
+    }
+    LeftWhole::open(folder).map(Some).ok_or_else(|| {
+        Failure::input(format!(
+            "{}: no run has come to the end of its blocks in this work directory; start the command that began it again, \
+             which goes on there",
+            folder.display()
+        ))
+    })
 }
 
 /// A mesh of nothing but this boundary.

@@ -1,12 +1,12 @@
 //! `anastomesh mesh`: from a network to a volume mesh.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::before::{Before, Made, Meshing};
 use super::blocks::BlockArgs;
-use super::common::{Common, peak_memory, print, thread_pool, written};
+use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
 use super::format::FormatArgs;
@@ -38,6 +38,7 @@ use crate::progress::{Progress, Stage};
 use crate::refine::{RefineParams, Refined};
 use crate::report::advice::advice;
 use crate::report::caps;
+use crate::report::check::conditions;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
 use crate::skeleton::Skeleton;
@@ -181,7 +182,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     plan.roots.clone_from(&inlets.roots);
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
-    for remark in network.remarks().into_iter().chain(inlets.remarks()).chain(cut_short) {
+    for remark in network.remarks(args.common.verbose).into_iter().chain(inlets.remarks()).chain(cut_short) {
         bars.note(&remark);
     }
     let work = if args.dry_run { None } else { args.work.open(shard, &network.skeleton, || args.options(&plan))? };
@@ -494,12 +495,12 @@ impl Args {
             || check.is_some_and(|c| !c.is_valid())
         {
             if self.common.verbose {
-                let all = [Some(run.to_string()), check.map(ToString::to_string), fidelity.map(ToString::to_string)];
+                let all = [Some(run.to_string()), check.map(conditions), fidelity.map(ToString::to_string)];
                 log::result(&all.into_iter().flatten().collect::<String>());
             }
-            let files = found.map_or_else(Vec::new, |_| written(&[&self.output, &self.table()]));
-            let summary = Summary { run, check, fidelity, files: &files, memory: peak_memory() };
-            log::result(&summary.to_string());
+            let table = self.table();
+            let files: &[&Path] = if found.is_some() { &[&self.output, &table] } else { &[] };
+            log::result(&Summary { run, check, fidelity, ended: ended(files) }.to_string());
         }
         Ok(())
     }

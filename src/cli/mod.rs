@@ -3,6 +3,7 @@
 mod before;
 mod blocks;
 mod check;
+mod colours;
 mod common;
 mod completions;
 mod config;
@@ -102,11 +103,14 @@ enum Verb {
 
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
+    common::begin();
     install_panic_note();
+    LogFormat::of_words(&std::env::args_os().collect::<Vec<_>>()).set();
     let (words, config) = match config::expanded(std::env::args_os().collect(), &definition()) {
         Ok(expanded) => expanded,
         Err(failure) => return failed(&failure),
     };
+    LogFormat::of_words(&words).set();
     let parsed = Args::command().try_get_matches_from(words);
     let parsed = parsed.and_then(|matches| Ok((Args::from_arg_matches(&matches)?, matches)));
     let (args, matches) = match parsed {
@@ -114,6 +118,9 @@ pub fn main() -> ExitCode {
         Err(error) => {
             // Help and version come this way too, and are no errors.
             let exit = if error.use_stderr() { Exit::Usage } else { Exit::Fine };
+            if error.use_stderr() && log::is_json() {
+                return failed(&Failure::usage(error.render().to_string()));
+            }
             return if error.print().is_ok() { exit.into() } else { Exit::BadInput.into() };
         }
     };
@@ -135,13 +142,12 @@ pub fn main() -> ExitCode {
         Verb::Completions(args) => completions::run(args, definition()),
         Verb::Man(args) => man::run(args, &definition()),
     });
-    match result {
-        Ok(Ok(exit)) => match config.map_or(Ok(()), |_| write_plan(&matches)) {
-            Ok(()) => exit.into(),
-            Err(failure) => failed(&failure),
-        },
-        Ok(Err(failure)) => failed(&failure),
-        Err(_) => Exit::Bug.into(),
+    // A run that failed is to be run again, too.
+    let plan = config.map_or(Ok(()), |_| write_plan(&matches));
+    match (result, plan) {
+        (Ok(Ok(exit)), Ok(())) => exit.into(),
+        (Ok(Ok(_)), Err(failure)) | (Ok(Err(failure)), _) => failed(&failure),
+        (Err(_), _) => Exit::Bug.into(),
     }
 }
 
@@ -169,7 +175,11 @@ fn definition() -> Command {
 fn install_panic_note() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
-        usual(info);
-        eprintln!("anastomesh: this is a fault of the program; please report it with the input and the options");
+        if log::is_json() {
+            log::error(&info.to_string());
+        } else {
+            usual(info);
+        }
+        log::error("this is a fault of the program; please report it with the input and the options");
     }));
 }

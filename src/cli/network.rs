@@ -141,11 +141,11 @@ impl PreparedNetwork {
         inlets(&self.skeleton, &self.names, &self.roots, asked)
     }
 
-    /// Lines for people on what was read and done.
-    pub fn remarks(&self) -> Vec<String> {
+    /// Lines for people on what was read and done; with `all` at length.
+    pub fn remarks(&self, all: bool) -> Vec<String> {
         let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
         if self.report.changed() {
-            lines.extend(text(&self.report).lines().map(ToString::to_string));
+            lines.extend(text(&self.report, all).lines().map(ToString::to_string));
         }
         lines
     }

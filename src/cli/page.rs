@@ -19,6 +19,11 @@ pub struct ReportArgs {
 }
 
 impl ReportArgs {
+    /// Where the page goes, if one is asked for.
+    pub fn page(&self) -> Option<&PathBuf> {
+        self.report.as_ref()
+    }
+
     /// Makes sure, before any work is done, that the page can be written.
     pub fn ensure_writable(&self) -> Result<(), Failure> {
         self.report.as_deref().map_or(Ok(()), |path| ensure_text_writable(path).map_err(|e| unwritable(path, &e)))

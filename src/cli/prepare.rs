@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::common::Common;
+use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
+use super::log;
 use super::network::NetworkArgs;
 use crate::io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
 use crate::prepare::{PrepareParams, PrepareReport, Touching, directed};
-use crate::report::prepare::text;
+use crate::report::prepare::{row_of, text};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -138,9 +139,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         super::common::print(true, &output, String::new)?;
     } else if !args.common.quiet {
         for note in &prepared.notes {
-            eprintln!("{note}");
+            log::note(&note.to_string());
         }
-        eprint!("{}", text(&prepared.report));
+        let cures = text(&prepared.report, args.common.verbose);
+        log::result(&format!("{cures}{}{}", row_of(&prepared.report), ended(&[&args.output]).rows(&[])));
     }
     Ok(Exit::Fine)
 }

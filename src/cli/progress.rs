@@ -1,15 +1,17 @@
 //! Progress: bars on a terminal, lines for the program that waits for this one.
 
+use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::log;
 use super::stop::Stop;
+use super::{colours, log};
 use crate::progress::{Progress, Stage};
+use crate::report::units::{grouped, seconds_of};
 
 /// How programs are told of progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -20,20 +22,54 @@ pub enum ProgressFormat {
 
 /// Whether bars are shown: on a terminal only, where nobody is told in another way.
 pub fn shows_bars(quiet: bool, told: Option<ProgressFormat>) -> bool {
-    !quiet && told.is_none() && std::io::stderr().is_terminal()
+    !quiet && told.is_none() && !log::is_json() && std::io::stderr().is_terminal()
 }
 
 /// The bar of a stage; 0 steps: their number is not known.
 pub fn stage_bar(stage: &'static str, steps: u64) -> ProgressBar {
-    let (length, template) = match steps {
-        0 => (None, "{prefix:>10} {spinner} {elapsed}"),
-        n => (Some(n), "{prefix:>10} {wide_bar} {percent} % {human_pos}/{human_len} {per_sec} {eta}"),
+    let (length, template) = match (steps, colours::are_wanted()) {
+        (0, true) => (None, "{prefix:>10.cyan} {spinner:.green} {elapsed}"),
+        (0, false) => (None, "{prefix:>10} {spinner} {elapsed}"),
+        (n, true) => (Some(n), "{prefix:>10.cyan} {wide_bar:.green/dim} {percent:>3} %  {count}{left}"),
+        (n, false) => (Some(n), "{prefix:>10} {wide_bar} {percent:>3} %  {count}{left}"),
     };
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr_with_hz(10));
-    bar.set_style(style);
+    bar.set_style(style.with_key("count", write_count).with_key("left", write_left));
     bar.set_prefix(stage);
+    if length.is_none() {
+        // Nobody tells it how far it is: it shows that it is alive by itself.
+        bar.enable_steady_tick(ALIVE);
+    }
     bar
+}
+
+/// How often a bar of unknown length moves.
+const ALIVE: Duration = Duration::from_millis(200);
+/// How long a stage has to run before it is said how long it will.
+const KNOWN_AFTER: Duration = Duration::from_secs(1);
+
+/// How much of how much is done.
+fn write_count(state: &ProgressState, out: &mut dyn fmt::Write) {
+    let [done, all] = [state.pos(), state.len().unwrap_or(0)].map(|n| short(n as f64));
+    // There is nobody to tell that a terminal cannot be written to.
+    let _ = write!(out, "{done} of {all}");
+}
+
+/// How long it will take.
+fn write_left(state: &ProgressState, out: &mut dyn fmt::Write) {
+    if state.elapsed() >= KNOWN_AFTER && state.pos() > 0 {
+        let _ = write!(out, ", {} left", seconds_of(state.eta().as_secs_f64().max(1.0).round()));
+    }
+}
+
+/// A count in few digits.
+fn short(count: f64) -> String {
+    match count {
+        n if n >= 1e7 => format!("{:.0} million", n / 1e6),
+        n if n >= 1e6 => format!("{:.1} million", n / 1e6),
+        n => grouped(n as usize),
+    }
 }
 
 /// Lines such as `{"progress":{"done":3,"stage":"blocks","total":120}}` on standard error.
@@ -47,9 +83,9 @@ pub struct Lines {
 const LINE_EVERY: Duration = Duration::from_millis(50);
 
 impl Lines {
-    /// Lines, if that is how progress is told.
-    pub fn asked_for(told: Option<ProgressFormat>) -> Option<Self> {
-        told.map(|ProgressFormat::Json| Self::default())
+    /// Lines, if that is how progress is told: when they are asked for, or all that is said are objects.
+    pub fn asked_for(quiet: bool, told: Option<ProgressFormat>) -> Option<Self> {
+        (told.is_some() || (log::is_json() && !quiet)).then(Self::default)
     }
 
     /// So much of a stage is done; 0 in all: not known.
@@ -65,8 +101,7 @@ impl Lines {
             }
             _ => *last = Some((stage, done, Instant::now())),
         }
-        let line = serde_json::json!({ "progress": { "stage": stage, "done": done, "total": total } });
-        if writeln!(std::io::stderr().lock(), "{line}").is_err() {
+        if writeln!(std::io::stderr().lock(), "{}", log::progress(stage, done, total)).is_err() {
             self.unheard.store(true, Ordering::Relaxed);
         }
     }
@@ -90,8 +125,16 @@ pub struct Bars {
 impl Bars {
     /// `quiet` suppresses the notes as well.
     pub fn new(quiet: bool, told: Option<ProgressFormat>, stop: Stop) -> Self {
-        let lines = Lines::asked_for(told);
+        let lines = Lines::asked_for(quiet, told);
         Self { shown: shows_bars(quiet, told), quiet, lines, current: Mutex::new(None), stop }
+    }
+
+    /// Runs a stage that does not tell how far it is.
+    pub fn during<T>(&self, stage: Stage, run: impl FnOnce() -> T) -> T {
+        self.at(stage, 0, 0);
+        let result = run();
+        self.at(stage, 1, 1);
+        result
     }
 
     fn current(&self) -> Option<ProgressBar> {

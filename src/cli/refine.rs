@@ -1,11 +1,12 @@
 //! `anastomesh refine`: moves the nodes of a network until its vessels do not overlap and can be cut.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::common::{Common, print, thread_pool};
+use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::log;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
@@ -17,7 +18,7 @@ use crate::prepare::PrepareReport;
 use crate::refine::{self, Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual};
 use crate::report::page;
 use crate::report::plot::svg;
-use crate::report::refine::{csv, panels};
+use crate::report::refine::{brief, csv, panels};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -200,8 +201,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = thread_pool(args.common.threads)?;
     let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     if !args.common.quiet {
-        for remark in network.remarks() {
-            eprintln!("{remark}");
+        for remark in network.remarks(args.common.verbose) {
+            log::note(&remark);
         }
     }
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
@@ -225,14 +226,17 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
         print(true, &Output { program, parameters: &params, prepare: &network.report, report }, String::new)?;
     } else if !args.common.quiet {
-        eprint!("{report}");
+        let table = if args.common.verbose { report.to_string() } else { String::new() };
+        let files = [Some(&args.output), args.metrics.as_ref(), args.plot.as_ref(), args.report.page()];
+        let files: Vec<&Path> = files.into_iter().flatten().map(PathBuf::as_path).collect();
+        log::result(&format!("{table}{}", brief(report, &ended(&files))));
     }
     let gate = params.residual == Residual::Shrink && report.residual.left > 0;
     Ok(if gate { Exit::GateNotMet } else { Exit::Fine })
 }
 
 /// Writes a refined network.
-pub(super) fn write(path: &std::path::Path, refined: &Refined) -> Result<(), Failure> {
+pub(super) fn write(path: &Path, refined: &Refined) -> Result<(), Failure> {
     let arrays = refinement_arrays(&refined.skeleton, &refined.origin);
     write_network(path, &refined.skeleton, &arrays).map_err(|e| Failure::input(e.to_string()))
 }

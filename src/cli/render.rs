@@ -2,20 +2,23 @@
 
 use std::path::{Path, PathBuf};
 
-use super::common::thread_pool;
+use super::common::{ended, thread_pool};
 use super::exit::{Exit, Failure};
-use super::kind::{Kind, OpenedMesh, boundary_of};
+use super::kind::{Kind, OpenedMesh, boundary_of, left_in};
+use super::log;
 use super::network::NetworkArgs;
 use super::picture::{PictureArgs, vessels};
 use super::room;
 use crate::io::surface::read_surface;
 use crate::io::{ensure_text_writable, write_bytes};
 use crate::picture::{Colour, Image, Shown};
+use crate::report::rows::row;
 use std::num::NonZeroUsize;
 
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("network", |arg| arg.value_name("INPUT").help(
-    "A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off) or a network (as `mesh` reads)")))]
+    "A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off), a network (as `mesh` reads), or the work \
+     directory of a run of `mesh`")))]
 pub struct Args {
     #[command(flatten)]
     input: NetworkArgs,
@@ -46,24 +49,25 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::input(format!("{}: pictures are written as .png", args.output.display())));
     }
     ensure_text_writable(&args.output).map_err(unwritable)?;
-    let kind = Kind::of(&args.input.network, "render")?;
     let pool = thread_pool(args.threads)?;
-    let (image, shown) = pool.install(|| args.draw(kind))?;
+    let (image, shown) = pool.install(|| args.draw())?;
     let mut bytes = Vec::new();
     image.write_png(&mut bytes).map_err(unwritable)?;
     write_bytes(&args.output, &bytes).map_err(unwritable)?;
-    if !args.quiet
-        && let Some(line) = told(shown)
-    {
-        eprintln!("{line}");
+    if !args.quiet {
+        let colours = told(shown).map_or_else(String::new, |colours| row("colours", &colours));
+        log::result(&(colours + &ended(&[&args.output]).rows(&[])));
     }
     Ok(Exit::Fine)
 }
 
 impl Args {
-    fn draw(&self, kind: Kind) -> Result<(Image, Shown), Failure> {
+    fn draw(&self) -> Result<(Image, Shown), Failure> {
         let path: &Path = &self.input.network;
-        match kind {
+        if let Some(left) = left_in(path)? {
+            return self.picture.mesh(path, &left.whole(&()), self.vessels()?.as_ref());
+        }
+        match Kind::of(path, "render")? {
             Kind::Network => {
                 let (network, roots) = vessels(&self.input)?;
                 self.picture.network(&network, &roots)
@@ -90,14 +94,13 @@ impl Args {
 
 /// What the colours say, in words.
 fn told(shown: Shown) -> Option<String> {
-    let scale = |what: &str| {
-        shown.legend.map(|l| format!("colours: {what} from {:.4} (dark violet) to {:.4} (yellow)", l.low, l.high))
-    };
+    let scale =
+        |what: &str| shown.legend.map(|l| format!("{what} from {:.4} (dark violet) to {:.4} (yellow)", l.low, l.high));
     match shown.colour {
         Colour::Radius => scale("radius, in equal ratios,"),
         Colour::Order => scale("Strahler order"),
-        Colour::Quality => Some("colours: radius ratio from 0 (red) to 1 (blue)".into()),
-        Colour::Patch => Some("colours: wall red, inlets blue, outlets yellow; inside of the mesh cream".into()),
+        Colour::Quality => Some("radius ratio from 0 (red) to 1 (blue)".into()),
+        Colour::Patch => Some("wall red, inlets blue, outlets yellow; inside of the mesh cream".into()),
         Colour::Plain | Colour::Block => None,
     }
 }

@@ -1,11 +1,12 @@
 //! `anastomesh replay`: makes a block again that failed, from its dump.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::common::Common;
+use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
+use super::log;
 use super::progress::Bars;
 use super::room::size;
 use super::stop::{NOTHING_KEPT, Stop};
@@ -13,6 +14,8 @@ use crate::block::{BlockDump, BlockError, Finished};
 use crate::io::volume::{MeshNotes, ensure_writable, write_mesh};
 use crate::mesh::quality::TetQuality;
 use crate::pipeline::{Estimate, TooLarge, replay};
+use crate::report::rows::row;
+use crate::report::units::grouped;
 use crate::tet::{TetError, Watch};
 
 #[derive(Debug, clap::Args)]
@@ -127,13 +130,16 @@ impl Args {
                 String::new,
             );
         }
-        if let Some(Made { points, tets, file, .. }) = mesh {
-            let then = match file {
-                Some(file) => format!("written to {file}"),
-                None => "-o MESH writes it".into(),
-            };
+        if let Some(Made { points, tets, .. }) = mesh {
             let (block, nodes) = (dump.name(), &dump.nodes);
-            eprintln!("{block} (nodes {nodes:?}) comes out: {tets} tetrahedra, {points} points; {then}");
+            let [tets, points] = [tets, points].map(grouped);
+            let hint = if self.output.is_none() { " (-o MESH writes it)" } else { "" };
+            let files: Vec<&Path> = self.output.iter().map(PathBuf::as_path).collect();
+            log::result(&format!(
+                "{block} (nodes {nodes:?}) comes out{hint}\n{}{}",
+                row("mesh", &format!("{tets} tetrahedra, {points} points")),
+                ended(&files).rows(&[])
+            ));
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ use signal_hook::flag;
 use signal_hook::low_level;
 
 use super::exit::{Exit, Failure};
+use super::log;
 
 /// How long a run that keeps nothing may take to end by itself: some stages are long and do not ask.
 #[cfg(unix)]
@@ -32,13 +33,18 @@ impl Stop {
     /// Begins to listen, for a run that leaves nothing before it calls [`Stop::keep`]. Unless `quiet`, the first signal is
     /// answered at once.
     pub fn listen(quiet: bool) -> Result<Self, Failure> {
-        let stop = Self { asked: Arc::default(), keeps: Arc::default() };
+        let stop = Self::deaf();
         // SIGHUP stays as it is: a run under `nohup` goes on when its terminal is closed.
         for signal in [SIGINT, SIGTERM] {
             let listens = stop.listen_to(signal).and_then(|()| stop.answer(signal, quiet));
             listens.map_err(|e| Failure::stage(format!("Ctrl-C cannot be heard: {e}")))?;
         }
         Ok(stop)
+    }
+
+    /// One that is never asked: for verbs that the first Ctrl-C ends.
+    pub fn deaf() -> Self {
+        Self { asked: Arc::default(), keeps: Arc::default() }
     }
 
     /// From here on the run ends by itself alone: it writes, or keeps what it has done.
@@ -70,11 +76,11 @@ impl Stop {
                 return;
             }
             if !quiet {
-                eprintln!("anastomesh: stopping; Ctrl-C again ends at once");
+                log::note("anastomesh: stopping; Ctrl-C again ends at once");
             }
             std::thread::sleep(PATIENCE);
             if !keeps.load(Ordering::SeqCst) {
-                eprintln!("anastomesh: {NOTHING_KEPT}");
+                log::error(NOTHING_KEPT);
                 low_level::exit(Exit::Stopped.code().into());
             }
         };

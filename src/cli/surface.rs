@@ -1,12 +1,12 @@
 //! `anastomesh surface`: the wall of a network for pictures and printers, without tetrahedra.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::before::{Before, Made, Meshing};
 use super::blocks::BlockArgs;
-use super::common::{Common, peak_memory, print, thread_pool, written};
+use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::log;
 use super::network::NetworkArgs;
@@ -22,6 +22,7 @@ use crate::mesh::check::CheckReport;
 use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport};
 use crate::progress::{Progress, Stage};
 use crate::report::advice::advice;
+use crate::report::check::conditions;
 use crate::report::summary::Summary;
 
 #[derive(Debug, clap::Args)]
@@ -64,7 +65,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
-    for remark in network.remarks() {
+    for remark in network.remarks(args.common.verbose) {
         bars.note(&remark);
     }
     let moved = |iterations| {
@@ -156,12 +157,11 @@ impl Args {
         let is_wrong = !run.failed.is_empty() || !run.keeps_vessels(plan.fuse) || check.is_some_and(|c| !c.is_valid());
         if !self.common.quiet || is_wrong {
             if self.common.verbose {
-                let all = [Some(run.to_string()), check.map(ToString::to_string)];
+                let all = [Some(run.to_string()), check.map(conditions)];
                 log::result(&all.into_iter().flatten().collect::<String>());
             }
-            let files = check.map_or_else(Vec::new, |_| written(&[&self.output]));
-            let summary = Summary { run, check, fidelity: None, files: &files, memory: peak_memory() };
-            log::result(&summary.to_string());
+            let files: &[&Path] = if check.is_some() { &[&self.output] } else { &[] };
+            log::result(&Summary { run, check, fidelity: None, ended: ended(files) }.to_string());
         }
         Ok(())
     }

@@ -5,27 +5,29 @@ use std::io;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use super::common::thread_pool;
+use super::check::check_opened;
+use super::common::{ended, thread_pool};
 use super::exit::{Exit, Failure};
-use super::kind::{Kind, OpenedMesh, boundary_of};
+use super::kind::{Kind, OpenedMesh, boundary_of, left_in};
+use super::log;
 use super::network::NetworkArgs;
 use super::picture::vessels;
 use super::room;
 use crate::block::BlockDump;
 use crate::io::surface::read_surface;
 use crate::io::{ensure_text_writable, write_text};
-use crate::mesh::check::{check_tets, check_volume};
 use crate::mesh::source::MeshSource;
 use crate::pipeline::{Datum, VesselData};
 use crate::skeleton::{NodeId, Skeleton};
 use crate::view::{Fault, Page, Wall, WallOptions, add_network, add_tets};
 
-/// A mesh of no more tetrahedra is checked, so that its faults can be seen.
+/// A mesh of no more tetrahedra is checked, so that its faults can be seen, whether that is asked for or not.
 const CHECKED: usize = 2_000_000;
 
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("network", |arg| arg.value_name("INPUT").help(
-    "A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off) or a network (as `mesh` reads)")))]
+    "A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off), a network (as `mesh` reads), or the work \
+     directory of a run of `mesh`")))]
 pub struct Args {
     #[command(flatten)]
     input: NetworkArgs,
@@ -38,8 +40,11 @@ pub struct Args {
     /// Folder with the dumps of blocks that failed (default: the input with `.failed` appended, if that is there)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
-    /// Do not check the mesh (meshes of more than two million tetrahedra are never checked here; `check --report` shows their
-    /// faults)
+    /// Check the mesh, so that its faults are places to fly to, however large it is (without this, up to two million
+    /// tetrahedra)
+    #[arg(long, conflicts_with = "no_check")]
+    check: bool,
+    /// Do not check the mesh
     #[arg(long)]
     no_check: bool,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
@@ -63,23 +68,27 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::input(format!("{}: pages are written as .html", output.display())));
     }
     ensure_text_writable(&output).map_err(unwritable)?;
-    let kind = Kind::of(input, "view")?;
     let title = input.file_name().unwrap_or(input.as_os_str()).to_string_lossy().into_owned();
     let pool = thread_pool(args.threads)?;
-    let page = pool.install(|| args.page(kind, Page::new(&title)))?;
+    let page = pool.install(|| args.page(Page::new(&title)))?;
     let html = page.html().map_err(unwritable)?;
     write_text(&output, &html).map_err(unwritable)?;
     if !args.quiet {
-        eprintln!("{} ({:.1} MB): open it in a browser", output.display(), html.len() as f64 / 1e6);
+        log::result(&format!("{}open it in a browser", ended(&[&output]).rows(&[])));
     }
     Ok(Exit::Fine)
 }
 
 impl Args {
-    fn page(&self, kind: Kind, mut page: Page) -> Result<Page, Failure> {
+    fn page(&self, mut page: Page) -> Result<Page, Failure> {
         let path: &Path = &self.input.network;
         let mut faults = self.dumps()?;
-        match kind {
+        if let Some(left) = left_in(path)? {
+            faults.extend(self.add_mesh(&mut page, &left.whole(&()))?);
+            page.add_faults(&faults);
+            return Ok(page);
+        }
+        match Kind::of(path, "view")? {
             Kind::Network => {
                 let (network, inlets) = vessels(&self.input)?;
                 faults.extend(Fault::of_overlaps(&network));
@@ -87,22 +96,30 @@ impl Args {
             }
             Kind::Surface => {
                 let surface = read_surface(path).map_err(|e| Failure::input(e.to_string()))?;
-                self.add_mesh(&mut page, &boundary_of(surface))?;
+                faults.extend(self.add_mesh(&mut page, &boundary_of(surface))?);
             }
             Kind::Mesh => {
                 let mut opened = OpenedMesh::open(path, self.memory)?;
-                if !self.no_check {
-                    faults.extend(faults_of(&opened));
-                }
+                faults.extend(self.faults_of(&opened)?);
                 opened.label_boundary();
-                self.add_mesh(&mut page, opened.source())?;
+                faults.extend(self.add_mesh(&mut page, opened.source())?);
             }
         }
         page.add_faults(&faults);
         Ok(page)
     }
 
-    fn add_mesh(&self, page: &mut Page, mesh: &dyn MeshSource) -> Result<(), Failure> {
+    /// What a check finds in a mesh that is not too large for it, or is to be checked all the same.
+    fn faults_of(&self, opened: &OpenedMesh) -> Result<Vec<Fault>, Failure> {
+        if self.no_check || (!self.check && opened.source().counts().tets > CHECKED) {
+            return Ok(Vec::new());
+        }
+        let check = check_opened(&self.input.network, opened, self.memory)?;
+        Ok(check.map_or_else(Vec::new, |check| Fault::of_check(&check)))
+    }
+
+    /// Adds a mesh; where blocks of it are missing.
+    fn add_mesh(&self, page: &mut Page, mesh: &dyn MeshSource) -> Result<Vec<Fault>, Failure> {
         let path = self.input.network.display();
         let failed = |e: io::Error| Failure::input(format!("{path}: {e}; run `anastomesh check`"));
         let network = match &self.made_of {
@@ -118,11 +135,12 @@ impl Args {
         }
         let tets = add_tets(mesh, &wall, &mut page.pack).map_err(failed)?;
         page.know("tets", tets);
+        let missing = Fault::of_missing(&wall, mesh.patches());
         page.add_wall(wall, mesh.patches());
         if let Some((network, inlets)) = &network {
             know_network(page, network, inlets);
         }
-        Ok(())
+        Ok(missing)
     }
 
     /// The blocks that failed, by their dumps.
@@ -157,19 +175,4 @@ impl Args {
 fn know_network(page: &mut Page, network: &Skeleton, inlets: &[NodeId]) {
     let fact = add_network(network, inlets, &mut page.pack);
     page.know("network", fact);
-}
-
-/// What a check finds in a mesh that is not too large for it.
-fn faults_of(opened: &OpenedMesh) -> Vec<Fault> {
-    let OpenedMesh::Whole(file) = opened else { return Vec::new() };
-    if file.volume.mesh.tets.len() > CHECKED {
-        return Vec::new();
-    }
-    let expectation = file.notes.expectation.as_ref();
-    let check = if file.labelled {
-        check_volume(&file.volume, expectation)
-    } else {
-        check_tets(&file.volume.mesh, expectation)
-    };
-    Fault::of_check(&check)
 }

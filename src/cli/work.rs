@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::common::print;
 use super::exit::{Exit, Failure};
+use super::log;
 use super::progress::Bars;
 use super::room::{self, BlockPlace};
 use crate::pipeline::{
@@ -12,6 +13,7 @@ use crate::pipeline::{
 };
 use crate::progress::Progress;
 use crate::refine::{RefineParams, Refined};
+use crate::report::units::{grouped, seconds_of};
 use crate::skeleton::Skeleton;
 
 /// Where finished blocks are kept, and by how many runs.
@@ -117,10 +119,12 @@ pub fn told(shard: Shard, report: &ShareReport, json: bool, quiet: bool) -> Resu
         print(true, &Output { program, shard: shard.to_string(), report }, String::new)?;
     } else if !quiet {
         let ShareReport { blocks, share, found, failed, seconds, .. } = report;
-        eprintln!(
-            "shard {shard}: {share} of {blocks} blocks in {seconds:.1} s, {found} were there before, {failed} fail and are \
-             left to the run that joins the shards"
-        );
+        let [blocks, share, found, failed] = [blocks, share, found, failed].map(|&n| grouped(n));
+        let seconds = seconds_of(*seconds);
+        log::result(&format!(
+            "shard {shard}: {share} of {blocks} blocks in {seconds}, {found} were there before, {failed} fail and are left \
+             to the run that joins the shards"
+        ));
     }
     Ok(Exit::Fine)
 }

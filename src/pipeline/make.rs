@@ -128,7 +128,7 @@ impl Workshop<'_> {
 }
 
 /// A joint of a part of the whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct JointPlace {
     /// The part: clusters by their ids, then connectors.
     pub part: u32,

@@ -53,3 +53,5 @@ pub use store::{Manifest, Store};
 #[cfg(feature = "cli")]
 pub use timing::Clock;
 pub use timing::StageTime;
+#[cfg(feature = "cli")]
+pub use whole::LeftWhole;

@@ -177,7 +177,12 @@ fn join_blocks<'a>(
     let clusters = Clusters::of(&shop, &blocks)?;
     describe_blocks(&skeleton, &shop, &blocks, &clusters, &mut report)?;
     let nothing_left = blocks.clusters.iter().all(Result::is_err);
+    let number = || Whole::new(store, progress, &skeleton, &blocks, &terminals);
     if !report.failed.is_empty() && (nothing_left || !plan.keep_going) {
+        if !nothing_left {
+            // What there is can be looked at.
+            number()?.leave()?;
+        }
         report.stages = clock.stages();
         return Err(RunError::BlocksFailed(Box::new(report)));
     }
@@ -185,8 +190,8 @@ fn join_blocks<'a>(
     if plan.fuse {
         expectation.loops = fused_loops(&blocks, &clusters);
     }
-    let number = || Whole::new(store, progress, &skeleton, &blocks, &terminals);
     let whole = clock.time(progress, Stage::Merge, 0, number)?;
+    whole.leave()?;
     Ok(Joined { whole, expectation, overlapping, partition: blocks.partition, report })
 }
 

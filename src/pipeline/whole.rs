@@ -1,6 +1,8 @@
 //! The whole mesh as a plan over stored blocks: which number each vertex and tetrahedron gets, and passes over them in
 //! that order. Nothing but the plan is held; blocks are read when their turn comes.
 
+mod left;
+
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io;
@@ -19,6 +21,8 @@ use crate::mesh::{Patch, WALL};
 use crate::partition::CutId;
 use crate::progress::{Progress, ask};
 use crate::skeleton::Skeleton;
+
+pub use left::LeftWhole;
 
 /// The whole mesh: parts in order, clusters by their ids, then connectors. A vertex that two parts have is numbered by the
 /// cluster.

@@ -1,36 +1,75 @@
 //! What a check found, for people; its JSON form is `CheckReport` itself.
 
 use crate::mesh::check::{CheckReport, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict};
-use std::fmt;
+use crate::report::units::{digits, grouped, place};
+use std::fmt::{self, Write as _};
+
+/// Offenders of a line that are spelt out in a summary.
+const SPELT_OUT: usize = 3;
 
 /// For people: a line per line of the definition, the first offenders below those that fail, sizes and shape, and the
 /// verdict at the end.
 impl fmt::Display for CheckReport {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        for line in &self.lines {
-            write_line(out, line)?;
-        }
-        let counts = &self.counts;
-        let tets = if counts.tets > 0 { format!("{} tetrahedra, ", counts.tets) } else { String::new() };
-        writeln!(
-            out,
-            "\n{tets}{} points, {} boundary faces, {} caps, {} component{}, volume {:.6e}",
-            counts.points,
-            counts.boundary_faces,
-            counts.caps,
-            counts.components,
-            if counts.components == 1 { "" } else { "s" },
-            counts.volume,
-        )?;
-        if let Some(quality) = &self.quality {
-            writeln!(
-                out,
-                "radius ratio: mean {:.4}, 1st percentile {:.4}, min {:.4}; dihedral angles {:.2}° to {:.2}°",
-                quality.mean, quality.percentile_1, quality.min, quality.dihedral_min, quality.dihedral_max,
-            )?;
+        writeln!(out, "{}\n{}", conditions(self), sizes(self))?;
+        if let Some(shape) = shape(self) {
+            writeln!(out, "{shape}")?;
         }
         writeln!(out, "{}", verdict(self.verdict))
     }
+}
+
+/// How large a mesh is.
+pub(super) fn sizes(check: &CheckReport) -> String {
+    let counts = &check.counts;
+    let tets = if counts.tets > 0 { format!("{} tetrahedra, ", grouped(counts.tets)) } else { String::new() };
+    let [points, faces] = [counts.points, counts.boundary_faces].map(grouped);
+    let components = match counts.components {
+        1 => String::new(),
+        n => format!(", {} components", grouped(n)),
+    };
+    let (caps, volume) = (grouped(counts.caps), digits(counts.volume));
+    format!("{tets}{points} points, {faces} boundary faces, {caps} inlets and outlets{components}, volume {volume}")
+}
+
+/// How good its tetrahedra are.
+pub(super) fn shape(check: &CheckReport) -> Option<String> {
+    let q = check.quality.as_ref()?;
+    let angles = format!("dihedral angles {:.0}° to {:.0}°", q.dihedral_min, q.dihedral_max);
+    Some(format!("radius ratio {:.2} in the mean, {:.2} at least; {angles}", q.mean, q.min))
+}
+
+/// How many conditions hold.
+pub(super) fn tally(check: &CheckReport) -> String {
+    let (all, failed) = (check.lines.len(), check.failed().count());
+    let unchecked = check.lines.iter().filter(|line| matches!(line.outcome, Outcome::NotChecked(_))).count();
+    let unlooked = match unchecked {
+        0 => String::new(),
+        n => format!(", {n} could not be checked"),
+    };
+    match failed + unchecked {
+        0 => format!("all {all} conditions hold (-v lists them)"),
+        other => format!("{} of {all} conditions hold{unlooked} (-v lists them)", all - other),
+    }
+}
+
+/// The conditions that do not hold, with the first offenders of each.
+pub(super) fn faults(check: &CheckReport) -> String {
+    let mut out = String::new();
+    for failed in check.failed() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "FAIL {}: {}", failed.line.statement(), extent(failed));
+        let shown = failed.offenders.len().min(SPELT_OUT);
+        for offender in &failed.offenders[..shown] {
+            let _ = writeln!(out, "         {}", describe(offender));
+        }
+        let hidden = failed.count.saturating_sub(shown as u64);
+        if hidden > 0 {
+            let hidden = grouped(hidden as usize);
+            let _ = writeln!(out, "         and {hidden} more (-v shows ten, --report where they are)");
+        }
+    }
+    out
 }
 
 pub(super) fn verdict(verdict: Verdict) -> &'static str {
@@ -41,21 +80,25 @@ pub(super) fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-fn write_line(out: &mut fmt::Formatter, result: &LineResult) -> fmt::Result {
-    let statement = result.line.statement();
-    match result.outcome {
-        Outcome::Pass => writeln!(out, "  ok   {statement}"),
-        Outcome::NotChecked(why) => writeln!(out, "  -    {statement}: not checked, {}", reason(why)),
-        Outcome::Fail => writeln!(out, "  FAIL {statement}: {}", extent(result)),
-    }?;
-    for offender in &result.offenders {
-        writeln!(out, "         {}", describe(offender))?;
+/// A line per line of the definition, with the first offenders.
+pub fn conditions(check: &CheckReport) -> String {
+    let mut out = String::new();
+    for line in &check.lines {
+        let statement = line.line.statement();
+        let _ = match line.outcome {
+            Outcome::Pass => writeln!(out, "  ok   {statement}"),
+            Outcome::NotChecked(why) => writeln!(out, "  -    {statement}: not checked, {}", reason(why)),
+            Outcome::Fail => writeln!(out, "  FAIL {statement}: {}", extent(line)),
+        };
+        for offender in &line.offenders {
+            let _ = writeln!(out, "         {}", describe(offender));
+        }
+        let hidden = line.count - line.offenders.len() as u64;
+        if hidden > 0 {
+            let _ = writeln!(out, "         and {} more", grouped(hidden as usize));
+        }
     }
-    let hidden = result.count - result.offenders.len() as u64;
-    if hidden > 0 {
-        writeln!(out, "         and {hidden} more")?;
-    }
-    Ok(())
+    out
 }
 
 pub(super) fn reason(why: Skipped) -> String {
@@ -71,7 +114,7 @@ pub(super) fn reason(why: Skipped) -> String {
 pub(super) fn extent(result: &LineResult) -> String {
     match (&result.expected, &result.found) {
         (Some(expected), Some(found)) => format!("expected {}, found {}", list(expected), list(found)),
-        _ => format!("{} found", result.count),
+        _ => format!("{} found", grouped(result.count as usize)),
     }
 }
 
@@ -99,7 +142,7 @@ pub(super) fn describe(offender: &Offender) -> String {
     };
     let separator = |i| if offender.kind == OffenderKind::FacePair && i == 3 { " and " } else { " " };
     let ids: String = offender.ids.iter().enumerate().map(|(i, id)| format!("{}{id}", separator(i))).collect();
-    let place = offender.position.map_or_else(String::new, |[x, y, z]| format!(" at ({x}, {y}, {z})"));
+    let place = offender.position.map_or_else(String::new, |at| format!(" at {}", place(at)));
     format!("{kind}{ids}{place}")
 }
 
@@ -119,7 +162,7 @@ mod tests {
         assert!(text.contains("  ok   every tetrahedron is positive\n"));
         assert!(text.contains("  -    caps face outwards: not checked, the boundary has no labels\n"));
         assert!(text.ends_with("no fault found, but not every line could be checked\n"));
-        assert!(text.contains("48 tetrahedra, 27 points, 48 boundary faces, 0 caps, 1 component, volume 1.0"));
+        assert!(text.contains("48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets, volume 1.0000"));
     }
 
     #[test]
@@ -130,7 +173,7 @@ mod tests {
             t.swap(0, 1);
         }
         let text = text_of(&mesh);
-        assert!(text.contains("  FAIL every tetrahedron is positive: 16 found\n         tetrahedron 3 at ("));
+        assert!(text.contains("  FAIL every tetrahedron is positive: 16 found\n         tetrahedron 3 at "));
         assert!(text.contains("         and 6 more\n") && text.ends_with("NOT valid\n"));
         mesh = cube_lattice(1);
         let other = mesh.clone();

@@ -1,8 +1,9 @@
 //! What `info` says about a network.
 
 use super::inlets::Inlet;
+use super::units::{digits, grouped, percent};
 use crate::geometry::Aabb;
-use crate::skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Skeleton};
+use crate::skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Share, Skeleton};
 use serde::Serialize;
 use std::fmt;
 
@@ -33,16 +34,6 @@ impl Spread {
         };
         let at = |share: f64| values[(share * last as f64).round() as usize];
         Self { min: at(0.0), quarter: at(0.25), median: at(0.5), three_quarters: at(0.75), max: at(1.0) }
-    }
-}
-
-/// Five significant digits, whatever the unit.
-fn digits(x: f64) -> String {
-    let magnitude = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };
-    if (-3.0..7.0).contains(&magnitude) {
-        format!("{x:.*}", (4.0 - magnitude).max(0.0) as usize)
-    } else {
-        format!("{x:.4e}")
     }
 }
 
@@ -202,24 +193,35 @@ impl NetworkInfo {
 
     fn write_metrics(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let m = &self.metrics;
+        let percent = |share: Share| percent(share.percent() / 100.0);
         writeln!(f, "barrier potential: {}", digits(m.barrier))?;
-        let short = [m.shorter_than_2, m.shorter_than_2_5, m.shorter_than_3].map(|s| format!("{:.3} %", s.percent()));
+        let short = [m.shorter_than_2, m.shorter_than_2_5, m.shorter_than_3].map(percent);
         writeln!(f, "edges shorter than 2, 2.5, 3 radii: {}", short.join(", "))?;
-        writeln!(f, "pairs of edges at a node under pi/10: {} ({:.3} %)", m.narrow.count, m.narrow.percent())?;
-        writeln!(f, "vessels that turn back at a node (under 30 degrees): {} of {}", m.folds.count, m.folds.of)?;
+        writeln!(f, "pairs of edges at a node under pi/10: {} ({})", grouped(m.narrow.count), percent(m.narrow))?;
         writeln!(
             f,
-            "edges that satisfy equation 11: {:.3} %, equation 12: {:.3} %",
-            m.long_enough.percent(),
-            m.open_enough.percent()
+            "vessels that turn back at a node (under 30 degrees): {} of {}",
+            grouped(m.folds.count),
+            grouped(m.folds.of)
         )?;
-        writeln!(f, "inner branches that can be cut: {} of {}", m.cuttable.count, m.cuttable.of)
+        writeln!(
+            f,
+            "edges that satisfy equation 11: {}, equation 12: {}",
+            percent(m.long_enough),
+            percent(m.open_enough)
+        )?;
+        writeln!(f, "inner branches that can be cut: {} of {}", grouped(m.cuttable.count), grouped(m.cuttable.of))
     }
 
     fn write_overlaps(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let all = &self.overlaps.pairs;
         let beside = all.iter().filter(|o| o.shares_node()).count();
-        writeln!(f, "overlaps: {} pairs of edges, {beside} of them leave one node side by side", all.len())?;
+        writeln!(
+            f,
+            "overlaps: {} pairs of edges, {} of them leave one node side by side",
+            grouped(all.len()),
+            grouped(beside)
+        )?;
         for o in all.iter().take(LISTED) {
             let [[a, b], [c, d]] = o.nodes.map(|ends| ends.map(|n| n.0));
             let at = <[f64; 3]>::from(nalgebra::center(&o.points[0], &o.points[1])).map(digits).join(" ");
@@ -227,9 +229,9 @@ impl NetworkInfo {
             writeln!(f, "  {a}-{b} and {c}-{d}: {distance} apart, radii {radii}, at {at}")?;
         }
         if all.len() > LISTED {
-            writeln!(f, "  and {} more", all.len() - LISTED)?;
+            writeln!(f, "  and {} more (--json lists all)", grouped(all.len() - LISTED))?;
         }
-        let (met, far) = (self.overlaps.unconnected.len(), self.overlaps.far);
+        let [met, far] = [self.overlaps.unconnected.len(), self.overlaps.far].map(grouped);
         writeln!(
             f,
             "          {met} pairs that share no node meet, neighbours along a vessel included; {far} of them far"
@@ -242,12 +244,12 @@ impl NetworkInfo {
 
     fn write_crowded(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let all = &self.crowded_terminals;
-        writeln!(f, "terminals closer than the sum of their radii: {} pairs", all.len())?;
+        writeln!(f, "terminals closer than the sum of their radii: {} pairs", grouped(all.len()))?;
         for CrowdedTerminals { nodes: [a, b], distance, radii } in all.iter().take(LISTED) {
             writeln!(f, "  {} and {}: {} apart, radii {}", a.0, b.0, digits(*distance), digits(*radii))?;
         }
         if all.len() > LISTED {
-            writeln!(f, "  and {} more", all.len() - LISTED)?;
+            writeln!(f, "  and {} more (--json lists all)", grouped(all.len() - LISTED))?;
         }
         Ok(())
     }
@@ -259,18 +261,20 @@ impl fmt::Display for NetworkInfo {
             writeln!(f, "read: {note}")?;
         }
         self.write_cleaning(f)?;
-        writeln!(f, "nodes: {} ({} terminals)", self.nodes, self.terminals)?;
-        writeln!(f, "edges: {} in {} branches", self.edges, self.branches)?;
-        writeln!(f, "components: {} (the largest has {} nodes)", self.components, self.largest_component)?;
-        writeln!(f, "loops: {}", self.loops)?;
+        writeln!(f, "nodes: {} ({} terminals)", grouped(self.nodes), grouped(self.terminals))?;
+        writeln!(f, "edges: {} in {} branches", grouped(self.edges), grouped(self.branches))?;
+        let [components, largest] = [self.components, self.largest_component].map(grouped);
+        writeln!(f, "components: {components} (the largest has {largest} nodes)")?;
+        writeln!(f, "loops: {}", grouped(self.loops))?;
         let present = self.valences.iter().enumerate().filter(|(_, count)| **count > 0);
-        let valences: Vec<String> = present.map(|(valence, count)| format!("{valence}: {count}")).collect();
+        let valences: Vec<String> = present.map(|(valence, count)| format!("{valence}: {}", grouped(*count))).collect();
         writeln!(f, "nodes by number of edges: {}", valences.join(", "))?;
         writeln!(f, "radius: {}", self.radius)?;
         writeln!(
             f,
             "edge length: {}; {} edges are shorter than their radius",
-            self.edge_length, self.edges_shorter_than_radius
+            self.edge_length,
+            grouped(self.edges_shorter_than_radius)
         )?;
         writeln!(f, "branch length: {}", self.branch_length)?;
         writeln!(f, "branch length in radii: {}", self.branch_length_in_radii)?;

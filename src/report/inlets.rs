@@ -1,5 +1,6 @@
 //! Which terminals become inlets, and why.
 
+use super::units::number;
 use crate::io::network::NodeNames;
 use crate::skeleton::{NodeId, Skeleton};
 use serde::Serialize;
@@ -35,13 +36,13 @@ pub struct Inlet {
 
 impl fmt::Display for Inlet {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [x, y, z] = self.position;
+        let at = self.position.map(number).join(" ");
         let why = match self.why {
             Why::Asked => "as asked",
             Why::RootOfFile => "the root in the file",
             Why::Widest => "the widest terminal of its component; --root names another",
         };
-        write!(f, "node {} at {x} {y} {z}, radius {} ({why})", self.node, self.radius)
+        write!(f, "node {} at {at}, radius {} ({why})", self.node, number(self.radius))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::block::ThinLayers;
 use crate::pipeline::{RunReport, ThinBlock};
+use crate::report::units::grouped;
 use std::fmt;
 
 /// For people: blocks, retries, failures, sizes and times.
@@ -11,11 +12,11 @@ impl fmt::Display for RunReport {
         writeln!(
             out,
             "{} clusters (largest {} nodes), {} connectors, {} blocks retried, {} failed",
-            b.clusters,
-            b.largest_cluster_nodes,
-            b.connectors,
-            self.retries.len(),
-            self.failed.len()
+            grouped(b.clusters),
+            grouped(b.largest_cluster_nodes),
+            grouped(b.connectors),
+            grouped(self.retries.len()),
+            grouped(self.failed.len())
         )?;
         for retry in &self.retries {
             writeln!(out, "  retried {} (nodes {:?}): {}; {}", retry.block, retry.nodes, retry.reason, retry.remedy)?;
@@ -55,9 +56,9 @@ impl fmt::Display for RunReport {
             }
         }
         if m.tets > 0 {
-            write!(out, "{} tetrahedra, ", m.tets)?;
+            write!(out, "{} tetrahedra, ", grouped(m.tets))?;
         }
-        let (points, wall, caps) = (m.points, m.wall_triangles, m.cap_triangles);
+        let [points, wall, caps] = [m.points, m.wall_triangles, m.cap_triangles].map(grouped);
         writeln!(out, "{points} points, {wall} wall triangles, {caps} cap triangles")?;
         let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
         writeln!(out, "{}", times.join(", "))

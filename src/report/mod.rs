@@ -17,6 +17,9 @@ pub mod plot;
 pub mod prepare;
 pub mod refine;
 #[cfg(feature = "cli")]
+pub mod rows;
+#[cfg(feature = "cli")]
 pub mod summary;
 #[cfg(feature = "cli")]
 pub mod tetrahedralize;
+pub mod units;

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::rows::row;
+use super::units::{counted, grouped};
 use crate::prepare::{Fault, PrepareReport, Size, SpurReason, TouchedBy, TouchingTip};
 
 /// A line of the table of sizes.
@@ -9,18 +11,20 @@ type Row = (&'static str, fn(&Size) -> usize);
 
 /// Cases of one cure that are spelt out for people.
 const LISTED: usize = 20;
+/// And in a summary.
+const SPELT_OUT: usize = 3;
 
-/// The report for people.
-pub fn text(report: &PrepareReport) -> String {
-    let mut out = String::new();
+/// The report for people: with `all` more cases of each cure and a table of sizes, else what is read in ten seconds.
+pub fn text(report: &PrepareReport, all: bool) -> String {
+    let mut out = Lists { text: String::new(), listed: if all { LISTED } else { SPELT_OUT } };
     let filled = report.radii.iter().map(|r| {
         let was = r.given.map_or_else(|| "no number".into(), |g| format!("{g:.4}"));
         let why = if r.fault == Fault::Absurd { " (its neighbours' are ten times more or less)" } else { "" };
         format!("{}: {was}, now {:.4}{why}", r.node, r.filled)
     });
-    list(&mut out, "radii filled from neighbours (--keep-radii)", filled);
+    out.list("radii filled from neighbours (--keep-radii)", filled);
     for (count, what) in report.cleaned.counts() {
-        let _ = writeln!(out, "{count} {what}");
+        let _ = writeln!(out.text, "{} {what}", grouped(count));
     }
     merged(report, &mut out);
     let spurs = report.spurs.iter().map(|s| {
@@ -30,58 +34,99 @@ pub fn text(report: &PrepareReport) -> String {
         };
         format!("{} from {}: length {:.4}, radius {:.4}: {why}", s.tip, s.from, s.length, s.radius)
     });
-    list(&mut out, "spurs taken off (--keep-spurs)", spurs);
+    out.list("spurs taken off (--keep-spurs)", spurs);
     let joined = report
         .joined
         .nodes
         .iter()
         .map(|j| format!("{} into {}: {:.4} apart, radius {:.4}", j.node, j.into, j.distance, j.radius));
-    list(&mut out, "branch points joined within one lumen (--keep-joints)", joined);
+    out.list("branch points joined within one lumen (--keep-joints)", joined);
     let loops = report.joined.loops.iter().map(|l| format!("{} to {}: length {:.4}", l.nodes[0], l.nodes[1], l.length));
-    list(&mut out, "loops closed within their own lumen (--keep-joints)", loops);
+    out.list("loops closed within their own lumen (--keep-joints)", loops);
     let short = report.short_tips.iter().map(|t| {
         let done = if t.put_out { "put out" } else { "taken off, as it is too short by far" };
         format!("{} from {}: length {:.4}, its cap is clear at {:.4}: {done}", t.tip, t.from, t.length, t.needed)
     });
-    list(&mut out, "tips too close to their branch point for a cap (--keep-short-tips)", short);
-    out.push_str(&touching(&report.touching));
+    out.list("tips too close to their branch point for a cap (--keep-short-tips)", short);
+    out.touching(&report.touching);
     let islands = report.islands.iter().map(|i| format!("at {}: {} nodes, length {:.4}", i.node, i.nodes, i.length));
-    list(&mut out, "islands dropped (--drop-islands)", islands);
+    out.list("islands dropped (--drop-islands)", islands);
     let r = &report.resample;
     if r.before > 0 {
         let _ = writeln!(
-            out,
+            out.text,
             "resampled: {} nodes to {}; the axis moved by {:.4} radii at most, radii changed by {:.2} % at most \
              (--keep-points)",
-            r.before,
-            r.after,
+            grouped(r.before),
+            grouped(r.after),
             r.furthest,
             100.0 * r.radius
         );
     }
-    sizes(report, &mut out);
-    out
+    if all {
+        sizes(report, &mut out.text);
+    }
+    out.text
+}
+
+/// The network as it came in and as it is now, in one row.
+pub fn row_of(report: &PrepareReport) -> String {
+    let Size { nodes, edges, tips, components, loops, .. } = report.result;
+    let given = report.given.nodes;
+    let was = if given == nodes { String::new() } else { format!(" (of {})", grouped(given)) };
+    let [nodes, edges, tips, loops] = [nodes, edges, tips, loops].map(grouped);
+    let components = counted(components, "component");
+    row("network", &format!("{nodes} nodes{was}, {edges} edges, {tips} tips, {components}, {loops} loops"))
 }
 
 /// What became of tips that end in or on another vessel.
 pub fn touching(tips: &[TouchingTip]) -> String {
-    let mut out = String::new();
-    let tips = tips.iter().map(|t| {
-        let done = match t.done {
-            TouchedBy::Retracted { by } => format!("drawn back by {by:.4}"),
-            TouchedBy::Joined => "joined".into(),
-            TouchedBy::Removed => "taken off, as no room for a cap is left on its vessel".into(),
-            TouchedBy::Left => "left, as its vessel runs along the other".into(),
-        };
-        format!("{} at {}-{}: {done}", t.tip, t.with[0], t.with[1])
-    });
-    list(&mut out, "tips that end in or on another vessel (--touching)", tips);
-    out
+    let mut out = Lists { text: String::new(), listed: SPELT_OUT };
+    out.touching(tips);
+    out.text
 }
 
-fn merged(report: &PrepareReport, out: &mut String) {
+/// Cures and their cases, of which so many are spelt out.
+struct Lists {
+    text: String,
+    listed: usize,
+}
+
+impl Lists {
+    /// A heading with the number of cases, and the first of them.
+    fn list(&mut self, what: &str, cases: impl ExactSizeIterator<Item = String>) {
+        let count = cases.len();
+        if count == 0 {
+            return;
+        }
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.text, "{} {what}", grouped(count));
+        for case in cases.take(self.listed) {
+            let _ = writeln!(self.text, "  {case}");
+        }
+        if count > self.listed {
+            let more = if self.listed < LISTED { "-v lists more, " } else { "" };
+            let _ = writeln!(self.text, "  and {} more ({more}--json all)", grouped(count - self.listed));
+        }
+    }
+
+    fn touching(&mut self, tips: &[TouchingTip]) {
+        let tips = tips.iter().map(|t| {
+            let done = match t.done {
+                TouchedBy::Retracted { by } => format!("drawn back by {by:.4}"),
+                TouchedBy::Joined => "joined".into(),
+                TouchedBy::Removed => "taken off, as no room for a cap is left on its vessel".into(),
+                TouchedBy::Left => "left, as its vessel runs along the other".into(),
+            };
+            format!("{} at {}-{}: {done}", t.tip, t.with[0], t.with[1])
+        });
+        self.list("tips that end in or on another vessel (--touching)", tips);
+    }
+}
+
+fn merged(report: &PrepareReport, out: &mut Lists) {
     let met = report.merge.met.iter().map(|[a, b]| format!("{a} and {b}"));
-    list(out, "pairs of tips at one place but for rounding made one (--keep-doubles)", met);
+    out.list("pairs of tips at one place but for rounding made one (--keep-doubles)", met);
     let stretches = report.merge.merged.iter().map(|m| {
         let partings: String =
             m.partings.iter().map(|p| format!("; parts at {}, leaves the tube at {}", p.branches, p.leaves)).collect();
@@ -90,24 +135,9 @@ fn merged(report: &PrepareReport, out: &mut String) {
             m.nodes[0], m.nodes[1], m.with[0], m.with[1], m.length, m.apart
         )
     });
-    list(out, "stretches that ran together with another line merged (--keep-doubles)", stretches);
+    out.list("stretches that ran together with another line merged (--keep-doubles)", stretches);
     if report.merge.gave_up {
-        out.push_str("so many lines lie upon each other that not all were looked at\n");
-    }
-}
-
-/// A heading with the number of cases, and the first of them.
-fn list(out: &mut String, what: &str, cases: impl ExactSizeIterator<Item = String>) {
-    let count = cases.len();
-    if count == 0 {
-        return;
-    }
-    let _ = writeln!(out, "{count} {what}");
-    for case in cases.take(LISTED) {
-        let _ = writeln!(out, "  {case}");
-    }
-    if count > LISTED {
-        let _ = writeln!(out, "  and {} more (--json lists all)", count - LISTED);
+        out.text.push_str("so many lines lie upon each other that not all were looked at\n");
     }
 }
 
@@ -122,7 +152,7 @@ fn sizes(report: &PrepareReport, out: &mut String) {
         ("loops", |s| s.loops),
     ];
     for (name, value) in rows {
-        let [a, b, c] = [&report.given, &report.read, &report.result].map(value);
+        let [a, b, c] = [&report.given, &report.read, &report.result].map(value).map(grouped);
         let _ = writeln!(out, "{name:16}{a:>10}{b:>10}{c:>10}");
     }
 }

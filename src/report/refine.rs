@@ -5,6 +5,11 @@ use std::fmt::{self, Write as _};
 #[cfg(feature = "cli")]
 use super::plot::{Panel, Series};
 #[cfg(feature = "cli")]
+use super::rows::{Ended, row};
+use super::units::grouped;
+#[cfg(feature = "cli")]
+use super::units::{counted, number, percent as share};
+#[cfg(feature = "cli")]
 use crate::refine::Sample;
 use crate::refine::{Figures, RefineReport, Treatment};
 
@@ -13,6 +18,9 @@ type Row = (&'static str, fn(&Figures) -> String);
 
 /// Pairs that are spelt out for people.
 const LISTED: usize = 50;
+/// And in a summary.
+#[cfg(feature = "cli")]
+const SPELT_OUT: usize = 3;
 
 /// A summary and a table of figures for people.
 impl fmt::Display for RefineReport {
@@ -61,12 +69,65 @@ fn text(report: &RefineReport) -> String {
         out.push('\n');
     }
     if !report.worse.is_empty() {
-        let names: Vec<&str> = report.worse.iter().map(|m| m.name()).collect();
-        let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", names.join(", "));
+        let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", worse(report));
     }
-    crowded_text(report, &mut out);
-    residual_text(report, &mut out);
+    crowded_text(report, LISTED, &mut out);
+    residual_text(report, LISTED, &mut out);
     out
+}
+
+/// What is read in ten seconds: what came in, how far it was moved, what overlaps still, where it is.
+#[cfg(feature = "cli")]
+pub fn brief(report: &RefineReport, ended: &Ended) -> String {
+    let RefineReport { size_before, size_after, displacement: d, given, result, .. } = report;
+    let [nodes, edges] = [0, 1].map(|k| match (size_before[k], size_after[k]) {
+        (before, after) if before == after => grouped(after),
+        (before, after) => format!("{} to {}", grouped(before), grouped(after)),
+    });
+    let mut out = row("network", &format!("{nodes} nodes, {edges} edges{}", changes(report)));
+    let iterations = report.history.last().map_or(0, |sample| sample.iteration);
+    let radius = 0.448 * report.unit;
+    let moved = match report.chosen {
+        None => "nothing: no state is as good as the input in what is to be held (--hold)".into(),
+        Some(_) if d.max == 0.0 => "nothing".into(),
+        Some(best) => {
+            let [median, most, radius] = [d.median, d.max, radius].map(number);
+            format!(
+                "by {median} in the median, {most} at most (a median radius is {radius}); best of {iterations} iterations: {best}"
+            )
+        }
+    };
+    out += &row("moved", &moved);
+    let [before, after] = [given.overlaps, result.overlaps].map(grouped);
+    out += &row("overlaps", &format!("{after} pairs ({before} before)"));
+    let [before, after] = [given, result].map(|figures| share(figures.metrics.cuttable.percent() / 100.0));
+    out += &row("cuts", &format!("{after} of inner branches have room for one ({before} before)"));
+    if !report.worse.is_empty() {
+        out += &row("worse", &format!("{} (--hold prevents it)", worse(report)));
+    }
+    crowded_text(report, SPELT_OUT, &mut out);
+    if !report.residual.pairs.is_empty() {
+        residual_text(report, SPELT_OUT, &mut out);
+    }
+    out += &ended.rows(&[]);
+    out += &match report.residual.left {
+        0 => "no vessels overlap (-v shows all figures)\n".into(),
+        n => format!("{} overlap still (-v shows all figures)\n", counted(n, "pair")),
+    };
+    out
+}
+
+/// Nodes split and bends put in, where there are any.
+#[cfg(feature = "cli")]
+fn changes(report: &RefineReport) -> String {
+    let of = |count, what: &str| if count > 0 { Some(format!("{} {what}", grouped(count))) } else { None };
+    let all: Vec<String> =
+        [of(report.nodes_split, "split"), of(report.bends, "bends put in")].into_iter().flatten().collect();
+    if all.is_empty() { String::new() } else { format!("; {}", all.join(", ")) }
+}
+
+fn worse(report: &RefineReport) -> String {
+    report.worse.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
 }
 
 /// The figures as a table: the name of each, and its values as given, after splitting, after moving, in the end.
@@ -95,12 +156,13 @@ fn percent(value: f64) -> String {
     format!("{value:.3} %")
 }
 
-fn crowded_text(report: &RefineReport, out: &mut String) {
+fn crowded_text(report: &RefineReport, listed: usize, out: &mut String) {
     if report.crowded.is_empty() {
         return;
     }
-    let _ = writeln!(out, "{} pairs of terminals are too close to each other for two caps", report.crowded.len());
-    for pair in report.crowded.iter().take(LISTED) {
+    let _ =
+        writeln!(out, "{} pairs of terminals are too close to each other for two caps", grouped(report.crowded.len()));
+    for pair in report.crowded.iter().take(listed) {
         let [a, b] = pair.nodes;
         let done = match (pair.resolved, pair.moved) {
             (false, _) => "left; the mesh will lack a cap (--crowded-terminals part or merge)".into(),
@@ -109,9 +171,17 @@ fn crowded_text(report: &RefineReport, out: &mut String) {
         };
         let _ = writeln!(out, "  {a} and {b}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
     }
+    unlisted(report.crowded.len(), listed, out);
 }
 
-fn residual_text(report: &RefineReport, out: &mut String) {
+/// How many pairs are not spelt out.
+fn unlisted(count: usize, listed: usize, out: &mut String) {
+    if count > listed {
+        let _ = writeln!(out, "  and {} more (--json lists all)", grouped(count - listed));
+    }
+}
+
+fn residual_text(report: &RefineReport, listed: usize, out: &mut String) {
     let r = &report.residual;
     if r.pairs.is_empty() {
         out.push_str("no vessels overlap\n");
@@ -122,11 +192,11 @@ fn residual_text(report: &RefineReport, out: &mut String) {
         out,
         "{} pairs overlapped when the nodes had come to rest; {} edges were shrunk ({lost:.4} % of the lumen); {} pairs \
          overlap still",
-        r.pairs.len(),
-        r.shrunk_edges,
-        r.left
+        grouped(r.pairs.len()),
+        grouped(r.shrunk_edges),
+        grouped(r.left)
     );
-    for pair in r.pairs.iter().take(LISTED) {
+    for pair in r.pairs.iter().take(listed) {
         let [[a, b], [c, d]] = pair.edges;
         let done = match pair.treatment {
             Treatment::Shrunk { kept } => format!("shrunk to {:.0} %", 100.0 * kept),
@@ -139,9 +209,7 @@ fn residual_text(report: &RefineReport, out: &mut String) {
         };
         let _ = writeln!(out, "  {a}-{b} and {c}-{d}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
     }
-    if r.pairs.len() > LISTED {
-        let _ = writeln!(out, "  and {} more (--json lists all)", r.pairs.len() - LISTED);
-    }
+    unlisted(r.pairs.len(), listed, out);
 }
 
 /// The metrics over the iterations as a table.

@@ -1,19 +1,18 @@
 //! What a run did, read in ten seconds: what came in, what was made, whether it is valid, where it is, how long it took.
 
+use super::check::{faults, shape, sizes, tally, verdict};
+use super::rows::{Ended, row};
+use super::units::{bytes_of, digits, grouped, rounded, seconds_of};
 use crate::fidelity::Fidelity;
-use crate::mesh::check::{CheckReport, Offender};
+use crate::mesh::check::CheckReport;
 use crate::pipeline::{Forecast, RunReport};
-use crate::report::check::{describe, extent, verdict};
 use std::fmt::{self, Write as _};
 
 /// Things of a kind that are spelt out.
 const SPELT_OUT: usize = 3;
 
-/// Stages that took a smaller share of the time are not mentioned.
-const MENTIONED: f64 = 0.02;
-
-/// A file that was written, and its size in bytes.
-pub type Written = (String, u64);
+/// An axis that is further from the given one than so many radii in the median was moved: its wall is compared with nothing.
+const MOVED: f64 = 0.1;
 
 /// What there is to say of a run.
 #[derive(Clone, Debug)]
@@ -22,44 +21,23 @@ pub struct Summary<'a> {
     /// None where there is no mesh.
     pub check: Option<&'a CheckReport>,
     pub fidelity: Option<&'a Fidelity>,
-    pub files: &'a [Written],
-    /// Most bytes of memory that were in use, where the system tells.
-    pub memory: Option<u64>,
+    pub ended: Ended,
 }
 
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let run = self.run;
-        let [nodes, edges] = run.network.map(grouped);
-        line(out, "network", &format!("{nodes} nodes, {edges} edges{}", self.overlaps()))?;
-        line(out, "blocks", &self.blocks())?;
+        let [nodes, edges] = self.run.network.map(grouped);
+        out.write_str(&row("network", &format!("{nodes} nodes, {edges} edges{}", self.overlaps())))?;
+        out.write_str(&row("blocks", &self.blocks()))?;
         self.troubles(out)?;
-        let Some(check) = self.check else { return line(out, "time", &self.time()) };
-        line(out, "mesh", &sizes(check))?;
-        if let Some(q) = &check.quality {
-            let angles = format!("dihedral angles {:.0}° to {:.0}°", q.dihedral_min, q.dihedral_max);
-            line(out, "shape", &format!("radius ratio {:.2} in the mean, {:.2} at least; {angles}", q.mean, q.min))?;
+        if let Some(check) = self.check {
+            out.write_str(&of_mesh(check))?;
         }
-        if let Some(f) = self.fidelity {
-            let (wall, volume) = (100.0 * f.wall.median, 100.0 * f.swelling());
-            line(out, "vessels", &format!("wall {wall:.1} % off the radius in the median, volume {volume:+.1} %"))?;
+        if let Some(fidelity) = self.fidelity {
+            out.write_str(&row("vessels", &vessels(fidelity)))?;
         }
-        for (name, bytes) in self.files {
-            line(out, "file", &format!("{name} ({})", bytes_of(*bytes)))?;
-        }
-        line(out, "time", &self.time())?;
-        for failed in check.failed() {
-            writeln!(out, "FAIL {}: {}", failed.line.statement(), extent(failed))?;
-            let shown: Vec<&Offender> = failed.offenders.iter().take(SPELT_OUT).collect();
-            for offender in &shown {
-                line(out, "", &describe(offender))?;
-            }
-            let hidden = failed.count.saturating_sub(shown.len() as u64);
-            if hidden > 0 {
-                line(out, "", &format!("and {hidden} more (-v shows ten, --report where they are)"))?;
-            }
-        }
-        writeln!(out, "{}", verdict(check.verdict))
+        out.write_str(&self.ended.rows(&self.run.stages))?;
+        self.check.map_or(Ok(()), |check| out.write_str(&of_check(check)))
     }
 }
 
@@ -77,7 +55,7 @@ impl Summary<'_> {
         for (count, what) in [(run.retries.len(), "retried"), (run.fused.len(), "fused"), (run.failed.len(), "FAILED")]
         {
             if count > 0 {
-                let _ = write!(text, ", {count} {what}");
+                let _ = write!(text, ", {} {what}", grouped(count));
             }
         }
         if !run.retries.is_empty() || !run.fused.is_empty() {
@@ -109,111 +87,51 @@ impl Summary<'_> {
         }
         more(out, astray().count())
     }
-
-    fn time(&self) -> String {
-        let all: f64 = self.run.stages.iter().map(|stage| stage.seconds).sum();
-        let mut longest: Vec<_> = self.run.stages.iter().filter(|s| s.seconds >= MENTIONED * all).collect();
-        longest.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
-        let longest: Vec<String> =
-            longest.iter().take(SPELT_OUT).map(|s| format!("{} {}", s.stage, seconds_of(s.seconds))).collect();
-        let memory = self.memory.map_or_else(String::new, |bytes| format!("; {} of memory at most", bytes_of(bytes)));
-        format!("{} ({}){memory}", seconds_of(all), longest.join(", "))
-    }
 }
 
-fn sizes(check: &CheckReport) -> String {
-    let counts = &check.counts;
-    let tets = if counts.tets > 0 { format!("{} tetrahedra, ", grouped(counts.tets)) } else { String::new() };
-    format!(
-        "{tets}{} points, {} boundary faces, {} inlets and outlets",
-        grouped(counts.points),
-        grouped(counts.boundary_faces),
-        counts.caps
-    )
+/// The mesh: its size and its shape.
+pub fn of_mesh(check: &CheckReport) -> String {
+    let shape = shape(check).map_or_else(String::new, |shape| row("shape", &shape));
+    row("mesh", &sizes(check)) + &shape
+}
+
+/// What a check found: how many conditions hold, those that do not, and the verdict.
+pub fn of_check(check: &CheckReport) -> String {
+    format!("{}{}{}\n", row("check", &tally(check)), faults(check), verdict(check.verdict))
+}
+
+/// How a mesh keeps its network: where vessels were moved, how far; else how far the wall is from the radius.
+fn vessels(fidelity: &Fidelity) -> String {
+    let volume = format!("volume {:+.1} %", 100.0 * fidelity.swelling());
+    let (axis, wall) = (&fidelity.axis.spread, &fidelity.wall);
+    if axis.median > MOVED {
+        let [median, most] = [axis.median, axis.worst].map(digits);
+        return format!("moved by {median} radii in the median, {most} at most; {volume}");
+    }
+    format!("wall {:.1} % off the radius in the median, {volume}", 100.0 * wall.median)
 }
 
 fn more(out: &mut fmt::Formatter, count: usize) -> fmt::Result {
     match count.saturating_sub(SPELT_OUT) {
         0 => Ok(()),
-        hidden => writeln!(out, "    and {hidden} more (-v lists them)"),
+        hidden => writeln!(out, "    and {} more (-v lists them)", grouped(hidden)),
     }
-}
-
-fn line(out: &mut fmt::Formatter, what: &str, text: &str) -> fmt::Result {
-    writeln!(out, "{what:<8} {text}")
 }
 
 /// What a run is expected to take, on so many threads.
 pub fn forecast(forecast: &Forecast, threads: usize) -> String {
     let Forecast { clusters, connectors, largest_nodes, estimate, .. } = forecast;
-    let mut out = String::new();
-    let rows = [
-        (
-            "blocks",
-            format!(
-                "{} clusters (largest {largest_nodes} nodes), {} connectors",
-                grouped(*clusters),
-                grouped(*connectors)
-            ),
-        ),
-        ("mesh", format!("about {} tetrahedra", rounded(estimate.tets))),
-        ("time", format!("about {} on {threads} threads", seconds_of(forecast.seconds(threads)))),
-        ("memory", format!("about {}", bytes_of(forecast.memory(threads)))),
-        (
-            "disk",
-            format!(
-                "about {} for the mesh, {} for blocks until it is written",
-                bytes_of(estimate.written_bytes),
-                bytes_of(estimate.stored_bytes)
-            ),
-        ),
-    ];
-    for (what, text) in rows {
-        let _ = writeln!(out, "{what:<8} {text}");
-    }
+    let [clusters, connectors] = [*clusters, *connectors].map(grouped);
+    let [written, stored] = [estimate.written_bytes, estimate.stored_bytes].map(bytes_of);
+    let seconds = seconds_of(forecast.seconds(threads));
+    let mut out =
+        row("blocks", &format!("{clusters} clusters (largest {largest_nodes} nodes), {connectors} connectors"));
+    out += &row("mesh", &format!("about {} tetrahedra", rounded(estimate.tets)));
+    out += &row("time", &format!("about {seconds} on {threads} threads"));
+    out += &row("memory", &format!("about {}", bytes_of(forecast.memory(threads))));
+    out += &row("disk", &format!("about {written} for the mesh, {stored} for blocks until it is written"));
     out.push_str("nothing was meshed (--dry-run)\n");
     out
-}
-
-/// Two digits of a number, and how many there are in words.
-fn rounded(number: f64) -> String {
-    match number {
-        n if n >= 1e9 => format!("{:.1} billion", n / 1e9),
-        n if n >= 1e6 => format!("{:.1} million", n / 1e6),
-        n => grouped((n / 100.0).round() as usize * 100),
-    }
-}
-
-/// A count with its thousands apart.
-pub fn grouped(count: usize) -> String {
-    let digits = count.to_string();
-    let mut out = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
-}
-
-/// Bytes for people.
-fn bytes_of(bytes: u64) -> String {
-    match bytes as f64 {
-        b if b >= 1e9 => format!("{:.1} GB", b / 1e9),
-        b if b >= 1e6 => format!("{:.1} MB", b / 1e6),
-        b => format!("{:.0} kB", (b / 1e3).ceil()),
-    }
-}
-
-/// A time for people.
-fn seconds_of(seconds: f64) -> String {
-    match seconds {
-        s if s >= 7200.0 => format!("{:.1} h", s / 3600.0),
-        s if s >= 120.0 => format!("{:.0} min", s / 60.0),
-        s if s >= 10.0 => format!("{s:.0} s"),
-        s => format!("{s:.1} s"),
-    }
 }
 
 #[cfg(test)]
@@ -243,19 +161,18 @@ mod tests {
             t.swap(0, 1);
         }
         let check = check_tets(&mesh, None);
-        let files = [("tree.vtu".to_owned(), 1_016_155)];
-        let text =
-            Summary { run: &run(), check: Some(&check), fidelity: None, files: &files, memory: Some(250_000_000) }
-                .to_string();
+        let files = vec![("tree.vtu".to_owned(), 1_016_155)];
+        let ended = Ended { files, seconds: 160.0, memory: Some(250_000_000) };
+        let text = Summary { run: &run(), check: Some(&check), fidelity: None, ended }.to_string();
         let expected = "\
 network  1,234 nodes, 1,233 edges
 blocks   0 clusters, 0 connectors
-mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets
+mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets, volume 0.62500
 ";
         assert!(text.starts_with(expected), "{text}");
         assert!(text.contains("\nfile     tree.vtu (1.0 MB)\n"), "{text}");
         assert!(
-            text.contains("\ntime     3 min (blocks 2 min, write 22 s, check 5.0 s); 250.0 MB of memory at most\n"),
+            text.contains("\ntime     3 min (blocks 2 min, write 22 s, check 5.0 s); 250 MB of memory at most\n"),
             "{text}"
         );
         assert!(text.contains("\nFAIL every tetrahedron is positive: 9 found\n         tetrahedron 0 at "), "{text}");
@@ -274,7 +191,9 @@ mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets
             dump: Some(format!("d/{i}.json")),
         };
         let run = RunReport { failed: (0..5).map(failed).collect(), ..run() };
-        let text = Summary { run: &run, check: None, fidelity: None, files: &[], memory: None }.to_string();
+        let text =
+            Summary { run: &run, check: None, fidelity: None, ended: Ended { seconds: 158.0, ..Ended::default() } }
+                .to_string();
         let expected = "\
 network  1,234 nodes, 1,233 edges
 blocks   0 clusters, 0 connectors, 5 FAILED
@@ -304,11 +223,10 @@ time     3 min (blocks 2 min, write 22 s, check 5.0 s)
 blocks   59,000 clusters (largest 12 nodes), 58,999 connectors
 mesh     about 181.0 million tetrahedra
 time     about 5 min on 2 threads
-memory   about 120.0 MB
+memory   about 120 MB
 disk     about 4.2 GB for the mesh, 3.1 GB for blocks until it is written
 nothing was meshed (--dry-run)
 ";
         assert_eq!(found, expected);
-        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
     }
 }

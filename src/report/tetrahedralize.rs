@@ -1,5 +1,7 @@
 //! What a tetrahedralization has to say, for people and as JSON.
 
+use super::rows::{Ended, row};
+use super::units::{digits, grouped};
 use crate::geometry::Point3;
 use crate::mesh::quality::{TetQuality, dihedral_range, volume6};
 use crate::mesh::{Bounds, face_key};
@@ -325,18 +327,19 @@ impl TetReport {
         let mut stays = false;
         for b in &self.bounds {
             let on = match (self.to_split, b.on_input) {
-                (Some(_), n) if n > 0 => format!(", {n} of them on triangles of the input"),
+                (Some(_), n) if n > 0 => format!(", {} of them on triangles of the input", grouped(n)),
                 _ => String::new(),
             };
             stays |= !on.is_empty();
             let _ = match b.beyond {
                 0 => writeln!(out, "  {} {}: met", b.bound, b.value),
-                n => writeln!(out, "  {} {}: not met by {n} tetrahedra{on}", b.bound, b.value),
+                n => writeln!(out, "  {} {}: not met by {} tetrahedra{on}", b.bound, b.value, grouped(n)),
             };
         }
         if let Some(s) = self.size_unmet {
             stays = true;
-            let SizeUnmet { size, longer, edges, longest } = s;
+            let SizeUnmet { size, longest, .. } = s;
+            let [longer, edges] = [s.longer, s.edges].map(grouped);
             let _ = writeln!(
                 out,
                 "  edges of length {size}: not met at the boundary, where {longer} of {edges} edges of the input are longer, \
@@ -348,56 +351,61 @@ impl TetReport {
         }
     }
 
-    /// The report as lines for people.
-    pub fn text(&self) -> String {
+    /// Regions that are spelt out in a summary.
+    const REGIONS: usize = 10;
+
+    /// The report as lines for people; with `all` every region and stage.
+    pub fn text(&self, all: bool, ended: &Ended) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
         let (i, m, r) = (&self.input, &self.mesh, &self.recovery);
-        let facets = i.facets.map_or_else(String::new, |n| format!(" of {n} facets"));
-        let _ = write!(out, "input: {} points, {} triangles{facets}", i.points, i.triangles);
-        let _ = writeln!(out, "{}{}", counted(i.segments, "segments"), counted(i.holes, "holes"));
+        let facets = i.facets.map_or_else(String::new, |n| format!(" of {} facets", grouped(n)));
+        let [points, triangles] = [i.points, i.triangles].map(grouped);
+        let beside = [extra(i.segments, "segments"), extra(i.holes, "holes")].concat();
+        out += &row("input", &format!("{points} points, {triangles} triangles{facets}{beside}"));
         for line in &self.repaired {
             let _ = writeln!(out, "  repaired: {line}");
         }
         out.push_str(&self.left_out.text());
-        let _ = writeln!(
-            out,
-            "mesh: {} tetrahedra, {} points ({} added), volume {:.9e}",
-            m.tets, m.points, m.added_points, m.volume
-        );
+        let [tets, points, added] = [m.tets, m.points, m.added_points].map(grouped);
+        let volume = digits(m.volume);
+        out += &row("mesh", &format!("{tets} tetrahedra, {points} points ({added} added), volume {volume}"));
         if i.triangles > 0 {
-            let _ = writeln!(
-                out,
-                "boundary: {} faces{}; {} edges and {} triangles recovered with {} points",
-                m.faces,
-                counted(m.interior_faces, "of them inside"),
-                r.missing_edges,
-                r.missing_triangles,
-                r.steiner_points
-            );
+            let inside = extra(m.interior_faces, "of them inside");
+            let [faces, edges, triangles, points] =
+                [m.faces, r.missing_edges, r.missing_triangles, r.steiner_points].map(grouped);
+            let missing = format!("{edges} edges and {triangles} triangles recovered with {points} points");
+            out += &row("surface", &format!("{faces} faces{inside}; {missing}"));
         }
-        for region in &self.regions {
-            let _ = writeln!(out, "  region {}: {} tetrahedra, volume {:.9e}", region.id, region.tets, region.volume);
-        }
+        self.write_regions(all, &mut out);
         if let Some(q) = &self.quality {
-            let _ = writeln!(
-                out,
-                "radius ratio: mean {:.4}, 1st percentile {:.4}, min {:.4}; dihedral angles {:.2}° to {:.2}°",
-                q.mean, q.percentile_1, q.min, q.dihedral_min, q.dihedral_max
-            );
+            let ratio = format!("radius ratio {:.2} in the mean, {:.2} at least", q.mean, q.min);
+            out += &row("shape", &format!("{ratio}; dihedral angles {:.0}° to {:.0}°", q.dihedral_min, q.dihedral_max));
         }
         out.push_str(&self.layers.as_ref().map_or_else(String::new, LayerReport::text));
         self.write_bounds(&mut out);
-        let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
-        let peak = self.peak_memory.map_or_else(String::new, |b| format!("; peak memory {:.0} MB", b as f64 / 1e6));
-        let _ = writeln!(out, "{}{peak}", times.join(", "));
-        out
+        if all {
+            let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
+            out += &row("stages", &times.join(", "));
+        }
+        out + &ended.rows(&self.stages)
+    }
+
+    fn write_regions(&self, all: bool, out: &mut String) {
+        let shown = if all { self.regions.len() } else { Self::REGIONS.min(self.regions.len()) };
+        for region in &self.regions[..shown] {
+            let (tets, volume) = (grouped(region.tets), digits(region.volume));
+            let _ = writeln!(out, "  region {}: {tets} tetrahedra, volume {volume}", region.id);
+        }
+        if shown < self.regions.len() {
+            let _ = writeln!(out, "  and {} regions more (-v lists them)", grouped(self.regions.len() - shown));
+        }
     }
 }
 
 /// `, 3 holes`, or nothing when there are none.
-fn counted(count: usize, what: &str) -> String {
-    if count == 0 { String::new() } else { format!(", {count} {what}") }
+fn extra(count: usize, what: &str) -> String {
+    if count == 0 { String::new() } else { format!(", {} {what}", grouped(count)) }
 }
 
 #[cfg(test)]
@@ -423,11 +431,14 @@ mod tests {
         assert_eq!(results.iter().map(|r| r.on_input).collect::<Vec<_>>(), [0, 0, 1]);
         let report = TetReport { bounds: results, to_split: Some("--split"), ..TetReport::default() };
         assert!(!report.bounds_met());
-        let text = report.text();
+        let text = report.text(false, &Ended::default());
         assert!(text.contains("volume at most 0.1: not met by 1 tetrahedra, 1 of them on triangles of the input\n"));
         assert!(text.contains("--split lets them be split"));
         let free = TetReport { to_split: None, ..report };
-        assert!(!free.text().contains("input\n  note") && !free.text().contains("split"));
+        assert!(
+            !free.text(false, &Ended::default()).contains("input\n  note")
+                && !free.text(false, &Ended::default()).contains("split")
+        );
     }
 
     #[test]
@@ -439,7 +450,7 @@ mod tests {
         assert_eq!((unmet.longer, unmet.edges, unmet.longest), (2, 3, 5.0_f64.sqrt()));
         assert_eq!(of(0.5).unwrap().longer, 3);
         let report = TetReport { size_unmet: Some(unmet), to_split: Some("--split"), ..TetReport::default() };
-        let text = report.text();
+        let text = report.text(false, &Ended::default());
         assert!(
             text.contains("edges of length 1: not met at the boundary, where 2 of 3 edges of the input are longer")
         );

@@ -4,7 +4,7 @@ use super::quadric::{Quadric, relative};
 use crate::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
-use std::collections::{BTreeSet, BinaryHeap};
+use std::collections::BinaryHeap;
 
 /// A surface in the making.
 pub struct Collapse {
@@ -30,7 +30,10 @@ impl Collapse {
     pub fn new(points: Vec<Point3>, triangles: Vec<[u32; 3]>, fixed: Vec<bool>) -> Self {
         let centre = points.first().copied().unwrap_or_else(Point3::origin);
         let mut quadrics = vec![Quadric::default(); points.len()];
-        let mut around = vec![Vec::new(); points.len()];
+        // One after the other a vector grows many times.
+        let mut valences = vec![0; points.len()];
+        triangles.as_flattened().iter().for_each(|&v| valences[v as usize] += 1);
+        let mut around: Vec<Vec<u32>> = valences.into_iter().map(Vec::with_capacity).collect();
         for (i, t) in (0..).zip(&triangles) {
             let [a, b, c] = t.map(|v| points[v as usize]);
             let area = (b - a).cross(&(c - a));
@@ -59,12 +62,11 @@ impl Collapse {
 
     /// Lets edges go until so many triangles are left, or none may go. The points that are left, and the triangles.
     pub fn run(mut self, target: usize) -> (Vec<Point3>, Vec<[u32; 3]>) {
-        let mut heap: BinaryHeap<Candidate> = BinaryHeap::new();
-        let edges: BTreeSet<[u32; 2]> =
-            self.triangles.iter().flatten().flat_map(|t| sides(*t)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        for edge in edges {
-            self.offer(edge, &mut heap);
-        }
+        let sides = self.triangles.iter().flatten().flat_map(|t| sides(*t));
+        let mut edges: Vec<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let mut heap: BinaryHeap<Candidate> = edges.into_iter().filter_map(|edge| self.candidate(edge)).collect();
         while self.left > target
             && let Some(Reverse((_, edge, moves))) = heap.pop()
         {
@@ -79,12 +81,13 @@ impl Collapse {
         self.done()
     }
 
-    fn offer(&self, edge: [u32; 2], heap: &mut BinaryHeap<Candidate>) {
+    /// An edge as it is now; none if it is to stay.
+    fn candidate(&self, edge: [u32; 2]) -> Option<Candidate> {
         if edge.iter().all(|&v| self.fixed[v as usize]) {
-            return;
+            return None;
         }
         let cost = self.cost(edge, &self.place(edge));
-        heap.push(Reverse((cost.to_bits(), edge, edge.map(|v| self.moves[v as usize]))));
+        Some(Reverse((cost.to_bits(), edge, edge.map(|v| self.moves[v as usize]))))
     }
 
     fn sum([a, b]: [u32; 2], quadrics: &[Quadric]) -> Quadric {
@@ -116,8 +119,8 @@ impl Collapse {
 
     /// Whether no triangle turns over, and the surface stays one.
     fn may_go(&self, [a, b]: [u32; 2], place: &Point3) -> bool {
-        let ring = |v: u32| -> BTreeSet<u32> { self.alive(v).flat_map(|(_, t)| t).filter(|&w| w != v).collect() };
-        let shared = ring(a).intersection(&ring(b)).count();
+        let of_b = self.neighbours(b);
+        let shared = self.neighbours(a).iter().filter(|v| of_b.binary_search(v).is_ok()).count();
         let both = self.alive(a).filter(|(_, t)| t.contains(&b)).count();
         if shared != both || both == 0 {
             return false;
@@ -129,6 +132,15 @@ impl Collapse {
                 old.dot(&new) > 0.1 * old.norm() * new.norm()
             })
         })
+    }
+
+    /// Points beside a point, ascending.
+    fn neighbours(&self, v: u32) -> Vec<u32> {
+        let mut near = Vec::with_capacity(2 * self.around[v as usize].len());
+        near.extend(self.alive(v).flat_map(|(_, t)| t).filter(|&w| w != v));
+        near.sort_unstable();
+        near.dedup();
+        near
     }
 
     fn alive(&self, v: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
@@ -153,10 +165,9 @@ impl Collapse {
         self.fixed[a as usize] |= self.fixed[b as usize];
         self.moves[a as usize] += 1;
         self.moves[b as usize] += 1;
-        let near: BTreeSet<u32> = self.alive(a).flat_map(|(_, t)| t).filter(|&v| v != a).collect();
-        for v in near {
-            self.offer([a.min(v), a.max(v)], heap);
-        }
+        let (around, triangles) = (&mut self.around[a as usize], &self.triangles);
+        around.retain(|&t| triangles[t as usize].is_some());
+        heap.extend(self.neighbours(a).into_iter().filter_map(|v| self.candidate([a.min(v), a.max(v)])));
     }
 
     fn done(self) -> (Vec<Point3>, Vec<[u32; 3]>) {

@@ -1,7 +1,9 @@
 //! Places to fly to: what a check found, blocks that failed, vessels that overlap.
 
+use super::wall::{Group, Wall};
 use crate::block::{BlockDump, BlockInput};
 use crate::geometry::{Point3, Vec3};
+use crate::mesh::Patch;
 use crate::mesh::check::{CheckReport, LineResult, Offender, OffenderKind};
 use crate::skeleton::{Overlap, Skeleton};
 use serde::Serialize;
@@ -61,6 +63,20 @@ impl Fault {
             }
         };
         pairs.iter().take(LISTED).map(fault).collect()
+    }
+
+    /// Where blocks are missing: their neighbours end in patches that are called so.
+    pub fn of_missing(wall: &Wall, patches: &[Patch]) -> Vec<Self> {
+        let name_of = |group: &Group| patches.iter().find(|patch| patch.id == group.patch).map(|patch| &*patch.name);
+        let fault = |group: &Group| {
+            let name = name_of(group).filter(|name| name.starts_with("missing_"))?;
+            let first = group.points.first()?;
+            let sum: Vec3 = group.points.iter().map(|p| p.coords).sum();
+            let extent = group.points.iter().map(|p| (p - first).norm()).fold(0.0, f64::max);
+            let what = format!("a block is missing here: patch {name}");
+            Some(Self { what, place: (sum / group.points.len() as f64).into(), extent })
+        };
+        wall.pieces.iter().flat_map(|piece| &piece.groups).filter_map(fault).take(LISTED).collect()
     }
 
     /// A block that could not be meshed.

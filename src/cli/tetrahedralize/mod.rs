@@ -10,20 +10,24 @@ mod plan;
 mod switches;
 mod watch;
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Serialize;
 
 use super::common;
 use super::exit::{Exit, Failure};
+use super::log;
 use super::stop::Stop;
 use crate::mesh::VolumeMesh;
 use crate::mesh::dihedral::DihedralHistogram;
 use crate::mesh::quality::TetQuality;
 use crate::report::page::{self, Mark, Section};
+use crate::report::rows::row;
 use crate::report::tetrahedralize::{
     BoundResult, InputSize, LayerReport, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
+use crate::report::units::grouped;
 use crate::tet::{Boundary, LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
 pub use args::Args;
 use format::{InputFormat, Target, is_stream};
@@ -51,7 +55,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     args.report.ensure_writable()?;
     if !plan.quiet {
         for note in &notes {
-            eprintln!("{note}");
+            log::note(note);
         }
     }
     let pool = common::thread_pool(args.common.threads)?;
@@ -60,7 +64,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
     let from = if is_stream(&args.input) { "standard input".into() } else { args.input.display().to_string() };
     for note in input.notes.iter().filter(|_| !plan.quiet) {
-        eprintln!("warning: {from}: {note}");
+        log::warning(&format!("{from}: {note}"));
     }
     let mut report = TetReport { input: size_of(&input), notes: input.notes.clone(), ..TetReport::default() };
     if plan.repair {
@@ -112,7 +116,7 @@ fn write_page(args: &Args, plan: &TetPlan, report: &TetReport, mesh: &VolumeMesh
         (Mark::Bad, "a bound is not met".into())
     };
     args.report.write(&args.input, Some(verdict), plan, |page| {
-        page.add(Section::new("Summary").folded("As the terminal shows it", &report.text()));
+        page.add(Section::new("Summary").folded("As the terminal shows it", &report.text(true, &common::ended(&[]))));
         page.add(Section::new("At a glance").pictures(&page::mesh_pictures(mesh)?, false)?);
         if let Some(quality) = &report.quality {
             page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));
@@ -191,16 +195,21 @@ fn print(args: &Args, plan: &TetPlan, report: &TetReport) -> Result<(), Failure>
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
         return common::print(true, &Output { program, plan, report }, String::new);
     }
+    let files: Vec<&Path> =
+        report.files.iter().map(Path::new).chain(args.report.page().map(PathBuf::as_path)).collect();
+    let ended = common::ended(&files);
     if plan.check_only {
         if !plan.quiet {
             let InputSize { points, triangles, segments, .. } = report.input;
-            eprintln!("no fault found: {points} points, {triangles} triangles, {segments} further segments");
+            let [points, triangles, segments] = [points, triangles, segments].map(grouped);
+            let input = row("input", &format!("{points} points, {triangles} triangles, {segments} further segments"));
+            log::result(&format!("{input}{}no fault found", ended.rows(&report.stages)));
         }
         return Ok(());
     }
     // A bound that is not met is an error, which --quiet does not silence.
     if !plan.quiet || !report.bounds_met() {
-        eprint!("{}", report.text());
+        log::result(&report.text(args.common.verbose, &ended));
     }
     Ok(())
 }

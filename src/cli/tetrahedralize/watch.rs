@@ -28,7 +28,7 @@ struct State {
 impl Watch {
     /// No bars when `quiet`, nor without a terminal.
     pub fn new(quiet: bool, told: Option<ProgressFormat>) -> Self {
-        Self { shown: shows_bars(quiet, told), lines: Lines::asked_for(told), state: Mutex::default() }
+        Self { shown: shows_bars(quiet, told), lines: Lines::asked_for(quiet, told), state: Mutex::default() }
     }
 
     /// Runs a stage of the program's own.

@@ -67,6 +67,11 @@ impl LogFile {
         self.name.clone()
     }
 
+    /// Where a record lies.
+    pub(super) fn extent(&self, record: usize) -> Option<Range<u64>> {
+        self.extents.read().unwrap_or_else(PoisonError::into_inner).get(record).cloned()
+    }
+
     /// Bytes of it that are in use.
     pub(super) fn length(&self) -> u64 {
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).end
@@ -106,8 +111,7 @@ impl LogFile {
 
     /// Some bytes of a record.
     pub(super) fn read(&self, record: usize, range: Range<u64>) -> io::Result<Vec<u8>> {
-        let extent = self.extents.read().unwrap_or_else(PoisonError::into_inner).get(record).cloned();
-        let extent = extent.filter(|e| range.start <= range.end && range.end <= e.end - e.start);
+        let extent = self.extent(record).filter(|e| range.start <= range.end && range.end <= e.end - e.start);
         let extent = extent.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof))?;
         let mut bytes = vec![0; (range.end - range.start) as usize];
         self.read_at(&mut bytes, extent.start + range.start)?;

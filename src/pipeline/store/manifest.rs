@@ -14,7 +14,7 @@ use crate::skeleton::Skeleton;
 /// Version of what is in a work directory.
 const FORMAT: u32 = 4;
 
-pub(super) const MANIFEST: &str = "anastomesh.json";
+pub(crate) const MANIFEST: &str = "anastomesh.json";
 
 /// What a work directory belongs to.
 ///

@@ -5,6 +5,7 @@
 
 mod arithmetic;
 mod error;
+mod extents;
 mod folder;
 mod key;
 mod locks;
@@ -29,9 +30,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 pub use error::StoreError;
+pub(crate) use extents::Extents;
 pub use folder::Role;
 pub use key::{Key, KeyMaker};
 use log::LogFile;
+pub(crate) use manifest::MANIFEST;
 pub use manifest::{Manifest, fingerprint};
 pub use shard::{NoShard, Shard, two_numbers};
 use shelf::Shelf;
@@ -56,6 +59,8 @@ enum Place {
     File(LogFile),
     /// A work directory: its path, what others have written there, and the file that this run writes to.
     Folder(PathBuf, Shelf, LogFile),
+    /// What others have written, to be read only.
+    Shelf(Shelf),
 }
 
 impl Store {
@@ -106,7 +111,7 @@ impl Store {
     ) -> Result<T, E> {
         match &self.place {
             Place::Folder(folder, ..) => once::once(folder, (what, key()), progress, make),
-            Place::Memory(_) | Place::File(_) => make(),
+            Place::Memory(_) | Place::File(_) | Place::Shelf(_) => make(),
         }
     }
 
@@ -146,6 +151,7 @@ impl Store {
             }
             Place::File(log) => append(log, key, &bytes)?,
             Place::Folder(_, others, own) => others.len() + append(own, key, &bytes)?,
+            Place::Shelf(_) => return Err(io::Error::from(io::ErrorKind::PermissionDenied).into()),
         };
         Ok(*slot.insert(RecordId(id as u32)))
     }
@@ -155,6 +161,7 @@ impl Store {
         match &self.place {
             Place::Memory(records) => records.read().unwrap_or_else(PoisonError::into_inner).len(),
             Place::File(log) | Place::Folder(_, _, log) => log.len(),
+            Place::Shelf(_) => 0,
         }
     }
 
@@ -164,6 +171,7 @@ impl Store {
             Place::Memory(_) => 0,
             Place::File(log) => log.length(),
             Place::Folder(_, others, own) => others.bytes() + own.length(),
+            Place::Shelf(others) => others.bytes(),
         }
     }
 
@@ -197,6 +205,7 @@ impl Bytes for StoredBytes<'_> {
                 None => others.read(self.id.0 as usize, range),
                 Some(record) => own.read(record, range),
             },
+            Place::Shelf(others) => others.read(self.id.0 as usize, range),
         }
     }
 }

@@ -73,7 +73,7 @@ impl<R: Read> Read for Summed<R> {
 }
 
 /// The value, then the checksum of its bytes. It has its name only when it is whole.
-fn write<T: Serialize>(path: &Path, value: &T) -> io::Result<()> {
+pub(super) fn write<T: Serialize>(path: &Path, value: &T) -> io::Result<()> {
     let mut out = Summed::new(BufWriter::with_capacity(1 << 18, part_of(path)?));
     postcard::to_io(value, &mut out).map_err(io::Error::other)?;
     let Summed { inner: mut out, sum } = out;
@@ -84,7 +84,7 @@ fn write<T: Serialize>(path: &Path, value: &T) -> io::Result<()> {
 }
 
 /// What is kept; none where there is nothing, or it is damaged: then it is made again.
-fn read<T: DeserializeOwned>(path: &Path) -> Option<T> {
+pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Option<T> {
     let input = Summed::new(BufReader::with_capacity(1 << 18, File::open(path).ok()?));
     // Numbers are read through this. Texts would need room for their length: nothing that is kept has any.
     let mut scratch = [0; 64];

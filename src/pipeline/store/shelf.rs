@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::log::read_exact_at;
@@ -26,6 +26,17 @@ impl Shelf {
         let file = self.files.len() as u32;
         self.files.push(path);
         self.extents.extend(records.map(|extent| (file, extent)));
+    }
+
+    /// The file of a record, and where it lies there.
+    pub(super) fn extent(&self, record: usize) -> Option<(&Path, Range<u64>)> {
+        let (file, extent) = self.extents.get(record)?;
+        Some((self.files.get(*file as usize)?, extent.clone()))
+    }
+
+    /// Of records that lie in these files.
+    pub(super) fn of(files: Vec<PathBuf>, extents: Vec<(u32, Range<u64>)>) -> Self {
+        Self { files, extents, open: Mutex::default() }
     }
 
     /// How many records there are.

@@ -6,7 +6,7 @@ use super::shape::bars;
 use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
 use crate::report::plot::Panel;
-use crate::report::summary::grouped;
+use crate::report::units::grouped;
 use crate::skeleton::{EdgeId, Skeleton};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

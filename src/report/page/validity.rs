@@ -5,7 +5,7 @@ use super::pictures::offenders;
 use crate::mesh::check::{CheckReport, Outcome, Verdict};
 use crate::mesh::source::MeshSource;
 use crate::report::check::{describe, extent, reason, verdict};
-use crate::report::summary::grouped;
+use crate::report::units::grouped;
 use std::io;
 
 /// Offenders of a line that are spelt out.

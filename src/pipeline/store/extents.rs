@@ -1,0 +1,96 @@
+//! Where records lie in the files of a work directory, told to whoever reads them without knowing what they depend on.
+//!
+//! Records are never moved nor changed: as long as the files are there the places hold, whoever adds to them.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use rustc_hash::FxHashMap;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::error::StoreError;
+use super::shelf::Shelf;
+use super::{Place, RecordId, Store, once};
+
+/// Files, and the place of each record: its file, where it begins and where it ends.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Extents {
+    /// Their names, as bytes.
+    files: Vec<Vec<u8>>,
+    places: Vec<(u32, u64, u64)>,
+}
+
+impl Extents {
+    /// How many records there are.
+    pub(crate) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The record of a number.
+    pub(crate) fn record(&self, number: usize) -> RecordId {
+        RecordId(number as u32)
+    }
+
+    /// Files in a folder, and records in them; none where a name leads out of it.
+    fn shelf(&self, folder: &Path) -> Option<Shelf> {
+        let path = |name: &Vec<u8>| {
+            let name = Path::new(std::str::from_utf8(name).ok()?);
+            (name.file_name() == Some(name.as_os_str())).then(|| folder.join(name))
+        };
+        let files: Vec<PathBuf> = self.files.iter().map(path).collect::<Option<_>>()?;
+        let extents = self.places.iter().map(|&(file, start, end)| {
+            let is_sound = (file as usize) < files.len() && start <= end;
+            is_sound.then_some((file, start..end))
+        });
+        let extents: Vec<(u32, Range<u64>)> = extents.collect::<Option<_>>()?;
+        Some(Shelf::of(files, extents))
+    }
+}
+
+impl Store {
+    /// Where records lie; none where they are in no work directory.
+    pub(crate) fn extents(&self, records: impl Iterator<Item = RecordId>) -> Option<Extents> {
+        let Place::Folder(_, others, own) = &self.place else { return None };
+        let own_path = PathBuf::from(own.place());
+        let mut numbers: FxHashMap<PathBuf, u32> = FxHashMap::default();
+        let mut out = Extents::default();
+        for RecordId(id) in records {
+            let (path, extent) = match (id as usize).checked_sub(others.len()) {
+                None => others.extent(id as usize)?,
+                Some(record) => (own_path.as_path(), own.extent(record)?),
+            };
+            let file = match numbers.get(path) {
+                Some(&file) => file,
+                None => {
+                    out.files.push(path.file_name()?.to_str()?.as_bytes().to_vec());
+                    numbers.insert(path.to_path_buf(), numbers.len() as u32);
+                    numbers.len() as u32 - 1
+                }
+            };
+            out.places.push((file, extent.start, extent.end));
+        }
+        Some(out)
+    }
+
+    /// Records in the files of a folder, to be read only; none where there can be no such files.
+    pub(crate) fn of_extents(folder: &Path, extents: &Extents) -> Option<Self> {
+        Some(Self { place: Place::Shelf(extents.shelf(folder)?), known: Mutex::default() })
+    }
+
+    /// Leaves something in a work directory, in the place of what was left there before.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(crate) fn leave<T: Serialize>(&self, what: &str, value: &T) -> Result<(), StoreError> {
+        let Place::Folder(folder, ..) = &self.place else { return Ok(()) };
+        let path = folder.join(format!("anastomesh.{what}"));
+        once::write(&path, value).map_err(|source| StoreError::Write { place: path.display().to_string(), source })
+    }
+
+    /// What was left in a folder; none where there is nothing, or it is damaged.
+    pub(crate) fn left<T: DeserializeOwned>(folder: &Path, what: &str) -> Option<T> {
+        once::read(&folder.join(format!("anastomesh.{what}")))
+    }
+}
