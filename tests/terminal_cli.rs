@@ -119,23 +119,34 @@ fn messages_are_lines_or_objects_without_colours() {
     assert!(!stdout(&run("mesh", &[], &["--help"])).contains('\u{1b}'));
 }
 
-/// Options stand under headings: no group is longer than a screen.
+/// What `-h` shows is a screen; `--help` has all options under headings, none of which is longer than a screen.
 #[test]
-fn help_is_in_groups() {
+fn help_is_a_screen_or_in_groups() {
     for verb in [
         "mesh",
         "surface",
         "prepare",
         "refine",
+        "dual",
+        "generate",
+        "tetrahedralize",
+        "convert",
         "render",
         "view",
         "check",
-        "convert",
-        "tetrahedralize",
-        "info",
         "replay",
+        "info",
+        "completions",
+        "man",
     ] {
-        let help = stdout(&run(verb, &[], &["-h"]));
+        let help = |word| {
+            let help = program().args([verb, word]).env("COLUMNS", "100").output().expect("the program runs");
+            stdout(&help)
+        };
+        let short = help("-h");
+        assert!(short.lines().count() <= 50, "{verb}: {} lines\n{short}", short.lines().count());
+        assert!(short.lines().all(|line| line.chars().count() <= 100), "{short}");
+        let help = help("--help");
         let groups: Vec<&str> = help.split("\n\n").collect();
         for group in &groups {
             let options = group.lines().filter(|line| line.trim_start().starts_with('-')).count();

@@ -46,10 +46,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let bar = Bars::new(args.common.quiet, args.common.progress, Stop::deaf());
     let (report, mesh) = bar.during(Stage::Check, || pool.install(|| checked(args)))?;
     let is_wrong = report.verdict == Verdict::Invalid;
-    if args.common.json || is_wrong || !args.common.quiet {
-        print(args.common.json, &report, || text(&report, args.common.verbose))?;
-    }
     pool.install(|| write_page(args, &report, mesh))?;
+    if args.common.json || is_wrong || !args.common.quiet {
+        print(args.common.json, &report, || text(&report, args))?;
+    }
     Ok(if is_wrong { Exit::GateNotMet } else { Exit::Fine })
 }
 
@@ -57,10 +57,12 @@ fn checked(args: &Args) -> Result<(CheckReport, OpenedMesh), Failure> {
     by_blocks(args)?.map_or_else(|| as_a_whole(args), Ok)
 }
 
-/// For people: how large the mesh is, how many conditions hold, and which do not; with `verbose` all of them.
-fn text(report: &CheckReport, verbose: bool) -> String {
+/// For people: how large the mesh is, how many conditions hold, and which do not; with `-v` all of them.
+fn text(report: &CheckReport, args: &Args) -> String {
+    let verbose = args.common.verbose;
+    let page: Vec<&Path> = args.report.page().into_iter().map(PathBuf::as_path).collect();
     let all = if verbose { conditions(report) } else { String::new() };
-    format!("{all}{}{}{}", of_mesh(report), ended(&[]).rows(&[]), of_check(report))
+    format!("{all}{}{}{}", of_mesh(report), ended(&page).rows(&[]), of_check(report, verbose))
 }
 
 /// Writes the page of `--report`.

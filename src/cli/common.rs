@@ -4,7 +4,6 @@ use super::exit::Failure;
 use super::log;
 use super::progress::ProgressFormat;
 use crate::report::rows::Ended;
-use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -79,14 +78,5 @@ pub fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> S
         return log::answer(&text());
     }
     let out = serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
-    print_bytes(format!("{out}\n").as_bytes())
-}
-
-/// Writes to standard output. A closed pipe is the reader's decision, not an error.
-pub fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::input(format!("standard output: {e}"))),
-        _ => Ok(()),
-    }
+    log::print_bytes(format!("{out}\n").as_bytes())
 }

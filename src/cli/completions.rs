@@ -14,7 +14,7 @@ pub struct Args {
 
 /// Prints the script.
 pub fn run(args: &Args, command: Command) -> Result<Exit, Failure> {
-    super::common::print_bytes(&script(args.shell, command))?;
+    super::log::print_bytes(&script(args.shell, command))?;
     Ok(Exit::Fine)
 }
 

@@ -41,7 +41,7 @@ fn find<'a>(definition: &'a Command, word: &OsStr) -> Option<&'a Command> {
 /// The options of a file, as they would be typed.
 fn options(file: &Path, verb: &Command) -> Result<Vec<OsString>, Failure> {
     let path = file.display();
-    let text = std::fs::read_to_string(file).map_err(|e| Failure::input(format!("{path}: cannot be read: {e}")))?;
+    let text = std::fs::read_to_string(file).map_err(|e| Failure::unreadable(file, &e))?;
     let table: toml::Table = text.parse().map_err(|e| Failure::input(format!("{path}: {e}")))?;
     let mut words = Vec::new();
     for (key, value) in &table {
@@ -87,7 +87,7 @@ pub fn write_resolved(verb: &Command, matches: &ArgMatches) -> Result<(), Failur
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}{key} = {value}", if asked { "" } else { "# " });
     }
-    write_text(&path, &text).map_err(|e| Failure::input(format!("{}: cannot be written: {e}", path.display())))
+    write_text(&path, &text).map_err(|e| Failure::unwritable(&path, &e))
 }
 
 /// An option and its value, if it has one.

@@ -1,8 +1,10 @@
 //! What the program says with its exit code.
 
+use std::fmt;
+use std::path::Path;
 use std::process::ExitCode;
 
-/// The exit codes, as in the README.
+/// The exit codes, as in `docs/meshing.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// All well.
@@ -56,6 +58,19 @@ impl Failure {
     /// The input, or a path, is at fault.
     pub fn input(message: impl Into<String>) -> Self {
         Self { exit: Exit::BadInput, message: message.into() }
+    }
+
+    /// The output cannot be written.
+    pub fn unwritable(path: &Path, why: &dyn fmt::Display) -> Self {
+        let path = path.display();
+        Self::input(format!(
+            "{path}: cannot be written: {why}; name a file in a folder that exists and can be written to"
+        ))
+    }
+
+    /// A file beside the input cannot be read.
+    pub fn unreadable(path: &Path, why: &dyn fmt::Display) -> Self {
+        Self::input(format!("{}: cannot be read: {why}; check the path and its permissions", path.display()))
     }
 
     /// A stage failed.

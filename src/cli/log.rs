@@ -1,11 +1,10 @@
 //! What is said while a verb runs: lines for people, or with `--log-format json` an object on each line.
 
 use std::ffi::OsString;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::colours::{self, painted};
-use super::common::print_bytes;
 use super::exit::Failure;
 
 /// Whether programs listen: known before any verb runs, and the same until the end.
@@ -89,5 +88,14 @@ fn line(level: &str, before: &str, message: &str, on_terminal: bool) -> String {
         true => serde_json::json!({ "level": level, "message": message }).to_string(),
         false if on_terminal && colours::are_wanted() => painted(level, before, message),
         false => format!("{before}{message}"),
+    }
+}
+
+/// Writes to standard output. A closed pipe is the reader's decision, not an error.
+pub fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::input(format!("standard output: {e}"))),
+        _ => Ok(()),
     }
 }

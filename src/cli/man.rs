@@ -21,7 +21,7 @@ pub struct Args {
 /// Prints a page.
 pub fn run(args: &Args, command: &Command) -> Result<Exit, Failure> {
     let page = if args.markdown { markdown(command).into_bytes() } else { page(command, args.verb.as_deref())? };
-    super::common::print_bytes(&page)?;
+    super::log::print_bytes(&page)?;
     Ok(Exit::Fine)
 }
 

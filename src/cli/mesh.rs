@@ -74,9 +74,8 @@ pub struct Args {
     /// Write the refined network
     #[arg(long, help_heading = "Run", value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
-    /// Node that is an inlet, as the file calls it (by its id in SWC, tables and graphs; elsewhere counted from 0 in the
-    /// file's order); may be given several times (default: the file's own roots, else in each component the terminal of
-    /// largest radius)
+    /// Node that is an inlet, as the file calls it (where it has no names, counted from 0); may be given several times
+    /// (default: the file's own roots, else in each component the terminal of largest radius)
     #[arg(long, help_heading = "Run", value_name = "NODE")]
     root: Vec<String>,
     /// How far the meshed axis may be from the given one, in radii: more is exit code 1 (default: 1 in a network whose vessels
@@ -316,9 +315,9 @@ impl Args {
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
         self.write_table(&caps, &before.names)?;
         report.stages.extend(clock.stages());
-        self.print(plan, before, &report, Some((check, &fidelity)))?;
         let found = Found { mesh: written, check, fidelity: &fidelity, caps: &caps };
         self.write_page(plan, before, &report, Some(&found))?;
+        self.print(plan, before, &report, Some((check, &fidelity)))?;
         let invalid = !check.is_valid() || !report.keeps_vessels(plan.fuse);
         self.advise(&report, invalid);
         let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
@@ -344,8 +343,8 @@ impl Args {
     fn explain(&self, error: RunError, plan: &MeshPlan, before: &Before) -> Failure {
         match error {
             RunError::BlocksFailed(report) => {
-                let told = self.print(plan, before, &report, None);
-                if let Err(failure) = told.and_then(|()| self.write_page(plan, before, &report, None)) {
+                let paged = self.write_page(plan, before, &report, None);
+                if let Err(failure) = paged.and_then(|()| self.print(plan, before, &report, None)) {
                     return failure;
                 }
                 self.advise(&report, true);
@@ -432,7 +431,7 @@ impl Args {
     }
 
     fn no_table(&self, why: &dyn std::fmt::Display) -> Failure {
-        Failure::input(format!("{}: cannot be written: {why}", self.table().display()))
+        Failure::unwritable(&self.table(), why)
     }
 
     fn notes(&self, mut expectation: Expectation, caps: &Caps) -> MeshNotes {
@@ -500,7 +499,9 @@ impl Args {
             }
             let table = self.table();
             let files: &[&Path] = if found.is_some() { &[&self.output, &table] } else { &[] };
-            log::result(&Summary { run, check, fidelity, ended: ended(files) }.to_string());
+            log::result(
+                &Summary { run, check, fidelity, ended: ended(files), listed: self.common.verbose }.to_string(),
+            );
         }
         Ok(())
     }

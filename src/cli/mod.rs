@@ -14,6 +14,7 @@ mod flow;
 mod format;
 mod generate;
 mod grid;
+mod help;
 mod info;
 mod kind;
 mod layers;
@@ -58,10 +59,10 @@ use log::LogFormat;
 struct Args {
     /// Take options from a file, by their long names: what is typed comes after it and wins; the resolved plan is written
     /// beside the output as `OUTPUT_plan.toml`
-    #[arg(long, global = true, value_name = "PLAN.toml", help_heading = "General")]
+    #[arg(long, global = true, value_name = "PLAN.toml", help_heading = "General", hide_short_help = true)]
     config: Option<PathBuf>,
     /// How messages are written
-    #[arg(long, global = true, value_enum, default_value_t = LogFormat::Text, help_heading = "General")]
+    #[arg(long, global = true, value_enum, default_value_t = LogFormat::Text, help_heading = "General", hide_short_help = true)]
     log_format: LogFormat,
     #[command(subcommand)]
     verb: Verb,
@@ -111,7 +112,7 @@ pub fn main() -> ExitCode {
         Err(failure) => return failed(&failure),
     };
     LogFormat::of_words(&words).set();
-    let parsed = Args::command().try_get_matches_from(words);
+    let parsed = help::shortened(Args::command()).try_get_matches_from(words);
     let parsed = parsed.and_then(|matches| Ok((Args::from_arg_matches(&matches)?, matches)));
     let (args, matches) = match parsed {
         Ok(parsed) => parsed,

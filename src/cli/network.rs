@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::exit::Failure;
 use super::units::Units;
-use crate::io::network::{NetworkFile, NetworkNote, NetworkOptions, NodeNames, read_network};
+use crate::io::network::{NetworkFile, NetworkFormat, NetworkNote, NetworkOptions, NodeNames, read_network};
 use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare_lines};
 use crate::report::inlets::{Inlets, NoTerminal};
 use crate::report::prepare::text;
@@ -25,10 +25,10 @@ pub struct NetworkArgs {
     #[arg(long)]
     pub diameters: bool,
     /// Multiply radii alone, as when they are in another unit than the positions
-    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    #[arg(long, value_name = "FACTOR", value_parser = factor, allow_negative_numbers = true)]
     pub radius_scale: Option<f64>,
     /// Multiply positions and radii
-    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    #[arg(long, value_name = "FACTOR", value_parser = factor, allow_negative_numbers = true)]
     pub scale: Option<f64>,
     /// Unit of the network's lengths (m, cm, mm, um), or from one to another: um:m reads micrometres and goes on in metres
     #[arg(long, value_name = "UNIT[:UNIT]", conflicts_with = "scale")]
@@ -88,6 +88,12 @@ impl NetworkArgs {
 
     /// Reads the network as it stands in its file.
     pub fn file(&self, any_radii: bool) -> Result<NetworkFile, Failure> {
+        if let (Some(name), Ok(NetworkFormat::Swc)) = (&self.radius_array, NetworkFormat::of(&self.network)) {
+            let path = self.network.display();
+            return Err(Failure::usage(format!(
+                "{path}: SWC has one column of radii, without a name: leave --radius-array {name} out, or give --radius-scale"
+            )));
+        }
         let file = read_network(&self.network, &self.options(any_radii));
         let mut file = file.map_err(|e| Failure::input(e.to_string()))?;
         if let Some([from, to]) = self.units.map(Units::names) {

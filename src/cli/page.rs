@@ -26,7 +26,11 @@ impl ReportArgs {
 
     /// Makes sure, before any work is done, that the page can be written.
     pub fn ensure_writable(&self) -> Result<(), Failure> {
-        self.report.as_deref().map_or(Ok(()), |path| ensure_text_writable(path).map_err(|e| unwritable(path, &e)))
+        let Some(path) = &self.report else { return Ok(()) };
+        if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("html")) {
+            return Err(Failure::input(format!("{}: reports are written as .html", path.display())));
+        }
+        ensure_text_writable(path).map_err(|e| Failure::unwritable(path, &e))
     }
 
     /// Writes the page, if one is asked for: about a file, with the sections that `fill` adds, and how the program was called.
@@ -46,10 +50,6 @@ impl ReportArgs {
                 .text(&stop::command_line())
                 .folded("All options as they were resolved", &plan),
         );
-        write_text(path, &page.html()).map_err(|e| unwritable(path, &e))
+        write_text(path, &page.html()).map_err(|e| Failure::unwritable(path, &e))
     }
-}
-
-fn unwritable(path: &Path, why: &io::Error) -> Failure {
-    Failure::input(format!("{}: cannot be written: {why}", path.display()))
 }

@@ -17,7 +17,7 @@ pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
     /// Where the prepared network goes: .vtp, with the arrays `OriginalNode`, `Radius` and `EdgeRadius`, or .swc (a tree)
-    #[arg(short, long, value_name = "NETWORK")]
+    #[arg(short, long, value_name = "NETWORK", help_heading = "Output")]
     output: PathBuf,
     #[command(flatten)]
     cures: CureArgs,

@@ -30,18 +30,28 @@ pub fn stage_bar(stage: &'static str, steps: u64) -> ProgressBar {
     let (length, template) = match (steps, colours::are_wanted()) {
         (0, true) => (None, "{prefix:>10.cyan} {spinner:.green} {elapsed}"),
         (0, false) => (None, "{prefix:>10} {spinner} {elapsed}"),
-        (n, true) => (Some(n), "{prefix:>10.cyan} {wide_bar:.green/dim} {percent:>3} %  {count}{left}"),
-        (n, false) => (Some(n), "{prefix:>10} {wide_bar} {percent:>3} %  {count}{left}"),
+        (n, true) => (Some(n), "{prefix:>10.cyan} {wide_bar:.green/dim} {percent:>3} %  {count}{msg}{left}"),
+        (n, false) => (Some(n), "{prefix:>10} {wide_bar} {percent:>3} %  {count}{msg}{left}"),
     };
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr_with_hz(10));
     bar.set_style(style.with_key("count", write_count).with_key("left", write_left));
     bar.set_prefix(stage);
+    bar.set_message(counted_in(stage));
     if length.is_none() {
         // Nobody tells it how far it is: it shows that it is alive by itself.
         bar.enable_steady_tick(ALIVE);
     }
     bar
+}
+
+/// What the steps of a stage are, for people.
+fn counted_in(stage: &str) -> &'static str {
+    match stage {
+        "blocks" | "clusters" | "connectors" => " tetrahedra",
+        "move" => " iterations",
+        _ => "",
+    }
 }
 
 /// How often a bar of unknown length moves.

@@ -28,20 +28,20 @@ pub struct Args {
     #[arg(short, long, value_name = "NETWORK", help_heading = "Output")]
     output: PathBuf,
     /// Iterations at most; it stops earlier when nothing is left to do
-    #[arg(long, value_name = "N", default_value_t = RefineParams::default().iterations)]
+    #[arg(long, value_name = "N", default_value_t = RefineParams::default().iterations, help_heading = "Refinement")]
     iterations: usize,
     /// Measure the metrics every so many iterations, and after each of the first ten (0: at both ends only)
-    #[arg(long, value_name = "N", default_value_t = RefineParams::default().every)]
+    #[arg(long, value_name = "N", default_value_t = RefineParams::default().every, help_heading = "Refinement")]
     every: usize,
     #[command(flatten)]
     cures: CureArgs,
     #[command(flatten)]
     how: RefineArgs,
     /// Write the metrics over the iterations as a table
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     metrics: Option<PathBuf>,
     /// Draw them: displacement, barrier potential, lengths and angles over the iterations
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", help_heading = "Output")]
     plot: Option<PathBuf>,
     #[command(flatten)]
     report: ReportArgs,

@@ -44,7 +44,7 @@ pub struct Args {
 
 /// Draws a file.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let unwritable = |e: std::io::Error| Failure::input(format!("{}: cannot be written: {e}", args.output.display()));
+    let unwritable = |e: std::io::Error| Failure::unwritable(&args.output, &e);
     if args.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
         return Err(Failure::input(format!("{}: pictures are written as .png", args.output.display())));
     }

@@ -33,7 +33,7 @@ pub struct Args {
     #[arg(short, long, value_name = "SURFACE", help_heading = "Output")]
     output: PathBuf,
     /// Leave inlets and outlets open instead of closing them with flat caps
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     no_caps: bool,
     #[command(flatten)]
     blocks: BlockArgs,
@@ -161,7 +161,9 @@ impl Args {
                 log::result(&all.into_iter().flatten().collect::<String>());
             }
             let files: &[&Path] = if check.is_some() { &[&self.output] } else { &[] };
-            log::result(&Summary { run, check, fidelity: None, ended: ended(files) }.to_string());
+            log::result(
+                &Summary { run, check, fidelity: None, ended: ended(files), listed: self.common.verbose }.to_string(),
+            );
         }
         Ok(())
     }

@@ -63,7 +63,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let input: &Path = &args.input.network;
     let output = args.output.clone().unwrap_or_else(|| input.with_extension("html"));
-    let unwritable = |e: io::Error| Failure::input(format!("{}: cannot be written: {e}", output.display()));
+    let unwritable = |e: io::Error| Failure::unwritable(&output, &e);
     if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("html")) {
         return Err(Failure::input(format!("{}: pages are written as .html", output.display())));
     }
@@ -154,7 +154,7 @@ impl Args {
         if self.dump_dir.is_none() && !folder.is_dir() {
             return Ok(Vec::new());
         }
-        let unreadable = |e: io::Error| Failure::input(format!("{}: cannot be read: {e}", folder.display()));
+        let unreadable = |e: io::Error| Failure::unreadable(&folder, &e);
         let mut files = Vec::new();
         for entry in fs::read_dir(&folder).map_err(unreadable)? {
             let path = entry.map_err(unreadable)?.path();

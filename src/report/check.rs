@@ -39,17 +39,18 @@ pub(super) fn shape(check: &CheckReport) -> Option<String> {
     Some(format!("radius ratio {:.2} in the mean, {:.2} at least; {angles}", q.mean, q.min))
 }
 
-/// How many conditions hold.
-pub(super) fn tally(check: &CheckReport) -> String {
+/// How many conditions hold; whether they are listed elsewhere.
+pub(super) fn tally(check: &CheckReport, listed: bool) -> String {
     let (all, failed) = (check.lines.len(), check.failed().count());
     let unchecked = check.lines.iter().filter(|line| matches!(line.outcome, Outcome::NotChecked(_))).count();
     let unlooked = match unchecked {
         0 => String::new(),
         n => format!(", {n} could not be checked"),
     };
+    let hint = if listed { "" } else { " (-v lists them)" };
     match failed + unchecked {
-        0 => format!("all {all} conditions hold (-v lists them)"),
-        other => format!("{} of {all} conditions hold{unlooked} (-v lists them)", all - other),
+        0 => format!("all {all} conditions hold{hint}"),
+        other => format!("{} of {all} conditions hold{unlooked}{hint}", all - other),
     }
 }
 

@@ -8,7 +8,7 @@ use super::plot::{Panel, Series};
 use super::rows::{Ended, row};
 use super::units::grouped;
 #[cfg(feature = "cli")]
-use super::units::{counted, number, percent as share};
+use super::units::{number, percent as share};
 #[cfg(feature = "cli")]
 use crate::refine::Sample;
 use crate::refine::{Figures, RefineReport, Treatment};
@@ -99,7 +99,7 @@ pub fn brief(report: &RefineReport, ended: &Ended) -> String {
     };
     out += &row("moved", &moved);
     let [before, after] = [given.overlaps, result.overlaps].map(grouped);
-    out += &row("overlaps", &format!("{after} pairs ({before} before)"));
+    out += &row("overlaps", &format!("pairs: {after} ({before} before)"));
     let [before, after] = [given, result].map(|figures| share(figures.metrics.cuttable.percent() / 100.0));
     out += &row("cuts", &format!("{after} of inner branches have room for one ({before} before)"));
     if !report.worse.is_empty() {
@@ -112,7 +112,8 @@ pub fn brief(report: &RefineReport, ended: &Ended) -> String {
     out += &ended.rows(&[]);
     out += &match report.residual.left {
         0 => "no vessels overlap (-v shows all figures)\n".into(),
-        n => format!("{} overlap still (-v shows all figures)\n", counted(n, "pair")),
+        1 => "a pair overlaps still (-v shows all figures)\n".into(),
+        n => format!("{} pairs overlap still (-v shows all figures)\n", grouped(n)),
     };
     out
 }

@@ -2,7 +2,7 @@
 
 use super::check::{faults, shape, sizes, tally, verdict};
 use super::rows::{Ended, row};
-use super::units::{bytes_of, digits, grouped, rounded, seconds_of};
+use super::units::{bytes_of, counted, digits, grouped, rounded, seconds_of};
 use crate::fidelity::Fidelity;
 use crate::mesh::check::CheckReport;
 use crate::pipeline::{Forecast, RunReport};
@@ -22,12 +22,15 @@ pub struct Summary<'a> {
     pub check: Option<&'a CheckReport>,
     pub fidelity: Option<&'a Fidelity>,
     pub ended: Ended,
+    /// Whether all there is to say stands above it.
+    pub listed: bool,
 }
 
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let [nodes, edges] = self.run.network.map(grouped);
-        out.write_str(&row("network", &format!("{nodes} nodes, {edges} edges{}", self.overlaps())))?;
+        let [nodes, edges] = self.run.network;
+        let size = format!("{}, {}{}", counted(nodes, "node"), counted(edges, "edge"), self.overlaps());
+        out.write_str(&row("network", &size))?;
         out.write_str(&row("blocks", &self.blocks()))?;
         self.troubles(out)?;
         if let Some(check) = self.check {
@@ -37,7 +40,7 @@ impl fmt::Display for Summary<'_> {
             out.write_str(&row("vessels", &vessels(fidelity)))?;
         }
         out.write_str(&self.ended.rows(&self.run.stages))?;
-        self.check.map_or(Ok(()), |check| out.write_str(&of_check(check)))
+        self.check.map_or(Ok(()), |check| out.write_str(&of_check(check, self.listed)))
     }
 }
 
@@ -45,13 +48,13 @@ impl Summary<'_> {
     fn overlaps(&self) -> String {
         match self.run.overlaps.len() {
             0 => String::new(),
-            n => format!("; {} overlapping pairs", grouped(n)),
+            n => format!("; {}", counted(n, "overlapping pair")),
         }
     }
 
     fn blocks(&self) -> String {
         let (b, run) = (&self.run.blocks, self.run);
-        let mut text = format!("{} clusters, {} connectors", grouped(b.clusters), grouped(b.connectors));
+        let mut text = format!("{}, {}", counted(b.clusters, "cluster"), counted(b.connectors, "connector"));
         for (count, what) in [(run.retries.len(), "retried"), (run.fused.len(), "fused"), (run.failed.len(), "FAILED")]
         {
             if count > 0 {
@@ -95,9 +98,9 @@ pub fn of_mesh(check: &CheckReport) -> String {
     row("mesh", &sizes(check)) + &shape
 }
 
-/// What a check found: how many conditions hold, those that do not, and the verdict.
-pub fn of_check(check: &CheckReport) -> String {
-    format!("{}{}{}\n", row("check", &tally(check)), faults(check), verdict(check.verdict))
+/// What a check found: how many conditions hold, those that do not, and the verdict. `listed`: all of them stand elsewhere.
+pub fn of_check(check: &CheckReport, listed: bool) -> String {
+    format!("{}{}{}\n", row("check", &tally(check, listed)), faults(check), verdict(check.verdict))
 }
 
 /// How a mesh keeps its network: where vessels were moved, how far; else how far the wall is from the radius.
@@ -163,7 +166,7 @@ mod tests {
         let check = check_tets(&mesh, None);
         let files = vec![("tree.vtu".to_owned(), 1_016_155)];
         let ended = Ended { files, seconds: 160.0, memory: Some(250_000_000) };
-        let text = Summary { run: &run(), check: Some(&check), fidelity: None, ended }.to_string();
+        let text = Summary { run: &run(), check: Some(&check), fidelity: None, ended, listed: false }.to_string();
         let expected = "\
 network  1,234 nodes, 1,233 edges
 blocks   0 clusters, 0 connectors
@@ -191,9 +194,14 @@ mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets, volu
             dump: Some(format!("d/{i}.json")),
         };
         let run = RunReport { failed: (0..5).map(failed).collect(), ..run() };
-        let text =
-            Summary { run: &run, check: None, fidelity: None, ended: Ended { seconds: 158.0, ..Ended::default() } }
-                .to_string();
+        let text = Summary {
+            run: &run,
+            check: None,
+            fidelity: None,
+            ended: Ended { seconds: 158.0, ..Ended::default() },
+            listed: false,
+        }
+        .to_string();
         let expected = "\
 network  1,234 nodes, 1,233 edges
 blocks   0 clusters, 0 connectors, 5 FAILED

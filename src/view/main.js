@@ -85,7 +85,8 @@ class Viewer {
     gl.depthFunc(gl.LEQUAL);
     // What has no names of its own has none, instead of a fraction.
     gl.vertexAttribI4ui(3, 0, 0, 0, 0);
-    this.haste = 1;
+    // What is large begins to move coarse, and gets finer as far as there is time.
+    this.haste = Math.min(Math.max((this.wall ? this.wall.triangles : 0) / 60000, 1), 64);
     this.fill();
     this.listen();
     this.colour();
@@ -121,7 +122,7 @@ class Viewer {
     // Waits until it is drawn, to know how long that takes.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     const took = performance.now() - start;
-    this.haste = Math.min(Math.max(this.haste * (took > 40 ? 1.6 : took < 15 ? 0.85 : 1), 1), 64);
+    this.haste = Math.min(Math.max(this.haste * (took > 40 ? 1.6 : took < 15 ? 0.85 : 1), 1), 256);
   }
 
   /** Draws all; with names instead of colours to ask what is there. */

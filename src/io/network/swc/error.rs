@@ -23,7 +23,7 @@ pub enum SwcError {
     },
     /// A coordinate is infinite or not a number, or too large to be computed with.
     #[error(
-        "line {line}: node {id} has the {column} {value}; coordinates must be finite and below {LARGEST:e}: correct it"
+        "line {line}: node {id} has the {column} {value:e}; coordinates must be finite and below {LARGEST:e}: correct it"
     )]
     BadCoordinate {
         line: usize,

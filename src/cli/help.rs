@@ -1,0 +1,77 @@
+//! What `-h` shows: a screen of what is asked for most, and which groups `--help` has beside it.
+
+use clap::{Arg, ArgAction, Command};
+
+/// Groups that are in the short help of one verb only, if of any.
+const GROUPS: [(&str, &str); 4] =
+    [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
+
+/// Options that few ask for.
+const RARE: [&str; 39] = [
+    "allow-displaced",
+    "angle-rate",
+    "barrier-rate",
+    "config",
+    "core",
+    "data",
+    "diameters",
+    "drop-islands",
+    "dump-dir",
+    "every",
+    "follow",
+    "format",
+    "from",
+    "frozen-joints",
+    "joint",
+    "keep-going",
+    "keep-joints",
+    "keep-short-tips",
+    "layer-growth",
+    "layer-thickness",
+    "layers",
+    "log-format",
+    "make-missing",
+    "max-displacement",
+    "max-radius-edge",
+    "metrics",
+    "progress",
+    "radius-array",
+    "radius-scale",
+    "refined",
+    "repel-rate",
+    "restart",
+    "samples",
+    "scale",
+    "shard",
+    "smooth-noise",
+    "stretch",
+    "to",
+    "version",
+];
+
+/// The verbs with a short help that is a screen.
+pub fn shortened(command: Command) -> Command {
+    let names: Vec<String> = command.get_subcommands().map(|verb| verb.get_name().to_owned()).collect();
+    names.into_iter().fold(command, |command, name| command.mut_subcommand(name, of_verb))
+}
+
+fn of_verb(verb: Command) -> Command {
+    let name = verb.get_name().to_owned();
+    let is_rare = |arg: &Arg| {
+        let elsewhere = |(heading, of): &(&str, &str)| arg.get_help_heading() == Some(heading) && *of != name;
+        GROUPS.iter().any(elsewhere) || arg.get_long().is_some_and(|long| RARE.contains(&long))
+    };
+    let mut more: Vec<String> = Vec::new();
+    for arg in verb.get_arguments().filter(|arg| is_rare(arg) && !matches!(arg.get_action(), ArgAction::Version)) {
+        let heading = arg.get_help_heading().unwrap_or("Options").to_owned();
+        if !more.contains(&heading) {
+            more.push(heading);
+        }
+    }
+    let all = format!("`anastomesh {name} --help` says more of each option");
+    let text = if more.is_empty() { all } else { format!("{all}, and has more of them: {}", more.join(", ")) };
+    let long = "docs/options.md lists all options of all verbs with their defaults";
+    verb.mut_args(|arg| if is_rare(&arg) { arg.hide_short_help(true) } else { arg })
+        .after_help(text)
+        .after_long_help(long)
+}
