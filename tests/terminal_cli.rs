@@ -63,6 +63,8 @@ fn options_come_from_a_file_and_the_plan_is_written() {
     // Roots add up, numbers are replaced: 9 is no terminal, which shows that it was heard.
     let refused = mesh(&fixture("tree_30.swc"), &out, &options);
     assert_code(&refused, USAGE);
+    // A run that failed is to be run again, too.
+    assert_eq!(entries(folder.path()), ["plan.toml", "tree_plan.toml"]);
     fs::write(&plan, "rho = 4\nquiet = true\nrefine = false\nformat = \"vtu\"\n").expect("written");
     assert_code(&mesh(&fixture("tree_30.swc"), &out, &[options[0], options[1], "--rho", "3.5"]), FINE);
     assert_eq!(entries(folder.path()), ["plan.toml", "tree.vtu", "tree_patches.csv", "tree_plan.toml"]);

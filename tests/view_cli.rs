@@ -49,6 +49,37 @@ fn a_mesh_a_network_and_a_surface_become_pages() {
 }
 
 #[test]
+fn a_work_directory_is_viewed_as_the_mesh_that_came_of_it() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let work = |name: &str| at(name).to_str().expect("a path").to_owned();
+    assert_code(&mesh(&fixture("tree_30.vtp"), &at("tree.vtu"), &["-q", "--work-dir", &work("w")]), FINE);
+    assert_code(&view(&at("w"), &at("w.html"), &["-q"]), FINE);
+    assert_code(&view(&at("tree.vtu"), &at("tree.html"), &["-q"]), FINE);
+    let [left, written] = ["w.html", "tree.html"].map(|name| facts(&at(name)));
+    for fact in ["wall", "tets", "patches", "arrays", "faults"] {
+        assert_eq!(left[fact], written[fact], "{fact}");
+    }
+    let draw = |input: &str, out: &str| {
+        let out = at(out);
+        assert_code(&run("render", &[&at(input), Path::new("-o"), &out], &["-q", "--size", "120x90"]), FINE);
+        fs::read(out).expect("a picture")
+    };
+    assert!(draw("w", "w.png") == draw("tree.vtu", "tree.png"));
+    // What there is of a run that failed, and where it did.
+    fs::write(at("h.vtp"), HOPELESS).expect("written");
+    assert_code(&mesh(&at("h.vtp"), &at("h.vtu"), &["-q", "--work-dir", &work("v")]), STAGE_FAILED);
+    assert_code(&view(&at("v"), &at("v.html"), &["-q", "--dump-dir", &work("h.vtu.failed")]), FINE);
+    let failed = facts(&at("v.html"));
+    assert!(failed["wall"]["faces"].as_u64() > Some(50) && failed["faults"].as_array().map(Vec::len) == Some(1));
+    // Blocks that are gone are no mesh.
+    fs::remove_file(at("w").join("anastomesh.blocks")).expect("removed");
+    assert_says(&view(&at("w"), &at("w.html"), &[]), BAD_INPUT, &["w", "No such file"]);
+    fs::remove_file(at("w").join("anastomesh.whole")).expect("removed");
+    assert_says(&view(&at("w"), &at("w.html"), &[]), BAD_INPUT, &["work directory"]);
+}
+
+#[test]
 fn the_bytes_do_not_depend_on_the_threads() {
     let folder = folder();
     let tree = folder.path().join("tree.vtu");

@@ -498,10 +498,10 @@ impl Args {
                 log::result(&all.into_iter().flatten().collect::<String>());
             }
             let table = self.table();
-            let files: &[&Path] = if found.is_some() { &[&self.output, &table] } else { &[] };
-            log::result(
-                &Summary { run, check, fidelity, ended: ended(files), listed: self.common.verbose }.to_string(),
-            );
+            let mut files: Vec<&Path> = if found.is_some() { vec![&self.output, &table] } else { Vec::new() };
+            files.extend(self.report.page().map(PathBuf::as_path));
+            let summary = Summary { run, check, fidelity, ended: ended(&files), listed: self.common.verbose };
+            log::result(&summary.to_string());
         }
         Ok(())
     }

@@ -126,7 +126,7 @@ pub enum GenerateError {
     #[error("capillaries fill a piece of tissue evenly: give --organ ellipsoid")]
     BedOfKidney,
     /// The organ could not be filled.
-    #[error("only {placed} of {terminals} terminals found a place")]
+    #[error("only {placed} of {terminals} terminals found a place: give a larger size, thinner terminals or fewer")]
     NoRoom {
         /// Terminals placed.
         placed: u32,

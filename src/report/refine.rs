@@ -135,10 +135,10 @@ fn worse(report: &RefineReport) -> String {
 pub fn figures_table(report: &RefineReport) -> Vec<Vec<String>> {
     let states = [&report.given, &report.split, &report.moved, &report.result];
     let rows: [Row; 13] = [
-        ("overlapping pairs", |f| f.overlaps.to_string()),
-        ("  that share a node", |f| f.beside.to_string()),
-        ("unconnected pairs", |f| f.unconnected.to_string()),
-        ("  far from each other", |f| f.far.to_string()),
+        ("overlapping pairs", |f| grouped(f.overlaps)),
+        ("  that share a node", |f| grouped(f.beside)),
+        ("unconnected pairs", |f| grouped(f.unconnected)),
+        ("  far from each other", |f| grouped(f.far)),
         ("barrier potential", |f| format!("{:.4e}", f.metrics.barrier)),
         ("shorter than 2 r", |f| percent(f.metrics.shorter_than_2.percent())),
         ("shorter than 2.5 r", |f| percent(f.metrics.shorter_than_2_5.percent())),

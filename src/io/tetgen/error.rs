@@ -66,6 +66,6 @@ pub enum TetgenFault {
         corners: i64,
     },
     /// There are no points, neither here nor in the file beside.
-    #[error("there are no points in it")]
+    #[error("there are no points in it: is it the right file?")]
     NoPoints,
 }

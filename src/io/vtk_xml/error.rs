@@ -22,25 +22,25 @@ pub enum VtkError {
         source: quick_xml::Error,
     },
     /// A tag's attributes cannot be read.
-    #[error("the attributes of the tag before byte {byte} cannot be read")]
+    #[error("the attributes of the tag before byte {byte} cannot be read: write them as name=\"value\"")]
     BadAttribute {
         /// Where.
         byte: u64,
     },
     /// Elements are nested absurdly deep.
-    #[error("elements are nested deeper than any VTK file has them")]
+    #[error("elements are nested deeper than any VTK file has them: save the file again")]
     TooDeep,
     /// The file ends before it is complete.
     #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
     CutShort,
     /// It is XML, but not VTK's.
-    #[error("the outermost XML element is <{root}>, not <VTKFile>")]
+    #[error("the outermost XML element is <{root}>, not <VTKFile>: give the file the extension of its format")]
     NotVtk {
         /// The outermost element.
         root: String,
     },
     /// It is a VTK file of another kind.
-    #[error("a VTK file of type '{found}', but '{wanted}' is needed here")]
+    #[error("a VTK file of type '{found}', but '{wanted}' is needed here: name another file, or save this one as such")]
     WrongFileType {
         found: String,
         /// What was expected.
@@ -50,13 +50,13 @@ pub enum VtkError {
     #[error("{attribute}=\"{value}\" is not supported; save the file with zlib compression or none")]
     UnknownLayout { attribute: &'static str, value: String },
     /// A number of points, cells, … is no number.
-    #[error("{attribute}=\"{value}\" is not a count")]
+    #[error("{attribute}=\"{value}\" is not a count: correct it")]
     BadCount { attribute: &'static str, value: String },
     /// `AppendedData` has an encoding other than raw and base64.
-    #[error("the encoding of <AppendedData> is neither raw nor base64")]
+    #[error("the encoding of <AppendedData> is neither raw nor base64: save the file with one of these")]
     BadAppendedData,
     /// An array's type is unknown.
-    #[error("array '{array}' has the unknown type '{kind}'")]
+    #[error("array '{array}' has the unknown type '{kind}': save it as Float64 or Int64")]
     UnknownType {
         /// Name of the array.
         array: String,
@@ -64,7 +64,7 @@ pub enum VtkError {
         kind: String,
     },
     /// An array's format is unknown.
-    #[error("array '{array}' has the unknown format '{format}'")]
+    #[error("array '{array}' has the unknown format '{format}': save it as ascii, binary or appended")]
     UnknownFormat {
         /// Name of the array.
         array: String,
@@ -93,13 +93,13 @@ pub enum VtkError {
         text: String,
     },
     /// Base64 text is malformed.
-    #[error("the data of array '{array}' is not well-formed base64")]
+    #[error("the data of array '{array}' is not well-formed base64: write or copy it again")]
     BadBase64 {
         /// Name of the array.
         array: String,
     },
     /// A compressed block does not decompress to the length that is announced.
-    #[error("block {block} of the compressed data of array '{array}' is damaged")]
+    #[error("block {block} of the compressed data of array '{array}' is damaged: write or copy it again")]
     BadZlib {
         /// Name of the array.
         array: String,
@@ -107,7 +107,7 @@ pub enum VtkError {
         block: usize,
     },
     /// An array does not hold a whole number of values or tuples.
-    #[error("array '{array}' does not hold a whole number of values of {size} bytes")]
+    #[error("array '{array}' does not hold a whole number of values of {size} bytes: write or copy it again")]
     Ragged {
         /// Name of the array.
         array: String,
@@ -115,7 +115,7 @@ pub enum VtkError {
         size: usize,
     },
     /// An unsigned value does not fit.
-    #[error("value {index} of array '{array}' is too large")]
+    #[error("value {index} of array '{array}' is too large: correct it")]
     TooLarge {
         /// Name of the array.
         array: String,

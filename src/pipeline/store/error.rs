@@ -108,7 +108,7 @@ pub enum StoreError {
         source: io::Error,
     },
     /// A block cannot be read back.
-    #[error("a finished block cannot be read back: {0}")]
+    #[error("a finished block cannot be read back: {0}; check the disk, or start anew with --restart")]
     Read(#[from] io::Error),
 }
 

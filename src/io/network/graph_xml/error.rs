@@ -21,13 +21,13 @@ pub enum GraphXmlError {
         source: quick_xml::Error,
     },
     /// A tag's attributes cannot be read.
-    #[error("byte {byte}: the attributes of the tag before it cannot be read")]
+    #[error("byte {byte}: the attributes of the tag before it cannot be read: write them as name=\"value\"")]
     BadAttribute {
         /// Where.
         byte: usize,
     },
     /// The outermost element is none of a graph.
-    #[error("the outermost XML element is <{root}>, not <graphml> or <gxl>")]
+    #[error("the outermost XML element is <{root}>, not <graphml> or <gxl>: give the file the extension of its format")]
     NotAGraph {
         /// The outermost element.
         root: String,

@@ -62,7 +62,7 @@ pub enum VtkLegacyError {
         cell: usize,
     },
     /// A section that every such file has is missing.
-    #[error("there is no section {section} in the file")]
+    #[error("there is no section {section} in the file: a network has points and lines; was it written completely?")]
     MissingSection { section: &'static str },
     /// An array has not as many values as there are points or cells.
     #[error("array '{array}' has {found} values, but there are {expected} points or cells: correct the file")]

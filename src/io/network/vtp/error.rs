@@ -11,7 +11,7 @@ pub enum VtpError {
     #[error(transparent)]
     File(#[from] VtkError),
     /// An element that every VTP file has is missing.
-    #[error("there is no <{element}> in the file")]
+    #[error("there is no <{element}> in the file: was it written completely?")]
     MissingElement { element: &'static str },
     /// The points are no triples.
     #[error("the points have {components} coordinates; three are needed")]
@@ -29,7 +29,7 @@ pub enum VtpError {
         found: usize,
     },
     /// Connectivity or offsets of the lines are no integers.
-    #[error("array '{array}' of the lines holds no integers")]
+    #[error("array '{array}' of the lines holds no integers: write it as Int64")]
     NotIntegers { array: &'static str },
     /// The offsets of the lines do not ascend, or go beyond the connectivity.
     #[error(

@@ -34,7 +34,7 @@ pub enum MeditFault {
         kind: &'static str,
     },
     /// A cell names a point that does not exist.
-    #[error("{kind} {cell} names the point {index}, but the points are numbered from 1 to {points}")]
+    #[error("{kind} {cell} names the point {index}, but the points are numbered from 1 to {points}: correct it")]
     BadIndex {
         /// The list of the cell.
         kind: &'static str,
@@ -46,7 +46,7 @@ pub enum MeditFault {
         points: usize,
     },
     /// Something that every mesh has is not there.
-    #[error("the list of {what} is missing")]
+    #[error("the list of {what} is missing: was it written completely?")]
     Missing {
         /// The list.
         what: &'static str,

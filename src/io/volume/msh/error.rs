@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum MshFault {
     /// Something that every such file has is not there.
-    #[error("'{what}' is missing")]
+    #[error("'{what}' is missing: was it written or copied completely?")]
     Missing {
         /// Name of the section.
         what: &'static str,
@@ -14,13 +14,13 @@ pub enum MshFault {
     #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
     CutShort,
     /// Something else stands where a number or name has to be.
-    #[error("no number or name of the format before byte {byte}")]
+    #[error("no number or name of the format before byte {byte}: was it written or copied completely?")]
     BadNumber {
         /// Where.
         byte: usize,
     },
     /// Two nodes have the same tag.
-    #[error("two nodes have the tag {tag}")]
+    #[error("two nodes have the tag {tag}: give each its own")]
     RepeatedTag { tag: u64 },
     /// A version of the format that is not read.
     #[error("version {version} of the format is not read; Gmsh writes 4.1 with -format msh41")]

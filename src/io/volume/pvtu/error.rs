@@ -14,7 +14,7 @@ pub enum PvtuFault {
     #[error(transparent)]
     Piece(#[from] VtuFault),
     /// Something that every index has is not there.
-    #[error("'{what}' is missing")]
+    #[error("'{what}' is missing: was it written completely?")]
     Missing {
         /// Name of the element or attribute.
         what: &'static str,

@@ -10,13 +10,13 @@ pub enum VtuFault {
     #[error(transparent)]
     Vtk(#[from] VtkError),
     /// Something that every such file has is not there.
-    #[error("'{what}' is missing")]
+    #[error("'{what}' is missing: was it written completely?")]
     Missing {
         /// Name of the element or array.
         what: &'static str,
     },
     /// An array is as long as the others do not say.
-    #[error("array '{array}' has {found} values instead of {expected}")]
+    #[error("array '{array}' has {found} values instead of {expected}: write or copy it again")]
     Length {
         /// Its name.
         array: String,
@@ -26,7 +26,7 @@ pub enum VtuFault {
         found: usize,
     },
     /// The offsets of the cells do not ascend by their sizes.
-    #[error("cell {cell} has another number of points than its type")]
+    #[error("cell {cell} has another number of points than its type: correct its type or its offsets")]
     BadOffset {
         /// The first such cell.
         cell: usize,
