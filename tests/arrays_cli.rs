@@ -49,9 +49,9 @@ fn a_mesh_as_arrays_is_the_mesh() {
     let (grid, arrays) = (read_mesh(&at("a.vtu")).expect("a mesh"), read_mesh(&at("a.npyd")).expect("a mesh"));
     assert_eq!(arrays.volume, grid.volume);
     assert_eq!(arrays.notes, grid.notes);
-    let checked = run("check", &[&at("a.npyd")], &[]);
+    let checked = run("check", &[&at("a.npyd")], &["--json"]);
     assert_code(&checked, FINE);
-    assert_eq!(stdout(&checked), stdout(&run("check", &[&at("a.vtu")], &[])));
+    assert_eq!(stdout(&checked), stdout(&run("check", &[&at("a.vtu")], &["--json"])));
     for (from, to) in [("a.npyd", "b.vtu"), ("b.vtu", "b.npyd")] {
         assert_code(&run("convert", &[&at(from), Path::new("-o"), &at(to)], &["-q"]), FINE);
     }

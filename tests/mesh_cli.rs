@@ -163,7 +163,7 @@ fn overlapping_vessels_are_meshed_and_named() {
     let said = assert_same_bytes(&network, folder.path(), GATE_NOT_MET);
     assert!(said.contains("vessels overlap at 55 places (56 pairs of edges;"), "{said}");
     assert!(said.contains("FAIL the boundary does not meet itself") && said.contains("NOT valid"), "{said}");
-    let checked = run("check", &[&folder.path().join("7.vtu")], &[]);
+    let checked = run("check", &[&folder.path().join("7.vtu")], &["-v"]);
     assert_code(&checked, GATE_NOT_MET);
     assert!(stdout(&checked).contains("  ok   every tetrahedron is positive\n"), "{}", stdout(&checked));
 }
@@ -427,7 +427,7 @@ fn blocks_that_fail_are_left_out_on_request() {
     assert_code(&failed, STAGE_FAILED);
     assert!(stderr(&failed).contains("FAILED cluster "), "{}", stderr(&failed));
     assert_eq!(entries(folder.path()), ["dumps", "hopeless.vtp", "out.vtu", "out_patches.csv"]);
-    let checked = run("check", &[&out], &[]);
+    let checked = run("check", &[&out], &["-v"]);
     assert_code(&checked, GATE_NOT_MET);
     let said = stdout(&checked);
     assert!(

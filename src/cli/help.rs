@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that few ask for.
-const RARE: [&str; 39] = [
+const RARE: [&str; 41] = [
     "allow-displaced",
     "angle-rate",
     "barrier-rate",
@@ -21,6 +21,7 @@ const RARE: [&str; 39] = [
     "follow",
     "format",
     "from",
+    "free-terminals",
     "frozen-joints",
     "joint",
     "keep-going",
@@ -34,6 +35,7 @@ const RARE: [&str; 39] = [
     "max-displacement",
     "max-radius-edge",
     "metrics",
+    "plot",
     "progress",
     "radius-array",
     "radius-scale",

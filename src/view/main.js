@@ -122,7 +122,7 @@ class Viewer {
     // Waits until it is drawn, to know how long that takes.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     const took = performance.now() - start;
-    this.haste = Math.min(Math.max(this.haste * (took > 40 ? 1.6 : took < 15 ? 0.85 : 1), 1), 256);
+    this.haste = Math.min(Math.max(this.haste * (took > 40 ? 1.6 : took < 15 ? 0.85 : 1), 1), 64);
   }
 
   /** Draws all; with names instead of colours to ask what is there. */

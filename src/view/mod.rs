@@ -14,7 +14,6 @@ mod page;
 mod quadric;
 mod rings;
 mod tets;
-mod thin;
 mod wall;
 
 pub use faults::Fault;

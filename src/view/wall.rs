@@ -2,7 +2,6 @@
 
 use super::collapse::Collapse;
 use super::rings::{rings, thinned};
-use super::thin::thinned_out;
 use crate::block::triangle_ratio;
 use crate::geometry::{Aabb, Point3, Vec3};
 use crate::mesh::beside::Beside;
@@ -19,8 +18,6 @@ const AS_IT_IS: usize = 400_000;
 const SHOWN: f64 = 900_000.0;
 /// Pixels across a screen: how many sides a vessel gets goes by its radius on it.
 const SCREEN: f64 = 1500.0;
-/// How many times as many faces as are to be left are let go one by one: that takes its time.
-const MANY: usize = 4;
 /// Sides of the thinnest and of the thickest vessels.
 const SIDES: [f64; 2] = [3.0, 24.0];
 
@@ -252,7 +249,6 @@ impl Local {
         // A closed surface has no rings that say how large it is.
         let target = if target == 0 { 100 } else { target + target / 8 };
         let target = target.max((triangles.len() as f64 * share) as usize);
-        let (points, triangles, fixed) = thinned_out(points, triangles, fixed, MANY * target);
         let (points, triangles) = Collapse::new(points, triangles, fixed).run(target);
         Group { patch, quality: vec![worst; points.len()], points, triangles, ..Group::default() }
     }
