@@ -14,6 +14,7 @@ mod page;
 mod quadric;
 mod rings;
 mod tets;
+mod tube;
 mod wall;
 
 pub use faults::Fault;

@@ -2,6 +2,7 @@
 
 use super::collapse::Collapse;
 use super::rings::{rings, thinned};
+use super::tube::straight;
 use crate::block::triangle_ratio;
 use crate::geometry::{Aabb, Point3, Vec3};
 use crate::mesh::beside::Beside;
@@ -18,6 +19,8 @@ const AS_IT_IS: usize = 400_000;
 const SHOWN: f64 = 900_000.0;
 /// Pixels across a screen: how many sides a vessel gets goes by its radius on it.
 const SCREEN: f64 = 1500.0;
+/// Where fewer than this share of the faces are shown, straight tubes are strips between their rings.
+const STRAIGHTENED: f64 = 0.2;
 /// Sides of the thinnest and of the thickest vessels.
 const SIDES: [f64; 2] = [3.0, 24.0];
 
@@ -233,25 +236,51 @@ impl Local {
         let mut stands: Vec<u32> = (0..points.len() as u32).collect();
         let mut fixed = vec![false; points.len()];
         let mut target = 0;
-        for ring in rings(&triangles) {
-            let radius = Ring::of(&ring, &points).radius;
+        let rings = rings(&triangles);
+        let mut kept: Vec<Vec<u32>> = Vec::new();
+        for ring in &rings {
+            let radius = Ring::of(ring, &points).radius;
             let seen = (SIDES[0] + 1.4 * (radius * pixels).sqrt()).clamp(SIDES[0], SIDES[1]);
             let keep = seen.max(ring.len() as f64 * share.sqrt()) as usize;
-            for (v, to) in thinned(&ring, keep, |v| self.numbers[v as usize]) {
+            for (v, to) in thinned(ring, keep, |v| self.numbers[v as usize]) {
                 stands[v as usize] = to;
                 fixed[to as usize] = true;
             }
+            kept.push(ring.iter().copied().filter(|&v| fixed[v as usize]).collect());
             target += keep;
+        }
+        let worst = quality.into_iter().min().unwrap_or(255);
+        let of = |(points, triangles): (Vec<Point3>, Vec<[u32; 3]>)| Group {
+            patch,
+            quality: vec![worst; points.len()],
+            points,
+            triangles,
+            ..Group::default()
+        };
+        if let [first, second] = &kept[..]
+            && share < STRAIGHTENED
+            && let Some(strip) = straight(&points, [first, second])
+        {
+            return of(compact(&points, strip));
         }
         let mapped = triangles.iter().map(|t| t.map(|v| stands[v as usize]));
         let triangles: Vec<[u32; 3]> = mapped.filter(|[a, b, c]| a != b && b != c && c != a).collect();
-        let worst = quality.into_iter().min().unwrap_or(255);
         // A closed surface has no rings that say how large it is.
         let target = if target == 0 { 100 } else { target + target / 8 };
         let target = target.max((triangles.len() as f64 * share) as usize);
-        let (points, triangles) = Collapse::new(points, triangles, fixed).run(target);
-        Group { patch, quality: vec![worst; points.len()], points, triangles, ..Group::default() }
+        of(Collapse::new(points, triangles, fixed).run(target))
     }
+}
+
+/// The points that triangles have, and the triangles with these.
+fn compact(points: &[Point3], mut triangles: Vec<[u32; 3]>) -> (Vec<Point3>, Vec<[u32; 3]>) {
+    let mut used: Vec<u32> = triangles.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    for v in triangles.as_flattened_mut() {
+        *v = used.partition_point(|&u| u < *v) as u32;
+    }
+    (used.iter().map(|&v| points[v as usize]).collect(), triangles)
 }
 
 #[cfg(test)]
