@@ -45,9 +45,9 @@ impl Record {
     /// Without what differs from machine to machine, or whenever blocks are made in another way: times, sizes, places.
     fn stable(said: &str) -> String {
         let numbered = ["mesh ", "shape ", "vessels ", "surface ", "file ", "FAIL ", "         ", "  layers "];
-        let line = |line: &str| match numbered.iter().any(|start| line.starts_with(start)) {
-            true => format!("{}\n", without_numbers(line)),
-            false => format!("{line}\n"),
+        let line = |line: &str| {
+            let has = numbered.iter().any(|start| line.starts_with(start));
+            if has { format!("{}\n", without_numbers(line)) } else { format!("{line}\n") }
         };
         said.lines().filter(|line| !line.starts_with("time ")).map(line).collect()
     }

@@ -110,12 +110,12 @@ pub fn brief(report: &RefineReport, ended: &Ended) -> String {
         residual_text(report, SPELT_OUT, &mut out);
     }
     out += &ended.rows(&[]);
-    out += &match report.residual.left {
-        0 => "no vessels overlap (-v shows all figures)\n".into(),
-        1 => "a pair overlaps still (-v shows all figures)\n".into(),
-        n => format!("{} pairs overlap still (-v shows all figures)\n", grouped(n)),
+    let left = match report.residual.left {
+        0 => "no vessels overlap".into(),
+        1 => "a pair overlaps still".into(),
+        n => format!("{} pairs overlap still", grouped(n)),
     };
-    out
+    out + &left + " (-v shows all figures)\n"
 }
 
 /// Nodes split and bends put in, where there are any.

@@ -29,7 +29,7 @@ impl Extents {
     }
 
     /// The record of a number.
-    pub(crate) fn record(&self, number: usize) -> RecordId {
+    pub(crate) fn record(number: usize) -> RecordId {
         RecordId(number as u32)
     }
 
@@ -61,14 +61,11 @@ impl Store {
                 None => others.extent(id as usize)?,
                 Some(record) => (own_path.as_path(), own.extent(record)?),
             };
-            let file = match numbers.get(path) {
-                Some(&file) => file,
-                None => {
-                    out.files.push(path.file_name()?.to_str()?.as_bytes().to_vec());
-                    numbers.insert(path.to_path_buf(), numbers.len() as u32);
-                    numbers.len() as u32 - 1
-                }
-            };
+            let known = numbers.len() as u32;
+            let file = *numbers.entry(path.to_path_buf()).or_insert(known);
+            if file == known {
+                out.files.push(path.file_name()?.to_str()?.as_bytes().to_vec());
+            }
             out.places.push((file, extent.start, extent.end));
         }
         Some(out)

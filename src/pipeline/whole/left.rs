@@ -98,7 +98,7 @@ impl LeftWhole {
             return None;
         }
         let part = |(i, part): (usize, LeftPart)| PartPlan {
-            kept: Kept { record: left.extents.record(i), sizes: part.sizes },
+            kept: Kept { record: Extents::record(i), sizes: part.sizes },
             block: part.block,
             first_point: part.first_point,
             first_tet: part.first_tet,
