@@ -179,8 +179,9 @@ fn join_blocks<'a>(
     let nothing_left = blocks.clusters.iter().all(Result::is_err);
     let number = || Whole::new(store, progress, &skeleton, &blocks, &terminals);
     if !report.failed.is_empty() && (nothing_left || !plan.keep_going) {
+        // What there is can be looked at.
+        #[cfg(feature = "cli")]
         if !nothing_left {
-            // What there is can be looked at.
             number()?.leave()?;
         }
         report.stages = clock.stages();
@@ -191,6 +192,7 @@ fn join_blocks<'a>(
         expectation.loops = fused_loops(&blocks, &clusters);
     }
     let whole = clock.time(progress, Stage::Merge, 0, number)?;
+    #[cfg(feature = "cli")]
     whole.leave()?;
     Ok(Joined { whole, expectation, overlapping, partition: blocks.partition, report })
 }

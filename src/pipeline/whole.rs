@@ -1,6 +1,7 @@
 //! The whole mesh as a plan over stored blocks: which number each vertex and tetrahedron gets, and passes over them in
 //! that order. Nothing but the plan is held; blocks are read when their turn comes.
 
+#[cfg(feature = "cli")]
 mod left;
 
 use std::borrow::Cow;
@@ -22,6 +23,7 @@ use crate::partition::CutId;
 use crate::progress::{Progress, ask};
 use crate::skeleton::Skeleton;
 
+#[cfg(feature = "cli")]
 pub use left::LeftWhole;
 
 /// The whole mesh: parts in order, clusters by their ids, then connectors. A vertex that two parts have is numbered by the

@@ -5,6 +5,7 @@ use crate::report::units::{digits, grouped, place};
 use std::fmt::{self, Write as _};
 
 /// Offenders of a line that are spelt out in a summary.
+#[cfg(feature = "cli")]
 const SPELT_OUT: usize = 3;
 
 /// For people: a line per line of the definition, the first offenders below those that fail, sizes and shape, and the
@@ -40,6 +41,7 @@ pub(super) fn shape(check: &CheckReport) -> Option<String> {
 }
 
 /// How many conditions hold; whether they are listed elsewhere.
+#[cfg(feature = "cli")]
 pub(super) fn tally(check: &CheckReport, listed: bool) -> String {
     let (all, failed) = (check.lines.len(), check.failed().count());
     let unchecked = check.lines.iter().filter(|line| matches!(line.outcome, Outcome::NotChecked(_))).count();
@@ -55,6 +57,7 @@ pub(super) fn tally(check: &CheckReport, listed: bool) -> String {
 }
 
 /// The conditions that do not hold, with the first offenders of each.
+#[cfg(feature = "cli")]
 pub(super) fn faults(check: &CheckReport) -> String {
     let mut out = String::new();
     for failed in check.failed() {

@@ -14,6 +14,7 @@ pub fn grouped(count: usize) -> String {
 }
 
 /// A count and what is counted, whose plural has an s.
+#[cfg(feature = "cli")]
 pub fn counted(count: usize, what: &str) -> String {
     format!("{} {what}{}", grouped(count), if count == 1 { "" } else { "s" })
 }
@@ -102,7 +103,6 @@ mod tests {
     #[test]
     fn counts_and_shares() {
         assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
-        assert_eq!([counted(1, "file"), counted(2000, "file")], ["1 file", "2,000 files"]);
         assert_eq!([0.0, 1.0, 0.5, 0.0126, 0.9999].map(percent), ["0 %", "100 %", "50 %", "1.3 %", "100 %"]);
     }
 
@@ -118,6 +118,7 @@ mod tests {
     #[cfg(feature = "cli")]
     #[test]
     fn sizes_and_times() {
+        assert_eq!([counted(1, "file"), counted(2000, "file")], ["1 file", "2,000 files"]);
         let sizes = [12, 1_016_155, 44_500_000, 4_163_000_000, 61_000_000_000].map(bytes_of);
         assert_eq!(sizes, ["1 kB", "1.0 MB", "44 MB", "4.2 GB", "61 GB"]);
         assert_eq!([0.012, 0.3, 12.4, 130.0, 9000.0].map(seconds_of), ["12 ms", "0.3 s", "12 s", "2 min", "2.5 h"]);

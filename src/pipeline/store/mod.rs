@@ -5,6 +5,7 @@
 
 mod arithmetic;
 mod error;
+#[cfg(feature = "cli")]
 mod extents;
 mod folder;
 mod key;
@@ -30,10 +31,12 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 pub use error::StoreError;
+#[cfg(feature = "cli")]
 pub(crate) use extents::Extents;
 pub use folder::Role;
 pub use key::{Key, KeyMaker};
 use log::LogFile;
+#[cfg(feature = "cli")]
 pub(crate) use manifest::MANIFEST;
 pub use manifest::{Manifest, fingerprint};
 pub use shard::{NoShard, Shard, two_numbers};
@@ -60,6 +63,7 @@ enum Place {
     /// A work directory: its path, what others have written there, and the file that this run writes to.
     Folder(PathBuf, Shelf, LogFile),
     /// What others have written, to be read only.
+    #[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only the viewer reads without its network"))]
     Shelf(Shelf),
 }
 
