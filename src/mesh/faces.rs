@@ -77,16 +77,16 @@ impl<'a> Faces<'a> {
         Self::look(mesh, |sorted| (sorted.loose(), ()), |_, ()| Ok(()))
     }
 
-    /// Gives the faces of the boundary: those of each part in order, and at the end what is labelled in one part and a face of
-    /// another. Reads tetrahedra and boundary once.
+    /// Gives the faces of the boundary that parts have labels for themselves, in order, reading tetrahedra and boundary once.
+    /// Whether these are all: some labels may be in another part than their face.
     ///
     /// # Errors
     /// What reading the mesh or `each` fails with; `InvalidData` as [`of`](Self::of), and when the mesh does not hold as much
     /// as it says.
-    pub fn each_outer(
+    pub fn each_own(
         mesh: &'a dyn MeshSource,
         mut each: impl FnMut(&[OuterFace]) -> io::Result<()>,
-    ) -> io::Result<()> {
+    ) -> io::Result<bool> {
         let counts = mesh.counts();
         let (mut inner, mut outer) = (0, 0);
         let faces = Self::look(
@@ -99,7 +99,9 @@ impl<'a> Faces<'a> {
                 if outer > counts.boundary {
                     return Err(miscounted());
                 }
-                faces.iter_mut().for_each(|face| face.tet += first);
+                for face in &mut faces {
+                    face.tet += first;
+                }
                 each(&faces)
             },
         )?;
@@ -108,21 +110,7 @@ impl<'a> Faces<'a> {
         if outer + apart != counts.boundary || 2 * inner + counts.boundary != 4 * counts.tets {
             return Err(miscounted());
         }
-        if apart == 0 { Ok(()) } else { faces.each_apart(each) }
-    }
-
-    /// Gives the faces of parts whose labels are in other parts.
-    fn each_apart(&self, mut each: impl FnMut(&[OuterFace]) -> io::Result<()>) -> io::Result<()> {
-        for part in 0..self.mesh.parts() {
-            let sorted = Sorted::read(self.mesh, part)?;
-            let first = self.first[part as usize];
-            let outer = |&handle: &u32| match self.other_side(&sorted, first, handle)? {
-                Side::Patch(patch) => Some(sorted.outer_face(first, handle, patch)),
-                Side::Tet(_) => None,
-            };
-            each(&sorted.open.iter().filter_map(outer).collect::<Vec<_>>())?;
-        }
-        Ok(())
+        Ok(apart == 0)
     }
 
     /// Reads all parts for what they cannot place, and `each` is given the number of the first tetrahedron of each part and

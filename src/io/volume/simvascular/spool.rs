@@ -18,17 +18,29 @@ impl Spool {
     /// Finds all faces and puts them down on the disk of `beside`.
     pub(super) fn of(mesh: &dyn MeshSource, beside: &Path, progress: &dyn Progress) -> io::Result<Self> {
         let folder = beside.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut out = BufWriter::with_capacity(1 << 18, tempfile::tempfile_in(folder)?);
-        Faces::each_outer(mesh, |outer| {
+        let mut file = tempfile::tempfile_in(folder)?;
+        let put = |file: &mut BufWriter<&File>, outer: &[OuterFace]| {
             ask(progress)?;
             for OuterFace { patch, tet, vertices: [a, b, c] } in outer {
                 for word in [patch.cast_unsigned(), *tet, *a, *b, *c] {
-                    out.write_all(&word.to_le_bytes())?;
+                    file.write_all(&word.to_le_bytes())?;
                 }
             }
             Ok(())
-        })?;
-        Ok(Self(out.into_inner().map_err(io::IntoInnerError::into_error)?))
+        };
+        let mut out = BufWriter::with_capacity(1 << 18, &file);
+        let all = Faces::each_own(mesh, |outer| put(&mut out, outer))?;
+        out.flush()?;
+        drop(out);
+        if !all {
+            // In the order of their tetrahedra all the same.
+            file.rewind()?;
+            file.set_len(0)?;
+            let mut out = BufWriter::with_capacity(1 << 18, &file);
+            Faces::of(mesh)?.each(|faces| put(&mut out, &faces.outer))?;
+            out.flush()?;
+        }
+        Ok(Self(file))
     }
 
     /// Gives all faces, in their order.
