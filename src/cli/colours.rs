@@ -85,6 +85,6 @@ mod tests {
         assert_eq!(shown("result", "", text), expected);
         assert_eq!(shown("note", "", text), text);
         assert_eq!(shown("error", "anastomesh: ", "a.swc: empty"), "{1m{31manastomesh: }a.swc: empty");
-        assert_eq!(shown("result", "", "validity is all"), "validity is all");
+        assert_eq!(shown("result", "", "validness is all"), "validness is all");
     }
 }

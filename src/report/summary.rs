@@ -174,10 +174,7 @@ mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets, volu
 ";
         assert!(text.starts_with(expected), "{text}");
         assert!(text.contains("\nfile     tree.vtu (1.0 MB)\n"), "{text}");
-        assert!(
-            text.contains("\ntime     3 min (blocks 2 min, write 22 s, check 5.0 s); 250 MB of memory at most\n"),
-            "{text}"
-        );
+        assert!(text.contains("\ntime     3 min (blocks 2 min, write 22 s); 250 MB of memory at most\n"), "{text}");
         assert!(text.contains("\nFAIL every tetrahedron is positive: 9 found\n         tetrahedron 0 at "), "{text}");
         assert!(text.contains("\n         and 6 more (-v shows ten, --report where they are)\n"), "{text}");
         assert!(text.ends_with("\nNOT valid\n"), "{text}");
@@ -212,7 +209,7 @@ blocks   0 clusters, 0 connectors, 5 FAILED
   FAILED cluster 2 (nodes [2]): no room
     its input is in d/2.json
     and 2 more (-v lists them)
-time     3 min (blocks 2 min, write 22 s, check 5.0 s)
+time     3 min (blocks 2 min, write 22 s)
 ";
         assert_eq!(text, expected);
     }
