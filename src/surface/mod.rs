@@ -64,7 +64,6 @@ pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams) -> Result<SizedWall, 
     let sizes = sizes::wall_sizes(&surface, &mut field, params);
     let mut relaxation = Relaxation::new(&mut surface, &mut field, sizes, Vec::new());
     relaxation.run(params.rounds as usize);
-    relaxation.compensate_chords();
     let sizes = relaxation.sizes;
     let (surface, map) = surface.compacted();
     let kept = sizes.into_iter().zip(map).filter(|(_, new)| *new != halfedge::NONE);

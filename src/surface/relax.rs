@@ -115,8 +115,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
         self.project();
     }
 
-    /// Rounds of splitting, collapsing, flipping and smoothing, then crotches, then the passes that only better the worst
-    /// angles.
+    /// Rounds of splitting, collapsing, flipping and smoothing, then crotches, then what brings it to its place. For whole
+    /// surfaces.
     pub(crate) fn run(&mut self, rounds: usize) {
         for _ in 0..rounds {
             self.split_long();
@@ -124,17 +124,22 @@ impl<'a, L: Level> Relaxation<'a, L> {
             self.flip(Criterion::Valence);
             self.smooth();
         }
-        self.open_crotches();
+        self.open_crotches(Self::finish);
+    }
+
+    /// The passes that only better the worst angles, then the last move.
+    fn finish(&mut self) {
         self.flip(Criterion::Angle);
         self.smooth();
         self.flip(Criterion::Angle);
         self.project();
+        self.compensate_chords();
     }
 
     /// Moves each vertex outwards by a quarter of the normal part of its distance from its neighbours' mean: vertices on
     /// the level make an inscribed polyhedron, and this is, to second order, what it lacks (h²/16r on a tube; negative
     /// in saddles).
-    pub(crate) fn compensate_chords(&mut self) {
+    fn compensate_chords(&mut self) {
         let moves: Vec<Vec3> = (0..self.surface.points.len() as u32)
             .map(|v| {
                 if !self.is_free(v) {

@@ -114,16 +114,11 @@ fn smallest_angle(mesh: &TriMesh) -> f64 {
 }
 
 fn check_wall(mesh: &TriMesh) {
-    check_wall_but_for(mesh, 20.0);
-}
-
-/// The same with another smallest angle, in degrees.
-fn check_wall_but_for(mesh: &TriMesh, angle: f64) {
     assert!(HalfEdges::new(mesh).is_ok());
     assert_eq!(euler_characteristic(mesh), 2);
     assert!(volume(mesh) > 0.0);
     assert_eq!(crate::geometry::self_intersections(&mesh.points, &mesh.triangles), []);
-    assert!(smallest_angle(mesh) > angle, "{}", smallest_angle(mesh));
+    assert!(smallest_angle(mesh) > 20.0, "{}", smallest_angle(mesh));
 }
 
 #[test]
@@ -260,7 +255,7 @@ fn edges_follow_the_radius() {
     assert!((2.6..3.6).contains(&(thick / thin)), "{thick} {thin}");
     let as_fine = vessel_wall(&tubes, &SurfaceParams { follow: 0.0, ..params }).unwrap();
     assert!(2 * wall.mesh.triangles.len() < as_fine.mesh.triangles.len());
-    // No triangle is much more than half as large again as its neighbour.
+    // No triangle is half as large again as its neighbour.
     let mut sides: Vec<([u32; 2], usize)> = Vec::new();
     for (i, t) in wall.mesh.triangles.iter().enumerate() {
         sides.extend((0..3).map(|k| ([t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])], i)));
@@ -268,7 +263,7 @@ fn edges_follow_the_radius() {
     sides.sort_unstable();
     for pair in sides.chunks_exact(2) {
         let ratio = all[pair[0].1].1 / all[pair[1].1].1;
-        assert!((1.0 / 1.55..1.55).contains(&ratio), "{ratio} at {}", all[pair[0].1].0);
+        assert!((1.0 / 1.5..1.5).contains(&ratio), "{ratio} at {}", all[pair[0].1].0);
     }
 }
 
@@ -286,14 +281,6 @@ proptest! {
             .map(|i| Tube { a: Point3::origin(), b: Point3::from(d[i] * 8.0), ra: r[i], rb: r[i] })
             .collect();
         let smallest = r[0].min(r[1]).min(r[2]);
-        // Triangles in crotches are less even, and with one in some thousands of grids walls touch there: a block is then made
-        // with another grid, as here.
-        let wall = |shift| {
-            vessel_surface(&tubes, &SurfaceParams { shift, ..SurfaceParams::with_voxel(2.0 * smallest / rho) }).unwrap()
-        };
-        let apart = |wall: &TriMesh| crate::geometry::self_intersections(&wall.points, &wall.triangles).is_empty();
-        let grids = [[0.0; 3], [0.37, -0.23, 0.11], [-0.29, 0.43, 0.31]];
-        let wall = grids.into_iter().map(wall).find(apart).expect("a wall that does not meet itself");
-        check_wall_but_for(&wall, 3.0);
+        check_wall(&vessel_surface(&tubes, &SurfaceParams::with_voxel(2.0 * smallest / rho)).unwrap());
     }
 }

@@ -2,10 +2,14 @@
 //! wall to wall, which takes away some of their lengths. Such edges are split, and what is put amid them goes down to the
 //! bottom of the crotch.
 
-use super::{Criterion, Level, Relaxation};
+use super::{Criterion, Level, MAX_STEP, Relaxation, largest_cosine};
+use crate::geometry::{Point3, Vec3, self_intersections};
+use crate::surface::halfedge::HalfEdges;
 
 /// How often what is left is looked at: each time halves the edges of a web, and evens out the triangles beside it.
 const PASSES: usize = 2;
+/// Rounds of evening out in each.
+const ROUNDS: usize = 2;
 /// An edge of a web leans by this (a cosine) towards the normals at both of its ends, out of the walls.
 const LEAN: f64 = 0.35;
 /// Its middle lies so far outside, in radii.
@@ -16,36 +20,109 @@ const SHORTEST: f64 = 0.5;
 const SHRINK: f64 = 0.8;
 /// Newton steps from a web to the bottom: each goes half an edge length at most.
 const STEPS: usize = 4;
+/// Triangles at the bottom look outwards by this (a cosine), and their smallest angles are over 25°.
+const OUTWARDS: f64 = 0.2;
+const SLIMMEST: f64 = 0.906;
+/// When all is done, no angle near an opened crotch is below 20°.
+const SLIMMEST_AT_LAST: f64 = 0.9396;
+
+/// What can be gone back to.
+struct Before {
+    surface: HalfEdges,
+    sizes: Vec<f64>,
+    normals: Vec<Vec3>,
+}
 
 impl<L: Level> Relaxation<'_, L> {
-    /// Takes webs away; where there are none, nothing is changed.
-    pub(super) fn open_crotches(&mut self) {
+    /// Takes webs away, and then does `finish`; where there are none, or what comes out is worse than a web, that is all
+    /// that is done. For whole surfaces.
+    pub(super) fn open_crotches(&mut self, finish: impl Fn(&mut Self)) {
+        let first = self.surface.points.len();
+        let mut before = None;
         for _ in 0..PASSES {
-            if !self.split_webs() {
-                return;
+            if !self.split_webs(&mut before) {
+                break;
             }
-            self.flip(Criterion::Angle);
-            self.collapse_short();
-            self.smooth();
+            for _ in 0..ROUNDS {
+                self.flip(Criterion::Angle);
+                self.collapse_short();
+                self.smooth();
+            }
+        }
+        finish(self);
+        if let Some(before) = before
+            && !self.is_sound_since(first)
+        {
+            self.go_back(before);
+            finish(self);
         }
     }
 
     /// Splits the edges of webs; whether there were any.
-    fn split_webs(&mut self) -> bool {
+    fn split_webs(&mut self, before: &mut Option<Before>) -> bool {
         let mut any = false;
         for i in 0..self.half_count() {
             let h = self.half(i);
             if self.is_editable(h) && self.surface.from(h) < self.surface.to(h) && self.is_web(h) {
-                any = true;
                 let size = self.aim(self.surface.from(h), self.surface.to(h)).min(SHRINK * self.surface.length(h));
-                let m = self.split(h, size);
-                for _ in 0..STEPS {
-                    let p = self.surface.points[m as usize];
-                    self.surface.points[m as usize] = self.projected(m, p);
+                if let Some((bottom, normal)) = self.bottom(h, size) {
+                    any = true;
+                    before.get_or_insert_with(|| self.before());
+                    let m = self.split(h, size) as usize;
+                    self.surface.points[m] = bottom;
+                    self.normals[m] = normal;
                 }
             }
         }
         any
+    }
+
+    fn before(&self) -> Before {
+        Before { surface: self.surface.clone(), sizes: self.sizes.clone(), normals: self.normals.clone() }
+    }
+
+    fn go_back(&mut self, before: Before) {
+        *self.surface = before.surface;
+        self.sizes = before.sizes;
+        self.normals = before.normals;
+    }
+
+    /// Whether triangles at the vertices from `first` on, and at their neighbours, are well shaped, and nothing meets.
+    fn is_sound_since(&self, first: usize) -> bool {
+        let s = &*self.surface;
+        let new = (first as u32..s.points.len() as u32).filter(|&v| s.has_vertex(v));
+        let near = new.flat_map(|v| s.fan(v)).map(|h| s.to(h));
+        let faces = near.flat_map(|v| s.fan(v)).map(|h| [s.from(h), s.to(h), s.apex(h)].map(|v| s.points[v as usize]));
+        let slimmest = faces.map(|[a, b, c]| largest_cosine(&a, &b, &c)).fold(0.0, f64::max);
+        if slimmest > SLIMMEST_AT_LAST {
+            return false;
+        }
+        let mesh = s.to_mesh().0;
+        self_intersections(&mesh.points, &mesh.triangles).is_empty()
+    }
+
+    /// Where the middle of an edge goes, and the normal of the level there: as deep as the four triangles that it will have are
+    /// well shaped and look outwards.
+    fn bottom(&mut self, h: u32, size: f64) -> Option<(Point3, Vec3)> {
+        let s = &*self.surface;
+        let quad = [s.from(h), s.apex(s.twin(h)), s.to(h), s.apex(h)].map(|v| s.points[v as usize]);
+        let mut at = nalgebra::center(&quad[0], &quad[2]);
+        let mut found = None;
+        for _ in 0..STEPS {
+            let (value, gradient) = self.level.value_and_gradient(&at);
+            let steep = gradient.norm();
+            if steep <= 0.0 {
+                break;
+            }
+            let step = (1.0 - value) / steep;
+            let normal = gradient / steep;
+            at += normal * step.clamp(-MAX_STEP * size, MAX_STEP * size);
+            if !(0..4).all(|k| is_sound(&at, &quad[k], &quad[(k + 1) % 4], &normal)) {
+                break;
+            }
+            found = Some((at, normal));
+        }
+        found
     }
 
     fn is_web(&mut self, h: u32) -> bool {
@@ -60,4 +137,10 @@ impl<L: Level> Relaxation<'_, L> {
         let leans = na.dot(&along) >= LEAN && nb.dot(&along) <= -LEAN;
         leans && self.level.value_and_gradient(&nalgebra::center(&a, &b)).0 >= 1.0 + OUTSIDE
     }
+}
+
+/// Whether a triangle is well shaped and looks the way of the normal.
+fn is_sound(a: &Point3, b: &Point3, c: &Point3, normal: &Vec3) -> bool {
+    let area = (b - a).cross(&(c - a));
+    area.dot(normal) > OUTWARDS * area.norm() && largest_cosine(a, b, c) < SLIMMEST
 }
