@@ -104,12 +104,14 @@ pub enum BlockError {
         source: NotOnBoundary,
     },
     /// The block came out, but with a tetrahedron so flat that another try is worth its time.
-    #[error("{block}: a tetrahedron is all but flat (radius ratio {ratio:.2e})")]
+    #[error("{block}: a tetrahedron is all but flat (radius ratio {ratio:.2e}, dihedral angle {dihedral:.1}°)")]
     Flat {
         /// `cluster 12` or `connector 7`.
         block: String,
         /// The smallest radius ratio.
         ratio: f64,
+        /// The smallest dihedral angle in degrees.
+        dihedral: f64,
     },
     /// The surface of a block that is not filled could not be filled.
     #[error("{block}: its surface is not sound: it does not hold that {}", line.statement())]

@@ -303,6 +303,11 @@ impl QualityPiece {
     pub fn min(&self) -> f64 {
         self.min
     }
+
+    /// The smallest dihedral angle in degrees.
+    pub fn least_dihedral(&self) -> f64 {
+        1.0_f64.atan2(self.cotangents[1]).to_degrees()
+    }
 }
 
 impl QualitySum {

@@ -122,13 +122,48 @@ fn attempts(plan: &MeshPlan, overlapping: bool, first: Way) -> Vec<Attempt> {
 const FLAT: f64 = 0.1;
 /// and one with layers, which are flat.
 const FLAT_LAYERS: f64 = 1e-3;
+/// So is one with a smaller dihedral angle in degrees; but then few ways will do, as there are forks that have to have one.
+const SLIM: f64 = 12.0;
+const WAYS_OUT_OF_SLIM: usize = 3;
 
-/// The smallest radius ratio of a block that is taken at once.
-fn flat(params: &BlockParams) -> f64 {
-    if params.layers.is_some() { FLAT_LAYERS } else { FLAT / params.stretch }
+/// What the worst tetrahedron of a block has to be.
+#[derive(Clone, Copy, Debug)]
+struct Bar {
+    ratio: f64,
+    dihedral: f64,
 }
 
-/// Makes a block in the first way that does it well: nothing fails, no tetrahedron is all but flat, and the block's own check
+impl Bar {
+    fn of(params: &BlockParams) -> Self {
+        if params.layers.is_some() {
+            Self { ratio: FLAT_LAYERS, dihedral: 0.0 }
+        } else {
+            Self { ratio: FLAT / params.stretch, dihedral: SLIM / params.stretch }
+        }
+    }
+
+    fn is_passed(self, block: &Finished) -> bool {
+        self.is_not_flat(block) && (!block.hull.is_empty() || block.certificate.least_dihedral() >= self.dihedral)
+    }
+
+    fn is_not_flat(self, block: &Finished) -> bool {
+        block.certificate.is_sound() && worst_ratio(block) >= self.ratio
+    }
+
+    /// A block is better if it is sound and not flat, and of such ones that whose smallest dihedral angle is larger; of others
+    /// the one whose flattest tetrahedron is rounder.
+    fn goodness(self, block: &Finished) -> (bool, bool, f64) {
+        let is_not_flat = self.is_not_flat(block);
+        let worst = if is_not_flat { block.certificate.least_dihedral() } else { worst_ratio(block) };
+        (block.certificate.is_sound(), is_not_flat, worst)
+    }
+}
+
+fn worst_ratio(block: &Finished) -> f64 {
+    if block.hull.is_empty() { block.certificate.worst_ratio() } else { f64::INFINITY }
+}
+
+/// Makes a block in the first way that does it well: nothing fails, no tetrahedron is flat or slim, and the block's own check
 /// finds no fault. Else the best of those that came out is taken. When nothing helps, the failure of the first way counts: it
 /// is what the dump of the input reproduces.
 fn first_good(
@@ -138,19 +173,23 @@ fn first_good(
 ) -> Tried {
     let mut failures: Vec<BlockError> = Vec::new();
     let mut best: Option<(usize, Attempt, Finished)> = None;
-    for attempt in attempts {
+    for (tried, attempt) in attempts.into_iter().enumerate() {
+        let bar = Bar::of(&attempt.params);
         // Vessels that can be kept apart are not taken as one for the sake of a tetrahedron.
-        if best.as_ref().is_some_and(|(_, best, _)| best.params.allow_fused != attempt.params.allow_fused) {
+        let will_do = |(_, best, made): &(usize, Attempt, Finished)| {
+            best.params.allow_fused != attempt.params.allow_fused
+                || tried > WAYS_OUT_OF_SLIM && Bar::of(&best.params).is_not_flat(made)
+        };
+        if best.as_ref().is_some_and(will_do) {
             break;
         }
         match make(&attempt.params) {
-            Ok(made) if goodness(&made) >= (true, flat(&attempt.params)) => {
-                return Tried { result: Ok(made), failures, way: attempt.name };
-            }
+            Ok(made) if bar.is_passed(&made) => return Tried { result: Ok(made), failures, way: attempt.name },
             Ok(made) => {
                 let before = failures.len();
-                failures.push(BlockError::Flat { block: block.to_owned(), ratio: made.certificate.worst_ratio() });
-                if best.as_ref().is_none_or(|(_, _, best)| goodness(&made) > goodness(best)) {
+                let (ratio, dihedral) = (made.certificate.worst_ratio(), made.certificate.least_dihedral());
+                failures.push(BlockError::Flat { block: block.to_owned(), ratio, dihedral });
+                if best.as_ref().is_none_or(|(_, _, best)| bar.goodness(&made) > bar.goodness(best)) {
                     best = Some((before, attempt, made));
                 }
             }
@@ -164,12 +203,6 @@ fn first_good(
         }
         None => Tried { result: Err(failures.swap_remove(0)), failures, way: String::new() },
     }
-}
-
-/// A block is better if it is sound, and of sound ones the one whose flattest tetrahedron is rounder.
-fn goodness(block: &Finished) -> (bool, f64) {
-    let worst = if block.hull.is_empty() { block.certificate.worst_ratio() } else { f64::INFINITY };
-    (block.certificate.is_sound(), worst)
 }
 
 /// Meshes a cluster. `overlapping`: vessels of the network overlap in it; `first`: the way that is tried first; `original`:
@@ -298,6 +331,36 @@ mod tests {
         assert_eq!(way, "1");
         assert_eq!(try_all(&[None, Some(2e-3), Some(1e-3), None]).way, "1");
         assert!(failures[0].to_string().contains("all but flat"), "{}", failures[0]);
+    }
+
+    /// A block of one tetrahedron with edges of 1 but for one of this length.
+    fn wedge(thin: f64) -> Finished {
+        let p = |x, y, z| crate::geometry::Point3::new(x, y, z);
+        let apex = (0.75 - 0.25 * thin * thin).sqrt();
+        let points = vec![p(-0.5, 0., 0.), p(0.5, 0., 0.), p(0., apex, -0.5 * thin), p(0., apex, 0.5 * thin)];
+        let mesh = crate::mesh::TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+        let cluster = crate::block::ClusterMesh { mesh, ..Default::default() };
+        Finished::of_cluster(cluster, |node| node.0).expect("a wall of four faces")
+    }
+
+    #[test]
+    fn few_ways_are_tried_for_the_sake_of_an_angle() {
+        let usual = MeshPlan::default().block_params();
+        let bar = Bar::of(&usual);
+        let slim = [0.1, 0.12, 0.11, 0.09, 0.15].map(wedge);
+        for block in &slim {
+            assert!(bar.is_not_flat(block) && !bar.is_passed(block));
+        }
+        assert!(bar.is_passed(&wedge(0.3)));
+        assert!(bar.goodness(&slim[0]) > bar.goodness(&block(0.03)));
+        let way = |first_division| Attempt { name: String::new(), params: BlockParams { first_division, ..usual } };
+        let mut asked = 0;
+        let tried = first_good("block", (0..slim.len()).map(way).collect(), |params| {
+            asked += 1;
+            Ok(slim[params.first_division].clone())
+        });
+        assert_eq!(asked, 1 + WAYS_OUT_OF_SLIM);
+        assert_eq!((tried.result.ok(), tried.failures.len()), (Some(slim[1].clone()), 1));
     }
 
     #[test]

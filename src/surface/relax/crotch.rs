@@ -3,7 +3,7 @@
 //! bottom of the crotch.
 
 use super::{Criterion, Level, MAX_STEP, Relaxation, largest_cosine};
-use crate::geometry::{Point3, Vec3, self_intersections};
+use crate::geometry::{Aabb, Point3, Vec3, self_intersections};
 use crate::surface::halfedge::HalfEdges;
 
 /// How often what is left is looked at: each time halves the edges of a web, and evens out the triangles beside it.
@@ -87,18 +87,23 @@ impl<L: Level> Relaxation<'_, L> {
         self.normals = before.normals;
     }
 
-    /// Whether triangles at the vertices from `first` on, and at their neighbours, are well shaped, and nothing meets.
+    /// Whether triangles at the vertices from `first` on, and at their neighbours, are well shaped and do not meet others.
     fn is_sound_since(&self, first: usize) -> bool {
         let s = &*self.surface;
         let new = (first as u32..s.points.len() as u32).filter(|&v| s.has_vertex(v));
-        let near = new.flat_map(|v| s.fan(v)).map(|h| s.to(h));
-        let faces = near.flat_map(|v| s.fan(v)).map(|h| [s.from(h), s.to(h), s.apex(h)].map(|v| s.points[v as usize]));
-        let slimmest = faces.map(|[a, b, c]| largest_cosine(&a, &b, &c)).fold(0.0, f64::max);
-        if slimmest > SLIMMEST_AT_LAST {
-            return false;
+        let near = new.flat_map(|v| s.fan(v)).flat_map(|h| s.fan(s.to(h)));
+        let corners = |h: u32| [s.from(h), s.to(h), s.apex(h)].map(|v| s.points[v as usize]);
+        let mut opened = Aabb::EMPTY;
+        for [a, b, c] in near.map(corners) {
+            if largest_cosine(&a, &b, &c) > SLIMMEST_AT_LAST {
+                return false;
+            }
+            opened = opened.union(&Aabb::of_points(&[a, b, c]));
         }
         let mesh = s.to_mesh().0;
-        self_intersections(&mesh.points, &mesh.triangles).is_empty()
+        let beside = |t: &[u32; 3]| Aabb::of_points(&t.map(|v| mesh.points[v as usize])).overlaps(&opened);
+        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().copied().filter(beside).collect();
+        self_intersections(&mesh.points, &triangles).is_empty()
     }
 
     /// Where the middle of an edge goes, and the normal of the level there: as deep as the four triangles that it will have are

@@ -124,6 +124,11 @@ impl Certificate {
     pub fn worst_ratio(&self) -> f64 {
         self.quality.min()
     }
+
+    /// The smallest dihedral angle of the tetrahedra, in degrees.
+    pub fn least_dihedral(&self) -> f64 {
+        self.quality.least_dihedral()
+    }
 }
 
 /// A boundary surface of a part.
