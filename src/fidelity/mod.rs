@@ -53,6 +53,9 @@ pub struct Compared<'a> {
     pub meshed: &'a Skeleton,
 }
 
+/// An axis that is further from the given one than so many radii in the median was moved.
+const MOVED: f64 = 0.1;
+
 impl Fidelity {
     /// Holds a mesh of so much volume against its network.
     ///
@@ -64,6 +67,11 @@ impl Fidelity {
         let wall = wall::spread(&outlined, mesh)?;
         let lumen = lumen::volume(outline, &outlined);
         Ok(Self { axis: Displacements::of(given, meshed), wall, lumen, volume })
+    }
+
+    /// Whether vessels were moved (as a refinement does): the wall's distance from the given tubes is then no error of the wall.
+    pub fn is_moved(&self) -> bool {
+        self.axis.spread.median > MOVED
     }
 
     /// Volume of the mesh over that of the given lumen, less 1.

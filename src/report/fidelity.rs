@@ -17,8 +17,9 @@ impl fmt::Display for Fidelity {
         )?;
         writeln!(
             out,
-            "wall: {:.2} % of the radius from the given tubes in the median, 99 % {:.1} %, at most {:.0} %",
+            "wall: {:.2} % of the radius from the given tubes{} in the median, 99 % {:.1} %, at most {:.0} %",
             100.0 * wall.median,
+            if self.is_moved() { " (whose vessels were moved)" } else { "" },
             100.0 * wall.p99,
             100.0 * wall.worst
         )?;

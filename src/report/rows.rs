@@ -40,6 +40,11 @@ impl Ended {
                 None => longest.push(stage.clone()),
             }
         }
+        // Reading, refining, and meshes that were made before this one.
+        let staged: f64 = longest.iter().map(|stage| stage.seconds).sum();
+        if !longest.is_empty() {
+            longest.push(StageTime { stage: "beforehand", seconds: self.seconds - staged });
+        }
         longest.retain(|stage| stage.seconds >= NOTICED.max(MENTIONED * self.seconds));
         longest.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
         let told: Vec<String> =

@@ -11,9 +11,6 @@ use std::fmt::{self, Write as _};
 /// Things of a kind that are spelt out.
 const SPELT_OUT: usize = 3;
 
-/// An axis that is further from the given one than so many radii in the median was moved: its wall is compared with nothing.
-const MOVED: f64 = 0.1;
-
 /// What there is to say of a run.
 #[derive(Clone, Debug)]
 pub struct Summary<'a> {
@@ -107,7 +104,7 @@ pub fn of_check(check: &CheckReport, listed: bool) -> String {
 fn vessels(fidelity: &Fidelity) -> String {
     let volume = format!("volume {:+.1} %", 100.0 * fidelity.swelling());
     let (axis, wall) = (&fidelity.axis.spread, &fidelity.wall);
-    if axis.median > MOVED {
+    if fidelity.is_moved() {
         let [median, most] = [axis.median, axis.worst].map(digits);
         return format!("moved by {median} radii in the median, {most} at most; {volume}");
     }

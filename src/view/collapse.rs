@@ -6,6 +6,9 @@ use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+/// With more triangles than so many times what is to be left, edges go without being compared.
+const MANY: usize = 6;
+
 /// A surface in the making.
 pub struct Collapse {
     points: Vec<Point3>,
@@ -62,11 +65,11 @@ impl Collapse {
 
     /// Lets edges go until so many triangles are left, or none may go. The points that are left, and the triangles.
     pub fn run(mut self, target: usize) -> (Vec<Point3>, Vec<[u32; 3]>) {
-        let sides = self.triangles.iter().flatten().flat_map(|t| sides(*t));
-        let mut edges: Vec<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        let mut heap: BinaryHeap<Candidate> = edges.into_iter().filter_map(|edge| self.candidate(edge)).collect();
+        self.thin(MANY * target);
+        // Edges have two sides, which run opposite ways; those with one are of rings, and stay.
+        let edges = self.triangles.iter().flatten().flat_map(|t| sides(*t)).filter(|[a, b]| a < b);
+        let mut heap: BinaryHeap<Candidate> = edges.filter_map(|edge| self.candidate(edge)).collect();
+        let mut near = [Vec::new(), Vec::new()];
         while self.left > target
             && let Some(Reverse((_, edge, moves))) = heap.pop()
         {
@@ -74,11 +77,43 @@ impl Collapse {
                 continue;
             }
             let place = self.place(edge);
-            if self.may_go(edge, &place) {
-                self.merge(edge, place, &mut heap);
+            if self.may_go(edge, &place, &mut near) {
+                self.merge(edge, place);
+                self.neighbours(edge[0], &mut near[0]);
+                let beside = near[0].iter().map(|&v| [v.min(edge[0]), v.max(edge[0])]);
+                heap.extend(beside.filter_map(|edge| self.candidate(edge)));
             }
         }
         self.done()
+    }
+
+    /// Of far more triangles than are to be left most go without a look at which edges are missed least: at each point one edge
+    /// in a sweep.
+    fn thin(&mut self, target: usize) {
+        let mut near = [Vec::new(), Vec::new()];
+        let mut before = usize::MAX;
+        let mut sweep = 0;
+        while self.left > target && self.left < before {
+            before = self.left;
+            sweep += 1;
+            for i in 0..self.triangles.len() {
+                let Some([a, b, c]) = self.triangles[i] else { continue };
+                let is_new = |v: u32| self.moves[v as usize] < sweep;
+                let all = [[a, b], [b, c], [c, a]];
+                let Some(edge) = all.into_iter().find(|edge| edge.iter().all(|&v| is_new(v))) else { continue };
+                if edge.iter().all(|&v| self.fixed[v as usize]) {
+                    continue;
+                }
+                let place = self.place(edge);
+                if self.may_go(edge, &place, &mut near) {
+                    self.merge(edge, place);
+                    self.moves[edge[0] as usize] = sweep;
+                }
+                if self.left <= target {
+                    break;
+                }
+            }
+        }
     }
 
     /// An edge as it is now; none if it is to stay.
@@ -117,10 +152,12 @@ impl Collapse {
         }
     }
 
-    /// Whether no triangle turns over, and the surface stays one.
-    fn may_go(&self, [a, b]: [u32; 2], place: &Point3) -> bool {
-        let of_b = self.neighbours(b);
-        let shared = self.neighbours(a).iter().filter(|v| of_b.binary_search(v).is_ok()).count();
+    /// Whether no triangle turns over, and the surface stays one. `near`: room for the neighbours of both ends.
+    fn may_go(&self, [a, b]: [u32; 2], place: &Point3, near: &mut [Vec<u32>; 2]) -> bool {
+        let [of_a, of_b] = near;
+        self.neighbours(a, of_a);
+        self.neighbours(b, of_b);
+        let shared = of_a.iter().filter(|v| of_b.contains(v)).count();
         let both = self.alive(a).filter(|(_, t)| t.contains(&b)).count();
         if shared != both || both == 0 {
             return false;
@@ -134,13 +171,14 @@ impl Collapse {
         })
     }
 
-    /// Points beside a point, ascending.
-    fn neighbours(&self, v: u32) -> Vec<u32> {
-        let mut near = Vec::with_capacity(2 * self.around[v as usize].len());
-        near.extend(self.alive(v).flat_map(|(_, t)| t).filter(|&w| w != v));
-        near.sort_unstable();
-        near.dedup();
-        near
+    /// Points beside a point: few, so that they are looked through one by one.
+    fn neighbours(&self, v: u32, near: &mut Vec<u32>) {
+        near.clear();
+        for w in self.alive(v).flat_map(|(_, t)| t).filter(|&w| w != v) {
+            if !near.contains(&w) {
+                near.push(w);
+            }
+        }
     }
 
     fn alive(&self, v: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
@@ -148,7 +186,7 @@ impl Collapse {
     }
 
     /// Makes an edge a point.
-    fn merge(&mut self, [a, b]: [u32; 2], place: Point3, heap: &mut BinaryHeap<Candidate>) {
+    fn merge(&mut self, [a, b]: [u32; 2], place: Point3) {
         let of_b: Vec<(u32, [u32; 3])> = self.alive(b).collect();
         for (t, corners) in of_b {
             if corners.contains(&a) {
@@ -167,7 +205,6 @@ impl Collapse {
         self.moves[b as usize] += 1;
         let (around, triangles) = (&mut self.around[a as usize], &self.triangles);
         around.retain(|&t| triangles[t as usize].is_some());
-        heap.extend(self.neighbours(a).into_iter().filter_map(|v| self.candidate([a.min(v), a.max(v)])));
     }
 
     fn done(self) -> (Vec<Point3>, Vec<[u32; 3]>) {

@@ -2,21 +2,12 @@
 //!
 //! Both blocks at a ring keep the same points of it, though neither knows the other: the choice depends on the ring alone.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 /// The rings of a surface whose triangles run counter-clockwise: each as its points in order. Where two rings touch in a
 /// point they may be one.
 pub fn rings(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
-    let mut open: FxHashSet<[u32; 2]> = FxHashSet::default();
-    for &[a, b, c] in triangles {
-        for [a, b] in [[a, b], [b, c], [c, a]] {
-            if !open.remove(&[b, a]) {
-                open.insert([a, b]);
-            }
-        }
-    }
-    let mut edges: Vec<[u32; 2]> = open.into_iter().collect();
-    edges.sort_unstable();
+    let edges = open_sides(triangles);
     let mut next: FxHashMap<u32, u32> = FxHashMap::default();
     for &[a, b] in &edges {
         next.entry(a).or_insert(b);
@@ -34,6 +25,27 @@ pub fn rings(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
         }
     }
     rings
+}
+
+/// Sides of triangles that no other triangle has the other way round, ascending.
+fn open_sides(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    // By their ends whichever way they run; of each, how often it runs upwards more than downwards.
+    let mut sides: Vec<([u32; 2], i8)> = Vec::with_capacity(3 * triangles.len());
+    for &[a, b, c] in triangles {
+        sides.extend([[a, b], [b, c], [c, a]].map(|[a, b]| if a < b { ([a, b], 1) } else { ([b, a], -1) }));
+    }
+    sides.sort_unstable();
+    let mut open = Vec::new();
+    for same in sides.chunk_by(|x, y| x.0 == y.0) {
+        let [a, b] = same[0].0;
+        match same.iter().map(|side| i64::from(side.1)).sum::<i64>() {
+            0 => {}
+            up if up > 0 => open.push([a, b]),
+            _ => open.push([b, a]),
+        }
+    }
+    open.sort_unstable();
+    open
 }
 
 /// Which of a ring's points are kept, and which of these each point becomes: `keep` of them, evenly, counted from the point

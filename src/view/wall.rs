@@ -149,8 +149,7 @@ fn made(
     let locals: Vec<Local> = patches.iter().map(|(&patch, faces)| Local::of(patch, faces, piece, corners)).collect();
     // That with the most faces is the wall.
     if let Some(wall) = locals.iter().max_by_key(|local| local.group.triangles.len()) {
-        let rings: Vec<Ring> =
-            rings(&wall.group.triangles).iter().map(|ring| Ring::of(ring, &wall.group.points)).collect();
+        let rings: Vec<Ring> = wall.rings.iter().map(|ring| Ring::of(ring, &wall.group.points)).collect();
         if !rings.is_empty() {
             out.radius = rings.iter().map(|ring| ring.radius).sum::<f64>() / rings.len() as f64;
             out.lines = lines(&rings);
@@ -192,12 +191,13 @@ fn lines(rings: &[Ring]) -> Vec<[Point3; 2]> {
 struct Local {
     group: Group,
     numbers: Vec<u32>,
+    rings: Vec<Vec<u32>>,
 }
 
 impl Local {
     fn of(patch: i32, faces: &[usize], piece: &FacePiece, corners: &[[Point3; 3]]) -> Self {
         let mut places: FxHashMap<u32, u32> = FxHashMap::default();
-        let mut local = Self { group: Group { patch, ..Group::default() }, numbers: Vec::new() };
+        let mut local = Self { group: Group { patch, ..Group::default() }, numbers: Vec::new(), rings: Vec::new() };
         for &i in faces {
             let (face, at) = (piece.faces[i], corners[i]);
             let ratio = (255.0 * triangle_ratio(&at).clamp(0.0, 1.0)) as u8;
@@ -214,6 +214,7 @@ impl Local {
             });
             local.group.triangles.push(triangle);
         }
+        local.rings = rings(&local.group.triangles);
         local
     }
 
@@ -236,9 +237,8 @@ impl Local {
         let mut stands: Vec<u32> = (0..points.len() as u32).collect();
         let mut fixed = vec![false; points.len()];
         let mut target = 0;
-        let rings = rings(&triangles);
         let mut kept: Vec<Vec<u32>> = Vec::new();
-        for ring in &rings {
+        for ring in &self.rings {
             let radius = Ring::of(ring, &points).radius;
             let seen = (SIDES[0] + 1.4 * (radius * pixels).sqrt()).clamp(SIDES[0], SIDES[1]);
             let keep = seen.max(ring.len() as f64 * share.sqrt()) as usize;
