@@ -85,7 +85,7 @@ fn ends_beside_each_other_leave_a_wall_between() {
     // Two vessels that leave a node at an angle so small that the crotch lies just below their planes.
     for (height, seed) in [(1.60, 0), (1.69, 1), (1.75, 2), (1.80, 3), (1.69, 4)] {
         let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
-        let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
+        let mut cluster = Cluster { nodes: vec![NodeId(0)], ..Cluster::default() };
         let arms = [(0.0, 2.92), (2.38, height), (-1.94, -1.04)];
         for (i, (x, z)) in arms.into_iter().enumerate() {
             let origin = turn * Point3::new(x, 0.0, z);
@@ -110,7 +110,7 @@ fn ends_that_take_each_others_wall_take_less() {
     let arms = [([-1.634, -0.86, -2.417], 0.899), ([-0.229, 1.085, -3.082], 0.933), ([0.083, -2.087, 0.69], 1.0)];
     for seed in 0..24 {
         let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
-        let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
+        let mut cluster = Cluster { nodes: vec![NodeId(0)], ..Cluster::default() };
         for (i, (place, radius)) in arms.into_iter().enumerate() {
             let origin = turn * Point3::from(place);
             let axis = origin.coords.normalize();

@@ -154,6 +154,7 @@ fn gibibytes(bytes: u64) -> String {
 }
 
 pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
+    let plan = &*plan.of_tube(cluster.size);
     // The end of a vessel, or a piece between two cuts.
     if cluster.ends.len() == 2 && plan.joint == JointStyle::Disc {
         let tubes = cluster.tubes.iter().filter(|t| t.length() > 0.0);
@@ -164,6 +165,7 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
 }
 
 pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
+    let plan = &*plan.of_tube(cut.size);
     let pieces = cut.path.windows(2).map(|pair| {
         let radius = 0.5 * (pair[0].radius + pair[1].radius);
         ((pair[1].origin - pair[0].origin).norm(), radius)

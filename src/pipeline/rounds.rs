@@ -93,7 +93,8 @@ impl Run<'_> {
             key.finish()
         };
         let cut = || partition::lay_out(skeleton, &params).map_err(RunError::from);
-        let kept = || Ok(store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton)));
+        let kept =
+            || Ok(store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton)).sized(plan.size_at.clone()));
         self.clock.time(progress, Stage::Partition, 0, kept)
     }
 

@@ -243,7 +243,7 @@ fn edges_follow_the_radius() {
         tube([0.0, 0.0, 0.0], [0.5, 6.0, 0.0], 0.5, 0.5),
     ];
     let params = SurfaceParams { thin: 0.5, follow: 1.0, ..SurfaceParams::with_voxel(1.0 / 3.0) };
-    let wall = vessel_wall(&tubes, &params).unwrap();
+    let wall = vessel_wall(&tubes, &params, &Finer::default()).unwrap();
     check_wall(&wall.mesh);
     assert_eq!(wall.sizes.len(), wall.mesh.points.len());
     let all = edges(&wall.mesh);
@@ -253,7 +253,7 @@ fn edges_follow_the_radius() {
     };
     let (thick, thin) = (mean(&|p| p.x.abs() > 4.0), mean(&|p| p.y > 3.0));
     assert!((2.6..3.6).contains(&(thick / thin)), "{thick} {thin}");
-    let as_fine = vessel_wall(&tubes, &SurfaceParams { follow: 0.0, ..params }).unwrap();
+    let as_fine = vessel_wall(&tubes, &SurfaceParams { follow: 0.0, ..params }, &Finer::default()).unwrap();
     assert!(2 * wall.mesh.triangles.len() < as_fine.mesh.triangles.len());
     // No triangle is half as large again as its neighbour.
     let mut sides: Vec<([u32; 2], usize)> = Vec::new();
