@@ -1,9 +1,12 @@
 //! How the blocks of a network are made: arguments of every verb that makes them.
 
+use super::exit::Failure;
+use super::network::{NetworkArgs, PreparedNetwork};
 use super::room::size;
 use crate::pipeline::MeshPlan;
-use crate::skeleton::SizeAt;
+use crate::prepare::PrepareParams;
 use crate::skeleton::resolution::{FOLLOW, RHO};
+use crate::skeleton::{NodeSizes, SizeAt};
 use std::fmt;
 use std::str::FromStr;
 
@@ -34,14 +37,12 @@ impl fmt::Display for SizeArg {
 }
 
 impl SizeArg {
-    /// What needs no network to be known.
-    fn forks(&self) -> Option<SizeAt> {
-        if let Self::Forks(factor) = self { Some(SizeAt::Forks(*factor)) } else { None }
-    }
-
-    /// The array that is asked for.
-    pub fn array(&self) -> Option<&str> {
-        if let Self::Array(name) = self { Some(name) } else { None }
+    /// What is known of it before the network is.
+    fn planned(&self) -> Option<SizeAt> {
+        match self {
+            Self::Forks(factor) => Some(SizeAt::Forks(*factor)),
+            Self::Array(name) => NodeSizes::new(name, &[]).ok().map(SizeAt::Nodes),
+        }
     }
 }
 
@@ -80,12 +81,25 @@ impl BlockArgs {
             rho: self.rho,
             follow: self.follow,
             stretch: self.stretch,
-            size_at: self.size_at.as_ref().and_then(SizeArg::forks),
+            size_at: self.size_at.as_ref().and_then(SizeArg::planned),
             memory: self.memory,
             fuse: self.refine.is_some() && fuse,
             keep_going: self.keep_going,
             ..MeshPlan::default()
         }
+    }
+
+    /// Reads the network that they are for, with what it says of their blocks, which goes into the plan.
+    pub fn read(
+        &self,
+        network: &NetworkArgs,
+        params: &PrepareParams,
+        plan: &mut MeshPlan,
+    ) -> Result<PreparedNetwork, Failure> {
+        let Some(SizeArg::Array(array)) = &self.size_at else { return network.prepared(params) };
+        let prepared = network.prepared_with(params, Some(array))?;
+        plan.size_at = Some(prepared.sizes(array)?);
+        Ok(prepared)
     }
 
     /// What of them a mesh depends on, as they are typed.

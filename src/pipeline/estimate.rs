@@ -18,6 +18,9 @@ const POWER: f64 = 2.85;
 const TETS_OF_TUBE: f64 = 4.4;
 const POWER_OF_TUBE: f64 = 2.94;
 
+/// Of a fork with shorter edges so many radii have them.
+const FINE_RADII: f64 = 2.0;
+
 /// Triangles of the wall, likewise; they grow with the square of ρ.
 const WALL: f64 = 4.1;
 
@@ -161,7 +164,9 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
         return tube_cost(tubes.map(|t| (t.length(), 0.5 * (t.ra + t.rb))), plan);
     }
     let thin = cluster.tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
-    cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan)
+    let plain = cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan);
+    let finer: f64 = cluster.fine.iter().map(|fork| fork.factor.powf(-POWER) - 1.0).sum();
+    of_tets(plain.tets + TETS * plan.rho.powf(POWER) * FINE_RADII * finer)
 }
 
 pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
