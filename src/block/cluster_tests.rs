@@ -6,7 +6,7 @@ use crate::geometry::{Point3, Section, Tube, Vec3};
 use crate::mesh::adjacency::boundary_faces;
 use crate::mesh::face_key;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionWarning, partition};
-use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
+use crate::skeleton::{BranchId, Edge, FineFork, Node, NodeId, Skeleton};
 use crate::surface::SharedDisc;
 use rustc_hash::FxHashSet;
 
@@ -48,6 +48,29 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
             assert_eq!(*p, sides[v.side as usize][v.vertex as usize]);
         }
         assert!(worst_ratio(&connector.mesh) > 0.3, "{}", worst_ratio(&connector.mesh));
+    }
+}
+
+#[test]
+fn a_finer_fork_owes_its_neighbours_the_same_discs() {
+    for (seed, factor) in [(0, 0.5), (1, 0.25), (2, 0.7)] {
+        for layers in [None, Some(crate::tet::Layers::default())] {
+            let params = BlockParams { ends: EndStyle::Shared, layers, ..BlockParams::default() };
+            let plain = bifurcation(seed);
+            let fork = FineFork { at: Point3::origin(), within: 1.2, factor };
+            let finer = Cluster { fine: vec![fork], ..plain.clone() };
+            let [plain, finer] = [plain, finer].map(|cluster| {
+                let made = mesh_cluster(ClusterId(0), &cluster, &params).expect("a cluster");
+                assert_mesh(&made.mesh, 2);
+                made
+            });
+            for end in 0..2 {
+                assert_eq!(end_points(&plain, end), end_points(&finer, end));
+            }
+            // As many as edges are shorter within a third of its vessels or so.
+            assert!(finer.mesh.tets.len() as f64 > plain.mesh.tets.len() as f64 * (1.0 + 0.1 / factor));
+            assert!(layers.is_some() || worst_ratio(&finer.mesh) > 0.15, "{}", worst_ratio(&finer.mesh));
+        }
     }
 }
 

@@ -210,6 +210,8 @@ fn connector_key(cut: &Cut, plan: &MeshPlan, ends: &[StoredEnd]) -> Key {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pipeline::plan::MOST_STRETCH;
+    use crate::skeleton::{FineFork, SizeAt};
     use crate::tet::Layers;
 
     #[test]
@@ -233,5 +235,17 @@ mod tests {
         assert_ne!(cluster_key(&cluster, &plan, false, Way::Usual), plain);
         assert_ne!(cluster_key(&cluster, &plan, true, Way::Finest), plain);
         assert_eq!(cluster_key(&cluster, &plan, true, Way::Usual), plain);
+        // What is asked for of forks counts where there is one, and what tubes are stretched by once it is known.
+        let asked = MeshPlan { size_at: Some(SizeAt::Forks(0.5)), ..plan.clone() };
+        assert_eq!(cluster_key(&cluster, &asked, true, Way::Usual), plain);
+        let forked = |factor| {
+            let fork = FineFork { at: crate::geometry::Point3::origin(), within: 1.0, factor };
+            cluster_key(&Cluster { fine: vec![fork], ..cluster.clone() }, &asked, true, Way::Usual)
+        };
+        assert!(forked(0.5) != plain && forked(0.5) != forked(0.4));
+        let stretched = |size| cluster_key(&cluster, &asked.of_tube(size), true, Way::Usual);
+        assert!(stretched(Some(2.0)) != plain && stretched(Some(2.0)) != stretched(Some(3.0)));
+        assert_eq!([None, Some(0.3), Some(1.0)].map(stretched), [plain; 3]);
+        assert_eq!(stretched(Some(90.0)), stretched(Some(MOST_STRETCH)));
     }
 }

@@ -10,7 +10,7 @@ pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan,
     let Some(sizes) = &plan.size_at else { return };
     let forks: Vec<f64> = partition.clusters().flat_map(|cluster| cluster.fine).map(|fork| fork.factor).collect();
     let mut parts = vec![match range(&forks) {
-        Some(range) => format!("edges at {} forks are {range} times as long", forks.len()),
+        Some(range) => format!("edges at {} fork(s) are {range} times as long", forks.len()),
         None => "edges are shorter at no fork".to_owned(),
     }];
     if let SizeAt::Nodes(_) = sizes {
@@ -18,7 +18,7 @@ pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan,
         let asked: Vec<f64> = asked.flatten().filter(|&size| size > 1.0).collect();
         let tubes: Vec<f64> = asked.iter().map(|&size| size.min(MOST_STRETCH)).collect();
         parts.push(match range(&tubes) {
-            Some(range) => format!("{} tubes are stretched by {range}", tubes.len()),
+            Some(range) => format!("{} tube(s) are stretched by {range}", tubes.len()),
             None => "no tube is stretched".to_owned(),
         });
         let adjacency = skeleton.adjacency();
@@ -28,7 +28,7 @@ pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan,
         let above = asked.iter().filter(|&&size| size > MOST_STRETCH).count();
         if below + above > 0 {
             parts.push(format!(
-                "{below} forks with less than {LEAST_SIZE} and {above} tubes with more than {MOST_STRETCH} are held there"
+                "{below} fork(s) with less than {LEAST_SIZE} and {above} tube(s) with more than {MOST_STRETCH} are held there"
             ));
         }
     }
