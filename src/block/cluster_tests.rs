@@ -51,6 +51,20 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
     }
 }
 
+fn volume(mesh: &crate::mesh::TetMesh) -> f64 {
+    let of = |t: &[u32; 4]| {
+        let [a, b, c, d] = t.map(|v| mesh.points[v as usize]);
+        (b - a).cross(&(c - a)).dot(&(d - a)).abs() / 6.0
+    };
+    mesh.tets.iter().map(of).sum()
+}
+
+/// A bifurcation with edges so short that nothing is lost between them.
+fn true_wall(seed: u64) -> ClusterMesh {
+    let params = BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(10.0) };
+    mesh_cluster(ClusterId(0), &bifurcation(seed), &params).expect("a cluster")
+}
+
 #[test]
 fn a_finer_fork_owes_its_neighbours_the_same_discs() {
     for (seed, factor) in [(0, 0.5), (1, 0.25), (2, 0.7)] {
@@ -67,6 +81,9 @@ fn a_finer_fork_owes_its_neighbours_the_same_discs() {
             for end in 0..2 {
                 assert_eq!(end_points(&plain, end), end_points(&finer, end));
             }
+            // Nearer to the vessels' true wall, if anything.
+            let off = |made: &ClusterMesh| (volume(&made.mesh) / volume(&true_wall(seed).mesh) - 1.0).abs();
+            assert!(off(&finer) < off(&plain) + 5e-4, "{factor}: {} and {}", off(&finer), off(&plain));
             // As many as edges are shorter within a third of its vessels or so.
             assert!(finer.mesh.tets.len() as f64 > plain.mesh.tets.len() as f64 * (1.0 + 0.1 / factor));
             assert!(layers.is_some() || worst_ratio(&finer.mesh) > 0.15, "{}", worst_ratio(&finer.mesh));

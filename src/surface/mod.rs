@@ -45,6 +45,8 @@ pub struct SizedWall {
     pub mesh: TriMesh,
     /// The edge length aimed at, at each vertex.
     pub sizes: Vec<f64>,
+    /// Where these are shorter than the radius asks for.
+    pub finer: Finer,
     /// The mesh once more, its triangles linked.
     pub(crate) halves: HalfEdges,
 }
@@ -69,7 +71,7 @@ pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams, finer: &Finer) -> Res
     let (surface, map) = surface.compacted();
     let kept = sizes.into_iter().zip(map).filter(|(_, new)| *new != halfedge::NONE);
     let sizes = kept.map(|(size, _)| size).collect();
-    Ok(SizedWall { mesh: surface.to_mesh().0, sizes, halves: surface })
+    Ok(SizedWall { mesh: surface.to_mesh().0, sizes, finer: finer.clone(), halves: surface })
 }
 
 /// Euler characteristic `V − E + F` of a closed triangle surface: 2 per component, less 2 per handle.

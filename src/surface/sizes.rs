@@ -29,7 +29,10 @@ impl Finer {
     }
 
     /// How many times as long as `size` edges at a place on the wall are.
-    fn factor(&self, p: &Point3, size: f64) -> f64 {
+    pub(super) fn factor(&self, p: &Point3, size: f64) -> f64 {
+        if self.forks.is_empty() {
+            return 1.0;
+        }
         let to_end = self.ends.iter().map(|end| distance(end, p)).fold(f64::INFINITY, f64::min);
         let at = |fork: &FineFork| {
             let from_fork = ((p - fork.at).norm() - fork.within).max(0.0);
