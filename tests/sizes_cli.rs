@@ -2,8 +2,8 @@
 
 mod common;
 
-use anastomesh::Point3;
 use anastomesh::io::read_mesh;
+use anastomesh::{Point3, WALL};
 use common::program::{BAD_INPUT, FINE, assert_code, assert_says, folder, json, mesh, run, stderr};
 use std::fmt::Write as _;
 use std::fs;
@@ -38,7 +38,7 @@ fn made(network: &Path, options: &[&str]) -> (Vec<u8>, usize, [f64; 2]) {
         let middle = Point3::from((a.coords + b.coords) / 2.0);
         ((middle - Point3::from(FORK)).norm(), (b - a).norm())
     };
-    let wall = volume.boundary.iter().zip(&volume.boundary_patch).filter(|(_, patch)| **patch == 0);
+    let wall = volume.boundary.iter().zip(&volume.boundary_patch).filter(|(_, patch)| **patch == WALL);
     let edges: Vec<(f64, f64)> = wall.flat_map(|(t, _)| (0..3).map(|i| [t[i], t[(i + 1) % 3]])).map(length).collect();
     let mean = |from: f64, to: f64| {
         let kept: Vec<f64> = edges.iter().filter(|(far, _)| (from..to).contains(far)).map(|edge| edge.1).collect();
