@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 /// Three vessels from one node, each cut at four units.
 fn bifurcation() -> Cluster {
-    let mut cluster = Cluster { nodes: Vec::new(), tubes: Vec::new(), ends: Vec::new() };
+    let mut cluster = Cluster::default();
     for (i, (x, z, radius)) in [(0.0, 1.0, 1.0), (0.8, -0.7, 0.8), (-0.8, -0.6, 0.7)].into_iter().enumerate() {
         let axis = Vec3::new(x, 0.1, z).normalize();
         let origin = Point3::origin() + axis * 4.0;

@@ -54,7 +54,9 @@ pub mod network {
     pub use crate::refine::{
         Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };
-    pub use crate::skeleton::{CleanReport, Edge, Node, NodeId, Skeleton, SkeletonError, clean};
+    pub use crate::skeleton::{
+        BadSize, CleanReport, Edge, Node, NodeId, NodeSizes, SizeAt, Skeleton, SkeletonError, clean,
+    };
 }
 
 /// Whether a mesh is valid, line by line, and how well its tetrahedra are shaped.

@@ -12,6 +12,8 @@ use tempfile::TempDir;
 
 /// A fork whose vessels are wide apart.
 const FORK: &str = "1 0 0 0 0 1 -1\n2 0 0 0 9 1 1\n3 0 0 6 16 0.8 2\n4 0 0 -6 16 0.8 2\n";
+/// The same with a number for each node, of which one is none that edges can have.
+const SIZED: &str = "id,x,y,z,radius,Size\na,0,0,0,1,2\nb,0,0,9,1,0.5\nc,0,6,16,0.8,-2\nd,0,-6,16,0.8,2\n\nsource,target\na,b\nb,c\nb,d\n";
 /// Two vessels that cross.
 const CROSSED: &str = "1 0 0 0 0 1 -1\n2 0 0 0 20 1 1\n3 0 -10 0 10 1 -1\n4 0 10 0.5 10 1 3\n";
 
@@ -83,6 +85,7 @@ fn networks(record: &Record) {
         .file("hair.vtp", HOPELESS)
         .file("noradius.csv", "source,target\na,b\n")
         .file("cut.vtp", &fs::read(fixture("tree_30.vtp")).expect("a fixture")[..900])
+        .file("sized.csv", SIZED)
         .file("graph.xyz", "what is this\n");
 }
 
@@ -120,6 +123,14 @@ fn options_that_make_no_sense() {
         "mesh fork.swc -o out.vtu --rho 0.1",
         "mesh fork.swc -o out.vtu --rho many",
         "mesh fork.swc -o out.vtu --stretch 90",
+        "mesh fork.swc -o out.vtu --size-at 0.1",
+        "mesh fork.swc -o out.vtu --size-at 2",
+        "mesh fork.swc -o out.vtu --size-at 0.5 --joint woven",
+        "mesh fork.swc -o out.vtu --size-at Size",
+        "mesh sized.csv -o out.vtu --size-at Size",
+        "mesh sized.csv -o out.vtu --size-at Length",
+        "mesh sized.csv -o out.vtu --size-at Length --stretch 4",
+        "surface sized.csv -o out.stl --size-at Size",
         "mesh fork.swc -o out.vtu --core 9",
         "mesh fork.swc -o out.vtu --follow -1",
         "mesh fork.swc -o out.vtu --layers 0",

@@ -15,7 +15,7 @@ use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::skeleton::NodeId;
 use crate::surface::{
-    CapError, CapFailure, CappedSurface, Closing, Field, SharedDisc, SurfaceParams, cap_terminals,
+    CapError, CapFailure, CappedSurface, Closing, Field, Finer, SharedDisc, SurfaceParams, cap_terminals,
     euler_characteristic, vessel_wall,
 };
 use crate::tet::layers::Inset;
@@ -197,7 +197,8 @@ pub fn cluster_surface(
         ..SurfaceParams::with_voxel(voxel)
     };
     let failed = |source| BlockError::Surface { cluster: id, source };
-    let wall = vessel_wall(&cluster.tubes, &surface_params).map_err(failed)?;
+    let finer = Finer { forks: cluster.fine.clone(), ends: cluster.ends.iter().map(|end| end.section).collect() };
+    let wall = vessel_wall(&cluster.tubes, &surface_params, &finer).map_err(failed)?;
     let handles = 1 - euler_characteristic(&wall.mesh) / 2;
     let loops = Loops::of(cluster).expected(handles);
     if handles != loops && !params.allow_fused {

@@ -6,7 +6,7 @@ use crate::geometry::{Point3, Section, Tube, Vec3};
 use crate::mesh::adjacency::boundary_faces;
 use crate::mesh::face_key;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionWarning, partition};
-use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
+use crate::skeleton::{BranchId, Edge, FineFork, Node, NodeId, Skeleton};
 use crate::surface::SharedDisc;
 use rustc_hash::FxHashSet;
 
@@ -51,6 +51,47 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
     }
 }
 
+fn volume(mesh: &crate::mesh::TetMesh) -> f64 {
+    let of = |t: &[u32; 4]| {
+        let [a, b, c, d] = t.map(|v| mesh.points[v as usize]);
+        (b - a).cross(&(c - a)).dot(&(d - a)).abs() / 6.0
+    };
+    mesh.tets.iter().map(of).sum()
+}
+
+/// A bifurcation with edges so short that nothing is lost between them.
+fn true_wall(seed: u64) -> ClusterMesh {
+    let params = BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(10.0) };
+    mesh_cluster(ClusterId(0), &bifurcation(seed), &params).expect("a cluster")
+}
+
+#[test]
+fn a_finer_fork_owes_its_neighbours_the_same_discs() {
+    for (seed, factor) in [(0, 0.5), (1, 0.25), (2, 0.7)] {
+        let whole = volume(&true_wall(seed).mesh);
+        for layers in [None, Some(crate::tet::Layers::default())] {
+            let params = BlockParams { ends: EndStyle::Shared, layers, ..BlockParams::default() };
+            let plain = bifurcation(seed);
+            let fork = FineFork { at: Point3::origin(), within: 1.2, factor };
+            let finer = Cluster { fine: vec![fork], ..plain.clone() };
+            let [plain, finer] = [plain, finer].map(|cluster| {
+                let made = mesh_cluster(ClusterId(0), &cluster, &params).expect("a cluster");
+                assert_mesh(&made.mesh, 2);
+                made
+            });
+            for end in 0..2 {
+                assert_eq!(end_points(&plain, end), end_points(&finer, end));
+            }
+            // Nearer to the vessels' true wall, if anything.
+            let off = |made: &ClusterMesh| (volume(&made.mesh) / whole - 1.0).abs();
+            assert!(off(&finer) < off(&plain) + 5e-4, "{factor}: {} and {}", off(&finer), off(&plain));
+            // As many as edges are shorter within a third of its vessels or so.
+            assert!(finer.mesh.tets.len() as f64 > plain.mesh.tets.len() as f64 * (1.0 + 0.1 / factor));
+            assert!(layers.is_some() || worst_ratio(&finer.mesh) > 0.15, "{}", worst_ratio(&finer.mesh));
+        }
+    }
+}
+
 #[test]
 fn no_tetrahedron_has_two_faces_on_the_boundary() {
     for seed in 0..4 {
@@ -85,7 +126,7 @@ fn ends_beside_each_other_leave_a_wall_between() {
     // Two vessels that leave a node at an angle so small that the crotch lies just below their planes.
     for (height, seed) in [(1.60, 0), (1.69, 1), (1.75, 2), (1.80, 3), (1.69, 4)] {
         let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
-        let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
+        let mut cluster = Cluster { nodes: vec![NodeId(0)], ..Cluster::default() };
         let arms = [(0.0, 2.92), (2.38, height), (-1.94, -1.04)];
         for (i, (x, z)) in arms.into_iter().enumerate() {
             let origin = turn * Point3::new(x, 0.0, z);
@@ -110,7 +151,7 @@ fn ends_that_take_each_others_wall_take_less() {
     let arms = [([-1.634, -0.86, -2.417], 0.899), ([-0.229, 1.085, -3.082], 0.933), ([0.083, -2.087, 0.69], 1.0)];
     for seed in 0..24 {
         let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
-        let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
+        let mut cluster = Cluster { nodes: vec![NodeId(0)], ..Cluster::default() };
         for (i, (place, radius)) in arms.into_iter().enumerate() {
             let origin = turn * Point3::from(place);
             let axis = origin.coords.normalize();

@@ -5,7 +5,7 @@ use super::end_surface::StoredEnd;
 use super::params::BlockParams;
 use crate::geometry::{Point3, Section, Tube};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
-use crate::skeleton::{LARGEST, NodeId};
+use crate::skeleton::{FineFork, LARGEST, LEAST_SIZE, NodeId};
 use serde::{Deserialize, Serialize};
 
 /// Number of the format; another one whenever what a dump holds changes its meaning or its names.
@@ -109,6 +109,8 @@ impl BlockDump {
             nodes: cluster.nodes.iter().map(|&node| original(node)).collect(),
             tubes: cluster.tubes.clone(),
             ends: cluster.ends.iter().map(end).collect(),
+            fine: cluster.fine.clone(),
+            size: None,
         };
         Self::new(params, nodes, BlockInput::Cluster { id, cluster })
     }
@@ -191,6 +193,13 @@ fn check_cluster(cluster: &Cluster) -> Result<(), String> {
         check_point(b)?;
         check_radius(*ra)?;
         check_radius(*rb)?;
+    }
+    for FineFork { at, within, factor } in &cluster.fine {
+        check_point(at)?;
+        check_radius(*within)?;
+        if !(LEAST_SIZE..=1.0).contains(factor) {
+            return Err(format!("a fork has edges {factor} times as long"));
+        }
     }
     for end in &cluster.ends {
         check_section(&end.section)?;

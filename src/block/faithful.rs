@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crate::partition::{PartitionParams, partition};
     use crate::skeleton::fixtures::network;
-    use crate::surface::{SurfaceParams, vessel_wall};
+    use crate::surface::{Finer, SurfaceParams, vessel_wall};
 
     /// A polyline as one cluster.
     fn cluster(points: &[[f64; 3]]) -> Cluster {
@@ -146,7 +146,7 @@ mod tests {
     }
 
     fn wall(cluster: &Cluster) -> TriMesh {
-        vessel_wall(&cluster.tubes, &SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(0.5) })
+        vessel_wall(&cluster.tubes, &SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(0.5) }, &Finer::default())
             .expect("a wall")
             .mesh
     }

@@ -188,7 +188,7 @@ pub(crate) fn closed_euler(triangles: &[[u32; 3]]) -> Option<i64> {
 
 /// A star of vessels from a node: one per direction, ending in a cut or a terminal at 4 radii.
 pub(crate) fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
-    let mut cluster = Cluster { nodes: vec![NodeId(0)], tubes: Vec::new(), ends: Vec::new() };
+    let mut cluster = Cluster { nodes: vec![NodeId(0)], ..Cluster::default() };
     for &(axis, radius, kind) in arms {
         let origin = center + axis * 4.0;
         cluster.tubes.push(Tube { a: center, b: origin, ra: radius, rb: radius });
@@ -227,7 +227,7 @@ pub(crate) fn facing(cluster: &Cluster) -> (Cluster, Cut) {
     let center = first.origin + first.axis * 7.0;
     let facing = star(center, &[(-first.axis, 1.0, cut(0, 1)), (first.axis, 1.0, EndKind::Terminal(NodeId(3)))]);
     let path = vec![first, Section { origin: facing.ends[0].section.origin, ..first }];
-    (facing, Cut { branch: BranchId(0), sides: [(ClusterId(0), 0), (ClusterId(1), 0)], path })
+    (facing, Cut { branch: BranchId(0), sides: [(ClusterId(0), 0), (ClusterId(1), 0)], path, size: None })
 }
 
 /// End triangles and vertices bit for bit.

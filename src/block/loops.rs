@@ -153,7 +153,7 @@ mod tests {
         let tube = |a, b| Tube { a, b, ra: 1.0, rb: 1.0 };
         let mut tubes: Vec<Tube> = (0..12).map(|i| tube(at(i), at(i + 1))).collect();
         tubes.push(tube(at(0), Point3::new(radius + 9.0, 0.0, 0.0)));
-        Cluster { tubes, nodes: Vec::new(), ends: Vec::new() }
+        Cluster { tubes, ..Cluster::default() }
     }
 
     #[test]

@@ -1,8 +1,50 @@
 //! How the blocks of a network are made: arguments of every verb that makes them.
 
+use super::exit::Failure;
+use super::network::{NetworkArgs, PreparedNetwork};
 use super::room::size;
 use crate::pipeline::MeshPlan;
+use crate::prepare::PrepareParams;
 use crate::skeleton::resolution::{FOLLOW, RHO};
+use crate::skeleton::{NodeSizes, SizeAt};
+use std::fmt;
+use std::str::FromStr;
+
+/// What `--size-at` is given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SizeArg {
+    /// A factor at forks.
+    Forks(f64),
+    /// The name of an array.
+    Array(String),
+}
+
+impl FromStr for SizeArg {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(text.parse().map_or_else(|_| Self::Array(text.to_owned()), Self::Forks))
+    }
+}
+
+impl fmt::Display for SizeArg {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Forks(factor) => write!(f, "{factor}"),
+            Self::Array(name) => write!(f, "{name}"),
+        }
+    }
+}
+
+impl SizeArg {
+    /// What is known of it before the network is.
+    fn planned(&self) -> Option<SizeAt> {
+        match self {
+            Self::Forks(factor) => Some(SizeAt::Forks(*factor)),
+            Self::Array(name) => NodeSizes::new(name, &[]).ok().map(SizeAt::Nodes),
+        }
+    }
+}
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Blocks")]
@@ -17,6 +59,10 @@ pub struct BlockArgs {
     /// How much longer than wide tetrahedra are along vessels, in tubes between forks and caps: 1 to 20
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub stretch: f64,
+    /// Shorter edges at forks: so many times as long as RHO has them, 0.25 to 1, growing again towards the tubes; or by an array
+    /// of the network's nodes, in which numbers below 1 make forks finer, and those above 1 stretch tubes
+    #[arg(long, value_name = "FACTOR|ARRAY", allow_negative_numbers = true)]
+    pub size_at: Option<SizeArg>,
     /// Memory that may be used, such as 2GiB or 500MB, however large the network
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
     pub memory: u64,
@@ -35,6 +81,7 @@ impl BlockArgs {
             rho: self.rho,
             follow: self.follow,
             stretch: self.stretch,
+            size_at: self.size_at.as_ref().and_then(SizeArg::planned),
             memory: self.memory,
             fuse: self.refine.is_some() && fuse,
             keep_going: self.keep_going,
@@ -42,10 +89,24 @@ impl BlockArgs {
         }
     }
 
+    /// Reads the network that they are for, with what it says of their blocks, which goes into the plan.
+    pub fn read(
+        &self,
+        network: &NetworkArgs,
+        params: &PrepareParams,
+        plan: &mut MeshPlan,
+    ) -> Result<PreparedNetwork, Failure> {
+        let Some(SizeArg::Array(array)) = &self.size_at else { return network.prepared(params) };
+        let prepared = network.prepared_with(params, Some(array))?;
+        plan.size_at = Some(prepared.sizes(array)?);
+        Ok(prepared)
+    }
+
     /// What of them a mesh depends on, as they are typed.
     pub fn typed(&self) -> String {
         let refine = self.refine.map_or_else(String::new, |n| format!(" --refine {n}"));
         let stretch = if self.stretch == 1.0 { String::new() } else { format!(" --stretch {}", self.stretch) };
-        format!("--rho {} --follow {}{stretch}{refine}", self.rho, self.follow)
+        let size = self.size_at.as_ref().map_or_else(String::new, |size| format!(" --size-at {size}"));
+        format!("--rho {} --follow {}{stretch}{size}{refine}", self.rho, self.follow)
     }
 }

@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that few ask for.
-const RARE: [&str; 41] = [
+const RARE: [&str; 42] = [
     "allow-displaced",
     "angle-rate",
     "barrier-rate",
@@ -45,6 +45,7 @@ const RARE: [&str; 41] = [
     "samples",
     "scale",
     "shard",
+    "size-at",
     "smooth-noise",
     "stretch",
     "to",

@@ -175,7 +175,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
     let pool = thread_pool(args.common.threads)?;
-    let mut network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
+    let read = || args.blocks.read(&args.network, &args.cures.params(true), &mut plan);
+    let mut network = pool.install(read)?;
     let inlets = network.inlets(&args.root)?;
     let cut_short = pool.install(|| args.flow.extend(&mut network, &inlets));
     plan.roots.clone_from(&inlets.roots);

@@ -8,7 +8,7 @@ use crate::io::network::{NetworkFile, NetworkFormat, NetworkNote, NetworkOptions
 use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare_lines};
 use crate::report::inlets::{Inlets, NoTerminal};
 use crate::report::prepare::text;
-use crate::skeleton::{CleanReport, NodeId, Skeleton, clean};
+use crate::skeleton::{BadSize, CleanReport, NodeId, NodeSizes, SizeAt, Skeleton, clean};
 
 /// Arguments of every verb that reads a network.
 #[derive(Clone, Debug, clap::Args)]
@@ -72,6 +72,8 @@ pub struct PreparedNetwork {
     pub names: NodeNames,
     /// Roots of the trees in the file.
     roots: Vec<NodeId>,
+    /// The numbers of the array that was asked for, one for each node of the file.
+    node_values: Vec<f64>,
 }
 
 impl NetworkArgs {
@@ -83,18 +85,23 @@ impl NetworkArgs {
             radius_scale: self.radius_scale,
             scale: self.scale.or(self.units.and_then(Units::factor)),
             any_radii,
+            node_array: None,
         }
     }
 
     /// Reads the network as it stands in its file.
     pub fn file(&self, any_radii: bool) -> Result<NetworkFile, Failure> {
+        self.file_with(self.options(any_radii))
+    }
+
+    fn file_with(&self, options: NetworkOptions) -> Result<NetworkFile, Failure> {
         if let (Some(name), Ok(NetworkFormat::Swc)) = (&self.radius_array, NetworkFormat::of(&self.network)) {
             let path = self.network.display();
             return Err(Failure::usage(format!(
                 "{path}: SWC has one column of radii, without a name: leave --radius-array {name} out, or give --radius-scale"
             )));
         }
-        let file = read_network(&self.network, &self.options(any_radii));
+        let file = read_network(&self.network, &options);
         let mut file = file.map_err(|e| Failure::input(e.to_string()))?;
         if let Some([from, to]) = self.units.map(Units::names) {
             file.notes.push(NetworkNote::Unit { from, to });
@@ -104,13 +111,19 @@ impl NetworkArgs {
 
     /// Reads the network and applies cures to it.
     pub fn prepared(&self, params: &PrepareParams) -> Result<PreparedNetwork, Failure> {
-        let file = self.file(params.radii)?;
+        self.prepared_with(params, None)
+    }
+
+    /// The same with the numbers of an array on its nodes.
+    pub fn prepared_with(&self, params: &PrepareParams, array: Option<&str>) -> Result<PreparedNetwork, Failure> {
+        let file =
+            self.file_with(NetworkOptions { node_array: array.map(str::to_owned), ..self.options(params.radii) })?;
         let prepared = prepare_lines(&file.skeleton, &file.groups, params);
         let prepared =
             prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;
         let Prepared { skeleton, given, outline, report } = prepared;
-        let NetworkFile { notes, names, roots, .. } = file;
-        Ok(PreparedNetwork { given, outline, skeleton, notes, report, names, roots })
+        let NetworkFile { notes, names, roots, node_values, .. } = file;
+        Ok(PreparedNetwork { given, outline, skeleton, notes, report, names, roots, node_values })
     }
 
     /// Reads and cleans the network.
@@ -137,6 +150,18 @@ impl Network {
 }
 
 impl PreparedNetwork {
+    /// How long edges are asked to be by an array of the file.
+    pub fn sizes(&self, array: &str) -> Result<SizeAt, Failure> {
+        let sizes = NodeSizes::new(array, &self.node_values).map_err(|BadSize { node, value }| {
+            Failure::input(format!(
+                "--size-at {array}: node {} has the value {value}; each node needs a finite number above zero (1: edges as \
+                 rho has them): correct the array",
+                self.names.of(node)
+            ))
+        });
+        sizes.map(SizeAt::Nodes)
+    }
+
     /// Nothing but what is to be meshed: large networks ask for the room of the rest.
     pub fn into_skeleton(self) -> Skeleton {
         self.skeleton

@@ -58,11 +58,11 @@ struct Output<'a> {
 
 /// Makes the wall of a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let plan = MeshPlan { hollow: true, ..args.blocks.plan(args.how.fuses()) };
+    let mut plan = MeshPlan { hollow: true, ..args.blocks.plan(args.how.fuses()) };
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
     ensure_boundary_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     let pool = thread_pool(args.common.threads)?;
-    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
+    let network = pool.install(|| args.blocks.read(&args.network, &args.cures.params(true), &mut plan))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     for remark in network.remarks(args.common.verbose) {

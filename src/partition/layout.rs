@@ -15,15 +15,20 @@ use super::settle::{Run, Settler};
 use super::summary::{PartitionSummary, UncutCounts};
 use crate::geometry::{Section, Tube};
 use crate::skeleton::course::{Course, Courses, Way};
-use crate::skeleton::{BranchId, Chains, NodeId, Skeleton};
+use crate::skeleton::{BranchId, Chains, FineFork, Leg, NodeId, SizeAt, Skeleton};
 
 const NONE: u32 = u32::MAX;
+/// Over how many radii of a fork the directions of its vessels are measured.
+const LEG: f64 = 3.0;
 
 /// Where a network is cut. Clusters are ordered by their lowest node, cuts by branch and place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Layout {
     #[serde(skip)]
     skeleton: Arc<Skeleton>,
+    /// How long edges are asked to be.
+    #[serde(skip)]
+    sizes: Option<SizeAt>,
     chains: Chains,
     overrun: Overruns,
     /// The pieces of branches that the clusters hold, cluster by cluster.
@@ -80,6 +85,7 @@ impl Layout {
         uncut.dedup_by_key(|(branch, _)| *branch);
         let mut layout = Self {
             skeleton,
+            sizes: None,
             // They belong to the settler still.
             chains: Chains::default(),
             overrun: settler.params.overruns(),
@@ -252,6 +258,12 @@ impl Layout {
         Self { skeleton, ..self }
     }
 
+    /// The same with edges of such lengths asked for.
+    #[must_use]
+    pub fn sized(self, sizes: Option<SizeAt>) -> Self {
+        Self { sizes, ..self }
+    }
+
     /// Number of clusters.
     pub fn clusters_len(&self) -> usize {
         self.r_min.len()
@@ -343,7 +355,9 @@ impl Layout {
     /// What a connector is made from.
     pub fn cut(&self, id: CutId) -> Cut {
         let PlacedCut { branch, planes, sides } = self.cuts[id.0 as usize];
-        Cut { branch: BranchId(branch), sides, path: path(&self.course(branch), planes) }
+        let course = self.course(branch);
+        let size = self.size_amid(&course, planes);
+        Cut { branch: BranchId(branch), sides, path: path(&course, planes), size }
     }
 
     /// What a cluster is made from.
@@ -352,7 +366,8 @@ impl Layout {
     }
 
     fn cluster_with(&self, id: ClusterId, mut each: impl FnMut(Piece)) -> Cluster {
-        let mut cluster = Cluster { nodes: self.nodes(id).to_vec(), tubes: Vec::new(), ends: Vec::new() };
+        let mut cluster = Cluster { nodes: self.nodes(id).to_vec(), ..Cluster::default() };
+        let mut legs: Vec<(NodeId, Leg)> = Vec::new();
         let r_min = self.r_min[id.0 as usize];
         for (index, piece) in (self.first_piece[id.0 as usize]..).zip(self.pieces_of(id.0 as usize)) {
             let course = self.course(piece.branch);
@@ -362,6 +377,11 @@ impl Layout {
             cluster.tubes.extend(course.tubes(arc[0], arc[1], flat));
             let tubes = first..cluster.tubes.len() as u32;
             each(Piece { cluster: id, branch: BranchId(piece.branch), arc, tubes });
+            if self.sizes.is_some() {
+                let ways = Way::BOTH.into_iter().enumerate().filter(|(end, _)| !flat[*end]);
+                legs.extend(ways.map(|(end, way)| (course.branch.ends()[end], self.leg(&course, end, way))));
+                cluster.size = self.size_amid(&course, arc);
+            }
             for (end, way) in Way::BOTH.into_iter().enumerate().filter(|(end, _)| flat[*end]) {
                 let section = course.section(arc[end], way);
                 let usual = self.overrun.length(section.radius, r_min);
@@ -373,7 +393,40 @@ impl Layout {
                 add_end(&mut cluster, section, overrun, kind);
             }
         }
+        cluster.size = cluster.size.filter(|_| self.pieces_in(id) == 1);
+        cluster.fine = self.fine(legs);
         cluster
+    }
+
+    /// A vessel as it leaves the node at one of its ends.
+    fn leg(&self, course: &Course, end: usize, way: Way) -> Leg {
+        let node = self.skeleton.node(course.branch.ends()[end]);
+        // Seen from a node, the ways out are named the other way round.
+        let out = [Way::Onward, Way::Back][end];
+        let radius = course.radius([0.0, course.length()][end], way);
+        Leg { direction: course.leaving(out, LEG * node.radius), radius }
+    }
+
+    /// The forks of a cluster that are to have shorter edges, by the vessels that leave each node.
+    fn fine(&self, mut legs: Vec<(NodeId, Leg)>) -> Vec<FineFork> {
+        let Some(sizes) = &self.sizes else { return Vec::new() };
+        legs.sort_by_key(|(node, _)| *node);
+        let fork = |legs: &[(NodeId, Leg)]| {
+            let node = self.skeleton.node(legs[0].0);
+            let legs: Vec<Leg> = legs.iter().map(|(_, leg)| *leg).collect();
+            FineFork::new(node.position, &legs, sizes.at_fork(node.original))
+        };
+        legs.chunk_by(|a, b| a.0 == b.0).filter_map(fork).collect()
+    }
+
+    /// What is asked for in the middle of a piece of a vessel, by the nodes beside it.
+    fn size_amid(&self, course: &Course, [lo, hi]: [f64; 2]) -> Option<f64> {
+        let (sizes, branch) = (self.sizes.as_ref()?, &course.branch);
+        let middle = 0.5 * (lo + hi);
+        let next = branch.arc.partition_point(|&s| s <= middle).clamp(1, branch.arc.len() - 1);
+        let [a, b] = [next - 1, next].map(|i| self.skeleton.node(branch.nodes[i]).original);
+        let share = (middle - branch.arc[next - 1]) / (branch.arc[next] - branch.arc[next - 1]);
+        sizes.between([a, b], share.clamp(0.0, 1.0))
     }
 
     /// All of it at hand.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::summary::PartitionSummary;
 use crate::geometry::{Section, Tube};
-use crate::skeleton::{BranchId, NodeId};
+use crate::skeleton::{BranchId, FineFork, NodeId};
 
 /// Index of a cluster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -97,7 +97,7 @@ pub enum PartitionWarning {
 }
 
 /// Branches that are meshed together.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cluster {
     /// Nodes inside the cluster.
     pub nodes: Vec<NodeId>,
@@ -106,6 +106,12 @@ pub struct Cluster {
     pub tubes: Vec<Tube>,
     /// Where the cluster ends.
     pub ends: Vec<ClusterEnd>,
+    /// Forks that are to have shorter edges.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fine: Vec<FineFork>,
+    /// What the network asks for in the middle of a cluster that is one vessel, in edges that the resolution gives.
+    #[serde(skip)]
+    pub size: Option<f64>,
 }
 
 /// A plane at which a cluster ends.
@@ -144,6 +150,9 @@ pub struct Cut {
     /// The vessel between the two cut planes: sections from side 0's plane to side 1's, axes along the way from 0 to 1;
     /// between two consecutive sections the axis is straight (or turns by little) and the radius linear.
     pub path: Vec<Section>,
+    /// What the network asks for in the middle of it, in edges that the resolution gives.
+    #[serde(skip)]
+    pub size: Option<f64>,
 }
 
 impl Cut {

@@ -91,7 +91,8 @@ pub(super) fn describe_blocks(
         }
         if let Err(error) = &blocks.clusters[i] {
             let original = |node| skeleton.node(node).original;
-            let (cluster, params) = (&partition.cluster(id), shop.plan.block_params());
+            let cluster = &partition.cluster(id);
+            let params = shop.plan.of_tube(cluster.size).block_params();
             let input = BlockDump::of_cluster(id, cluster, params, nodes(), original);
             report.failed.push(FailedBlock {
                 block: format!("cluster {i}"),
@@ -109,7 +110,8 @@ pub(super) fn describe_blocks(
     for (i, made) in blocks.connectors.iter().enumerate() {
         let Some(Err(error)) = made else { continue };
         let id = CutId(i as u32);
-        let (cut, params) = (&partition.cut(id), shop.plan.block_params());
+        let cut = &partition.cut(id);
+        let params = shop.plan.of_tube(cut.size).block_params();
         let nodes = || cut_nodes(skeleton, partition, id);
         let input = match shop.plan.joint {
             JointStyle::Woven => {

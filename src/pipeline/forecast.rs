@@ -34,7 +34,7 @@ impl Forecast {
     pub fn of(network: &Skeleton, plan: &MeshPlan) -> Result<Self, RunError> {
         let (network, _) = split(network);
         let params = partition_params(&network, plan, &BTreeMap::new(), &BTreeSet::new());
-        let partition = partition::lay_out(&Arc::new(network), &params)?;
+        let partition = partition::lay_out(&Arc::new(network), &params)?.sized(plan.size_at.clone());
         Ok(Self {
             clusters: partition.clusters_len(),
             connectors: partition.cuts_len(),

@@ -44,12 +44,13 @@ impl Workshop<'_> {
         first: Way,
         watch: &Watch,
     ) -> Result<Made, StoreError> {
-        let key = cluster_key(cluster, self.plan, overlapping, first);
+        let plan = &*self.plan.of_tube(cluster.size);
+        let key = cluster_key(cluster, plan, overlapping, first);
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
         let original = |node| self.skeleton.node(node).original;
-        self.keep(key, attempts::cluster(id, cluster, self.plan, overlapping, first, original, watch))
+        self.keep(key, attempts::cluster(id, cluster, plan, overlapping, first, original, watch))
     }
 
     /// A connector between the discs that the vessel alone gives.
@@ -57,11 +58,12 @@ impl Workshop<'_> {
     /// # Errors
     /// When the store fails; a block that fails is no error here.
     pub fn free_connector(&self, id: CutId, cut: &Cut) -> Result<Made, StoreError> {
-        let key = connector_key(cut, self.plan, &[]);
+        let plan = &*self.plan.of_tube(cut.size);
+        let key = connector_key(cut, plan, &[]);
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
-        self.keep(key, attempts::free_connector(id, cut, self.plan))
+        self.keep(key, attempts::free_connector(id, cut, plan))
     }
 
     /// A connector between the ends of its two clusters, which are done.
@@ -182,6 +184,12 @@ fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: Way
         }
         key.id(end.overrun);
     }
+    // Clusters without are found by the keys that they always had.
+    for fork in &cluster.fine {
+        key.point(&fork.at);
+        key.float(fork.within);
+        key.float(fork.factor);
+    }
     key.finish()
 }
 
@@ -202,11 +210,13 @@ fn connector_key(cut: &Cut, plan: &MeshPlan, ends: &[StoredEnd]) -> Key {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pipeline::plan::MOST_STRETCH;
+    use crate::skeleton::{FineFork, SizeAt};
     use crate::tet::Layers;
 
     #[test]
     fn a_cluster_is_found_only_by_all_that_it_depends_on() {
-        let (cluster, plan) = (Cluster { nodes: Vec::new(), tubes: Vec::new(), ends: Vec::new() }, MeshPlan::default());
+        let (cluster, plan) = (Cluster::default(), MeshPlan::default());
         let plain = cluster_key(&cluster, &plan, true, Way::Usual);
         let others = [
             MeshPlan { rho: 4.0, ..plan.clone() },
@@ -225,5 +235,17 @@ mod tests {
         assert_ne!(cluster_key(&cluster, &plan, false, Way::Usual), plain);
         assert_ne!(cluster_key(&cluster, &plan, true, Way::Finest), plain);
         assert_eq!(cluster_key(&cluster, &plan, true, Way::Usual), plain);
+        // What is asked for of forks counts where there is one, and what tubes are stretched by once it is known.
+        let asked = MeshPlan { size_at: Some(SizeAt::Forks(0.5)), ..plan.clone() };
+        assert_eq!(cluster_key(&cluster, &asked, true, Way::Usual), plain);
+        let forked = |factor| {
+            let fork = FineFork { at: crate::geometry::Point3::origin(), within: 1.0, factor };
+            cluster_key(&Cluster { fine: vec![fork], ..cluster.clone() }, &asked, true, Way::Usual)
+        };
+        assert!(forked(0.5) != plain && forked(0.5) != forked(0.4));
+        let stretched = |size| cluster_key(&cluster, &asked.of_tube(size), true, Way::Usual);
+        assert!(stretched(Some(2.0)) != plain && stretched(Some(2.0)) != stretched(Some(3.0)));
+        assert_eq!([None, Some(0.3), Some(1.0)].map(stretched), [plain; 3]);
+        assert_eq!(stretched(Some(90.0)), stretched(Some(MOST_STRETCH)));
     }
 }

@@ -22,6 +22,7 @@ mod routes;
 mod run;
 mod schedule;
 mod share;
+mod sizes;
 mod store;
 mod terminals;
 #[cfg(test)]

@@ -76,6 +76,7 @@ pub fn replay(dump: &BlockDump, watch: &Watch) -> Result<Finished, BlockError> {
 mod tests {
     use super::*;
     use crate::block::fixtures::{bifurcation, facing};
+    use crate::skeleton::FineFork;
 
     #[test]
     fn a_dumped_block_runs_again_to_the_same_bits() {
@@ -91,6 +92,12 @@ mod tests {
             assert_eq!(read, dump);
             assert_eq!(replay(&read, &Watch::NOBODY).expect("runs again"), *made);
         };
+        let fork = FineFork { at: input.tubes[0].a, within: 1.2, factor: 0.5 };
+        let finer = Cluster { fine: vec![fork], ..input.clone() };
+        let dump = BlockDump::of_cluster(ClusterId(0), &finer, params, vec![1, 2], |node| node.0);
+        let made = whole(&finer, params.ends);
+        assert_ne!(made, whole(&input, params.ends));
+        again(dump, &made);
         for ends in [EndStyle::Disc, EndStyle::Shared, EndStyle::Open] {
             let params = BlockParams { ends, ..params };
             let dump = BlockDump::of_cluster(ClusterId(0), &input, params, vec![1, 2], |node| node.0);

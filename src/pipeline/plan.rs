@@ -2,7 +2,9 @@
 
 use crate::block::{BlockParams, EndStyle};
 use crate::skeleton::resolution::{FOLLOW, RHO};
+use crate::skeleton::{LEAST_SIZE, SizeAt};
 use crate::tet::{Layers, LayersError};
+use std::borrow::Cow;
 
 /// How blocks meet at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -39,6 +41,9 @@ pub struct MeshPlan {
     pub follow: f64,
     /// How much longer than wide tetrahedra are, along vessels, in what is made by template: tubes between forks and caps.
     pub stretch: f64,
+    /// Shorter edges at forks, and tubes stretched as the network says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size_at: Option<SizeAt>,
     /// How much longer than at the wall edges are on the axis of a vessel.
     pub core: f64,
     /// Layers along the wall.
@@ -73,6 +78,7 @@ impl Default for MeshPlan {
             rho: RHO,
             follow: FOLLOW,
             stretch: 1.0,
+            size_at: None,
             core: 1.0,
             layers: None,
             joint: JointStyle::default(),
@@ -88,7 +94,7 @@ impl Default for MeshPlan {
 }
 
 /// A plan that cannot be run.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// ρ outside of what makes sense.
@@ -105,6 +111,26 @@ pub enum PlanError {
         "stretch = {0} needs joints by discs: no vessel is a tube by template where joints are woven or nothing is cut"
     )]
     StretchWoven(f64),
+    /// Edges at forks outside of what makes sense.
+    #[error(
+        "size-at = {0} is not usable: it must lie between {LEAST_SIZE} (edges at forks a quarter as long) and 1 (as rho has them)"
+    )]
+    SizeAt(f64),
+    /// Woven joints, or none, have no discs that stay as they are.
+    #[error(
+        "size-at needs joints by discs: where joints are woven or nothing is cut, edges are as long as rho has them"
+    )]
+    SizeAtWoven,
+    /// Two that say how long tubes are stretched.
+    #[error(
+        "stretch = {stretch} and size-at by the array '{array}' both say how long tubes are stretched: leave one out"
+    )]
+    StretchTwice {
+        /// The one.
+        stretch: f64,
+        /// The other.
+        array: String,
+    },
     /// Edges in the core outside of what makes sense.
     #[error("core = {0} is not usable: it must lie between {least} (half as long on axes as at the wall) and {most}",
         least = CORES[0], most = CORES[1])]
@@ -143,6 +169,25 @@ impl MeshPlan {
         BlockParams { follow, ends, stretch, core, layers, hollow, ..BlockParams::with_rho(self.rho) }
     }
 
+    /// The plan of a block that is a tube, where the network says how long its edges are: stretched so.
+    pub(crate) fn of_tube(&self, size: Option<f64>) -> Cow<'_, Self> {
+        match size.map(|size| size.clamp(1.0, MOST_STRETCH)) {
+            Some(stretch) if stretch != self.stretch => Cow::Owned(Self { stretch, ..self.clone() }),
+            _ => Cow::Borrowed(self),
+        }
+    }
+
+    fn validate_sizes(&self, size_at: &SizeAt) -> Result<(), PlanError> {
+        match size_at {
+            _ if self.joint != JointStyle::Disc => Err(PlanError::SizeAtWoven),
+            SizeAt::Forks(factor) if !(LEAST_SIZE..=1.0).contains(factor) => Err(PlanError::SizeAt(*factor)),
+            SizeAt::Nodes(sizes) if self.stretch != 1.0 => {
+                Err(PlanError::StretchTwice { stretch: self.stretch, array: sizes.array().to_owned() })
+            }
+            SizeAt::Forks(_) | SizeAt::Nodes(_) => Ok(()),
+        }
+    }
+
     /// # Errors
     /// When a parameter is out of its range.
     pub fn validate(&self) -> Result<(), PlanError> {
@@ -162,6 +207,7 @@ impl MeshPlan {
                 return Err(PlanError::LayersWoven);
             }
         }
+        self.size_at.as_ref().map_or(Ok(()), |size_at| self.validate_sizes(size_at))?;
         match self.stretch {
             1.0 => Ok(()),
             stretch if !(1.0..=MOST_STRETCH).contains(&stretch) => Err(PlanError::Stretch(stretch)),

@@ -16,6 +16,7 @@ use super::plan::JointStyle;
 use super::report::Retry;
 use super::routes::{branch_pairs, tangled_clusters};
 use super::schedule::{Cost, costliest_first};
+use super::sizes;
 use super::store::{KeyMaker, RecordId, StoreError, fingerprint};
 use super::timing::{BlockTimes, Clock};
 use crate::block::Cured;
@@ -32,6 +33,8 @@ pub struct Run<'a> {
     /// Vessels of the network that overlap.
     pub overlaps: &'a Overlaps,
     pub shop: Workshop<'a>,
+    /// Whether it says what becomes of sizes that are asked for: once is enough.
+    pub tells: bool,
     pub progress: &'a dyn Progress,
     pub clock: &'a mut Clock,
 }
@@ -60,6 +63,9 @@ impl Run<'_> {
             let partition = self.partition(&cures, &together)?;
             if round == 0 {
                 fits(&Estimate::of(&partition, plan))?;
+                if self.tells {
+                    sizes::announce(self.shop.skeleton, &partition, plan, self.progress);
+                }
             }
             let (clusters, connectors) = self.pass(&partition, &mut times)?;
             notes.take(self, &partition, &clusters, &connectors)?;
@@ -93,7 +99,8 @@ impl Run<'_> {
             key.finish()
         };
         let cut = || partition::lay_out(skeleton, &params).map_err(RunError::from);
-        let kept = || Ok(store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton)));
+        let kept =
+            || Ok(store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton)).sized(plan.size_at.clone()));
         self.clock.time(progress, Stage::Partition, 0, kept)
     }
 

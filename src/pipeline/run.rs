@@ -168,7 +168,7 @@ fn join_blocks<'a>(
         announce(&report, progress);
     }
     let shop = Workshop { skeleton: &skeleton, plan, store };
-    let mut run = Run { overlaps: &overlaps, shop, progress, clock };
+    let mut run = Run { overlaps: &overlaps, shop, tells: first, progress, clock };
     let mut blocks = run.build(&apart.uncut, if first { fits } else { &|_| Ok(()) })?;
     for (way, meetings) in Way::APART.into_iter().zip(&apart.met) {
         run.set_apart(&mut blocks, meetings, way)?;

@@ -62,7 +62,7 @@ pub fn make_share(
     drop(network);
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let tasks = clock.time(progress, Stage::Prepare, 0, || Tasks::of(&shop, progress))?;
-    let mut run = Run { overlaps: &Overlaps::default(), shop, progress, clock: &mut clock };
+    let mut run = Run { overlaps: &Overlaps::default(), shop, tells: false, progress, clock: &mut clock };
     let mut report = run.share(shard, &tasks, fits)?;
     store.mark_done(shard)?;
     report.stages = clock.stages();
@@ -92,7 +92,8 @@ impl Tasks {
         };
         let find = || {
             let overlaps = shop.skeleton.overlaps(&shop.skeleton.adjacency());
-            let mut run = Run { overlaps: &overlaps, shop: *shop, progress, clock: &mut Clock::default() };
+            let mut run =
+                Run { overlaps: &overlaps, shop: *shop, tells: false, progress, clock: &mut Clock::default() };
             let together = run.together();
             let partition = run.partition(&BTreeMap::new(), &together)?;
             let weights = run.costs(&partition).iter().map(|cost| 1 + cost.tets as u64).collect();

@@ -18,6 +18,7 @@ mod measured;
 mod metrics;
 mod overlap;
 pub mod resolution;
+mod size_at;
 #[cfg(test)]
 mod tests;
 mod walk;
@@ -33,9 +34,11 @@ pub use graph::{Adjacency, Component};
 pub use groups::LineGroup;
 pub use metrics::{Barrier, Metrics, NARROW, Share};
 pub use overlap::{Overlap, Overlaps};
+pub use size_at::{BadSize, FineFork, LEAST_SIZE, NodeSizes, SizeAt};
 
 pub(crate) use chains::Chains;
 pub(crate) use groups::Kinship;
 pub(crate) use metrics::paper_unit;
 pub(crate) use overlap::{JOINED, deepest_apart};
+pub(crate) use size_at::Leg;
 pub use walk::LocalDistances;

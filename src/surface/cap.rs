@@ -10,7 +10,7 @@ use super::disc::{MEAN_EDGE, corners, disc};
 use super::halfedge::HalfEdges;
 use super::relax::{Hold, Level, Relaxation};
 use super::shared_disc::SharedDisc;
-use super::sizes::GROWTH;
+use super::sizes::{Finer, GROWTH};
 use super::{Field, SizedWall, SurfaceParams};
 use crate::geometry::{Point3, Section, Vec3};
 use crate::mesh::{Kept, TriMesh};
@@ -124,7 +124,7 @@ pub fn cap_terminals(
         closed = self::closed(wall, ends, params, &MARGINS[first..]).or(closed);
     }
     let (mesh, sizes, cap) = closed?.finish();
-    relaxed(&mesh, sizes, &cap, field, ends, params)
+    relaxed(&mesh, sizes, &cap, field, ends, params, &wall.finer)
 }
 
 /// The wall with all ends closed, the strips beginning so far before the planes as the first of `margins` says that can be
@@ -401,6 +401,9 @@ struct Raised<'a> {
     field: &'a mut Field,
     by: f64,
     section: &'a Section,
+    /// The edge length, and where edges are shorter.
+    edge: f64,
+    finer: &'a Finer,
 }
 
 impl Level for Raised<'_> {
@@ -409,7 +412,7 @@ impl Level for Raised<'_> {
             return (1.0, Vec3::zeros());
         }
         let (value, gradient) = self.field.value_and_gradient(p);
-        (value - self.by, gradient)
+        (value - self.by * self.finer.factor(p, self.edge).powi(2), gradient)
     }
 }
 
@@ -421,6 +424,7 @@ fn relaxed(
     field: &mut Field,
     ends: &[Closing],
     params: &SurfaceParams,
+    finer: &Finer,
 ) -> Result<CappedSurface, CapError> {
     let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
     let mut on_disc = vec![false; mesh.points.len()];
@@ -439,7 +443,7 @@ fn relaxed(
         let section = &closing.section;
         let edge = closing.edge(params);
         let chord = MEAN_EDGE * edge / section.radius;
-        let mut level = Raised { field: &mut *field, by: chord * chord / 16.0, section };
+        let mut level = Raised { field: &mut *field, by: chord * chord / 16.0, section, edge, finer };
         let before = |height: f64| height > -RELAXED * edge && height < 0.0;
         let leaning = |height: f64| height >= 0.0 && height < LONGEST_TIP * section.radius;
         on_disc.resize(surface.points.len(), false);

@@ -20,6 +20,7 @@ pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub use field::Field;
 pub use params::{SurfaceError, SurfaceParams};
 pub use shared_disc::SharedDisc;
+pub use sizes::Finer;
 
 use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Tube, Vec3};
@@ -34,7 +35,7 @@ use relax::Relaxation;
 /// Tubes or parameters that make no sense; a wall that is too large for the limit, not resolved by the grid, or not one
 /// piece.
 pub fn vessel_surface(tubes: &[Tube], params: &SurfaceParams) -> Result<TriMesh, SurfaceError> {
-    vessel_wall(tubes, params).map(|wall| wall.mesh)
+    vessel_wall(tubes, params, &Finer::default()).map(|wall| wall.mesh)
 }
 
 /// A wall, and how long its edges are meant to be.
@@ -44,15 +45,17 @@ pub struct SizedWall {
     pub mesh: TriMesh,
     /// The edge length aimed at, at each vertex.
     pub sizes: Vec<f64>,
+    /// Where these are shorter than the radius asks for.
+    pub finer: Finer,
     /// The mesh once more, its triangles linked.
     pub(crate) halves: HalfEdges,
 }
 
-/// As [`vessel_surface`], with the edge lengths aimed at.
+/// As [`vessel_surface`], with the edge lengths aimed at, which are shorter where `finer` says so.
 ///
 /// # Errors
 /// As there.
-pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams) -> Result<SizedWall, SurfaceError> {
+pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams, finer: &Finer) -> Result<SizedWall, SurfaceError> {
     check(params)?;
     let mut field = Field::new(tubes, params.kappa)?;
     let estimate = estimated_cells(tubes, params.voxel);
@@ -61,14 +64,14 @@ pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams) -> Result<SizedWall, 
     }
     let mesh = contour_field(tubes, &mut field, params)?;
     let mut surface = HalfEdges::new(&mesh).map_err(|edge| SurfaceError::NotManifold { edge })?;
-    let sizes = sizes::wall_sizes(&surface, &mut field, params);
+    let sizes = sizes::wall_sizes(&surface, &mut field, params, finer);
     let mut relaxation = Relaxation::new(&mut surface, &mut field, sizes, Vec::new());
-    relaxation.run(params.rounds as usize);
+    relaxation.run((params.rounds + finer.rounds()) as usize);
     let sizes = relaxation.sizes;
     let (surface, map) = surface.compacted();
     let kept = sizes.into_iter().zip(map).filter(|(_, new)| *new != halfedge::NONE);
     let sizes = kept.map(|(size, _)| size).collect();
-    Ok(SizedWall { mesh: surface.to_mesh().0, sizes, halves: surface })
+    Ok(SizedWall { mesh: surface.to_mesh().0, sizes, finer: finer.clone(), halves: surface })
 }
 
 /// Euler characteristic `V − E + F` of a closed triangle surface: 2 per component, less 2 per handle.

@@ -2,7 +2,8 @@
 
 use super::halfedge::HalfEdges;
 use super::*;
-use crate::geometry::Tube;
+use crate::geometry::{Section, Tube};
+use crate::skeleton::FineFork;
 use proptest::prelude::*;
 
 fn tube(a: [f64; 3], b: [f64; 3], ra: f64, rb: f64) -> Tube {
@@ -243,7 +244,7 @@ fn edges_follow_the_radius() {
         tube([0.0, 0.0, 0.0], [0.5, 6.0, 0.0], 0.5, 0.5),
     ];
     let params = SurfaceParams { thin: 0.5, follow: 1.0, ..SurfaceParams::with_voxel(1.0 / 3.0) };
-    let wall = vessel_wall(&tubes, &params).unwrap();
+    let wall = vessel_wall(&tubes, &params, &Finer::default()).unwrap();
     check_wall(&wall.mesh);
     assert_eq!(wall.sizes.len(), wall.mesh.points.len());
     let all = edges(&wall.mesh);
@@ -253,7 +254,7 @@ fn edges_follow_the_radius() {
     };
     let (thick, thin) = (mean(&|p| p.x.abs() > 4.0), mean(&|p| p.y > 3.0));
     assert!((2.6..3.6).contains(&(thick / thin)), "{thick} {thin}");
-    let as_fine = vessel_wall(&tubes, &SurfaceParams { follow: 0.0, ..params }).unwrap();
+    let as_fine = vessel_wall(&tubes, &SurfaceParams { follow: 0.0, ..params }, &Finer::default()).unwrap();
     assert!(2 * wall.mesh.triangles.len() < as_fine.mesh.triangles.len());
     // No triangle is half as large again as its neighbour.
     let mut sides: Vec<([u32; 2], usize)> = Vec::new();
@@ -264,6 +265,39 @@ fn edges_follow_the_radius() {
     for pair in sides.chunks_exact(2) {
         let ratio = all[pair[0].1].1 / all[pair[1].1].1;
         assert!((1.0 / 1.5..1.5).contains(&ratio), "{ratio} at {}", all[pair[0].1].0);
+    }
+}
+
+#[test]
+fn edges_at_forks_are_as_short_as_asked_and_on_the_same_wall() {
+    let way = |y: f64| Vec3::new(1.0, y, 0.0).normalize();
+    let ways = [Vec3::new(-1.0, 0.0, 0.0), way(0.9), way(-0.9)];
+    let tubes: Vec<Tube> =
+        ways.iter().map(|w| Tube { a: Point3::origin(), b: Point3::from(w * 8.0), ra: 1.0, rb: 1.0 }).collect();
+    let ends: Vec<Section> =
+        ways.iter().map(|w| Section { origin: Point3::from(w * 4.0), axis: *w, radius: 1.0 }).collect();
+    let params = SurfaceParams { thin: 1.0, follow: 1.0, ..SurfaceParams::with_voxel(2.0 / 3.0) };
+    let mut field = Field::new(&tubes, params.kappa).unwrap();
+    let walls = [1.0, 0.5, 0.25].map(|factor| {
+        let fork = FineFork { at: Point3::origin(), within: 1.3, factor };
+        let finer = Finer { forks: vec![fork], ends: ends.clone() };
+        let wall = vessel_wall(&tubes, &params, &finer).unwrap();
+        check_wall(&wall.mesh);
+        let all = edges(&wall.mesh);
+        let mean = |from: f64, to: f64| {
+            let kept = all.iter().filter(|(p, _)| (from..to).contains(&p.coords.norm())).map(|e| e.1);
+            let kept: Vec<f64> = kept.collect();
+            kept.iter().sum::<f64>() / kept.len() as f64
+        };
+        let off = |p: &Point3, field: &mut Field| (field.value(p) - 1.0).abs();
+        let off = wall.mesh.points.iter().map(|p| off(p, &mut field)).fold(0.0, f64::max);
+        (factor, mean(0.0, 1.3), mean(4.0, 7.0), off)
+    });
+    let (_, near, far, off) = walls[0];
+    for (factor, finer, same, finer_off) in &walls[1..] {
+        assert!((0.85..1.15).contains(&(finer / near / factor)), "{factor}: {finer} of {near}");
+        assert!((0.97..1.03).contains(&(same / far)), "{factor}: {same} of {far}");
+        assert!(*finer_off <= off, "{factor}: {finer_off} beyond {off}");
     }
 }
 

@@ -101,7 +101,8 @@ impl Template {
     /// The best of what the ways to place points inside give, improved.
     fn best(params: &BlockParams, length: f64, caps: [bool; 2]) -> Option<Self> {
         let section = |z| Section { origin: Point3::new(0.0, 0.0, z), axis: Vec3::z(), radius: 1.0 };
-        let cut = Cut { branch: BranchId(0), sides: Cut::NOWHERE, path: vec![section(0.0), section(length)] };
+        let cut =
+            Cut { branch: BranchId(0), sides: Cut::NOWHERE, path: vec![section(0.0), section(length)], size: None };
         let ends = FreeEnds::new(CutId(0), &cut, &BlockParams::with_rho(params.rho)).ok()?;
         let corners = ends.discs[0].rim.len() as u32;
         let tube = connector_surface(&cut.path, ends.both(), DIVISION).ok()?;

@@ -32,7 +32,7 @@ fn along(path: &[Section], params: &BlockParams) -> Option<FilledTube> {
 
 /// The block that a connector along a path becomes, with its certificate.
 fn block(path: Vec<Section>, params: &BlockParams) -> Finished {
-    let cut = Cut { branch: BranchId(0), sides: Cut::NOWHERE, path };
+    let cut = Cut { branch: BranchId(0), sides: Cut::NOWHERE, path, size: None };
     let mesh: ConnectorMesh = mesh_free_connector(CutId(0), &cut, params).expect("a connector");
     let ends: [EndSurface; 2] = shared_ends(CutId(0), &cut, params).expect("its ends");
     Finished::of_connector(mesh, ends.each_ref()).expect("its ends are on its boundary")

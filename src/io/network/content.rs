@@ -16,6 +16,8 @@ pub struct NetworkOptions {
     pub radius_scale: Option<f64>,
     /// Positions and radii are multiplied by this, as from micrometres to metres by 1e-6.
     pub scale: Option<f64>,
+    /// Name of an array on the nodes whose numbers are to be kept beside the network.
+    pub node_array: Option<String>,
     /// Read radii that cannot be used (zero, negative, infinite, no number) as they stand, for `prepare` to fill; by
     /// default they are an error.
     pub any_radii: bool,
@@ -34,6 +36,8 @@ pub struct NetworkFile {
     pub roots: Vec<NodeId>,
     /// Of each node, the vessel that its line is drawn for; empty where the file says nothing of it.
     pub groups: Vec<Option<LineGroup>>,
+    /// The numbers of the array that was asked for, one per node; else empty.
+    pub node_values: Vec<f64>,
 }
 
 /// What a file calls its nodes.

@@ -91,6 +91,15 @@ pub enum NetworkFault {
     /// It is no usable input of a one-dimensional solver.
     #[error(transparent)]
     Sv1d(#[from] Sv1dError),
+    /// Files of its format have no numbers of nodes under names of their own.
+    #[error(
+        "it has no array '{wanted}', as files of its format have none on nodes that are found by a name: \
+         write the network as .vtp, .vtk, .csv, .graphml or .json"
+    )]
+    NoNodeArrays {
+        /// What was asked for.
+        wanted: String,
+    },
     /// A number in it cannot be used.
     #[error("{0}; correct the file, or let `anastomesh prepare` fill radii that cannot be used")]
     Numbers(#[from] SkeletonError),

@@ -3,7 +3,7 @@
 use super::columns::{Columns, NoNumber, Value};
 use super::content::{NetworkFile, NetworkNote, NetworkOptions, NodeNames};
 use super::polylines::{Polylines, Radii};
-use super::radii::{Choice, RadiusFault};
+use super::radii::{Choice, NodeArrayFault, RadiusFault, node_array};
 use crate::geometry::Point3;
 use rustc_hash::FxHashMap;
 use std::fmt;
@@ -66,6 +66,9 @@ pub enum GraphFault {
     /// No attribute can be taken for the radius.
     #[error(transparent)]
     Radius(#[from] RadiusFault),
+    /// There are no numbers of nodes under the name that was asked for.
+    #[error(transparent)]
+    NodeArray(#[from] NodeArrayFault),
     /// There are more nodes or edges than can be numbered.
     #[error("there are more nodes than can be numbered ({})", u32::MAX)]
     TooMany,
@@ -146,9 +149,15 @@ impl Graph {
         if positions.planar {
             notes.push(NetworkNote::Planar);
         }
+        let values = node_array(self.nodes.names(), options)?.map(|name| {
+            let numbers = self.nodes.numbers(&name, self.names.len());
+            numbers.map_err(|bad| no_number(&bad, &name, &self.nodes_at))
+        });
+        let node_values = values.transpose()?.unwrap_or_default();
         let ends = (1..=self.ends.len()).map(|i| 2 * i).collect();
         let polylines = Polylines { points: positions.points, ends, path };
-        let mut network = NetworkFile { notes, names: NodeNames::Words(self.names), ..NetworkFile::default() };
+        let mut network =
+            NetworkFile { notes, names: NodeNames::Words(self.names), node_values, ..NetworkFile::default() };
         if !polylines.fits(&network.skeleton) {
             return Err(GraphFault::TooMany);
         }

@@ -102,6 +102,29 @@ fn fault(bytes: &[u8], format: NetworkFormat, from: &str, to: &str) -> String {
 }
 
 #[test]
+fn numbers_of_nodes_come_from_every_format_that_has_them() {
+    for (name, bytes, format) in ALL {
+        let asked = |array: &str| {
+            let options = NetworkOptions { node_array: Some(array.into()), ..NetworkOptions::default() };
+            read_network_from(bytes, *format, &options).map_err(|e| e.to_string())
+        };
+        if matches!(format, NetworkFormat::Amira | NetworkFormat::Sv1d) {
+            assert!(asked("radius").unwrap_err().contains("have none on nodes"), "{name}");
+            continue;
+        }
+        let said = asked("nothing of the kind").unwrap_err();
+        assert!(said.contains("no array 'nothing of the kind' on the nodes; there are: "), "{name}: {said}");
+        let there = said.rsplit(": ").next().unwrap_or_default().split(", ").filter(|name| *name != "none");
+        // Vectors and words are none; a format may have its numbers on edges alone.
+        let files: Vec<NetworkFile> = there.clone().filter_map(|name| asked(name).ok()).collect();
+        assert_eq!(files.is_empty(), there.count() == 0, "{name}");
+        for file in files {
+            assert_eq!(file.node_values.len(), file.skeleton.nodes.len(), "{name}");
+        }
+    }
+}
+
+#[test]
 fn tables_say_where() {
     let says = |from: &str, to: &str, what: &str| {
         let message = fault(CSV, NetworkFormat::Csv, from, to);

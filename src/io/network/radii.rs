@@ -31,6 +31,34 @@ pub enum RadiusFault {
     },
 }
 
+/// Why there are no numbers of nodes.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NodeArrayFault {
+    /// There is no such array.
+    #[error("there is no array '{wanted}' on the nodes; there are: {}", list(available))]
+    Unknown {
+        /// What was asked for.
+        wanted: String,
+        /// Names of the arrays there are.
+        available: Vec<String>,
+    },
+    /// The array has several numbers for each node.
+    #[error("array '{array}' has {components} numbers for each node: one is needed")]
+    Components {
+        array: String,
+        /// How many.
+        components: usize,
+    },
+}
+
+/// The array on the nodes that was asked for, among those that there are; none when none was.
+pub(super) fn node_array(names: &[String], options: &NetworkOptions) -> Result<Option<String>, NodeArrayFault> {
+    let Some(wanted) = &options.node_array else { return Ok(None) };
+    let unknown = || NodeArrayFault::Unknown { wanted: wanted.clone(), available: names.to_vec() };
+    named(names, wanted).map(Some).ok_or_else(unknown)
+}
+
 /// Names as a list for people; the first of them where there are very many.
 fn list(names: &[String]) -> String {
     const SHOWN: usize = 40;

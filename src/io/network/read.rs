@@ -99,6 +99,9 @@ pub fn read_network_arrays(files: &[(&str, &[u8])], options: &NetworkOptions) ->
 
 /// What holds for every format: lengths multiplied as asked for, numbers that can be used.
 fn finished(mut network: NetworkFile, options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
+    if let Some(wanted) = options.node_array.as_ref().filter(|_| network.node_values.is_empty()) {
+        return Err(NetworkFault::NoNodeArrays { wanted: wanted.clone() });
+    }
     scale(&mut network, options);
     if !options.any_radii {
         network.skeleton.check_numbers()?;

@@ -117,6 +117,28 @@ impl Vtp<'_> {
 }
 
 #[test]
+fn an_array_of_nodes_is_kept_when_it_is_asked_for() {
+    let data = "<DataArray type=\"Float64\" Name=\"Radius\" format=\"ascii\">1 2 3</DataArray>\
+                <DataArray type=\"Float32\" Name=\"Size\" format=\"ascii\">0.5 1 4</DataArray>\
+                <DataArray type=\"Float32\" Name=\"Way\" NumberOfComponents=\"2\" format=\"ascii\">1 2 3 4 5 6</DataArray>\
+                <DataArray type=\"Float32\" Name=\"Short\" format=\"ascii\">1 2</DataArray>";
+    let read = |array: Option<&str>| {
+        let options = NetworkOptions { node_array: array.map(str::to_owned), ..NetworkOptions::default() };
+        vtp::read(Vtp { point_data: data, ..SMALL }.text().as_bytes(), &options)
+    };
+    assert_eq!(read(Some("Size")).unwrap().node_values, [0.5, 1.0, 4.0]);
+    assert!(read(None).unwrap().node_values.is_empty());
+    let said = |array| read(Some(array)).unwrap_err().to_string();
+    assert!(
+        said("Length").contains("no array 'Length' on the nodes; there are: Radius, Size, Way, Short"),
+        "{}",
+        said("Length")
+    );
+    assert!(said("Way").contains("2 numbers for each node"), "{}", said("Way"));
+    assert!(matches!(read(Some("Short")).unwrap_err(), VtpError::WrongLength { expected: 3, found: 2, .. }));
+}
+
+#[test]
 fn radii_on_points_lines_or_both() {
     let points = SMALL.read(None).unwrap();
     assert_eq!(points.skeleton.edges[1].radii, [2.0, 3.0]);

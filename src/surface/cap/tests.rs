@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::{Tube, self_intersections};
-use crate::surface::{euler_characteristic, vessel_wall};
+use crate::surface::{Finer, euler_characteristic, vessel_wall};
 
 /// Tubes that start in one node, each with a terminal at its end, and the ends.
 fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<Closing<'static>>) {
@@ -22,7 +22,7 @@ fn capped(arms: &[([f64; 3], f64, f64)], rho: f64) -> (CappedSurface, Vec<Closin
     let (tubes, ends) = star(arms);
     let smallest = tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
     let params = SurfaceParams::with_voxel(2.0 * smallest / rho);
-    let wall = vessel_wall(&tubes, &params).unwrap();
+    let wall = vessel_wall(&tubes, &params, &Finer::default()).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
     (cap_terminals(&wall, &mut field, &ends, &params).unwrap(), ends)
 }
@@ -93,7 +93,7 @@ fn a_terminal_inside_another_vessel_is_refused() {
     let arms = [([-9.0, 0.0, 0.0], 2.0, 2.0), ([9.0, 0.0, 0.0], 2.0, 2.0), ([3.0, 1.0, 0.0], 1.0, 1.0)];
     let (tubes, ends) = star(&arms);
     let params = SurfaceParams::with_voxel(0.6);
-    let wall = vessel_wall(&tubes, &params).unwrap();
+    let wall = vessel_wall(&tubes, &params, &Finer::default()).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
     let error = cap_terminals(&wall, &mut field, &ends, &params).unwrap_err();
     assert!(matches!(error, CapError::End { end: 2, node: Some(NodeId(2)), .. }), "{error}");

@@ -1,6 +1,6 @@
 //! What can be wrong with a legacy VTK file.
 
-use crate::io::network::radii::RadiusFault;
+use crate::io::network::radii::{NodeArrayFault, RadiusFault};
 use crate::io::text::Place;
 
 /// Why a legacy VTK file is no usable network.
@@ -93,6 +93,9 @@ pub enum VtkLegacyError {
     /// No array can be taken for the radius.
     #[error(transparent)]
     Radius(#[from] RadiusFault),
+    /// There are no numbers of nodes under the name that was asked for.
+    #[error(transparent)]
+    NodeArray(#[from] NodeArrayFault),
     /// There are more points or edges than can be numbered.
     #[error("there are more points than can be numbered ({})", u32::MAX)]
     TooMany,

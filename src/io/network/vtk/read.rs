@@ -6,7 +6,7 @@ use super::sections::{CellList, LISTS, Sections};
 use crate::geometry::Point3;
 use crate::io::network::content::{NetworkFile, NetworkNote, NetworkOptions};
 use crate::io::network::polylines::{Polylines, Radii, tell_groups};
-use crate::io::network::radii::{Choice, GROUPS};
+use crate::io::network::radii::{Choice, GROUPS, node_array};
 
 /// Types of cells that are lines.
 const LINE_TYPES: [i64; 2] = [3, 4];
@@ -22,6 +22,7 @@ pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Re
     let (count, all) = (points.len(), cells.count);
     let names = |arrays: &[Array]| -> Vec<String> { arrays.iter().map(|a| a.name.clone()).collect() };
     let choice = Choice::of(&names(&sections.point_data), &names(&sections.cell_data), options)?;
+    let values = node_array(&names(&sections.point_data), options)?;
     let nodes = radii(&choice, &sections.point_data, choice.points.as_deref(), count)?;
     let of_cells = radii(&choice, &sections.cell_data, choice.cells.as_deref(), all)?;
     let lines = of_cells.map(|r| cells.index.iter().map(|&cell| r[cell]).collect());
@@ -43,6 +44,9 @@ pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Re
         network.groups = polylines.groups(&of_lines);
         tell_groups(&mut network);
     }
+    if let Some(values) = values.and_then(|name| sections.point_data.iter().find(|a| a.name == name)) {
+        network.node_values = numbers(values, count)?;
+    }
     polylines.append_to(&mut network.skeleton, &Radii { nodes, lines, corners: None });
     Ok(network)
 }
@@ -55,10 +59,15 @@ fn radii(
     expected: usize,
 ) -> Result<Option<Vec<f64>>, VtkLegacyError> {
     let Some(array) = name.and_then(|name| arrays.iter().find(|a| a.name == name)) else { return Ok(None) };
+    Ok(Some(choice.radii(&array.name, numbers(array, expected)?)))
+}
+
+/// The values of an array, of which there have to be so many.
+fn numbers(array: &Array, expected: usize) -> Result<Vec<f64>, VtkLegacyError> {
     if array.count != expected {
         return Err(VtkLegacyError::WrongLength { array: array.name.clone(), expected, found: array.count });
     }
-    Ok(Some(choice.radii(&array.name, array.floats()?)))
+    array.floats()
 }
 
 /// Group and blanking of each cell; none where the file does not have both, as integers.

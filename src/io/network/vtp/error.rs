@@ -1,6 +1,6 @@
 //! What can be wrong with a VTP file.
 
-use crate::io::network::radii::RadiusFault;
+use crate::io::network::radii::{NodeArrayFault, RadiusFault};
 use crate::io::vtk_xml::VtkError;
 
 /// Why a VTP file is no usable network.
@@ -67,6 +67,9 @@ pub enum VtpError {
     /// No array can be taken for the radius.
     #[error(transparent)]
     Radius(#[from] RadiusFault),
+    /// There are no numbers of nodes under the name that was asked for.
+    #[error(transparent)]
+    NodeArray(#[from] NodeArrayFault),
     /// There are more points or edges than can be numbered.
     #[error("there are more points than can be numbered ({})", u32::MAX)]
     TooMany,

@@ -4,7 +4,7 @@ use super::error::VtpError;
 use crate::geometry::Point3;
 use crate::io::network::content::{NetworkFile, NetworkNote, NetworkOptions};
 use crate::io::network::polylines::{Astray, Polylines, Radii, tell_groups};
-use crate::io::network::radii::{Choice, END_RADII, GROUPS, RadiusFault};
+use crate::io::network::radii::{Choice, END_RADII, GROUPS, NodeArrayFault, RadiusFault, node_array};
 use crate::io::vtk_xml::{ElementId, VtkXml};
 
 pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtpError> {
@@ -19,7 +19,11 @@ pub(in crate::io::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Re
     let choice = Choice::of(&names("PointData"), &names("CellData"), options)?;
     let mut network = NetworkFile { notes: choice.notes(), ..NetworkFile::default() };
     let mut others = Others::default();
+    let values = node_array(&names("PointData"), options)?;
     for piece in pieces {
+        if let Some(name) = &values {
+            network.node_values.extend(read_node_values(&document, piece, name)?);
+        }
         read_piece(&document, piece, &choice, &mut network, &mut others)?;
     }
     if others.lines == 0 {
@@ -187,6 +191,24 @@ fn read_lines(document: &VtkXml, piece: ElementId) -> Result<(Vec<usize>, Vec<i6
         ends.push(offset as usize);
     }
     Ok((ends, connectivity))
+}
+
+/// The numbers of an array, one per point.
+fn read_node_values(document: &VtkXml, piece: ElementId, name: &str) -> Result<Vec<f64>, VtpError> {
+    let expected = document.count(piece, "NumberOfPoints")?;
+    let element = document.child(piece, "PointData").and_then(|s| document.arrays(s).find(|(n, _)| *n == name));
+    let Some((_, element)) = element else {
+        return if expected == 0 { Ok(Vec::new()) } else { Err(VtpError::MissingElement { element: "DataArray" }) };
+    };
+    let array = document.read(element)?;
+    if array.components > 1 {
+        let components = array.components;
+        return Err(NodeArrayFault::Components { array: name.to_owned(), components }.into());
+    }
+    if array.len() != expected {
+        return Err(VtpError::WrongLength { array: name.to_owned(), expected, found: array.len() });
+    }
+    Ok(array.into_floats())
 }
 
 /// The radii in the chosen array, one per point or cell; none when no array was chosen.

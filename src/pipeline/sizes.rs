@@ -1,0 +1,44 @@
+//! What is said of edges that are not as long as the resolution has them.
+
+use super::plan::{MOST_STRETCH, MeshPlan};
+use crate::partition::Layout;
+use crate::progress::Progress;
+use crate::skeleton::{LEAST_SIZE, SizeAt, Skeleton};
+
+/// Says how many forks are finer and how many tubes stretched, and what of it was asked for beyond the limits.
+pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan, observer: &dyn Progress) {
+    let Some(sizes) = &plan.size_at else { return };
+    let forks: Vec<f64> = partition.clusters().flat_map(|cluster| cluster.fine).map(|fork| fork.factor).collect();
+    let mut parts = vec![match range(&forks) {
+        Some(range) => format!("edges at {} fork(s) are {range} times as long", forks.len()),
+        None => "edges are shorter at no fork".to_owned(),
+    }];
+    if let SizeAt::Nodes(_) = sizes {
+        let asked = partition.clusters().map(|cluster| cluster.size).chain(partition.cuts().map(|cut| cut.size));
+        let asked: Vec<f64> = asked.flatten().filter(|&size| size > 1.0).collect();
+        let tubes: Vec<f64> = asked.iter().map(|&size| size.min(MOST_STRETCH)).collect();
+        parts.push(match range(&tubes) {
+            Some(range) => format!("{} tube(s) are stretched by {range}", tubes.len()),
+            None => "no tube is stretched".to_owned(),
+        });
+        let adjacency = skeleton.adjacency();
+        let is_below =
+            |&node: &_| adjacency.valence(node) > 2 && sizes.at_fork(skeleton.node(node).original) < LEAST_SIZE;
+        let below = skeleton.node_ids().filter(is_below).count();
+        let above = asked.iter().filter(|&&size| size > MOST_STRETCH).count();
+        if below + above > 0 {
+            parts.push(format!(
+                "{below} fork(s) with less than {LEAST_SIZE} and {above} tube(s) with more than {MOST_STRETCH} are held there"
+            ));
+        }
+    }
+    observer.note(&format!("size-at: {}", parts.join("; ")));
+}
+
+/// `0.5` or `0.3 to 0.9`; none of no numbers.
+fn range(values: &[f64]) -> Option<String> {
+    let least = values.iter().copied().reduce(f64::min)?;
+    let most = values.iter().copied().reduce(f64::max)?;
+    let short = |x: f64| format!("{}", (1000.0 * x).round() / 1000.0);
+    Some(if least == most { short(least) } else { format!("{} to {}", short(least), short(most)) })
+}
