@@ -91,17 +91,17 @@ impl NetworkArgs {
 
     /// Reads the network as it stands in its file.
     pub fn file(&self, any_radii: bool) -> Result<NetworkFile, Failure> {
-        self.file_with(self.options(any_radii))
+        self.file_with(&self.options(any_radii))
     }
 
-    fn file_with(&self, options: NetworkOptions) -> Result<NetworkFile, Failure> {
+    fn file_with(&self, options: &NetworkOptions) -> Result<NetworkFile, Failure> {
         if let (Some(name), Ok(NetworkFormat::Swc)) = (&self.radius_array, NetworkFormat::of(&self.network)) {
             let path = self.network.display();
             return Err(Failure::usage(format!(
                 "{path}: SWC has one column of radii, without a name: leave --radius-array {name} out, or give --radius-scale"
             )));
         }
-        let file = read_network(&self.network, &options);
+        let file = read_network(&self.network, options);
         let mut file = file.map_err(|e| Failure::input(e.to_string()))?;
         if let Some([from, to]) = self.units.map(Units::names) {
             file.notes.push(NetworkNote::Unit { from, to });
@@ -117,7 +117,7 @@ impl NetworkArgs {
     /// The same with the numbers of an array on its nodes.
     pub fn prepared_with(&self, params: &PrepareParams, array: Option<&str>) -> Result<PreparedNetwork, Failure> {
         let file =
-            self.file_with(NetworkOptions { node_array: array.map(str::to_owned), ..self.options(params.radii) })?;
+            self.file_with(&NetworkOptions { node_array: array.map(str::to_owned), ..self.options(params.radii) })?;
         let prepared = prepare_lines(&file.skeleton, &file.groups, params);
         let prepared =
             prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;

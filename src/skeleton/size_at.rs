@@ -52,7 +52,9 @@ impl NodeSizes {
             return Err(BadSize { node: NodeId(at as u32), value: values[at] });
         }
         let mut hash = Xxh3::new();
-        values.iter().for_each(|value| hash.update(&value.to_bits().to_le_bytes()));
+        for value in values {
+            hash.update(&value.to_bits().to_le_bytes());
+        }
         Ok(Self { array: array.to_owned(), values: values.into(), digest: format!("{:032x}", hash.digest128()) })
     }
 
