@@ -124,7 +124,7 @@ impl Certificate {
     }
 
     /// The box of the boundary; empty where there is none.
-    fn bounds(&self) -> Aabb {
+    pub fn bounds(&self) -> Aabb {
         let [min, max] = self.bounds.map(Point3::from);
         if self.surfaces.is_empty() { Aabb::EMPTY } else { Aabb { min, max } }
     }

@@ -99,8 +99,7 @@ impl<'a> Looked<'a> {
     /// # Errors
     /// As [`check_parts`].
     pub fn check(mut self, patches: &[Patch], expectation: Option<&Expectation>) -> io::Result<PartsCheck> {
-        let counts =
-            Counts { points: self.held.points as usize, tets: self.held.tets as usize, ..Counts::default() };
+        let counts = Counts { points: self.held.points as usize, tets: self.held.tets as usize, ..Counts::default() };
         if let Some(line) = self.unusable {
             let result = |l| {
                 if needs_sound_arrays(l) {
@@ -147,8 +146,9 @@ impl Whole<'_> {
         counts.volume = self.looked.held.volume;
         counts.components = glued.components;
         counts.boundary_components = roots.len();
-        counts.boundary_faces =
-            (0..self.looked.held.count()).map(|part| self.looked.held.faces_of(part, &self.looked.is_joined) as usize).sum();
+        counts.boundary_faces = (0..self.looked.held.count())
+            .map(|part| self.looked.held.faces_of(part, &self.looked.is_joined) as usize)
+            .sum();
         counts.caps = self.patches.iter().filter(|patch| patch.cap.is_some()).count();
         let mut lines = vec![components(self.expectation, glued.components), self.loops(&glued, &roots)];
         // That no points are equal follows from the other lines: when one of them fails, it has not been shown.
