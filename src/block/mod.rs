@@ -40,7 +40,7 @@ pub use end_surface::{CutEnd, EndSurface, StoredEnd};
 pub(crate) use end_surface::{Plane, cross, crossing, disc_rim};
 pub use error::{BlockError, ConnectorAttempt, FlattenFailure};
 pub use faithful::Astray;
-pub use finished::{About, Cured, Finished, FinishedJoint};
+pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
 pub use free_ends::shared_ends;
 pub use layered::ThinLayers;
 pub use params::{BlockParams, EndStyle};

@@ -56,9 +56,10 @@ pub struct Args {
     format: FormatArgs,
     #[command(flatten)]
     blocks: BlockArgs,
-    /// How much longer edges are on the axes of vessels than at the wall: 0.5 to 4
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
-    core: f64,
+    /// How much longer edges are on the axes of vessels than at the wall: 0.5 to 4 (default: 1; with `--stretch S` and no
+    /// layers, √S up to 2)
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
+    core: Option<f64>,
     #[command(flatten)]
     layers: LayerArgs,
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
@@ -115,6 +116,9 @@ enum Joint {
     Woven,
     None,
 }
+
+/// How much longer edges are on axes than at walls, at most, unless it is asked for.
+const COARSEST_CORE: f64 = 2.0;
 
 /// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
 const HELD_PER_TET: f64 = 150.0;
@@ -215,7 +219,7 @@ impl Args {
         let mut beside = self.output.clone().into_os_string();
         beside.push(".failed");
         Ok(MeshPlan {
-            core: self.core,
+            core: self.core.unwrap_or_else(|| self.usual_core()),
             layers: self.layers.asked()?,
             joint: match self.joint {
                 Joint::Woven => JointStyle::Woven,
@@ -226,6 +230,12 @@ impl Args {
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
             ..self.blocks.plan(self.how.fuses())
         })
+    }
+
+    /// Where edges are longer along vessels than across, the core need not be fine; with layers linear elements are meant, which
+    /// need it for the flow.
+    fn usual_core(&self) -> f64 {
+        if self.layers.layers.is_some() { 1.0 } else { self.blocks.stretch.max(1.0).sqrt().min(COARSEST_CORE) }
     }
 
     /// A share of the blocks, of which nothing but the network has to be known.
@@ -439,7 +449,7 @@ impl Args {
         if self.flow.outlets() != Outlets::Separate {
             expectation.terminals = caps.alone();
         }
-        let core = if self.core == 1.0 { String::new() } else { format!(" --core {}", self.core) };
+        let core = self.core.map_or_else(String::new, |core| format!(" --core {core}"));
         MeshNotes {
             expectation: Some(expectation),
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),

@@ -68,6 +68,16 @@ impl Bvh {
         Self { nodes, items, boxes }
     }
 
+    /// The boxes' indices in the order in which the tree holds them: neighbours there are near each other.
+    pub fn order(&self) -> &[u32] {
+        &self.items
+    }
+
+    /// The box at a place of that order.
+    pub fn box_at(&self, place: usize) -> &Aabb {
+        &self.boxes[place]
+    }
+
     /// Calls `found` for every box that overlaps `aabb`.
     pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
         let mut stack = [0_u32; STACK];

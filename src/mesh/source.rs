@@ -10,7 +10,7 @@ use super::{Patch, VolumeMesh};
 use crate::geometry::Point3;
 
 /// How much a mesh holds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SourceCounts {
     pub points: usize,
     /// Tetrahedra.

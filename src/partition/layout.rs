@@ -1,6 +1,8 @@
 //! A network that is cut, held as where it is cut: what a cluster or a connector is made from is put together when it is
 //! looked at. Of millions of vessels that takes a tenth of the memory of their tubes, ends and paths.
 
+mod same;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

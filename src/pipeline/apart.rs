@@ -9,9 +9,11 @@ use super::error::RunError;
 use super::estimate::cluster_cost;
 use super::report::Retry;
 use super::rounds::Run;
-use super::routes::{Overlapping, tangled_clusters};
-use crate::partition::{ClusterId, CutId, Layout};
-use crate::progress::Stage;
+use super::routes::Overlapping;
+use super::seen::Seen;
+use super::whole::Whole;
+use crate::partition::{ClusterId, CutId};
+use crate::progress::{Stage, ask};
 use crate::skeleton::BranchId;
 use crate::tet::Watch;
 
@@ -22,9 +24,9 @@ pub type Meetings = Vec<[u32; 2]>;
 #[derive(Debug, Default)]
 pub struct Apart {
     /// Blocks that met, as often as clusters were made again because of it.
-    pub met: Vec<Meetings>,
+    met: Vec<Meetings>,
     /// Vessels that are not cut, for their connectors met something: as part of a cluster they can be made finer.
-    pub uncut: BTreeSet<BranchId>,
+    uncut: BTreeSet<BranchId>,
     /// How often some were added.
     rounds: usize,
 }
@@ -33,9 +35,14 @@ pub struct Apart {
 const ROUNDS: usize = 2;
 
 impl Apart {
-    /// Decides what is done about meetings; no when nothing is left to try. `partition`: of the blocks that met.
-    pub fn part(&mut self, mut meetings: Meetings, partition: &Layout, overlapping: &Overlapping) -> bool {
-        meetings.retain(|pair| !overlapping.do_overlap(*pair));
+    /// Decides what is done about meetings of blocks; no when nothing is left to try.
+    pub fn part(&mut self, meetings: &Meetings, blocks: &Blocks, run: &Run) -> bool {
+        if meetings.is_empty() {
+            return false;
+        }
+        let partition = &blocks.partition;
+        let overlapping = Overlapping::of(run.shop.skeleton, partition, run.overlaps);
+        let mut meetings: Meetings = meetings.iter().copied().filter(|pair| !overlapping.do_overlap(*pair)).collect();
         let clusters = partition.clusters_len();
         let is_cluster = |block: u32| (block as usize) < clusters;
         let tried = self.met.len() == Way::APART.len();
@@ -60,12 +67,35 @@ impl Apart {
 }
 
 impl Run<'_> {
+    /// Makes blocks again as long as some meet and there is something to try; looks at their walls and at what is near them.
+    /// `seen`: the walls as they are. Ends as well when a block fails.
+    ///
+    /// # Errors
+    /// When the network cannot be cut otherwise, the store fails, or the run is told to stop.
+    pub fn part(&mut self, mut blocks: Blocks, apart: &mut Apart, mut seen: Seen) -> Result<Blocks, RunError> {
+        loop {
+            match apart.met.last() {
+                Some(meetings) => self.set_apart(&mut blocks, meetings, Way::APART[apart.met.len() - 1])?,
+                None => blocks = self.build(&apart.uncut, Some(blocks), &|_| Ok(()))?,
+            }
+            if blocks.any_failed() && !self.shop.plan.keep_going {
+                return Ok(blocks);
+            }
+            let follow = || seen.follow(&blocks, &Whole::of_walls(self.shop.store, self.progress, &blocks)?);
+            self.clock.time(self.progress, Stage::Check, 0, follow)?;
+            ask(self.progress)?;
+            if !apart.part(&seen.meetings, &blocks, self) {
+                return Ok(blocks);
+            }
+        }
+    }
+
     /// Makes the clusters again whose walls meet others, in the given one of the ways that are for that. A cluster that does
     /// not come out so is left as it is.
     ///
     /// # Errors
     /// When the store fails, or the run is told to stop.
-    pub fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: Way) -> Result<(), RunError> {
+    fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: Way) -> Result<(), RunError> {
         let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
         let mut again: BTreeMap<u32, u32> = BTreeMap::new();
         for &[a, b] in meetings {
@@ -75,7 +105,7 @@ impl Run<'_> {
         let again: Vec<(usize, u32)> = again.into_iter().map(|(block, other)| (block as usize, other)).collect();
         let clusters = again.partition_point(|(block, _)| *block < partition.clusters_len());
         let again = &again[..clusters];
-        let tangled = tangled_clusters(shop.skeleton, partition, self.overlaps);
+        let tangled = &blocks.tangled;
         let costs: Vec<_> =
             again.iter().map(|(i, _)| cluster_cost(&partition.cluster(ClusterId(*i as u32)), plan)).collect();
         let progress = self.progress;
@@ -85,7 +115,7 @@ impl Run<'_> {
             let id = ClusterId(i as u32);
             shop.cluster(id, &partition.cluster(id), tangled[i], way, &watch)
         };
-        let (made, _) = self.timed(Stage::Blocks, &costs, make)?;
+        let made = self.timed(Stage::Blocks, &costs, make)?;
         for (&(i, other), made) in again.iter().zip(made) {
             let remedy = match &made {
                 Ok(_) => way.name().into(),
@@ -99,6 +129,7 @@ impl Run<'_> {
             });
             if made.is_ok() {
                 blocks.clusters[i] = made;
+                blocks.apart.insert(i as u32);
             }
         }
         Ok(())

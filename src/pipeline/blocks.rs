@@ -1,8 +1,14 @@
 //! The blocks of a network, and what they are called.
 
+use std::collections::BTreeSet;
+
+use rustc_hash::FxHashMap;
+
 use super::make::Made;
 use super::report::Retry;
+use super::store::RecordId;
 use super::timing::BlockTimes;
+use crate::block::Cured;
 use crate::partition::{CutId, Layout};
 use crate::skeleton::{NodeId, Skeleton};
 
@@ -14,10 +20,16 @@ const LISTED: usize = 20;
 pub struct Blocks {
     /// The partition that they belong to.
     pub partition: Layout,
+    /// For each cluster, whether vessels overlap in it.
+    pub tangled: Vec<bool>,
     /// By `ClusterId`; an error for a cluster that failed to the end.
     pub clusters: Vec<Made>,
     /// By `CutId`; none beside a failed cluster.
     pub connectors: Vec<Option<Made>>,
+    /// Clusters that were made again, in another way than the usual one, because their walls met others.
+    pub apart: BTreeSet<u32>,
+    /// What helped blocks that failed at first.
+    pub cured: FxHashMap<RecordId, Cured>,
     /// What was retried.
     pub retries: Vec<Retry>,
     /// How long they took.
@@ -25,6 +37,18 @@ pub struct Blocks {
 }
 
 impl Blocks {
+    /// Whether any block failed.
+    pub fn any_failed(&self) -> bool {
+        self.clusters.iter().any(Result::is_err) || self.connectors.iter().any(|made| matches!(made, Some(Err(_))))
+    }
+
+    /// Where each block is kept, by its number; none for those that are missing.
+    pub fn records(&self) -> impl Iterator<Item = Option<RecordId>> {
+        let clusters = self.clusters.iter().map(Some);
+        let made = clusters.chain(self.connectors.iter().map(Option::as_ref));
+        made.map(|made| Some(made?.as_ref().ok()?.record))
+    }
+
     /// What a block is called, by its number: clusters by their ids, then connectors.
     pub fn name(&self, block: u32) -> String {
         match (block as usize).checked_sub(self.clusters.len()) {

@@ -2,6 +2,8 @@
 
 use std::io;
 
+use rayon::prelude::*;
+
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{Made, Workshop};
@@ -43,24 +45,38 @@ fn number(x: f64) -> String {
     if (1e-3..1e6).contains(&x.abs()) || x == 0.0 { format!("{x:.4}") } else { format!("{x:.3e}") }
 }
 
-/// What reports say of the clusters, none for those that failed.
-pub(super) struct Clusters(pub Vec<Option<About>>);
-
-impl Clusters {
-    pub(super) fn of(shop: &Workshop, blocks: &Blocks) -> io::Result<Self> {
-        let about = |made: &Made| made.as_ref().ok().map(|kept| shop.about(kept)).transpose();
-        Ok(Self(blocks.clusters.iter().map(about).collect::<Result<_, _>>()?))
-    }
+/// What the expectation of the whole depends on, of all clusters.
+#[derive(Default)]
+pub(super) struct Topology {
+    /// Clusters with loops that are filled by their own lumen, and how many.
+    pub filled: Vec<(ClusterId, i64)>,
+    /// Handles of each cluster's wall, none for those that failed; asked for only where vessels are to fuse.
+    pub handles: Vec<i64>,
 }
 
+/// Clusters of which reports are read at a time.
+const READ: usize = 1 << 14;
+
+/// Reads what reports say of each cluster that is there, in order.
+fn each_cluster(shop: &Workshop, blocks: &Blocks, mut found: impl FnMut(usize, Option<About>)) -> io::Result<()> {
+    let about = |made: &Made| made.as_ref().ok().map(|kept| shop.about(kept)).transpose();
+    for (first, some) in (0..).step_by(READ).zip(blocks.clusters.chunks(READ)) {
+        let read: Vec<Option<About>> = some.par_iter().map(about).collect::<io::Result<_>>()?;
+        read.into_iter().enumerate().for_each(|(i, about)| found(first + i, about));
+    }
+    Ok(())
+}
+
+/// Says of the blocks what there is to say; what helped some of them is taken over.
 pub(super) fn describe_blocks(
     skeleton: &Skeleton,
     shop: &Workshop,
-    blocks: &Blocks,
-    clusters: &Clusters,
+    blocks: &mut Blocks,
     report: &mut RunReport,
-) -> io::Result<()> {
-    let partition = &blocks.partition;
+) -> io::Result<Topology> {
+    report.retries = std::mem::take(&mut blocks.retries);
+    report.block_times = std::mem::take(&mut blocks.times);
+    let (partition, blocks) = (&blocks.partition, &*blocks);
     report.blocks = BlockCounts {
         clusters: partition.clusters_len(),
         connectors: partition.cuts_len(),
@@ -68,17 +84,20 @@ pub(super) fn describe_blocks(
     };
     report.partition = Some(partition.summary());
     report.estimate = Estimate::of(partition, shop.plan);
-    report.block_times.clone_from(&blocks.times);
-    report.retries.clone_from(&blocks.retries);
-    for (i, about) in clusters.0.iter().enumerate() {
+    let mut topology = Topology::default();
+    let mut thin = Vec::new();
+    each_cluster(shop, blocks, |i, about| {
         let id = ClusterId(i as u32);
         let nodes = || original_nodes(skeleton, partition.nodes(id).iter().copied());
-        if let Some(filled) = about.as_ref().map(|about| about.filled).filter(|&filled| filled > 0) {
-            report.filled.push(FilledLoops { block: format!("cluster {i}"), nodes: nodes(), loops: filled });
+        if shop.plan.fuse {
+            topology.handles.push(about.as_ref().map_or(0, |about| about.handles));
         }
-        if let Some(about) = about
-            && (about.handles != about.loops || !about.uncapped.is_empty() || about.astray != Astray::default())
-        {
+        let Some(about) = about else { return };
+        if about.filled > 0 {
+            topology.filled.push((id, about.filled));
+            report.filled.push(FilledLoops { block: format!("cluster {i}"), nodes: nodes(), loops: about.filled });
+        }
+        if about.handles != about.loops || !about.uncapped.is_empty() || about.astray != Astray::default() {
             report.anastomoses += (about.handles - about.loops).max(0);
             report.fused.push(FusedBlock {
                 block: format!("cluster {i}"),
@@ -89,23 +108,33 @@ pub(super) fn describe_blocks(
                 astray: about.astray,
             });
         }
-        if let Err(error) = &blocks.clusters[i] {
-            let original = |node| skeleton.node(node).original;
-            let cluster = &partition.cluster(id);
-            let params = shop.plan.of_tube(cluster.size).block_params();
-            let input = BlockDump::of_cluster(id, cluster, params, nodes(), original);
-            report.failed.push(FailedBlock {
-                block: format!("cluster {i}"),
-                nodes: nodes(),
-                reason: error.to_string(),
-                too_fine: error.is_too_fine(),
-                uncapped: tips::to_blame(cluster, error).into_iter().map(original).collect(),
-                dump: write_dump(shop.plan, &format!("cluster_{i}"), &input),
-            });
-        }
-    }
+        thin.extend(about.thin.map(|layers| ThinBlock { block: format!("cluster {i}"), nodes: nodes(), layers }));
+    })?;
     if shop.plan.layers.is_some() {
-        report.thin_layers = thin_layers(skeleton, shop, blocks, clusters)?;
+        report.thin_layers = thin_layers(thin, skeleton, shop, blocks)?;
+    }
+    describe_failures(skeleton, shop, blocks, report)?;
+    Ok(topology)
+}
+
+fn describe_failures(skeleton: &Skeleton, shop: &Workshop, blocks: &Blocks, report: &mut RunReport) -> io::Result<()> {
+    let partition = &blocks.partition;
+    for (i, made) in blocks.clusters.iter().enumerate() {
+        let Err(error) = made else { continue };
+        let id = ClusterId(i as u32);
+        let nodes = || original_nodes(skeleton, partition.nodes(id).iter().copied());
+        let original = |node| skeleton.node(node).original;
+        let cluster = &partition.cluster(id);
+        let params = shop.plan.of_tube(cluster.size).block_params();
+        let input = BlockDump::of_cluster(id, cluster, params, nodes(), original);
+        report.failed.push(FailedBlock {
+            block: format!("cluster {i}"),
+            nodes: nodes(),
+            reason: error.to_string(),
+            too_fine: error.is_too_fine(),
+            uncapped: tips::to_blame(cluster, error).into_iter().map(original).collect(),
+            dump: write_dump(shop.plan, &format!("cluster_{i}"), &input),
+        });
     }
     for (i, made) in blocks.connectors.iter().enumerate() {
         let Some(Err(error)) = made else { continue };
@@ -132,20 +161,14 @@ pub(super) fn describe_blocks(
     Ok(())
 }
 
-/// Lists the blocks with thin layers, the thinnest first.
+/// Lists the blocks with thin layers, the thinnest first; those that are clusters are known.
 fn thin_layers(
+    mut thin: Vec<ThinBlock>,
     skeleton: &Skeleton,
     shop: &Workshop,
     blocks: &Blocks,
-    clusters: &Clusters,
 ) -> io::Result<Vec<ThinBlock>> {
-    let mut thin = Vec::new();
     let partition = &blocks.partition;
-    for (i, about) in clusters.0.iter().enumerate() {
-        let nodes = || original_nodes(skeleton, partition.nodes(ClusterId(i as u32)).iter().copied());
-        let layers = about.as_ref().and_then(|about| about.thin);
-        thin.extend(layers.map(|layers| ThinBlock { block: format!("cluster {i}"), nodes: nodes(), layers }));
-    }
     for (i, made) in blocks.connectors.iter().enumerate() {
         let Some(Ok(kept)) = made else { continue };
         let nodes = || cut_nodes(skeleton, partition, CutId(i as u32));

@@ -6,18 +6,19 @@ use std::sync::Arc;
 use super::attempts::{self, Tried, Way};
 use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
-use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, Sizes, StoredEnd, encode};
+use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, StoredEnd, encode};
 use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Layout};
 use crate::skeleton::Skeleton;
 use crate::tet::Watch;
 
-/// A finished block in the store.
+/// A finished block in the store, and what it adds to the whole. There are millions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept {
     /// Where it is.
     pub record: RecordId,
-    /// How much it holds.
-    pub sizes: Sizes,
+    /// Points that are its own, those that it shares with blocks before it left out.
+    pub points: u32,
+    pub tets: u32,
 }
 
 /// A block, or why there is none: said elsewhere, as there are millions of blocks and few that fail.
@@ -86,8 +87,11 @@ impl Workshop<'_> {
         if let Some(first) = failures.first() {
             finished.about.cured = Some(Cured { failure: first.to_string(), remedy: way });
         }
-        let record = self.store.keep(key, encode(&finished)?)?;
-        Ok(Ok(self.kept(record)?))
+        let points = finished.mesh.points.len() as u32 - finished.shared;
+        let tets = finished.mesh.tets.len() as u32;
+        let bytes = encode(&finished)?;
+        drop(finished);
+        Ok(Ok(Kept { record: self.store.keep(key, bytes)?, points, tets }))
     }
 
     fn found(&self, key: Key) -> io::Result<Option<Kept>> {
@@ -95,7 +99,11 @@ impl Workshop<'_> {
     }
 
     fn kept(&self, record: RecordId) -> io::Result<Kept> {
-        Ok(Kept { record, sizes: Record::open(&self.store.bytes(record))?.sizes() })
+        let sizes = Record::open(&self.store.bytes(record))?.sizes();
+        if sizes.shared > sizes.points {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        Ok(Kept { record, points: sizes.points - sizes.shared, tets: sizes.tets })
     }
 
     /// What reports say of a block.

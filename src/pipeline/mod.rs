@@ -5,6 +5,7 @@ mod attempts;
 mod blocks;
 #[cfg(feature = "cli")]
 mod caps;
+mod carried;
 mod cures;
 #[cfg(feature = "cli")]
 mod data;
@@ -21,6 +22,7 @@ mod rounds;
 mod routes;
 mod run;
 mod schedule;
+mod seen;
 mod share;
 mod sizes;
 mod store;

@@ -1,24 +1,26 @@
 //! All blocks of a network, with retries: a block that fails is tried with other parameters, then with its cuts moved,
-//! then joined to its neighbours.
+//! then joined to its neighbours. A round makes the blocks that it changes; all others are carried over.
 
-use super::blocks::{Blocks, cut_nodes, original_nodes};
 use std::collections::{BTreeMap, BTreeSet};
-use std::io;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rustc_hash::FxHashMap;
 
 use super::attempts::Way;
+use super::blocks::{Blocks, cut_nodes, original_nodes};
+use super::carried::Carried;
 use super::cures::{Cure, cure, partition_params};
 use super::error::RunError;
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
-use super::make::{Kept, Made, Workshop};
+use super::make::{Made, Workshop};
 use super::plan::JointStyle;
 use super::report::Retry;
 use super::routes::{branch_pairs, tangled_clusters};
 use super::schedule::{Cost, costliest_first};
 use super::sizes;
 use super::store::{KeyMaker, RecordId, StoreError, fingerprint};
-use super::timing::{BlockTimes, Clock};
+use super::timing::{Clock, Stopwatch};
 use crate::block::Cured;
 use crate::partition::{self, ClusterId, CutId, Layout};
 use crate::progress::{Progress, Stage};
@@ -33,48 +35,43 @@ pub struct Run<'a> {
     /// Vessels of the network that overlap.
     pub overlaps: &'a Overlaps,
     pub shop: Workshop<'a>,
-    /// Whether it says what becomes of sizes that are asked for: once is enough.
-    pub tells: bool,
     pub progress: &'a dyn Progress,
     pub clock: &'a mut Clock,
 }
 
-/// Clusters and connectors.
-type Pass = (Vec<Made>, Vec<Option<Made>>);
-
 impl Run<'_> {
-    /// Meshes every block, changing the partition where blocks fail. `uncut`: vessels that are not cut. `fits` is asked before
-    /// the first block.
+    /// Meshes every block, changing the partition where blocks fail. `uncut`: vessels that are not cut. `before`: blocks of the
+    /// network as it was cut before. `fits` is asked before the first block.
     ///
     /// # Errors
     /// When the network cannot be partitioned, or blocks cannot be kept.
     pub fn build(
         &mut self,
         uncut: &BTreeSet<BranchId>,
+        mut before: Option<Blocks>,
         fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     ) -> Result<Blocks, RunError> {
-        let plan = self.shop.plan;
         let mut cures: BTreeMap<BranchId, Cure> = uncut.iter().map(|&branch| (branch, Cure::NotCut)).collect();
         let together = self.together();
-        let mut notes = Notes::default();
-        let mut times = BlockTimes::default();
+        let mut retries = Vec::new();
+        let mut told = BTreeSet::new();
         let mut round = 0;
         loop {
             let partition = self.partition(&cures, &together)?;
             if round == 0 {
-                fits(&Estimate::of(&partition, plan))?;
-                if self.tells {
-                    sizes::announce(self.shop.skeleton, &partition, plan, self.progress);
+                fits(&Estimate::of(&partition, self.shop.plan))?;
+                if before.is_none() {
+                    sizes::announce(self.shop.skeleton, &partition, self.shop.plan, self.progress);
                 }
             }
-            let (clusters, connectors) = self.pass(&partition, &mut times)?;
-            notes.take(self, &partition, &clusters, &connectors)?;
-            let blocks = Blocks { partition, clusters, connectors, retries: Vec::new(), times: BlockTimes::default() };
+            let blocks = self.pass(partition, before)?;
+            self.tell_cured(&blocks, &mut told, &mut retries);
             let found = if round < ROUNDS { cure(self.shop.skeleton, &blocks, &mut cures) } else { Vec::new() };
             if found.is_empty() {
-                return Ok(Blocks { retries: notes.retries, times, ..blocks });
+                return Ok(Blocks { retries, ..blocks });
             }
-            notes.retries.extend(found);
+            retries.extend(found);
+            before = Some(blocks);
             round += 1;
         }
     }
@@ -106,54 +103,91 @@ impl Run<'_> {
 
     /// What blocks are expected to take: clusters by their ids, then connectors.
     pub(super) fn costs(&self, partition: &Layout) -> Vec<Cost> {
+        (0..(partition.clusters_len() + partition.cuts_len()) as u32).map(|i| self.cost(partition, i)).collect()
+    }
+
+    fn cost(&self, partition: &Layout, block: u32) -> Cost {
         let plan = self.shop.plan;
-        let clusters = partition.clusters().map(|c| cluster_cost(&c, plan));
-        clusters.chain(partition.cuts().map(|cut| connector_cost(&cut, plan))).collect()
+        match block.checked_sub(partition.clusters_len() as u32) {
+            None => cluster_cost(&partition.cluster(ClusterId(block)), plan),
+            Some(cut) => connector_cost(&partition.cut(CutId(cut)), plan),
+        }
     }
 
     /// All blocks of a partition; none needs another, unless joints are woven.
-    fn pass(&mut self, partition: &Layout, times: &mut BlockTimes) -> Result<Pass, RunError> {
-        let (plan, shop) = (self.shop.plan, self.shop);
-        let tangled = tangled_clusters(self.shop.skeleton, partition, self.overlaps);
-        let count = partition.clusters_len();
-        let costs = self.costs(partition);
-        let progress = self.progress;
-        let watch = Watch::asking(progress);
-        let cluster = |i: usize| {
-            let id = ClusterId(i as u32);
-            shop.cluster(id, &partition.cluster(id), tangled[i], Way::Usual, &watch)
+    fn pass(&mut self, partition: Layout, before: Option<Blocks>) -> Result<Blocks, RunError> {
+        let shop = self.shop;
+        let tangled = tangled_clusters(shop.skeleton, &partition, self.overlaps);
+        let is_woven = shop.plan.joint == JointStyle::Woven;
+        let Carried { clusters, connectors, cured, times } = Carried::over(before, &partition, &tangled, is_woven);
+        let making = Making {
+            shop,
+            partition: &partition,
+            tangled: &tangled,
+            watch: Watch::asking(self.progress),
+            stopwatch: Stopwatch::new(times, partition.clusters_len()),
+            heard: Mutex::new(cured),
         };
-        if plan.joint != JointStyle::Woven {
-            let connector = |i: usize| shop.free_connector(CutId(i as u32), &partition.cut(CutId(i as u32)));
-            let one = |i: usize| if i < count { cluster(i) } else { connector(i - count) };
-            let (mut clusters, seconds) = self.timed(Stage::Blocks, &costs, one)?;
-            times.add(&seconds, count);
-            let connectors = clusters.split_off(count);
-            let is_made = |(cluster, _): (ClusterId, u32)| clusters[cluster.0 as usize].is_ok();
-            let beside = |cut: u32| partition.sides_of_cut(CutId(cut)).into_iter().all(is_made);
-            let connectors = (0..).zip(connectors).map(|(cut, made)| beside(cut).then_some(made)).collect();
-            return Ok((clusters, connectors));
+        let made = if is_woven { Self::woven } else { Self::free };
+        let (clusters, mut connectors) = made(self, &making, clusters, connectors)?;
+        let is_made = |(cluster, _): (ClusterId, u32)| clusters[cluster.0 as usize].is_ok();
+        for (cut, made) in (0..).zip(&mut connectors) {
+            if !partition.sides_of_cut(CutId(cut)).into_iter().all(is_made) {
+                *made = None;
+            }
         }
-        let (clusters, mut seconds) = self.timed(Stage::Clusters, &costs[..count], cluster)?;
-        let woven = |i: usize| {
-            let (id, cut) = (CutId(i as u32), &partition.cut(CutId(i as u32)));
-            let ends = shop.stored_ends(partition, id, cut, &clusters)?;
-            ends.map(|ends| shop.woven_connector(id, cut, &ends)).transpose()
-        };
-        let (connectors, more) = self.timed(Stage::Connectors, &costs[count..], woven)?;
-        seconds.extend(more);
-        times.add(&seconds, count);
+        let Making { stopwatch, heard, .. } = making;
+        let (times, cured) = (stopwatch.times(), heard.into_inner().unwrap_or_else(PoisonError::into_inner));
+        let (apart, retries) = (BTreeSet::new(), Vec::new());
+        Ok(Blocks { partition, tangled, clusters, connectors, apart, cured, retries, times })
+    }
+
+    /// Makes what is missing, clusters and connectors in any order.
+    fn free(
+        &mut self,
+        making: &Making,
+        mut clusters: Vec<Option<Made>>,
+        mut connectors: Vec<Option<Made>>,
+    ) -> Result<(Vec<Made>, Vec<Option<Made>>), RunError> {
+        let count = clusters.len();
+        let todo: Vec<u32> = missing(&clusters, 0).chain(missing(&connectors, count)).collect();
+        let costs: Vec<Cost> = todo.iter().map(|&block| self.cost(making.partition, block)).collect();
+        let made = self.timed(Stage::Blocks, &costs, |k| making.block(todo[k]))?;
+        for (&block, made) in todo.iter().zip(made) {
+            let block = block as usize;
+            *(if block < count { &mut clusters[block] } else { &mut connectors[block - count] }) = Some(made);
+        }
+        Ok((all(clusters), connectors))
+    }
+
+    /// Makes what is missing, connectors after the clusters between whose ends they are.
+    fn woven(
+        &mut self,
+        making: &Making,
+        mut clusters: Vec<Option<Made>>,
+        mut connectors: Vec<Option<Made>>,
+    ) -> Result<(Vec<Made>, Vec<Option<Made>>), RunError> {
+        let todo: Vec<u32> = missing(&clusters, 0).collect();
+        let costs: Vec<Cost> = todo.iter().map(|&block| self.cost(making.partition, block)).collect();
+        let made = self.timed(Stage::Clusters, &costs, |k| making.block(todo[k]))?;
+        todo.iter().zip(made).for_each(|(&block, made)| clusters[block as usize] = Some(made));
+        let clusters = all(clusters);
+        let todo: Vec<u32> = missing(&connectors, 0).collect();
+        let cost = |&cut: &u32| self.cost(making.partition, cut + clusters.len() as u32);
+        let costs: Vec<Cost> = todo.iter().map(cost).collect();
+        let made = self.timed(Stage::Connectors, &costs, |k| making.woven(CutId(todo[k]), &clusters))?;
+        todo.iter().zip(made).for_each(|(&cut, made)| connectors[cut as usize] = made);
         Ok((clusters, connectors))
     }
 
-    /// One stage over blocks: what became of them, and their seconds. Ends early when it is told to: blocks that
-    /// failed because of that are no failures.
+    /// One stage over blocks: what became of them. Ends early when it is told to: blocks that failed because of that are no
+    /// failures.
     pub(super) fn timed<T: Send>(
         &mut self,
         stage: Stage,
         costs: &[Cost],
         work: impl Fn(usize) -> Result<T, StoreError> + Sync,
-    ) -> Result<(Vec<T>, Vec<f64>), RunError> {
+    ) -> Result<Vec<T>, RunError> {
         let (progress, memory) = (self.progress, self.shop.plan.memory);
         let weight = |cost: &Cost| 1 + cost.tets as u64;
         let ask = || if progress.is_cancelled() { Err(RunError::Cancelled) } else { Ok(()) };
@@ -166,44 +200,79 @@ impl Run<'_> {
             progress.at(stage, done.fetch_add(weight, Ordering::Relaxed) + weight, total);
             Ok::<_, RunError>(made)
         };
-        let run = || costliest_first(costs, memory, step);
-        Ok(self.clock.time(progress, stage, total, run)?.into_iter().unzip())
+        self.clock.time(progress, stage, total, || costliest_first(costs, memory, step))
+    }
+
+    /// Adds what blocks say of failures before they came out, unless that has been told.
+    fn tell_cured(&self, blocks: &Blocks, told: &mut BTreeSet<RecordId>, retries: &mut Vec<Retry>) {
+        let (skeleton, partition) = (self.shop.skeleton, &blocks.partition);
+        for (block, record) in (0_u32..).zip(blocks.records()) {
+            let Some((record, cured)) = record.and_then(|record| Some((record, blocks.cured.get(&record)?))) else {
+                continue;
+            };
+            if !told.insert(record) {
+                continue;
+            }
+            let nodes = match block.checked_sub(blocks.clusters.len() as u32) {
+                None => original_nodes(skeleton, partition.nodes(ClusterId(block)).iter().copied()),
+                Some(cut) => cut_nodes(skeleton, partition, CutId(cut)),
+            };
+            let Cured { failure: reason, remedy } = cured.clone();
+            retries.push(Retry { block: blocks.name(block), nodes, reason, remedy });
+        }
     }
 }
 
-/// What blocks say of failures before they came out; each block says it once.
-#[derive(Default)]
-struct Notes {
-    retries: Vec<Retry>,
-    heard: BTreeSet<RecordId>,
+/// What the blocks of a partition are made with, on all threads.
+struct Making<'a> {
+    shop: Workshop<'a>,
+    partition: &'a Layout,
+    tangled: &'a [bool],
+    watch: Watch<'a>,
+    stopwatch: Stopwatch,
+    /// What helped blocks that failed at first.
+    heard: Mutex<FxHashMap<RecordId, Cured>>,
 }
 
-impl Notes {
-    fn take(
-        &mut self,
-        run: &Run,
-        partition: &Layout,
-        clusters: &[Made],
-        connectors: &[Option<Made>],
-    ) -> io::Result<()> {
-        for (i, kept) in clusters.iter().enumerate().filter_map(|(i, made)| Some((i, made.as_ref().ok()?))) {
-            let nodes = || original_nodes(run.shop.skeleton, partition.nodes(ClusterId(i as u32)).iter().copied());
-            self.hear(run, kept, &format!("cluster {i}"), nodes)?;
-        }
-        for (i, made) in connectors.iter().enumerate() {
-            let Some(Ok(kept)) = made else { continue };
-            let nodes = || cut_nodes(run.shop.skeleton, partition, CutId(i as u32));
-            self.hear(run, kept, &format!("connector {i}"), nodes)?;
-        }
-        Ok(())
+impl Making<'_> {
+    /// A cluster, or a connector between the discs that its vessel gives.
+    fn block(&self, block: u32) -> Result<Made, StoreError> {
+        let (shop, partition) = (self.shop, self.partition);
+        let make = || match block.checked_sub(self.tangled.len() as u32) {
+            None => {
+                let (id, tangled) = (ClusterId(block), self.tangled[block as usize]);
+                shop.cluster(id, &partition.cluster(id), tangled, Way::Usual, &self.watch)
+            }
+            Some(cut) => shop.free_connector(CutId(cut), &partition.cut(CutId(cut))),
+        };
+        self.hear(self.stopwatch.time(block as usize, make)?)
     }
 
-    fn hear(&mut self, run: &Run, kept: &Kept, block: &str, nodes: impl Fn() -> Vec<u32>) -> io::Result<()> {
-        if self.heard.insert(kept.record)
-            && let Some(Cured { failure, remedy }) = run.shop.about(kept)?.cured
+    /// A connector between the ends of its clusters; none beside one that failed.
+    fn woven(&self, id: CutId, clusters: &[Made]) -> Result<Option<Made>, StoreError> {
+        let cut = &self.partition.cut(id);
+        let Some(ends) = self.shop.stored_ends(self.partition, id, cut, clusters)? else { return Ok(None) };
+        let make = || self.shop.woven_connector(id, cut, &ends);
+        self.hear(self.stopwatch.time(clusters.len() + id.0 as usize, make)?).map(Some)
+    }
+
+    /// Notes what a block says of failures before it came out.
+    fn hear(&self, made: Made) -> Result<Made, StoreError> {
+        if let Ok(kept) = &made
+            && let Some(cured) = self.shop.about(kept)?.cured
         {
-            self.retries.push(Retry { block: block.into(), nodes: nodes(), reason: failure, remedy });
+            self.heard.lock().unwrap_or_else(PoisonError::into_inner).insert(kept.record, cured);
         }
-        Ok(())
+        Ok(made)
     }
+}
+
+/// The numbers of blocks that have to be made; the first has the number `from`.
+fn missing(made: &[Option<Made>], from: usize) -> impl Iterator<Item = u32> {
+    made.iter().enumerate().filter(|(_, made)| made.is_none()).map(move |(i, _)| (from + i) as u32)
+}
+
+/// Blocks of which none is missing.
+fn all(made: Vec<Option<Made>>) -> Vec<Made> {
+    made.into_iter().map_while(|made| made).collect()
 }

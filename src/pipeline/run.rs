@@ -1,29 +1,28 @@
 //! The whole way from a skeleton to a checked, labelled mesh.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::sync::Arc;
 
 use super::apart::Apart;
-use super::attempts::Way;
 use super::blocks::Blocks;
-use super::describe::{Clusters, announce, describe_blocks};
+use super::describe::{Topology, announce, describe_blocks};
 use super::error::RunError;
 use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{Meeting, MeshSize, RunReport};
 use super::rounds::Run;
-use super::routes::Overlapping;
+use super::seen::Seen;
 use super::store::Store;
-use super::terminals;
+use super::terminals::{self, TerminalPatches};
 use super::timing::Clock;
 use super::whole::Whole;
 use crate::mesh::check::parts::PartsCheck;
 use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
 use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
-use crate::partition::{ClusterId, CutId, Layout};
+use crate::partition::CutId;
 use crate::progress::{Progress, Stage, ask};
 use crate::refine::split;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
@@ -77,8 +76,7 @@ pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress
     let store = Store::in_memory();
     let clock = &mut Clock::default();
     if plan.smooths_joints() {
-        return join_blocks(network, plan, &store, &Apart::default(), &|_| Ok(()), progress, clock)?
-            .smoothed(progress, clock);
+        return mesh_smoothed(&store, network, plan, progress, clock);
     }
     let Stored { whole, expectation, check, mut report } =
         mesh_timed(&store, network, plan, &|_| Ok(()), progress, clock)?;
@@ -126,108 +124,128 @@ fn mesh_timed<'a>(
     progress: &'a dyn Progress,
     clock: &mut Clock,
 ) -> Result<Stored<'a>, RunError> {
-    // What is in memory for the blocks is not while the whole is checked. In the rare case that blocks meet everything is
-    // done again, which finds all blocks but these in the store. Woven connectors belong to the clusters as they are.
+    let job = Job::of(network, plan, store, progress, clock)?;
+    let mut run = job.run(clock);
+    let mut blocks = run.build(&BTreeSet::new(), None, fits)?;
     let mut apart = Apart::default();
     loop {
-        let joined = join_blocks(network, plan, store, &apart, fits, progress, clock)?;
+        let whole = job.numbered(&mut blocks, clock)?;
+        let looked = clock.time(progress, Stage::Check, 0, || whole.look(plan.memory))?;
         ask(progress)?;
-        let (stored, goes_on) = joined.checked(plan, &mut apart, progress, clock)?;
-        ask(progress)?;
-        if !goes_on {
-            return Ok(stored);
+        // Where blocks meet they are made again without a look at all others, and then everything is looked at once more: the
+        // check of the whole has the last word. Woven connectors belong to the clusters as they are.
+        let mut run = job.run(clock);
+        if plan.joint != JointStyle::Woven && apart.part(&whole.blocks_that_meet(&looked), &blocks, &run) {
+            let seen = Seen::of(&blocks, &whole, looked);
+            drop(whole);
+            blocks = run.part(blocks, &mut apart, seen)?;
+            continue;
         }
+        // What is in memory for the blocks is not while the rest is checked.
+        let (mut report, expectation) = job.described(blocks)?;
+        let rest = || looked.check(whole.patches(), Some(&expectation));
+        let PartsCheck { report: check, .. } = clock.time(progress, Stage::Check, 0, rest)?;
+        ask(progress)?;
+        report.mesh = whole.size();
+        report.stages = clock.stages();
+        return Ok(Stored { whole, expectation, check, report });
     }
 }
 
-/// Blocks that are done and numbered, before anybody has looked at the whole.
-struct Joined<'a> {
-    whole: Whole<'a>,
-    expectation: Expectation,
-    overlapping: Overlapping,
-    partition: Layout,
+/// The mesh in memory, its joints smoothed.
+fn mesh_smoothed(
+    store: &Store,
+    network: &Skeleton,
+    plan: &MeshPlan,
+    progress: &dyn Progress,
+    clock: &mut Clock,
+) -> Result<Meshed, RunError> {
+    let job = Job::of(network, plan, store, progress, clock)?;
+    let mut blocks = job.run(clock).build(&BTreeSet::new(), None, &|_| Ok(()))?;
+    let whole = job.numbered(&mut blocks, clock)?;
+    let (mut report, expectation) = job.described(blocks)?;
+    ask(progress)?;
+    let mut assembly = clock.time(progress, Stage::Merge, 0, || Assembly::new(&whole, whole.joint_vertices()?))?;
+    report.joints = Some(clock.time(progress, Stage::Joints, 0, || assembly.smooth(progress)));
+    ask(progress)?;
+    let (mesh, neighbors) = clock.time(progress, Stage::Merge, 0, || assembly.label())?;
+    ask(progress)?;
+    let check = || check_volume_with(&mesh, neighbors, Some(&expectation));
+    let check = clock.time(progress, Stage::Check, 0, check);
+    report.mesh = mesh_size(&mesh)?;
+    report.stages = clock.stages();
+    Ok(Meshed { mesh, expectation, check, report })
+}
+
+/// What is to be meshed, and where.
+struct Job<'a, 'b> {
+    skeleton: Arc<Skeleton>,
+    overlaps: Overlaps,
+    terminals: TerminalPatches,
+    plan: &'b MeshPlan,
+    store: &'a Store,
+    progress: &'a dyn Progress,
     report: RunReport,
 }
 
-/// `apart`: what is done about blocks that met when this was done before.
-fn join_blocks<'a>(
-    network: &Skeleton,
-    plan: &MeshPlan,
-    store: &'a Store,
-    apart: &Apart,
-    fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
-    progress: &'a dyn Progress,
-    clock: &mut Clock,
-) -> Result<Joined<'a>, RunError> {
-    plan.validate()?;
-    let mut report = RunReport::default();
-    let (skeleton, overlaps) = clock.time(progress, Stage::Prepare, 0, || prepare(network, &mut report));
-    let terminals = terminals::assign(&skeleton, &plan.roots)?;
-    let first = apart.met.is_empty() && apart.uncut.is_empty();
-    if first {
-        announce(&report, progress);
-    }
-    let shop = Workshop { skeleton: &skeleton, plan, store };
-    let mut run = Run { overlaps: &overlaps, shop, tells: first, progress, clock };
-    let mut blocks = run.build(&apart.uncut, if first { fits } else { &|_| Ok(()) })?;
-    for (way, meetings) in Way::APART.into_iter().zip(&apart.met) {
-        run.set_apart(&mut blocks, meetings, way)?;
-    }
-    let overlapping = Overlapping::of(&skeleton, &blocks.partition, &overlaps);
-    let clusters = Clusters::of(&shop, &blocks)?;
-    describe_blocks(&skeleton, &shop, &blocks, &clusters, &mut report)?;
-    let nothing_left = blocks.clusters.iter().all(Result::is_err);
-    let number = || Whole::new(store, progress, &skeleton, &blocks, &terminals);
-    if !report.failed.is_empty() && (nothing_left || !plan.keep_going) {
-        // What there is can be looked at.
-        #[cfg(feature = "cli")]
-        if !nothing_left {
-            number()?.leave()?;
-        }
-        report.stages = clock.stages();
-        return Err(RunError::BlocksFailed(Box::new(report)));
-    }
-    let mut expectation = expectation(&skeleton, &blocks, &clusters);
-    if plan.fuse {
-        expectation.loops = fused_loops(&blocks, &clusters);
-    }
-    let whole = clock.time(progress, Stage::Merge, 0, number)?;
-    #[cfg(feature = "cli")]
-    whole.leave()?;
-    Ok(Joined { whole, expectation, overlapping, partition: blocks.partition, report })
-}
-
-impl<'a> Joined<'a> {
-    /// With the mesh comes whether it is made again, because blocks of it meet.
-    fn checked(
-        self,
-        plan: &MeshPlan,
-        apart: &mut Apart,
-        progress: &dyn Progress,
+impl<'a, 'b> Job<'a, 'b> {
+    fn of(
+        network: &Skeleton,
+        plan: &'b MeshPlan,
+        store: &'a Store,
+        progress: &'a dyn Progress,
         clock: &mut Clock,
-    ) -> io::Result<(Stored<'a>, bool)> {
-        let Self { whole, expectation, overlapping, partition, mut report } = self;
-        let check = || whole.check(&expectation, plan.memory);
-        let PartsCheck { report: check, meeting } = clock.time(progress, Stage::Check, 0, check)?;
-        report.mesh = whole.size();
-        report.stages = clock.stages();
-        let goes_on = plan.joint != JointStyle::Woven && apart.part(meeting, &partition, &overlapping);
-        Ok((Stored { whole, expectation, check, report }, goes_on))
+    ) -> Result<Self, RunError> {
+        plan.validate()?;
+        let mut report = RunReport::default();
+        let (skeleton, overlaps) = clock.time(progress, Stage::Prepare, 0, || prepare(network, &mut report));
+        let terminals = terminals::assign(&skeleton, &plan.roots)?;
+        announce(&report, progress);
+        Ok(Self { skeleton, overlaps, terminals, plan, store, progress, report })
     }
 
-    fn smoothed(self, progress: &dyn Progress, clock: &mut Clock) -> Result<Meshed, RunError> {
-        let Self { whole, expectation, mut report, .. } = self;
-        ask(progress)?;
-        let mut assembly = clock.time(progress, Stage::Merge, 0, || Assembly::new(&whole, whole.joint_vertices()?))?;
-        report.joints = Some(clock.time(progress, Stage::Joints, 0, || assembly.smooth(progress)));
-        ask(progress)?;
-        let (mesh, neighbors) = clock.time(progress, Stage::Merge, 0, || assembly.label())?;
-        ask(progress)?;
-        let check = || check_volume_with(&mesh, neighbors, Some(&expectation));
-        let check = clock.time(progress, Stage::Check, 0, check);
-        report.mesh = mesh_size(&mesh)?;
-        report.stages = clock.stages();
-        Ok(Meshed { mesh, expectation, check, report })
+    fn shop(&self) -> Workshop<'_> {
+        Workshop { skeleton: &self.skeleton, plan: self.plan, store: self.store }
+    }
+
+    fn run<'c>(&'c self, clock: &'c mut Clock) -> Run<'c> {
+        Run { overlaps: &self.overlaps, shop: self.shop(), progress: self.progress, clock }
+    }
+
+    /// The whole over all blocks.
+    ///
+    /// # Errors
+    /// When blocks failed that may not, and when it cannot be numbered or left in its work directory.
+    fn numbered(&self, blocks: &mut Blocks, clock: &mut Clock) -> Result<Whole<'a>, RunError> {
+        let Self { skeleton, terminals, plan, store, progress, .. } = self;
+        let nothing_left = blocks.clusters.iter().all(Result::is_err);
+        let number = || Whole::new(store, *progress, skeleton, blocks, terminals);
+        if blocks.any_failed() && (nothing_left || !plan.keep_going) {
+            // What there is can be looked at.
+            #[cfg(feature = "cli")]
+            if !nothing_left {
+                number()?.leave()?;
+            }
+            let mut report = self.report.clone();
+            describe_blocks(skeleton, &self.shop(), blocks, &mut report)?;
+            report.stages = clock.stages();
+            return Err(RunError::BlocksFailed(Box::new(report)));
+        }
+        let whole = clock.time(*progress, Stage::Merge, 0, number)?;
+        #[cfg(feature = "cli")]
+        whole.leave()?;
+        Ok(whole)
+    }
+
+    /// What was done, and what the network asks of its mesh.
+    fn described(self, mut blocks: Blocks) -> io::Result<(RunReport, Expectation)> {
+        let mut report = self.report.clone();
+        let topology = describe_blocks(&self.skeleton, &self.shop(), &mut blocks, &mut report)?;
+        let mut expectation = expectation(&self.skeleton, &blocks, &topology);
+        if self.plan.fuse {
+            expectation.loops = fused_loops(&blocks, &topology.handles);
+        }
+        Ok((report, expectation))
     }
 }
 
@@ -263,14 +281,14 @@ fn prepare(network: &Skeleton, report: &mut RunReport) -> (Arc<Skeleton>, Overla
 }
 
 /// What the network asks of its mesh. Loops that are filled by their own lumen are none of the mesh.
-fn expectation(skeleton: &Skeleton, blocks: &Blocks, clusters: &Clusters) -> Expectation {
+fn expectation(skeleton: &Skeleton, blocks: &Blocks, topology: &Topology) -> Expectation {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);
     let mut loops: Vec<u32> = components.list.iter().map(|c| c.loops() as u32).collect();
-    for (cluster, about) in (0..).zip(&clusters.0) {
-        if let (Some(node), Some(about)) = (blocks.partition.nodes(ClusterId(cluster)).first(), about) {
+    for &(cluster, filled) in &topology.filled {
+        if let Some(node) = blocks.partition.nodes(cluster).first() {
             let of_component = &mut loops[components.of_node[node.index()] as usize];
-            *of_component = of_component.saturating_sub(u32::try_from(about.filled).unwrap_or(0));
+            *of_component = of_component.saturating_sub(u32::try_from(filled).unwrap_or(0));
         }
     }
     Expectation { loops, terminals: adjacency.terminals().iter().map(|&n| skeleton.node(n).original).collect() }
@@ -278,7 +296,7 @@ fn expectation(skeleton: &Skeleton, blocks: &Blocks, clusters: &Clusters) -> Exp
 
 /// Loops of each connected piece when vessels are meshed together on purpose: the handles of its clusters, and the loops
 /// of the graph in which clusters are nodes and connectors are edges. Sorted, as pieces have no other name.
-fn fused_loops(blocks: &Blocks, about: &Clusters) -> Vec<u32> {
+fn fused_loops(blocks: &Blocks, handles: &[i64]) -> Vec<u32> {
     let sides = || (0..blocks.partition.cuts_len() as u32).map(|cut| blocks.partition.sides_of_cut(CutId(cut)));
     let mut piece: Vec<usize> = (0..blocks.partition.clusters_len()).collect();
     let root = |piece: &mut [usize], mut i: usize| {
@@ -293,8 +311,7 @@ fn fused_loops(blocks: &Blocks, about: &Clusters) -> Vec<u32> {
         piece[a.max(b)] = a.min(b);
     }
     let mut loops: BTreeMap<usize, i64> = BTreeMap::new();
-    for (i, about) in about.0.iter().enumerate() {
-        let handles = about.as_ref().map_or(0, |about| about.handles);
+    for (i, handles) in handles.iter().enumerate() {
         *loops.entry(root(&mut piece, i)).or_insert(1) += handles - 1;
     }
     for [(cluster, _), _] in sides() {

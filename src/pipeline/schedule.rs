@@ -2,7 +2,6 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
-use std::time::Instant;
 
 /// What a block is expected to take.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,9 +43,6 @@ impl Drop for Inside<'_> {
     }
 }
 
-/// What became of a piece of work, and the seconds that it took.
-pub type Timed<T> = (T, f64);
-
 /// Does `work` for every cost's index on all threads of the current pool; results in the order of the indices. The first
 /// error ends it.
 ///
@@ -56,30 +52,41 @@ pub fn costliest_first<T: Send, E: Send>(
     costs: &[Cost],
     limit: u64,
     work: impl Fn(usize) -> Result<T, E> + Sync,
-) -> Result<Vec<Timed<T>>, E> {
-    let mut order: Vec<usize> = (0..costs.len()).collect();
-    order.sort_by(|&a, &b| costs[b].tets.total_cmp(&costs[a].tets).then(a.cmp(&b)));
+) -> Result<Vec<T>, E> {
+    let mut order: Vec<u32> = (0..costs.len() as u32).collect();
+    let tets = |i: u32| costs[i as usize].tets;
+    order.sort_unstable_by(|&a, &b| tets(b).total_cmp(&tets(a)).then(a.cmp(&b)));
     let next = AtomicUsize::new(0);
     let gate = Gate { limit, used: Mutex::new(0), left: Condvar::new() };
+    // Millions of them: each stands where it belongs from the beginning.
+    let done: Mutex<Vec<Option<T>>> = Mutex::new(costs.iter().map(|_| None).collect());
+    let failed: Mutex<Option<(usize, E)>> = Mutex::new(None);
     // One loop per thread rather than a parallel iterator: a thread that waits inside a block for others' help must not
     // begin another block, which would have to wait at the gate for the first.
     let one_thread = |_: rayon::BroadcastContext| {
-        let mut done = Vec::new();
         while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let i = i as usize;
             let inside = gate.enter(costs[i].bytes);
-            let start = Instant::now();
             let result = work(i);
             drop(inside);
-            if result.is_err() {
-                next.store(order.len(), Ordering::Relaxed);
+            match result {
+                Ok(value) => done.lock().unwrap_or_else(PoisonError::into_inner)[i] = Some(value),
+                Err(error) => {
+                    next.store(order.len(), Ordering::Relaxed);
+                    let mut failed = failed.lock().unwrap_or_else(PoisonError::into_inner);
+                    if failed.as_ref().is_none_or(|(first, _)| i < *first) {
+                        *failed = Some((i, error));
+                    }
+                }
             }
-            done.push((i, (result, start.elapsed().as_secs_f64())));
         }
-        done
     };
-    let mut done: Vec<(usize, Timed<Result<T, E>>)> = rayon::broadcast(one_thread).into_iter().flatten().collect();
-    done.sort_unstable_by_key(|(i, _)| *i);
-    done.into_iter().map(|(_, (result, seconds))| result.map(|value| (value, seconds))).collect()
+    rayon::broadcast(one_thread);
+    match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some((_, error)) => Err(error),
+        // All are there.
+        None => Ok(done.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().map_while(|t| t).collect()),
+    }
 }
 
 #[cfg(test)]
@@ -93,7 +100,7 @@ mod tests {
     #[test]
     fn results_stand_in_the_order_of_the_indices() {
         let done = costliest_first::<_, ()>(&costs(&[3, 1, 2]), 100, |i| Ok(10 * i)).expect("nothing fails");
-        assert_eq!(done.iter().map(|d| d.0).collect::<Vec<_>>(), [0, 10, 20]);
+        assert_eq!(done, [0, 10, 20]);
     }
 
     #[test]

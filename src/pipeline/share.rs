@@ -16,7 +16,7 @@ use super::rounds::Run;
 use super::routes::tangled_clusters;
 use super::schedule::Cost;
 use super::store::{KeyMaker, Shard, Store, fingerprint};
-use super::timing::{Clock, StageTime};
+use super::timing::{BlockTimes, Clock, StageTime, Stopwatch};
 use crate::partition::{ClusterId, CutId};
 use crate::progress::{Progress, Stage};
 use crate::refine::split;
@@ -62,7 +62,7 @@ pub fn make_share(
     drop(network);
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let tasks = clock.time(progress, Stage::Prepare, 0, || Tasks::of(&shop, progress))?;
-    let mut run = Run { overlaps: &Overlaps::default(), shop, tells: false, progress, clock: &mut clock };
+    let mut run = Run { overlaps: &Overlaps::default(), shop, progress, clock: &mut clock };
     let mut report = run.share(shard, &tasks, fits)?;
     store.mark_done(shard)?;
     report.stages = clock.stages();
@@ -92,8 +92,7 @@ impl Tasks {
         };
         let find = || {
             let overlaps = shop.skeleton.overlaps(&shop.skeleton.adjacency());
-            let mut run =
-                Run { overlaps: &overlaps, shop: *shop, tells: false, progress, clock: &mut Clock::default() };
+            let mut run = Run { overlaps: &overlaps, shop: *shop, progress, clock: &mut Clock::default() };
             let together = run.together();
             let partition = run.partition(&BTreeMap::new(), &together)?;
             let weights = run.costs(&partition).iter().map(|cost| 1 + cost.tets as u64).collect();
@@ -123,8 +122,8 @@ impl Run<'_> {
         let costs: Vec<Cost> = own.iter().map(cost).collect();
         let (watch, failed) = (Watch::asking(progress), AtomicUsize::new(0));
         let before = shop.store.own_records();
-        let one = |k: usize| {
-            let i = own[k];
+        let stopwatch = Stopwatch::new(BlockTimes::default(), clusters);
+        let make = |i: u32| {
             let made = match i.checked_sub(clusters as u32) {
                 None => {
                     let (id, tangled) = (ClusterId(i), tasks.tangled[i as usize]);
@@ -135,14 +134,15 @@ impl Run<'_> {
             failed.fetch_add(usize::from(made.is_err()), Ordering::Relaxed);
             Ok(())
         };
-        let (_, seconds) = self.timed(Stage::Blocks, &costs, one)?;
+        self.timed(Stage::Blocks, &costs, |k| stopwatch.time(own[k] as usize, || make(own[k])))?;
+        let times = stopwatch.times();
         let failed = failed.into_inner();
         Ok(ShareReport {
             blocks: tasks.weights.len(),
             share: own.len(),
             found: own.len() - failed - (shop.store.own_records() - before),
             failed,
-            seconds: seconds.iter().sum(),
+            seconds: times.clusters + times.connectors,
             estimate: tasks.estimate,
             stages: Vec::new(),
         })

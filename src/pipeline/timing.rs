@@ -1,5 +1,6 @@
 //! Wall time per stage and per block.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use crate::progress::{Progress, Stage};
@@ -56,19 +57,44 @@ pub struct BlockTimes {
 }
 
 impl BlockTimes {
-    /// Adds the seconds of so many clusters, and of the connectors behind them.
-    pub fn add(&mut self, seconds: &[f64], clusters: usize) {
-        for (i, &s) in seconds.iter().enumerate() {
-            let connector = i.checked_sub(clusters);
-            *(if connector.is_some() { &mut self.connectors } else { &mut self.clusters }) += s;
-            if s > self.longest_seconds {
-                self.longest_seconds = s;
-                self.longest = connector.map_or_else(|| format!("cluster {i}"), |k| format!("connector {k}"));
-            }
-            let bin = (s.log2() + 11.0).clamp(0.0, 63.0) as usize;
-            self.histogram.resize(self.histogram.len().max(bin + 1), 0);
-            self.histogram[bin] += 1;
+    /// Adds the seconds of a block; connectors are numbered after so many clusters.
+    fn add(&mut self, block: usize, clusters: usize, seconds: f64) {
+        let connector = block.checked_sub(clusters);
+        *(if connector.is_some() { &mut self.connectors } else { &mut self.clusters }) += seconds;
+        if seconds > self.longest_seconds {
+            self.longest_seconds = seconds;
+            self.longest = connector.map_or_else(|| format!("cluster {block}"), |k| format!("connector {k}"));
         }
+        let bin = (seconds.log2() + 11.0).clamp(0.0, 63.0) as usize;
+        self.histogram.resize(self.histogram.len().max(bin + 1), 0);
+        self.histogram[bin] += 1;
+    }
+}
+
+/// Takes the time of blocks that are made on all threads.
+#[derive(Debug)]
+pub struct Stopwatch {
+    times: Mutex<BlockTimes>,
+    clusters: usize,
+}
+
+impl Stopwatch {
+    /// Of the blocks of a partition with so many clusters. `before`: what was timed before.
+    pub fn new(before: BlockTimes, clusters: usize) -> Self {
+        Self { times: Mutex::new(before), clusters }
+    }
+
+    /// Does something for a block.
+    pub fn time<T>(&self, block: usize, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let made = work();
+        let seconds = start.elapsed().as_secs_f64();
+        self.times.lock().unwrap_or_else(PoisonError::into_inner).add(block, self.clusters, seconds);
+        made
+    }
+
+    pub fn times(self) -> BlockTimes {
+        self.times.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -79,7 +105,9 @@ mod tests {
     #[test]
     fn blocks_are_counted_by_powers_of_two() {
         let mut times = BlockTimes::default();
-        times.add(&[0.0, 0.0015, 0.3, 0.001], 2);
+        for (block, seconds) in [0.0, 0.0015, 0.3, 0.001].into_iter().enumerate() {
+            times.add(block, 2, seconds);
+        }
         assert_eq!(times.histogram, [1, 2, 0, 0, 0, 0, 0, 0, 0, 1]);
         assert_eq!((times.longest.as_str(), times.longest_seconds), ("connector 0", 0.3));
         assert!((times.clusters - 0.0015).abs() < 1e-12 && (times.connectors - 0.301).abs() < 1e-12);

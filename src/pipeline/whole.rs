@@ -3,57 +3,37 @@
 
 #[cfg(feature = "cli")]
 mod left;
+mod numbering;
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::io;
 
+use rayon::prelude::*;
+
+use super::apart::Meetings;
 use super::blocks::Blocks;
-use super::make::{JointPlace, Kept, joints_of_cut};
+use super::make::JointPlace;
 use super::report::MeshSize;
 use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
-use crate::block::{FinishedJoint, Record};
-use crate::geometry::Point3;
-use crate::mesh::check::Expectation;
-use crate::mesh::check::parts::{Certificate, FacesApart, Parts, PartsCheck, check_parts};
+use crate::block::{FinishedCap, FinishedJoint, Record, Sizes};
+use crate::geometry::{Aabb, Point3};
+use crate::mesh::check::parts::{Certificate, FacesApart, Looked, Parts};
 use crate::mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
 use crate::mesh::{Patch, WALL};
-use crate::partition::CutId;
 use crate::progress::{Progress, ask};
 use crate::skeleton::Skeleton;
+use numbering::{Numbering, PartPlan};
 
 #[cfg(feature = "cli")]
 pub use left::LeftWhole;
 
-/// The whole mesh: parts in order, clusters by their ids, then connectors. A vertex that two parts have is numbered by the
-/// cluster.
+/// The whole mesh: a plan, and the store of its blocks.
 #[derive(Debug)]
 pub struct Whole<'a> {
     store: &'a Store,
     listener: Listener<'a>,
-    parts: Vec<PartPlan>,
-    patches: Vec<Patch>,
-    /// Patch of each terminal's cap, ascending by node.
-    patch_of: Vec<(u32, i32)>,
-    /// Joints that nothing is joined to, because a block is missing, each with the patch of its disc.
-    open: BTreeMap<JointPlace, i32>,
-    joined: Vec<[(u32, u32); 2]>,
-    counts: SourceCounts,
-}
-
-/// One part's place in the whole.
-#[derive(Clone, Copy, Debug)]
-struct PartPlan {
-    kept: Kept,
-    /// Its number among all blocks, those that are missing included.
-    block: i32,
-    /// Number of the first vertex that is this part's own.
-    first_point: u32,
-    /// Number of its first tetrahedron.
-    first_tet: u64,
-    /// The joints of other parts that hold the vertices it shares, in order.
-    joined_to: Option<[JointPlace; 2]>,
+    plan: Cow<'a, Numbering>,
 }
 
 /// Who says whether to stop.
@@ -70,6 +50,9 @@ impl std::fmt::Debug for Listener<'_> {
 #[error("the whole mesh has {0} points, more than 32 bits can count; mesh its parts, or give a smaller --rho")]
 pub struct TooManyPoints(pub u64);
 
+/// Blocks that are read at a time for what they add to the boundary.
+const READ: usize = 1 << 14;
+
 impl<'a> Whole<'a> {
     /// Numbers everything.
     ///
@@ -82,126 +65,107 @@ impl<'a> Whole<'a> {
         blocks: &Blocks,
         terminals: &TerminalPatches,
     ) -> io::Result<Self> {
-        let mut whole = Self {
-            store,
-            listener: Listener(progress),
-            parts: Vec::with_capacity(blocks.clusters.len() + blocks.connectors.len()),
-            patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
-            patch_of: Vec::new(),
-            open: BTreeMap::new(),
-            joined: Vec::new(),
-            counts: SourceCounts::default(),
-        };
-        // Clusters that failed have no part.
-        let mut part_of = Vec::with_capacity(blocks.clusters.len());
-        for (block, made) in (0..).zip(&blocks.clusters) {
-            part_of.push(made.as_ref().ok().map(|kept| whole.add(*kept, block, None)).transpose()?);
+        let first_patch = terminals.of.values().map(|(id, _)| *id).max().unwrap_or(WALL) + 1;
+        let plan = Numbering::of(blocks, first_patch)?;
+        let mut whole = Self { store, listener: Listener(progress), plan: Cow::Owned(plan) };
+        let (outer, caps) = whole.boundary_of_blocks()?;
+        let boundary = outer + whole.open_faces()?;
+        let plan = whole.plan.to_mut();
+        plan.counts.boundary = boundary;
+        for cap in &caps {
+            plan.cap_faces += cap.faces.len();
+            let Some((id, name)) = terminals.of.get(&cap.node) else { continue };
+            let disc = cap.disc(skeleton.node(cap.node).original);
+            plan.patches.push(Patch { id: *id, name: name.clone(), cap: Some(disc) });
+            plan.patch_of.push((cap.node.0, *id));
         }
-        let connectors = blocks.connectors.iter().enumerate();
-        let mut next = terminals.of.values().map(|(id, _)| *id).max().unwrap_or(WALL) + 1;
-        for (block, (number, made)) in (blocks.clusters.len() as i32..).zip(connectors) {
-            let sides = joints_of_cut(&blocks.partition, CutId(number as u32));
-            let sides = sides.map(|place| part_of[place.part as usize].map(|part| JointPlace { part, ..place }));
-            match (made, sides) {
-                (Some(Ok(kept)), [Some(a), Some(b)]) => {
-                    let part = whole.add(*kept, block, Some([a, b]))?;
-                    let join = |side, place: JointPlace| [(place.part, place.joint), (part, side)];
-                    whole.joined.extend([join(0, a), join(1, b)]);
-                }
-                _ => {
-                    for (side, place) in sides.into_iter().enumerate().filter_map(|(side, place)| Some((side, place?)))
-                    {
-                        whole.patches.push(Patch { id: next, name: format!("missing_{number}_{side}"), cap: None });
-                        whole.open.insert(place, next);
-                        next += 1;
-                    }
-                }
-            }
-        }
-        whole.add_open_faces()?;
-        whole.add_patches(skeleton, terminals)?;
+        plan.patches.sort_by_key(|patch| patch.id);
+        plan.patch_of.sort_unstable();
         Ok(whole)
     }
 
-    fn add(&mut self, kept: Kept, block: i32, joined_to: Option<[JointPlace; 2]>) -> io::Result<u32> {
-        let SourceCounts { points, tets, boundary } = &mut self.counts;
-        let Ok(first_point) = u32::try_from(*points) else {
-            return Err(io::Error::other(TooManyPoints(*points as u64)));
+    /// Numbers everything as far as walls need it: joints that are open are known, caps are wall.
+    ///
+    /// # Errors
+    /// When there are too many vertices.
+    pub fn of_walls(store: &'a Store, progress: &'a dyn Progress, blocks: &Blocks) -> io::Result<Self> {
+        let plan = Cow::Owned(Numbering::of(blocks, WALL + 1)?);
+        Ok(Self { store, listener: Listener(progress), plan })
+    }
+
+    /// Counts boundary faces that are in no joint, and collects the caps, in order.
+    fn boundary_of_blocks(&self) -> io::Result<(usize, Vec<FinishedCap>)> {
+        let read = |part: &PartPlan| {
+            let bytes = self.record(*part)?;
+            let record = Record::open(&bytes)?;
+            let caps = if record.sizes().caps > 0 { record.caps()? } else { Vec::new() };
+            Ok((record.sizes().outer_faces() as usize, caps))
         };
-        self.parts.push(PartPlan { kept, block, first_point, first_tet: *tets as u64, joined_to });
-        *points += (kept.sizes.points - kept.sizes.shared) as usize;
-        *tets += kept.sizes.tets as usize;
-        *boundary += kept.sizes.outer_faces() as usize;
-        Ok(self.parts.len() as u32 - 1)
-    }
-
-    fn add_open_faces(&mut self) -> io::Result<()> {
-        for place in self.open.keys() {
-            let joints = Record::open(&self.record(self.parts[place.part as usize])?)?.joints()?;
-            self.counts.boundary += joints.get(place.joint as usize).map_or(0, |joint| joint.faces.len());
-        }
-        Ok(())
-    }
-
-    fn add_patches(&mut self, skeleton: &Skeleton, terminals: &TerminalPatches) -> io::Result<()> {
-        for &part in self.parts.iter().filter(|part| part.kept.sizes.caps > 0) {
-            for cap in Record::open(&self.store.bytes(part.kept.record))?.caps()? {
-                let Some((id, name)) = terminals.of.get(&cap.node) else { continue };
-                let disc = cap.disc(skeleton.node(cap.node).original);
-                self.patches.push(Patch { id: *id, name: name.clone(), cap: Some(disc) });
-                self.patch_of.push((cap.node.0, *id));
+        let (mut faces, mut caps) = (0, Vec::new());
+        for some in self.plan.parts.chunks(READ) {
+            for (more, found) in some.par_iter().map(read).collect::<io::Result<Vec<_>>>()? {
+                faces += more;
+                caps.extend(found);
             }
         }
-        self.patches.sort_by_key(|patch| patch.id);
-        self.patch_of.sort_unstable();
-        Ok(())
+        Ok((faces, caps))
+    }
+
+    /// Counts the faces of joints that nothing is joined to.
+    fn open_faces(&self) -> io::Result<usize> {
+        let mut faces = 0;
+        for place in self.plan.open.keys() {
+            let joints = Record::open(&self.record(self.plan.part(place.part))?)?.joints()?;
+            faces += joints.get(place.joint as usize).map_or(0, |joint| joint.faces.len());
+        }
+        Ok(faces)
     }
 
     /// The bytes of a part. Every pass comes here for each part, so this is where it is asked whether to stop.
     fn record(&self, part: PartPlan) -> io::Result<StoredBytes<'a>> {
         ask(self.listener.0)?;
-        Ok(self.store.bytes(part.kept.record))
+        Ok(self.store.bytes(part.record))
     }
 
-    /// Numbers of the vertices that a part shares with earlier ones.
-    fn shared(&self, part: PartPlan) -> io::Result<Vec<u32>> {
-        let mut shared = Vec::with_capacity(part.kept.sizes.shared as usize);
-        for place in part.joined_to.iter().flatten() {
-            let cluster = self.parts[place.part as usize];
+    /// Number in the whole of each vertex of a part: first those that it shares with clusters.
+    fn numbers(&self, part: u32, sizes: &Sizes) -> io::Result<Vec<u32>> {
+        let mut numbers = Vec::with_capacity(sizes.points as usize);
+        for &[(cluster, joint), _] in self.plan.joined_to(part) {
+            let cluster = self.plan.part(cluster);
             let joints = Record::open(&self.record(cluster)?)?.joints()?;
             // Clusters share nothing, so all of their vertices are their own.
-            let vertices = joints.get(place.joint as usize).map_or(&[][..], |joint| &joint.vertices);
-            shared.extend(vertices.iter().map(|v| cluster.first_point + v));
+            let vertices = joints.get(joint as usize).map_or(&[][..], |joint| &joint.vertices);
+            numbers.extend(vertices.iter().map(|v| cluster.first_point + v));
         }
-        Ok(shared)
-    }
-
-    /// Number in the whole of each vertex of a part.
-    fn numbers(&self, part: PartPlan) -> io::Result<Vec<u32>> {
-        let mut numbers = self.shared(part)?;
-        let own = part.kept.sizes.points - part.kept.sizes.shared;
-        if numbers.len() != part.kept.sizes.shared as usize {
+        if numbers.len() != sizes.shared as usize {
             return Err(io::Error::new(io::ErrorKind::InvalidData, "two blocks have different discs at their joint"));
         }
-        numbers.extend(part.first_point..part.first_point + own);
+        let first = self.plan.part(part).first_point;
+        numbers.extend(first..first + self.plan.points_of(part));
         Ok(numbers)
+    }
+
+    /// The same of a part of which nothing else is asked.
+    fn numbers_alone(&self, part: u32) -> io::Result<Vec<u32>> {
+        self.numbers(part, &Record::open(&self.record(self.plan.part(part))?)?.sizes())
     }
 
     /// Boundary faces of the whole that a part has, ascending, each with its patch.
     fn outer_faces(&self, part: u32, record: &Record<StoredBytes>) -> io::Result<Vec<(u32, i32)>> {
         let mut faces: Vec<(u32, i32)> = record.wall()?.into_iter().map(|face| (face, WALL)).collect();
         if record.sizes().caps > 0 {
+            let patch_of = &self.plan.patch_of;
             for cap in record.caps()? {
-                let found = self.patch_of.binary_search_by_key(&cap.node.0, |(node, _)| *node);
-                let patch = found.map_or(WALL, |i| self.patch_of[i].1);
+                let found = patch_of.binary_search_by_key(&cap.node.0, |(node, _)| *node);
+                let patch = found.map_or(WALL, |i| patch_of[i].1);
                 faces.extend(cap.faces.into_iter().map(|face| (face, patch)));
             }
         }
         let first = JointPlace { part, joint: 0 };
         let last = JointPlace { part, joint: u32::MAX };
-        if self.open.range(first..=last).next().is_some() {
+        if self.plan.open.range(first..=last).next().is_some() {
             let joints = record.joints()?;
-            for (place, patch) in self.open.range(first..=last) {
+            for (place, patch) in self.plan.open.range(first..=last) {
                 let open = joints.get(place.joint as usize).into_iter().flat_map(|j| &j.faces);
                 faces.extend(open.map(|&face| (face, *patch)));
             }
@@ -212,19 +176,40 @@ impl<'a> Whole<'a> {
 
     /// Counts it.
     pub fn size(&self) -> MeshSize {
-        let cap_triangles = self.parts.iter().map(|part| part.kept.sizes.cap_faces as usize).sum();
-        let SourceCounts { points, tets, boundary } = self.counts;
+        let SourceCounts { points, tets, boundary } = self.plan.counts;
+        let cap_triangles = self.plan.cap_faces;
         MeshSize { tets, points, wall_triangles: boundary - cap_triangles, cap_triangles }
     }
 
-    /// Checks it, with walls of so many bytes in memory at a time. What meets is named by the blocks' numbers.
+    /// The first half of its check, with walls of so many bytes in memory at a time.
     ///
     /// # Errors
     /// When a block cannot be read.
-    pub fn check(&self, expectation: &Expectation, memory: u64) -> io::Result<PartsCheck> {
-        let PartsCheck { report, mut meeting } = check_parts(self, &self.patches, Some(expectation), memory as usize)?;
-        meeting.as_flattened_mut().iter_mut().for_each(|part| *part = self.parts[*part as usize].block as u32);
-        Ok(PartsCheck { report, meeting })
+    pub fn look(&self, memory: u64) -> io::Result<Looked<'_>> {
+        Looked::at(self, memory as usize)
+    }
+
+    /// The number of a part among all blocks, those that are missing included.
+    pub fn block_of(&self, part: u32) -> u32 {
+        self.plan.part(part).block as u32
+    }
+
+    /// The numbers of all parts, in order.
+    pub fn blocks(&self) -> impl Iterator<Item = u32> {
+        self.plan.parts.iter().map(|part| part.block as u32)
+    }
+
+    /// Pairs of blocks whose walls meet, by their numbers.
+    pub fn blocks_that_meet(&self, looked: &Looked) -> Meetings {
+        looked.meeting().iter().map(|pair| pair.map(|part| self.block_of(part))).collect()
+    }
+
+    /// The box of a part's boundary.
+    ///
+    /// # Errors
+    /// When the block cannot be read.
+    pub fn bounds(&self, part: u32) -> io::Result<Aabb> {
+        Ok(self.certificate(part)?.bounds())
     }
 
     /// The vertices of every joint, by their numbers in the whole.
@@ -232,10 +217,11 @@ impl<'a> Whole<'a> {
     /// # Errors
     /// When a block cannot be read.
     pub fn joint_vertices(&self) -> io::Result<Vec<Vec<u32>>> {
-        let mut all = Vec::with_capacity(self.joined.len());
-        for &part in self.parts.iter().filter(|part| part.joined_to.is_some()) {
-            let joints = Record::open(&self.record(part)?)?.joints()?;
-            let numbers = self.numbers(part)?;
+        let mut all = Vec::with_capacity(self.plan.joined.len());
+        for part in self.plan.clusters..self.plan.parts.len() as u32 {
+            let bytes = self.record(self.plan.part(part))?;
+            let record = Record::open(&bytes)?;
+            let (joints, numbers) = (record.joints()?, self.numbers(part, &record.sizes())?);
             all.extend(joints.iter().map(|joint| joint.vertices.iter().map(|&v| numbers[v as usize]).collect()));
         }
         Ok(all)
@@ -244,20 +230,22 @@ impl<'a> Whole<'a> {
 
 impl MeshSource for Whole<'_> {
     fn counts(&self) -> SourceCounts {
-        self.counts
+        self.plan.counts
     }
 
     fn patches(&self) -> &[Patch] {
-        &self.patches
+        &self.plan.patches
     }
 
     fn parts(&self) -> u32 {
-        self.parts.len() as u32
+        self.plan.parts.len() as u32
     }
 
     fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        let part = self.parts[part as usize];
-        let points = Record::open(&self.record(part)?)?.points()?.split_off(part.kept.sizes.shared as usize);
+        let bytes = self.record(self.plan.part(part))?;
+        let record = Record::open(&bytes)?;
+        let mut points = record.points()?;
+        points.drain(..(record.sizes().shared as usize).min(points.len()));
         Ok(points.into())
     }
 
@@ -265,8 +253,8 @@ impl MeshSource for Whole<'_> {
         let mut found = Vec::with_capacity(ids.len());
         while let Some(&id) = ids.get(found.len()) {
             // Of parts that begin with the same number, all but the last have no points of their own.
-            let part = self.parts.partition_point(|part| part.first_point <= id).saturating_sub(1);
-            let first = self.parts[part].first_point;
+            let part = self.plan.parts.partition_point(|part| part.first_point <= id).saturating_sub(1);
+            let first = self.plan.parts[part].first_point;
             let points = self.points(part as u32)?;
             let here = ids[found.len()..].iter().map_while(|&id| points.get(id.checked_sub(first)? as usize));
             let before = found.len();
@@ -279,19 +267,21 @@ impl MeshSource for Whole<'_> {
     }
 
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        let part = self.parts[part as usize];
-        let numbers = self.numbers(part)?;
-        let mut tets = Record::open(&self.record(part)?)?.tets()?;
+        let plan = self.plan.part(part);
+        let bytes = self.record(plan)?;
+        let record = Record::open(&bytes)?;
+        let numbers = self.numbers(part, &record.sizes())?;
+        let mut tets = record.tets()?;
         tets.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
-        let blocks = vec![part.block; tets.len()].into();
+        let blocks = vec![plan.block; tets.len()].into();
         Ok(TetPiece { tets: tets.into(), blocks })
     }
 
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
-        let plan = self.parts[part as usize];
-        let numbers = self.numbers(plan)?;
+        let plan = self.plan.part(part);
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
+        let numbers = self.numbers(part, &record.sizes())?;
         let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(part, &record)?.into_iter().unzip();
         let mut faces = record.triangles(&faces)?;
         faces.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
@@ -300,13 +290,12 @@ impl MeshSource for Whole<'_> {
     }
 
     fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
-        let part = self.parts[part as usize];
-        let count = part.kept.sizes.tets as usize;
-        Ok(LabelPiece { count, blocks: vec![part.block; count].into(), ..LabelPiece::default() })
+        let count = self.plan.tets_of(part);
+        Ok(LabelPiece { count, blocks: vec![self.plan.part(part).block; count].into(), ..LabelPiece::default() })
     }
 
     fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
-        let plan = self.parts[part as usize];
+        let plan = self.plan.part(part);
         let faces = self.outer_faces(part, &Record::open(&self.record(plan)?)?)?;
         let patches = faces.iter().map(|(_, patch)| *patch).collect();
         Ok(LabelPiece { count: faces.len(), patches, blocks: vec![plan.block; faces.len()].into() })
@@ -315,19 +304,19 @@ impl MeshSource for Whole<'_> {
 
 impl Parts for Whole<'_> {
     fn count(&self) -> usize {
-        self.parts.len()
+        self.plan.parts.len()
     }
 
     fn certificate(&self, part: u32) -> io::Result<Certificate> {
-        Ok(Record::open(&self.record(self.parts[part as usize])?)?.notes()?.0)
+        Ok(Record::open(&self.record(self.plan.part(part))?)?.notes()?.0)
     }
 
     fn wall(&self, part: u32) -> io::Result<FacesApart> {
-        let plan = self.parts[part as usize];
+        let plan = self.plan.part(part);
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
         let faces: Vec<u32> = self.outer_faces(part, &record)?.into_iter().map(|(face, _)| face).collect();
-        let (points, numbers) = (record.points()?, self.numbers(plan)?);
+        let (points, numbers) = (record.points()?, self.numbers(part, &record.sizes())?);
         let (faces, vertices) = compact(record.triangles(&faces)?, points.len());
         let at = |&v: &u32| points[v as usize];
         let number = |&v: &u32| numbers[v as usize];
@@ -339,11 +328,11 @@ impl Parts for Whole<'_> {
     }
 
     fn joined(&self) -> &[[(u32, u32); 2]] {
-        &self.joined
+        &self.plan.joined
     }
 
     fn joint(&self, part: u32, joint: u32) -> io::Result<FacesApart> {
-        let plan = self.parts[part as usize];
+        let plan = self.plan.part(part);
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
         let FinishedJoint { vertices, faces } = record
@@ -351,7 +340,7 @@ impl Parts for Whole<'_> {
             .into_iter()
             .nth(joint as usize)
             .ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?;
-        let (points, numbers) = (record.points()?, self.numbers(plan)?);
+        let (points, numbers) = (record.points()?, self.numbers(part, &record.sizes())?);
         let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
         Ok(FacesApart {
             points: vertices.iter().map(|&v| points[v as usize]).collect(),
@@ -362,16 +351,16 @@ impl Parts for Whole<'_> {
 
     fn vertex(&self, part: u32, local: u32) -> u32 {
         // Asked for offenders alone.
-        let numbers = self.numbers(self.parts[part as usize]).unwrap_or_default();
+        let numbers = self.numbers_alone(part).unwrap_or_default();
         numbers.get(local as usize).copied().unwrap_or(u32::MAX)
     }
 
     fn tet(&self, part: u32, local: u32) -> u64 {
-        self.parts[part as usize].first_tet + u64::from(local)
+        self.plan.part(part).first_tet + u64::from(local)
     }
 
     fn vertices(&self, part: u32, _: u32) -> io::Result<Vec<u32>> {
-        self.numbers(self.parts[part as usize])
+        self.numbers_alone(part)
     }
 }
 

@@ -46,8 +46,15 @@ use crate::block::Bytes;
 use crate::progress::Progress;
 
 /// A record of the store.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RecordId(u32);
+
+impl RecordId {
+    /// Its number: records are numbered through.
+    pub(crate) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
 
 /// Keeps finished blocks, in memory or in a file.
 #[derive(Debug)]

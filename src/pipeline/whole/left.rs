@@ -1,44 +1,19 @@
 //! A whole as it is left in its work directory: all that has to be known of it beside its blocks, so that it can be read without
 //! its network.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
-use super::{Listener, PartPlan, Whole};
-use crate::block::Sizes;
+use super::numbering::Numbering;
+use super::{Listener, Whole};
 use crate::geometry::{Point3, Vec3};
-use crate::mesh::source::SourceCounts;
 use crate::mesh::{Cap, Patch};
-use crate::pipeline::make::{JointPlace, Kept};
 use crate::pipeline::store::{Extents, MANIFEST, Store, StoreError};
 use crate::progress::Progress;
 
 const NAME: &str = "whole";
-
-/// What is left. Records are numbered as the parts.
-#[derive(Serialize, Deserialize)]
-struct Left {
-    extents: Extents,
-    parts: Vec<LeftPart>,
-    patches: Vec<LeftPatch>,
-    patch_of: Vec<(u32, i32)>,
-    open: BTreeMap<JointPlace, i32>,
-    joined: Vec<[(u32, u32); 2]>,
-    /// Points, tetrahedra, boundary faces.
-    counts: [u64; 3],
-}
-
-/// As [`PartPlan`].
-#[derive(Serialize, Deserialize)]
-struct LeftPart {
-    sizes: Sizes,
-    block: i32,
-    first_point: u32,
-    first_tet: u64,
-    joined_to: Option<[JointPlace; 2]>,
-}
 
 /// As [`Patch`], with the letters of its name as bytes; a cap is its node, centre, normal and radius.
 #[derive(Serialize, Deserialize)]
@@ -65,24 +40,26 @@ impl LeftPatch {
     }
 }
 
+/// How patches are left.
+pub(super) mod patches {
+    use super::{LeftPatch, Patch};
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(in super::super) fn serialize<S: Serializer>(patches: &[Patch], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(patches.iter().map(LeftPatch::of))
+    }
+
+    pub(in super::super) fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Vec<Patch>, D::Error> {
+        Ok(Vec::<LeftPatch>::deserialize(from)?.into_iter().map(LeftPatch::patch).collect())
+    }
+}
+
 /// A finished mesh in a work directory, to be read without its network.
-///
 #[derive(Debug)]
 pub struct LeftWhole {
     store: Store,
     /// With parts whose records are those of the store.
-    left: Box<LeftPlan>,
-}
-
-/// A whole without its store.
-#[derive(Debug)]
-struct LeftPlan {
-    parts: Vec<PartPlan>,
-    patches: Vec<Patch>,
-    patch_of: Vec<(u32, i32)>,
-    open: BTreeMap<JointPlace, i32>,
-    joined: Vec<[(u32, u32); 2]>,
-    counts: SourceCounts,
+    plan: Box<Numbering>,
 }
 
 impl LeftWhole {
@@ -93,44 +70,20 @@ impl LeftWhole {
 
     /// What is left in a folder; none where no run has come so far, or it is damaged.
     pub fn open(folder: &Path) -> Option<Self> {
-        let left: Left = Store::left(folder, NAME)?;
-        if left.extents.len() != left.parts.len() {
+        // Records are numbered as the parts.
+        let (extents, mut plan): (Extents, Box<Numbering>) = Store::left(folder, NAME)?;
+        if extents.len() != plan.parts.len() || !plan.is_sound() {
             return None;
         }
-        let part = |(i, part): (usize, LeftPart)| PartPlan {
-            kept: Kept { record: Extents::record(i), sizes: part.sizes },
-            block: part.block,
-            first_point: part.first_point,
-            first_tet: part.first_tet,
-            joined_to: part.joined_to,
-        };
-        let [points, tets, boundary] = left.counts.map(|count| count as usize);
-        Some(Self {
-            store: Store::of_extents(folder, &left.extents)?,
-            left: Box::new(LeftPlan {
-                parts: left.parts.into_iter().enumerate().map(part).collect(),
-                patches: left.patches.into_iter().map(LeftPatch::patch).collect(),
-                patch_of: left.patch_of,
-                open: left.open,
-                joined: left.joined,
-                counts: SourceCounts { points, tets, boundary },
-            }),
-        })
+        for (i, part) in plan.parts.iter_mut().enumerate() {
+            part.record = Extents::record(i);
+        }
+        Some(Self { store: Store::of_extents(folder, &extents)?, plan })
     }
 
     /// The mesh, to be read in passes that end when they are told to.
     pub fn whole<'a>(&'a self, progress: &'a dyn Progress) -> Whole<'a> {
-        let LeftPlan { parts, patches, patch_of, open, joined, counts } = &*self.left;
-        Whole {
-            store: &self.store,
-            listener: Listener(progress),
-            parts: parts.clone(),
-            patches: patches.clone(),
-            patch_of: patch_of.clone(),
-            open: open.clone(),
-            joined: joined.clone(),
-            counts: *counts,
-        }
+        Whole { store: &self.store, listener: Listener(progress), plan: Cow::Borrowed(&self.plan) }
     }
 }
 
@@ -140,24 +93,7 @@ impl Whole<'_> {
     /// # Errors
     /// When that cannot be written.
     pub fn leave(&self) -> Result<(), StoreError> {
-        let Some(extents) = self.store.extents(self.parts.iter().map(|part| part.kept.record)) else { return Ok(()) };
-        let part = |plan: &PartPlan| LeftPart {
-            sizes: plan.kept.sizes,
-            block: plan.block,
-            first_point: plan.first_point,
-            first_tet: plan.first_tet,
-            joined_to: plan.joined_to,
-        };
-        let SourceCounts { points, tets, boundary } = self.counts;
-        let left = Left {
-            extents,
-            parts: self.parts.iter().map(part).collect(),
-            patches: self.patches.iter().map(LeftPatch::of).collect(),
-            patch_of: self.patch_of.clone(),
-            open: self.open.clone(),
-            joined: self.joined.clone(),
-            counts: [points, tets, boundary].map(|count| count as u64),
-        };
-        self.store.leave(NAME, &left)
+        let Some(extents) = self.store.extents(self.plan.parts.iter().map(|part| part.record)) else { return Ok(()) };
+        self.store.leave(NAME, &(extents, &*self.plan))
     }
 }

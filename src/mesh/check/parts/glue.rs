@@ -16,7 +16,6 @@ const READ: usize = 4096;
 
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    bounds: Aabb,
     points: u32,
     wall_faces: u32,
     wall_sum: u64,
@@ -47,24 +46,27 @@ pub(super) fn invalid(what: impl Into<String>) -> io::Error {
 }
 
 impl Held {
-    pub(super) fn read(parts: &dyn Parts, tallies: &mut Tallies) -> io::Result<Self> {
+    /// With the boxes of the parts.
+    pub(super) fn read(parts: &dyn Parts, tallies: &mut Tallies) -> io::Result<(Self, Vec<Aabb>)> {
         let count = u32::try_from(parts.count()).map_err(|_| invalid("more than 2^32 parts"))?;
-        let mut held = Self::default();
+        let mut held = Self { parts: Vec::with_capacity(count as usize), ..Self::default() };
+        let mut boxes = Vec::with_capacity(count as usize);
         for first in (0..count).step_by(READ) {
             let some = first..count.min(first + READ as u32);
             let certificates: Vec<Certificate> =
                 some.into_par_iter().map(|part| parts.certificate(part)).collect::<io::Result<_>>()?;
             for (part, certificate) in (first..).zip(certificates) {
+                boxes.push(certificate.bounds());
                 held.add(parts, part, certificate, tallies)?;
             }
         }
-        Ok(held)
+        held.surfaces.shrink_to_fit();
+        held.joints.shrink_to_fit();
+        Ok((held, boxes))
     }
 
     fn add(&mut self, parts: &dyn Parts, part: u32, c: Certificate, tallies: &mut Tallies) -> io::Result<()> {
-        let [low, high] = c.bounds.map(Point3::from);
         self.parts.push(Part {
-            bounds: if c.surfaces.is_empty() { Aabb::EMPTY } else { Aabb { min: low, max: high } },
             points: c.points,
             wall_faces: c.wall_faces,
             wall_sum: c.wall_sum,
@@ -122,15 +124,16 @@ impl Held {
         self.parts[part as usize].is_sound
     }
 
-    pub(super) fn bounds(&self, part: u32) -> &Aabb {
-        &self.parts[part as usize].bounds
-    }
-
     /// The number of a part's joint, if there is such a joint.
     pub(super) fn joint_number(&self, (part, joint): (u32, u32)) -> Option<u32> {
         let range = self.joints_of(part)?;
         let number = range.start.checked_add(joint)?;
         range.contains(&number).then_some(number)
+    }
+
+    /// A joint of a part, by its number among all, as the part numbers it.
+    pub(super) fn joint_place(&self, (part, number): (u32, u32)) -> (u32, u32) {
+        (part, number - self.parts[part as usize].first_joint)
     }
 
     pub(super) fn joint(&self, number: u32) -> &HeldJoint {

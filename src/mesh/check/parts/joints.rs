@@ -11,29 +11,45 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::io;
 
+/// Pairs of joints that are compared at a time.
+const COMPARED: usize = 1 << 14;
+
 /// What came of the joints.
 #[derive(Debug, Default)]
 pub(super) struct Joined {
-    /// For each joint, by its number, whether it is joined to something.
-    pub flags: Vec<bool>,
     /// Pairs that are joined, as (part, number of the joint).
     pub pairs: Vec<[(u32, u32); 2]>,
     /// A line that is broken because a joint is.
     pub broken: Option<Line>,
 }
 
+/// For each joint, by its number, whether it is joined to something.
+pub(super) fn flags(parts: &dyn Parts, held: &Held) -> io::Result<Vec<bool>> {
+    let mut flags = vec![false; held.joint_count()];
+    for pair in parts.joined() {
+        for number in numbers(held, pair)? {
+            flags[number as usize] = true;
+        }
+    }
+    Ok(flags)
+}
+
+fn numbers(held: &Held, pair: &[(u32, u32); 2]) -> io::Result<[u32; 2]> {
+    match pair.map(|joint| held.joint_number(joint)) {
+        [Some(a), Some(b)] => Ok([a, b]),
+        _ => Err(invalid(format!("parts have no such joints: {pair:?}"))),
+    }
+}
+
 /// Looks at every pair of joints.
 pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io::Result<Joined> {
-    let mut joined = Joined { flags: vec![false; held.joint_count()], ..Joined::default() };
-    let mut once: Vec<[(u32, u32); 2]> = Vec::new();
+    let mut joined = Joined { pairs: Vec::with_capacity(parts.joined().len()), broken: None };
+    let mut seen = vec![false; held.joint_count()];
     for pair in parts.joined() {
-        let numbers = pair.map(|joint| held.joint_number(joint));
-        let [Some(a), Some(b)] = numbers else {
-            return Err(invalid(format!("parts have no such joints: {pair:?}")));
-        };
+        let [a, b] = numbers(held, pair)?;
         let mut free = a != b;
         for (number, &(part, joint)) in [a, b].into_iter().zip(pair) {
-            if std::mem::replace(&mut joined.flags[number as usize], true) {
+            if std::mem::replace(&mut seen[number as usize], true) {
                 free = false;
                 if let Some(joint) = read(parts, held, (part, joint))? {
                     third_tets(&joint, tallies);
@@ -41,23 +57,24 @@ pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io
             }
         }
         if free {
-            once.push(*pair);
             joined.pairs.push([(pair[0].0, a), (pair[1].0, b)]);
         } else {
             joined.broken = Some(Line::FacesSharedByTwo);
         }
     }
-    let results: Vec<Differences> =
-        once.par_iter().map(|pair| compare(parts, held, pair)).collect::<io::Result<Vec<_>>>()?;
-    let mut keep = Vec::new();
-    for differences in results {
-        keep.push(!differences.all);
-        if differences.all {
-            joined.broken = Some(Line::LabelsMatchBoundary);
-        }
-        for (line, offender) in differences.found {
-            joined.broken = Some(line);
-            tallies.add(line, offender);
+    drop(seen);
+    let mut keep = Vec::with_capacity(joined.pairs.len());
+    for some in joined.pairs.chunks(COMPARED) {
+        let compare = |pair: &[(u32, u32); 2]| compare(parts, held, &pair.map(|joint| held.joint_place(joint)));
+        for differences in some.par_iter().map(compare).collect::<io::Result<Vec<Differences>>>()? {
+            keep.push(!differences.all);
+            if differences.all {
+                joined.broken = Some(Line::LabelsMatchBoundary);
+            }
+            for (line, offender) in differences.found {
+                joined.broken = Some(line);
+                tallies.add(line, offender);
+            }
         }
     }
     let mut keep = keep.into_iter();

@@ -39,7 +39,9 @@
 //!
 //! [`Parts`] must give the same ids everywhere; that walls and joints are those that were certified is checked.
 
+mod boxes;
 mod certificate;
+mod changed;
 mod glue;
 mod ids;
 mod joints;
@@ -54,12 +56,13 @@ mod whole;
 mod tests;
 
 pub use certificate::{certify_hollow, certify_with};
+pub use changed::{Changed, meetings_of};
 pub use pieces::{PiecesError, check_pieces};
-pub use whole::check_parts;
+pub use whole::{Looked, check_parts};
 
 use super::nested::Enclosed;
 use super::result::{CheckReport, Intersection, Line, Offender};
-use crate::geometry::Point3;
+use crate::geometry::{Aabb, Point3};
 use crate::mesh::quality::QualityPiece;
 use crate::mesh::{Cap, TetMesh};
 use serde::{Deserialize, Serialize};
@@ -118,6 +121,12 @@ impl Certificate {
     /// The first line that does not hold.
     pub fn broken_line(&self) -> Option<Line> {
         self.faults.first().map(|fault| fault.line)
+    }
+
+    /// The box of the boundary; empty where there is none.
+    pub fn bounds(&self) -> Aabb {
+        let [min, max] = self.bounds.map(Point3::from);
+        if self.surfaces.is_empty() { Aabb::EMPTY } else { Aabb { min, max } }
     }
 
     /// The smallest radius ratio of the tetrahedra.

@@ -1,5 +1,6 @@
 //! Boundary surfaces of the whole that lie where the mesh already is, by a ray from a point of each.
 
+use super::boxes::Boxes;
 use super::glue::{Glued, invalid};
 use super::walls::{Reader, Wall};
 use crate::geometry::DisjointSets;
@@ -10,8 +11,8 @@ use rayon::prelude::*;
 use std::io;
 
 /// A vertex of each surface that lies within the mesh. Walls must be closed and must not meet.
-pub(super) fn within(reader: Reader, glued: &Glued, tree: &Bvh) -> io::Result<Vec<Offender>> {
-    let boxes = boxes(&reader, glued);
+pub(super) fn within(reader: Reader, glued: &Glued, parts: &Boxes) -> io::Result<Vec<Offender>> {
+    let boxes = boxes(&reader, glued, parts);
     let surfaces: Vec<Aabb> = glued.surfaces().map(|root| boxes[root as usize]).collect();
     let outer = Bvh::new(&surfaces);
     let test = |(i, root): (u32, u32)| -> io::Result<Option<Offender>> {
@@ -19,7 +20,7 @@ pub(super) fn within(reader: Reader, glued: &Glued, tree: &Bvh) -> io::Result<Ve
         let here = Aabb { min: p, max: p };
         let mut others = 0;
         outer.query(&here, |other| others += u32::from(other != i));
-        if others == 0 || !is_within(winding(&reader, glued, tree, root, &p)?, glued.enclosed(root)) {
+        if others == 0 || !is_within(winding(&reader, glued, parts.tree(), root, &p)?, glued.enclosed(root)) {
             return Ok(None);
         }
         Ok(Some(Offender::new(OffenderKind::Point, &[vertex], Some(p))))
@@ -30,12 +31,12 @@ pub(super) fn within(reader: Reader, glued: &Glued, tree: &Bvh) -> io::Result<Ve
 }
 
 /// The boxes of the whole's surfaces, by their roots.
-fn boxes(reader: &Reader, glued: &Glued) -> Vec<Aabb> {
+fn boxes(reader: &Reader, glued: &Glued, parts: &Boxes) -> Vec<Aabb> {
     let mut boxes = vec![Aabb::EMPTY; glued.roots_len()];
     for part in 0..reader.held.count() {
         for surface in reader.held.surfaces_of(part) {
             let of = &mut boxes[glued.root(surface) as usize];
-            *of = of.union(reader.held.bounds(part));
+            *of = of.union(parts.of(part));
         }
     }
     boxes

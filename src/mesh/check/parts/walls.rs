@@ -2,9 +2,9 @@
 //!
 //! Parts are taken along the Hilbert curve of their boxes; as many pairs at a time as have walls that fit in memory.
 
-use super::Parts;
+use super::boxes::Boxes;
 use super::glue::{Held, invalid};
-use crate::geometry::hilbert::hilbert_keys;
+use super::{FacesApart, Parts};
 use crate::geometry::{Aabb, Bvh, Contact, Improper, Point3, Triangle, classify_triangles};
 use crate::mesh::check::result::Intersection;
 use rayon::prelude::*;
@@ -34,6 +34,9 @@ pub(super) struct Wall {
     aabb: Aabb,
 }
 
+/// Walls that are in memory, by their parts.
+pub(super) type Walls = FxHashMap<u32, Arc<Wall>>;
+
 /// Reads walls, and makes sure that they are those that were certified.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a> {
@@ -48,8 +51,7 @@ impl Reader<'_> {
         if !self.held.is_wall(part, self.is_joined, &piece) {
             return Err(invalid(format!("the wall of part {part} is not what was certified")));
         }
-        let aabb = Aabb::of_points(&piece.points);
-        Ok(Wall { points: piece.points, ids: piece.vertices, faces: piece.faces, aabb })
+        Ok(Wall::of(piece))
     }
 
     fn bytes(&self, part: u32) -> u64 {
@@ -83,52 +85,21 @@ impl Meetings {
 }
 
 /// Tests all walls against each other, with some `memory` bytes of them at a time.
-pub(super) fn meetings(reader: Reader, tree: &Bvh, memory: usize) -> io::Result<Meetings> {
-    let order = along_curve(reader.held);
-    let mut rank = vec![0_u32; order.len()];
-    for (i, &part) in (0..).zip(&order) {
-        rank[part as usize] = i;
-    }
+pub(super) fn meetings(reader: Reader, boxes: &Boxes, memory: usize) -> io::Result<Meetings> {
     let mut all = Meetings::default();
-    let mut walls: FxHashMap<u32, Arc<Wall>> = FxHashMap::default();
-    for some in order.chunks(LOOKED_UP) {
-        let pairs: Vec<[u32; 2]> =
-            some.par_iter().flat_map_iter(|&part| partners(reader.held, tree, &rank, part)).collect();
+    let mut walls: Walls = FxHashMap::default();
+    for some in boxes.along_curve().chunks(LOOKED_UP) {
+        let pairs: Vec<[u32; 2]> = some.par_iter().flat_map_iter(|&part| boxes.partners(part)).collect();
         let mut rest = &pairs[..];
         while !rest.is_empty() {
             let fits = fitting(&reader, rest, memory as u64);
             let (now, later) = rest.split_at(fits);
-            load(&reader, now, &mut walls)?;
+            load(|part| reader.wall(part), now, &mut walls)?;
             all.append(test(now, &walls));
             rest = later;
         }
     }
     Ok(all)
-}
-
-/// The parts along the Hilbert curve.
-fn along_curve(held: &Held) -> Vec<u32> {
-    let centre = |part| {
-        let aabb = held.bounds(part);
-        if aabb.min.x > aabb.max.x { Point3::origin() } else { nalgebra::center(&aabb.min, &aabb.max) }
-    };
-    let centres: Vec<Point3> = (0..held.count()).map(centre).collect();
-    let keys = hilbert_keys(&centres);
-    let mut order: Vec<u32> = (0..held.count()).collect();
-    order.sort_by_key(|&part| keys[part as usize]);
-    order
-}
-
-/// Pairs of a part with those further along that it may meet.
-fn partners(held: &Held, tree: &Bvh, rank: &[u32], part: u32) -> Vec<[u32; 2]> {
-    let mut found = Vec::new();
-    tree.query(held.bounds(part), |other| {
-        if rank[other as usize] > rank[part as usize] {
-            found.push([part, other]);
-        }
-    });
-    found.sort_unstable_by_key(|pair| rank[pair[1] as usize]);
-    found
 }
 
 /// Number of pairs, one at least, whose walls fit in memory.
@@ -149,18 +120,23 @@ fn fitting(reader: &Reader, pairs: &[[u32; 2]], memory: u64) -> usize {
 }
 
 /// Reads the walls of the pairs that are not there yet, and lets go of all others.
-fn load(reader: &Reader, pairs: &[[u32; 2]], walls: &mut FxHashMap<u32, Arc<Wall>>) -> io::Result<()> {
+pub(super) fn load(
+    read: impl Fn(u32) -> io::Result<Wall> + Sync,
+    pairs: &[[u32; 2]],
+    walls: &mut Walls,
+) -> io::Result<()> {
     let mut needed: Vec<u32> = pairs.as_flattened().to_vec();
     needed.sort_unstable();
     needed.dedup();
     walls.retain(|part, _| needed.binary_search(part).is_ok());
     let missing: Vec<u32> = needed.into_iter().filter(|part| !walls.contains_key(part)).collect();
-    let read = |&part: &u32| Ok((part, Arc::new(reader.wall(part)?)));
+    let read = |&part: &u32| Ok((part, Arc::new(read(part)?)));
     walls.extend(missing.par_iter().map(read).collect::<io::Result<Vec<_>>>()?);
     Ok(())
 }
 
-fn test(pairs: &[[u32; 2]], walls: &FxHashMap<u32, Arc<Wall>>) -> Meetings {
+/// Tests pairs of walls.
+pub(super) fn test(pairs: &[[u32; 2]], walls: &Walls) -> Meetings {
     let test = |pair: &[u32; 2]| {
         // The same whichever comes first along the curve.
         let parts = [pair[0].min(pair[1]), pair[0].max(pair[1])];
@@ -177,6 +153,10 @@ fn test(pairs: &[[u32; 2]], walls: &FxHashMap<u32, Arc<Wall>>) -> Meetings {
 }
 
 impl Wall {
+    pub(super) fn of(FacesApart { points, vertices: ids, faces }: FacesApart) -> Self {
+        Self { aabb: Aabb::of_points(&points), points, ids, faces }
+    }
+
     fn triangle(&self, face: u32) -> Triangle<'_> {
         let corners = self.faces[face as usize];
         Triangle { ids: corners.map(|v| self.ids[v as usize]), corners: corners.map(|v| &self.points[v as usize]) }

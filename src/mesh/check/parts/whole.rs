@@ -1,12 +1,13 @@
 //! The lines of the whole.
 
+use super::boxes::Boxes;
 use super::glue::{Glued, Held, needs_sound_arrays};
 use super::joints::Joined;
 use super::nests;
 use super::tallies::Tallies;
 use super::walls::{self, Meetings, Reader};
 use super::{HeldCap, Parts, PartsCheck, ids, joints};
-use crate::geometry::Bvh;
+use crate::geometry::Aabb;
 use crate::mesh::Patch;
 use crate::mesh::check::labels;
 use crate::mesh::check::result::{
@@ -40,81 +41,131 @@ pub fn check_parts(
     expectation: Option<&Expectation>,
     memory: usize,
 ) -> io::Result<PartsCheck> {
-    let mut tallies = Tallies::default();
-    let held = Held::read(parts, &mut tallies)?;
-    let counts = Counts { points: held.points as usize, tets: held.tets as usize, ..Counts::default() };
-    if held.is_empty() {
-        tallies.add(Line::NotEmpty, Offender { kind: OffenderKind::Tet, ids: Vec::new(), position: None });
+    Looked::at(parts, memory)?.check(patches, expectation)
+}
+
+/// The first half of a check: certificates are read, walls are held against each other. Whoever has something to do about
+/// walls that meet does without the second half.
+pub struct Looked<'a> {
+    parts: &'a dyn Parts,
+    held: Held,
+    tallies: Tallies,
+    /// A line about the arrays of a part that is broken: then nothing else was looked at.
+    unusable: Option<Line>,
+    boxes: Boxes,
+    /// For each joint whether it is joined to something.
+    is_joined: Vec<bool>,
+    meetings: Meetings,
+}
+
+impl<'a> Looked<'a> {
+    /// Looks at parts, with some `memory` bytes of walls at a time.
+    ///
+    /// # Errors
+    /// As [`check_parts`].
+    pub fn at(parts: &'a dyn Parts, memory: usize) -> io::Result<Self> {
+        let mut tallies = Tallies::default();
+        let (held, boxes) = Held::read(parts, &mut tallies)?;
+        if held.is_empty() {
+            tallies.add(Line::NotEmpty, Offender { kind: OffenderKind::Tet, ids: Vec::new(), position: None });
+        }
+        let unusable = tallies.first_of(&[Line::NotEmpty, Line::FinitePoints, Line::IndicesInRange]);
+        let boxes = if unusable.is_none() { Boxes::new(&boxes) } else { Boxes::new(&[]) };
+        let is_joined = if unusable.is_none() { joints::flags(parts, &held)? } else { Vec::new() };
+        let mut looked = Self { parts, held, tallies, unusable, boxes, is_joined, meetings: Meetings::default() };
+        if unusable.is_none() {
+            looked.meetings = walls::meetings(looked.reader(), &looked.boxes, memory)?;
+            looked.meetings.parts.sort_unstable();
+        }
+        Ok(looked)
     }
-    let arrays = [Line::NotEmpty, Line::FinitePoints, Line::IndicesInRange];
-    if let Some(line) = tallies.first_of(&arrays) {
-        let result =
-            |l| if needs_sound_arrays(l) { LineResult::skipped(l, Skipped::Because(line)) } else { tallies.take(l) };
-        let lines = Line::ALL.into_iter().map(result).collect();
-        return Ok(PartsCheck { report: CheckReport::new(counts, lines, None, Vec::new()), meeting: Vec::new() });
+
+    fn reader(&self) -> Reader<'_> {
+        Reader { parts: self.parts, held: &self.held, is_joined: &self.is_joined }
     }
-    let mut whole = Whole { parts, patches, expectation, held, tallies, joined: Joined::default() };
-    whole.joined = joints::check(parts, &whole.held, &mut whole.tallies)?;
-    whole.check(counts, memory)
+
+    /// Pairs of parts whose walls meet elsewhere than at the rims of their joints, ascending.
+    pub fn meeting(&self) -> &[[u32; 2]] {
+        &self.meetings.parts
+    }
+
+    /// The boxes of the parts.
+    pub fn into_boxes(self) -> Vec<Aabb> {
+        self.boxes.into_vec()
+    }
+
+    /// The rest of the check.
+    ///
+    /// # Errors
+    /// As [`check_parts`].
+    pub fn check(mut self, patches: &[Patch], expectation: Option<&Expectation>) -> io::Result<PartsCheck> {
+        let counts = Counts { points: self.held.points as usize, tets: self.held.tets as usize, ..Counts::default() };
+        if let Some(line) = self.unusable {
+            let result = |l| {
+                if needs_sound_arrays(l) {
+                    LineResult::skipped(l, Skipped::Because(line))
+                } else {
+                    self.tallies.take(l)
+                }
+            };
+            let lines = Line::ALL.into_iter().map(result).collect();
+            return Ok(PartsCheck { report: CheckReport::new(counts, lines, None, Vec::new()), meeting: Vec::new() });
+        }
+        let joined = joints::check(self.parts, &self.held, &mut self.tallies)?;
+        Whole { looked: self, patches, expectation, joined }.check(counts)
+    }
 }
 
 struct Whole<'a> {
-    parts: &'a dyn Parts,
+    looked: Looked<'a>,
     patches: &'a [Patch],
     expectation: Option<&'a Expectation>,
-    held: Held,
-    tallies: Tallies,
     joined: Joined,
 }
 
 impl Whole<'_> {
-    fn check(mut self, mut counts: Counts, memory: usize) -> io::Result<PartsCheck> {
+    fn check(mut self, mut counts: Counts) -> io::Result<PartsCheck> {
         // What follows from joints is only looked at where they are sound.
         let sound = self.joined.broken.is_none()
-            && self.tallies.first_of(&[Line::BoundaryFans, Line::LabelsMatchBoundary]).is_none();
+            && self.looked.tallies.first_of(&[Line::BoundaryFans, Line::LabelsMatchBoundary]).is_none();
         if sound {
-            ids::check(self.parts, &self.held, &self.joined, &mut self.tallies)?;
+            ids::check(self.looked.parts, &self.looked.held, &self.joined, &mut self.looked.tallies)?;
         }
-        let glued = Glued::new(&self.held, &self.joined.pairs);
-        let boxes: Vec<_> = (0..self.held.count()).map(|part| *self.held.bounds(part)).collect();
-        let tree = Bvh::new(&boxes);
-        drop(boxes);
-        let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.flags };
-        let mut meetings = walls::meetings(reader, &tree, memory)?;
-        let mut meeting = std::mem::take(&mut meetings.parts);
-        meeting.sort_unstable();
+        let glued = Glued::new(&self.looked.held, &self.joined.pairs);
+        let mut meetings = std::mem::take(&mut self.looked.meetings);
+        let meeting = std::mem::take(&mut meetings.parts);
         let intersections = self.take_meetings(meetings);
         let roots: Vec<u32> = glued.surfaces().collect();
         let needed = [Line::PositiveTets, Line::BoundaryEdges, Line::NoSelfIntersection];
-        if sound && roots.len() > 1 && self.tallies.first_of(&needed).is_none() {
-            let reader = Reader { parts: self.parts, held: &self.held, is_joined: &self.joined.flags };
-            for offender in nests::within(reader, &glued, &tree)? {
-                self.tallies.add(Line::NoSelfIntersection, offender);
+        if sound && roots.len() > 1 && self.looked.tallies.first_of(&needed).is_none() {
+            for offender in nests::within(self.looked.reader(), &glued, &self.looked.boxes)? {
+                self.looked.tallies.add(Line::NoSelfIntersection, offender);
             }
         }
-        counts.points = ids::count(&self.held, &self.joined) as usize;
-        counts.volume = self.held.volume;
+        counts.points = ids::count(&self.looked.held, &self.joined) as usize;
+        counts.volume = self.looked.held.volume;
         counts.components = glued.components;
         counts.boundary_components = roots.len();
-        counts.boundary_faces =
-            (0..self.held.count()).map(|part| self.held.faces_of(part, &self.joined.flags) as usize).sum();
+        counts.boundary_faces = (0..self.looked.held.count())
+            .map(|part| self.looked.held.faces_of(part, &self.looked.is_joined) as usize)
+            .sum();
         counts.caps = self.patches.iter().filter(|patch| patch.cap.is_some()).count();
         let mut lines = vec![components(self.expectation, glued.components), self.loops(&glued, &roots)];
         // That no points are equal follows from the other lines: when one of them fails, it has not been shown.
-        if let Some(line) = self.joined.broken.or(self.tallies.first_of(&EXCLUDE_EQUAL_POINTS))
-            && !self.tallies.fails(Line::NoDuplicatePoints)
+        if let Some(line) = self.joined.broken.or(self.looked.tallies.first_of(&EXCLUDE_EQUAL_POINTS))
+            && !self.looked.tallies.fails(Line::NoDuplicatePoints)
         {
             lines.push(LineResult::skipped(Line::NoDuplicatePoints, Skipped::Because(line)));
         }
         lines.extend(self.labels());
         for line in Line::ALL {
             if lines.iter().all(|result| result.line != line) {
-                lines.push(self.tallies.take(line));
+                lines.push(self.looked.tallies.take(line));
             }
         }
-        let is_filled = self.held.tets > 0;
+        let is_filled = self.looked.held.tets > 0;
         lines.retain(|result| is_filled || result.line.concerns_surfaces());
-        let quality = is_filled.then(|| self.held.quality.quality());
+        let quality = is_filled.then(|| self.looked.held.quality.quality());
         let report = CheckReport::new(counts, lines, quality, intersections);
         Ok(PartsCheck { report, meeting })
     }
@@ -131,17 +182,17 @@ impl Whole<'_> {
         meetings.intersections.sort_by_key(|(i, _)| (i.faces, i.kind));
         for (intersection, place) in &meetings.intersections {
             let offender = Offender::new(OffenderKind::FacePair, &pair(intersection), Some(*place));
-            self.tallies.add(Line::NoSelfIntersection, offender);
+            self.looked.tallies.add(Line::NoSelfIntersection, offender);
         }
         for (line, edges) in [(Line::BoundaryEdges, meetings.edges), (Line::NoDuplicatePoints, meetings.twins)] {
             let mut edges = edges;
             edges.sort_by_key(|edge| edge.0);
             edges.dedup_by_key(|edge| edge.0);
             for (edge, place) in edges {
-                self.tallies.add(line, Offender::new(OffenderKind::Edge, &edge, Some(place)));
+                self.looked.tallies.add(line, Offender::new(OffenderKind::Edge, &edge, Some(place)));
             }
         }
-        let mut all = std::mem::take(&mut self.held.intersections);
+        let mut all = std::mem::take(&mut self.looked.held.intersections);
         all.extend(meetings.intersections.into_iter().map(|(intersection, _)| intersection));
         all.sort_by_key(|i| (i.faces, i.kind));
         all
@@ -151,7 +202,7 @@ impl Whole<'_> {
         let Some(expected) = self.expectation else {
             return LineResult::skipped(Line::Loops, Skipped::NoExpectation);
         };
-        let open = self.tallies.first_of(&[Line::BoundaryEdges, Line::BoundaryFans]).or(self.joined.broken);
+        let open = self.looked.tallies.first_of(&[Line::BoundaryEdges, Line::BoundaryFans]).or(self.joined.broken);
         if let Some(line) = open {
             return LineResult::skipped(Line::Loops, Skipped::Because(line));
         }
@@ -162,12 +213,12 @@ impl Whole<'_> {
     /// A surface is named by the smallest of the vertices that name its parts' surfaces.
     fn surface_offender(&self, glued: &Glued, root: u32) -> Offender {
         let named = |surface: u32| {
-            let part = self.held.part_of_surface(surface);
-            (self.parts.vertex(part, self.held.surface(surface).vertex), part)
+            let part = self.looked.held.part_of_surface(surface);
+            (self.looked.parts.vertex(part, self.looked.held.surface(surface).vertex), part)
         };
         let (vertex, part) = glued.joined_to(root).map(named).min().unwrap_or_default();
         let place = || {
-            let wall = self.parts.wall(part).ok()?;
+            let wall = self.looked.parts.wall(part).ok()?;
             let i = wall.vertices.iter().position(|&v| v == vertex)?;
             wall.points.get(i).copied()
         };
@@ -188,7 +239,7 @@ impl Whole<'_> {
     fn caps(&mut self) -> Vec<LineResult> {
         let mut tallies = labels::SHAPE_LINES.map(Tally::new);
         let mut by_node: FxHashMap<u32, Vec<(bool, &HeldCap)>> = FxHashMap::default();
-        for cap in &self.held.caps {
+        for cap in &self.looked.held.caps {
             by_node.entry(cap.node).or_default().push((false, cap));
         }
         for (patch, cap) in self.patches.iter().filter_map(|patch| Some((patch, patch.cap.as_ref()?))) {
@@ -203,13 +254,13 @@ impl Whole<'_> {
                 tally.add(|| labels::patch_offender(patch.id, Some(cap)));
             }
         }
-        let unnamed = self.held.caps.iter().filter(|cap| {
+        let unnamed = self.looked.held.caps.iter().filter(|cap| {
             by_node.get(&cap.node).into_iter().flatten().any(|(named, held)| !named && std::ptr::eq(*held, *cap))
         });
         for cap in unnamed {
             let offender =
                 Offender { kind: OffenderKind::Node, ids: vec![i64::from(cap.node)], position: Some(cap.center) };
-            self.tallies.add_some(Line::WallOrCap, u64::from(cap.faces), [offender]);
+            self.looked.tallies.add_some(Line::WallOrCap, u64::from(cap.faces), [offender]);
         }
         tallies.map(Tally::done).into()
     }

@@ -1,0 +1,53 @@
+//! The boxes of all parts: which are near each other, and an order in which neighbours follow each other.
+
+use crate::geometry::{Aabb, Bvh};
+
+/// The boxes of parts, each held once.
+#[derive(Debug)]
+pub(super) struct Boxes {
+    tree: Bvh,
+    /// The place of each part along the tree's curve.
+    rank: Vec<u32>,
+}
+
+impl Boxes {
+    pub(super) fn new(boxes: &[Aabb]) -> Self {
+        let tree = Bvh::new(boxes);
+        let mut rank = vec![0; boxes.len()];
+        for (place, &part) in (0..).zip(tree.order()) {
+            rank[part as usize] = place;
+        }
+        Self { tree, rank }
+    }
+
+    pub(super) fn of(&self, part: u32) -> &Aabb {
+        self.tree.box_at(self.rank[part as usize] as usize)
+    }
+
+    pub(super) fn tree(&self) -> &Bvh {
+        &self.tree
+    }
+
+    /// All parts, neighbours near each other.
+    pub(super) fn along_curve(&self) -> &[u32] {
+        self.tree.order()
+    }
+
+    /// Pairs of a part with those further along that it may meet, in their order.
+    pub(super) fn partners(&self, part: u32) -> Vec<[u32; 2]> {
+        let rank = |part: u32| self.rank[part as usize];
+        let mut found = Vec::new();
+        self.tree.query(self.of(part), |other| {
+            if rank(other) > rank(part) {
+                found.push([part, other]);
+            }
+        });
+        found.sort_unstable_by_key(|pair| rank(pair[1]));
+        found
+    }
+
+    /// By the parts' numbers.
+    pub(super) fn into_vec(self) -> Vec<Aabb> {
+        self.rank.iter().map(|&place| *self.tree.box_at(place as usize)).collect()
+    }
+}
