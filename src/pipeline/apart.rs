@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::attempts::Way;
-use super::blocks::{Blocks, original_nodes};
+use super::blocks::{Blocks, Meetings, original_nodes};
 use super::error::RunError;
 use super::estimate::cluster_cost;
 use super::report::Retry;
@@ -16,9 +16,6 @@ use crate::partition::{ClusterId, CutId};
 use crate::progress::{Stage, ask};
 use crate::skeleton::BranchId;
 use crate::tet::Watch;
-
-/// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
-pub type Meetings = Vec<[u32; 2]>;
 
 /// What is done about blocks that meet, and was before.
 #[derive(Debug, Default)]

@@ -15,6 +15,9 @@ use crate::skeleton::{NodeId, Skeleton};
 /// How many nodes of a block a report lists.
 const LISTED: usize = 20;
 
+/// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
+pub type Meetings = Vec<[u32; 2]>;
+
 /// The blocks of a network.
 #[derive(Debug)]
 pub struct Blocks {

@@ -3,8 +3,7 @@
 
 use std::io;
 
-use super::apart::Meetings;
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Meetings};
 use super::store::RecordId;
 use super::whole::Whole;
 use crate::geometry::Aabb;

@@ -10,8 +10,7 @@ use std::io;
 
 use rayon::prelude::*;
 
-use super::apart::Meetings;
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Meetings};
 use super::make::JointPlace;
 use super::report::MeshSize;
 use super::store::{Store, StoredBytes};
@@ -44,11 +43,6 @@ impl std::fmt::Debug for Listener<'_> {
         f.write_str("Listener")
     }
 }
-
-/// More vertices than 32 bits can count.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the whole mesh has {0} points, more than 32 bits can count; mesh its parts, or give a smaller --rho")]
-pub struct TooManyPoints(pub u64);
 
 /// Blocks that are read at a time for what they add to the boundary.
 const READ: usize = 1 << 14;

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::io;
 
-use super::TooManyPoints;
 use crate::mesh::source::SourceCounts;
 use crate::mesh::{Patch, WALL};
 use crate::partition::CutId;
@@ -44,6 +43,11 @@ pub(super) struct PartPlan {
     /// Number of its first tetrahedron.
     pub first_tet: u64,
 }
+
+/// More vertices than 32 bits can count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the whole mesh has {0} points, more than 32 bits can count; mesh its parts, or give a smaller --rho")]
+pub struct TooManyPoints(pub u64);
 
 impl Numbering {
     /// Numbers all vertices and tetrahedra; faces are not counted. Joints that are open get patches from `patch` on.
