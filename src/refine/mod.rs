@@ -25,7 +25,7 @@ pub use leash::FarNode;
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
 pub use residual::{ResidualReport, Treatment};
 
-pub use split::split;
+pub use split::{split, split_shared};
 
 use crate::geometry::Point3;
 use crate::progress::Progress;
