@@ -5,15 +5,16 @@ use super::progress::Bars;
 use crate::fidelity::{Compared, Displaced, Fidelity, lumen_of};
 use crate::io::network::NodeNames;
 use crate::mesh::check::{CheckReport, Line};
-use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_into};
+use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_shared};
 use crate::prepare::{PrepareReport, TouchedBy, take_back};
 use crate::progress::Progress;
-use crate::refine::{self, RefineParams, RefineReport, Refined, split};
+use crate::refine::{self, RefineParams, RefineReport, Refined, split_shared};
 use crate::report::fidelity::displaced;
 use crate::report::prepare::touching;
 use crate::skeleton::{Branch, EdgeId, NodeId, Skeleton};
 use rustc_hash::FxHashSet;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// How far a measured axis may be from where it was given, in radii, unless an overlap demands more.
 const FURTHEST: f64 = 1.0;
@@ -34,16 +35,16 @@ const ROUNDS: usize = 4;
 pub struct Before {
     /// As it was read, with usable radii.
     #[serde(skip)]
-    given: Skeleton,
+    given: Arc<Skeleton>,
     /// The same with as many points as its shape needs.
     #[serde(skip)]
-    outline: Skeleton,
+    outline: Arc<Skeleton>,
     /// What is to be meshed.
     #[serde(skip)]
-    pub network: Skeleton,
+    pub network: Arc<Skeleton>,
     /// The same with nodes of many vessels split.
     #[serde(skip)]
-    meshed: Skeleton,
+    meshed: Arc<Skeleton>,
     /// What the file calls its nodes.
     #[serde(skip)]
     pub names: NodeNames,
@@ -52,7 +53,7 @@ pub struct Before {
     refine: Option<RefineReport>,
     /// What was to be meshed before it was refined, and how it was.
     #[serde(skip)]
-    unrefined: Option<(Skeleton, RefineParams)>,
+    unrefined: Option<(Arc<Skeleton>, RefineParams)>,
 }
 
 /// A mesh whose blocks are in a store, and what it was made of.
@@ -89,11 +90,15 @@ pub struct Meshing<'a, 'b> {
 impl Before {
     pub fn new(prepared: PreparedNetwork, refined: Option<(Refined, RefineParams)>) -> Self {
         let PreparedNetwork { given, outline, skeleton, report: prepare, names, .. } = prepared;
+        let given = Arc::new(given);
+        let [outline, skeleton] = [outline, skeleton].map(|network| shared(network, &given));
         let (network, refine, unrefined) = match refined {
-            Some((Refined { skeleton: moved, report, .. }, params)) => (moved, Some(report), Some((skeleton, params))),
+            Some((Refined { skeleton: moved, report, .. }, params)) => {
+                (Arc::new(moved), Some(report), Some((skeleton, params)))
+            }
             None => (skeleton, None, None),
         };
-        let meshed = split(&network).0;
+        let meshed = split_shared(&network).0;
         Self { given, outline, network, meshed, names, prepare, refine, unrefined }
     }
 
@@ -104,7 +109,7 @@ impl Before {
 
     /// What refinement did, and to what; none if it was not refined.
     pub fn refinement(&self) -> Option<(&RefineReport, &Skeleton)> {
-        Some((self.refine.as_ref()?, self.unrefined.as_ref().map_or(&self.given, |(network, _)| network)))
+        Some((self.refine.as_ref()?, self.unrefined.as_ref().map_or(&*self.given, |(network, _)| network)))
     }
 
     /// Meshes it into a store. Refinement is not to end in something worse than none: where the refined network gives no
@@ -162,7 +167,7 @@ impl Before {
         let Meshing { store, plan, fits, touches, bars } = how;
         let mut round = 0;
         loop {
-            let made = mesh_into(store, &self.network, plan, fits, bars);
+            let made = mesh_shared(store, &self.network, plan, fits, bars);
             round += 1;
             let tips = match &made {
                 Ok(Stored { report, check, .. }) if self.prepare.measured || lacks_but_caps(check) => {
@@ -192,15 +197,15 @@ impl Before {
         let (network, params) = self.unrefined.as_ref()?;
         let params = RefineParams { clearance: WIDER * params.clearance, ..params.clone() };
         let Refined { skeleton, report, .. } = refine::refine(network, &params, bars).ok()?;
-        Some(self.with(skeleton, Some(report)))
+        Some(self.with(Arc::new(skeleton), Some(report)))
     }
 
     /// The same with another network to be meshed.
-    fn with(&self, network: Skeleton, refine: Option<RefineReport>) -> Self {
+    fn with(&self, network: Arc<Skeleton>, refine: Option<RefineReport>) -> Self {
         Self {
-            given: self.given.clone(),
-            outline: self.outline.clone(),
-            meshed: split(&network).0,
+            given: Arc::clone(&self.given),
+            outline: Arc::clone(&self.outline),
+            meshed: split_shared(&network).0,
             network,
             names: self.names.clone(),
             prepare: self.prepare.clone(),
@@ -219,8 +224,8 @@ impl Before {
         let done = told.iter().any(|tip| tip.done != TouchedBy::Left);
         if done {
             touching(&told).lines().for_each(|line| bars.note(line));
-            self.meshed = split(&network).0;
-            self.network = network;
+            self.network = Arc::new(network);
+            self.meshed = split_shared(&self.network).0;
             self.prepare.touching.extend(told);
         }
         done
@@ -257,6 +262,11 @@ impl Before {
         }
         nodes
     }
+}
+
+/// A network, once more only if it differs from one that is there: there are millions of vessels.
+fn shared(network: Skeleton, other: &Arc<Skeleton>) -> Arc<Skeleton> {
+    if network == **other { Arc::clone(other) } else { Arc::new(network) }
 }
 
 /// Whether all vessels that overlap leave one branch point.

@@ -167,6 +167,11 @@ impl PreparedNetwork {
         self.skeleton
     }
 
+    /// Without what a mesh would be held against, where there will be none.
+    pub fn without_given(self) -> Self {
+        Self { given: Skeleton::default(), outline: Skeleton::default(), ..self }
+    }
+
     /// The terminals that become inlets, of which some may be asked for as the file calls them.
     pub fn inlets(&self, asked: &[String]) -> Result<Inlets, Failure> {
         inlets(&self.skeleton, &self.names, &self.roots, asked)

@@ -199,7 +199,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     args.report.ensure_writable()?;
     let pool = thread_pool(args.common.threads)?;
-    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
+    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?.without_given();
     if !args.common.quiet {
         for remark in network.remarks(args.common.verbose) {
             log::note(&remark);

@@ -47,6 +47,8 @@ pub use plan::{JointStyle, MeshPlan};
 #[cfg(test)]
 pub use report::{FailedBlock, Meeting};
 pub use report::{RunReport, ThinBlock};
+#[cfg(feature = "cli")]
+pub(crate) use run::mesh_shared;
 pub use run::{Meshed, Stored, mesh_into, mesh_network};
 #[cfg(feature = "cli")]
 pub use share::{ShareReport, make_share};

@@ -24,7 +24,7 @@ use crate::mesh::source::{MeshSource, SourceCounts, gather};
 use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::CutId;
 use crate::progress::{Progress, Stage, ask};
-use crate::refine::split;
+use crate::refine::split_shared;
 use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 use crate::woven::Assembly;
 
@@ -73,7 +73,7 @@ pub struct Stored<'a> {
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
 pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress) -> Result<Meshed, RunError> {
-    let store = Store::in_memory();
+    let (store, network) = (Store::in_memory(), &Arc::new(network.clone()));
     let clock = &mut Clock::default();
     if plan.smooths_joints() {
         return mesh_smoothed(&store, network, plan, progress, clock);
@@ -113,12 +113,23 @@ pub fn mesh_into<'a>(
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     progress: &'a dyn Progress,
 ) -> Result<Stored<'a>, RunError> {
+    mesh_shared(store, &Arc::new(network.clone()), plan, fits, progress)
+}
+
+/// The same of a network that is held by others, too.
+pub(crate) fn mesh_shared<'a>(
+    store: &'a Store,
+    network: &Arc<Skeleton>,
+    plan: &MeshPlan,
+    fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
+    progress: &'a dyn Progress,
+) -> Result<Stored<'a>, RunError> {
     mesh_timed(store, network, plan, fits, progress, &mut Clock::default())
 }
 
 fn mesh_timed<'a>(
     store: &'a Store,
-    network: &Skeleton,
+    network: &Arc<Skeleton>,
     plan: &MeshPlan,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     progress: &'a dyn Progress,
@@ -155,7 +166,7 @@ fn mesh_timed<'a>(
 /// The mesh in memory, its joints smoothed.
 fn mesh_smoothed(
     store: &Store,
-    network: &Skeleton,
+    network: &Arc<Skeleton>,
     plan: &MeshPlan,
     progress: &dyn Progress,
     clock: &mut Clock,
@@ -190,7 +201,7 @@ struct Job<'a, 'b> {
 
 impl<'a, 'b> Job<'a, 'b> {
     fn of(
-        network: &Skeleton,
+        network: &Arc<Skeleton>,
         plan: &'b MeshPlan,
         store: &'a Store,
         progress: &'a dyn Progress,
@@ -261,8 +272,8 @@ fn mesh_size(mesh: &dyn MeshSource) -> io::Result<MeshSize> {
 }
 
 /// Splits nodes of high valence and looks for vessels that overlap.
-fn prepare(network: &Skeleton, report: &mut RunReport) -> (Arc<Skeleton>, Overlaps) {
-    let (skeleton, splits) = split(network);
+fn prepare(network: &Arc<Skeleton>, report: &mut RunReport) -> (Arc<Skeleton>, Overlaps) {
+    let (skeleton, splits) = split_shared(network);
     report.network = [skeleton.nodes.len(), skeleton.edges.len()];
     report.nodes_split = splits.nodes.len();
     let original = |node: NodeId| skeleton.node(node).original;
@@ -277,7 +288,7 @@ fn prepare(network: &Skeleton, report: &mut RunReport) -> (Arc<Skeleton>, Overla
     let overlaps = skeleton.overlaps(&adjacency);
     report.overlaps = overlaps.pairs.iter().map(meeting).collect();
     report.unconnected = overlaps.unconnected.iter().map(|e| e.map(|e| skeleton.edge(e).nodes.map(original))).collect();
-    (Arc::new(skeleton), overlaps)
+    (skeleton, overlaps)
 }
 
 /// What the network asks of its mesh. Loops that are filled by their own lumen are none of the mesh.

@@ -105,3 +105,95 @@ fn changed(partition: &Layout, is_new: impl Fn(u32) -> bool) -> Vec<bool> {
     }
     changed
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::make::Workshop;
+    use super::super::plan::MeshPlan;
+    use super::super::rounds::Run;
+    use super::super::store::Store;
+    use super::super::terminals;
+    use super::super::tests::through_the_crotch;
+    use super::super::timing::Clock;
+    use super::*;
+    use crate::geometry::{Point3, Vec3};
+    use crate::progress::{Progress, Stage};
+    use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
+    use std::collections::BTreeSet;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Counts blocks that are made or looked up, and records that passes over a whole read.
+    #[derive(Default)]
+    struct Counts {
+        blocks: AtomicUsize,
+        read: AtomicUsize,
+    }
+
+    impl Progress for Counts {
+        fn at(&self, stage: Stage, done: u64, _: u64) {
+            self.blocks.fetch_add(usize::from(stage == Stage::Blocks && done > 0), Ordering::Relaxed);
+        }
+
+        fn is_cancelled(&self) -> bool {
+            self.read.fetch_add(1, Ordering::Relaxed);
+            false
+        }
+    }
+
+    impl Counts {
+        fn taken(&self) -> [usize; 2] {
+            [&self.blocks, &self.read].map(|count| count.swap(0, Ordering::Relaxed))
+        }
+    }
+
+    /// A fork with a vessel through its crotch, and so many forks far from it.
+    fn many_forks(count: u32) -> Skeleton {
+        let mut network = through_the_crotch(4.0);
+        for k in 1..=count {
+            let (first, at) = (network.nodes.len() as u32, Point3::new(0.0, 100.0 * f64::from(k), 0.0));
+            let arms = [[0.0, 0.0, 0.0], [-14.0, 0.0, 0.0], [14.0, 5.0, 0.0], [14.0, -5.0, 0.0]];
+            for (i, arm) in (0..).zip(arms) {
+                network.nodes.push(Node { position: at + Vec3::from(arm), radius: 1.0, original: first + i });
+            }
+            let edge = |i: u32| Edge { nodes: [NodeId(first), NodeId(first + i)], radii: [1.0; 2] };
+            network.edges.extend((1..4).map(edge));
+        }
+        network
+    }
+
+    #[test]
+    fn a_second_round_looks_at_what_changed_and_at_what_is_near_it() {
+        let (skeleton, plan, store) = (Arc::new(many_forks(20)), MeshPlan::default(), Store::in_memory());
+        let overlaps = skeleton.overlaps(&skeleton.adjacency());
+        let patches = terminals::assign(&skeleton, &[]).expect("terminals");
+        let (counts, mut clock) = (Counts::default(), Clock::default());
+        let shop = Workshop { skeleton: &skeleton, plan: &plan, store: &store };
+        let mut run = Run { overlaps: &overlaps, shop, progress: &counts, clock: &mut clock };
+        let fits = |_: &_| Ok(());
+        let first = run.build(&BTreeSet::new(), None, &fits).expect("blocks");
+        let blocks = first.clusters.len() + first.connectors.len();
+        assert!(blocks > 140 && counts.taken()[0] > blocks);
+        let whole = Whole::new(&store, &counts, &skeleton, &first, &patches).expect("numbered");
+        let mut seen = Seen::of(&first, &whole, whole.look(1 << 30).expect("readable"));
+        assert!(!seen.meetings.is_empty() && counts.taken()[1] > 2 * blocks);
+        drop(whole);
+        // The trunk of the first fork is left uncut, then cut again: numbers of all blocks but the first change.
+        let uncut: BTreeSet<BranchId> = [first.partition.branch_of_cut(CutId(0))].into();
+        let mut before = first;
+        for uncut in [&uncut, &BTreeSet::new()] {
+            counts.taken();
+            let after = run.build(uncut, Some(before), &fits).expect("blocks");
+            assert!((1..8).contains(&counts.taken()[0]), "most are carried over");
+            let walls = Whole::of_walls(&store, &counts, &after).expect("numbered");
+            seen.follow(&after, &walls).expect("readable");
+            assert!((1..60).contains(&counts.taken()[1]), "most are not looked at");
+            let full = Seen::of(&after, &walls, walls.look(1 << 30).expect("readable"));
+            assert_eq!((&seen.records, &seen.boxes, &seen.meetings), (&full.records, &full.boxes, &full.meetings));
+            assert!(!seen.meetings.is_empty());
+            let alone = run.build(uncut, None, &fits).expect("blocks");
+            assert_eq!((&alone.clusters, &alone.connectors), (&after.clusters, &after.connectors));
+            before = after;
+        }
+    }
+}

@@ -19,7 +19,7 @@ use super::store::{KeyMaker, Shard, Store, fingerprint};
 use super::timing::{BlockTimes, Clock, StageTime, Stopwatch};
 use crate::partition::{ClusterId, CutId};
 use crate::progress::{Progress, Stage};
-use crate::refine::split;
+use crate::refine::split_shared;
 use crate::skeleton::{BranchId, Overlaps, Skeleton};
 use crate::tet::Watch;
 
@@ -57,9 +57,7 @@ pub fn make_share(
 ) -> Result<ShareReport, RunError> {
     plan.validate()?;
     let mut clock = Clock::default();
-    let skeleton = Arc::new(split(&network).0);
-    // Large networks ask for the room.
-    drop(network);
+    let skeleton = split_shared(&Arc::new(network)).0;
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let tasks = clock.time(progress, Stage::Prepare, 0, || Tasks::of(&shop, progress))?;
     let mut run = Run { overlaps: &Overlaps::default(), shop, progress, clock: &mut clock };

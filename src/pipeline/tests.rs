@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use store::Store;
 
 /// A skeleton of nodes `[x, y, z, radius]` and edges between them.
-fn skeleton(nodes: &[[f64; 4]], edges: &[[u32; 2]]) -> Skeleton {
+pub(super) fn skeleton(nodes: &[[f64; 4]], edges: &[[u32; 2]]) -> Skeleton {
     let node =
         |(i, n): (usize, &[f64; 4])| Node { position: Point3::new(n[0], n[1], n[2]), radius: n[3], original: i as u32 };
     let edge = |e: &[u32; 2]| Edge { nodes: e.map(NodeId), radii: e.map(|n| nodes[n as usize][3]) };
@@ -274,7 +274,7 @@ fn vessels_that_overlap_are_meshed_and_named() {
 }
 
 /// A fork, and a thin straight vessel across it through its crotch, so far from the node.
-fn through_the_crotch(way: f64) -> Skeleton {
+pub(super) fn through_the_crotch(way: f64) -> Skeleton {
     let nodes = [
         [-12.0, 0.0, 0.0, 1.0],
         [0.0, 0.0, 0.0, 1.0],

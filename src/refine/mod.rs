@@ -25,7 +25,7 @@ pub use leash::FarNode;
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
 pub use residual::{ResidualReport, Treatment};
 
-pub use split::split;
+pub use split::{split, split_shared};
 
 use crate::geometry::Point3;
 use crate::progress::Progress;
@@ -133,7 +133,7 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
     let mut origin: Vec<Point3> = start.nodes.iter().map(|n| n.position).collect();
     let crowded = crowd::treat(&mut start, &mut origin, params, leashes.is_none());
     let split_figures = Figures::of(&start);
-    let moved = solve::solve(&start, &given_figures, params, leashes, progress)?;
+    let moved = solve::solve(start, &given_figures, params, leashes, progress)?;
     let chosen = moved.best.as_ref().map(|best| best.iteration);
     let bends = moved.best.as_ref().map_or(0, |best| best.bends);
     let (mut skeleton, mut origin) = match moved.best {

@@ -48,7 +48,7 @@ pub(super) struct State {
 /// # Errors
 /// [`RefineError::Cancelled`].
 pub(super) fn solve(
-    skeleton: &Skeleton,
+    skeleton: Skeleton,
     given: &Figures,
     params: &RefineParams,
     leashes: Option<Leashes>,
@@ -150,9 +150,9 @@ struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(skeleton: &Skeleton, params: &'a RefineParams, leashes: Option<Leashes>) -> Self {
-        let unit = paper_unit(skeleton);
-        let mut frame = Frame::new(skeleton.clone(), params.free_terminals, params.furthest * unit, unit);
+    fn new(skeleton: Skeleton, params: &'a RefineParams, leashes: Option<Leashes>) -> Self {
+        let unit = paper_unit(&skeleton);
+        let mut frame = Frame::new(skeleton, params.free_terminals, params.furthest * unit, unit);
         if leashes.is_some() {
             frame.hold();
         }
@@ -185,6 +185,8 @@ impl<'a> Solver<'a> {
         // Pairs further apart than the skin cannot come together while no node has moved half of it.
         let skin = 2.0 * self.unit;
         if self.moved.iter().any(|&m| m > 0.5 * skin) {
+            // Those that were found before make room first.
+            self.contacts = Contacts::default();
             self.contacts = Contacts::find(&self.frame, self.params.clearance, skin);
             self.moved.fill(0.0);
         }

@@ -3,6 +3,7 @@
 use crate::geometry::Point3;
 use crate::skeleton::{Edge, EdgeId, Node, NodeId, Skeleton};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// How often the shift is halved when it would make an edge too short.
 const HALVINGS: u32 = 8;
@@ -42,6 +43,17 @@ pub fn split(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
         report.nodes.push(split_node(&mut out, node, adjacency.edges(node).to_vec()));
     }
     (out, report)
+}
+
+/// The same of a network that is held by several: where no node is split it is the same one.
+pub fn split_shared(skeleton: &Arc<Skeleton>) -> (Arc<Skeleton>, SplitReport) {
+    let adjacency = skeleton.adjacency();
+    if skeleton.node_ids().all(|node| adjacency.valence(node) <= 3) {
+        return (Arc::clone(skeleton), SplitReport::default());
+    }
+    drop(adjacency);
+    let (skeleton, report) = split(skeleton);
+    (Arc::new(skeleton), report)
 }
 
 fn split_node(skeleton: &mut Skeleton, node: NodeId, mut edges: Vec<EdgeId>) -> SplitNode {

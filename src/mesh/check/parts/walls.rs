@@ -13,7 +13,7 @@ use std::io;
 use std::sync::Arc;
 
 /// Parts whose neighbours are looked up at a time.
-const LOOKED_UP: usize = 4096;
+const LOOKED_UP: usize = 2048;
 
 /// Bytes of a wall beside its faces.
 const OVERHEAD: u64 = 200;

@@ -65,12 +65,13 @@ impl<'a> Looked<'a> {
     /// As [`check_parts`].
     pub fn at(parts: &'a dyn Parts, memory: usize) -> io::Result<Self> {
         let mut tallies = Tallies::default();
-        let (held, boxes) = Held::read(parts, &mut tallies)?;
+        let (held, list) = Held::read(parts, &mut tallies)?;
         if held.is_empty() {
             tallies.add(Line::NotEmpty, Offender { kind: OffenderKind::Tet, ids: Vec::new(), position: None });
         }
         let unusable = tallies.first_of(&[Line::NotEmpty, Line::FinitePoints, Line::IndicesInRange]);
-        let boxes = if unusable.is_none() { Boxes::new(&boxes) } else { Boxes::new(&[]) };
+        let boxes = Boxes::new(if unusable.is_none() { &list } else { &[] });
+        drop(list);
         let is_joined = if unusable.is_none() { joints::flags(parts, &held)? } else { Vec::new() };
         let mut looked = Self { parts, held, tallies, unusable, boxes, is_joined, meetings: Meetings::default() };
         if unusable.is_none() {
