@@ -17,8 +17,11 @@ pub fn cgal(name: &str) -> Option<PathBuf> {
         return Some(program);
     }
     let mut compile = Command::new("g++");
-    compile.args(["-std=c++17", "-O1", "-w", "-o"]).arg(&program).arg(&source).args(["-lgmp", "-lmpfr"]);
-    let done = compile.stderr(Stdio::null()).status().is_ok_and(|status| status.success());
+    // Other processes may build it at the same time: it comes into its place whole.
+    let mine = program.with_extension(std::process::id().to_string());
+    compile.args(["-std=c++17", "-O1", "-w", "-o"]).arg(&mine).arg(&source).args(["-lgmp", "-lmpfr"]);
+    let built = compile.stderr(Stdio::null()).status().is_ok_and(|status| status.success());
+    let done = built && std::fs::rename(&mine, &program).is_ok();
     if !done {
         missing("the oracle cannot be built (g++ and libcgal-dev are needed)");
     }
