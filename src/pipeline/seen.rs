@@ -100,7 +100,9 @@ fn changed(partition: &Layout, is_new: impl Fn(u32) -> bool) -> Vec<bool> {
         let [a, b] = partition.sides_of_cut(CutId(cut)).map(|(cluster, _)| cluster.0);
         let beside = [a, clusters + cut, b];
         if beside.into_iter().any(&is_new) {
-            beside.into_iter().for_each(|block| changed[block as usize] = true);
+            for block in beside {
+                changed[block as usize] = true;
+            }
         }
     }
     changed
