@@ -15,7 +15,7 @@ pub const LEAST_SIZE: f64 = 0.25;
 #[serde(untagged)]
 #[non_exhaustive]
 pub enum SizeAt {
-    /// At every fork so many times as long, [`LEAST_SIZE`] to 1.
+    /// At every fork so many times as long, 0.25 to 1.
     Forks(f64),
     /// As each node says: below 1 edges at a fork are shorter, above 1 tubes by template are stretched.
     Nodes(NodeSizes),
