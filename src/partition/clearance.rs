@@ -14,6 +14,10 @@ const BACK: f64 = 0.5;
 /// within 0.06 r.
 const ROUND: f64 = 0.77;
 
+/// The golden section, and how often an interval is cut by it at most: to 10⁻¹⁰ of it.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+const GOLDEN_STEPS: u32 = 48;
+
 /// How far the middle of the round tip that an overrun gives a vessel lies beyond the end plane.
 pub(super) fn tip_middle(radius: f64, overrun: f64) -> f64 {
     overrun - (1.0 - ROUND) * radius
@@ -58,24 +62,26 @@ impl Tip {
         if near.distance >= radius + self.margin(tube.max_radius(), blending) {
             return true;
         }
-        // Alternating projection between two convex sets, the solid and the segment, ends at their distance.
-        let span = tube.b - tube.a;
-        let square = span.norm_squared();
-        let mut t = near.t;
-        let mut gap = f64::INFINITY;
-        for _ in 0..24 {
-            let p = tube.a + span * t;
-            let q = self.closest(&p);
-            let found = (p - q).norm();
-            let settled = found >= gap * (1.0 - 1e-4);
-            gap = gap.min(found);
-            if gap < self.margin(tube.radius(t), blending) {
+        // How much there is to spare is convex along the axis: a distance to a convex solid, less a linear radius. A
+        // golden section closes in on its least value, until the steepest that it can fall decides. A cone's widest part
+        // need not be what comes closest.
+        let spare = |t: f64| {
+            let p = tube.point(t);
+            (p - self.closest(&p)).norm() - self.margin(tube.radius(t), blending)
+        };
+        let steep = tube.length() + blending * (tube.rb - tube.ra).abs();
+        let (mut lo, mut hi) = (0.0, 1.0);
+        for _ in 0..GOLDEN_STEPS {
+            let inner = [hi - GOLDEN * (hi - lo), lo + GOLDEN * (hi - lo)];
+            let spares = inner.map(spare);
+            let least = spares[0].min(spares[1]);
+            if least < 0.0 {
                 return false;
             }
-            if settled || square == 0.0 {
-                break;
+            if least > steep * (inner[0] - lo) {
+                return true;
             }
-            t = ((q - tube.a).dot(&span) / square).clamp(0.0, 1.0);
+            if spares[0] < spares[1] { hi = inner[1] } else { lo = inner[0] }
         }
         true
     }
