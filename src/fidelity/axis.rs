@@ -42,19 +42,27 @@ pub struct Displacements {
     pub furthest: Vec<Displaced>,
 }
 
+/// Edges that are looked at at a time.
+const AT_A_TIME: usize = 1 << 14;
+
 impl Displacements {
-    pub(super) fn of(given: &Skeleton, meshed: &Skeleton) -> Self {
-        let tubes = Tubes::of(meshed);
+    /// `tubes`: those of what was meshed.
+    pub(super) fn of(given: &Skeleton, meshed: &Skeleton, tubes: &Tubes) -> Self {
         let edges: Vec<EdgeId> = given.edge_ids().collect();
-        let found: Vec<(Vec<f64>, Option<Displaced>)> =
-            edges.par_iter().with_min_len(64).map(|&edge| along(given, edge, meshed, &tubes)).collect();
-        let mut furthest: Vec<Displaced> = found.iter().filter_map(|(_, worst)| *worst).collect();
-        // A stable sort: the earlier of equals comes first.
-        furthest.sort_by(|a, b| b.radii.total_cmp(&a.radii));
-        furthest.retain(|d| d.radii > FAR);
-        furthest.truncate(MOST_KEPT);
+        let (mut all, mut furthest) = (Vec::new(), Vec::new());
+        for some in edges.chunks(AT_A_TIME) {
+            let look = |&edge| along(given, edge, meshed, tubes);
+            let found: Vec<(Vec<f32>, Option<Displaced>)> = some.par_iter().with_min_len(64).map(look).collect();
+            for (values, worst) in found {
+                all.extend(values);
+                furthest.extend(worst.filter(|d| d.radii > FAR));
+            }
+            // A stable sort: the earlier of equals comes first.
+            furthest.sort_by(|a: &Displaced, b| b.radii.total_cmp(&a.radii));
+            furthest.truncate(MOST_KEPT);
+        }
         Self {
-            spread: Spread::of(found.into_iter().flat_map(|(values, _)| values).collect()),
+            spread: Spread::of(all),
             given_length: edges.iter().map(|&e| given.length(e)).sum(),
             meshed_length: tubes.list.iter().map(crate::geometry::Tube::length).sum(),
             furthest,
@@ -63,7 +71,7 @@ impl Displacements {
 }
 
 /// The displacements along one edge, and the largest of them.
-fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (Vec<f64>, Option<Displaced>) {
+fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (Vec<f32>, Option<Displaced>) {
     let tube = given.tube(edge);
     let count = (tube.length() / (STEP * tube.min_radius())).ceil().clamp(1.0, MOST_STEPS);
     let ends = given.edge(edge).nodes.map(|n| given.node(n));
@@ -77,13 +85,13 @@ fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (V
         let radius = tube.radius(t).max(shared);
         // In radii of the thicker: what lies within a thicker vessel, as a spur did that was taken off, is in its lumen.
         let off = |distance: f64, meshed: f64| distance * (radius / meshed).min(1.0);
-        let Some(near) = tubes.nearest(&place, radius, off) else { return f64::INFINITY };
+        let Some(near) = tubes.nearest(&place, radius, off) else { return f32::INFINITY };
         let radii = off(near.distance, near.radius) / radius;
         if worst.is_none_or(|w| radii > w.radii) {
             let beside = meshed.edge(near.edge).nodes.map(|n| meshed.node(n).original);
             worst = Some(Displaced { given: ends.map(|n| n.original), place: place.into(), meshed: beside, radii });
         }
-        radii
+        radii as f32
     });
     (values.collect(), worst)
 }

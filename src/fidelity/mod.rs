@@ -66,7 +66,13 @@ impl Fidelity {
         let outlined = Tubes::of(outline);
         let wall = wall::spread(&outlined, mesh)?;
         let lumen = lumen::volume(outline, &outlined);
-        Ok(Self { axis: Displacements::of(given, meshed), wall, lumen, volume })
+        let tubes = if std::ptr::eq(outline, meshed) {
+            outlined
+        } else {
+            drop(outlined);
+            Tubes::of(meshed)
+        };
+        Ok(Self { axis: Displacements::of(given, meshed, &tubes), wall, lumen, volume })
     }
 
     /// Whether vessels were moved (as a refinement does): the wall's distance from the given tubes is then no error of the wall.
@@ -92,6 +98,10 @@ mod tests {
         lumen_of(&network(points, 1.0, edges))
     }
 
+    fn displacements(given: &Skeleton, meshed: &Skeleton) -> Displacements {
+        Displacements::of(given, meshed, &Tubes::of(meshed))
+    }
+
     #[test]
     fn what_tubes_have_in_common_counts_once() {
         let tube = lumen(&[[0.0; 3], [10.0, 0.0, 0.0]], &[(0, 1)]);
@@ -111,9 +121,9 @@ mod tests {
         let points = [[0.0; 3], [10.0, 0.0, 0.0], [20.0, 0.0, 0.0]];
         let given = network(&points, 1.0, &[(0, 1), (1, 2)]);
         let mut moved = given.clone();
-        assert!(Displacements::of(&given, &moved).spread.worst <= 0.0);
+        assert!(displacements(&given, &moved).spread.worst <= 0.0);
         moved.nodes[1].position += Vec3::new(0.0, 3.0, 0.0);
-        let found = Displacements::of(&given, &moved);
+        let found = displacements(&given, &moved);
         let first = found.furthest[0];
         // The nearest place of the bent axis is on the side.
         assert!((first.radii - 3.0 * 10.0 / 109.0_f64.sqrt()).abs() < 1e-9 && first.given.contains(&1), "{first:?}");
@@ -121,6 +131,6 @@ mod tests {
         let thick = network(&points, 3.5, &[(0, 1), (1, 2)]);
         let mut beside = given;
         beside.nodes.iter_mut().for_each(|n| n.position.y = 3.0);
-        assert!(Displacements::of(&beside, &thick).spread.worst < 1.0);
+        assert!(displacements(&beside, &thick).spread.worst < 1.0);
     }
 }

@@ -16,10 +16,11 @@ pub struct Spread {
 }
 
 impl Spread {
-    pub(super) fn of(mut values: Vec<f64>) -> Self {
-        values.sort_unstable_by(f64::total_cmp);
+    /// Of any number of values: there may be tens of millions.
+    pub(super) fn of(mut values: Vec<f32>) -> Self {
+        values.sort_unstable_by(f32::total_cmp);
         let Some(last) = values.len().checked_sub(1) else { return Self::default() };
-        let at = |share: f64| values[(share * last as f64).round() as usize];
+        let at = |share: f64| f64::from(values[(share * last as f64).round() as usize]);
         Self { count: values.len(), median: at(0.5), p99: at(0.99), worst: at(1.0) }
     }
 }

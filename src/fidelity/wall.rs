@@ -43,7 +43,7 @@ fn of_part(mesh: &dyn MeshSource, part: u32, every: usize) -> io::Result<Vec<Poi
     mesh.points_of(&ids)
 }
 
-fn error(tubes: &Tubes, point: &Point3) -> Option<f64> {
+fn error(tubes: &Tubes, point: &Point3) -> Option<f32> {
     let near = tubes.nearest_wall(point)?;
-    Some((near.distance - near.radius).abs() / near.radius)
+    Some(((near.distance - near.radius).abs() / near.radius) as f32)
 }

@@ -18,6 +18,11 @@ const POWER: f64 = 2.85;
 const TETS_OF_TUBE: f64 = 4.4;
 const POWER_OF_TUBE: f64 = 2.94;
 
+/// How they fall with edges on the axis that are longer than those of the wall, at forks and in tubes: fitted to chains of forks and
+/// straight tubes with edges of 1 to 3 at ρ = 3 and 5.
+const POWER_OF_CORE: f64 = -0.7;
+const POWER_OF_CORE_OF_TUBE: f64 = -0.9;
+
 /// Shorter edges at a fork are as much more as so many radii of vessel, times what this power of their length is above 1: fitted
 /// to edges of a half and a quarter at ρ = 3 and 5.
 const FINE_RADII: f64 = 5.0;
@@ -187,7 +192,8 @@ pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
 fn tube_cost(pieces: impl Iterator<Item = (f64, f64)>, plan: &MeshPlan) -> Cost {
     let radii: f64 = pieces.map(|(length, radius)| length / radius).sum();
     let layers = of_layers(radii, plan) / plan.stretch;
-    of_tets(TETS_OF_TUBE * plan.rho.powf(POWER_OF_TUBE) * radii / plan.stretch + layers)
+    let per_radius = TETS_OF_TUBE * plan.rho.powf(POWER_OF_TUBE) * plan.core.powf(POWER_OF_CORE_OF_TUBE);
+    of_tets(per_radius * radii / plan.stretch + layers)
 }
 
 /// Of pieces of vessel: length, radius, thinnest radius of their block.
@@ -196,7 +202,8 @@ fn cost(pieces: impl Iterator<Item = (f64, f64, f64)>, plan: &MeshPlan) -> Cost 
     let finer = 3.0 * (1.0 - plan.follow);
     let one = |(length, radius, thin): (f64, f64, f64)| length / radius * (radius / thin).powf(finer);
     let radii = pieces.map(one).sum::<f64>();
-    of_tets(TETS * plan.rho.powf(POWER) * radii + of_layers(radii, plan))
+    let per_radius = TETS * plan.rho.powf(POWER) * plan.core.powf(POWER_OF_CORE);
+    of_tets(per_radius * radii + of_layers(radii, plan))
 }
 
 /// Tetrahedra of layers along so many radii.

@@ -23,6 +23,8 @@ const LONGEST: f64 = 12.0;
 const SHORTEST: f64 = 0.5;
 /// Most that a template is twisted, in radians for each radius of length, so that it ends in the frame of its second disc.
 const TWIST: f64 = 0.1;
+/// Edges on the axis as long as those of the wall.
+const PLAIN: f64 = 1.0;
 /// Smallest radius ratio of an image's tetrahedra.
 const LEAST: f64 = 0.3;
 
@@ -56,7 +58,7 @@ impl FilledTube {
 }
 
 /// The tube along a path between the two discs that its sections give, of which some are caps; none where no template fits. Of the
-/// parameters, ρ, stretch and layers count.
+/// parameters, ρ, stretch, core and layers count.
 pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: &BlockParams) -> Option<FilledTube> {
     let corners = discs[0].rim.len();
     if discs[1].rim.len() != corners || discs[0].points.len() != discs[1].points.len() {
@@ -78,7 +80,12 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: 
         let image = Image { template, path: &path, radii: &radii, discs, twist, stretch, pieces: pieces as u32 };
         image.tube()
     };
-    canonical::with(params, corners as u32, length / (pieces * stretch), caps, image).flatten()
+    let of_core = |core: f64| {
+        let params = BlockParams { core, ..*params };
+        canonical::with(&params, corners as u32, length / (pieces * stretch), caps, image).flatten()
+    };
+    // Where longer edges on the axis leave a tetrahedron that is worse than may be, those of the wall may do.
+    of_core(params.core).or_else(|| if params.core == PLAIN { None } else { of_core(PLAIN) })
 }
 
 /// A template and the vessel that it is mapped to.
