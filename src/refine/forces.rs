@@ -31,7 +31,7 @@ pub(super) fn pushes(frame: &Frame, contacts: &Contacts, barrier: &Barrier, rate
         out
     });
     let chains = frame.chains.par_iter().with_min_len(512).fold(Vec::new, |mut out, chain| {
-        repel(frame, chain, rates.repel, &mut out);
+        repel(frame, &chain, rates.repel, &mut out);
         out
     });
     let pairs = contacts.pairs.par_iter().with_min_len(256).fold(Vec::new, |mut out, pair| {

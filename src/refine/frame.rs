@@ -2,24 +2,60 @@
 
 use crate::geometry::Point3;
 use crate::skeleton::{Adjacency, CUT_DISTANCE, Edge, EdgeId, Node, NodeId, Skeleton};
+use rayon::prelude::*;
 
 /// Length that a vessel keeps while it overlaps another one, in radii: parting comes before room for cuts, and two
 /// terminals close to each other can have the fork that leads to them only near by.
 pub(super) const LEAST: f64 = 2.5;
 
 /// A vessel between two nodes at which something happens: a branch, or a part of one between nodes that are held.
-#[derive(Clone, Debug)]
-pub(super) struct Chain {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chain<'a> {
     /// Nodes along the way, one more than edges.
-    pub nodes: Vec<NodeId>,
+    pub nodes: &'a [NodeId],
     /// Edges along the way.
-    pub edges: Vec<EdgeId>,
+    pub edges: &'a [EdgeId],
 }
 
-impl Chain {
+impl Chain<'_> {
     /// First and last node.
     pub fn ends(&self) -> [NodeId; 2] {
         [self.nodes[0], self.nodes[self.nodes.len() - 1]]
+    }
+}
+
+/// All chains, one behind the other: there are millions of them.
+#[derive(Debug, Default)]
+pub(super) struct AllChains {
+    nodes: Vec<NodeId>,
+    edges: Vec<EdgeId>,
+    /// Where the edges of each end; its nodes end as much later as there are chains up to it.
+    ends: Vec<u32>,
+}
+
+impl AllChains {
+    /// Adds an edge to the chain that is not closed yet, and the node that it leads to.
+    fn add(&mut self, edge: EdgeId, node: NodeId) {
+        self.edges.push(edge);
+        self.nodes.push(node);
+    }
+
+    fn close(&mut self) {
+        self.ends.push(self.edges.len() as u32);
+    }
+
+    fn get(&self, i: usize) -> Chain<'_> {
+        let end = |i: usize| self.ends[i] as usize;
+        let first = i.checked_sub(1).map_or(0, end);
+        Chain { nodes: &self.nodes[first + i..=end(i) + i], edges: &self.edges[first..end(i)] }
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = Chain<'_>> {
+        (0..self.ends.len()).map(|i| self.get(i))
+    }
+
+    pub fn par_iter(&self) -> impl IndexedParallelIterator<Item = Chain<'_>> {
+        (0..self.ends.len()).into_par_iter().map(|i| self.get(i))
     }
 }
 
@@ -47,7 +83,7 @@ pub(super) struct Frame {
     /// Length that each edge keeps at least: what it had, or what equation 11 asks of it if that is less.
     pub kept: Vec<f64>,
     /// All vessels between junctions, terminals and folds.
-    pub chains: Vec<Chain>,
+    pub chains: AllChains,
 }
 
 impl Frame {
@@ -67,7 +103,7 @@ impl Frame {
         let origin = skeleton.nodes.iter().map(|n| n.position).collect();
         let is_bend = vec![false; skeleton.nodes.len()];
         let urgent = is_bend.clone();
-        let chains = Vec::new();
+        let chains = AllChains::default();
         let kept = Vec::new();
         let mut frame = Self {
             skeleton,
@@ -109,19 +145,20 @@ impl Frame {
         self.skeleton.length(edge).min(CUT_DISTANCE * (radii[0] + radii[1]))
     }
 
-    fn find_chains(&self) -> Vec<Chain> {
-        let mut chains = Vec::new();
-        for branch in self.skeleton.branches(&self.adjacency).list {
-            let mut chain = Chain { nodes: vec![branch.nodes[0]], edges: Vec::new() };
-            for (i, &edge) in branch.edges.iter().enumerate() {
-                let node = branch.nodes[i + 1];
-                chain.edges.push(edge);
-                chain.nodes.push(node);
-                if self.is_fold[node.index()] && i + 1 < branch.edges.len() {
-                    chains.push(std::mem::replace(&mut chain, Chain { nodes: vec![node], edges: Vec::new() }));
+    fn find_chains(&self) -> AllChains {
+        let branches = self.skeleton.chains(&self.adjacency);
+        let mut chains = AllChains::default();
+        for branch in 0..branches.len() as u32 {
+            let (nodes, edges) = (branches.nodes(branch), branches.edges(branch));
+            chains.nodes.push(nodes[0]);
+            for (i, (&edge, &node)) in edges.iter().zip(&nodes[1..]).enumerate() {
+                chains.add(edge, node);
+                if self.is_fold[node.index()] && i + 1 < edges.len() {
+                    chains.close();
+                    chains.nodes.push(node);
                 }
             }
-            chains.push(chain);
+            chains.close();
         }
         chains
     }
@@ -156,6 +193,7 @@ impl Frame {
         for (fold, now) in self.is_fold.iter_mut().zip(self.skeleton.folds(&self.adjacency)) {
             *fold |= now;
         }
+        self.chains = AllChains::default();
         self.chains = self.find_chains();
     }
 

@@ -12,7 +12,7 @@ const MARGIN: f64 = 1.02;
 /// What the vessels ask for that cannot be cut, are too short for equation 11, or leave their node too close together.
 pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
     let chains = frame.chains.par_iter().with_min_len(512).fold(Vec::new, |mut out, chain| {
-        push_chain(frame, chain, &mut out);
+        push_chain(frame, &chain, &mut out);
         if chain.edges.len() > 1 {
             chain.edges.iter().for_each(|&e| keep_length(frame, e, &mut out));
         }
@@ -30,7 +30,7 @@ pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
 /// What pieces of polylines ask for that have become shorter.
 pub(super) fn lengths(frame: &Frame) -> Vec<Push> {
     let mut out = Vec::new();
-    for &edge in frame.chains.iter().filter(|chain| chain.edges.len() > 1).flat_map(|chain| &chain.edges) {
+    for &edge in frame.chains.iter().filter(|chain| chain.edges.len() > 1).flat_map(|chain| chain.edges) {
         keep_length(frame, edge, &mut out);
     }
     out
@@ -195,7 +195,7 @@ mod tests {
                 gradient.push((node, (frame.at(node) - frame.at(other)).normalize()));
             }
         }
-        let need = needed(&frame, chain, &mut gradient).expect("two ends");
+        let need = needed(&frame, &chain, &mut gradient).expect("two ends");
         (frame.skeleton.length(EdgeId(0)) - need, gradient)
     }
 

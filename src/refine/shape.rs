@@ -12,7 +12,7 @@ pub(super) fn smooth_steps(frame: &Frame, steps: &mut [Vec3], asked: &[u32]) {
     let smooth: Vec<Vec<Vec3>> = frame
         .chains
         .par_iter()
-        .map(|chain| if chain.nodes.len() > 2 { smoothed(frame, chain, steps, asked) } else { Vec::new() })
+        .map(|chain| if chain.nodes.len() > 2 { smoothed(frame, &chain, steps, asked) } else { Vec::new() })
         .collect();
     for (chain, values) in frame.chains.iter().zip(smooth) {
         let inner = chain.nodes.iter().zip(values).skip(1).take(chain.nodes.len() - 2);
