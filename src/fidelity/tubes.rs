@@ -34,7 +34,7 @@ impl Tubes {
         let mut radii: Vec<f64> = list.iter().map(|t| 0.5 * (t.ra + t.rb)).collect();
         radii.sort_unstable_by(f64::total_cmp);
         let typical = radii.get(radii.len() / 2).copied().unwrap_or(1.0);
-        Self { tree: Bvh::new(&boxes), list, extent: (all.max - all.min).norm(), typical }
+        Self { tree: Bvh::of(boxes), list, extent: (all.max - all.min).norm(), typical }
     }
 
     /// The tube whose wall is nearest, counted as negative inside.

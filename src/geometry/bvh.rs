@@ -33,7 +33,13 @@ pub struct Bvh {
 impl Bvh {
     /// Builds the tree. Boxes must not hold NaN; `Aabb::EMPTY` is legal and never found.
     pub fn new(boxes: &[Aabb]) -> Self {
-        let items = along_hilbert_curve(boxes);
+        Self::of(boxes.to_vec())
+    }
+
+    /// The same of boxes that nobody else needs: of millions they are held once.
+    pub fn of(mut boxes: Vec<Aabb>) -> Self {
+        let items = along_hilbert_curve(&boxes);
+        arrange(&mut boxes, &items);
         let mut nodes = Vec::with_capacity(boxes.len() / 2 + 1);
         // Ranges still to be built, the left one on top so that a left child follows its parent; `parent` is set for
         // right children, which tell the parent where they are.
@@ -47,10 +53,10 @@ impl Bvh {
                 let node: &mut BvhNode = &mut nodes[parent];
                 node.first = index as u32;
             }
-            let range = &items[start..end];
+            let range = &boxes[start..end];
             let leaf = range.len() <= LEAF;
             let of = if leaf { range } else { &[] };
-            let aabb = of.iter().fold(Aabb::EMPTY, |sum, &i| sum.union(&boxes[i as usize]));
+            let aabb = of.iter().fold(Aabb::EMPTY, |sum, aabb| sum.union(aabb));
             nodes.push(BvhNode { aabb, first: start as u32, count: of.len() as u32 });
             if !leaf {
                 let middle = start.midpoint(end);
@@ -64,8 +70,19 @@ impl Bvh {
                 nodes[i].aabb = nodes[i + 1].aabb.union(&nodes[nodes[i].first as usize].aabb);
             }
         }
-        let boxes = items.iter().map(|&i| boxes[i as usize]).collect();
         Self { nodes, items, boxes }
+    }
+
+    /// The boxes in the order in which they were given.
+    pub fn into_boxes(self) -> Vec<Aabb> {
+        let Self { items, mut boxes, nodes } = self;
+        drop(nodes);
+        let mut places = vec![0; items.len()];
+        for (place, &item) in (0..).zip(&items) {
+            places[item as usize] = place;
+        }
+        arrange(&mut boxes, &places);
+        boxes
     }
 
     /// The boxes' indices in the order in which the tree holds them: neighbours there are near each other.
@@ -180,20 +197,30 @@ impl BvhNode {
     }
 }
 
-/// The boxes' indices in the order of the Hilbert keys of their centres; empty boxes, which have no centre, first.
-fn along_hilbert_curve(boxes: &[Aabb]) -> Vec<u32> {
-    let is_empty = |b: &Aabb| b.min.x > b.max.x;
-    let mut order: Vec<(u64, u32)> = Vec::with_capacity(boxes.len());
-    let (mut full, mut centres) = (Vec::with_capacity(boxes.len()), Vec::with_capacity(boxes.len()));
-    for (i, b) in (0..).zip(boxes) {
-        if is_empty(b) {
-            order.push((0, i));
-        } else {
-            full.push(i);
-            centres.push(Point3::from(b.doubled_centre()));
+/// Puts in each place the box that was in the place named there, cycle by cycle.
+fn arrange(boxes: &mut [Aabb], from: &[u32]) {
+    let mut is_done = vec![false; boxes.len()];
+    for start in 0..boxes.len() {
+        let mut place = start;
+        while !std::mem::replace(&mut is_done[place], true) {
+            let next = from[place] as usize;
+            if is_done[next] {
+                break;
+            }
+            boxes.swap(place, next);
+            place = next;
         }
     }
-    order.extend(hilbert_keys(&centres).into_iter().zip(full));
+}
+
+/// The boxes' indices in the order of the Hilbert keys of their centres; empty boxes, which have no centre, first.
+fn along_hilbert_curve(boxes: &[Aabb]) -> Vec<u32> {
+    let is_full = |b: &Aabb| b.min.x <= b.max.x;
+    let mut order: Vec<(u64, u32)> = Vec::with_capacity(boxes.len());
+    order.extend((0..).zip(boxes).filter(|(_, b)| !is_full(b)).map(|(i, _)| (0, i)));
+    let full = (0..).zip(boxes).filter(|(_, b)| is_full(b));
+    let centres = full.clone().map(|(_, b)| Point3::from(b.doubled_centre()));
+    order.extend(hilbert_keys(centres).zip(full.map(|(i, _)| i)));
     // The index breaks ties.
     order.sort_unstable();
     order.into_iter().map(|(_, i)| i).collect()

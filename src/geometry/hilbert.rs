@@ -78,12 +78,12 @@ pub struct Grid {
 
 impl Grid {
     /// A grid of 2^`bits` cells along the longest side of the box.
-    pub fn new(points: &[Point3], bits: u32) -> Self {
+    pub fn new(points: impl IntoIterator<Item = Point3>, bits: u32) -> Self {
         let mut low = Point3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY);
         let mut high = -low;
         for p in points {
-            low = low.inf(p);
-            high = high.sup(p);
+            low = low.inf(&p);
+            high = high.sup(&p);
         }
         let size = (high - low).max();
         let last = f64::from((1u32 << bits) - 1);
@@ -99,9 +99,9 @@ impl Grid {
 }
 
 /// The Hilbert keys of points, on a grid over their bounding box.
-pub fn hilbert_keys(points: &[Point3]) -> Vec<u64> {
-    let grid = Grid::new(points, BITS);
-    points.iter().map(|p| hilbert_key(grid.cell(p), BITS)).collect()
+pub fn hilbert_keys(points: impl Iterator<Item = Point3> + Clone) -> impl Iterator<Item = u64> {
+    let grid = Grid::new(points.clone(), BITS);
+    points.map(move |p| hilbert_key(grid.cell(&p), BITS))
 }
 
 #[cfg(test)]
@@ -129,6 +129,6 @@ mod tests {
     #[test]
     fn equal_points_and_flat_boxes_have_keys() {
         let p = Point3::new(1.0, 2.0, 3.0);
-        assert_eq!(hilbert_keys(&[p, p]), vec![0, 0]);
+        assert_eq!(hilbert_keys([p, p].into_iter()).collect::<Vec<_>>(), [0, 0]);
     }
 }

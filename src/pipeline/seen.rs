@@ -27,9 +27,13 @@ impl Seen {
     pub fn of(blocks: &Blocks, whole: &Whole, looked: Looked) -> Self {
         let records: Vec<Option<RecordId>> = blocks.records().collect();
         let meetings = whole.blocks_that_meet(&looked);
-        let mut boxes = vec![Aabb::EMPTY; records.len()];
-        for (part, aabb) in (0..).zip(looked.into_boxes()) {
-            boxes[whole.block_of(part) as usize] = aabb;
+        let mut boxes = looked.into_boxes();
+        if boxes.len() < records.len() {
+            // Some blocks have no part.
+            let of_parts = std::mem::replace(&mut boxes, vec![Aabb::EMPTY; records.len()]);
+            for (part, aabb) in (0..).zip(of_parts) {
+                boxes[whole.block_of(part) as usize] = aabb;
+            }
         }
         Self { records, boxes, meetings }
     }

@@ -17,6 +17,9 @@ pub(crate) const JOINED: f64 = 6.0;
 /// Pairs of edges that are looked at, at most: more than any network that is not one tangle has.
 const MOST_PAIRS: usize = 100_000_000;
 
+/// Edges that are looked at at a time.
+const AT_A_TIME: usize = 1 << 14;
+
 /// Two edges whose vessels overlap, and where they do so most.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Overlap {
@@ -61,8 +64,27 @@ impl Overlap {
 impl Skeleton {
     /// Finds the vessels that overlap.
     pub(crate) fn overlaps(&self, adjacency: &Adjacency) -> Overlaps {
-        let boxes: Vec<Aabb> = self.edge_ids().map(|e| tube_box(&self.tube(e))).collect();
-        let tree = Bvh::new(&boxes);
+        let (candidates, complete) = self.close_pairs();
+        let mut overlaps = Overlaps { complete, ..Overlaps::default() };
+        let mut groups = candidates.chunk_by(|p, q| p[0] == q[0]);
+        loop {
+            let some: Vec<&[[EdgeId; 2]]> = groups.by_ref().take(AT_A_TIME).collect();
+            if some.is_empty() {
+                return overlaps;
+            }
+            let look = |scratch: &mut Scratch, group: &&_| self.overlaps_of_edge(adjacency, group, scratch);
+            let found: Vec<Found> = some.par_iter().map_init(Scratch::default, look).collect();
+            for part in found {
+                overlaps.pairs.extend(part.pairs);
+                overlaps.unconnected.extend(part.unconnected);
+                overlaps.far += part.far;
+            }
+        }
+    }
+
+    /// Pairs of edges whose boxes overlap, ascending, and whether these are all.
+    fn close_pairs(&self) -> (Vec<[EdgeId; 2]>, bool) {
+        let tree = Bvh::of(self.edge_ids().map(|e| tube_box(&self.tube(e))).collect::<Vec<Aabb>>());
         let mut candidates: Vec<[EdgeId; 2]> = Vec::new();
         let mut complete = true;
         // Adjacent edges that are short for their radius cannot overlap beyond 6 r: left out before they use memory.
@@ -75,18 +97,7 @@ impl Skeleton {
             }
         });
         candidates.par_sort_unstable();
-        let groups: Vec<&[[EdgeId; 2]]> = candidates.chunk_by(|p, q| p[0] == q[0]).collect();
-        let found: Vec<Found> = groups
-            .par_iter()
-            .map_init(Scratch::default, |scratch, group| self.overlaps_of_edge(adjacency, group, scratch))
-            .collect();
-        let mut overlaps = Overlaps { complete, ..Overlaps::default() };
-        for part in found {
-            overlaps.pairs.extend(part.pairs);
-            overlaps.unconnected.extend(part.unconnected);
-            overlaps.far += part.far;
-        }
-        overlaps
+        (candidates, complete)
     }
 
     /// Whether the edges share a node and are too short to be anything but neighbours.

@@ -87,6 +87,17 @@ fn steep_tapers_have_no_image() {
 }
 
 #[test]
+fn tubes_with_long_edges_are_images_whatever_is_asked_of_their_axis() {
+    for (rho, stretch, core) in [(3.0, 12.0, 3.0), (5.0, 12.0, 2.0_f64.sqrt()), (3.5, 16.0, 2.0), (6.0, 16.0, 2.0)] {
+        for length in [3.0, 20.0, 60.0, 150.0, 200.0] {
+            let path = vec![section(0.0, 1.0), section(length, 1.0)];
+            let found = along(&path, &BlockParams { stretch, core, ..BlockParams::with_rho(rho) });
+            assert!(found.is_some(), "{rho} {stretch} {core} {length}");
+        }
+    }
+}
+
+#[test]
 fn stretched_tubes_have_fewer_tetrahedra_and_the_same_discs() {
     let path = vec![section(0.0, 1.0), section(30.0, 1.0)];
     let of = |stretch| {

@@ -9,6 +9,16 @@ use crate::geometry::{Point3, Section, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Key(pub u128);
 
+/// What records are looked up by, of which there are millions: as much of the key as leaves a chance of less than 2^-48 that
+/// two of 2^24 have the same.
+pub(super) type ShortKey = [u32; 3];
+
+impl Key {
+    pub(super) fn short(self) -> ShortKey {
+        [self.0 as u32, (self.0 >> 32) as u32, (self.0 >> 64) as u32]
+    }
+}
+
 /// Makes a key out of values, in their order.
 pub struct KeyMaker(Xxh3);
 

@@ -21,7 +21,8 @@ pub(super) struct LogFile {
     name: String,
     writer: Mutex<Writer>,
     reader: File,
-    extents: RwLock<Vec<Range<u64>>>,
+    /// Where each record ends; the next one begins there.
+    ends: RwLock<Vec<u64>>,
     /// Held as long as the file is in use.
     _locks: Vec<File>,
 }
@@ -47,17 +48,17 @@ impl LogFile {
         if end < length {
             file.set_len(end)?;
         }
-        let (keys, extents) = records.into_iter().unzip();
-        Ok((Self::new(path.display().to_string(), file, end, extents, locks)?, keys))
+        let (keys, ends) = records.into_iter().map(|(key, extent)| (key, extent.end)).unzip();
+        Ok((Self::new(path.display().to_string(), file, end, ends, locks)?, keys))
     }
 
-    fn new(name: String, file: File, end: u64, extents: Vec<Range<u64>>, locks: Vec<File>) -> io::Result<Self> {
+    fn new(name: String, file: File, end: u64, ends: Vec<u64>, locks: Vec<File>) -> io::Result<Self> {
         let reader = file.try_clone()?;
         Ok(Self {
             name,
             writer: Mutex::new(Writer { file, end }),
             reader,
-            extents: RwLock::new(extents),
+            ends: RwLock::new(ends),
             _locks: locks,
         })
     }
@@ -69,7 +70,9 @@ impl LogFile {
 
     /// Where a record lies.
     pub(super) fn extent(&self, record: usize) -> Option<Range<u64>> {
-        self.extents.read().unwrap_or_else(PoisonError::into_inner).get(record).cloned()
+        let ends = self.ends.read().unwrap_or_else(PoisonError::into_inner);
+        let before = record.checked_sub(1).map_or(0, |before| ends.get(before).copied().unwrap_or(0));
+        Some(before + HEAD as u64..*ends.get(record)?)
     }
 
     /// Bytes of it that are in use.
@@ -79,7 +82,7 @@ impl LogFile {
 
     /// How many records it holds.
     pub(super) fn len(&self) -> usize {
-        self.extents.read().unwrap_or_else(PoisonError::into_inner).len()
+        self.ends.read().unwrap_or_else(PoisonError::into_inner).len()
     }
 
     /// Waits until the disk has all of it.
@@ -104,9 +107,9 @@ impl LogFile {
         }
         let first = start + HEAD as u64;
         writer.end = first + bytes.len() as u64;
-        let mut extents = self.extents.write().unwrap_or_else(PoisonError::into_inner);
-        extents.push(first..writer.end);
-        Ok(extents.len() - 1)
+        let mut ends = self.ends.write().unwrap_or_else(PoisonError::into_inner);
+        ends.push(writer.end);
+        Ok(ends.len() - 1)
     }
 
     /// Some bytes of a record.

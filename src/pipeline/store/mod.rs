@@ -35,6 +35,7 @@ pub use error::StoreError;
 pub(crate) use extents::Extents;
 pub use folder::Role;
 pub use key::{Key, KeyMaker};
+use key::ShortKey;
 use log::LogFile;
 #[cfg(feature = "cli")]
 pub(crate) use manifest::MANIFEST;
@@ -60,7 +61,7 @@ impl RecordId {
 #[derive(Debug)]
 pub struct Store {
     place: Place,
-    known: Mutex<FxHashMap<Key, RecordId>>,
+    known: Mutex<FxHashMap<ShortKey, RecordId>>,
 }
 
 #[derive(Debug)]
@@ -105,7 +106,7 @@ impl Store {
     /// When the folder cannot be used, is in use, belongs to something else, or shards there have not come to their end.
     pub fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
         let folder::Opened { own, others, keys } = folder::open(folder, manifest, role)?;
-        let known = keys.into_iter().zip(0..).map(|(key, i)| (key, RecordId(i))).collect();
+        let known = keys.into_iter().zip(0..).map(|(key, i)| (key.short(), RecordId(i))).collect();
         Ok(Self { place: Place::Folder(folder.to_path_buf(), others, own), known: Mutex::new(known) })
     }
 
@@ -141,7 +142,7 @@ impl Store {
 
     /// The record under a key.
     pub(crate) fn find(&self, key: Key) -> Option<RecordId> {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&key).copied()
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&key.short()).copied()
     }
 
     /// Keeps a record; one that is there already stays.
@@ -150,7 +151,7 @@ impl Store {
     /// When it cannot be written.
     pub(crate) fn keep(&self, key: Key, bytes: Vec<u8>) -> Result<RecordId, StoreError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let Entry::Vacant(slot) = known.entry(key) else {
+        let Entry::Vacant(slot) = known.entry(key.short()) else {
             drop(known);
             return self.find(key).ok_or_else(|| io::Error::from(io::ErrorKind::NotFound).into());
         };

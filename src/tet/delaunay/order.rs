@@ -58,7 +58,7 @@ fn along_curve(points: &[Point3], round: impl Fn(u64) -> u32) -> Vec<u32> {
     // Round, key and index in one word: the fewer points, the finer the grid.
     let index_bits = usize::BITS - points.len().leading_zeros();
     let key_bits = ((64 - 5 - index_bits) / 3).min(20);
-    let grid = Grid::new(points, key_bits);
+    let grid = Grid::new(points.iter().copied(), key_bits);
     let mask = (1u64 << index_bits) - 1;
     let word = |(i, p)| {
         let key = hilbert_key(grid.cell(p), key_bits);

@@ -11,9 +11,9 @@ pub(super) struct Boxes {
 }
 
 impl Boxes {
-    pub(super) fn new(boxes: &[Aabb]) -> Self {
-        let tree = Bvh::new(boxes);
+    pub(super) fn new(boxes: Vec<Aabb>) -> Self {
         let mut rank = vec![0; boxes.len()];
+        let tree = Bvh::of(boxes);
         for (place, &part) in (0..).zip(tree.order()) {
             rank[part as usize] = place;
         }
@@ -48,6 +48,6 @@ impl Boxes {
 
     /// By the parts' numbers.
     pub(super) fn into_vec(self) -> Vec<Aabb> {
-        self.rank.iter().map(|&place| *self.tree.box_at(place as usize)).collect()
+        self.tree.into_boxes()
     }
 }

@@ -8,6 +8,7 @@ use crate::mesh::check::nested::Enclosed;
 use crate::mesh::check::result::{Intersection, Line};
 use crate::mesh::quality::QualitySum;
 use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::io;
 use std::ops::Range;
 
@@ -22,7 +23,14 @@ struct Part {
     first_surface: u32,
     first_joint: u32,
     first_component: u32,
-    is_sound: bool,
+}
+
+/// What there are most of: four for each connector.
+#[derive(Clone, Copy, Debug)]
+struct Joint {
+    faces: u32,
+    vertices: u32,
+    sum: u64,
 }
 
 /// All parts, by numbers that run through all surfaces, joints and components.
@@ -30,7 +38,11 @@ struct Part {
 pub(super) struct Held {
     parts: Vec<Part>,
     surfaces: Vec<HeldSurface>,
-    joints: Vec<HeldJoint>,
+    joints: Vec<Joint>,
+    /// Surface and component of the joints that are not on the first ones of their parts.
+    elsewhere: FxHashMap<u32, [u32; 2]>,
+    /// Parts in which something was wrong alone.
+    faulty: FxHashSet<u32>,
     components: u32,
     pub caps: Vec<HeldCap>,
     pub points: u64,
@@ -73,8 +85,10 @@ impl Held {
             first_surface: self.surfaces.len() as u32,
             first_joint: self.joints.len() as u32,
             first_component: self.components,
-            is_sound: c.faults.is_empty(),
         });
+        if !c.faults.is_empty() {
+            self.faulty.insert(part);
+        }
         let wrong = |j: &HeldJoint| {
             j.faces > 0 && !c.unsound && (j.surface as usize >= c.surfaces.len() || j.component >= c.components)
         };
@@ -83,7 +97,13 @@ impl Held {
             return Err(invalid(format!("the certificate of part {part} contradicts itself")));
         }
         self.surfaces.extend(c.surfaces);
-        self.joints.extend(c.joints);
+        for (number, joint) in (self.joints.len() as u32..).zip(&c.joints) {
+            let HeldJoint { surface, component, faces, vertices, sum } = *joint;
+            self.joints.push(Joint { faces, vertices, sum });
+            if [surface, component] != [0; 2] {
+                self.elsewhere.insert(number, [surface, component]);
+            }
+        }
         self.components += c.components;
         self.caps.extend(c.caps);
         self.points += u64::from(c.points);
@@ -121,7 +141,7 @@ impl Held {
 
     /// Whether nothing was wrong with a part alone.
     pub(super) fn is_sound(&self, part: u32) -> bool {
-        self.parts[part as usize].is_sound
+        !self.faulty.contains(&part)
     }
 
     /// The number of a part's joint, if there is such a joint.
@@ -136,8 +156,10 @@ impl Held {
         (part, number - self.parts[part as usize].first_joint)
     }
 
-    pub(super) fn joint(&self, number: u32) -> &HeldJoint {
-        &self.joints[number as usize]
+    pub(super) fn joint(&self, number: u32) -> HeldJoint {
+        let Joint { faces, vertices, sum } = self.joints[number as usize];
+        let [surface, component] = self.elsewhere.get(&number).copied().unwrap_or_default();
+        HeldJoint { surface, component, faces, vertices, sum }
     }
 
     fn joints_of(&self, part: u32) -> Option<Range<u32>> {

@@ -70,8 +70,7 @@ impl<'a> Looked<'a> {
             tallies.add(Line::NotEmpty, Offender { kind: OffenderKind::Tet, ids: Vec::new(), position: None });
         }
         let unusable = tallies.first_of(&[Line::NotEmpty, Line::FinitePoints, Line::IndicesInRange]);
-        let boxes = Boxes::new(if unusable.is_none() { &list } else { &[] });
-        drop(list);
+        let boxes = Boxes::new(if unusable.is_none() { list } else { Vec::new() });
         let is_joined = if unusable.is_none() { joints::flags(parts, &held)? } else { Vec::new() };
         let mut looked = Self { parts, held, tallies, unusable, boxes, is_joined, meetings: Meetings::default() };
         if unusable.is_none() {
