@@ -5,6 +5,7 @@
 //! joints, their vertices, their faces; the caps and their faces; the wall; points (3 × f64); tetrahedra and the triangles of
 //! a hull (u16 where the points are that few, else u32).
 
+use std::borrow::Cow;
 use std::io;
 use std::ops::Range;
 
@@ -115,6 +116,12 @@ impl Sizes {
 
 /// Where the bytes of a record are.
 pub trait Bytes {
+    /// How many there are.
+    ///
+    /// # Errors
+    /// When there is no record.
+    fn count(&self) -> io::Result<u64>;
+
     /// Some of them.
     ///
     /// # Errors
@@ -123,6 +130,10 @@ pub trait Bytes {
 }
 
 impl Bytes for [u8] {
+    fn count(&self) -> io::Result<u64> {
+        Ok(self.len() as u64)
+    }
+
     fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>> {
         <[u8]>::get(self, range.start as usize..range.end as usize).map(<[u8]>::to_vec).ok_or_else(cut_short)
     }
@@ -183,10 +194,14 @@ fn put(out: &mut Vec<u8>, values: &[u32]) {
     }
 }
 
+/// So much of a record is read at once: all of most blocks, and of large ones what is asked for most often.
+const FIRST: u64 = 1 << 14;
+
 /// A record of which parts are read when they are asked for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Record<'a, B: ?Sized> {
     bytes: &'a B,
+    first: Vec<u8>,
     sizes: Sizes,
 }
 
@@ -196,9 +211,10 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
     /// # Errors
     /// When that cannot be read.
     pub fn open(bytes: &'a B) -> io::Result<Self> {
-        let head = words(&bytes.get(0..4 * HEAD as u64)?);
+        let first = bytes.get(0..bytes.count()?.min(FIRST))?;
+        let head = words(first.get(..4 * HEAD).ok_or_else(cut_short)?);
         let counts: [u32; HEAD] = head.try_into().map_err(|_| cut_short())?;
-        Ok(Self { bytes, sizes: Sizes::from_counts(counts) })
+        Ok(Self { bytes, first, sizes: Sizes::from_counts(counts) })
     }
 
     /// How much there is.
@@ -206,8 +222,15 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
         self.sizes
     }
 
-    fn section(&self, index: usize) -> io::Result<Vec<u8>> {
-        self.bytes.get(self.sizes.sections()[index].clone())
+    fn section(&self, index: usize) -> io::Result<Cow<'_, [u8]>> {
+        self.range(self.sizes.sections()[index].clone())
+    }
+
+    fn range(&self, range: Range<u64>) -> io::Result<Cow<'_, [u8]>> {
+        match self.first.get(range.start as usize..range.end as usize) {
+            Some(bytes) => Ok(bytes.into()),
+            None => self.bytes.get(range).map(Cow::from),
+        }
     }
 
     /// What is known of it, and what reports say.
@@ -224,7 +247,7 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
     /// When they cannot be read.
     pub fn joints(&self) -> io::Result<Vec<FinishedJoint>> {
         let [_, sizes, vertices, faces, ..] = self.sizes.sections();
-        let bytes = self.bytes.get(sizes.start..faces.end)?;
+        let bytes = self.range(sizes.start..faces.end)?;
         let values = words(&bytes);
         let (sizes, rest) = values.split_at(2 * self.sizes.joints as usize);
         let (mut vertices, mut faces) = rest.split_at(((vertices.end - vertices.start) / 4) as usize);

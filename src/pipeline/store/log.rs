@@ -75,6 +75,11 @@ impl LogFile {
         Some(before + HEAD as u64..*ends.get(record)?)
     }
 
+    /// Bytes of a record.
+    pub(super) fn bytes_of(&self, record: usize) -> Option<u64> {
+        self.extent(record).map(|extent| extent.end - extent.start)
+    }
+
     /// Bytes of it that are in use.
     pub(super) fn length(&self) -> u64 {
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).end

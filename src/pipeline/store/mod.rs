@@ -205,6 +205,23 @@ pub struct StoredBytes<'a> {
 }
 
 impl Bytes for StoredBytes<'_> {
+    fn count(&self) -> io::Result<u64> {
+        let id = self.id.0 as usize;
+        let count = match &self.store.place {
+            Place::Memory(records) => {
+                let records = records.read().unwrap_or_else(PoisonError::into_inner);
+                records.get(id).map(|record| record.len() as u64)
+            }
+            Place::File(log) => log.bytes_of(id),
+            Place::Folder(_, others, own) => match id.checked_sub(others.len()) {
+                None => others.bytes_of(id),
+                Some(record) => own.bytes_of(record),
+            },
+            Place::Shelf(others) => others.bytes_of(id),
+        };
+        count.ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+
     fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>> {
         match &self.store.place {
             Place::Memory(records) => {

@@ -48,6 +48,11 @@ impl Shelf {
         self.extents.len()
     }
 
+    /// Bytes of a record.
+    pub(super) fn bytes_of(&self, record: usize) -> Option<u64> {
+        self.extents.get(record).map(|(_, extent)| extent.end - extent.start)
+    }
+
     /// Bytes of all records.
     pub(super) fn bytes(&self) -> u64 {
         self.extents.iter().map(|(_, extent)| extent.end - extent.start).sum()
