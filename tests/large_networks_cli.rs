@@ -61,27 +61,40 @@ fn kill_at(mut child: Child, blocks: &Path, bytes: u64) -> bool {
     }
 }
 
-#[test]
-fn killed_at_any_moment_it_goes_on_and_ends_with_the_same_bytes() {
+/// Kills so many runs at moments spread over the making of their blocks, then lets one come to its end: it has the bytes of a run
+/// that nobody disturbed. How many were hit.
+fn killed(network: &Path, options: &[&str], runs: u64) -> u32 {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
     let (work, blocks) = (path("work").display().to_string(), path("work").join("anastomesh.blocks"));
-    assert_code(&run(&network(), &path("a.vtu"), &["--work-dir", &work]), FINE);
+    let options = &[options, &["--work-dir", &work, "-j", "2"]].concat();
+    assert_code(&run(network, &path("a.vtu"), options), FINE);
     let (whole, all) = (fs::read(path("a.vtu")).expect("a mesh"), length(&blocks));
     fs::remove_dir_all(path("work")).expect("removed");
     let mut killed = 0;
-    for step in 0..20 {
-        let child = command(&network(), &path("b.vtu"), &["--work-dir", &work, "-j", "2"])
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("the program runs");
+    for step in 0..runs {
+        let child = command(network, &path("b.vtu"), options).stderr(Stdio::null()).spawn().expect("the program runs");
         // Now and then before the first block, while it is checked, or while it is written.
-        killed += u32::from(kill_at(child, &blocks, all * step / 18));
-        assert!(!path("b.vtu").exists() || fs::read(path("b.vtu")).expect("a mesh") == whole);
+        killed += u32::from(kill_at(child, &blocks, all * step * 10 / (9 * runs)));
+        assert!(!path("b.vtu").exists() || fs::read(path("b.vtu")).expect("a mesh") == whole, "{options:?}");
     }
+    assert_code(&run(network, &path("b.vtu"), options), FINE);
+    assert!(fs::read(path("b.vtu")).expect("a mesh") == whole, "{options:?}");
+    killed
+}
+
+#[test]
+fn killed_at_any_moment_it_goes_on_and_ends_with_the_same_bytes() {
+    let killed = killed(&network(), &[], 20);
     assert!(killed >= 15, "{killed} kills");
-    assert_code(&run(&network(), &path("b.vtu"), &["--work-dir", &work]), FINE);
-    assert!(fs::read(path("b.vtu")).expect("a mesh") == whole);
+}
+
+#[test]
+fn killed_with_any_sizes_it_goes_on_and_ends_with_the_same_bytes() {
+    for options in [["--stretch", "4"], ["--layers", "2"], ["--core", "2"], ["--size-at", "0.5"]] {
+        let killed = killed(&fixture("tree_30.vtp"), &options, 6);
+        assert!(killed >= 3, "{killed} kills with {options:?}");
+    }
 }
 
 #[test]

@@ -268,6 +268,8 @@ mod tests {
             prop_assert_eq!(own, expect_own);
             prop_assert_eq!(&cross, &expect_cross);
             prop_assert_eq!(queried, expect_cross);
+            prop_assert!(ta.order().iter().enumerate().all(|(place, &i)| *ta.box_at(place) == a[i as usize]));
+            prop_assert_eq!(ta.into_boxes(), a);
         }
     }
 

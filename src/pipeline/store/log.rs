@@ -54,13 +54,7 @@ impl LogFile {
 
     fn new(name: String, file: File, end: u64, ends: Vec<u64>, locks: Vec<File>) -> io::Result<Self> {
         let reader = file.try_clone()?;
-        Ok(Self {
-            name,
-            writer: Mutex::new(Writer { file, end }),
-            reader,
-            ends: RwLock::new(ends),
-            _locks: locks,
-        })
+        Ok(Self { name, writer: Mutex::new(Writer { file, end }), reader, ends: RwLock::new(ends), _locks: locks })
     }
 
     /// Where it is, for people.

@@ -34,8 +34,8 @@ pub use error::StoreError;
 #[cfg(feature = "cli")]
 pub(crate) use extents::Extents;
 pub use folder::Role;
-pub use key::{Key, KeyMaker};
 use key::ShortKey;
+pub use key::{Key, KeyMaker};
 use log::LogFile;
 #[cfg(feature = "cli")]
 pub(crate) use manifest::MANIFEST;
