@@ -7,10 +7,10 @@
 //! | fill a surface with tetrahedra | [`tet::Tetrahedralizer`] |
 //! | check a mesh | [`check::check_volume`], [`check::check_tets`] |
 //! | read and write files | [`io`] |
-//! | follow what takes long, and stop it | [`Progress`] |
+//! | follow long operations, and stop them | [`Progress`] |
 //!
 //! Points, surfaces and meshes are the plain types of this page. Loops run in the current thread pool of `rayon`; results
-//! do not depend on its size. `ARCHITECTURE.md` describes the rooms inside.
+//! do not depend on its size. `ARCHITECTURE.md` describes the crates and modules.
 
 // Without the command line, what only it uses is not used at all.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
@@ -21,29 +21,25 @@ mod block;
 pub mod cli;
 mod fidelity;
 mod flow;
-mod geometry;
 mod grow;
-pub mod io;
-mod mesh;
 mod partition;
 #[cfg(feature = "cli")]
 mod picture;
 mod pipeline;
 mod prepare;
-mod progress;
 mod refine;
 mod report;
-mod skeleton;
 mod surface;
-pub mod tet;
 #[cfg(feature = "cli")]
 mod view;
 mod woven;
 
-pub use geometry::{Point3, Vec3};
-pub use mesh::source::MeshSource;
-pub use mesh::{Cap, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
-pub use progress::{Progress, Stage};
+pub use anastomesh_io as io;
+pub use anastomesh_mesh::geometry::{Point3, Vec3};
+pub use anastomesh_mesh::progress::{Progress, Stage};
+pub use anastomesh_mesh::source::MeshSource;
+pub use anastomesh_mesh::{Cap, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
+pub use anastomesh_tet as tet;
 
 /// Vessel networks: made usable, moved apart, and meshed.
 pub mod network {
@@ -54,15 +50,15 @@ pub mod network {
     pub use crate::refine::{
         Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };
-    pub use crate::skeleton::{
+    pub use anastomesh_skeleton::{
         BadSize, CleanReport, Edge, Node, NodeId, NodeSizes, SizeAt, Skeleton, SkeletonError, clean,
     };
 }
 
 /// Whether a mesh is valid, line by line, and how well its tetrahedra are shaped.
 pub mod check {
-    pub use crate::mesh::check::{CheckReport, Expectation, Line, Outcome, Verdict, check_tets, check_volume};
-    pub use crate::mesh::quality::TetQuality;
+    pub use anastomesh_mesh::check::{CheckReport, Expectation, Line, Outcome, Verdict, check_tets, check_volume};
+    pub use anastomesh_mesh::quality::TetQuality;
 }
 
 /// For the tests, benchmarks and fuzz targets of this crate; not part of what it promises.
@@ -70,18 +66,7 @@ pub mod check {
 pub mod testing {
     pub use crate::block::{BlockParams, ClusterMesh, EndStyle, mesh_cluster};
     pub use crate::flow::solve as network_flow;
-    pub use crate::geometry::predicates::{insphere, orient3d};
-    pub use crate::geometry::{
-        Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,
-    };
     pub use crate::grow::{Dual, GenerateError, GenerateParams, Morphometry, Organ, RAT_KIDNEY, dual, generate};
-    pub use crate::io::network::{
-        NetworkFormat, read_network_arrays, read_network_from, refinement_arrays, write_tree,
-    };
-    pub use crate::io::surface::{SurfaceFormat, read_complex_arrays, read_surface_from};
-    pub use crate::io::volume::{MeshFormat, read_mesh_arrays, read_mesh_from, write_mesh_to};
-    pub use crate::mesh::Bounds;
-    pub use crate::mesh::facets::triangulate;
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
@@ -89,8 +74,18 @@ pub mod testing {
     pub use crate::refine::split;
     pub use crate::report::info::NetworkInfo;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
-    pub use crate::tet::delaunay::delaunay;
-    pub use crate::tet::error::Stuck;
+    pub use anastomesh_io::network::{
+        NetworkFormat, read_network_arrays, read_network_from, refinement_arrays, write_tree,
+    };
+    pub use anastomesh_io::surface::{SurfaceFormat, read_complex_arrays, read_surface_from};
+    pub use anastomesh_io::volume::{MeshFormat, read_mesh_arrays, read_mesh_from, write_mesh_to};
+    pub use anastomesh_mesh::Bounds;
+    pub use anastomesh_mesh::facets::triangulate;
+    pub use anastomesh_mesh::geometry::predicates::{insphere, orient3d};
+    pub use anastomesh_mesh::geometry::{
+        Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,
+    };
+    pub use anastomesh_tet::parts::{Stuck, delaunay};
 
     /// A cluster with trimmed ends.
     ///
@@ -101,7 +96,7 @@ pub mod testing {
         cluster: &Cluster,
         params: &BlockParams,
     ) -> Result<ClusterMesh, crate::block::BlockError> {
-        crate::woven::mesh_trimmed(id, cluster, params, &crate::tet::Watch::NOBODY)
+        crate::woven::mesh_trimmed(id, cluster, params, &anastomesh_tet::parts::Watch::NOBODY)
     }
 }
 

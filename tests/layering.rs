@@ -1,35 +1,33 @@
-//! A room imports only from floors below its own (ARCHITECTURE.md), and no file imports from one that imports from it.
+//! A module imports only from lower layers (ARCHITECTURE.md), and no file imports from one that imports from it. Between
+//! crates Cargo enforces the direction of dependencies.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Rooms by floor; a room may import from rooms with a smaller number, and from itself.
-const FLOORS: [(&str, u32); 21] = [
-    ("main", 9),
-    ("cli", 8),
-    ("report", 7),
-    ("pipeline", 6),
-    ("woven", 5),
-    ("picture", 5),
-    ("view", 5),
-    ("block", 4),
-    ("surface", 3),
-    ("tet", 3),
-    ("io", 3),
-    ("refine", 3),
-    ("prepare", 3),
-    ("fidelity", 3),
-    ("flow", 3),
-    ("grow", 3),
-    ("partition", 3),
-    ("mesh", 2),
-    ("skeleton", 2),
-    ("geometry", 1),
-    ("progress", 1),
+/// Source folders of the packages, from the repository's root.
+const PACKAGES: [&str; 5] = ["src", "crates/mesh/src", "crates/skeleton/src", "crates/tet/src", "crates/io/src"];
+
+/// Modules of the root package by layer. A module may import from layers with a smaller number, and from itself.
+const LAYERS: [(&str, u32); 15] = [
+    ("main", 6),
+    ("cli", 5),
+    ("report", 4),
+    ("pipeline", 3),
+    ("woven", 2),
+    ("picture", 2),
+    ("view", 2),
+    ("block", 1),
+    ("surface", 0),
+    ("refine", 0),
+    ("prepare", 0),
+    ("fidelity", 0),
+    ("flow", 0),
+    ("grow", 0),
+    ("partition", 0),
 ];
 
-fn floor(room: &str) -> Option<u32> {
-    FLOORS.iter().find(|(name, _)| *name == room).map(|&(_, floor)| floor)
+fn layer(module: &str) -> Option<u32> {
+    LAYERS.iter().find(|(name, _)| *name == module).map(|&(_, layer)| layer)
 }
 
 fn rust_files(dir: &Path, out: &mut Vec<PathBuf>) {
@@ -43,21 +41,21 @@ fn rust_files(dir: &Path, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// Rooms that a piece of source names: `crate::room` and, in the binary, `anastomesh::room`; also the first names of a
-/// group `crate::{a::X, b::Y}`.
-fn rooms_named(source: &str) -> Vec<String> {
+/// Modules that a piece of source names: `crate::module` and, in the binary, `anastomesh::module`; also the first names
+/// of a group `crate::{a::X, b::Y}`.
+fn modules_named(source: &str) -> Vec<String> {
     let code: String = source.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
-    let mut rooms = Vec::new();
+    let mut modules = Vec::new();
     for root in ["crate::", "anastomesh::"] {
         for (at, _) in code.match_indices(root) {
             let rest = &code[at + root.len()..];
             match rest.strip_prefix('{') {
-                Some(group) => rooms.extend(group_heads(group)),
-                None => rooms.push(head(rest)),
+                Some(group) => modules.extend(group_heads(group)),
+                None => modules.push(head(rest)),
             }
         }
     }
-    rooms
+    modules
 }
 
 fn head(text: &str) -> String {
@@ -84,12 +82,12 @@ fn group_heads(group: &str) -> Vec<String> {
     heads
 }
 
-/// The sources by their paths below `src`.
-fn sources() -> BTreeMap<String, String> {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+/// Sources of a package by their paths below its source folder.
+fn sources(package: &str) -> BTreeMap<String, String> {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join(package);
     let mut files = Vec::new();
     rust_files(&src, &mut files);
-    assert!(files.len() > 20, "the source was not found");
+    assert!(files.len() > 15, "{package}: the source was not found");
     let read = |file: PathBuf| {
         let inside = file.strip_prefix(&src).expect("below src").to_string_lossy().replace('\\', "/");
         (inside, std::fs::read_to_string(&file).expect("readable source"))
@@ -98,17 +96,17 @@ fn sources() -> BTreeMap<String, String> {
 }
 
 #[test]
-fn rooms_import_downwards_only() {
+fn modules_import_downwards_only() {
     let mut wrong = Vec::new();
-    for (inside, source) in sources() {
-        let room = inside.split('/').next().unwrap_or_default().trim_end_matches(".rs");
-        if room == "lib" {
+    for (inside, source) in sources("src") {
+        let module = inside.split('/').next().unwrap_or_default().trim_end_matches(".rs");
+        if module == "lib" {
             continue;
         }
-        let own = floor(room).unwrap_or_else(|| panic!("room `{room}` has no floor"));
-        for named in rooms_named(&source) {
-            if let Some(other) = floor(&named)
-                && named != room
+        let own = layer(module).unwrap_or_else(|| panic!("module `{module}` has no layer"));
+        for named in modules_named(&source) {
+            if let Some(other) = layer(&named)
+                && named != module
                 && other >= own
             {
                 wrong.push(format!("{inside} imports {named}"));
@@ -121,21 +119,24 @@ fn rooms_import_downwards_only() {
 /// Joints between discs must not come through the paper's own way.
 #[test]
 fn only_the_pipeline_imports_woven() {
-    for (inside, source) in sources() {
+    for (inside, source) in sources("src") {
         let may = ["woven/", "pipeline/", "lib.rs"].iter().any(|start| inside.starts_with(start));
-        assert!(may || !rooms_named(&source).iter().any(|room| room == "woven"), "{inside} imports woven");
+        assert!(may || !modules_named(&source).iter().any(|module| module == "woven"), "{inside} imports woven");
     }
 }
 
 #[test]
 fn the_reader_of_imports_sees_groups() {
-    let found = rooms_named("use crate::{mesh::{A, B}, tet::X};\nuse crate::io; // crate::cli\nanastomesh::cli::run()");
+    let found =
+        modules_named("use crate::{mesh::{A, B}, tet::X};\nuse crate::io; // crate::cli\nanastomesh::cli::run()");
     assert_eq!(found, ["mesh", "tet", "io", "cli"]);
 }
 
 #[test]
 fn no_file_imports_from_one_that_imports_from_it() {
-    let found: Vec<String> = circles(&sources()).iter().map(|circle| circle.join(" ")).collect();
+    let circles_in =
+        |package: &&str| circles(&sources(package)).iter().map(|circle| circle.join(" ")).collect::<Vec<_>>();
+    let found: Vec<String> = PACKAGES.iter().flat_map(circles_in).collect();
     assert!(found.is_empty(), "files that import from each other:\n{}", found.join("\n"));
 }
 
@@ -485,17 +486,17 @@ fn circles_are_found_through_groups_and_re_exports() {
 
 #[test]
 fn a_module_that_only_declares_is_in_no_circle() {
-    let lib = ("lib.rs", "mod room;");
-    let only = ("room/mod.rs", "mod a;\nmod b;\npub use a::A;\npub(crate) use b::*;");
-    let a = ("room/a.rs", "use super::B;\npub struct A;");
-    let b = ("room/b.rs", "pub struct B;");
+    let lib = ("lib.rs", "mod part;");
+    let only = ("part/mod.rs", "mod a;\nmod b;\npub use a::A;\npub(crate) use b::*;");
+    let a = ("part/a.rs", "use super::B;\npub struct A;");
+    let b = ("part/b.rs", "pub struct B;");
     assert!(circles_of(&[lib, only, a, b]).is_empty());
     // Siblings that name each other through it.
-    assert_eq!(circles_of(&[lib, only, a, ("room/b.rs", "pub struct B(super::A);")]), [["room/a.rs", "room/b.rs"]]);
+    assert_eq!(circles_of(&[lib, only, a, ("part/b.rs", "pub struct B(super::A);")]), [["part/a.rs", "part/b.rs"]]);
     // It defines something, and uses what it passes on.
-    let more = ("room/mod.rs", "mod a;\npub use a::A;\npub struct Own(A);");
-    let child = ("room/a.rs", "pub struct A;\nimpl A { fn own(&self) -> Option<super::Own> { None } }");
-    assert_eq!(circles_of(&[lib, more, child]), [["room/a.rs", "room/mod.rs"]]);
+    let more = ("part/mod.rs", "mod a;\npub use a::A;\npub struct Own(A);");
+    let child = ("part/a.rs", "pub struct A;\nimpl A { fn own(&self) -> Option<super::Own> { None } }");
+    assert_eq!(circles_of(&[lib, more, child]), [["part/a.rs", "part/mod.rs"]]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Every message that the sources hold, by rooms: whoever adds one or changes one sees it beside the others, and reads whether it
+//! Every message that the sources hold, by module: whoever adds one or changes one sees it beside the others, and reads whether it
 //! says what, where, why and what to do. What the program makes of them is in `messages_cli`.
 
 use std::collections::BTreeMap;
@@ -90,35 +90,39 @@ fn messages(source: &str) -> Vec<String> {
     found
 }
 
-/// The room of a source: its folder below `src`, of readers and writers the folder of the format's family.
-fn room(path: &Path) -> String {
-    let parts: Vec<String> = path.iter().map(|part| part.to_string_lossy().into_owned()).collect();
-    match &parts[..] {
-        [io, family, _, ..] if io == "io" => format!("io_{family}"),
-        [room, _, ..] => room.clone(),
-        _ => "top".into(),
+/// Snapshot that holds the messages of a source: its package and folder, of readers and writers the format's family.
+fn group(package: &str, inside: &Path) -> String {
+    let first =
+        inside.iter().next().filter(|_| inside.iter().count() > 1).map(|part| part.to_string_lossy().into_owned());
+    match (package, first) {
+        ("src", None) => "top".into(),
+        ("src", Some(module)) => module,
+        ("crates/io/src", Some(family)) => format!("io_{family}"),
+        _ => package.split('/').nth(1).unwrap_or_default().into(),
     }
 }
 
 #[test]
 fn each_is_written_down() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut rooms: BTreeMap<String, String> = BTreeMap::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut groups: BTreeMap<String, String> = BTreeMap::new();
     let mut count = 0;
-    for path in sources(&root) {
-        let found = messages(&fs::read_to_string(&path).expect("a source"));
-        let inside = path.strip_prefix(&root).expect("a source of ours");
-        let Some(_) = found.first() else { continue };
-        let out = rooms.entry(room(inside)).or_default();
-        let _ = writeln!(out, "{}", inside.display());
-        for message in found {
-            count += 1;
-            let _ = writeln!(out, "    {}", message.replace('\n', "\n    "));
+    for package in ["src", "crates/mesh/src", "crates/skeleton/src", "crates/tet/src", "crates/io/src"] {
+        for path in sources(&root.join(package)) {
+            let found = messages(&fs::read_to_string(&path).expect("a source"));
+            let inside = path.strip_prefix(root.join(package)).expect("a source of ours");
+            let Some(_) = found.first() else { continue };
+            let out = groups.entry(group(package, inside)).or_default();
+            let _ = writeln!(out, "{}", inside.display());
+            for message in found {
+                count += 1;
+                let _ = writeln!(out, "    {}", message.replace('\n', "\n    "));
+            }
         }
     }
     assert!(count > 350, "{count}");
-    for (room, text) in rooms {
-        insta::assert_snapshot!(room, text);
+    for (group, text) in groups {
+        insta::assert_snapshot!(group, text);
     }
 }
 

@@ -1,7 +1,7 @@
 //! A finished block as a mesh of its own.
 
 use super::finished::{Finished, triangle_of};
-use crate::mesh::{Patch, VolumeMesh, WALL};
+use anastomesh_mesh::{Patch, VolumeMesh, WALL};
 
 impl Finished {
     /// The block alone, its joints and caps labelled: `wall`, `joint_0`, …, then `terminal_N` for the terminal N.

@@ -1,8 +1,8 @@
 //! Tips that lie within another vessel: no cap has room there, whatever is tried.
 
-use crate::geometry::{Point3, Tube, point_segment};
 use crate::partition::{Cluster, ClusterEnd, EndKind};
-use crate::skeleton::NodeId;
+use anastomesh_mesh::geometry::{Point3, Tube, point_segment};
+use anastomesh_skeleton::NodeId;
 
 /// The terminals of a cluster, with their indices in `Cluster::ends`, whose whole disc lies within the tube of another vessel.
 /// The wall is around that one, and none is at the tip.

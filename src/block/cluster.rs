@@ -10,16 +10,19 @@ use super::lone_tube::lone_tube;
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
 use super::template::FilledTube;
-use crate::geometry::{Section, Tube};
-use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
-use crate::skeleton::NodeId;
 use crate::surface::{
     CapError, CapFailure, CappedSurface, Closing, Field, Finer, SharedDisc, SurfaceParams, cap_terminals,
     euler_characteristic, vessel_wall,
 };
-use crate::tet::layers::Inset;
-use crate::tet::{TetError, Watch, tetrahedralize_watched};
+use anastomesh_mesh::geometry::{Section, Tube};
+use anastomesh_mesh::{TetMesh, TriMesh};
+use anastomesh_skeleton::NodeId;
+use anastomesh_tet::parts::Inset;
+use anastomesh_tet::{
+    TetError,
+    parts::{Watch, tetrahedralize_watched},
+};
 
 /// The flat disc that closes a terminal.
 #[derive(Clone, Debug, PartialEq)]

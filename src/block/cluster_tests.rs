@@ -2,12 +2,12 @@
 
 use super::fixtures::{assert_mesh, bifurcation, cut, direction, facing, star, worst_ratio};
 use super::{BlockError, BlockParams, ClusterMesh, EndStyle, mesh_cluster, mesh_free_connector};
-use crate::geometry::{Point3, Section, Tube, Vec3};
-use crate::mesh::adjacency::boundary_faces;
-use crate::mesh::face_key;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionWarning, partition};
-use crate::skeleton::{BranchId, Edge, FineFork, Node, NodeId, Skeleton};
 use crate::surface::SharedDisc;
+use anastomesh_mesh::adjacency::boundary_faces;
+use anastomesh_mesh::face_key;
+use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
+use anastomesh_skeleton::{BranchId, Edge, FineFork, Node, NodeId, Skeleton};
 use rustc_hash::FxHashSet;
 
 fn meshed(seed: u64, params: &BlockParams) -> (Cluster, ClusterMesh) {
@@ -51,7 +51,7 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
     }
 }
 
-fn volume(mesh: &crate::mesh::TetMesh) -> f64 {
+fn volume(mesh: &anastomesh_mesh::TetMesh) -> f64 {
     let of = |t: &[u32; 4]| {
         let [a, b, c, d] = t.map(|v| mesh.points[v as usize]);
         (b - a).cross(&(c - a)).dot(&(d - a)).abs() / 6.0
@@ -69,7 +69,7 @@ fn true_wall(seed: u64) -> ClusterMesh {
 fn a_finer_fork_owes_its_neighbours_the_same_discs() {
     for (seed, factor) in [(0, 0.5), (1, 0.25), (2, 0.7)] {
         let whole = volume(&true_wall(seed).mesh);
-        for layers in [None, Some(crate::tet::Layers::default())] {
+        for layers in [None, Some(anastomesh_tet::Layers::default())] {
             let params = BlockParams { ends: EndStyle::Shared, layers, ..BlockParams::default() };
             let plain = bifurcation(seed);
             let fork = FineFork { at: Point3::origin(), within: 1.2, factor };

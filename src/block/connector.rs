@@ -7,11 +7,11 @@ use super::free_ends::FreeEnds;
 use super::layered::{ThinLayers, Walled, discs_first, renumbered};
 use super::params::{BlockParams, filling};
 use super::template::{self, FilledTube};
-use crate::geometry::Section;
-use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cut, CutId};
-use crate::tet::layers::Inset;
-use crate::tet::{TetError, tetrahedralize};
+use anastomesh_mesh::geometry::Section;
+use anastomesh_mesh::{TetMesh, TriMesh};
+use anastomesh_tet::parts::Inset;
+use anastomesh_tet::{TetError, parts::tetrahedralize};
 
 /// A meshed connector.
 #[derive(Clone, Debug, PartialEq)]

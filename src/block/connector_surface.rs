@@ -5,8 +5,8 @@ use super::path::{AxisPath, PathEnd};
 use super::rings::{Rim, RingVertex, rings, strip_count};
 use super::strip::best_strip;
 use super::wall::Wall;
-use crate::geometry::{Point3, Section};
-use crate::mesh::TriMesh;
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::{Point3, Section};
 use std::f64::consts::TAU;
 
 /// One side of a connector: an end surface and the points of the cluster that it belongs to.
@@ -127,7 +127,7 @@ fn rim(path: &AxisPath, points: &[Point3], vertices: &[u32], end: PathEnd) -> Op
     let rim = Rim::new(&located);
     let first = *rim.theta.first()?;
     let last = *rim.theta.last()?;
-    let winding = last + crate::geometry::turn(first - last) - first;
+    let winding = last + anastomesh_mesh::geometry::turn(first - last) - first;
     ((winding - TAU).abs() < 0.1).then_some(rim)
 }
 

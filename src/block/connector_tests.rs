@@ -5,8 +5,8 @@ use super::end_surface::EndSurface;
 use super::fixtures::{assert_taken_over, flipped, jitter, section, straight, volume, wall_angle};
 use super::rings::chord_factor;
 use super::strip::best_strip;
-use crate::geometry::{Point3, Section, Vec3};
 use crate::partition::CutId;
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 
 /// A fan-shaped end surface: `n` rim vertices of a circle, raised and turned by up to `noise` steps.
 fn fan(at: &Section, side: u8, n: usize, noise: f64, seed: u64) -> (EndSurface, Vec<Point3>) {

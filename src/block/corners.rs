@@ -3,10 +3,10 @@
 //! but singular. One of its faces inside gives way to an edge, or its edge inside is split, whichever leaves the better
 //! tetrahedra.
 
-use crate::geometry::Point3;
-use crate::geometry::predicates::orient3d;
-use crate::mesh::quality::radius_ratio;
-use crate::mesh::{TetMesh, TriMesh, face_key};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::quality::radius_ratio;
+use anastomesh_mesh::{TetMesh, TriMesh, face_key};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 

@@ -3,9 +3,9 @@
 use super::connector::DIVISIONS;
 use super::end_surface::StoredEnd;
 use super::params::BlockParams;
-use crate::geometry::{Point3, Section, Tube};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
-use crate::skeleton::{FineFork, LARGEST, LEAST_SIZE, NodeId};
+use anastomesh_mesh::geometry::{Point3, Section, Tube};
+use anastomesh_skeleton::{FineFork, LARGEST, LEAST_SIZE, NodeId};
 use serde::{Deserialize, Serialize};
 
 /// Number of the format; another one whenever what a dump holds changes its meaning or its names.

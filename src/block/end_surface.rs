@@ -1,8 +1,8 @@
 //! End surface: the disc of triangles in which a block ends at a cut (3.2.2), and what has to hold for it.
 
-use crate::geometry::{Point3, Section};
 use crate::partition::CutId;
 use crate::surface::SharedDisc;
+use anastomesh_mesh::geometry::{Point3, Section};
 
 /// Where a cluster ends at a cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,8 +56,8 @@ pub enum EndFault {
 /// coarse that `cross` is exact.
 pub(crate) struct Plane {
     section: Section,
-    u: crate::geometry::Vec3,
-    w: crate::geometry::Vec3,
+    u: anastomesh_mesh::geometry::Vec3,
+    w: anastomesh_mesh::geometry::Vec3,
     scale: f64,
 }
 

@@ -2,10 +2,10 @@
 
 use super::connector_surface::{ConnectorFault, Division};
 use super::end_surface::CutEnd;
-use crate::mesh::check::Line;
 use crate::partition::{ClusterId, CutId};
 use crate::surface::{CapError, SurfaceError};
-use crate::tet::TetError;
+use anastomesh_mesh::check::Line;
+use anastomesh_tet::TetError;
 
 /// Why no end surface could be exposed at a cut.
 #[non_exhaustive]

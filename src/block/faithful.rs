@@ -3,11 +3,11 @@
 //! The genus does not tell: the turns of a tight helix that fuse into a column have none, nor has a wall that leaves half of
 //! a vessel out.
 
-use crate::geometry::predicates::orient3d;
-use crate::geometry::{Point3, Tube, crossing, place_key};
-use crate::mesh::TriMesh;
 use crate::partition::Cluster;
-use crate::skeleton::{Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::geometry::{Point3, Tube, crossing, place_key};
+use anastomesh_skeleton::{Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
 use rustc_hash::FxHashMap;
 
 /// An axis is looked at where so many of its radii lie between two places,
@@ -134,8 +134,8 @@ fn meets([a, b, c]: [&Point3; 3], p: &Point3, q: &Point3) -> bool {
 mod tests {
     use super::*;
     use crate::partition::{PartitionParams, partition};
-    use crate::skeleton::fixtures::network;
     use crate::surface::{Finer, SurfaceParams, vessel_wall};
+    use anastomesh_skeleton::fixtures::network;
 
     /// A polyline as one cluster.
     fn cluster(points: &[[f64; 3]]) -> Cluster {

@@ -1,7 +1,7 @@
 //! A block when it is done: what the whole needs of it, whichever kind it is, and nothing else.
 
 use super::error::NotOnBoundary;
-use crate::mesh::face_key;
+use anastomesh_mesh::face_key;
 use rustc_hash::FxHashMap;
 
 use super::cluster::ClusterMesh;
@@ -9,12 +9,12 @@ use super::connector::ConnectorMesh;
 use super::end_surface::{EndSurface, StoredEnd, disc_rim};
 use super::faithful::Astray;
 use super::layered::ThinLayers;
-use crate::geometry::Section;
-use crate::mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
-use crate::mesh::check::parts::{Certificate, PartView, certify_hollow, certify_with};
-use crate::mesh::{Cap, TetMesh};
 use crate::partition::CutId;
-use crate::skeleton::NodeId;
+use anastomesh_mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
+use anastomesh_mesh::check::parts::{Certificate, PartView, certify_hollow, certify_with};
+use anastomesh_mesh::geometry::Section;
+use anastomesh_mesh::{Cap, TetMesh};
+use anastomesh_skeleton::NodeId;
 
 /// A finished block. Faces are handles, `4 · tet + i` for the face opposite vertex `i`, ascending; in a hollow block they are
 /// numbers of triangles of its hull.

@@ -2,11 +2,11 @@
 
 use super::connector_surface::{ConnectorEnd, ConnectorSurface};
 use super::shape::tet_ratio;
-use crate::geometry::{Point3, Section, Tube, Vec3};
-use crate::mesh::quality::triangle_min_angle;
-use crate::mesh::{TET_FACES, TetMesh, TriMesh};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
-use crate::skeleton::{BranchId, NodeId};
+use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
+use anastomesh_mesh::quality::triangle_min_angle;
+use anastomesh_mesh::{TET_FACES, TetMesh, TriMesh};
+use anastomesh_skeleton::{BranchId, NodeId};
 use rustc_hash::FxHashMap;
 
 /// Jitter in [−0.5, 0.5] that depends on the ids alone.

@@ -4,9 +4,9 @@ use super::connector_surface::{ConnectorEnd, ConnectorFault};
 use super::end_surface::EndSurface;
 use super::layered::disc_at_end;
 use super::params::BlockParams;
-use crate::geometry::Section;
 use crate::partition::{Cut, CutId};
 use crate::surface::SharedDisc;
+use anastomesh_mesh::geometry::Section;
 
 /// Both discs, and as the end surfaces of the clusters that end in them.
 pub(super) struct FreeEnds {

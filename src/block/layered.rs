@@ -5,12 +5,12 @@
 //! axis.
 
 use super::params::BlockParams;
-use crate::geometry::{Point3, Section, point_segment};
-use crate::mesh::{TetMesh, TriMesh};
 use crate::surface::SharedDisc;
-use crate::tet::Layers;
-use crate::tet::TetError;
-use crate::tet::layers::{Directions, Inset, Numbers, Places, inset, rims, toward};
+use anastomesh_mesh::geometry::{Point3, Section, point_segment};
+use anastomesh_mesh::{TetMesh, TriMesh};
+use anastomesh_tet::Layers;
+use anastomesh_tet::TetError;
+use anastomesh_tet::parts::{Directions, Inset, Numbers, Places, inset, rims, toward};
 use std::ops::Range;
 
 /// Layers are called thin below this share of what was asked for: curved walls and forks take some.

@@ -3,9 +3,9 @@
 use super::layered::disc_at_end;
 use super::params::{BlockParams, EndStyle};
 use super::template::{self, FilledTube};
-use crate::geometry::{Section, Vec3};
 use crate::partition::{Cluster, EndKind};
 use crate::surface::SharedDisc;
+use anastomesh_mesh::geometry::{Section, Vec3};
 
 /// A vessel that turns by more than this from one tube to the next, in radians, is left to the field, which rounds it.
 const STRAIGHT: f64 = 0.35;

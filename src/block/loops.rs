@@ -1,7 +1,7 @@
 //! Loops of a cluster's vessels, and which of them are no holes: a loop that lies within its own lumen encloses nothing.
 
-use crate::geometry::{DisjointSets, Point3, Total, Tube, place_key, point_segment};
 use crate::partition::Cluster;
+use anastomesh_mesh::geometry::{DisjointSets, Point3, Total, Tube, place_key, point_segment};
 use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -1,10 +1,10 @@
 //! How blocks are made, and what a retry may change.
 
 use super::error::BlockError;
-use crate::mesh::TriMesh;
-use crate::skeleton::resolution::{FOLLOW, KAPPA, RHO};
-use crate::tet::optimize::Effort;
-use crate::tet::{Interior, Layers, TetOptions};
+use anastomesh_mesh::TriMesh;
+use anastomesh_skeleton::resolution::{FOLLOW, KAPPA, RHO};
+use anastomesh_tet::Effort;
+use anastomesh_tet::{Interior, Layers, parts::TetOptions};
 
 /// How a cluster ends at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -1,6 +1,6 @@
 //! The axis of a connector: a polyline of sections with rotation-minimising frames.
 
-use crate::geometry::{Point3, Section, Vec3};
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 
 /// A vessel's axis by arc length, with a frame that does not twist.
 #[derive(Clone, Debug)]

@@ -10,11 +10,11 @@ use std::io;
 use std::ops::Range;
 
 use super::finished::{About, Finished, FinishedCap, FinishedJoint};
-use crate::geometry::{Point3, Section, Vec3};
-use crate::mesh::TetMesh;
-use crate::mesh::adjacency::face_vertices;
-use crate::mesh::check::parts::Certificate;
-use crate::skeleton::NodeId;
+use anastomesh_mesh::TetMesh;
+use anastomesh_mesh::adjacency::face_vertices;
+use anastomesh_mesh::check::parts::Certificate;
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
+use anastomesh_skeleton::NodeId;
 
 /// Number of counts in front.
 const HEAD: usize = 11;

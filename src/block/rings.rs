@@ -5,7 +5,7 @@
 //! the rim allows, and the rim's raggedness is gone after two or three rings.
 
 use super::path::AxisPath;
-use crate::geometry::turn;
+use anastomesh_mesh::geometry::turn;
 use std::f64::consts::TAU;
 
 /// One rim in the coordinates of the path: arc length, angle (increasing), distance from the axis.

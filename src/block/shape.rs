@@ -1,7 +1,7 @@
 //! Shape measures used while blocks are built.
 
-use crate::geometry::{Point3, Vec3};
-use crate::mesh::quality::radius_ratio;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::quality::radius_ratio;
 
 /// Radius ratio of a triangle, 2 r / R of in- and circumcircle, in [0, 1]; 1 for the equilateral one.
 pub(crate) fn triangle_ratio(p: &[Point3; 3]) -> f64 {

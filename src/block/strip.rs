@@ -1,8 +1,8 @@
 //! The strips of a connector's wall: of all strips between two loops the one with the best shapes.
 
 use super::shape::facing_ratio;
-use crate::geometry::{Point3, Vec3};
 use crate::surface::strip::{Step, cheapest};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// Cost of a strip: Σ (radius ratio)⁻³, dominated by its worst triangle.
 pub type StripCost = f64;

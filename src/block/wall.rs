@@ -3,7 +3,7 @@
 use super::path::AxisPath;
 use super::rings::RingVertex;
 use super::shape::facing_ratio;
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 
 /// Triangles of this shape are left as they are.

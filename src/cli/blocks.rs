@@ -5,8 +5,8 @@ use super::network::{NetworkArgs, PreparedNetwork};
 use super::room::size;
 use crate::pipeline::MeshPlan;
 use crate::prepare::PrepareParams;
-use crate::skeleton::resolution::{FOLLOW, RHO};
-use crate::skeleton::{NodeSizes, SizeAt};
+use anastomesh_skeleton::resolution::{FOLLOW, RHO};
+use anastomesh_skeleton::{NodeSizes, SizeAt};
 use std::fmt;
 use std::str::FromStr;
 

@@ -10,15 +10,15 @@ use super::page::ReportArgs;
 use super::progress::Bars;
 use super::room;
 use super::stop::Stop;
-use crate::io::volume::{MeshFile, MeshFormat, VtuPieces, VtuPiecesError, read_mesh};
-use crate::mesh::check::parts::{PiecesError, check_pieces};
-use crate::mesh::check::{CheckReport, Verdict, check_tets, check_volume};
-use crate::mesh::dihedral::DihedralHistogram;
-use crate::mesh::{TET_FACES, VolumeMesh};
-use crate::progress::Stage;
-use crate::report::check::conditions;
 use crate::report::page::{self, Section};
 use crate::report::summary::{of_check, of_mesh};
+use anastomesh_io::volume::{MeshFile, MeshFormat, VtuPieces, VtuPiecesError, read_mesh};
+use anastomesh_mesh::check::parts::{PiecesError, check_pieces};
+use anastomesh_mesh::check::text::conditions;
+use anastomesh_mesh::check::{CheckReport, Verdict, check_tets, check_volume};
+use anastomesh_mesh::dihedral::DihedralHistogram;
+use anastomesh_mesh::progress::Stage;
+use anastomesh_mesh::{TET_FACES, VolumeMesh};
 use rustc_hash::FxHashMap;
 
 /// Bytes of memory that the check of a whole takes for each byte of its file.

@@ -11,7 +11,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 use toml::Value;
 
 use super::exit::Failure;
-use crate::io::write_text;
+use anastomesh_io::write_text;
 
 const OPTION: &str = "--config";
 

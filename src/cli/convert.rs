@@ -14,18 +14,18 @@ use super::log;
 use super::progress::Bars;
 use super::room;
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::io::network::{NetworkOptions, ensure_tree_writable, read_network, write_tree};
-use crate::io::npy;
-use crate::io::surface::{
+use crate::prepare::directed;
+use crate::report::rows::row;
+use anastomesh_io::network::{NetworkOptions, ensure_tree_writable, read_network, write_tree};
+use anastomesh_io::npy;
+use anastomesh_io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
 };
-use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
-use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
-use crate::mesh::source::{MeshSource, SourceCounts};
-use crate::prepare::directed;
-use crate::progress::Progress;
-use crate::report::rows::row;
-use crate::report::units::grouped;
+use anastomesh_io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
+use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::source::{MeshSource, SourceCounts};
+use anastomesh_mesh::units::grouped;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -9,9 +9,9 @@ use super::exit::{Exit, Failure};
 use super::log;
 use super::network::NetworkArgs;
 use crate::grow::dual;
-use crate::io::network::{NetworkArray, ensure_network_writable, write_network};
 use crate::report::rows::row;
-use crate::report::units::grouped;
+use anastomesh_io::network::{NetworkArray, ensure_network_writable, write_network};
+use anastomesh_mesh::units::grouped;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

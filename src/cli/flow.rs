@@ -3,7 +3,7 @@
 use super::network::PreparedNetwork;
 use crate::pipeline::{Fluid, Outlets};
 use crate::report::inlets::Inlets;
-use crate::skeleton::{Extended, NodeId, Skeleton};
+use anastomesh_skeleton::{Extended, NodeId, Skeleton};
 use rustc_hash::FxHashSet;
 
 /// Terminals that are named at most.
@@ -28,10 +28,10 @@ pub struct FlowArgs {
     #[arg(long, value_name = "FLOW", value_parser = above_zero, allow_negative_numbers = true)]
     inflow: Option<f64>,
     /// Dynamic viscosity, in units that fit the mesh's: as it stands that of blood, when the mesh is in metres (--units)
-    #[arg(long, value_name = "MU", default_value_t = crate::io::volume::BLOOD_VISCOSITY, value_parser = above_zero, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", default_value_t = anastomesh_io::volume::BLOOD_VISCOSITY, value_parser = above_zero, allow_negative_numbers = true)]
     viscosity: f64,
     /// Mass per volume, in units that fit the mesh's: as it stands that of blood, when the mesh is in metres (--units)
-    #[arg(long, value_name = "RHO", default_value_t = crate::io::volume::BLOOD_DENSITY, value_parser = above_zero, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RHO", default_value_t = anastomesh_io::volume::BLOOD_DENSITY, value_parser = above_zero, allow_negative_numbers = true)]
     density: f64,
 }
 

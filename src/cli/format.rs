@@ -1,7 +1,7 @@
 //! The format of a mesh where its extension is not to tell: an argument of every verb that writes meshes.
 
 use super::exit::Failure;
-use crate::io::volume::MeshFormat;
+use anastomesh_io::volume::MeshFormat;
 use std::path::Path;
 
 #[derive(Clone, Copy, Debug, clap::Args)]

@@ -9,9 +9,9 @@ use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::log;
 use crate::grow::{BedParams, GenerateParams, Looped, Morphometry, Organ, RAT_KIDNEY, generate, looped};
-use crate::io::network::{NetworkArray, ensure_network_writable, ensure_tree_writable, write_network, write_tree};
 use crate::report::rows::row;
-use crate::report::units::grouped;
+use anastomesh_io::network::{NetworkArray, ensure_network_writable, ensure_tree_writable, write_network, write_tree};
+use anastomesh_mesh::units::grouped;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

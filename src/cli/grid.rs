@@ -1,6 +1,6 @@
 //! How VTK's files are written: arguments of every verb that writes some.
 
-use crate::io::volume::GridOptions;
+use anastomesh_io::volume::GridOptions;
 
 #[derive(Clone, Copy, Debug, clap::Args)]
 #[command(next_help_heading = "VTU and PVTU")]

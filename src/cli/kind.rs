@@ -7,14 +7,14 @@ use serde::Serialize;
 
 use super::exit::Failure;
 use super::log;
-use crate::io::network::NetworkFormat;
-use crate::io::npy;
-use crate::io::surface::SurfaceFormat;
-use crate::io::volume::{MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, read_mesh};
-use crate::mesh::adjacency::boundary_faces;
-use crate::mesh::source::MeshSource;
-use crate::mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 use crate::pipeline::LeftWhole;
+use anastomesh_io::network::NetworkFormat;
+use anastomesh_io::npy;
+use anastomesh_io::surface::SurfaceFormat;
+use anastomesh_io::volume::{MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, read_mesh};
+use anastomesh_mesh::adjacency::boundary_faces;
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 
 /// Bytes of memory that a mesh takes for each byte of its file while it is held as a whole.
 const MEMORY_PER_BYTE: u64 = 4;

@@ -1,7 +1,7 @@
 //! Layers along walls: arguments of every verb that makes them.
 
 use super::exit::Failure;
-use crate::tet::Layers;
+use anastomesh_tet::Layers;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Layers")]

@@ -22,26 +22,26 @@ use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Fidelity};
-use crate::io::network::{NodeNames, ensure_network_writable};
-use crate::io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
-use crate::io::{ensure_text_writable, write_text};
-use crate::mesh::beside::Beside;
-use crate::mesh::check::{CheckReport, Expectation};
-use crate::mesh::dihedral::DihedralHistogram;
-use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
 use crate::pipeline::{
     self, Caps, Clock, Datum, Estimate, Forecast, JointStyle, MeshPlan, Outlets, RunError, Shard, Stored, TooLarge,
     VesselData,
 };
-use crate::progress::{Progress, Stage};
 use crate::refine::{RefineParams, Refined};
 use crate::report::advice::advice;
 use crate::report::caps;
-use crate::report::check::conditions;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
-use crate::skeleton::Skeleton;
+use anastomesh_io::network::{NodeNames, ensure_network_writable};
+use anastomesh_io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
+use anastomesh_io::{ensure_text_writable, write_text};
+use anastomesh_mesh::beside::Beside;
+use anastomesh_mesh::check::text::conditions;
+use anastomesh_mesh::check::{CheckReport, Expectation};
+use anastomesh_mesh::dihedral::DihedralHistogram;
+use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use super::exit::Failure;
 use super::units::Units;
-use crate::io::network::{NetworkFile, NetworkFormat, NetworkNote, NetworkOptions, NodeNames, read_network};
 use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare_lines};
 use crate::report::inlets::{Inlets, NoTerminal};
 use crate::report::prepare::text;
-use crate::skeleton::{BadSize, CleanReport, NodeId, NodeSizes, SizeAt, Skeleton, clean};
+use anastomesh_io::network::{NetworkFile, NetworkFormat, NetworkNote, NetworkOptions, NodeNames, read_network};
+use anastomesh_skeleton::{BadSize, CleanReport, NodeId, NodeSizes, SizeAt, Skeleton, clean};
 
 /// Arguments of every verb that reads a network.
 #[derive(Clone, Debug, clap::Args)]

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::exit::Failure;
 use super::stop;
-use crate::io::{ensure_text_writable, write_text};
 use crate::report::page::{Mark, Page, Section};
+use anastomesh_io::{ensure_text_writable, write_text};
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Output")]

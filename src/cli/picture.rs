@@ -5,15 +5,15 @@ use std::path::Path;
 
 use super::exit::Failure;
 use super::network::NetworkArgs;
-use crate::geometry::Point3;
-use crate::mesh::beside::Beside;
-use crate::mesh::source::MeshSource;
 use crate::picture::{
     Background, Camera, Canvas, Colour, Cut, Direction, Image, Legend, MeshPicture, NetworkPicture, Outline, PlaneWish,
     Shown,
 };
 use crate::pipeline::{Datum, VesselData};
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_mesh::beside::Beside;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::{NodeId, Skeleton};
 use rustc_hash::FxHashSet;
 
 #[derive(Clone, Debug, clap::Args)]
@@ -230,7 +230,7 @@ fn legend(datum: Datum, network: &Skeleton, mesh: &dyn MeshSource) -> Legend {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Vec3;
+    use anastomesh_mesh::geometry::Vec3;
 
     #[test]
     fn sizes_places_and_directions_are_read() {

@@ -8,9 +8,9 @@ use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
 use super::log;
 use super::network::NetworkArgs;
-use crate::io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
 use crate::prepare::{PrepareParams, PrepareReport, Touching, directed};
 use crate::report::prepare::{row_of, text};
+use anastomesh_io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

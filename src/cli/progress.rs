@@ -10,8 +10,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::stop::Stop;
 use super::{colours, log};
-use crate::progress::{Progress, Stage};
-use crate::report::units::{grouped, seconds_of};
+use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_mesh::units::{grouped, seconds_of};
 
 /// How programs are told of progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

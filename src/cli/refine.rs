@@ -12,13 +12,13 @@ use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::io::network::{ensure_network_writable, refinement_arrays, write_network};
-use crate::io::write_text;
 use crate::prepare::PrepareReport;
 use crate::refine::{self, Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual};
 use crate::report::page;
 use crate::report::plot::svg;
 use crate::report::refine::{brief, csv, panels};
+use anastomesh_io::network::{ensure_network_writable, refinement_arrays, write_network};
+use anastomesh_io::write_text;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

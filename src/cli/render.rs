@@ -9,10 +9,10 @@ use super::log;
 use super::network::NetworkArgs;
 use super::picture::{PictureArgs, vessels};
 use super::room;
-use crate::io::surface::read_surface;
-use crate::io::{ensure_text_writable, write_bytes};
 use crate::picture::{Colour, Image, Shown};
 use crate::report::rows::row;
+use anastomesh_io::surface::read_surface;
+use anastomesh_io::{ensure_text_writable, write_bytes};
 use std::num::NonZeroUsize;
 
 #[derive(Debug, clap::Args)]
@@ -85,7 +85,7 @@ impl Args {
     }
 
     /// The network beside the mesh.
-    fn vessels(&self) -> Result<Option<crate::skeleton::Skeleton>, Failure> {
+    fn vessels(&self) -> Result<Option<anastomesh_skeleton::Skeleton>, Failure> {
         let Some(network) = &self.made_of else { return Ok(None) };
         let args = NetworkArgs { network: network.clone(), ..self.input.clone() };
         Ok(Some(vessels(&args)?.0))

@@ -11,12 +11,12 @@ use super::progress::Bars;
 use super::room::size;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::block::{BlockDump, BlockError, Finished};
-use crate::io::volume::{MeshNotes, ensure_writable, write_mesh};
-use crate::mesh::quality::TetQuality;
 use crate::pipeline::{Estimate, TooLarge, replay};
 use crate::report::rows::row;
-use crate::report::units::grouped;
-use crate::tet::{TetError, Watch};
+use anastomesh_io::volume::{MeshNotes, ensure_writable, write_mesh};
+use anastomesh_mesh::quality::TetQuality;
+use anastomesh_mesh::units::grouped;
+use anastomesh_tet::{TetError, parts::Watch};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::exit::Failure;
-use crate::io::volume::MeshFormat;
 use crate::pipeline::{Estimate, MeshPlan, Store, TooLarge};
+use anastomesh_io::volume::MeshFormat;
 
 /// Reads a size such as `2GiB`, `500M` or `1.5 GB`.
 pub fn size(text: &str) -> Result<u64, String> {

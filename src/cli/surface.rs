@@ -15,15 +15,15 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::room::{self, BlockPlace};
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::io::surface::{ensure_boundary_writable, write_boundary_watched};
-use crate::io::volume::MeshNotes;
-use crate::mesh::boundary::{BoundaryPart, BoundarySurface};
-use crate::mesh::check::CheckReport;
 use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport};
-use crate::progress::{Progress, Stage};
 use crate::report::advice::advice;
-use crate::report::check::conditions;
 use crate::report::summary::Summary;
+use anastomesh_io::surface::{ensure_boundary_writable, write_boundary_watched};
+use anastomesh_io::volume::MeshNotes;
+use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
+use anastomesh_mesh::check::CheckReport;
+use anastomesh_mesh::check::text::conditions;
+use anastomesh_mesh::progress::{Progress, Stage};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

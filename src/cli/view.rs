@@ -14,12 +14,12 @@ use super::network::NetworkArgs;
 use super::picture::vessels;
 use super::room;
 use crate::block::BlockDump;
-use crate::io::surface::read_surface;
-use crate::io::{ensure_text_writable, write_text};
-use crate::mesh::source::MeshSource;
 use crate::pipeline::{Datum, VesselData};
-use crate::skeleton::{NodeId, Skeleton};
 use crate::view::{Fault, Page, Wall, WallOptions, add_network, add_tets};
+use anastomesh_io::surface::read_surface;
+use anastomesh_io::{ensure_text_writable, write_text};
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// A mesh of no more tetrahedra is checked, so that its faults can be seen, whether that is asked for or not.
 const CHECKED: usize = 2_000_000;

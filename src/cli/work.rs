@@ -11,10 +11,10 @@ use crate::pipeline::{
     KeyMaker, Manifest, MeshPlan, NoShard, Role, RunError, Shard, ShareReport, Store, StoreError, fingerprint,
     make_share, two_numbers,
 };
-use crate::progress::Progress;
 use crate::refine::{RefineParams, Refined};
-use crate::report::units::{grouped, seconds_of};
-use crate::skeleton::Skeleton;
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::units::{grouped, seconds_of};
+use anastomesh_skeleton::Skeleton;
 
 /// Where finished blocks are kept, and by how many runs.
 #[derive(Debug, clap::Args)]

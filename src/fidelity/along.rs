@@ -2,8 +2,8 @@
 
 use super::tubes::Tubes;
 use super::wall::wall_points;
-use crate::mesh::source::MeshSource;
-use crate::skeleton::Skeleton;
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::Skeleton;
 use rayon::prelude::*;
 use std::io;
 
@@ -72,9 +72,9 @@ fn shares(network: &Skeleton) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::shapes::tube_lattice;
-    use crate::mesh::{VolumeMesh, WALL, adjacency::boundary_faces};
-    use crate::skeleton::fixtures::network;
+    use anastomesh_mesh::shapes::tube_lattice;
+    use anastomesh_mesh::{VolumeMesh, WALL, adjacency::boundary_faces};
+    use anastomesh_skeleton::fixtures::network;
 
     #[test]
     fn a_wall_beside_its_radius_is_so_everywhere() {

@@ -2,7 +2,7 @@
 
 use super::spread::Spread;
 use super::tubes::Tubes;
-use crate::skeleton::{EdgeId, Skeleton};
+use anastomesh_skeleton::{EdgeId, Skeleton};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -64,7 +64,7 @@ impl Displacements {
         Self {
             spread: Spread::of(all),
             given_length: edges.iter().map(|&e| given.length(e)).sum(),
-            meshed_length: tubes.list.iter().map(crate::geometry::Tube::length).sum(),
+            meshed_length: tubes.list.iter().map(anastomesh_mesh::geometry::Tube::length).sum(),
             furthest,
         }
     }

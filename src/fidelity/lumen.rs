@@ -5,8 +5,8 @@
 //! the end of a vessel.
 
 use super::tubes::Tubes;
-use crate::geometry::{Aabb, Point3, Section, Vec3, point_segment};
-use crate::skeleton::{Adjacency, EdgeId, NodeId, Skeleton};
+use anastomesh_mesh::geometry::{Aabb, Point3, Section, Vec3, point_segment};
+use anastomesh_skeleton::{Adjacency, EdgeId, NodeId, Skeleton};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::f64::consts::{PI, TAU};

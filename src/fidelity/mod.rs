@@ -12,8 +12,8 @@ mod spread;
 mod tubes;
 mod wall;
 
-use crate::mesh::source::MeshSource;
-use crate::skeleton::Skeleton;
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::Skeleton;
 use serde::Serialize;
 use spread::Spread;
 use std::io;
@@ -89,8 +89,8 @@ impl Fidelity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Vec3;
-    use crate::skeleton::fixtures::network;
+    use anastomesh_mesh::geometry::Vec3;
+    use anastomesh_skeleton::fixtures::network;
     use std::f64::consts::PI;
 
     /// The lumen of some tubes of radius 1.

@@ -1,7 +1,7 @@
 //! The tubes of a network, to be found by place.
 
-use crate::geometry::{Aabb, Bvh, Point3, Tube, point_segment};
-use crate::skeleton::{EdgeId, Skeleton};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, point_segment};
+use anastomesh_skeleton::{EdgeId, Skeleton};
 
 /// The tubes of a network, to be found by place.
 pub struct Tubes {

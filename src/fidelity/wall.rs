@@ -2,9 +2,9 @@
 
 use super::spread::Spread;
 use super::tubes::Tubes;
-use crate::geometry::Point3;
-use crate::mesh::WALL;
-use crate::mesh::source::MeshSource;
+use anastomesh_mesh::WALL;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::MeshSource;
 use rayon::prelude::*;
 use std::io;
 

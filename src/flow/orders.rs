@@ -1,6 +1,6 @@
 //! Strahler orders of vessels, and orders that go by their diameters as well.
 
-use crate::skeleton::{EdgeId, NodeId, Skeleton};
+use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 
 /// The orders of all vessels, from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -92,7 +92,7 @@ fn bounds(orders: &[u32], radii: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::flow::solve;
-    use crate::skeleton::fixtures::{network, tangle};
+    use anastomesh_skeleton::fixtures::{network, tangle};
 
     fn orders(skeleton: &Skeleton) -> Orders {
         let flow = solve(skeleton, &[(NodeId(0), 1.0)].into(), 1.0);

@@ -1,7 +1,7 @@
 //! Poiseuille's flow: given at the inlets, let out against no pressure.
 
 use super::conductors::Conductors;
-use crate::skeleton::{EdgeId, NodeId, Skeleton};
+use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
@@ -67,7 +67,7 @@ fn conductance(skeleton: &Skeleton, edge: EdgeId, viscosity: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skeleton::fixtures::{network, tangle};
+    use anastomesh_skeleton::fixtures::{network, tangle};
 
     fn solved(skeleton: &Skeleton, inlets: &[(u32, f64)]) -> NetworkFlow {
         solve(skeleton, &inlets.iter().map(|&(node, flow)| (NodeId(node), flow)).collect(), 2.0)

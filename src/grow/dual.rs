@@ -5,8 +5,8 @@
 //! the vessels of the node fork, so that the two trees run in layers. At the terminals, which they share, the two fold
 //! back on each other; refinement opens the folds and separates the trees.
 
-use crate::geometry::{Point3, Vec3};
-use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
 
 /// Distance of the second tree's axes from the first's, in sums of their radii.
 const BESIDE: f64 = 1.3;
@@ -138,7 +138,7 @@ fn any_across(way: &Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skeleton::fixtures::{network, tangle};
+    use anastomesh_skeleton::fixtures::{network, tangle};
 
     #[test]
     fn shares_the_terminals_and_has_its_own_root() {

@@ -9,8 +9,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::bed::BedParams;
 use super::random::{Random, Stream};
 use super::tubes::{Tubes, meet};
-use crate::geometry::{Aabb, Point3, Tube, Vec3};
-use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
+use anastomesh_mesh::geometry::{Aabb, Point3, Tube, Vec3};
+use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
 
 /// How long vessels may be that join an end of a tree to the bed, in lengths of an edge.
 const REACH: f64 = 1.8;

@@ -6,7 +6,7 @@ use super::params::{
 };
 use super::random::{Random, Stream};
 use super::{relax, tree};
-use crate::skeleton::{Edge, Node, NodeId, Skeleton};
+use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
 
 const TERMINAL_SPREAD: f64 = 0.014;
 
@@ -92,7 +92,7 @@ fn murray(tree: &tree::Tree, params: &GenerateParams, random: Random) -> Vec<f64
 }
 
 fn skeleton(tree: &tree::Tree, radii: &[f64]) -> Skeleton {
-    let node = |(i, (position, radius)): (usize, (&crate::geometry::Point3, &f64))| Node {
+    let node = |(i, (position, radius)): (usize, (&anastomesh_mesh::geometry::Point3, &f64))| Node {
         position: *position,
         radius: *radius,
         original: i as u32,

@@ -14,8 +14,8 @@ use super::organ::SEMI_AXES;
 use super::params::{GenerateError, GenerateParams, Organ};
 use super::random::{Random, Stream};
 use super::tubes::{APART, Tubes, meet};
-use crate::geometry::{Point3, Tube, Vec3};
-use crate::skeleton::{Edge, Node, NodeId, Skeleton};
+use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
+use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
 
 /// Nodes of the net are this far from their places at most, along each axis, in lengths of an edge.
 const JITTER: f64 = 0.12;

@@ -3,7 +3,7 @@
 //! A vessel is a chain of edges of one order. Terminals have order 0; where two vessels of one order meet, that before has
 //! the next order.
 
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// Mean and standard deviation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]

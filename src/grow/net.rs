@@ -2,7 +2,7 @@
 //! gyroid (K4, srs). Its shortest loops have ten edges. Capillaries, too, meet by threes, make loops and fill space evenly
 //! (Blinder et al., 'The cortical angiome', Nat. Neurosci. 16 (2013)).
 
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// Nodes of one cell of the net, in its edge length.
 const CELL: [[f64; 3]; 8] = [

@@ -2,7 +2,7 @@
 
 use super::params::{GenerateError, Organ, TERMINAL_RADIUS, TERMINALS};
 use super::random::{Random, Stream};
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// Half the extent of the organ along x, y, z; z is the longest. That of the published rat kidney
 /// (14.2 × 11.3 × 21.8 mm).

@@ -2,7 +2,7 @@
 //! nodes moved out of thick vessels that they are no part of.
 
 use super::tree::{Tree, weiszfeld};
-use crate::geometry::{Aabb, Bvh, Point3, Tube, Vec3, point_tube};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, Vec3, point_tube};
 use rayon::prelude::*;
 
 /// Rounds of sweeps and clearing.

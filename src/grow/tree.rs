@@ -6,7 +6,7 @@
 
 use super::random::Random;
 use super::split::lesser;
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use nalgebra::Matrix3;
 
 /// Sets larger than this are grown in parallel.

@@ -1,6 +1,6 @@
 //! Vessels in each other's way.
 
-use crate::geometry::{Aabb, Bvh, Point3, Tube, tube_tube};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, tube_tube};
 
 /// Axes of vessels that do not meet are further apart than this, in sums of their radii.
 pub(super) const APART: f64 = 1.5;

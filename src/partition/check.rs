@@ -3,9 +3,9 @@
 // Arc lengths of neighbouring pieces and connectors are copies of one number.
 
 use super::{ClusterEnd, ClusterId, CutId, EndKind, Partition, Piece};
-use crate::geometry::DisjointSets;
-use crate::geometry::{Point3, Section, Tube};
-use crate::skeleton::{Branch, BranchId, NodeId, Skeleton};
+use anastomesh_mesh::geometry::DisjointSets;
+use anastomesh_mesh::geometry::{Point3, Section, Tube};
+use anastomesh_skeleton::{Branch, BranchId, NodeId, Skeleton};
 
 /// What is wrong with a partition.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

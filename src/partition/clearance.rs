@@ -4,7 +4,7 @@
 //! of any other vessel: how far is its axis from the solid that the tip fills? The neighbour at the junction
 //! is then no exception, and bends need no angle.
 
-use crate::geometry::{Aabb, Point3, Section, Tube, segment_segment};
+use anastomesh_mesh::geometry::{Aabb, Point3, Section, Tube, segment_segment};
 
 /// How far a tip reaches back from its end plane, in radii: trimming and flattening work there.
 const BACK: f64 = 0.5;

@@ -15,9 +15,9 @@ use super::parts::{
 use super::path::path;
 use super::settle::{Run, Settler};
 use super::summary::{PartitionSummary, UncutCounts};
-use crate::geometry::{Section, Tube};
-use crate::skeleton::course::{Course, Courses, Way};
-use crate::skeleton::{BranchId, Chains, FineFork, Leg, NodeId, SizeAt, Skeleton};
+use anastomesh_mesh::geometry::{Section, Tube};
+use anastomesh_skeleton::course::{Course, Courses, Way};
+use anastomesh_skeleton::{BranchId, Chains, FineFork, Leg, NodeId, SizeAt, Skeleton};
 
 const NONE: u32 = u32::MAX;
 /// Over how many radii of a fork the directions of its vessels are measured.

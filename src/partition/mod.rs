@@ -16,9 +16,9 @@ mod tests;
 
 use std::sync::Arc;
 
-use crate::skeleton::course::Courses;
-use crate::skeleton::cuttability::BranchEnd;
-use crate::skeleton::{BranchId, Skeleton};
+use anastomesh_skeleton::course::Courses;
+use anastomesh_skeleton::cuttability::BranchEnd;
+use anastomesh_skeleton::{BranchId, Skeleton};
 
 pub use check::check_partition;
 pub use layout::Layout;

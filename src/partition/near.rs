@@ -2,8 +2,8 @@
 
 use super::clearance::tip_middle;
 use super::params::PartitionParams;
-use crate::geometry::{Aabb, Bvh, Tube};
-use crate::skeleton::course::{Course, Courses, Way};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Tube};
+use anastomesh_skeleton::course::{Course, Courses, Way};
 
 /// Something in the way: a part of a branch, or the overrun beyond its terminal.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,9 @@
 //! What a caller may choose about the partition, and what may be wrong with its input.
 
-use crate::skeleton::resolution::{KAPPA, RHO};
+use anastomesh_skeleton::resolution::{KAPPA, RHO};
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::skeleton::{BranchId, CutRules, EdgeId, NodeId, Skeleton};
+use anastomesh_skeleton::{BranchId, CutRules, EdgeId, NodeId, Skeleton};
 
 /// How a skeleton is cut. Lengths are in radii of the vessel concerned unless said otherwise.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::summary::PartitionSummary;
-use crate::geometry::{Section, Tube};
-use crate::skeleton::{BranchId, FineFork, NodeId};
+use anastomesh_mesh::geometry::{Section, Tube};
+use anastomesh_skeleton::{BranchId, FineFork, NodeId};
 
 /// Index of a cluster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]

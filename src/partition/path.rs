@@ -1,7 +1,7 @@
 //! The way of a connector from plane to plane.
 
-use crate::geometry::{Section, Vec3};
-use crate::skeleton::course::{Course, Way};
+use anastomesh_mesh::geometry::{Section, Vec3};
+use anastomesh_skeleton::course::{Course, Way};
 
 /// Distance of sections on a vessel that turns, in radii.
 const SPACING: f64 = 0.75;

@@ -9,9 +9,9 @@ use super::near::{Kind, Near, Obstacle, terminal_overrun};
 use super::params::PartitionParams;
 use super::parts::UncutReason;
 use super::window::Slot;
-use crate::geometry::{DisjointSets, Section};
-use crate::skeleton::course::{Course, Courses, Way};
-use crate::skeleton::{BranchId, NodeId};
+use anastomesh_mesh::geometry::{DisjointSets, Section};
+use anastomesh_skeleton::course::{Course, Courses, Way};
+use anastomesh_skeleton::{BranchId, NodeId};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 

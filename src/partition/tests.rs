@@ -7,8 +7,8 @@ use proptest::prelude::*;
 use super::check::PartitionFlaw;
 use super::parts::{PartitionWarning, UncutReason};
 use super::*;
-use crate::geometry::{Point3, Tube, Vec3, point_segment, segment_segment};
-use crate::skeleton::{Edge, Node, NodeId};
+use anastomesh_mesh::geometry::{Point3, Tube, Vec3, point_segment, segment_segment};
+use anastomesh_skeleton::{Edge, Node, NodeId};
 use std::ops::Range;
 
 /// A skeleton of points with radii and edges between them.
@@ -354,7 +354,7 @@ fn bad_input_is_an_error() {
     bad.edges[1].radii[0] = f64::NAN;
     assert!(matches!(
         partition(&bad, &PartitionParams::default()),
-        Err(PartitionError::BadEdge { edge: crate::skeleton::EdgeId(1), .. })
+        Err(PartitionError::BadEdge { edge: anastomesh_skeleton::EdgeId(1), .. })
     ));
     bad.edges[1].nodes[1] = NodeId(77);
     assert!(matches!(partition(&bad, &PartitionParams::default()), Err(PartitionError::NoSuchNode { .. })));

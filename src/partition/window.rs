@@ -2,9 +2,9 @@
 
 use super::params::PartitionParams;
 use super::parts::UncutReason;
-use crate::skeleton::course::{Course, Courses, Way};
-use crate::skeleton::cuttability::{BranchEnd, Cuttability, Uncuttable};
-use crate::skeleton::{Adjacency, BranchId};
+use anastomesh_skeleton::course::{Course, Courses, Way};
+use anastomesh_skeleton::cuttability::{BranchEnd, Cuttability, Uncuttable};
+use anastomesh_skeleton::{Adjacency, BranchId};
 
 /// A place for one cut: the planes may stand anywhere in `window` with room for the connector between them.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! From where a picture is taken: straight lines of sight, all parallel, so that lengths can be measured in it.
 
 use super::outline::Outline;
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// Where the viewer is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

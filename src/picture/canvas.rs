@@ -3,7 +3,7 @@
 use super::camera::Camera;
 use super::colours::Rgb;
 use super::plane::Plane;
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use rayon::prelude::*;
 
 /// A triangle to be drawn.

@@ -1,6 +1,6 @@
 //! Which colour a thing has, and why.
 
-use crate::mesh::{Patch, WALL};
+use anastomesh_mesh::{Patch, WALL};
 
 /// Red, green and blue as screens have them.
 pub type Rgb = [u8; 3];

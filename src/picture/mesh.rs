@@ -9,10 +9,10 @@ use super::colours::{Colour, INSIDE, Legend, Rgb, WALL_COLOURS, of_block, of_pat
 use super::outline::Outline;
 use super::plane::Plane;
 use crate::block::{tet_ratio, triangle_ratio};
-use crate::geometry::{Point3, Vec3};
-use crate::mesh::beside::Beside;
-use crate::mesh::source::{FacePiece, MeshSource, TetPiece};
-use crate::mesh::{TET_FACES, face_key};
+use anastomesh_mesh::beside::Beside;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::source::{FacePiece, MeshSource, TetPiece};
+use anastomesh_mesh::{TET_FACES, face_key};
 use rustc_hash::FxHashMap;
 use std::io;
 

@@ -4,8 +4,8 @@ use super::canvas::{Canvas, Facet};
 use super::colours::{Colour, Legend, MARKED, Rgb, WALL_COLOURS, of_block};
 use super::outline::Outline;
 use crate::flow::{Orders, solve};
-use crate::geometry::{Point3, Section, Tube, Vec3};
-use crate::skeleton::{EdgeId, NodeId, Skeleton};
+use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
+use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 use std::f64::consts::TAU;
 
 /// Vessels thinner than this, in samples, are drawn as thick as this.

@@ -1,6 +1,6 @@
 //! Some points of a thing, which tell how large it is and how it lies.
 
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 /// So many points are enough to tell.

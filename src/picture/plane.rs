@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::outline::Outline;
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// A plane; what is on the side to which it points is taken away.
 #[derive(Clone, Copy, Debug, PartialEq)]

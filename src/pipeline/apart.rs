@@ -13,9 +13,9 @@ use super::routes::Overlapping;
 use super::seen::Seen;
 use super::whole::Whole;
 use crate::partition::{ClusterId, CutId};
-use crate::progress::{Stage, ask};
-use crate::skeleton::BranchId;
-use crate::tet::Watch;
+use anastomesh_mesh::progress::{Stage, ask};
+use anastomesh_skeleton::BranchId;
+use anastomesh_tet::parts::Watch;
 
 /// What is done about blocks that meet, and was before.
 #[derive(Debug, Default)]

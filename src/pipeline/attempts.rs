@@ -5,8 +5,8 @@ use super::plan::{JointStyle, MeshPlan};
 use super::tips;
 use crate::block::{BlockError, BlockParams, ConnectorEnd, DIVISIONS, EndStyle, Finished};
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
-use crate::skeleton::NodeId;
-use crate::tet::Watch;
+use anastomesh_skeleton::NodeId;
+use anastomesh_tet::parts::Watch;
 
 /// Result of a block, and the failures before it.
 #[derive(Debug)]
@@ -298,9 +298,9 @@ mod tests {
 
     /// A block of one tetrahedron of this height over an equilateral triangle, nearly above its centre.
     fn block(height: f64) -> Finished {
-        let p = |x, y, z| crate::geometry::Point3::new(x, y, z);
+        let p = |x, y, z| anastomesh_mesh::geometry::Point3::new(x, y, z);
         let points = vec![p(0., 0., 0.), p(1., 0., 0.), p(0.5, 0.75_f64.sqrt(), 0.), p(0.5, 0.3, height)];
-        let mesh = crate::mesh::TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+        let mesh = anastomesh_mesh::TetMesh { points, tets: vec![[0, 1, 2, 3]] };
         let cluster = crate::block::ClusterMesh { mesh, ..Default::default() };
         Finished::of_cluster(cluster, |node| node.0).expect("a wall of four faces")
     }
@@ -335,10 +335,10 @@ mod tests {
 
     /// A block of one tetrahedron with edges of 1 but for one of this length.
     fn wedge(thin: f64) -> Finished {
-        let p = |x, y, z| crate::geometry::Point3::new(x, y, z);
+        let p = |x, y, z| anastomesh_mesh::geometry::Point3::new(x, y, z);
         let apex = (0.75 - 0.25 * thin * thin).sqrt();
         let points = vec![p(-0.5, 0., 0.), p(0.5, 0., 0.), p(0., apex, -0.5 * thin), p(0., apex, 0.5 * thin)];
-        let mesh = crate::mesh::TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+        let mesh = anastomesh_mesh::TetMesh { points, tets: vec![[0, 1, 2, 3]] };
         let cluster = crate::block::ClusterMesh { mesh, ..Default::default() };
         Finished::of_cluster(cluster, |node| node.0).expect("a wall of four faces")
     }

@@ -10,7 +10,7 @@ use super::store::RecordId;
 use super::timing::BlockTimes;
 use crate::block::Cured;
 use crate::partition::{CutId, Layout};
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// How many nodes of a block a report lists.
 const LISTED: usize = 20;

@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use crate::flow::{NetworkFlow, Orders, solve};
-use crate::geometry::Point3;
-use crate::io::volume::{CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
-use crate::mesh::quality::triangle_area_vector;
-use crate::mesh::relabel::Relabelled;
-use crate::mesh::source::MeshSource;
-use crate::mesh::{Cap, Patch, WALL};
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_io::volume::{CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::quality::triangle_area_vector;
+use anastomesh_mesh::relabel::Relabelled;
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::{Cap, Patch, WALL};
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// What flows, and how much of it through each inlet.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use super::report::Retry;
 use super::tips::is_buried;
 use crate::block::BlockError;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams};
-use crate::skeleton::{BranchId, Skeleton};
+use anastomesh_skeleton::{BranchId, Skeleton};
 
 /// How far the cure of a branch whose cut gave trouble has gone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,10 +7,10 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use crate::block::{tet_ratio, triangle_ratio};
 use crate::fidelity::Tubes;
 use crate::flow::{Orders, solve};
-use crate::geometry::{Point3, Vec3};
-use crate::mesh::beside::{Beside, Column};
-use crate::mesh::source::MeshSource;
-use crate::skeleton::{Adjacency, NodeId, Skeleton};
+use anastomesh_mesh::beside::{Beside, Column};
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::{Adjacency, NodeId, Skeleton};
 use rayon::prelude::*;
 
 /// Something that can be known of a place in a mesh.
@@ -191,7 +191,7 @@ fn generations(network: &Skeleton, adjacency: &Adjacency, inlets: &BTreeSet<Node
 mod tests {
     use super::*;
     use crate::pipeline::{MeshPlan, mesh_network};
-    use crate::skeleton::fixtures::network;
+    use anastomesh_skeleton::fixtures::network;
 
     /// A vessel along z that forks at 10 into two of two edges each.
     fn fork() -> Skeleton {

@@ -12,8 +12,8 @@ use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, 
 use super::tips;
 use crate::block::{About, Astray, BlockDump};
 use crate::partition::{ClusterId, CutId};
-use crate::progress::Progress;
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_mesh::progress::Progress;
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// How many places where vessels overlap are spelt out for people.
 const LISTED: usize = 3;

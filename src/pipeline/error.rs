@@ -8,8 +8,8 @@ use super::report::RunReport;
 use super::store::StoreError;
 use super::terminals::NotATerminal;
 use crate::partition::PartitionError;
-use crate::progress::Cancelled;
 use crate::woven::LabelError;
+use anastomesh_mesh::progress::Cancelled;
 
 /// Why there is no mesh.
 #[derive(Debug, thiserror::Error)]

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
 use crate::block::{BlockDump, BlockInput, BlockParams};
-use crate::geometry::Tube;
 use crate::partition::{Cluster, Cut, Layout};
-use crate::skeleton::Skeleton;
+use anastomesh_mesh::geometry::Tube;
+use anastomesh_skeleton::Skeleton;
 
 /// Tetrahedra per unit of length over radius, at ρ = 1, and how they grow with ρ: fitted to meshes of the kidney's
 /// subtrees at ρ = 3, 4 and 5.

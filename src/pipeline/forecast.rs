@@ -6,7 +6,7 @@ use super::estimate::Estimate;
 use super::plan::MeshPlan;
 use crate::partition;
 use crate::refine::split;
-use crate::skeleton::Skeleton;
+use anastomesh_skeleton::Skeleton;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

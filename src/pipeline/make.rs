@@ -8,8 +8,8 @@ use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
 use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, StoredEnd, encode};
 use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Layout};
-use crate::skeleton::Skeleton;
-use crate::tet::Watch;
+use anastomesh_skeleton::Skeleton;
+use anastomesh_tet::parts::Watch;
 
 /// A finished block in the store, and what it adds to the whole. There are millions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -219,8 +219,8 @@ fn connector_key(cut: &Cut, plan: &MeshPlan, ends: &[StoredEnd]) -> Key {
 mod tests {
     use super::*;
     use crate::pipeline::plan::MOST_STRETCH;
-    use crate::skeleton::{FineFork, SizeAt};
-    use crate::tet::Layers;
+    use anastomesh_skeleton::{FineFork, SizeAt};
+    use anastomesh_tet::Layers;
 
     #[test]
     fn a_cluster_is_found_only_by_all_that_it_depends_on() {
@@ -247,7 +247,7 @@ mod tests {
         let asked = MeshPlan { size_at: Some(SizeAt::Forks(0.5)), ..plan.clone() };
         assert_eq!(cluster_key(&cluster, &asked, true, Way::Usual), plain);
         let forked = |factor| {
-            let fork = FineFork { at: crate::geometry::Point3::origin(), within: 1.0, factor };
+            let fork = FineFork { at: anastomesh_mesh::geometry::Point3::origin(), within: 1.0, factor };
             cluster_key(&Cluster { fine: vec![fork], ..cluster.clone() }, &asked, true, Way::Usual)
         };
         assert!(forked(0.5) != plain && forked(0.5) != forked(0.4));

@@ -5,9 +5,9 @@ use crate::block::{
     EndSurface, Finished, mesh_cluster_watched, mesh_connector, mesh_free_connector, shared_ends,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
-use crate::skeleton::NodeId;
-use crate::tet::Watch;
 use crate::woven;
+use anastomesh_skeleton::NodeId;
+use anastomesh_tet::parts::Watch;
 
 /// A cluster. `original`: the number of a terminal in the network as it was read.
 pub fn cluster(
@@ -76,7 +76,7 @@ pub fn replay(dump: &BlockDump, watch: &Watch) -> Result<Finished, BlockError> {
 mod tests {
     use super::*;
     use crate::block::fixtures::{bifurcation, facing};
-    use crate::skeleton::FineFork;
+    use anastomesh_skeleton::FineFork;
 
     #[test]
     fn a_dumped_block_runs_again_to_the_same_bits() {

@@ -1,9 +1,9 @@
 //! What a run is asked to do.
 
 use crate::block::{BlockParams, EndStyle};
-use crate::skeleton::resolution::{FOLLOW, RHO};
-use crate::skeleton::{LEAST_SIZE, SizeAt};
-use crate::tet::{Layers, LayersError};
+use anastomesh_skeleton::resolution::{FOLLOW, RHO};
+use anastomesh_skeleton::{LEAST_SIZE, SizeAt};
+use anastomesh_tet::{Layers, LayersError};
 use std::borrow::Cow;
 
 /// How blocks meet at a cut.

@@ -23,9 +23,9 @@ use super::store::{KeyMaker, RecordId, StoreError, fingerprint};
 use super::timing::{Clock, Stopwatch};
 use crate::block::Cured;
 use crate::partition::{self, ClusterId, CutId, Layout};
-use crate::progress::{Progress, Stage};
-use crate::skeleton::{BranchId, Overlaps};
-use crate::tet::Watch;
+use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_skeleton::{BranchId, Overlaps};
+use anastomesh_tet::parts::Watch;
 
 /// How often the partition is changed because of blocks that fail.
 const ROUNDS: usize = 6;

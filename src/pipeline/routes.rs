@@ -1,7 +1,7 @@
 //! Which blocks the branches run through.
 
 use crate::partition::{CutId, Layout};
-use crate::skeleton::{BranchId, EdgeId, Overlaps, Skeleton};
+use anastomesh_skeleton::{BranchId, EdgeId, Overlaps, Skeleton};
 
 /// The branches of pairs of edges: each pair once, the lower branch first, ascending.
 pub fn branch_pairs(skeleton: &Skeleton, edges: impl Iterator<Item = [EdgeId; 2]>) -> Vec<[BranchId; 2]> {

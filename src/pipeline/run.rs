@@ -18,15 +18,15 @@ use super::store::Store;
 use super::terminals::{self, TerminalPatches};
 use super::timing::Clock;
 use super::whole::Whole;
-use crate::mesh::check::parts::PartsCheck;
-use crate::mesh::check::{CheckReport, Expectation, check_volume_with};
-use crate::mesh::source::{MeshSource, SourceCounts, gather};
-use crate::mesh::{VolumeMesh, WALL};
 use crate::partition::CutId;
-use crate::progress::{Progress, Stage, ask};
 use crate::refine::split_shared;
-use crate::skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 use crate::woven::Assembly;
+use anastomesh_mesh::check::parts::PartsCheck;
+use anastomesh_mesh::check::{CheckReport, Expectation, check_volume_with};
+use anastomesh_mesh::progress::{Progress, Stage, ask};
+use anastomesh_mesh::source::{MeshSource, SourceCounts, gather};
+use anastomesh_mesh::{VolumeMesh, WALL};
+use anastomesh_skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 
 /// A mesh in memory, what it has to be, what was found, what was done.
 #[derive(Debug)]

@@ -6,9 +6,9 @@ use std::io;
 use super::blocks::{Blocks, Meetings};
 use super::store::RecordId;
 use super::whole::Whole;
-use crate::geometry::Aabb;
-use crate::mesh::check::parts::{Changed, Looked, meetings_of};
 use crate::partition::{CutId, Layout};
+use anastomesh_mesh::check::parts::{Changed, Looked, meetings_of};
+use anastomesh_mesh::geometry::Aabb;
 
 const NONE: u32 = u32::MAX;
 
@@ -122,9 +122,9 @@ mod tests {
     use super::super::tests::through_the_crotch;
     use super::super::timing::Clock;
     use super::*;
-    use crate::geometry::{Point3, Vec3};
-    use crate::progress::{Progress, Stage};
-    use crate::skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
+    use anastomesh_mesh::geometry::{Point3, Vec3};
+    use anastomesh_mesh::progress::{Progress, Stage};
+    use anastomesh_skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
     use std::collections::BTreeSet;
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};

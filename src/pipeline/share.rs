@@ -18,10 +18,10 @@ use super::schedule::Cost;
 use super::store::{KeyMaker, Shard, Store, fingerprint};
 use super::timing::{BlockTimes, Clock, StageTime, Stopwatch};
 use crate::partition::{ClusterId, CutId};
-use crate::progress::{Progress, Stage};
 use crate::refine::split_shared;
-use crate::skeleton::{BranchId, Overlaps, Skeleton};
-use crate::tet::Watch;
+use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_skeleton::{BranchId, Overlaps, Skeleton};
+use anastomesh_tet::parts::Watch;
 
 /// What a shard did.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

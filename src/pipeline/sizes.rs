@@ -2,8 +2,8 @@
 
 use super::plan::{MOST_STRETCH, MeshPlan};
 use crate::partition::Layout;
-use crate::progress::Progress;
-use crate::skeleton::{LEAST_SIZE, SizeAt, Skeleton};
+use anastomesh_mesh::progress::Progress;
+use anastomesh_skeleton::{LEAST_SIZE, SizeAt, Skeleton};
 
 /// Says how many forks are finer and how many tubes stretched, and what of it was asked for beyond the limits.
 pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan, observer: &dyn Progress) {

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::mesh::WALL;
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_mesh::WALL;
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// Id and name of the patch that closes each terminal.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -67,8 +67,8 @@ fn names(terminals: &[NodeId], inlets: &[NodeId]) -> BTreeMap<NodeId, (i32, Stri
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point3;
-    use crate::skeleton::{Edge, Node};
+    use anastomesh_mesh::geometry::Point3;
+    use anastomesh_skeleton::{Edge, Node};
 
     /// A Y whose terminals are nodes 0, 2 and 3 with radii 2, 1 and 3.
     fn y() -> Skeleton {

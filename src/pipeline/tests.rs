@@ -2,17 +2,17 @@
 
 use super::*;
 use crate::block::{Finished, Record, encode};
-use crate::geometry::Point3;
 use crate::grow::dual;
-use crate::mesh::WALL;
-use crate::mesh::adjacency::tet_adjacency;
-use crate::mesh::source::{MeshSource, gather};
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
-use crate::progress::{Progress, Stage, StopsAfter};
 use crate::refine::{Figures, Freedom, RefineError, RefineParams, refine};
-use crate::skeleton::fixtures::tangle;
-use crate::skeleton::{Edge, Node, NodeId, Skeleton};
-use crate::tet::Layers;
+use anastomesh_mesh::WALL;
+use anastomesh_mesh::adjacency::tet_adjacency;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::progress::{Progress, Stage, StopsAfter};
+use anastomesh_mesh::source::{MeshSource, gather};
+use anastomesh_skeleton::fixtures::tangle;
+use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
+use anastomesh_tet::Layers;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use store::Store;
 
@@ -153,7 +153,7 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
             false,
             attempts::Way::Usual,
             |node| node.0,
-            &crate::tet::Watch::NOBODY,
+            &anastomesh_tet::parts::Watch::NOBODY,
         )
         .result
         .expect("meshed")
@@ -269,8 +269,8 @@ fn vessels_that_overlap_are_meshed_and_named() {
     assert!(!meshed.report.overlaps.is_empty());
     assert!(meshed.report.failed.is_empty());
     assert!(!meshed.check.is_valid());
-    let positive = meshed.check.line(crate::mesh::check::Line::PositiveTets).expect("a line");
-    assert_eq!(positive.outcome, crate::mesh::check::Outcome::Pass);
+    let positive = meshed.check.line(anastomesh_mesh::check::Line::PositiveTets).expect("a line");
+    assert_eq!(positive.outcome, anastomesh_mesh::check::Outcome::Pass);
 }
 
 /// A fork, and a thin straight vessel across it through its crotch, so far from the node.
@@ -342,7 +342,7 @@ fn a_block_that_fails_is_named_and_dumped() {
         let dump = std::fs::read(failed.dump.as_ref().expect("a dump")).expect("readable");
         let again = crate::block::BlockDump::from_json(&dump).expect("a dump");
         assert_eq!((&again.nodes, again.name()), (&failed.nodes, failed.block.clone()));
-        let again = super::once::replay(&again, &crate::tet::Watch::NOBODY);
+        let again = super::once::replay(&again, &anastomesh_tet::parts::Watch::NOBODY);
         assert_eq!(again.expect_err("fails again").to_string(), failed.reason);
     }
 }
@@ -353,7 +353,7 @@ fn what_can_be_meshed_is_kept_on_request() {
     let base = network.nodes.len() as u32;
     let other = h(12.0);
     network.nodes.extend(other.nodes.iter().map(|n| Node {
-        position: n.position + crate::geometry::Vec3::new(1e5, 0.0, 0.0),
+        position: n.position + anastomesh_mesh::geometry::Vec3::new(1e5, 0.0, 0.0),
         original: n.original + base,
         ..*n
     }));
@@ -392,9 +392,9 @@ fn where_a_block_is_missing_the_others_end_in_patches_of_their_own() {
         network.edges.extend([[last, fork], [fork, tip]].map(|nodes| Edge { nodes, radii: [1e3; 2] }));
         last = fork;
     }
-    let (network, _) = crate::skeleton::clean(&network).expect("clean");
+    let (network, _) = anastomesh_skeleton::clean(&network).expect("clean");
     let meshed = run(&network, &MeshPlan { keep_going: true, ..MeshPlan::default() }).expect("the rest");
-    let missing: Vec<&crate::mesh::Patch> =
+    let missing: Vec<&anastomesh_mesh::Patch> =
         meshed.mesh.patches.iter().filter(|patch| patch.name.starts_with("missing_")).collect();
     assert!(!missing.is_empty(), "{:?}", meshed.mesh.patches);
     assert!(missing.iter().all(|patch| meshed.mesh.boundary_patch.contains(&patch.id)), "each disc has faces");

@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use crate::progress::{Progress, Stage};
+use anastomesh_mesh::progress::{Progress, Stage};
 use serde::Serialize;
 
 /// Seconds of wall time per stage.

@@ -2,8 +2,8 @@
 
 use crate::block::{BlockError, Finished, buried};
 use crate::partition::{Cluster, EndKind};
-use crate::skeleton::NodeId;
 use crate::surface::{CapError, CapFailure};
+use anastomesh_skeleton::NodeId;
 
 /// How far a tip is moved, in its radii, one after the other: outwards, where another vessel of its branch point is in the
 /// way, or back, where it ends in another vessel.
@@ -95,7 +95,7 @@ mod tests {
             let out = moved(&cluster, &[(i, 1.0)]).expect("room");
             let way = out.ends[i as usize].section.origin - end.section.origin;
             assert!((way - end.section.axis * end.section.radius).norm() < 1e-12);
-            let length = |c: &Cluster| c.tubes.iter().map(crate::geometry::Tube::length).sum::<f64>();
+            let length = |c: &Cluster| c.tubes.iter().map(anastomesh_mesh::geometry::Tube::length).sum::<f64>();
             assert!((length(&out) - length(&cluster) - end.section.radius).abs() < 1e-9);
             assert_eq!(moved(&cluster, &[(i, -1e3)]), None);
         }

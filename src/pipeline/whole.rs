@@ -16,12 +16,12 @@ use super::report::MeshSize;
 use super::store::{Store, StoredBytes};
 use super::terminals::TerminalPatches;
 use crate::block::{FinishedCap, FinishedJoint, Record, Sizes};
-use crate::geometry::{Aabb, Point3};
-use crate::mesh::check::parts::{Certificate, FacesApart, Looked, Parts};
-use crate::mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
-use crate::mesh::{Patch, WALL};
-use crate::progress::{Progress, ask};
-use crate::skeleton::Skeleton;
+use anastomesh_mesh::check::parts::{Certificate, FacesApart, Looked, Parts};
+use anastomesh_mesh::geometry::{Aabb, Point3};
+use anastomesh_mesh::progress::{Progress, ask};
+use anastomesh_mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
+use anastomesh_mesh::{Patch, WALL};
+use anastomesh_skeleton::Skeleton;
 use numbering::{Numbering, PartPlan};
 
 #[cfg(feature = "cli")]

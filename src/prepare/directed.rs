@@ -1,6 +1,6 @@
 //! Edges turned so that they lead away from the inlet.
 
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// The same network with every edge of each component leading away from its inlet (the thickest terminal; where there is
 /// none, the first node), breadth first. In a network with loops two edges lead to one node.

@@ -1,6 +1,6 @@
 //! Components too small to matter.
 
-use crate::skeleton::{Skeleton, SkeletonError, clean};
+use anastomesh_skeleton::{Skeleton, SkeletonError, clean};
 use serde::Serialize;
 
 /// A component that was dropped.
@@ -25,7 +25,7 @@ pub(super) fn drop(skeleton: &Skeleton, smallest: usize) -> Result<(Skeleton, Ve
             length: c.edges.iter().map(|&e| skeleton.length(e)).sum(),
         })
         .collect();
-    let large = |node: crate::skeleton::NodeId| {
+    let large = |node: anastomesh_skeleton::NodeId| {
         components.list[components.of_node[node.index()] as usize].nodes.len() >= smallest
     };
     let edges = skeleton.edges.iter().filter(|e| large(e.nodes[0])).copied().collect();

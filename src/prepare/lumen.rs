@@ -1,7 +1,7 @@
 //! Branch points beside each other in one lumen, and loops that enclose nothing but lumen.
 
-use crate::geometry::{Tube, point_segment};
-use crate::skeleton::{Branch, Branches, Edge, NodeId, Skeleton, SkeletonError, clean};
+use anastomesh_mesh::geometry::{Tube, point_segment};
+use anastomesh_skeleton::{Branch, Branches, Edge, NodeId, Skeleton, SkeletonError, clean};
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
@@ -134,7 +134,7 @@ fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), Skele
     if loops.is_empty() {
         return Ok((skeleton.clone(), loops));
     }
-    let stays = |e: &crate::skeleton::EdgeId| !gone[branches.of_edge[e.index()].0.index()];
+    let stays = |e: &anastomesh_skeleton::EdgeId| !gone[branches.of_edge[e.index()].0.index()];
     let edges = skeleton.edge_ids().filter(stays).map(|e| *skeleton.edge(e)).collect();
     Ok((clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?.0, loops))
 }

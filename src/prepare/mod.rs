@@ -28,7 +28,7 @@ pub use short_tips::ShortTip;
 pub use spurs::{Spur, SpurReason};
 pub use touching::{TouchedBy, Touching, TouchingTip, take_back};
 
-use crate::skeleton::{LineGroup, Skeleton, SkeletonError, clean};
+use anastomesh_skeleton::{LineGroup, Skeleton, SkeletonError, clean};
 
 /// Which cures are applied, and their bounds. Lengths are in radii of the vessel concerned.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

@@ -1,7 +1,7 @@
 //! Radii that cannot be true, filled from their neighbours.
 
-use crate::geometry::{DisjointSets, Total, place_key};
-use crate::skeleton::{LARGEST, NodeId, Skeleton, SkeletonError};
+use anastomesh_mesh::geometry::{DisjointSets, Total, place_key};
+use anastomesh_skeleton::{LARGEST, NodeId, Skeleton, SkeletonError};
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 use std::cmp::Reverse;
@@ -169,7 +169,7 @@ impl Places {
         for (radius, _) in told.iter_mut().zip(&all).filter(|(_, absurd)| **absurd) {
             *radius = 0.0;
         }
-        let fault = |(node, &place): (&crate::skeleton::Node, &u32)| match node.radius {
+        let fault = |(node, &place): (&anastomesh_skeleton::Node, &u32)| match node.radius {
             r if !good(r) => Some(Fault::Missing),
             _ if all[place as usize] || self.is_dip(place, &told) => Some(Fault::Absurd),
             _ => None,

@@ -1,7 +1,7 @@
 //! What was done to a network.
 
 use super::{FilledRadius, Island, JoinedReport, MergeReport, ResampleReport, ShortTip, Spur, TouchingTip};
-use crate::skeleton::{CleanReport, Skeleton};
+use anastomesh_skeleton::{CleanReport, Skeleton};
 use serde::Serialize;
 
 /// How large a network is.
@@ -34,7 +34,7 @@ impl Size {
         size.branch_points = skeleton.node_ids().filter(|&n| adjacency.valence(n) > 2).count();
         let components = skeleton.components(&adjacency);
         size.components = components.list.len();
-        size.loops = components.list.iter().map(crate::skeleton::Component::loops).sum();
+        size.loops = components.list.iter().map(anastomesh_skeleton::Component::loops).sum();
         size
     }
 }

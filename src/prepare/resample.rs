@@ -7,8 +7,8 @@
 //! is allowed; the given points are what the result is held against.
 
 use super::smooth::smoothed;
-use crate::geometry::{Point3, point_segment};
-use crate::skeleton::{Branch, Edge, NodeId, Skeleton, SkeletonError, clean};
+use anastomesh_mesh::geometry::{Point3, point_segment};
+use anastomesh_skeleton::{Branch, Edge, NodeId, Skeleton, SkeletonError, clean};
 use rustc_hash::FxHashSet;
 use serde::Serialize;
 

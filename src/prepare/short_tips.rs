@@ -1,7 +1,7 @@
 //! Tips so close to their branch point that their cap lies in the wall of another vessel of it.
 
-use crate::geometry::{Point3, Vec3};
-use crate::skeleton::{Adjacency, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean, separation};
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_skeleton::{Adjacency, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean, separation};
 use serde::Serialize;
 
 /// How much further than where two walls part (equation 12) a tip has to be: walls blend before they part, and a cap needs a
@@ -93,7 +93,7 @@ fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: Bra
 fn point_along(
     skeleton: &Skeleton,
     branches: &Branches,
-    edge: crate::skeleton::EdgeId,
+    edge: anastomesh_skeleton::EdgeId,
     from: NodeId,
     length: f64,
 ) -> Point3 {

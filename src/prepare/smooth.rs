@@ -5,7 +5,7 @@
 //! what it takes from the mean itself (Tukey's twicing, 'Exploratory Data Analysis', 1977), so that bends stay. No point
 //! moves by more than a share of its radius.
 
-use crate::geometry::Point3;
+use anastomesh_mesh::geometry::Point3;
 use nalgebra::Vector4;
 
 /// Half the length of line over which is averaged, in radii.

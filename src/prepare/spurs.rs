@@ -1,7 +1,7 @@
 //! Tips that segmentation left: no vessel, but a hair on one.
 
-use crate::geometry::point_segment;
-use crate::skeleton::{Adjacency, Branch, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean};
+use anastomesh_mesh::geometry::point_segment;
+use anastomesh_skeleton::{Adjacency, Branch, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean};
 use serde::Serialize;
 
 /// A branch that ends inside a vessel of its branch point is a spur up to this length, in radii of that vessel.
@@ -114,7 +114,13 @@ fn spur(
 }
 
 /// Whether a tip lies within the first radii of the branch that leaves `from` by an edge.
-fn inside(skeleton: &Skeleton, branches: &Branches, edge: crate::skeleton::EdgeId, from: NodeId, tip: NodeId) -> bool {
+fn inside(
+    skeleton: &Skeleton,
+    branches: &Branches,
+    edge: anastomesh_skeleton::EdgeId,
+    from: NodeId,
+    tip: NodeId,
+) -> bool {
     let (id, piece) = branches.of_edge[edge.index()];
     let branch = &branches.list[id.index()];
     let point = skeleton.node(tip).position;

@@ -1,7 +1,7 @@
 //! Tips that end in or on another vessel: no cap has room there.
 
-use crate::geometry::{Aabb, Bvh, Point3, point_segment};
-use crate::skeleton::{
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, point_segment};
+use anastomesh_skeleton::{
     Adjacency, BranchId, Branches, Edge, EdgeId, LocalDistances, Node, NodeId, Skeleton, SkeletonError, clean,
 };
 use serde::Serialize;
@@ -378,7 +378,7 @@ impl<'a> Work<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skeleton::fixtures::network;
+    use anastomesh_skeleton::fixtures::network;
 
     /// A trunk of radius 1 with a side branch of this length from its middle.
     fn fork(length: f64) -> Skeleton {

@@ -4,7 +4,7 @@
 //! leave a node side by side would have to move as a whole; a bend lets them part where they are too close.
 
 use super::frame::Frame;
-use crate::skeleton::{EdgeId, Overlap, Overlaps};
+use anastomesh_skeleton::{EdgeId, Overlap, Overlaps};
 
 /// Pieces that a bend makes are at least this long, in radii.
 const SHORTEST: f64 = 5.0;

@@ -2,8 +2,8 @@
 
 use super::frame::Frame;
 use super::push::{Push, project};
-use crate::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tube};
-use crate::skeleton::{EdgeId, JOINED, LocalDistances, NodeId, deepest_apart};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tube};
+use anastomesh_skeleton::{EdgeId, JOINED, LocalDistances, NodeId, deepest_apart};
 use rayon::prelude::*;
 
 /// Distances along the skeleton between the ends of two edges; infinite when long.

@@ -2,7 +2,7 @@
 //! moved apart, or merged on request.
 
 use super::params::{Crowded, RefineParams};
-use crate::skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
+use anastomesh_skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
 use serde::{Deserialize, Serialize};
 
 /// How far terminals are moved apart, in sums of their radii: their walls must not fuse either.
@@ -33,7 +33,7 @@ pub struct CrowdedPair {
 /// `origin`, too.
 pub(super) fn treat(
     skeleton: &mut Skeleton,
-    origin: &mut Vec<crate::geometry::Point3>,
+    origin: &mut Vec<anastomesh_mesh::geometry::Point3>,
     params: &RefineParams,
     folds: bool,
 ) -> Vec<CrowdedPair> {
@@ -101,13 +101,13 @@ fn part(
 }
 
 /// From one terminal to another; any direction if they are at one place.
-fn direction(a: &Node, b: &Node) -> crate::geometry::Vec3 {
-    (b.position - a.position).try_normalize(0.0).unwrap_or_else(crate::geometry::Vec3::x)
+fn direction(a: &Node, b: &Node) -> anastomesh_mesh::geometry::Vec3 {
+    (b.position - a.position).try_normalize(0.0).unwrap_or_else(anastomesh_mesh::geometry::Vec3::x)
 }
 
 /// Makes one terminal of each pair: of two that hang on one node the thinner vessel is taken away, others are joined
 /// where they lie, halfway.
-fn merge(skeleton: &mut Skeleton, origin: &mut Vec<crate::geometry::Point3>, found: &[CrowdedTerminals]) {
+fn merge(skeleton: &mut Skeleton, origin: &mut Vec<anastomesh_mesh::geometry::Point3>, found: &[CrowdedTerminals]) {
     let adjacency = skeleton.adjacency();
     let mut gone = vec![false; skeleton.nodes.len()];
     let mut dropped = vec![false; skeleton.edges.len()];
@@ -132,7 +132,12 @@ fn merge(skeleton: &mut Skeleton, origin: &mut Vec<crate::geometry::Point3>, fou
     drop_nodes(skeleton, origin, &gone, &dropped);
 }
 
-fn drop_nodes(skeleton: &mut Skeleton, origin: &mut Vec<crate::geometry::Point3>, gone: &[bool], dropped: &[bool]) {
+fn drop_nodes(
+    skeleton: &mut Skeleton,
+    origin: &mut Vec<anastomesh_mesh::geometry::Point3>,
+    gone: &[bool],
+    dropped: &[bool],
+) {
     let mut next = 0;
     let new: Vec<NodeId> = gone
         .iter()

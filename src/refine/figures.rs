@@ -1,6 +1,6 @@
 //! The figures of one state, and which of two states is worse in what.
 
-use crate::skeleton::{Metrics, Overlaps, Share, Skeleton};
+use anastomesh_skeleton::{Metrics, Overlaps, Share, Skeleton};
 use serde::{Deserialize, Serialize};
 
 /// Metrics and numbers of overlaps of one state.

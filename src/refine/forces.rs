@@ -4,8 +4,8 @@ use super::contact::Contacts;
 use super::frame::{Chain, Frame};
 use super::push::Push;
 use super::room;
-use crate::geometry::Vec3;
-use crate::skeleton::{Barrier, NARROW, NodeId};
+use anastomesh_mesh::geometry::Vec3;
+use anastomesh_skeleton::{Barrier, NARROW, NodeId};
 use rayon::prelude::*;
 
 /// Lower bound λ of the angle in (9).
@@ -60,7 +60,13 @@ fn add(frame: &Frame, node: NodeId, step: Vec3, cap: f64, out: &mut Vec<Push>) {
 }
 
 /// (7): down the gradient of the barrier, both edges of the pair.
-fn push_barrier(frame: &Frame, edges: [crate::skeleton::EdgeId; 2], barrier: &Barrier, rate: f64, out: &mut Vec<Push>) {
+fn push_barrier(
+    frame: &Frame,
+    edges: [anastomesh_skeleton::EdgeId; 2],
+    barrier: &Barrier,
+    rate: f64,
+    out: &mut Vec<Push>,
+) {
     let [a, b] = edges.map(|e| frame.skeleton.tube(e));
     let Some(gradient) = barrier.pair(&a, &b) else { return };
     let nodes = edges.map(|e| frame.skeleton.edge(e).nodes);

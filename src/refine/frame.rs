@@ -1,7 +1,7 @@
 //! What stays the same while a skeleton is refined: who is joined to whom, who may move, and how chains of vessel run.
 
-use crate::geometry::Point3;
-use crate::skeleton::{Adjacency, CUT_DISTANCE, Edge, EdgeId, Node, NodeId, Skeleton};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::{Adjacency, CUT_DISTANCE, Edge, EdgeId, Node, NodeId, Skeleton};
 use rayon::prelude::*;
 
 /// Length that a vessel keeps while it overlaps another one, in radii: parting comes before room for cuts, and two

@@ -1,7 +1,7 @@
 //! How far the nodes of a network have moved, and what that has brought.
 
-use crate::geometry::Point3;
-use crate::skeleton::{Metrics, Skeleton};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::{Metrics, Skeleton};
 use serde::{Deserialize, Serialize};
 
 /// The metrics after some iterations.

@@ -2,8 +2,8 @@
 
 use super::frame::Frame;
 use super::params::Freedom;
-use crate::geometry::{Point3, Total};
-use crate::skeleton::{EdgeId, NodeId, Overlaps, Skeleton};
+use anastomesh_mesh::geometry::{Point3, Total};
+use anastomesh_skeleton::{EdgeId, NodeId, Overlaps, Skeleton};
 use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;

@@ -27,9 +27,9 @@ pub use residual::{ResidualReport, Treatment};
 
 pub use split::{split, split_shared};
 
-use crate::geometry::Point3;
-use crate::progress::Progress;
-use crate::skeleton::Skeleton;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::progress::Progress;
+use anastomesh_skeleton::Skeleton;
 use leash::Leashes;
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,8 @@
 //! What a caller may choose about the refinement, and what may be wrong with it.
 
 use super::figures::Metric;
-use crate::skeleton::SkeletonError;
-use crate::skeleton::resolution::RHO;
+use anastomesh_skeleton::SkeletonError;
+use anastomesh_skeleton::resolution::RHO;
 use serde::Serialize;
 
 /// What is done about vessels that still overlap when the nodes have come to rest.

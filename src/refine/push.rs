@@ -4,8 +4,8 @@
 //! that is not met asks its nodes for the smallest move, weighted by their mobility, that meets it to first order.
 
 use super::frame::Frame;
-use crate::geometry::Vec3;
-use crate::skeleton::NodeId;
+use anastomesh_mesh::geometry::Vec3;
+use anastomesh_skeleton::NodeId;
 
 /// A move that one condition asks of one node.
 pub(super) type Push = (NodeId, Vec3);

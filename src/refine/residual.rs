@@ -1,8 +1,8 @@
 //! What is left when the nodes have come to rest, and what is done about it.
 
 use super::params::{RefineParams, Residual};
-use crate::geometry::{Point3, Tube};
-use crate::skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Skeleton};
+use anastomesh_mesh::geometry::{Point3, Tube};
+use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Skeleton};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::{Deserialize, Serialize};
 

@@ -2,8 +2,8 @@
 
 use super::frame::{Chain, Frame, LEAST};
 use super::push::{Push, project};
-use crate::geometry::Vec3;
-use crate::skeleton::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, EdgeId, NARROW, NodeId, separation};
+use anastomesh_mesh::geometry::Vec3;
+use anastomesh_skeleton::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, EdgeId, NARROW, NodeId, separation};
 use rayon::prelude::*;
 
 /// Where conditions are taken as met: a little beyond what is asked for.
@@ -170,8 +170,8 @@ fn push_angles(frame: &Frame, node: NodeId, out: &mut Vec<Push>) {
 mod tests {
     use super::super::frame::Frame;
     use super::*;
-    use crate::geometry::Point3;
-    use crate::skeleton::{Edge, Node, Skeleton};
+    use anastomesh_mesh::geometry::Point3;
+    use anastomesh_skeleton::{Edge, Node, Skeleton};
     use proptest::prelude::*;
 
     /// A vessel between two junctions: 0-1 with 2, 3 at 0 and 4, 5 at 1.

@@ -1,7 +1,7 @@
 //! Polylines keep their shape: the nodes along a vessel move with their neighbours.
 
 use super::frame::{Chain, Frame};
-use crate::geometry::Vec3;
+use anastomesh_mesh::geometry::Vec3;
 use rayon::prelude::*;
 
 /// Over how many radii along a vessel its nodes move together.

@@ -10,9 +10,9 @@ use super::leash::Leashes;
 use super::params::{RefineError, RefineParams};
 use super::push::Push;
 use super::{room, shape};
-use crate::geometry::{Point3, Vec3};
-use crate::progress::{Progress, Stage};
-use crate::skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
 
 /// How much of what is asked of a node by several conditions at once it does: their sum over the number to this power.
 const AVERAGE: f64 = 0.25;

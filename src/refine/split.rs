@@ -1,7 +1,7 @@
 //! 3.1: nodes of valence above 3 become chains of nodes of valence 3.
 
-use crate::geometry::Point3;
-use crate::skeleton::{Edge, EdgeId, Node, NodeId, Skeleton};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::{Edge, EdgeId, Node, NodeId, Skeleton};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -163,9 +163,9 @@ mod tests {
         assert_eq!(after.check(), Ok(()));
         let (a, b) = (before.adjacency(), after.adjacency());
         assert!(after.node_ids().all(|n| b.valence(n) <= 3));
-        let count = |s: &Skeleton, a: &crate::skeleton::Adjacency| {
+        let count = |s: &Skeleton, a: &anastomesh_skeleton::Adjacency| {
             let components = s.components(a).list;
-            (components.len(), components.iter().map(crate::skeleton::Component::loops).sum::<usize>())
+            (components.len(), components.iter().map(anastomesh_skeleton::Component::loops).sum::<usize>())
         };
         assert_eq!(count(before, &a), count(after, &b));
         for node in before.node_ids() {
@@ -216,7 +216,7 @@ mod tests {
             let nodes = nodes.map(|(i, &p)| Node { position: p.into(), radius: 1.0, original: i as u32 }).collect();
             let edge = |&(a, b, r): &(u32, u32, u8)| Edge { nodes: [NodeId(a), NodeId(b)], radii: [f64::from(r); 2] };
             let raw = Skeleton { nodes, edges: ends.iter().map(edge).collect() };
-            if let Ok((s, _)) = crate::skeleton::clean(&raw) {
+            if let Ok((s, _)) = anastomesh_skeleton::clean(&raw) {
                 let (after, report) = split(&s);
                 prop_assert_eq!(&split(&after).0, &after);
                 check(&s, &after, &report);

@@ -2,8 +2,8 @@
 
 use super::*;
 
-use crate::skeleton::clean;
-pub(super) use crate::skeleton::fixtures::{network, tangle};
+use anastomesh_skeleton::clean;
+pub(super) use anastomesh_skeleton::fixtures::{network, tangle};
 use proptest::prelude::*;
 
 pub(super) fn run(s: &Skeleton, params: &RefineParams) -> Refined {
@@ -283,7 +283,7 @@ proptest! {
             let shape = |s: &Skeleton| {
                 let a = s.adjacency();
                 let list = s.components(&a).list;
-                (list.len(), list.iter().map(crate::skeleton::Component::loops).sum::<usize>(), a.terminals().len())
+                (list.len(), list.iter().map(anastomesh_skeleton::Component::loops).sum::<usize>(), a.terminals().len())
             };
             prop_assert_eq!(shape(&s), shape(&refined.skeleton));
             prop_assert!(refined.report.result.overlaps <= refined.report.given.overlaps);

@@ -1,8 +1,8 @@
 //! All inlets and outlets as a table.
 
-use crate::io::network::NodeNames;
 use crate::pipeline::{CapRow, Caps};
-use crate::skeleton::NodeId;
+use anastomesh_io::network::NodeNames;
+use anastomesh_skeleton::NodeId;
 use std::error::Error;
 
 /// The columns. Lengths are in the mesh's unit; flow is volume per time, in at inlets, out at outlets.

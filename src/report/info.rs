@@ -1,9 +1,9 @@
 //! What `info` says about a network.
 
 use super::inlets::Inlet;
-use super::units::{digits, grouped, percent};
-use crate::geometry::Aabb;
-use crate::skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Share, Skeleton};
+use anastomesh_mesh::geometry::Aabb;
+use anastomesh_mesh::units::{digits, grouped, percent};
+use anastomesh_skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Share, Skeleton};
 use serde::Serialize;
 use std::fmt;
 
@@ -166,12 +166,12 @@ impl NetworkInfo {
             branches: branches.len(),
             components: components.len(),
             largest_component: components.iter().map(|c| c.nodes.len()).max().unwrap_or(0),
-            loops: components.iter().map(crate::skeleton::Component::loops).sum(),
+            loops: components.iter().map(anastomesh_skeleton::Component::loops).sum(),
             terminals: valences.get(1).copied().unwrap_or(0),
             valences,
             radius,
             edges_shorter_than_radius: short,
-            branch_length: Spread::of(branches.iter().map(crate::skeleton::Branch::length).collect()),
+            branch_length: Spread::of(branches.iter().map(anastomesh_skeleton::Branch::length).collect()),
             branch_length_in_radii: Spread::of(branches.iter().map(|b| b.length() / b.mean_radius(skeleton)).collect()),
             inlets: Vec::new(),
             total_length: lengths.iter().sum(),
@@ -291,8 +291,8 @@ impl fmt::Display for NetworkInfo {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point3;
-    use crate::skeleton::{Edge, Node, NodeId, clean};
+    use anastomesh_mesh::geometry::Point3;
+    use anastomesh_skeleton::{Edge, Node, NodeId, clean};
 
     /// A trunk of two edges with a ring of three at its end, and a vessel of its own that crosses the trunk.
     fn network() -> Skeleton {

@@ -1,8 +1,8 @@
 //! Which terminals become inlets, and why.
 
-use super::units::number;
-use crate::io::network::NodeNames;
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_io::network::NodeNames;
+use anastomesh_mesh::units::number;
+use anastomesh_skeleton::{NodeId, Skeleton};
 use serde::Serialize;
 use std::fmt;
 
@@ -147,8 +147,8 @@ impl Inlets {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::network::{NetworkFormat, NetworkOptions, read_network_from};
-    use crate::skeleton::clean;
+    use anastomesh_io::network::{NetworkFormat, NetworkOptions, read_network_from};
+    use anastomesh_skeleton::clean;
 
     /// The root 7 is thinner than the leaf 1.
     const TREE: &str = "7 0 0 0 0 1 -1\n5 0 0 0 9 1 7\n1 0 0 6 20 2 5\n3 0 0 -6 20 1 5\n";

@@ -2,7 +2,7 @@
 
 use crate::block::ThinLayers;
 use crate::pipeline::{RunReport, ThinBlock};
-use crate::report::units::grouped;
+use anastomesh_mesh::units::grouped;
 use std::fmt;
 
 /// For people: blocks, retries, failures, sizes and times.

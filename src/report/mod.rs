@@ -4,7 +4,6 @@
 pub mod advice;
 #[cfg(feature = "cli")]
 pub mod caps;
-pub mod check;
 pub mod fidelity;
 pub mod info;
 pub mod inlets;
@@ -22,4 +21,3 @@ pub mod rows;
 pub mod summary;
 #[cfg(feature = "cli")]
 pub mod tetrahedralize;
-pub mod units;

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use super::rows::row;
-use super::units::{counted, grouped};
 use crate::prepare::{Fault, PrepareReport, Size, SpurReason, TouchedBy, TouchingTip};
+use anastomesh_mesh::units::{counted, grouped};
 
 /// A line of the table of sizes.
 type Row = (&'static str, fn(&Size) -> usize);

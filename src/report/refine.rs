@@ -6,12 +6,12 @@ use std::fmt::{self, Write as _};
 use super::plot::{Panel, Series};
 #[cfg(feature = "cli")]
 use super::rows::{Ended, row};
-use super::units::grouped;
-#[cfg(feature = "cli")]
-use super::units::{number, percent as share};
 #[cfg(feature = "cli")]
 use crate::refine::Sample;
 use crate::refine::{Figures, RefineReport, Treatment};
+use anastomesh_mesh::units::grouped;
+#[cfg(feature = "cli")]
+use anastomesh_mesh::units::{number, percent as share};
 
 /// A line of the table of figures: its name and what it shows of a state.
 type Row = (&'static str, fn(&Figures) -> String);

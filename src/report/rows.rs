@@ -1,7 +1,7 @@
 //! Rows of what the terminal shows in the end: a word and what there is to say of it; files, time and memory of every verb.
 
-use super::units::{bytes_of, seconds_of};
 use crate::pipeline::StageTime;
+use anastomesh_mesh::units::{bytes_of, seconds_of};
 
 /// Stages that took a smaller share of the time are not mentioned.
 const MENTIONED: f64 = 0.05;

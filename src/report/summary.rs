@@ -1,11 +1,11 @@
 //! What a run did, read in ten seconds: what came in, what was made, whether it is valid, where it is, how long it took.
 
-use super::check::{faults, shape, sizes, tally, verdict};
 use super::rows::{Ended, row};
-use super::units::{bytes_of, counted, digits, grouped, rounded, seconds_of};
 use crate::fidelity::Fidelity;
-use crate::mesh::check::CheckReport;
 use crate::pipeline::{Forecast, RunReport};
+use anastomesh_mesh::check::CheckReport;
+use anastomesh_mesh::check::text::{faults, shape, sizes, tally, verdict};
+use anastomesh_mesh::units::{bytes_of, counted, digits, grouped, rounded, seconds_of};
 use std::fmt::{self, Write as _};
 
 /// Things of a kind that are spelt out.
@@ -137,9 +137,9 @@ pub fn forecast(forecast: &Forecast, threads: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::check::check_tets;
-    use crate::mesh::shapes::cube_lattice;
     use crate::pipeline::{Estimate, FailedBlock, StageTime};
+    use anastomesh_mesh::check::check_tets;
+    use anastomesh_mesh::shapes::cube_lattice;
 
     fn run() -> RunReport {
         RunReport {

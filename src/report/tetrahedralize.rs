@@ -1,13 +1,13 @@
 //! What a tetrahedralization has to say, for people and as JSON.
 
 use super::rows::{Ended, row};
-use super::units::{digits, grouped};
-use crate::geometry::Point3;
-use crate::mesh::quality::{TetQuality, dihedral_range, volume6};
-use crate::mesh::{Bounds, face_key};
-use crate::mesh::{TET_FACES, TetMesh};
 use crate::pipeline::StageTime;
-use crate::tet::LayerSummary;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::quality::{TetQuality, dihedral_range, volume6};
+use anastomesh_mesh::units::{digits, grouped};
+use anastomesh_mesh::{Bounds, face_key};
+use anastomesh_mesh::{TET_FACES, TetMesh};
+use anastomesh_tet::LayerSummary;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -411,7 +411,7 @@ fn extra(count: usize, what: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::shapes::cube_lattice;
+    use anastomesh_mesh::shapes::cube_lattice;
 
     #[test]
     fn bounds_are_counted() {

@@ -12,9 +12,9 @@ use super::relax::{Hold, Level, Relaxation};
 use super::shared_disc::SharedDisc;
 use super::sizes::{Finer, GROWTH};
 use super::{Field, SizedWall, SurfaceParams};
-use crate::geometry::{Point3, Section, Vec3};
-use crate::mesh::{Kept, TriMesh};
-use crate::skeleton::NodeId;
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
+use anastomesh_mesh::{Kept, TriMesh};
+use anastomesh_skeleton::NodeId;
 use weave::weave;
 
 /// A closed wall whose terminals are flat discs.

@@ -11,8 +11,8 @@ use rustc_hash::FxHashMap;
 use super::SurfaceError;
 use super::cases::{CASES, FACE_EDGES, NONE, edge_corners};
 use super::relax::largest_cosine;
-use crate::geometry::{Point3, Vec3};
-use crate::mesh::TriMesh;
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// A grid node, or the cell of which it is the lowest corner.
 pub(crate) type Node = [i32; 3];

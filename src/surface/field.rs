@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 
 use super::SurfaceError;
 use super::erf::Table;
-use crate::geometry::{Point3, Tube, Vec3};
+use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
 
 /// Contributions below this fraction of the level are left out.
 const NEGLIGIBLE: f64 = 3e-4;

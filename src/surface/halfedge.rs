@@ -3,8 +3,8 @@
 //! Half-edge `3 f + i` runs from corner `i` of triangle `f` to its next corner. Only closed 2-manifolds are held, and
 //! every operation keeps them so.
 
-use crate::geometry::{Point3, Vec3};
-use crate::mesh::TriMesh;
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// No half-edge; also marks what has been removed.
 pub(crate) const NONE: u32 = u32::MAX;

@@ -22,10 +22,10 @@ pub use params::{SurfaceError, SurfaceParams};
 pub use shared_disc::SharedDisc;
 pub use sizes::Finer;
 
-use crate::geometry::DisjointSets;
-use crate::geometry::{Point3, Tube, Vec3};
-use crate::mesh::Kept;
-use crate::mesh::TriMesh;
+use anastomesh_mesh::Kept;
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::DisjointSets;
+use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
 use halfedge::HalfEdges;
 use relax::Relaxation;
 

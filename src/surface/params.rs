@@ -1,6 +1,6 @@
 //! How a surface is made, and why there may be none.
 
-use crate::skeleton::resolution::KAPPA;
+use anastomesh_skeleton::resolution::KAPPA;
 
 /// How a surface is made.
 #[derive(Clone, Copy, Debug, PartialEq)]

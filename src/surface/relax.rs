@@ -4,7 +4,7 @@
 
 use super::field::Field;
 use super::halfedge::HalfEdges;
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 mod crotch;
 

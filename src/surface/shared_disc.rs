@@ -3,8 +3,8 @@
 
 use super::SurfaceParams;
 use super::disc::{MEAN_EDGE, corners, disc};
-use crate::geometry::{Point3, Section};
-use crate::skeleton::resolution::FOLLOW;
+use anastomesh_mesh::geometry::{Point3, Section};
+use anastomesh_skeleton::resolution::FOLLOW;
 
 /// Edges of a wall at the radius of its thinnest vessel and at larger ones differ by 7 % in what is aimed at; a disc
 /// does not know which its neighbours are.

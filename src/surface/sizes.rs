@@ -4,8 +4,8 @@
 use super::SurfaceParams;
 use super::field::Field;
 use super::halfedge::HalfEdges;
-use crate::geometry::{Point3, Section};
-use crate::skeleton::FineFork;
+use anastomesh_mesh::geometry::{Point3, Section};
+use anastomesh_skeleton::FineFork;
 use std::collections::VecDeque;
 
 /// How much longer edges may become on a way, over its length: edges that share a vertex differ by a fifth.

@@ -2,8 +2,8 @@
 
 use super::halfedge::HalfEdges;
 use super::*;
-use crate::geometry::{Section, Tube};
-use crate::skeleton::FineFork;
+use anastomesh_mesh::geometry::{Section, Tube};
+use anastomesh_skeleton::FineFork;
 use proptest::prelude::*;
 
 fn tube(a: [f64; 3], b: [f64; 3], ra: f64, rb: f64) -> Tube {
@@ -118,7 +118,7 @@ fn check_wall(mesh: &TriMesh) {
     assert!(HalfEdges::new(mesh).is_ok());
     assert_eq!(euler_characteristic(mesh), 2);
     assert!(volume(mesh) > 0.0);
-    assert_eq!(crate::geometry::self_intersections(&mesh.points, &mesh.triangles), []);
+    assert_eq!(anastomesh_mesh::geometry::self_intersections(&mesh.points, &mesh.triangles), []);
     assert!(smallest_angle(mesh) > 20.0, "{}", smallest_angle(mesh));
 }
 

@@ -2,8 +2,8 @@
 
 use super::pack::{Grid, Pack};
 use super::wall::{Group, Piece, Wall};
-use crate::geometry::Point3;
-use crate::geometry::hilbert::hilbert_key;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::hilbert::hilbert_key;
 use serde::Serialize;
 
 /// Points of a chunk, about.

@@ -1,7 +1,7 @@
 //! A surface made coarser by letting edges go, the one that is missed least first.
 
 use super::quadric::{Quadric, relative};
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -2,10 +2,10 @@
 
 use super::wall::{Group, Wall};
 use crate::block::{BlockDump, BlockInput};
-use crate::geometry::{Point3, Vec3};
-use crate::mesh::Patch;
-use crate::mesh::check::{CheckReport, LineResult, Offender, OffenderKind};
-use crate::skeleton::{Overlap, Skeleton};
+use anastomesh_mesh::Patch;
+use anastomesh_mesh::check::{CheckReport, LineResult, Offender, OffenderKind};
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_skeleton::{Overlap, Skeleton};
 use serde::Serialize;
 
 /// Faults of a kind that are listed, at most.

@@ -2,7 +2,7 @@
 
 use super::pack::{Grid, Pack};
 use crate::flow::{Orders, solve};
-use crate::skeleton::{NodeId, Skeleton};
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// Steps of the grid of its nodes, and of its radii.
 const STEPS: u32 = 1 << 20;

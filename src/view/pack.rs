@@ -1,6 +1,6 @@
 //! Arrays of numbers, small: differences of neighbours, a plane for each of their bytes, compressed.
 
-use crate::geometry::Point3;
+use anastomesh_mesh::geometry::Point3;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use serde::Serialize;

@@ -4,7 +4,7 @@ use super::chunk::pack_wall;
 use super::faults::Fault;
 use super::pack::Pack;
 use super::wall::Wall;
-use crate::mesh::Patch;
+use anastomesh_mesh::Patch;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};

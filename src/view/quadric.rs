@@ -1,6 +1,6 @@
 //! Sums of squared distances from planes (Garland and Heckbert 1997), which say what a surface loses when an edge goes.
 
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use nalgebra::Matrix3;
 use std::ops::AddAssign;
 

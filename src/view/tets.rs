@@ -2,8 +2,8 @@
 
 use super::pack::{Grid, Pack};
 use super::wall::Wall;
-use crate::geometry::Point3;
-use crate::mesh::source::{MeshSource, TetPiece};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::{MeshSource, TetPiece};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::io;
 

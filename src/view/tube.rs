@@ -1,6 +1,6 @@
 //! The wall of a straight tube as a strip between what is kept of its two rings: nothing has to be searched for.
 
-use crate::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// How far from the axis the wall of a straight tube is at most, in radii.
 const STRAIGHT: f64 = 1.25;

@@ -4,9 +4,9 @@ use super::collapse::Collapse;
 use super::rings::{rings, thinned};
 use super::tube::straight;
 use crate::block::triangle_ratio;
-use crate::geometry::{Aabb, Point3, Vec3};
-use crate::mesh::beside::Beside;
-use crate::mesh::source::{FacePiece, MeshSource};
+use anastomesh_mesh::beside::Beside;
+use anastomesh_mesh::geometry::{Aabb, Point3, Vec3};
+use anastomesh_mesh::source::{FacePiece, MeshSource};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
@@ -286,9 +286,9 @@ fn compact(points: &[Point3], mut triangles: Vec<[u32; 3]>) -> (Vec<Point3>, Vec
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::adjacency::boundary_faces;
-    use crate::mesh::shapes::tube_lattice;
-    use crate::mesh::{VolumeMesh, WALL};
+    use anastomesh_mesh::adjacency::boundary_faces;
+    use anastomesh_mesh::shapes::tube_lattice;
+    use anastomesh_mesh::{VolumeMesh, WALL};
     use std::collections::BTreeSet;
 
     /// A tube of two blocks, with caps at both ends.

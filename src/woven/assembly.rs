@@ -4,11 +4,14 @@ use std::io;
 
 use super::joints::{Joint, JointOptions, JointReport, smooth_joints};
 use super::label::{LabelError, PatchFaces, label};
-use crate::mesh::adjacency::TetAdjacency;
-use crate::mesh::source::{MeshSource, gather};
-use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL};
-use crate::progress::Progress;
-use crate::tet::optimize::{Effort, OptimizeOptions, optimize};
+use anastomesh_mesh::adjacency::TetAdjacency;
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::source::{MeshSource, gather};
+use anastomesh_mesh::{Patch, TetMesh, VolumeMesh, WALL};
+use anastomesh_tet::{
+    Effort,
+    parts::{OptimizeOptions, optimize},
+};
 
 /// The blocks in one mesh, and what of it the joints' smoothing needs.
 #[derive(Debug)]

@@ -2,9 +2,9 @@
 
 use super::trim::{TrimOptions, Trimmed, trim};
 use crate::block::{BlockError, BlockParams, ClusterMesh, CutEnd, EndStyle, cut_ends, mesh_cluster_watched};
-use crate::mesh::adjacency::tet_adjacency;
 use crate::partition::{Cluster, ClusterId};
-use crate::tet::Watch;
+use anastomesh_mesh::adjacency::tet_adjacency;
+use anastomesh_tet::parts::Watch;
 
 /// Meshes a cluster with its vessels going on beyond the cuts, and takes off what lies there.
 ///

@@ -5,8 +5,8 @@
 
 use super::region::{OUTSIDE, Region, WALL};
 use crate::block::{FlattenFailure, cross, crossing, disc_rim};
-use crate::geometry::Point3;
-use crate::mesh::TET_FACES;
+use anastomesh_mesh::TET_FACES;
+use anastomesh_mesh::geometry::Point3;
 
 /// One attempt at an end surface.
 #[derive(Clone, Copy, Debug)]

@@ -3,13 +3,13 @@
 use std::collections::{HashMap, HashSet};
 
 use super::joints::{Joint, JointOptions, JointReport, smooth_joints};
-use crate::geometry::Point3;
-use crate::mesh::adjacency::boundary_faces;
-use crate::mesh::quality::TetQuality;
-use crate::mesh::{TetMesh, TriMesh};
-use crate::tet::complex::Complex;
-use crate::tet::optimize::{OptimizeOptions, optimize};
-use crate::tet::{TetOptions, tetrahedralize};
+use anastomesh_mesh::adjacency::boundary_faces;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::quality::TetQuality;
+use anastomesh_mesh::{TetMesh, TriMesh};
+use anastomesh_tet::parts::Complex;
+use anastomesh_tet::parts::{OptimizeOptions, optimize};
+use anastomesh_tet::parts::{TetOptions, tetrahedralize};
 
 const SIDES: u32 = 14;
 const LAYERS: u32 = 8;

@@ -10,8 +10,8 @@ mod wall;
 
 use rayon::prelude::*;
 
-use crate::mesh::TetMesh;
-use crate::mesh::smooth::Taubin;
+use anastomesh_mesh::TetMesh;
+use anastomesh_mesh::smooth::Taubin;
 pub use region::Improve;
 use region::Region;
 

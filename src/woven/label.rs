@@ -1,10 +1,10 @@
 //! Labels on the boundary: which face is wall, which closes a vessel.
 
-use crate::mesh::face_key;
+use anastomesh_mesh::face_key;
 use rustc_hash::FxHashMap;
 
-use crate::mesh::adjacency::{self, TetAdjacency};
-use crate::mesh::{Patch, TetMesh, VolumeMesh, WALL};
+use anastomesh_mesh::adjacency::{self, TetAdjacency};
+use anastomesh_mesh::{Patch, TetMesh, VolumeMesh, WALL};
 
 /// The faces of one patch other than the wall.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +77,7 @@ pub fn label(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point3;
+    use anastomesh_mesh::geometry::Point3;
 
     fn mesh() -> TetMesh {
         let p = |x, y, z| Point3::new(x, y, z);

@@ -1,7 +1,7 @@
 //! The part of a cluster's mesh round one cut: everything trimming may look at, renumbered.
 
 use crate::block::Plane;
-use crate::geometry::{Point3, Section};
+use anastomesh_mesh::geometry::{Point3, Section};
 
 /// Neighbour entries of a tetrahedron that has no neighbour in the region.
 pub(super) const WALL: u32 = u32::MAX;
@@ -152,8 +152,10 @@ fn neighbour(handle: u32) -> u32 {
 }
 
 fn inside(ground: &Ground, tet: u32, section: &Section, reach: Reach) -> bool {
-    let sum =
-        ground.tets[tet as usize].iter().map(|&v| ground.points[v as usize].coords).sum::<crate::geometry::Vec3>();
+    let sum = ground.tets[tet as usize]
+        .iter()
+        .map(|&v| ground.points[v as usize].coords)
+        .sum::<anastomesh_mesh::geometry::Vec3>();
     let d = sum / 4.0 - section.origin.coords;
     let height = d.dot(&section.axis);
     height > -reach.depth && (d - section.axis * height).norm() < reach.lateral

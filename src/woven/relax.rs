@@ -6,9 +6,9 @@
 
 use super::region::{OUTSIDE, Region, WALL};
 use crate::block::{tet_ratio, triangle_ratio};
-use crate::geometry::turn;
-use crate::geometry::{Point3, Section, Vec3};
-use crate::mesh::TET_FACES;
+use anastomesh_mesh::TET_FACES;
+use anastomesh_mesh::geometry::turn;
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 
 /// Passes over the vertices of the end surface.
 const PASSES: usize = 8;

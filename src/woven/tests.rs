@@ -7,9 +7,9 @@ use crate::block::fixtures::{
     worst_ratio,
 };
 use crate::block::{BlockParams, ConnectorEnd, CutEnd, Division, connector_surface, mesh_cluster, mesh_connector};
-use crate::geometry::{Point3, Tube};
 use crate::partition::{Cluster, ClusterId, CutId};
-use crate::tet::Watch;
+use anastomesh_mesh::geometry::{Point3, Tube};
+use anastomesh_tet::parts::Watch;
 
 #[test]
 fn bifurcations_are_meshed_and_joined() {

@@ -4,9 +4,9 @@ use super::flatten::{Attempt, Flat, flatten};
 use super::region::{Ground, Reach, Region, WALL};
 use super::relax::Relaxation;
 use crate::block::{CutEnd, EndSurface, FlattenFailure, cross, triangle_ratio};
-use crate::geometry::Point3;
-use crate::geometry::predicates::orient3d;
-use crate::mesh::{Kept, TetMesh};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::{Kept, TetMesh};
 
 /// How to trim.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +102,7 @@ fn seeds(mesh: &TetMesh, ends: &[CutEnd], options: &TrimOptions) -> Vec<Option<u
     let widest = balls.iter().map(|b| b.1).fold(0.0, f64::max);
     let mut best: Vec<(f64, Option<u32>)> = balls.iter().map(|b| (b.1 * b.1, None)).collect();
     for (t, corners) in mesh.tets.iter().enumerate() {
-        let c = corners.iter().map(|&v| mesh.points[v as usize].coords).sum::<crate::geometry::Vec3>() / 4.0;
+        let c = corners.iter().map(|&v| mesh.points[v as usize].coords).sum::<anastomesh_mesh::geometry::Vec3>() / 4.0;
         let first = by_x.partition_point(|&e| balls[e].0.x < c.x - widest);
         for &e in &by_x[first..] {
             if balls[e].0.x > c.x + widest {

@@ -5,8 +5,8 @@ use crate::block::fixtures::{
     assert_mesh, boundary, closed_euler, direction, jitter, lattice_tube, lattice_tubes, neighbours, section,
 };
 use crate::block::{CutEnd, FlattenFailure, tet_ratio, triangle_ratio};
-use crate::geometry::{Point3, Tube, Vec3};
 use crate::partition::CutId;
+use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
 
 fn cut_end(cut: u32, side: u8, origin: Point3, axis: Vec3, radius: f64) -> CutEnd {
     CutEnd { cut: CutId(cut), side, section: section(origin, axis, radius) }

@@ -7,14 +7,20 @@ use crate::block::corners::part_corners;
 use crate::block::free_ends::FreeEnds;
 use crate::block::layered::{Walled, discs_first, renumbered};
 use crate::block::params::BlockParams;
-use crate::geometry::{Point3, Section, Vec3};
-use crate::mesh::quality::radius_ratio;
-use crate::mesh::{TetMesh, TriMesh};
 use crate::partition::{Cut, CutId};
-use crate::skeleton::BranchId;
-use crate::tet::layers::Inset;
-use crate::tet::optimize::{Effort, OptimizeOptions, optimize};
-use crate::tet::{Interior, Layers, TetError, TetOptions, tetrahedralize};
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
+use anastomesh_mesh::quality::radius_ratio;
+use anastomesh_mesh::{TetMesh, TriMesh};
+use anastomesh_skeleton::BranchId;
+use anastomesh_tet::parts::Inset;
+use anastomesh_tet::{
+    Effort,
+    parts::{OptimizeOptions, optimize},
+};
+use anastomesh_tet::{
+    Interior, Layers, TetError,
+    parts::{TetOptions, tetrahedralize},
+};
 use rustc_hash::FxHashMap;
 use std::f64::consts::TAU;
 use std::sync::{Arc, LazyLock, OnceLock, PoisonError, RwLock};

@@ -11,10 +11,10 @@ mod tests;
 
 use super::params::BlockParams;
 use super::path::AxisPath;
-use crate::geometry::{Point3, Section};
-use crate::mesh::quality::radius_ratio;
-use crate::mesh::{Kept, TetMesh};
 use crate::surface::SharedDisc;
+use anastomesh_mesh::geometry::{Point3, Section};
+use anastomesh_mesh::quality::radius_ratio;
+use anastomesh_mesh::{Kept, TetMesh};
 use canonical::Template;
 
 /// Longest template, in radii: discs inside a tube are flat, and their neighbours a little worse than others.

@@ -1,10 +1,10 @@
 use super::*;
 use crate::block::end_surface::EndSurface;
 use crate::block::{ConnectorMesh, EndStyle, Finished, mesh_free_connector, shared_ends};
-use crate::geometry::Vec3;
-use crate::mesh::quality::{TetQuality, volume6};
 use crate::partition::{Cut, CutId};
-use crate::skeleton::BranchId;
+use anastomesh_mesh::geometry::Vec3;
+use anastomesh_mesh::quality::{TetQuality, volume6};
+use anastomesh_skeleton::BranchId;
 use std::f64::consts::PI;
 
 fn section(z: f64, radius: f64) -> Section {
@@ -130,7 +130,7 @@ fn hulls_are_the_boundary() {
 
 #[test]
 fn layers_are_rings_of_the_discs_and_as_thick_as_asked() {
-    let layers = crate::tet::Layers::default();
+    let layers = anastomesh_tet::Layers::default();
     let path = vec![section(0.0, 2.0), section(30.0, 2.0)];
     for stretch in [1.0, 4.0] {
         let params = BlockParams { layers: Some(layers), stretch, ends: EndStyle::Shared, ..BlockParams::default() };

@@ -7,7 +7,7 @@ use super::input::Input;
 use super::numbers::FileNumbers;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::stop::NOTHING_KEPT;
-use crate::tet::{Names, TetError};
+use anastomesh_tet::{TetError, parts::Names};
 
 /// The message and exit code for an error; `from` names the input.
 pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {

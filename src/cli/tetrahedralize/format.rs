@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::cli::exit::Failure;
-use crate::io::surface::SurfaceFormat;
-use crate::io::tetgen::{MeshFamily, PlcFormat};
-use crate::io::volume::{MeshFormat, ensure_writable};
+use anastomesh_io::surface::SurfaceFormat;
+use anastomesh_io::tetgen::{MeshFamily, PlcFormat};
+use anastomesh_io::volume::{MeshFormat, ensure_writable};
 
 /// A format that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -115,7 +115,7 @@ impl Target {
                 None => Err(Failure::usage("standard output has no extension: name its format with --to")),
             };
         }
-        let failed = |e: crate::io::volume::MeshFileError| Failure::input(e.to_string());
+        let failed = |e: anastomesh_io::volume::MeshFileError| Failure::input(e.to_string());
         if MeshFormat::of(path).map_err(failed)? != MeshFormat::Tetgen {
             ensure_writable(path).map_err(failed)?;
             return Ok(Self::File(path.to_path_buf()));

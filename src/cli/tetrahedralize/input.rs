@@ -1,6 +1,6 @@
 //! The input: read, facets cut into triangles, repaired where asked for.
 
-use crate::geometry::place_key;
+use anastomesh_mesh::geometry::place_key;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -8,12 +8,14 @@ use super::format::{InputFormat, is_stream};
 use super::numbers::{Counted, FileNumbers};
 use super::plan::TetPlan;
 use crate::cli::exit::Failure;
-use crate::io::surface::{ArrayComplex, ArrayRegion, SurfaceContent, read_complex, read_content_as, read_content_from};
-use crate::io::tetgen::{self, Nodes};
-use crate::mesh::TriMesh;
-use crate::mesh::facets::{self, FacetTriangles};
-use crate::mesh::repair::{RepairReport, Repaired, repair, repair_facets};
-use crate::tet::{Plc, Region};
+use anastomesh_io::surface::{
+    ArrayComplex, ArrayRegion, SurfaceContent, read_complex, read_content_as, read_content_from,
+};
+use anastomesh_io::tetgen::{self, Nodes};
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::facets::{self, FacetTriangles};
+use anastomesh_mesh::repair::{RepairReport, Repaired, repair, repair_facets};
+use anastomesh_tet::{Plc, Region};
 use rustc_hash::FxHashMap;
 
 /// What was read.

@@ -19,16 +19,19 @@ use super::common;
 use super::exit::{Exit, Failure};
 use super::log;
 use super::stop::Stop;
-use crate::mesh::VolumeMesh;
-use crate::mesh::dihedral::DihedralHistogram;
-use crate::mesh::quality::TetQuality;
 use crate::report::page::{self, Mark, Section};
 use crate::report::rows::row;
 use crate::report::tetrahedralize::{
     BoundResult, InputSize, LayerReport, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
-use crate::report::units::grouped;
-use crate::tet::{Boundary, LeftOut as LeftOutIds, Names, TetError, Tetrahedralization};
+use anastomesh_mesh::VolumeMesh;
+use anastomesh_mesh::dihedral::DihedralHistogram;
+use anastomesh_mesh::quality::TetQuality;
+use anastomesh_mesh::units::grouped;
+use anastomesh_tet::{
+    Boundary, TetError, Tetrahedralization,
+    parts::{LeftOut as LeftOutIds, Names},
+};
 pub use args::Args;
 use format::{InputFormat, Target, is_stream};
 use input::Input;

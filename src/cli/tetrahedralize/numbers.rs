@@ -1,7 +1,7 @@
 //! How the file numbers what the tetrahedralizer names: triangles may be pieces of polygons, points may have been joined,
 //! and some formats count from 1.
 
-use crate::tet::Names;
+use anastomesh_tet::parts::Names;
 
 /// What a file numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

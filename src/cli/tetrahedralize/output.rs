@@ -8,11 +8,11 @@ use super::input::Input;
 use super::plan::{TetPlan, Wanted};
 use crate::cli::exit::Failure;
 use crate::cli::stop::NOTHING_KEPT;
-use crate::io::tetgen::{Extent, MeshFamily};
-use crate::io::volume::{MeshNotes, WriteOptions, write_mesh_to, write_mesh_with};
-use crate::mesh::{Patch, TET_FACES, VolumeMesh};
-use crate::progress::Progress;
-use crate::tet::Tetrahedralization;
+use anastomesh_io::tetgen::{Extent, MeshFamily};
+use anastomesh_io::volume::{MeshNotes, WriteOptions, write_mesh_to, write_mesh_with};
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::{Patch, TET_FACES, VolumeMesh};
+use anastomesh_tet::Tetrahedralization;
 use rustc_hash::FxHashMap;
 
 /// The marker of all faces where the input has none.

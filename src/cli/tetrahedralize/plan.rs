@@ -4,8 +4,8 @@ use super::args::Args;
 use super::format::{InputFormat, Target};
 use super::switches::Switches;
 use crate::cli::exit::Failure;
-use crate::mesh::{Bounds, REGULAR_DIHEDRAL};
-use crate::tet::{Boundary, Effort, InputKind, Interior, Layers, Refinement, Region, Sizing, Tetrahedralizer};
+use anastomesh_mesh::{Bounds, REGULAR_DIHEDRAL};
+use anastomesh_tet::{Boundary, Effort, InputKind, Interior, Layers, Refinement, Region, Sizing, Tetrahedralizer};
 use serde::Serialize;
 
 /// Side of the lattice's cubes in edge lengths: what gives a body-centred lattice edges of about that length.
@@ -163,7 +163,7 @@ impl TetPlan {
 
     /// The tetrahedralizer that does it for an input with these regions.
     pub fn tetrahedralizer(&self, regions: &[Region]) -> Tetrahedralizer {
-        let refinement = Refinement { bounds: self.bounds, ..Refinement::default() };
+        let refinement = Refinement::default().bounds(self.bounds);
         let lattice = if self.sparse {
             SPARSE
         } else {

@@ -1,6 +1,6 @@
 //! `TetGen`'s switches, as its manual describes them (version 1.5, section 4): a string such as `pYq1.4a0.1`.
 
-use crate::mesh::{Bounds, REGULAR_DIHEDRAL};
+use anastomesh_mesh::{Bounds, REGULAR_DIHEDRAL};
 
 /// What the switches ask for.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 use crate::cli::progress::{Lines, ProgressFormat, shows_bars, stage_bar};
 use crate::cli::stop::Stop;
 use crate::pipeline::StageTime;
-use crate::progress::{Progress, Stage};
+use anastomesh_mesh::progress::{Progress, Stage};
 
 /// Listens to a run: a bar per stage on a terminal, and the time that each takes.
 #[derive(Debug)]

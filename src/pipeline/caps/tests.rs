@@ -1,7 +1,7 @@
 use super::*;
-use crate::mesh::source::gather;
 use crate::pipeline::{MeshPlan, Meshed, mesh_network};
-use crate::skeleton::fixtures::network;
+use anastomesh_mesh::source::gather;
+use anastomesh_skeleton::fixtures::network;
 
 const FLUID: Fluid = Fluid { density: 1000.0, viscosity: 4e-3, inflow: Some(2.0) };
 

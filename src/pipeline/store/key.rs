@@ -2,7 +2,7 @@
 
 use xxhash_rust::xxh3::Xxh3;
 
-use crate::geometry::{Point3, Section, Vec3};
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 
 /// 128 bits made of everything that a record depends on. Two of 2^40 different inputs have the same key with a
 /// probability of less than 2^-48.

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::error::StoreError;
-use crate::progress::{Cancelled, Progress};
+use anastomesh_mesh::progress::{Cancelled, Progress};
 
 /// How often a lock that others hold is asked for again.
 const AGAIN: Duration = Duration::from_millis(20);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::arithmetic;
 use super::error::Difference;
 use super::key::{Key, KeyMaker};
-use crate::skeleton::Skeleton;
+use anastomesh_skeleton::Skeleton;
 
 /// Version of what is in a work directory.
 const FORMAT: u32 = 4;

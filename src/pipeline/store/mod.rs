@@ -44,7 +44,7 @@ pub use shard::{NoShard, Shard, two_numbers};
 use shelf::Shelf;
 
 use crate::block::Bytes;
-use crate::progress::Progress;
+use anastomesh_mesh::progress::Progress;
 
 /// A record of the store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]

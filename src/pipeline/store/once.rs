@@ -13,7 +13,7 @@ use super::error::StoreError;
 use super::key::Key;
 use super::locks::wait_for;
 use super::whole_file::part_of;
-use crate::progress::Progress;
+use anastomesh_mesh::progress::Progress;
 
 /// Reads what is kept in `folder` as `what` under a key, or makes and keeps it. While one run makes it others wait; when
 /// that one is killed another takes its place.

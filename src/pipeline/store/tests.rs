@@ -5,8 +5,8 @@ use std::io::Write;
 
 use super::error::Difference;
 use super::*;
-use crate::geometry::Point3;
-use crate::skeleton::{Node, Skeleton};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::{Node, Skeleton};
 
 fn key(i: u32) -> Key {
     let mut maker = KeyMaker::new("test");

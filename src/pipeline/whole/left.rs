@@ -8,10 +8,10 @@ use std::borrow::Cow;
 
 use super::numbering::Numbering;
 use super::{Listener, Whole};
-use crate::geometry::{Point3, Vec3};
-use crate::mesh::{Cap, Patch};
 use crate::pipeline::store::{Extents, MANIFEST, Store, StoreError};
-use crate::progress::Progress;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::{Cap, Patch};
 
 const NAME: &str = "whole";
 

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::io;
 
-use crate::mesh::source::SourceCounts;
-use crate::mesh::{Patch, WALL};
 use crate::partition::CutId;
 use crate::pipeline::blocks::Blocks;
 use crate::pipeline::make::{JointPlace, Kept, joints_of_cut};
 use crate::pipeline::store::RecordId;
+use anastomesh_mesh::source::SourceCounts;
+use anastomesh_mesh::{Patch, WALL};
 
 /// Parts in order: clusters by their ids, then connectors. A vertex that two parts have is numbered by the cluster.
 #[derive(Clone, Debug)]

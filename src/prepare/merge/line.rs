@@ -1,7 +1,7 @@
 //! Lines: branches, broken where they turn back upon themselves.
 
-use crate::geometry::{Point3, Vec3};
-use crate::skeleton::{Branch, EdgeId, NodeId, Skeleton};
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_skeleton::{Branch, EdgeId, NodeId, Skeleton};
 
 /// A line turns back where the ways that leave a node to both sides, seen a radius off, enclose less than 60 degrees: where
 /// two lines from one inlet meet in it, they are one branch that does so.

@@ -1,7 +1,7 @@
 //! Tips that lie at one place but for rounding: a line that was cut into tracts, each written with its own numbers.
 
-use crate::geometry::{Aabb, Bvh, DisjointSets};
-use crate::skeleton::{Edge, NodeId, Skeleton, SkeletonError, clean};
+use anastomesh_mesh::geometry::{Aabb, Bvh, DisjointSets};
+use anastomesh_skeleton::{Edge, NodeId, Skeleton, SkeletonError, clean};
 
 /// Tips as close as this, in radii of the thinner, are one place.
 const ONE_PLACE: f64 = 0.01;

@@ -10,8 +10,8 @@ mod line;
 mod meet;
 mod runs;
 
-use crate::geometry::Point3;
-use crate::skeleton::{Edge, EdgeId, LineGroup, Node, NodeId, Skeleton, SkeletonError, clean};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::{Edge, EdgeId, LineGroup, Node, NodeId, Skeleton, SkeletonError, clean};
 use line::{Line, lines_of};
 use rayon::prelude::*;
 use runs::{Course, Foot, Kept, Run, runs};

@@ -1,8 +1,8 @@
 //! Where a line runs together with those that are kept, and how much of it goes.
 
 use super::line::Line;
-use crate::geometry::{Aabb, Bvh, DisjointSets, Point3, Vec3, point_segment};
-use crate::skeleton::{EdgeId, Kinship, LineGroup, NodeId, Skeleton};
+use anastomesh_mesh::geometry::{Aabb, Bvh, DisjointSets, Point3, Vec3, point_segment};
+use anastomesh_skeleton::{EdgeId, Kinship, LineGroup, NodeId, Skeleton};
 
 /// Vessels that enclose less than 45 degrees have the same direction.
 const SAME_WAY: f64 = 0.707;

@@ -3,11 +3,11 @@
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
 use super::shape::bars;
-use crate::mesh::source::MeshSource;
 use crate::pipeline::RunReport;
 use crate::report::plot::Panel;
-use crate::report::units::grouped;
-use crate::skeleton::{EdgeId, Skeleton};
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::units::grouped;
+use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io;

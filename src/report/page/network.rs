@@ -4,7 +4,7 @@ use super::html::{Mark, Section};
 use super::pictures::network_picture;
 use crate::refine::RefineReport;
 use crate::report::refine::{figures_table, panels};
-use crate::skeleton::{EdgeId, Skeleton};
+use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::io;
 
 /// How a refinement ended, for the head of a page.

@@ -1,10 +1,10 @@
 //! Patches: names, places, areas, flows.
 
 use super::html::Section;
-use crate::io::network::NodeNames;
-use crate::mesh::Patch;
 use crate::pipeline::{CapRow, Caps};
-use crate::skeleton::NodeId;
+use anastomesh_io::network::NodeNames;
+use anastomesh_mesh::Patch;
+use anastomesh_skeleton::NodeId;
 
 /// Rows of a table, at most.
 const LISTED: usize = 100;

@@ -1,10 +1,10 @@
 //! Pictures for a page: on nothing, so that they stand on light and dark.
 
-use crate::geometry::Point3;
-use crate::mesh::check::{CheckReport, Offender, OffenderKind};
-use crate::mesh::source::MeshSource;
 use crate::picture::{Background, Camera, Canvas, Colour, Cut, Direction, Image, MeshPicture, NetworkPicture, Plane};
-use crate::skeleton::{EdgeId, Skeleton};
+use anastomesh_mesh::check::{CheckReport, Offender, OffenderKind};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::io;
 
 use super::places::extents;

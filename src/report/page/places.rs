@@ -1,7 +1,7 @@
 //! How large the surroundings of a place are that show what it belongs to.
 
-use crate::geometry::Point3;
-use crate::mesh::source::MeshSource;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::MeshSource;
 use std::collections::BinaryHeap;
 use std::io;
 

@@ -2,9 +2,9 @@
 
 use super::html::Section;
 use crate::fidelity::{Along, Fidelity};
-use crate::mesh::dihedral::DihedralHistogram;
-use crate::mesh::quality::TetQuality;
 use crate::report::plot::{Panel, Series};
+use anastomesh_mesh::dihedral::DihedralHistogram;
+use anastomesh_mesh::quality::TetQuality;
 
 /// Histograms of radius ratios (Fig. 8 of the paper) and dihedral angles.
 pub fn quality(quality: &TetQuality, dihedral: &DihedralHistogram) -> Section {

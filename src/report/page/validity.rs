@@ -2,10 +2,10 @@
 
 use super::html::{Mark, Section};
 use super::pictures::offenders;
-use crate::mesh::check::{CheckReport, Outcome, Verdict};
-use crate::mesh::source::MeshSource;
-use crate::report::check::{describe, extent, reason, verdict};
-use crate::report::units::grouped;
+use anastomesh_mesh::check::text::{describe, extent, reason, verdict};
+use anastomesh_mesh::check::{CheckReport, Outcome, Verdict};
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::units::grouped;
 use std::io;
 
 /// Offenders of a line that are spelt out.

@@ -1,8 +1,8 @@
 //! Tests of capping.
 
 use super::*;
-use crate::geometry::{Tube, self_intersections};
 use crate::surface::{Finer, euler_characteristic, vessel_wall};
+use anastomesh_mesh::geometry::{Tube, self_intersections};
 
 /// Tubes that start in one node, each with a terminal at its end, and the ends.
 fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<Closing<'static>>) {

@@ -1,7 +1,7 @@
 //! The strip between the ragged end of a wall and the ring of a cap.
 
-use crate::geometry::{Point3, Vec3};
 use crate::surface::strip::{Step, cheapest};
+use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// How far, in steps of the upper loop, the first rung may be from the nearest one.
 const SPREAD: usize = 2;

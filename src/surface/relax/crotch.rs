@@ -3,8 +3,8 @@
 //! bottom of the crotch.
 
 use super::{Criterion, Level, MAX_STEP, Relaxation, largest_cosine};
-use crate::geometry::{Aabb, Point3, Vec3, self_intersections};
 use crate::surface::halfedge::HalfEdges;
+use anastomesh_mesh::geometry::{Aabb, Point3, Vec3, self_intersections};
 
 /// How often what is left is looked at: each time halves the edges of a web, and evens out the triangles beside it.
 const PASSES: usize = 2;

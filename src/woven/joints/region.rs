@@ -1,11 +1,11 @@
 //! The tetrahedra of one joint, taken out of the whole mesh, worked on, and put back.
 
-use crate::mesh::tet_key;
+use anastomesh_mesh::tet_key;
 use rustc_hash::FxHashMap;
 
-use crate::mesh::TetMesh;
-use crate::mesh::adjacency::{face_vertices, tet_adjacency};
-use crate::mesh::quality::radius_ratio;
+use anastomesh_mesh::TetMesh;
+use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
+use anastomesh_mesh::quality::radius_ratio;
 
 /// Improves the inside of a mesh whose first so many points, and whose boundary faces, stay. All points keep their
 /// index; new ones may be appended. False when the mesh could not be improved and is unchanged.

@@ -1,9 +1,9 @@
 use super::*;
-use crate::geometry::predicates::orient3d;
-use crate::geometry::{Point3, Vec3};
-use crate::mesh::adjacency::{Incidence, boundary_faces, vertices_of};
-use crate::mesh::quality::{TetQuality, radius_ratio};
-use crate::mesh::shapes::{perturb, tube_lattice};
+use anastomesh_mesh::adjacency::{Incidence, boundary_faces, vertices_of};
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::quality::{TetQuality, radius_ratio};
+use anastomesh_mesh::shapes::{perturb, tube_lattice};
 use proptest::prelude::*;
 
 const LAYERS: u32 = 18;
@@ -155,7 +155,8 @@ fn new_tetrahedra_take_the_block_of_their_surroundings() {
     // Splits every tetrahedron in four: each quarter has to get the block of the whole.
     let split = |mesh: &mut TetMesh, _: usize| {
         for [a, b, c, d] in std::mem::take(&mut mesh.tets) {
-            let sum = [a, b, c, d].iter().map(|&v| mesh.points[v as usize].coords).sum::<crate::geometry::Vec3>();
+            let sum =
+                [a, b, c, d].iter().map(|&v| mesh.points[v as usize].coords).sum::<anastomesh_mesh::geometry::Vec3>();
             let m = mesh.points.len() as u32;
             mesh.points.push((sum / 4.0).into());
             mesh.tets.extend([[m, b, c, d], [a, m, c, d], [a, b, m, d], [a, b, c, m]]);

@@ -2,10 +2,10 @@
 //! the exact predicate.
 
 use super::region::Region;
-use crate::geometry::{Point3, Vec3, predicates::orient3d};
-use crate::mesh::adjacency::Incidence;
-use crate::mesh::quality::{radius_ratio, triangle_area_vector};
-use crate::mesh::smooth::Taubin;
+use anastomesh_mesh::adjacency::Incidence;
+use anastomesh_mesh::geometry::{Point3, Vec3, predicates::orient3d};
+use anastomesh_mesh::quality::{radius_ratio, triangle_area_vector};
+use anastomesh_mesh::smooth::Taubin;
 
 /// Rounds of the search along the wall; its step halves in a round that finds nothing.
 const SEARCH_ROUNDS: usize = 10;

@@ -1,0 +1,246 @@
+//! Files that appear at their path whole or not at all.
+
+use std::ffi::OsStr;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// A file under a temporary name in the folder of its target; `commit` moves it there, dropping it removes it.
+#[derive(Debug)]
+pub struct AtomicFile {
+    file: Option<BufWriter<File>>,
+    /// Says that the temporary file is in use.
+    lock: Option<File>,
+    temporary: PathBuf,
+    target: PathBuf,
+    /// Bytes since the disk was last told to begin.
+    waiting: usize,
+    flusher: Option<Flusher>,
+}
+
+/// After so many bytes the disk begins to write, while the program goes on: else all of it waits for the end.
+const BEGIN_AFTER: usize = 256 << 20;
+
+/// Makes a file's bytes reach the disk while more are written.
+#[derive(Debug)]
+struct Flusher {
+    begin: SyncSender<()>,
+    thread: JoinHandle<io::Result<()>>,
+}
+
+impl Flusher {
+    fn new(file: &File) -> io::Result<Self> {
+        let file = file.try_clone()?;
+        let (begin, asked) = sync_channel::<()>(1);
+        let thread = std::thread::Builder::new().spawn(move || asked.iter().try_for_each(|()| file.sync_data()))?;
+        Ok(Self { begin, thread })
+    }
+
+    /// Waits for the disk. What it reports here it will not report again.
+    fn finish(self) -> io::Result<()> {
+        drop(self.begin);
+        self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the thread that waits for the disk failed")))
+    }
+}
+
+impl AtomicFile {
+    /// Opens a new temporary file beside `target`.
+    pub fn create(target: &Path) -> io::Result<Self> {
+        if target.is_dir() {
+            return Err(io::Error::from(io::ErrorKind::IsADirectory));
+        }
+        remove_left(target, "part", |left| drop(fs::remove_file(left)));
+        let make = |path: &Path| OpenOptions::new().write(true).create_new(true).open(path);
+        let (temporary, file) = make_hidden(target, "part", make)?;
+        Ok(Self {
+            lock: locked(file.try_clone()),
+            file: Some(BufWriter::with_capacity(1 << 18, file)),
+            temporary,
+            target: target.to_path_buf(),
+            waiting: 0,
+            flusher: None,
+        })
+    }
+
+    /// Writes out what is buffered: afterwards no full disk can be in the way of `commit`.
+    pub fn complete(&mut self) -> io::Result<()> {
+        if let Some(file) = self.file.take() {
+            let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+            self.flusher.take().map_or(Ok(()), Flusher::finish)?;
+            // Without this a crash of the machine could leave the new name on an empty file.
+            file.sync_data()?;
+        }
+        Ok(())
+    }
+
+    /// Writes out what is buffered and moves the file to its target, replacing what was there.
+    pub fn commit(mut self) -> io::Result<()> {
+        self.complete()?;
+        // Windows moves no file that is open.
+        drop(self.lock.take());
+        fs::rename(&self.temporary, &self.target)?;
+        self.temporary = PathBuf::new();
+        Ok(())
+    }
+
+    /// Makes the disk begin; it may be busy with what it was told before.
+    fn begin(&mut self) -> io::Result<()> {
+        if self.flusher.is_none() {
+            self.flusher = Some(Flusher::new(self.open()?.get_ref())?);
+        }
+        if let Some(flusher) = &self.flusher {
+            let _ = flusher.begin.try_send(());
+        }
+        Ok(())
+    }
+
+    fn open(&mut self) -> io::Result<&mut BufWriter<File>> {
+        self.file.as_mut().ok_or_else(|| io::Error::from(io::ErrorKind::BrokenPipe))
+    }
+}
+
+/// Makes something under a hidden name beside `target` that nothing has yet.
+pub fn make_hidden<T>(target: &Path, kind: &str, make: impl Fn(&Path) -> io::Result<T>) -> io::Result<(PathBuf, T)> {
+    let name = target.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
+    let mut attempt = 0_u32;
+    loop {
+        let mut hidden = std::ffi::OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{}-{attempt}.{kind}", std::process::id()));
+        let path = target.with_file_name(hidden);
+        match make(&path) {
+            Ok(made) => return Ok((path, made)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => attempt += 1,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Locks a file or folder as long as it is in use. Where that is not possible nobody can take it for left over, either.
+pub fn locked(opened: io::Result<File>) -> Option<File> {
+    opened.ok().filter(|file| file.try_lock().is_ok())
+}
+
+/// What is younger is never taken for left over: its run may not have locked it yet.
+const SETTLED: Duration = Duration::from_secs(10);
+
+/// Removes what runs that were killed have left under hidden names beside `target`: nobody holds its lock.
+pub fn remove_left(target: &Path, kind: &str, remove: impl Fn(&Path)) {
+    let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_hidden_name(&entry.file_name(), name, kind) && is_left(&entry.path()) {
+            remove(&entry.path());
+        }
+    }
+}
+
+/// Whether a name is one that [`make_hidden`] gives.
+pub fn is_hidden_name(hidden: &OsStr, name: &str, kind: &str) -> bool {
+    let rest = |hidden: &str| -> Option<bool> {
+        let numbers = hidden.strip_prefix('.')?.strip_prefix(name)?.strip_prefix('.')?.strip_suffix(kind)?;
+        let (process, attempt) = numbers.strip_suffix('.')?.split_once('-')?;
+        Some([process, attempt].iter().all(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())))
+    };
+    hidden.to_str().and_then(rest).unwrap_or(false)
+}
+
+fn is_left(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let changed = file.metadata().and_then(|data| data.modified()).ok();
+    let is_settled = changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= SETTLED);
+    is_settled && file.try_lock().is_ok()
+}
+
+impl Write for AtomicFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.open()?.write(bytes)?;
+        self.waiting += written;
+        if self.waiting >= BEGIN_AFTER {
+            self.waiting = 0;
+            self.begin()?;
+        }
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.open()?.flush()
+    }
+}
+
+impl Seek for AtomicFile {
+    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
+        self.open()?.seek(to)
+    }
+}
+
+impl Drop for AtomicFile {
+    fn drop(&mut self) {
+        if !self.temporary.as_os_str().is_empty() {
+            drop((self.file.take(), self.lock.take()));
+            // Nothing can be done about a failure here, and the target is untouched.
+            let _ = fs::remove_file(&self.temporary);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn appears_only_when_committed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.vtu");
+        let mut file = AtomicFile::create(&path).unwrap();
+        file.write_all(b"half").unwrap();
+        assert!(!path.exists());
+        drop(file);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        let mut file = AtomicFile::create(&path).unwrap();
+        file.write_all(b"whole").unwrap();
+        file.commit().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"whole");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_killed_runs_left_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let long_ago = std::time::SystemTime::now() - Duration::from_secs(3600);
+        let names = [
+            ".out.vtu.123-0.part",
+            ".out.vtu.99-17.part",
+            ".other.vtu.123-0.part",
+            ".out.vtu.123.part",
+            ".out.vtu.1-x.part",
+        ];
+        for name in names.into_iter().chain([".out.vtu.7-0.part"]) {
+            File::create(path(name)).unwrap().set_modified(long_ago).unwrap();
+        }
+        // One is young, one is held.
+        let young = path(".out.vtu.8-0.part");
+        File::create(&young).unwrap();
+        let held = locked(File::open(path(".out.vtu.7-0.part"))).unwrap();
+        let other = AtomicFile::create(&path("out.vtu")).unwrap();
+        File::open(&other.temporary).unwrap().set_modified(long_ago).unwrap();
+        AtomicFile::create(&path("out.vtu")).unwrap().commit().unwrap();
+        other.commit().unwrap();
+        let left: Vec<bool> = names.iter().map(|name| path(name).exists()).collect();
+        assert_eq!(left, [false, false, true, true, true]);
+        assert!(young.exists() && path(".out.vtu.7-0.part").exists());
+        drop(held);
+    }
+
+    #[test]
+    fn refuses_folders_and_missing_folders() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(AtomicFile::create(folder.path()).unwrap_err().kind(), io::ErrorKind::IsADirectory);
+        let missing = folder.path().join("missing/out.vtu");
+        assert_eq!(AtomicFile::create(&missing).unwrap_err().kind(), io::ErrorKind::NotFound);
+    }
+}

@@ -1,0 +1,238 @@
+//! A folder of files that appears whole or not at all.
+
+use super::atomic::{AtomicFile, locked, make_hidden, remove_left};
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+
+/// A folder under a temporary name beside its target; `commit` moves it there, dropping it removes it.
+#[derive(Debug)]
+pub struct AtomicFolder {
+    temporary: PathBuf,
+    /// Says that the temporary folder is in use.
+    lock: Option<File>,
+    target: PathBuf,
+    ours: Ours,
+}
+
+/// Whether a file is one that a writer makes, by its path within the folder, its parts joined by `/`.
+pub type Ours = fn(&str) -> bool;
+
+impl AtomicFolder {
+    /// Makes sure that the folder can be made or replaced: what is there is at most what an earlier run has written. The
+    /// results of a solver, say, are never removed.
+    pub fn ensure_replaceable(target: &Path, ours: Ours) -> io::Result<()> {
+        let taken = |text: String| Err(io::Error::new(io::ErrorKind::AlreadyExists, text));
+        match fs::metadata(target) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            Err(error) => return Err(error),
+            Ok(data) if !data.is_dir() => {
+                return taken("a folder is to be written, and a file of its name exists".into());
+            }
+            Ok(_) => {}
+        }
+        match files_in(target)?.into_iter().find(|(name, _)| !ours(name)) {
+            Some((name, _)) => taken(format!("the folder exists and also holds {name}, which is not replaced")),
+            None => Ok(()),
+        }
+    }
+
+    /// Makes a new temporary folder.
+    pub fn create(target: &Path, ours: Ours) -> io::Result<Self> {
+        Self::ensure_replaceable(target, ours)?;
+        remove_left(target, "part", |left| remove_ours(left, |name| ours(name) || is_part(name)));
+        let (temporary, ()) = make_hidden(target, "part", |path| fs::create_dir(path))?;
+        Ok(Self { lock: locked(File::open(&temporary)), temporary, target: target.to_path_buf(), ours })
+    }
+
+    /// A new file of the folder, by its path in it.
+    pub fn file(&self, name: &str) -> io::Result<AtomicFile> {
+        AtomicFile::create(&self.place(name)?)
+    }
+
+    /// A new file of the folder whose bytes the disk is not waited for: of a format that tells when some are missing.
+    pub fn quick_file(&self, name: &str) -> io::Result<BufWriter<File>> {
+        Ok(BufWriter::with_capacity(1 << 18, File::create(self.place(name)?)?))
+    }
+
+    /// Puts a small file into the folder. The disk is not waited for: with thousands of them that would take minutes.
+    pub fn put(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        fs::write(self.place(name)?, bytes)
+    }
+
+    /// Puts a file that is there into the folder under another name, too.
+    pub fn copy(&self, name: &str, to: &str) -> io::Result<()> {
+        fs::copy(self.temporary.join(name), self.place(to)?).map(drop)
+    }
+
+    fn place(&self, name: &str) -> io::Result<PathBuf> {
+        debug_assert!((self.ours)(name), "{name} could not be replaced");
+        let path = self.temporary.join(name);
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder)?;
+        }
+        Ok(path)
+    }
+
+    /// Moves the folder to its target, replacing what was there. When that fails all is as before.
+    pub fn commit(mut self) -> io::Result<()> {
+        Self::ensure_replaceable(&self.target, self.ours)?;
+        let earlier = self.set_aside()?;
+        // Windows moves no folder that is open.
+        drop(self.lock.take());
+        let moved = fs::rename(&self.temporary, &self.target);
+        match (&earlier, &moved) {
+            // Of the way back nothing can be asked more than to be tried.
+            (Some(old), Err(_)) => drop(fs::rename(old, &self.target)),
+            (Some(old), Ok(())) => remove_ours(old, self.ours),
+            (None, _) => {}
+        }
+        if moved.is_ok() {
+            self.temporary = PathBuf::new();
+        }
+        moved
+    }
+
+    /// Moves what is at the target out of the way.
+    fn set_aside(&self) -> io::Result<Option<PathBuf>> {
+        if !self.target.exists() {
+            return Ok(None);
+        }
+        // An empty folder takes the place that the earlier one is moved to.
+        let (old, ()) = make_hidden(&self.target, "old", |old| fs::create_dir(old))?;
+        match fs::rename(&self.target, &old) {
+            Ok(()) => Ok(Some(old)),
+            Err(error) => {
+                let _ = fs::remove_dir(&old);
+                Err(error)
+            }
+        }
+    }
+}
+
+impl Drop for AtomicFolder {
+    fn drop(&mut self) {
+        if !self.temporary.as_os_str().is_empty() {
+            remove_ours(&self.temporary, self.ours);
+        }
+    }
+}
+
+/// All files below a folder, with their names as [`Ours`] has them.
+fn files_in(folder: &Path) -> io::Result<Vec<(String, PathBuf)>> {
+    let (mut found, mut pending) = (Vec::new(), vec![(String::new(), folder.to_path_buf())]);
+    while let Some((name, folder)) = pending.pop() {
+        for entry in fs::read_dir(folder)? {
+            let entry = entry?;
+            let own = entry.file_name();
+            let name = if name.is_empty() {
+                own.to_string_lossy().into_owned()
+            } else {
+                format!("{name}/{}", own.to_string_lossy())
+            };
+            // Links are files, wherever they lead.
+            if entry.file_type()?.is_dir() {
+                pending.push((name, entry.path()));
+            } else {
+                found.push((name, entry.path()));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Whether a name is that of a file that was not completed.
+fn is_part(name: &str) -> bool {
+    name.rsplit('/')
+        .next()
+        .is_some_and(|own| own.starts_with('.') && Path::new(own).extension().is_some_and(|e| e == "part"))
+}
+
+/// Removes a folder's own files and what folders are empty then. Nothing can be done about a failure here.
+fn remove_ours(folder: &Path, ours: impl Fn(&str) -> bool) {
+    let files = files_in(folder).unwrap_or_default();
+    let mut folders: Vec<&Path> = vec![folder];
+    for (_, path) in files.iter().filter(|(name, _)| ours(name)) {
+        let _ = fs::remove_file(path);
+    }
+    for (_, path) in &files {
+        folders.extend(path.ancestors().skip(1).take_while(|above| *above != folder));
+    }
+    folders.sort_by_key(|folder| std::cmp::Reverse(folder.as_os_str().len()));
+    folders.dedup();
+    for folder in folders {
+        let _ = fs::remove_dir(folder);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn ours(name: &str) -> bool {
+        matches!(name, "a" | "sub/b" | "sub/deep/c")
+    }
+
+    fn made(target: &Path, text: &str) -> AtomicFolder {
+        let folder = AtomicFolder::create(target, ours).unwrap();
+        for name in ["a", "sub/b", "sub/deep/c"] {
+            let mut file = folder.file(name).unwrap();
+            file.write_all(text.as_bytes()).unwrap();
+            file.commit().unwrap();
+        }
+        folder.put("sub/b", text.as_bytes()).unwrap();
+        folder
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> = files_in(folder).unwrap().into_iter().map(|(name, _)| name).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn appears_only_when_committed_and_replaces() {
+        let parent = tempfile::tempdir().unwrap();
+        let target = parent.path().join("case.foam");
+        drop(made(&target, "dropped"));
+        assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 0);
+        for text in ["first", "second"] {
+            made(&target, text).commit().unwrap();
+            assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 1);
+            assert_eq!(names(&target), ["a", "sub/b", "sub/deep/c"]);
+            assert_eq!(fs::read_to_string(target.join("sub/deep/c")).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn what_others_have_put_there_stays() {
+        let parent = tempfile::tempdir().unwrap();
+        let target = parent.path().join("case.foam");
+        made(&target, "first").commit().unwrap();
+        let folder = made(&target, "second");
+        fs::create_dir(target.join("100")).unwrap();
+        fs::write(target.join("100/U"), "result").unwrap();
+        let error = folder.commit().unwrap_err();
+        assert!(error.to_string().contains("also holds 100/U"), "{error}");
+        assert_eq!(fs::read_to_string(target.join("a")).unwrap(), "first");
+        assert!(AtomicFolder::create(&target, ours).is_err());
+        let file = parent.path().join("file");
+        fs::write(&file, "").unwrap();
+        assert!(AtomicFolder::ensure_replaceable(&file, ours).is_err());
+        assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_removed() {
+        let parent = tempfile::tempdir().unwrap();
+        let left = parent.path().join(".case.foam.12-0.part");
+        fs::create_dir_all(left.join("sub")).unwrap();
+        fs::write(left.join("a"), "whole").unwrap();
+        fs::write(left.join("sub/.b.12-0.part"), "half").unwrap();
+        let long_ago = std::time::SystemTime::now() - std::time::Duration::from_secs(3600);
+        File::open(&left).unwrap().set_modified(long_ago).unwrap();
+        drop(AtomicFolder::create(&parent.path().join("case.foam"), ours).unwrap());
+        assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 0);
+    }
+}

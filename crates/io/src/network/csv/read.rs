@@ -1,0 +1,167 @@
+//! Reads a table of nodes and one of edges.
+
+use super::error::{CsvError, Table};
+use crate::network::columns::Value;
+use crate::network::content::{NetworkFile, NetworkOptions};
+use crate::network::graph::{Graph, GraphPlace};
+use crate::network::radii::plain;
+
+/// Columns with the name of a node.
+const IDS: &[&str] = &["id", "nodeid", "node", "vertexid", "vertex", "name", "label", "index", ""];
+/// Columns with the nodes at both ends of an edge.
+const ENDS: [[&str; 2]; 16] = [
+    ["source", "target"],
+    ["from", "to"],
+    ["node1id", "node2id"],
+    ["node1", "node2"],
+    ["nodea", "nodeb"],
+    ["start", "end"],
+    ["startnode", "endnode"],
+    ["sourceid", "targetid"],
+    ["fromnode", "tonode"],
+    ["vertex1", "vertex2"],
+    ["v1", "v2"],
+    ["n1", "n2"],
+    ["u", "v"],
+    ["tail", "head"],
+    ["parent", "child"],
+    ["in", "out"],
+];
+
+/// Reads both tables from one file, an empty line between them.
+pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, CsvError> {
+    let trimmed = bytes.trim_ascii_end();
+    let mut begin = 0;
+    for line in trimmed.split_inclusive(|&b| b == b'\n') {
+        let end = begin + line.len();
+        // Blank lines before the first table part nothing.
+        if line.trim_ascii().is_empty() && !trimmed[..begin].trim_ascii().is_empty() {
+            return tables((&trimmed[..begin], 0), (&trimmed[end..], lines(&trimmed[..end])), options);
+        }
+        begin = end;
+    }
+    Err(CsvError::OneTable)
+}
+
+/// Reads a table of nodes and one of edges from two files.
+pub(in crate::network) fn read_tables(
+    nodes: &[u8],
+    edges: &[u8],
+    options: &NetworkOptions,
+) -> Result<NetworkFile, CsvError> {
+    tables((nodes, 0), (edges, 0), options)
+}
+
+/// Number of lines of a text that ends with one.
+fn lines(text: &[u8]) -> usize {
+    text.split(|&b| b == b'\n').count() - 1
+}
+
+/// Each table comes with the number of lines before it.
+fn tables(nodes: (&[u8], usize), edges: (&[u8], usize), options: &NetworkOptions) -> Result<NetworkFile, CsvError> {
+    let mut graph = Graph::default();
+    add_nodes(&mut graph, nodes)?;
+    add_edges(&mut graph, edges)?;
+    Ok(graph.into_network(options)?)
+}
+
+fn add_nodes(graph: &mut Graph, (bytes, before): (&[u8], usize)) -> Result<(), CsvError> {
+    let mut rows = Rows::of(bytes, before, Table::Nodes)?;
+    let id = rows.column(IDS);
+    while let Some(place) = rows.next()? {
+        let row = match id {
+            Some(id) => graph.node(rows.field(id), place)?,
+            // Without names nodes are called by their order.
+            None => graph.node(&(rows.count - 1).to_string(), place)?,
+        };
+        rows.each(|name, value| graph.nodes.set(row, name, value));
+    }
+    Ok(())
+}
+
+fn add_edges(graph: &mut Graph, (bytes, before): (&[u8], usize)) -> Result<(), CsvError> {
+    let mut rows = Rows::of(bytes, before, Table::Edges)?;
+    let both = |[from, to]: [&str; 2]| rows.column(&[from]).zip(rows.column(&[to]));
+    let ends = ENDS.into_iter().find_map(both);
+    let (from, to) =
+        ends.ok_or_else(|| CsvError::NoEnds { available: rows.names.iter().take(40).cloned().collect() })?;
+    while let Some(place) = rows.next()? {
+        let row = graph.edge([rows.field(from), rows.field(to)], place)?;
+        rows.each(|name, value| graph.edges.set(row, name, value));
+    }
+    Ok(())
+}
+
+/// The rows of a table.
+struct Rows<'a> {
+    reader: csv::Reader<&'a [u8]>,
+    table: Table,
+    /// Of the columns.
+    names: Vec<String>,
+    record: csv::ByteRecord,
+    /// How many rows were read.
+    count: usize,
+    /// Lines of the file before the table.
+    before: usize,
+}
+
+impl<'a> Rows<'a> {
+    fn of(bytes: &'a [u8], before: usize, table: Table) -> Result<Self, CsvError> {
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter(bytes))
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(bytes);
+        let head = reader.byte_headers().map_err(|error| row_error(&error, table, before))?;
+        let names = head.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect();
+        Ok(Self { reader, table, names, record: csv::ByteRecord::new(), count: 0, before })
+    }
+
+    /// The first column with one of these names, in lower case with letters and digits only.
+    fn column(&self, wanted: &[&str]) -> Option<usize> {
+        wanted.iter().find_map(|w| self.names.iter().position(|name| plain(name) == *w))
+    }
+
+    /// Goes to the next row and tells where it is.
+    fn next(&mut self) -> Result<Option<GraphPlace>, CsvError> {
+        let table = self.table;
+        let there = self.reader.read_byte_record(&mut self.record);
+        if !there.map_err(|error| row_error(&error, table, self.before))? {
+            return Ok(None);
+        }
+        self.count += 1;
+        let line = self.record.position().map_or(0, |p| p.line() as usize);
+        Ok(Some(GraphPlace::Line(self.before + line)))
+    }
+
+    fn field(&self, column: usize) -> &str {
+        self.record.get(column).and_then(|field| std::str::from_utf8(field).ok()).unwrap_or_default()
+    }
+
+    /// Passes the values of this row on, with the names of their columns.
+    fn each(&self, mut set: impl FnMut(&str, Value)) {
+        for (name, field) in self.names.iter().zip(&self.record) {
+            set(name, Value::of(&String::from_utf8_lossy(field)));
+        }
+    }
+}
+
+/// What is wrong with a row, its line counted from the beginning of the file.
+fn row_error(error: &csv::Error, table: Table, before: usize) -> CsvError {
+    let line = before + error.position().map_or(1, |p| p.line() as usize);
+    let what = match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("{len} columns where the first row has {expected_len}")
+        }
+        _ => error.to_string(),
+    };
+    CsvError::Row { line, table, what }
+}
+
+/// What stands between the columns: what there is most of in the first line.
+fn delimiter(bytes: &[u8]) -> u8 {
+    let head = bytes.split(|&b| b == b'\n').find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
+    let times = |d: u8| head.unwrap_or_default().split(|&b| b == d).count();
+    [b',', b'\t', b';'].into_iter().max_by_key(|&d| times(d)).unwrap_or(b',')
+}

@@ -1,0 +1,60 @@
+//! Which formats of networks there are, and which of them a path asks for.
+
+use super::error::{KNOWN, NetworkFileError};
+use crate::file::{FileError, by_extension};
+use std::path::Path;
+
+/// A format of network files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NetworkFormat {
+    /// Rows of id, type, x, y, z, radius, parent: `.swc`.
+    Swc,
+    /// VTK poly data with lines: `.vtp`.
+    Vtp,
+    /// VTK's legacy format with lines: `.vtk`.
+    Vtk,
+    /// A spatial graph of Amira or Avizo, as text: `.am`.
+    Amira,
+    /// Tables of nodes and edges: `.csv`.
+    Csv,
+    /// GraphML or GXL: `.graphml`, `.gxl`, `.xml`.
+    GraphXml,
+    /// Pajek's lists: `.net`.
+    Pajek,
+    /// Node-link data of NetworkX: `.json`.
+    Json,
+    /// Arrays of `NumPy`, a folder: `.npyd`.
+    Npy,
+    /// Input of SimVascular's one-dimensional solver: `.in`.
+    Sv1d,
+}
+
+/// Extensions, in lower case.
+const EXTENSIONS: [(&str, NetworkFormat); 13] = [
+    ("swc", NetworkFormat::Swc),
+    ("vtp", NetworkFormat::Vtp),
+    ("vtk", NetworkFormat::Vtk),
+    ("am", NetworkFormat::Amira),
+    ("csv", NetworkFormat::Csv),
+    ("tsv", NetworkFormat::Csv),
+    ("graphml", NetworkFormat::GraphXml),
+    ("gxl", NetworkFormat::GraphXml),
+    ("xml", NetworkFormat::GraphXml),
+    ("net", NetworkFormat::Pajek),
+    ("json", NetworkFormat::Json),
+    ("npyd", NetworkFormat::Npy),
+    ("in", NetworkFormat::Sv1d),
+];
+
+impl NetworkFormat {
+    /// The format that a file name asks for by its extension.
+    ///
+    /// # Errors
+    /// `UnknownFormat` when no format has the extension.
+    pub fn of(path: &Path) -> Result<Self, NetworkFileError> {
+        let (kind, known) = ("known network format", KNOWN);
+        let unknown = || FileError::UnknownFormat { path: path.to_path_buf(), kind, known };
+        Ok(by_extension(path, &EXTENSIONS).ok_or_else(unknown)?)
+    }
+}

@@ -1,0 +1,239 @@
+//! Graphs whose nodes have names and whose edges name two of them: what GraphML, JSON, Pajek and tables have in common.
+
+use super::columns::{Columns, NoNumber, Value};
+use super::content::{NetworkFile, NetworkNote, NetworkOptions, NodeNames};
+use super::polylines::{Polylines, Radii};
+use super::radii::{Choice, NodeArrayFault, RadiusFault, node_array};
+use anastomesh_mesh::geometry::Point3;
+use rustc_hash::FxHashMap;
+use std::fmt;
+
+/// Where something stands in a file: a line, a byte, or an entry of a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GraphPlace {
+    /// A line, from 1.
+    Line(usize),
+    /// A byte, from 0.
+    Byte(usize),
+    /// A node of the list of nodes, from 0.
+    Node(usize),
+    /// An edge of the list of edges, from 0.
+    Edge(usize),
+}
+
+impl fmt::Display for GraphPlace {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+            Self::Node(node) => write!(f, "node {node} of the list (from 0)"),
+            Self::Edge(edge) => write!(f, "edge {edge} of the list (from 0)"),
+        }
+    }
+}
+
+/// Why a graph is no usable network.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GraphFault {
+    /// There are no nodes.
+    #[error("there is no node in the file: is it a graph with positions?")]
+    NoNodes,
+    /// There are no edges.
+    #[error("there is no edge in the file ({nodes} nodes): a network needs vessels")]
+    NoEdges { nodes: usize },
+    /// Two nodes have one name.
+    #[error("{place}: node '{name}' is there already, at {first}; names must differ")]
+    RepeatedNode { place: GraphPlace, name: String, first: GraphPlace },
+    /// An edge names a node that does not exist.
+    #[error("{place}: an edge ends at node '{name}', which is not in the file: correct it")]
+    UnknownNode { place: GraphPlace, name: String },
+    /// No positions are known.
+    #[error(
+        "the nodes have no coordinates: attributes x, y (and z), or a list named position, pos or coords; there are: {}",
+        if available.is_empty() { "none".to_owned() } else { available.join(", ") }
+    )]
+    NoPositions {
+        /// The attributes of nodes.
+        available: Vec<String>,
+    },
+    /// A node has no position.
+    #[error("{place}: node '{name}' has no {what}: complete it")]
+    NoPosition { place: GraphPlace, name: String, what: String },
+    /// A value is no number.
+    #[error("{place}: {what} is '{text}', which is no number: correct it")]
+    NotANumber { place: GraphPlace, what: String, text: String },
+    /// No attribute can be taken for the radius.
+    #[error(transparent)]
+    Radius(#[from] RadiusFault),
+    /// There are no numbers of nodes under the name that was asked for.
+    #[error(transparent)]
+    NodeArray(#[from] NodeArrayFault),
+    /// There are more nodes or edges than can be numbered.
+    #[error("there are more nodes than can be numbered ({})", u32::MAX)]
+    TooMany,
+}
+
+/// A graph as its file tells it.
+#[derive(Debug, Default)]
+pub(super) struct Graph {
+    names: Vec<String>,
+    index: FxHashMap<String, u32>,
+    /// Where each node stands.
+    nodes_at: Vec<GraphPlace>,
+    /// What is said of nodes.
+    pub nodes: Columns,
+    ends: Vec<[String; 2]>,
+    edges_at: Vec<GraphPlace>,
+    /// What is said of edges.
+    pub edges: Columns,
+}
+
+/// Names of the attributes that are a coordinate.
+const X: &[&str] = &["x", "posx", "xpos", "px", "coordx", "xcoord", "xcoordinate", "positionx", "vx", "x0"];
+const Y: &[&str] = &["y", "posy", "ypos", "py", "coordy", "ycoord", "ycoordinate", "positiony", "vy", "y0"];
+const Z: &[&str] = &["z", "posz", "zpos", "pz", "coordz", "zcoord", "zcoordinate", "positionz", "vz", "z0"];
+/// Names of attributes that are a position.
+const POSITION: &[&str] =
+    &["position", "pos", "coords", "coordinates", "coord", "coordinate", "xyz", "point", "vcoords"];
+
+impl Graph {
+    /// Adds a node; its row.
+    pub(super) fn node(&mut self, name: &str, place: GraphPlace) -> Result<u32, GraphFault> {
+        let row = self.names.len() as u32;
+        if row == u32::MAX {
+            return Err(GraphFault::TooMany);
+        }
+        if let Some(&before) = self.index.get(name) {
+            let first = self.nodes_at[before as usize];
+            return Err(GraphFault::RepeatedNode { place, name: short(name), first });
+        }
+        self.index.insert(name.to_owned(), row);
+        self.names.push(name.to_owned());
+        self.nodes_at.push(place);
+        Ok(row)
+    }
+
+    /// Adds an edge between two nodes, which may come later; its row.
+    pub(super) fn edge(&mut self, ends: [&str; 2], place: GraphPlace) -> Result<u32, GraphFault> {
+        let row = self.ends.len() as u32;
+        if row == u32::MAX {
+            return Err(GraphFault::TooMany);
+        }
+        self.ends.push(ends.map(str::to_owned));
+        self.edges_at.push(place);
+        Ok(row)
+    }
+
+    /// The graph as a network.
+    pub(super) fn into_network(self, options: &NetworkOptions) -> Result<NetworkFile, GraphFault> {
+        if self.names.is_empty() {
+            return Err(GraphFault::NoNodes);
+        }
+        if self.ends.is_empty() {
+            return Err(GraphFault::NoEdges { nodes: self.names.len() });
+        }
+        let path = self.path()?;
+        let positions = self.positions()?;
+        let choice = Choice::of(self.nodes.names(), self.edges.names(), options)?;
+        let of_nodes = choice.points.as_deref().map(|name| {
+            let numbers = self.nodes.numbers(name, self.names.len());
+            numbers.map(|n| choice.radii(name, n)).map_err(|bad| no_number(&bad, name, &self.nodes_at))
+        });
+        let of_edges = choice.cells.as_deref().map(|name| {
+            let numbers = self.edges.numbers(name, self.ends.len());
+            numbers.map(|n| choice.radii(name, n)).map_err(|bad| no_number(&bad, name, &self.edges_at))
+        });
+        let radii = Radii { nodes: of_nodes.transpose()?, lines: of_edges.transpose()?, corners: None };
+        let mut notes = choice.notes();
+        if positions.planar {
+            notes.push(NetworkNote::Planar);
+        }
+        let values = node_array(self.nodes.names(), options)?.map(|name| {
+            let numbers = self.nodes.numbers(&name, self.names.len());
+            numbers.map_err(|bad| no_number(&bad, &name, &self.nodes_at))
+        });
+        let node_values = values.transpose()?.unwrap_or_default();
+        let ends = (1..=self.ends.len()).map(|i| 2 * i).collect();
+        let polylines = Polylines { points: positions.points, ends, path };
+        let mut network =
+            NetworkFile { notes, names: NodeNames::Words(self.names), node_values, ..NetworkFile::default() };
+        if !polylines.fits(&network.skeleton) {
+            return Err(GraphFault::TooMany);
+        }
+        polylines.append_to(&mut network.skeleton, &radii);
+        Ok(network)
+    }
+
+    /// The nodes of all edges.
+    fn path(&self) -> Result<Vec<u32>, GraphFault> {
+        let mut path = Vec::with_capacity(2 * self.ends.len());
+        for (ends, &place) in self.ends.iter().zip(&self.edges_at) {
+            for name in ends {
+                let node = self.index.get(name).ok_or_else(|| GraphFault::UnknownNode { place, name: short(name) })?;
+                path.push(*node);
+            }
+        }
+        Ok(path)
+    }
+
+    fn positions(&self) -> Result<Positions, GraphFault> {
+        let (x, y, z) = (self.nodes.find(X), self.nodes.find(Y), self.nodes.find(Z));
+        match (x, y, self.nodes.find(POSITION)) {
+            (Some(x), Some(y), _) => self.placed_by_coordinates([Some(x), Some(y), z]),
+            (_, _, Some(list)) => self.placed_by_lists(list),
+            _ => Err(GraphFault::NoPositions { available: self.nodes.names().to_vec() }),
+        }
+    }
+
+    fn placed_by_coordinates(&self, names: [Option<&str>; 3]) -> Result<Positions, GraphFault> {
+        let mut points = vec![Point3::origin(); self.names.len()];
+        for (axis, name) in names.iter().enumerate() {
+            let Some(name) = name else { continue };
+            let numbers =
+                self.nodes.numbers(name, points.len()).map_err(|bad| no_number(&bad, name, &self.nodes_at))?;
+            for (row, number) in numbers.into_iter().enumerate() {
+                if number.is_nan() {
+                    return Err(self.no_position(row, name));
+                }
+                points[row][axis] = number;
+            }
+        }
+        Ok(Positions { points, planar: names[2].is_none() })
+    }
+
+    fn placed_by_lists(&self, name: &str) -> Result<Positions, GraphFault> {
+        let mut planar = true;
+        let mut points = Vec::with_capacity(self.names.len());
+        for (row, value) in self.nodes.values(name, self.names.len()).into_iter().enumerate() {
+            points.push(match value {
+                Some(Value::List(list)) if list.len() == 2 => Point3::new(list[0], list[1], 0.0),
+                Some(Value::List(list)) if list.len() == 3 => {
+                    planar = false;
+                    Point3::new(list[0], list[1], list[2])
+                }
+                _ => return Err(self.no_position(row, name)),
+            });
+        }
+        Ok(Positions { points, planar })
+    }
+
+    fn no_position(&self, row: usize, what: &str) -> GraphFault {
+        GraphFault::NoPosition { place: self.nodes_at[row], name: short(&self.names[row]), what: short(what) }
+    }
+}
+
+struct Positions {
+    points: Vec<Point3>,
+    /// Whether no node has a coordinate z.
+    planar: bool,
+}
+
+fn no_number(bad: &NoNumber, what: &str, places: &[GraphPlace]) -> GraphFault {
+    GraphFault::NotANumber { place: places[bad.row as usize], what: short(what), text: bad.text.clone() }
+}
+
+/// The beginning of a name, for a message.
+fn short(name: &str) -> String {
+    name.chars().take(40).collect()
+}

@@ -1,0 +1,79 @@
+//! Reads nodes and links.
+
+use crate::network::columns::Value;
+use crate::network::content::{NetworkFile, NetworkOptions};
+use crate::network::graph::{Graph, GraphFault, GraphPlace};
+use serde_json::{Map, Value as Json};
+
+/// Why a JSON file is no usable network.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JsonError {
+    /// It is not well-formed.
+    #[error("no well-formed JSON: {0}; correct the file, or copy it again if it was cut short")]
+    Json(#[from] serde_json::Error),
+    /// A list is missing.
+    #[error("there is no list '{list}' in the outermost object: write the graph as node-link data")]
+    NoList {
+        /// What is missing.
+        list: &'static str,
+    },
+    /// An entry of a list is no object, or lacks a key.
+    #[error("{place}: '{key}' with a word or a number is needed: complete it")]
+    NoKey { place: GraphPlace, key: &'static str },
+    /// The graph is no network.
+    #[error(transparent)]
+    Graph(#[from] GraphFault),
+}
+
+pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, JsonError> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let whole: Json = serde_json::from_slice(bytes)?;
+    let list = |names: &[&str]| names.iter().find_map(|name| whole.get(name)).and_then(Json::as_array);
+    let nodes = list(&["nodes"]).ok_or(JsonError::NoList { list: "nodes" })?;
+    // Until version 3.4 NetworkX called them links.
+    let edges = list(&["edges", "links"]).ok_or(JsonError::NoList { list: "edges" })?;
+    let mut graph = Graph::default();
+    for (at, node) in nodes.iter().enumerate() {
+        let place = GraphPlace::Node(at);
+        let row = graph.node(&name(node, "id", place)?, place)?;
+        for (key, value) in attributes(node, &["id"]) {
+            graph.nodes.set(row, key, value);
+        }
+    }
+    for (at, edge) in edges.iter().enumerate() {
+        let place = GraphPlace::Edge(at);
+        let (from, to) = (name(edge, "source", place)?, name(edge, "target", place)?);
+        let row = graph.edge([&from, &to], place)?;
+        for (key, value) in attributes(edge, &["source", "target", "key"]) {
+            graph.edges.set(row, key, value);
+        }
+    }
+    Ok(graph.into_network(options)?)
+}
+
+/// What an entry has under a key that names a node: a word, a number, or a list of these.
+fn name(entry: &Json, key: &'static str, place: GraphPlace) -> Result<String, JsonError> {
+    match entry.get(key) {
+        Some(Json::String(word)) => Ok(word.clone()),
+        Some(value @ (Json::Number(_) | Json::Array(_))) => Ok(value.to_string()),
+        _ => Err(JsonError::NoKey { place, key }),
+    }
+}
+
+/// The attributes of an entry, but for those that name nodes.
+fn attributes<'a>(entry: &'a Json, but: &'a [&str]) -> impl Iterator<Item = (&'a str, Value)> {
+    let entries = entry.as_object().into_iter().flat_map(Map::iter);
+    entries.filter(|(key, _)| !but.contains(&key.as_str())).filter_map(|(key, value)| {
+        let value = match value {
+            Json::Number(number) => Value::Number(number.as_f64()?),
+            Json::String(text) => Value::of(text),
+            Json::Array(list) => {
+                let numbers: Option<Vec<f64>> = list.iter().take(4).map(Json::as_f64).collect();
+                Value::List(numbers.filter(|n| !n.is_empty())?)
+            }
+            _ => return None,
+        };
+        Some((key.as_str(), value))
+    })
+}

@@ -1,0 +1,33 @@
+//! Networks in files: a folder for each format, and which of them a path asks for.
+
+mod amira;
+mod columns;
+mod content;
+mod csv;
+mod error;
+mod format;
+mod graph;
+#[cfg(test)]
+mod graph_tests;
+mod graph_xml;
+mod json;
+mod npy;
+mod pajek;
+mod polylines;
+mod radii;
+mod read;
+mod scale;
+mod sv1d;
+mod swc;
+#[cfg(test)]
+mod tests;
+mod vtk;
+mod vtp;
+mod write;
+
+pub use content::{NetworkArray, NetworkFile, NetworkNote, NetworkOptions, NodeNames, refinement_arrays};
+pub use error::NetworkFileError;
+pub use format::NetworkFormat;
+pub use read::{read_network, read_network_arrays, read_network_from};
+pub use write::{ensure_network_writable, ensure_tree_writable};
+pub use write::{write_network, write_tree};

@@ -1,0 +1,50 @@
+//! Writes nodes and edges, and what refinement knows of each node.
+
+use super::read::{EDGE_RADII, EDGES, NODES, RADII};
+use crate::file::AtomicFolder;
+use crate::network::content::NetworkArray;
+use crate::npy::{Item, write_array};
+use anastomesh_skeleton::{Edge, Node, Skeleton};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Files of the folder beside those of the network itself.
+const BESIDE: [(&str, &str); 2] = [("OriginalNode", "original_node"), ("Displacement", "displacement")];
+
+fn is_ours(file: &str) -> bool {
+    let known = [NODES, EDGES, RADII, EDGE_RADII].into_iter().chain(BESIDE.map(|(_, file)| file));
+    known.into_iter().any(|name| file.strip_suffix(".npy") == Some(name))
+}
+
+/// Makes sure that the folder can be made or replaced. Leaves nothing behind.
+pub(in crate::network) fn ensure_writable(path: &Path) -> io::Result<()> {
+    AtomicFolder::create(path, is_ours).map(drop)
+}
+
+/// Writes a network, whole or not at all; radii of edges at both of their ends.
+pub(in crate::network) fn write(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<()> {
+    let folder = AtomicFolder::create(path, is_ours)?;
+    let Skeleton { nodes, edges, .. } = skeleton;
+    let position = |node: &Node| <[f64; 3]>::from(node.position);
+    put(&folder, NODES, &nodes.iter().map(position).collect::<Vec<_>>())?;
+    put(&folder, RADII, &nodes.iter().map(|node| [node.radius]).collect::<Vec<_>>())?;
+    let ends = |edge: &Edge| edge.nodes.map(|node| node.0);
+    put(&folder, EDGES, &edges.iter().map(ends).collect::<Vec<_>>())?;
+    put(&folder, EDGE_RADII, &edges.iter().map(|edge| edge.radii).collect::<Vec<_>>())?;
+    for array in arrays {
+        let file = |name: &str| BESIDE.into_iter().find(|(known, _)| *known == name).map(|(_, file)| file);
+        match array {
+            NetworkArray::NodeInts(name, values) => {
+                file(name).map_or(Ok(()), |f| put(&folder, f, values.as_chunks::<1>().0))
+            }
+            NetworkArray::NodeVectors(name, values) => file(name).map_or(Ok(()), |f| put(&folder, f, values)),
+        }?;
+    }
+    folder.commit()
+}
+
+fn put<T: Item, const N: usize>(folder: &AtomicFolder, name: &str, rows: &[[T; N]]) -> io::Result<()> {
+    let mut file = folder.quick_file(&format!("{name}.npy"))?;
+    write_array(&mut file, rows)?;
+    file.flush()
+}

@@ -1,0 +1,110 @@
+//! Reads a network in any format.
+
+use super::content::{NetworkFile, NetworkNote, NetworkOptions};
+use super::error::{NetworkFault, NetworkFileError};
+use super::format::NetworkFormat;
+use super::scale::scale;
+use super::{amira, csv, graph_xml, json, npy, pajek, sv1d, swc, vtk, vtp};
+use crate::file::{FileError, read_bytes};
+use crate::npy::Arrays;
+use std::path::Path;
+
+/// Reads a network file; the extension gives the format. A table of nodes or edges is read together with the other one,
+/// found beside it by its name.
+///
+/// ```
+/// use anastomesh_io::{NetworkOptions, read_network};
+///
+/// let file = read_network("../../fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
+/// assert_eq!(file.skeleton.nodes.len(), 30);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the file cannot be read, or is no usable network.
+pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile, NetworkFileError> {
+    let format = NetworkFormat::of(path);
+    if path.is_dir() && !matches!(format, Ok(NetworkFormat::Npy)) {
+        return Err(NetworkFileError::Directory { path: path.to_path_buf() });
+    }
+    let format = format?;
+    if format == NetworkFormat::Npy {
+        let arrays = Arrays::read(path, &npy::ARRAYS, None)?;
+        let read = npy::read(&arrays, options).map_err(NetworkFault::from);
+        return Ok(read.and_then(|network| finished(network, options)).map_err(FileError::content(path))?);
+    }
+    if let (NetworkFormat::Csv, Some((other, has_edges))) = (format, csv::partner(path)) {
+        return read_tables(path, &other, has_edges, options);
+    }
+    Ok(read_network_from(&read_bytes(path)?, format, options).map_err(FileError::content(path))?)
+}
+
+/// Reads two tables; `other` holds the edges, or else the nodes.
+fn read_tables(
+    path: &Path,
+    other: &Path,
+    has_edges: bool,
+    options: &NetworkOptions,
+) -> Result<NetworkFile, NetworkFileError> {
+    let (nodes, edges) = if has_edges { (path, other) } else { (other, path) };
+    let read = csv::read_tables(&read_bytes(nodes)?, &read_bytes(edges)?, options).map_err(NetworkFault::from);
+    let network = read.and_then(|network| finished(network, options));
+    let mut network = network.map_err(FileError::content(nodes))?;
+    let file = edges.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    network.notes.insert(0, NetworkNote::EdgesFrom { file });
+    Ok(network)
+}
+
+/// Reads a network from the bytes of a file. Both tables of nodes and edges can stand in one, an empty line between them.
+///
+/// ```
+/// use anastomesh_io::NetworkOptions;
+/// use anastomesh_io::network::{NetworkFormat, read_network_from};
+///
+/// let swc = b"1 2 0 0 0 1.5 -1\n2 2 0 0 9 1.5 1\n";
+/// let file = read_network_from(swc, NetworkFormat::Swc, &NetworkOptions::default())?;
+/// assert_eq!((file.skeleton.nodes.len(), file.skeleton.nodes[1].radius), (2, 1.5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the bytes are no usable network.
+pub fn read_network_from(
+    bytes: &[u8],
+    format: NetworkFormat,
+    options: &NetworkOptions,
+) -> Result<NetworkFile, NetworkFault> {
+    let network = match format {
+        NetworkFormat::Swc => swc::read(bytes, options)?,
+        NetworkFormat::Vtp => vtp::read(bytes, options)?,
+        NetworkFormat::Vtk => vtk::read(bytes, options)?,
+        NetworkFormat::Amira => amira::read(bytes, options)?,
+        NetworkFormat::Csv => csv::read(bytes, options)?,
+        NetworkFormat::GraphXml => graph_xml::read(bytes, options)?,
+        NetworkFormat::Pajek => pajek::read(bytes, options)?,
+        NetworkFormat::Json => json::read(bytes, options)?,
+        NetworkFormat::Npy => return Err(NetworkFault::SeveralFiles),
+        NetworkFormat::Sv1d => sv1d::read(bytes, options)?,
+    };
+    finished(network, options)
+}
+
+/// Reads a network from the bytes of the files of a folder `.npyd`.
+///
+/// # Errors
+/// When they are no usable network.
+pub fn read_network_arrays(files: &[(&str, &[u8])], options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
+    finished(npy::read(&Arrays::of(files), options)?, options)
+}
+
+/// What holds for every format: lengths multiplied as asked for, numbers that can be used.
+fn finished(mut network: NetworkFile, options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
+    if let Some(wanted) = options.node_array.as_ref().filter(|_| network.node_values.is_empty()) {
+        return Err(NetworkFault::NoNodeArrays { wanted: wanted.clone() });
+    }
+    scale(&mut network, options);
+    if !options.any_radii {
+        network.skeleton.check_numbers()?;
+    }
+    Ok(network)
+}

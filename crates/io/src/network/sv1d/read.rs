@@ -1,0 +1,203 @@
+//! Reads nodes, segments and joints.
+
+use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions, NodeNames};
+use crate::network::polylines::{Polylines, Radii};
+use crate::text::{TextFault, Words, shown};
+use anastomesh_mesh::geometry::Point3;
+use rustc_hash::FxHashMap;
+use std::f64::consts::PI;
+
+/// Why a solver's input is no usable network.
+#[derive(Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Sv1dError {
+    /// A number is missing or wrong.
+    #[error(transparent)]
+    Text(#[from] TextFault),
+    /// Two nodes, segments or lists have one name.
+    #[error("line {line}: {what} '{name}' is there already: names must differ")]
+    Repeated { line: usize, what: &'static str, name: String },
+    /// Something names what does not exist.
+    #[error("line {line}: {what} '{name}' is not in the file: correct it")]
+    Unknown { line: usize, what: &'static str, name: String },
+    /// A joint names a list of segments that does not exist or belongs to another joint.
+    #[error("line {line}: there is no list of segments '{name}' for this joint alone: correct it")]
+    NoList { line: usize, name: String },
+    /// An area is no area.
+    #[error("line {line}: the area {area} cannot be that of a section: it must be above zero")]
+    BadArea { line: usize, area: f64 },
+    /// There are no segments.
+    #[error("there is no SEGMENT in the file ({nodes} nodes): is it the input of a one-dimensional solver?")]
+    NoSegments { nodes: usize },
+    /// There are more nodes than can be numbered.
+    #[error("there are more nodes than can be numbered ({})", u32::MAX)]
+    TooMany,
+}
+
+/// A vessel between two nodes.
+#[derive(Clone, Copy)]
+struct Segment {
+    ends: [u32; 2],
+    radii: [f64; 2],
+}
+
+/// Segments that a list names, and where.
+struct List {
+    line: usize,
+    segments: Vec<i64>,
+}
+
+#[derive(Default)]
+struct Input {
+    nodes: FxHashMap<i64, u32>,
+    ids: Vec<i64>,
+    points: Vec<Point3>,
+    segments: Vec<Segment>,
+    index: FxHashMap<i64, usize>,
+    inlets: FxHashMap<Vec<u8>, List>,
+    outlets: FxHashMap<Vec<u8>, List>,
+    /// Line, names of the inlet list and of the outlet list.
+    joints: Vec<(usize, Vec<u8>, Vec<u8>)>,
+}
+
+pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, Sv1dError> {
+    let mut words = Words::new(bytes, true);
+    let mut input = Input::default();
+    while let Some(word) = words.word() {
+        match word.to_ascii_uppercase().as_slice() {
+            b"NODE" => input.node(&mut words)?,
+            b"SEGMENT" => input.segment(&mut words, options)?,
+            b"JOINTINLET" => list(&mut input.inlets, &mut words)?,
+            b"JOINTOUTLET" => list(&mut input.outlets, &mut words)?,
+            b"JOINT" => {
+                let line = words.line();
+                words.need_here("the name of a joint")?;
+                words.need_here("the node of a joint")?;
+                let inlet = words.need_here("the list of segments that end in a joint")?.to_owned();
+                let outlet = words.need_here("the list of segments that begin in a joint")?.to_owned();
+                input.joints.push((line, inlet, outlet));
+            }
+            _ => {}
+        }
+        words.skip_line();
+    }
+    input.into_network()
+}
+
+/// A name, a number of segments, and these.
+fn list(lists: &mut FxHashMap<Vec<u8>, List>, words: &mut Words) -> Result<(), Sv1dError> {
+    let line = words.line();
+    let name = words.need_here("the name of a list of segments")?.to_owned();
+    let count = words.count_here("a number of segments", 2)?;
+    let mut segments = Vec::with_capacity(count);
+    for _ in 0..count {
+        let word = words.need_here("a segment")?;
+        segments.push(words.as_integer(word, "a segment")?);
+    }
+    let shown_name = shown(&name);
+    match lists.insert(name, List { line, segments }) {
+        Some(_) => Err(Sv1dError::Repeated { line, what: "the list", name: shown_name }),
+        None => Ok(()),
+    }
+}
+
+impl Input {
+    fn node(&mut self, words: &mut Words) -> Result<(), Sv1dError> {
+        let word = words.need_here("the number of a node")?;
+        let (id, line) = (words.as_integer(word, "the number of a node")?, words.line());
+        let row = self.points.len() as u32;
+        if row == u32::MAX {
+            return Err(Sv1dError::TooMany);
+        }
+        if self.nodes.insert(id, row).is_some() {
+            return Err(Sv1dError::Repeated { line, what: "node", name: id.to_string() });
+        }
+        self.ids.push(id);
+        self.points.push(words.point_here()?);
+        Ok(())
+    }
+
+    /// Name, number, length, number of elements, first and last node, area at either end, and what is no geometry.
+    fn segment(&mut self, words: &mut Words, options: &NetworkOptions) -> Result<(), Sv1dError> {
+        let line = words.line();
+        words.need_here("the name of a segment")?;
+        let word = words.need_here("the number of a segment")?;
+        let id = words.as_integer(word, "the number of a segment")?;
+        words.float_here("the length of a segment")?;
+        words.float_here("the number of elements of a segment")?;
+        let mut ends = [0; 2];
+        for end in &mut ends {
+            let word = words.need_here("the node at an end of a segment")?;
+            let node = words.as_integer(word, "the node at an end of a segment")?;
+            let unknown = || Sv1dError::Unknown { line, what: "node", name: node.to_string() };
+            *end = *self.nodes.get(&node).ok_or_else(unknown)?;
+        }
+        let mut radii = [0.0; 2];
+        for radius in &mut radii {
+            let area = words.float_here("the area at an end of a segment")?;
+            if !options.any_radii && (area.is_nan() || area <= 0.0) {
+                return Err(Sv1dError::BadArea { line, area });
+            }
+            *radius = (area / PI).sqrt();
+        }
+        if self.index.insert(id, self.segments.len()).is_some() {
+            return Err(Sv1dError::Repeated { line, what: "segment", name: id.to_string() });
+        }
+        self.segments.push(Segment { ends, radii });
+        Ok(())
+    }
+
+    fn into_network(mut self) -> Result<NetworkFile, Sv1dError> {
+        if self.segments.is_empty() {
+            return Err(Sv1dError::NoSegments { nodes: self.points.len() });
+        }
+        let bridges = self.bridges()?;
+        let mut notes = Vec::new();
+        if !bridges.is_empty() {
+            notes.push(NetworkNote::Bridged { count: bridges.len() });
+        }
+        self.segments.extend(bridges);
+        let polylines = Polylines {
+            points: self.points,
+            ends: (1..=self.segments.len()).map(|i| 2 * i).collect(),
+            path: self.segments.iter().flat_map(|s| s.ends).collect(),
+        };
+        let corners = self.segments.iter().flat_map(|s| s.radii).collect();
+        let mut network = NetworkFile { notes, names: NodeNames::Ids(self.ids), ..NetworkFile::default() };
+        if !polylines.fits(&network.skeleton) {
+            return Err(Sv1dError::TooMany);
+        }
+        polylines.append_to(&mut network.skeleton, &Radii { corners: Some(corners), ..Radii::default() });
+        Ok(network)
+    }
+
+    /// Vessels from where the first segment of a joint ends to where others begin, if that is elsewhere. Each list belongs to
+    /// one joint.
+    fn bridges(&mut self) -> Result<Vec<Segment>, Sv1dError> {
+        let mut bridges = Vec::new();
+        for (line, inlet, outlet) in std::mem::take(&mut self.joints) {
+            let (ending, beginning) = (self.inlets.remove(&inlet), self.outlets.remove(&outlet));
+            let inlets = self.segments_of(ending, &inlet, line)?;
+            let outlets = self.segments_of(beginning, &outlet, line)?;
+            let Some(&first) = inlets.first() else { continue };
+            let here = first.ends[1];
+            let others = inlets[1..].iter().map(|s| (s.ends[1], s.radii[1]));
+            let away: Vec<(u32, f64)> = others.chain(outlets.iter().map(|s| (s.ends[0], s.radii[0]))).collect();
+            bridges.extend(
+                away.into_iter()
+                    .filter(|(node, _)| *node != here)
+                    .map(|(node, radius)| Segment { ends: [here, node], radii: [radius; 2] }),
+            );
+        }
+        Ok(bridges)
+    }
+
+    fn segments_of(&self, list: Option<List>, name: &[u8], line: usize) -> Result<Vec<Segment>, Sv1dError> {
+        let list = list.ok_or_else(|| Sv1dError::NoList { line, name: shown(name) })?;
+        let segment = |id: &i64| {
+            let unknown = || Sv1dError::Unknown { line: list.line, what: "segment", name: id.to_string() };
+            self.index.get(id).map(|&at| self.segments[at]).ok_or_else(unknown)
+        };
+        list.segments.iter().map(segment).collect()
+    }
+}

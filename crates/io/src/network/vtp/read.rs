@@ -1,0 +1,232 @@
+//! Reads lines with radii.
+
+use super::error::VtpError;
+use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions};
+use crate::network::polylines::{Astray, Polylines, Radii, tell_groups};
+use crate::network::radii::{Choice, END_RADII, GROUPS, NodeArrayFault, RadiusFault, node_array};
+use crate::vtk_xml::{ElementId, VtkXml};
+use anastomesh_mesh::geometry::Point3;
+
+pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtpError> {
+    let document = VtkXml::parse(bytes, "PolyData")?;
+    let poly = document.child(VtkXml::ROOT, "PolyData").ok_or(VtpError::MissingElement { element: "PolyData" })?;
+    let pieces: Vec<ElementId> = document.children(poly, "Piece").collect();
+    let &first = pieces.first().ok_or(VtpError::MissingElement { element: "Piece" })?;
+    let names = |section: &str| -> Vec<String> {
+        let section = document.child(first, section);
+        section.map(|s| document.arrays(s).map(|(name, _)| name.to_owned()).collect()).unwrap_or_default()
+    };
+    let choice = Choice::of(&names("PointData"), &names("CellData"), options)?;
+    let mut network = NetworkFile { notes: choice.notes(), ..NetworkFile::default() };
+    let mut others = Others::default();
+    let values = node_array(&names("PointData"), options)?;
+    for piece in pieces {
+        if let Some(name) = &values {
+            network.node_values.extend(read_node_values(&document, piece, name)?);
+        }
+        read_piece(&document, piece, &choice, &mut network, &mut others)?;
+    }
+    if others.lines == 0 {
+        return Err(VtpError::NoLines { polygons: others.polygons, vertices: others.vertices });
+    }
+    if others.polygons + others.vertices > 0 {
+        network.notes.push(NetworkNote::OtherCells { count: others.polygons + others.vertices });
+    }
+    tell_groups(&mut network);
+    Ok(network)
+}
+
+/// How many cells of each kind there are.
+#[derive(Default)]
+struct Others {
+    lines: usize,
+    polygons: usize,
+    vertices: usize,
+}
+
+fn read_piece(
+    document: &VtkXml,
+    piece: ElementId,
+    choice: &Choice,
+    network: &mut NetworkFile,
+    others: &mut Others,
+) -> Result<(), VtpError> {
+    let points = read_points(document, piece)?;
+    let (lines, connectivity) = read_lines(document, piece)?;
+    let vertices = document.count(piece, "NumberOfVerts")?;
+    let polygons = document.count(piece, "NumberOfPolys")?.saturating_add(document.count(piece, "NumberOfStrips")?);
+    let cells = lines.len().saturating_add(vertices).saturating_add(polygons);
+    let nodes = read_radii(document, piece, "PointData", (choice, choice.points.as_deref()), points.len())?;
+    let of_cells = read_radii(document, piece, "CellData", (choice, choice.cells.as_deref()), cells)?;
+    let end_radii = read_end_radii(document, piece, choice, cells)?;
+    let count = points.len();
+    let astray = |a: Astray| VtpError::UnknownPoint { line: others.lines + a.line, point: a.point, points: count };
+    let polylines = Polylines::checked(points, lines, &connectivity).map_err(astray)?;
+    if !polylines.fits(&network.skeleton) {
+        return Err(VtpError::TooMany);
+    }
+    // Cell data run over vertex cells first, then lines.
+    let of_lines = of_cells.map(|r| r[vertices..vertices + polylines.ends.len()].to_vec());
+    let mut radii = Radii { nodes, lines: of_lines, corners: None };
+    if let Some(ends) = end_radii {
+        radii.corners = Some(corner_radii(&polylines, &ends[vertices..], &radii));
+    }
+    if let Some(groups) = read_groups(document, piece, cells)? {
+        network.groups.resize(network.skeleton.nodes.len(), None);
+        network.groups.extend(polylines.groups(&groups[vertices..]));
+    }
+    polylines.append_to(&mut network.skeleton, &radii);
+    let lines = &polylines.ends;
+    others.lines += lines.len();
+    others.vertices += vertices;
+    others.polygons += polygons;
+    Ok(())
+}
+
+/// Radii along all lines: those of both ends where a line has two points, else what the line or its points have.
+fn corner_radii(polylines: &Polylines, ends: &[[f64; 2]], radii: &Radii) -> Vec<f64> {
+    let mut corners = Vec::with_capacity(polylines.path.len());
+    let mut start = 0;
+    for (line, &end) in polylines.ends.iter().enumerate() {
+        let path = &polylines.path[start..end];
+        let of_node = |point: u32| radii.nodes.as_ref().map_or(0.0, |r| r[point as usize]);
+        let of_line = radii.lines.as_ref().map(|r| r[line]);
+        match path.len() {
+            2 => corners.extend(ends[line]),
+            _ => corners.extend(path.iter().map(|&p| of_line.unwrap_or_else(|| of_node(p)))),
+        }
+        start = end;
+    }
+    corners
+}
+
+/// The radii at both ends of each line, which our own files hold beside those of the lines; none when the caller chose
+/// another array.
+fn read_end_radii(
+    document: &VtkXml,
+    piece: ElementId,
+    choice: &Choice,
+    cells: usize,
+) -> Result<Option<Vec<[f64; 2]>>, VtpError> {
+    if !choice.by_name {
+        return Ok(None);
+    }
+    let arrays = document.child(piece, "CellData").map(|s| document.arrays(s).find(|(n, _)| *n == END_RADII));
+    let Some((_, element)) = arrays.flatten() else { return Ok(None) };
+    let array = document.read(element)?;
+    if array.len() != cells.saturating_mul(2) {
+        return Err(VtpError::WrongLength {
+            array: END_RADII.to_owned(),
+            expected: cells.saturating_mul(2),
+            found: array.len(),
+        });
+    }
+    Ok(Some(array.into_floats().as_chunks::<2>().0.to_vec()))
+}
+
+/// Group and blanking of each cell; none where the piece does not have both, as integers.
+fn read_groups(document: &VtkXml, piece: ElementId, cells: usize) -> Result<Option<Vec<[i64; 2]>>, VtpError> {
+    let Some(section) = document.child(piece, "CellData") else { return Ok(None) };
+    let mut arrays = [Vec::new(), Vec::new()];
+    for (name, values) in GROUPS.into_iter().zip(&mut arrays) {
+        let Some((_, element)) = document.arrays(section).find(|(n, _)| *n == name) else { return Ok(None) };
+        let Some(read) = document.read(element)?.into_ints() else { return Ok(None) };
+        if read.len() != cells {
+            return Err(VtpError::WrongLength { array: name.to_owned(), expected: cells, found: read.len() });
+        }
+        *values = read;
+    }
+    let [groups, blanked] = arrays;
+    Ok(Some(groups.into_iter().zip(blanked).map(<[i64; 2]>::from).collect()))
+}
+
+fn read_points(document: &VtkXml, piece: ElementId) -> Result<Vec<Point3>, VtpError> {
+    let missing = VtpError::MissingElement { element: "Points" };
+    let count = document.count(piece, "NumberOfPoints")?;
+    let Some(section) = document.child(piece, "Points") else {
+        return if count == 0 { Ok(Vec::new()) } else { Err(missing) };
+    };
+    let Some((_, element)) = document.arrays(section).next() else {
+        return if count == 0 { Ok(Vec::new()) } else { Err(missing) };
+    };
+    let array = document.read(element)?;
+    // Three is the default for points in some writers that leave the attribute out.
+    let stated = document.attribute(element, "NumberOfComponents").is_some();
+    if stated && array.components != 3 {
+        return Err(VtpError::BadPoints { components: array.components });
+    }
+    if Some(array.len()) != count.checked_mul(3) {
+        return Err(VtpError::WrongLength {
+            array: "Points".into(),
+            expected: count.saturating_mul(3),
+            found: array.len(),
+        });
+    }
+    let values = array.into_floats();
+    Ok(values.as_chunks::<3>().0.iter().map(|&p| Point3::from(p)).collect())
+}
+
+/// Where each line ends in the connectivity, and the connectivity.
+fn read_lines(document: &VtkXml, piece: ElementId) -> Result<(Vec<usize>, Vec<i64>), VtpError> {
+    let count = document.count(piece, "NumberOfLines")?;
+    let Some(section) = document.child(piece, "Lines").filter(|_| count > 0) else {
+        return if count == 0 { Ok(Default::default()) } else { Err(VtpError::MissingElement { element: "Lines" }) };
+    };
+    let read = |array: &'static str| -> Result<Vec<i64>, VtpError> {
+        let found = document.arrays(section).find(|(name, _)| *name == array);
+        let (_, element) = found.ok_or(VtpError::MissingElement { element: "Lines" })?;
+        document.read(element)?.into_ints().ok_or(VtpError::NotIntegers { array })
+    };
+    let (connectivity, offsets) = (read("connectivity")?, read("offsets")?);
+    if offsets.len() != count {
+        return Err(VtpError::WrongLength { array: "offsets".into(), expected: count, found: offsets.len() });
+    }
+    let mut ends = Vec::with_capacity(offsets.len());
+    let mut before = 0;
+    for (line, &offset) in offsets.iter().enumerate() {
+        if offset < before || offset > connectivity.len() as i64 {
+            return Err(VtpError::BadOffset { line, offset, length: connectivity.len() });
+        }
+        before = offset;
+        ends.push(offset as usize);
+    }
+    Ok((ends, connectivity))
+}
+
+/// The numbers of an array, one per point.
+fn read_node_values(document: &VtkXml, piece: ElementId, name: &str) -> Result<Vec<f64>, VtpError> {
+    let expected = document.count(piece, "NumberOfPoints")?;
+    let element = document.child(piece, "PointData").and_then(|s| document.arrays(s).find(|(n, _)| *n == name));
+    let Some((_, element)) = element else {
+        return if expected == 0 { Ok(Vec::new()) } else { Err(VtpError::MissingElement { element: "DataArray" }) };
+    };
+    let array = document.read(element)?;
+    if array.components > 1 {
+        let components = array.components;
+        return Err(NodeArrayFault::Components { array: name.to_owned(), components }.into());
+    }
+    if array.len() != expected {
+        return Err(VtpError::WrongLength { array: name.to_owned(), expected, found: array.len() });
+    }
+    Ok(array.into_floats())
+}
+
+/// The radii in the chosen array, one per point or cell; none when no array was chosen.
+fn read_radii(
+    document: &VtkXml,
+    piece: ElementId,
+    section: &'static str,
+    (choice, name): (&Choice, Option<&str>),
+    expected: usize,
+) -> Result<Option<Vec<f64>>, VtpError> {
+    let Some(name) = name else { return Ok(None) };
+    let element = document.child(piece, section).and_then(|s| document.arrays(s).find(|(n, _)| *n == name));
+    let Some((_, element)) = element else {
+        return Err(RadiusFault::UnknownArray { wanted: name.to_owned(), available: Vec::new() }.into());
+    };
+    let array = document.read(element)?;
+    if array.len() != expected {
+        return Err(VtpError::WrongLength { array: name.to_owned(), expected, found: array.len() });
+    }
+    Ok(Some(choice.radii(name, array.into_floats())))
+}

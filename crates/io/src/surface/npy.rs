@@ -1,0 +1,85 @@
+//! A complex of triangles as arrays: what bounds a volume, and all else that a tetrahedralizer takes.
+
+use super::error::SurfaceFileError;
+use crate::file::FileError;
+use crate::npy::{Arrays, NpyError, NpyFault};
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::Point3;
+use std::path::Path;
+
+/// The arrays that are read.
+const ARRAYS: [&str; 6] = ["points", "triangles", "markers", "segments", "holes", "regions"];
+
+/// A complex as it was read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ArrayComplex {
+    /// `points` (n, 3) and `triangles` (m, 3); there may be no triangles.
+    pub mesh: TriMesh,
+    /// `markers` (m): of each triangle; empty where they are not there.
+    pub markers: Vec<i32>,
+    /// `segments` (k, 2).
+    pub segments: Vec<[u32; 2]>,
+    /// `holes` (h, 3): a point in each.
+    pub holes: Vec<Point3>,
+    /// `regions` (r, 5).
+    pub regions: Vec<ArrayRegion>,
+}
+
+/// A row of `regions`: a point in it, its number, and the bound on its volumes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArrayRegion {
+    /// A point in it.
+    pub point: Point3,
+    /// What its tetrahedra are labelled with.
+    pub id: i32,
+    /// Bound on the volume of its tetrahedra; none where the array has none, or 0 or less.
+    pub max_volume: Option<f64>,
+}
+
+/// Reads a folder `.npyd`.
+///
+/// # Errors
+/// `Read` with the system's reason, or `Content` with the array and row that is wrong.
+pub fn read_complex(folder: &Path) -> Result<ArrayComplex, SurfaceFileError> {
+    complex_of(&Arrays::read(folder, &ARRAYS, None)?).map_err(FileError::content(folder))
+}
+
+/// Reads a complex from the bytes of the files of a folder.
+///
+/// # Errors
+/// The array and the row that is wrong.
+pub fn read_complex_arrays(files: &[(&str, &[u8])]) -> Result<ArrayComplex, NpyError> {
+    complex_of(&Arrays::of(files))
+}
+
+fn complex_of(arrays: &Arrays) -> Result<ArrayComplex, NpyError> {
+    let points = arrays.points("points")?;
+    let of_points = ("points.npy", points.len());
+    let triangles = arrays.if_there("triangles", |arrays, name| arrays.indices(name, of_points))?;
+    let markers = arrays.labels("markers", ("triangles.npy", triangles.len()))?;
+    let segments = arrays.if_there("segments", |arrays, name| arrays.indices(name, of_points))?;
+    let holes = arrays.if_there("holes", Arrays::points)?;
+    let regions = arrays.if_there("regions", regions)?;
+    Ok(ArrayComplex {
+        mesh: TriMesh { points, triangles },
+        markers: markers.unwrap_or_default(),
+        segments,
+        holes,
+        regions,
+    })
+}
+
+fn regions(arrays: &Arrays, name: &str) -> Result<Vec<ArrayRegion>, NpyError> {
+    let fault = |fault: NpyFault| fault.of(format!("{name}.npy"));
+    let rows = arrays.floats::<5>(name)?.into_iter().enumerate();
+    rows.map(|(row, [x, y, z, id, volume])| {
+        if ![x, y, z, id].iter().all(|x| x.is_finite()) {
+            return Err(fault(NpyFault::NotFinite { row }));
+        }
+        if id.fract() != 0.0 || id.abs() > f64::from(i32::MAX) {
+            return Err(fault(NpyFault::NoLabel { row, value: id.to_string() }));
+        }
+        Ok(ArrayRegion { point: Point3::new(x, y, z), id: id as i32, max_volume: Some(volume).filter(|v| *v > 0.0) })
+    })
+    .collect()
+}

@@ -1,0 +1,178 @@
+//! The head of a PLY file: which elements follow, with which properties, in which encoding.
+
+use crate::surface::error::SurfaceFault;
+use crate::text::Place;
+use crate::text::{TextFault, Words};
+
+/// How the numbers are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Text,
+    Little,
+    Big,
+}
+
+/// The type of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn of(word: &[u8]) -> Option<Self> {
+        Some(match word {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// Bytes of such a number.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    fn is_integer(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+}
+
+/// One property of an element.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Property {
+    pub(super) name: Vec<u8>,
+    /// Type of the count, when it is a list.
+    pub(super) count: Option<Scalar>,
+    /// Type of the value, or of each value of the list.
+    pub(super) value: Scalar,
+}
+
+/// A kind of items.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Element {
+    pub(super) name: Vec<u8>,
+    /// How many items there are, as the file says.
+    pub(super) count: u64,
+    pub(super) properties: Vec<Property>,
+}
+
+impl Element {
+    /// The fewest bytes an item takes.
+    pub(super) fn least(&self, encoding: Encoding) -> usize {
+        // A number of a text takes a digit and a blank.
+        let size = |p: &Property| if encoding == Encoding::Text { 2 } else { p.count.unwrap_or(p.value).size() };
+        self.properties.iter().map(size).sum()
+    }
+
+    /// Which property has a name.
+    pub(super) fn property(&self, names: &[&[u8]]) -> Option<usize> {
+        self.properties.iter().position(|p| names.contains(&p.name.as_slice()))
+    }
+}
+
+/// What the head says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Head {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<Element>,
+    /// Where the data begin.
+    pub(super) end: usize,
+    /// In which line the data begin.
+    pub(super) line: usize,
+}
+
+/// Parses the head.
+pub(super) fn parse(bytes: &[u8]) -> Result<Head, SurfaceFault> {
+    let mut head = Head { encoding: Encoding::Text, elements: Vec::new(), end: 0, line: 1 };
+    let mut encoded = false;
+    while let Some(length) = bytes[head.end..].iter().position(|&b| b == b'\n') {
+        let line = &bytes[head.end..head.end + length];
+        let mut words = Words::from_line(line, head.line);
+        let place = Place::Line(head.line);
+        head.end += length + 1;
+        head.line += 1;
+        let keyword = words.word_here().unwrap_or_default();
+        match keyword {
+            b"ply" if head.line == 2 => {}
+            _ if head.line == 2 => return Err(SurfaceFault::unexpected(keyword, "the keyword ply", place)),
+            b"format" => {
+                head.encoding = encoding(words.need_here("the encoding")?, place)?;
+                encoded = true;
+            }
+            b"element" => {
+                let name = words.need_here("the element's name")?.to_vec();
+                let count = words.need_here("the element's count")?;
+                let count = words.as_integer(count, "the element's count")?;
+                let count = u64::try_from(count).map_err(|_| TextFault::OutOfRange {
+                    line: words.line(),
+                    what: "the element's count",
+                    value: count,
+                })?;
+                head.elements.push(Element { name, count, properties: Vec::new() });
+            }
+            b"property" => {
+                let property = property(&mut words, place)?;
+                let element = head.elements.last_mut();
+                element
+                    .ok_or_else(|| SurfaceFault::unexpected(keyword, "an element", place))?
+                    .properties
+                    .push(property);
+            }
+            b"comment" | b"obj_info" | b"" => {}
+            b"end_header" if encoded => return Ok(head),
+            b"end_header" => return Err(SurfaceFault::Missing { what: "the line 'format'" }),
+            _ => {
+                return Err(SurfaceFault::unexpected(
+                    keyword,
+                    "a keyword of the head (element, property, comment, end_header)",
+                    place,
+                ));
+            }
+        }
+    }
+    Err(SurfaceFault::Missing { what: "'end_header'" })
+}
+
+fn encoding(word: &[u8], place: Place) -> Result<Encoding, SurfaceFault> {
+    match word {
+        b"ascii" => Ok(Encoding::Text),
+        b"binary_little_endian" => Ok(Encoding::Little),
+        b"binary_big_endian" => Ok(Encoding::Big),
+        _ => Err(SurfaceFault::unexpected(word, "ascii, binary_little_endian or binary_big_endian", place)),
+    }
+}
+
+fn property(words: &mut Words, place: Place) -> Result<Property, SurfaceFault> {
+    let scalar =
+        |word: &[u8]| Scalar::of(word).ok_or_else(|| SurfaceFault::unexpected(word, "a type of numbers", place));
+    let kind = words.need_here("the property's type")?;
+    if kind != b"list" {
+        let value = scalar(kind)?;
+        return Ok(Property { name: words.need_here("the property's name")?.to_vec(), count: None, value });
+    }
+    let counted = words.need_here("the type of the list's count")?;
+    let count = scalar(counted)?;
+    if !count.is_integer() {
+        return Err(SurfaceFault::unexpected(counted, "a type of integers", place));
+    }
+    let value = scalar(words.need_here("the type of the list's values")?)?;
+    Ok(Property { name: words.need_here("the property's name")?.to_vec(), count: Some(count), value })
+}

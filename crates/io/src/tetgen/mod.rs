@@ -1,0 +1,21 @@
+//! `TetGen`'s text formats, as its manual describes them (version 1.5, section 5): points (`.node`), piecewise linear
+//! complexes (`.poly`, `.smesh`), and the family of files of a tetrahedral mesh (`.node`, `.ele`, `.face`, `.edge`,
+//! `.neigh`).
+
+mod error;
+mod family;
+mod mesh;
+mod nodes;
+mod plc;
+mod plc_read;
+#[cfg(test)]
+mod tests;
+
+pub use error::TetgenFault;
+pub use error::TetgenFileError;
+pub use family::{Extent, MeshFamily};
+pub use mesh::read_mesh;
+pub use mesh::read_mesh_from;
+pub use nodes::{Nodes, read_nodes, read_nodes_as};
+pub use plc::{Facet, Plc, PlcFormat, Region};
+pub use plc_read::{read_plc, read_plc_as};

@@ -1,0 +1,100 @@
+//! Which formats of volume meshes there are, and which of them a path asks for.
+
+use super::error::MeshFileError;
+use crate::file::{FileError, by_extension};
+use std::path::Path;
+
+/// A format of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshFormat {
+    /// VTK unstructured grid, `.vtu`.
+    Vtu,
+    /// VTK unstructured grid in pieces, `.pvtu` and a folder beside it.
+    Pvtu,
+    /// Gmsh 4.1, `.msh`.
+    Msh,
+    /// Gmsh 2.2 as text, `.msh2`, which more programs read.
+    Msh2,
+    /// Medit's text format, `.mesh`.
+    Medit,
+    /// A case for `OpenFOAM`, a folder; `.foam`.
+    OpenFoam,
+    /// The `mesh-complete` folder of `SimVascular` and `svMultiPhysics`; `.svmesh`.
+    SimVascular,
+    /// Arrays of `NumPy`, a folder; `.npyd`.
+    Npy,
+    /// `TetGen`'s family of files, named by its `.ele` or `.node`.
+    Tetgen,
+}
+
+/// Extensions, in lower case.
+const EXTENSIONS: [(&str, MeshFormat); 10] = [
+    ("vtu", MeshFormat::Vtu),
+    ("pvtu", MeshFormat::Pvtu),
+    ("msh", MeshFormat::Msh),
+    ("msh2", MeshFormat::Msh2),
+    ("mesh", MeshFormat::Medit),
+    ("foam", MeshFormat::OpenFoam),
+    ("svmesh", MeshFormat::SimVascular),
+    ("npyd", MeshFormat::Npy),
+    ("ele", MeshFormat::Tetgen),
+    ("node", MeshFormat::Tetgen),
+];
+
+/// What formats are called where the extension does not tell.
+const NAMES: [(&str, MeshFormat); 9] = [
+    ("vtu", MeshFormat::Vtu),
+    ("pvtu", MeshFormat::Pvtu),
+    ("msh", MeshFormat::Msh),
+    ("msh2", MeshFormat::Msh2),
+    ("medit", MeshFormat::Medit),
+    ("openfoam", MeshFormat::OpenFoam),
+    ("simvascular", MeshFormat::SimVascular),
+    ("npy", MeshFormat::Npy),
+    ("tetgen", MeshFormat::Tetgen),
+];
+
+impl MeshFormat {
+    /// The names of all formats, for those who choose one.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        NAMES.into_iter().map(|(name, _)| name)
+    }
+
+    /// The format of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        NAMES.into_iter().find(|(known, _)| *known == name).map(|(_, format)| format)
+    }
+
+    /// The format that a file name asks for by its extension.
+    ///
+    /// # Errors
+    /// `UnknownFormat` when no format has the extension.
+    pub fn of(path: &Path) -> Result<Self, MeshFileError> {
+        by_extension(path, &EXTENSIONS).ok_or_else(|| FileError::UnknownFormat {
+            path: path.to_path_buf(),
+            kind: "known mesh format",
+            known: ".vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .npyd, .ele",
+        })
+    }
+
+    /// Whether it is one of VTK's unstructured grids.
+    pub fn is_grid(self) -> bool {
+        matches!(self, Self::Vtu | Self::Pvtu)
+    }
+
+    /// Whether it has a place for values at points and in cells.
+    pub fn holds_values(self) -> bool {
+        self.is_grid() || matches!(self, Self::Msh | Self::Msh2 | Self::Npy)
+    }
+
+    /// Whether a mesh is a folder.
+    pub(super) fn is_folder(self) -> bool {
+        matches!(self, Self::OpenFoam | Self::SimVascular | Self::Npy)
+    }
+
+    /// Whether a mesh can be written without being held in memory as a whole.
+    pub fn is_written_in_passes(self) -> bool {
+        self != Self::Tetgen
+    }
+}

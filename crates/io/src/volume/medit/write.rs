@@ -1,0 +1,31 @@
+//! Writes Medit files.
+
+use super::names::{TETRAHEDRA, TRIANGLES, VERTICES};
+use anastomesh_mesh::source::MeshSource;
+use std::io::{self, Write};
+
+/// Writes a mesh to a stream: blocks and patches become references; points have the reference 0. Memory does not grow
+/// with the mesh, which is read in one pass.
+///
+/// # Errors
+/// What the stream or reading the mesh reports.
+pub(in crate::volume) fn write(out: &mut impl Write, mesh: &dyn MeshSource) -> io::Result<()> {
+    let counts = mesh.counts();
+    writeln!(out, "MeshVersionFormatted 2\nDimension 3\n{VERTICES}\n{}", counts.points)?;
+    mesh.each_points(|points| points.iter().try_for_each(|p| writeln!(out, "{:?} {:?} {:?} 0", p.x, p.y, p.z)))?;
+    writeln!(out, "{TRIANGLES}\n{}", counts.boundary)?;
+    mesh.each_faces(|piece| write_cells(out, &piece.faces, &piece.patches))?;
+    writeln!(out, "{TETRAHEDRA}\n{}", counts.tets)?;
+    mesh.each_tets(|piece| write_cells(out, &piece.tets, &piece.blocks))?;
+    writeln!(out, "End")
+}
+
+fn write_cells<const N: usize>(out: &mut impl Write, cells: &[[u32; N]], references: &[i32]) -> io::Result<()> {
+    for (i, corners) in cells.iter().enumerate() {
+        for &v in corners {
+            write!(out, "{} ", u64::from(v) + 1)?;
+        }
+        writeln!(out, "{}", references.get(i).unwrap_or(&0))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,35 @@
+//! Tetrahedral volume meshes in files: a folder for each format, and which of them a path asks for.
+//!
+//! A format has its faults in `error`, and `read` and `write` that know bytes and streams but neither of the other formats.
+
+mod conditions;
+mod content;
+mod error;
+#[doc(hidden)]
+pub mod fixtures;
+mod format;
+mod medit;
+mod msh;
+mod npy;
+mod openfoam;
+mod options;
+mod pvtu;
+mod read;
+mod simvascular;
+#[cfg(test)]
+mod tests;
+mod vtu;
+mod write;
+
+pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
+pub use content::{MeshFile, MeshNotes};
+pub use error::MeshFileError;
+pub use format::MeshFormat;
+pub use npy::read_mesh_arrays;
+pub use options::GridOptions;
+pub use options::WriteOptions;
+pub use read::{read_mesh, read_mesh_from};
+pub use vtu::write_boundary as write_poly_data;
+pub use vtu::{VtuPieces, VtuPiecesError};
+pub use write::{ensure_writable, write_mesh, write_mesh_to};
+pub use write::{ensure_writable_as, write_mesh_with};

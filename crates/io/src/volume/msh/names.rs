@@ -1,0 +1,67 @@
+//! What writer and reader have to agree on: numbers and names, and our own section.
+
+use crate::volume::content::MeshNotes;
+use anastomesh_mesh::check::Expectation;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::{Cap, Patch};
+
+/// Gmsh's element types.
+pub(super) const MSH_TRIANGLE: i32 = 2;
+pub(super) const MSH_TETRA: i32 = 4;
+
+/// Name of the volume's physical group.
+pub(super) const VOLUME_NAME: &str = "lumen";
+
+/// Name of our own section.
+pub(super) const SECTION: &str = "Anastomesh";
+
+/// What our own section holds, as JSON.
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Extra {
+    generator: String,
+    options: String,
+    loops: Option<Vec<u32>>,
+    terminals: Option<Vec<u32>>,
+    caps: Vec<ExtraCap>,
+}
+
+/// A cap in our own section.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+struct ExtraCap {
+    patch: i32,
+    node: u32,
+    center: [f64; 3],
+    normal: [f64; 3],
+    radius: f64,
+}
+
+impl Extra {
+    pub(super) fn of(patches: &[Patch], notes: &MeshNotes) -> Self {
+        let cap = |id: i32, cap: &Cap| ExtraCap {
+            patch: id,
+            node: cap.node,
+            center: cap.center.coords.into(),
+            normal: cap.normal.into(),
+            radius: cap.radius,
+        };
+        Self {
+            generator: notes.generator.clone(),
+            options: notes.options.clone(),
+            loops: notes.expectation.as_ref().map(|expected| expected.loops.clone()),
+            terminals: notes.expectation.as_ref().map(|expected| expected.terminals.clone()),
+            caps: patches.iter().filter_map(|p| p.cap.as_ref().map(|c| cap(p.id, c))).collect(),
+        }
+    }
+
+    /// The notes, and the caps with their patches.
+    pub(super) fn into_notes(self) -> (MeshNotes, Vec<(i32, Cap)>) {
+        let terminals = self.terminals.unwrap_or_default();
+        let expectation = self.loops.map(|loops| Expectation { loops, terminals });
+        let notes = MeshNotes { expectation, generator: self.generator, options: self.options, ..MeshNotes::default() };
+        let cap = |c: ExtraCap| {
+            let (center, normal) = (Point3::from(c.center), Vec3::from(c.normal));
+            (c.patch, Cap { node: c.node, center, normal, radius: c.radius })
+        };
+        (notes, self.caps.into_iter().map(cap).collect())
+    }
+}

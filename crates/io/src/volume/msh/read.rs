@@ -1,0 +1,230 @@
+//! Reads tetrahedral meshes from Gmsh's MSH: 4.1, text or binary, and 2.2, text.
+
+use super::cursor::{Cursor, Version};
+use super::error::MshFault;
+use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION};
+use crate::patches::{distinct, usual_name};
+use crate::volume::content::MeshFile;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::{Cap, Patch};
+use rustc_hash::FxHashMap;
+
+/// Reads a mesh from the bytes of a `.msh` file of version 4.1, or 2.2 as text. Tetrahedra and triangles are taken, points and lines
+/// among the elements passed over; a triangle's label is the first physical group of its surface.
+///
+/// # Errors
+/// When the file is no such file or incomplete, or holds other elements.
+pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
+    let mut cursor = Cursor::new(bytes);
+    let mut parts = Parts::default();
+    if cursor.next_section()? != Some("MeshFormat") {
+        return Err(MshFault::Missing { what: "$MeshFormat" });
+    }
+    let version = cursor.read_format()?;
+    cursor.finish_section("MeshFormat")?;
+    let (mut nodes, mut elements) = (false, false);
+    while let Some(name) = cursor.next_section()? {
+        match name {
+            "PhysicalNames" => parts.read_names(&mut cursor)?,
+            "Entities" => parts.read_entities(&mut cursor)?,
+            "Nodes" if version == Version::Two => parts.read_node_list(&mut cursor)?,
+            "Nodes" => parts.read_nodes(&mut cursor)?,
+            "Elements" if version == Version::Two => parts.read_element_list(&mut cursor)?,
+            "Elements" => parts.read_elements(&mut cursor)?,
+            SECTION => parts.read_extra(&mut cursor)?,
+            _ => {}
+        }
+        cursor.finish_section(name)?;
+        nodes |= name == "Nodes";
+        elements |= name == "Elements";
+    }
+    if !nodes || !elements {
+        return Err(MshFault::Missing { what: if nodes { "$Elements" } else { "$Nodes" } });
+    }
+    parts.into_file()
+}
+
+/// The sections' content.
+#[derive(Default)]
+struct Parts {
+    /// Names of the physical groups of surfaces.
+    names: Vec<(i32, String)>,
+    /// First physical group of each surface.
+    group_of_surface: FxHashMap<i32, i32>,
+    /// First physical group of each volume.
+    group_of_volume: FxHashMap<i32, i32>,
+    nodes: Vec<(u64, Point3)>,
+    tets: Vec<(u64, [u64; 4], i32)>,
+    triangles: Vec<(u64, [u64; 3], i32)>,
+    extra: Extra,
+}
+
+impl Parts {
+    fn read_names(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        // Text also in binary files.
+        let count: u64 = cursor.line()?.parse().map_err(|_| cursor.bad())?;
+        for _ in 0..count {
+            let line = cursor.line()?;
+            let mut words = line.splitn(3, ' ');
+            let dimension = words.next().and_then(|w| w.parse::<i32>().ok()).ok_or_else(|| cursor.bad())?;
+            let tag = words.next().and_then(|w| w.parse::<i32>().ok()).ok_or_else(|| cursor.bad())?;
+            let name = words.next().unwrap_or_default().trim().trim_matches('"');
+            if dimension == 2 {
+                self.names.push((tag, name.into()));
+            }
+        }
+        Ok(())
+    }
+
+    fn read_entities(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        let counts: [u64; 4] = cursor.sizes()?;
+        for (dimension, count) in counts.into_iter().enumerate() {
+            for _ in 0..count {
+                let tag = cursor.int()?;
+                cursor.skip_floats(if dimension == 0 { 3 } else { 6 })?;
+                for i in 0..cursor.size()? {
+                    let group = cursor.int()?;
+                    match dimension {
+                        2 if i == 0 => drop(self.group_of_surface.insert(tag, group)),
+                        3 if i == 0 => drop(self.group_of_volume.insert(tag, group)),
+                        _ => {}
+                    }
+                }
+                if dimension > 0 {
+                    for _ in 0..cursor.size()? {
+                        cursor.int()?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn read_nodes(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        let [blocks, ..]: [u64; 4] = cursor.sizes()?;
+        for _ in 0..blocks {
+            let (dimension, _tag, parametric) = (cursor.int()?, cursor.int()?, cursor.int()?);
+            let count = cursor.size()?;
+            let first = self.nodes.len();
+            for _ in 0..count {
+                self.nodes.push((cursor.size()?, Point3::origin()));
+            }
+            for (_, point) in &mut self.nodes[first..] {
+                *point = Point3::new(cursor.float()?, cursor.float()?, cursor.float()?);
+                cursor.skip_floats(if parametric == 1 { dimension.clamp(0, 3) as usize } else { 0 })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn read_elements(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        let [blocks, ..]: [u64; 4] = cursor.sizes()?;
+        for _ in 0..blocks {
+            let (_dimension, entity, kind) = (cursor.int()?, cursor.int()?, cursor.int()?);
+            let groups = if kind == MSH_TETRA { &self.group_of_volume } else { &self.group_of_surface };
+            let group = groups.get(&entity).copied().unwrap_or(0);
+            for _ in 0..cursor.size()? {
+                let tag = cursor.size()?;
+                match kind {
+                    MSH_TRIANGLE => self.triangles.push((tag, cursor.sizes()?, group)),
+                    MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
+                    // Lines and points bound no volume.
+                    1 => drop(cursor.sizes::<2>()?),
+                    15 => drop(cursor.size()?),
+                    _ => {
+                        let cell = self.tets.len() + self.triangles.len();
+                        return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Version 2: a tag and a place each.
+    fn read_node_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        for _ in 0..cursor.size()? {
+            let tag = cursor.size()?;
+            self.nodes.push((tag, Point3::new(cursor.float()?, cursor.float()?, cursor.float()?)));
+        }
+        Ok(())
+    }
+
+    /// Version 2: a tag, a type, a number of further tags (the first is the physical group), those, and the corners.
+    fn read_element_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        for _ in 0..cursor.size()? {
+            let (tag, kind, tags) = (cursor.size()?, cursor.int()?, cursor.size()?);
+            let mut group = 0;
+            for i in 0..tags {
+                let value = cursor.int()?;
+                group = if i == 0 { value } else { group };
+            }
+            match kind {
+                MSH_TRIANGLE => {
+                    // What a reader of version 4.1 knows from the entities.
+                    self.group_of_surface.insert(group, group);
+                    self.triangles.push((tag, cursor.sizes()?, group));
+                }
+                MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
+                1 => drop(cursor.sizes::<2>()?),
+                15 => drop(cursor.size()?),
+                _ => {
+                    let cell = self.tets.len() + self.triangles.len();
+                    return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn read_extra(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+        let line = cursor.line()?;
+        self.extra = serde_json::from_str(line).map_err(|_| cursor.bad())?;
+        Ok(())
+    }
+
+    fn into_file(mut self) -> Result<MeshFile, MshFault> {
+        let mut file = MeshFile::default();
+        self.nodes.sort_by_key(|&(tag, _)| tag);
+        if let Some(pair) = self.nodes.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            return Err(MshFault::RepeatedTag { tag: pair[0].0 });
+        }
+        self.tets.sort_by_key(|&(tag, ..)| tag);
+        self.triangles.sort_by_key(|&(tag, ..)| tag);
+        let volume = &mut file.volume;
+        volume.mesh.points = self.nodes.iter().map(|&(_, p)| p).collect();
+        volume.mesh.tets = self.tets.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
+        // One group is the name of the whole; several are regions.
+        let regions = self.tets.iter().any(|tet| Some(tet.2) != self.tets.first().map(|first| first.2));
+        volume.tet_block = self.tets.iter().map(|tet| if regions { tet.2 } else { 0 }).collect();
+        let (notes, caps) = std::mem::take(&mut self.extra).into_notes();
+        file.notes = notes;
+        // Triangles without a group are no labelled boundary.
+        if self.triangles.iter().any(|&(.., group)| group != 0) {
+            file.labelled = true;
+            volume.boundary = self.triangles.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
+            volume.boundary_patch = self.triangles.iter().map(|&(.., group)| group).collect();
+            volume.boundary_block = vec![0; self.triangles.len()];
+            volume.patches = self.patches(&caps);
+        }
+        Ok(file)
+    }
+
+    /// Index of the node with a tag; one beyond all when there is none.
+    fn index(&self, tag: u64) -> u32 {
+        let guess = tag.wrapping_sub(1) as usize;
+        if self.nodes.get(guess).is_some_and(|node| node.0 == tag) {
+            return guess as u32;
+        }
+        self.nodes.binary_search_by_key(&tag, |node| node.0).map_or(u32::MAX, |i| i as u32)
+    }
+
+    fn patches(&self, caps: &[(i32, Cap)]) -> Vec<Patch> {
+        let name = |id: i32| self.names.iter().find(|(tag, _)| *tag == id).map(|(_, name)| name.clone());
+        let cap = |id: i32| caps.iter().find(|(patch, _)| *patch == id).map(|(_, cap)| *cap);
+        let named = self.names.iter().map(|(id, _)| *id);
+        let ids = distinct(self.group_of_surface.values().copied().chain(named).collect());
+        let patch = |id| Patch { id, name: name(id).unwrap_or_else(|| usual_name(id)), cap: cap(id) };
+        ids.into_iter().map(patch).collect()
+    }
+}

@@ -1,0 +1,116 @@
+//! Writes meshes in Gmsh's older format 2.2, as text: what MFEM, NGSolve, OpenFOAM's converter and others read.
+
+use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME};
+use super::values::write_values_2;
+use crate::volume::content::MeshNotes;
+use anastomesh_mesh::beside::Beside;
+use anastomesh_mesh::source::MeshSource;
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+
+/// The physical groups of a mesh.
+struct Groups {
+    /// Of tetrahedra: that of all, or the regions.
+    regions: BTreeSet<i32>,
+    /// That of all tetrahedra: above all patches.
+    lumen: i32,
+}
+
+impl Groups {
+    /// Reads the labels once.
+    fn of(mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<Self> {
+        let mut largest = mesh.patches().iter().map(|p| p.id).max().unwrap_or(0);
+        mesh.each_face_labels(|piece| {
+            largest = piece.patches.iter().copied().max().unwrap_or(0).max(largest);
+            Ok(())
+        })?;
+        let mut regions = BTreeSet::new();
+        if notes.regions {
+            mesh.each_tet_labels(|piece| {
+                regions.extend(piece.blocks.iter().copied());
+                Ok(())
+            })?;
+        }
+        Ok(Self { regions, lumen: largest.max(0).saturating_add(1) })
+    }
+
+    /// The group of a tetrahedron; 0, none, for regions whose id can be no group.
+    fn of_tet(&self, block: i32) -> i32 {
+        if self.regions.len() > 1 { block.max(0) } else { self.lumen }
+    }
+
+    /// The groups of tetrahedra, with their names.
+    fn named(&self) -> Vec<(i32, String)> {
+        match self.regions.len() {
+            0 | 1 => vec![(self.lumen, VOLUME_NAME.into())],
+            _ => self.regions.iter().filter(|&&id| id > 0).map(|&id| (id, format!("region_{id}"))).collect(),
+        }
+    }
+}
+
+/// Writes a mesh as MSH 2.2: points, boundary faces and tetrahedra are read in one pass each, their labels in another;
+/// memory does not grow with the mesh. Faces come first, as Gmsh has it.
+///
+/// # Errors
+/// What the writer `out` or reading the mesh reports.
+pub(in crate::volume) fn write(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    values: Option<&dyn Beside>,
+) -> io::Result<()> {
+    let (counts, groups) = (mesh.counts(), Groups::of(mesh, notes)?);
+    writeln!(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat")?;
+    let named: Vec<_> = mesh.patches().iter().filter(|p| p.id > 0).collect();
+    let volumes = groups.named();
+    writeln!(out, "$PhysicalNames\n{}", named.len() + volumes.len())?;
+    for patch in named {
+        writeln!(out, "2 {} \"{}\"", patch.id, patch.name.replace('"', "'"))?;
+    }
+    for (id, name) in volumes {
+        writeln!(out, "3 {id} \"{name}\"")?;
+    }
+    writeln!(out, "$EndPhysicalNames\n$Nodes\n{}", counts.points)?;
+    let mut tag = 0_u64;
+    mesh.each_points(|points| {
+        for p in points {
+            tag += 1;
+            writeln!(out, "{tag} {:?} {:?} {:?}", p.x, p.y, p.z)?;
+        }
+        Ok(())
+    })?;
+    writeln!(out, "$EndNodes\n$Elements\n{}", counts.boundary + counts.tets)?;
+    let mut tag = 0_u64;
+    mesh.each_faces(|piece| {
+        for (i, &face) in piece.faces.iter().enumerate() {
+            tag += 1;
+            let patch = piece.patches.get(i).map_or(0, |&id| id.max(0));
+            write_element(out, tag, MSH_TRIANGLE, [patch, patch.max(1)], &face)?;
+        }
+        Ok(())
+    })?;
+    mesh.each_tets(|piece| {
+        for (i, &tet) in piece.tets.iter().enumerate() {
+            tag += 1;
+            let group = groups.of_tet(piece.blocks.get(i).copied().unwrap_or(0));
+            write_element(out, tag, MSH_TETRA, [group, group.max(1)], &tet)?;
+        }
+        Ok(())
+    })?;
+    writeln!(out, "$EndElements")?;
+    if let Some(values) = values {
+        write_values_2(out, mesh, values)?;
+    }
+    writeln!(out, "${SECTION}")?;
+    serde_json::to_writer(&mut *out, &Extra::of(mesh.patches(), notes))?;
+    write!(out, "\n$End{SECTION}\n")
+}
+
+/// A tag, a type, two further tags: the physical group, and the number of the surface or volume.
+fn write_element(out: &mut impl Write, tag: u64, kind: i32, tags: [i32; 2], corners: &[u32]) -> io::Result<()> {
+    write!(out, "{tag} {kind} 2 {} {}", tags[0], tags[1])?;
+    for &v in corners {
+        write!(out, " {}", u64::from(v) + 1)?;
+    }
+    out.write_all(b"\n")
+}

@@ -1,0 +1,76 @@
+//! What is no array: names of patches, caps, and what a check has to find.
+
+use crate::volume::content::MeshNotes;
+use anastomesh_mesh::check::Expectation;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::{Cap, Patch};
+use serde::{Deserialize, Serialize};
+
+/// The content of `mesh.json`.
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Notes {
+    generator: String,
+    options: String,
+    /// Whether blocks are regions.
+    regions: bool,
+    expected: Option<Expected>,
+    patches: Vec<NamedPatch>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Expected {
+    loops: Vec<u32>,
+    terminals: Vec<u32>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct NamedPatch {
+    id: i32,
+    name: String,
+    cap: Option<Disc>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Disc {
+    node: u32,
+    center: [f64; 3],
+    normal: [f64; 3],
+    radius: f64,
+}
+
+impl Notes {
+    pub(super) fn new(notes: &MeshNotes, patches: &[Patch]) -> Self {
+        let expected = notes.expectation.clone().map(|Expectation { loops, terminals }| Expected { loops, terminals });
+        let disc = |cap: Cap| Disc {
+            node: cap.node,
+            center: cap.center.into(),
+            normal: cap.normal.into(),
+            radius: cap.radius,
+        };
+        let named = |patch: &Patch| NamedPatch { id: patch.id, name: patch.name.clone(), cap: patch.cap.map(disc) };
+        Self {
+            generator: notes.generator.clone(),
+            options: notes.options.clone(),
+            regions: notes.regions,
+            expected,
+            patches: patches.iter().map(named).collect(),
+        }
+    }
+
+    pub(super) fn into_parts(self) -> (MeshNotes, Vec<Patch>) {
+        let expectation = self.expected.map(|Expected { loops, terminals }| Expectation { loops, terminals });
+        let cap = |disc: Disc| Cap {
+            node: disc.node,
+            center: Point3::from(disc.center),
+            normal: Vec3::from(disc.normal),
+            radius: disc.radius,
+        };
+        let named = |NamedPatch { id, name, cap: disc }| Patch { id, name, cap: disc.map(cap) };
+        let mut patches: Vec<Patch> = self.patches.into_iter().map(named).collect();
+        patches.sort_by_key(|patch| patch.id);
+        patches.dedup_by_key(|patch| patch.id);
+        let Self { generator, options, regions, .. } = self;
+        (MeshNotes { expectation, generator, options, regions, flow: None }, patches)
+    }
+}

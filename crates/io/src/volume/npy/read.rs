@@ -1,0 +1,54 @@
+//! Reads meshes.
+
+use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
+use super::notes::Notes;
+use crate::file::FileError;
+use crate::npy::{Arrays, NpyError, NpyFault};
+use crate::patches::usual_patches;
+use crate::volume::content::{MeshFile, MeshNotes};
+use anastomesh_mesh::{TetMesh, VolumeMesh};
+use std::path::Path;
+
+/// Reads a folder.
+///
+/// # Errors
+/// `Read` with the system's reason, or `Content` with the array and the row that is wrong.
+pub(in crate::volume) fn read(folder: &Path) -> Result<MeshFile, FileError<NpyError>> {
+    mesh_of(&Arrays::read(folder, &ARRAYS, Some(NOTES))?).map_err(FileError::content(folder))
+}
+
+/// Reads a mesh from the bytes of the files of a folder.
+///
+/// # Errors
+/// The array and the row that is wrong.
+pub fn read_mesh_arrays(files: &[(&str, &[u8])]) -> Result<MeshFile, NpyError> {
+    mesh_of(&Arrays::of(files))
+}
+
+/// Points and tetrahedra are needed, all else may be missing; patches without names get their usual ones.
+fn mesh_of(arrays: &Arrays) -> Result<MeshFile, NpyError> {
+    let points = arrays.points(POINTS)?;
+    let of_points = ("points.npy", points.len());
+    let tets = arrays.indices::<4>(TETS, of_points)?;
+    let tet_block = arrays.labels(TET_BLOCKS, ("tets.npy", tets.len()))?;
+    let boundary = arrays.if_there(TRIANGLES, |arrays, name| arrays.indices::<3>(name, of_points))?;
+    let of_faces = ("triangles.npy", boundary.len());
+    let boundary_patch = arrays.labels(TRIANGLE_PATCHES, of_faces)?;
+    let boundary_block = arrays.labels(TRIANGLE_BLOCKS, of_faces)?;
+    let notes = arrays.other(NOTES).map(serde_json::from_slice::<Notes>).transpose();
+    let notes = notes.map_err(|e| NpyFault::Json { reason: e.to_string() }.of(NOTES))?;
+    let (notes, mut patches) = notes.map_or_else(|| (MeshNotes::default(), Vec::new()), Notes::into_parts);
+    let boundary_patch = boundary_patch.unwrap_or_else(|| vec![0; boundary.len()]);
+    if patches.is_empty() {
+        patches = usual_patches(&boundary_patch);
+    }
+    let volume = VolumeMesh {
+        tet_block: tet_block.unwrap_or_else(|| vec![0; tets.len()]),
+        boundary_block: boundary_block.unwrap_or_else(|| vec![0; boundary.len()]),
+        mesh: TetMesh { points, tets },
+        boundary,
+        boundary_patch,
+        patches,
+    };
+    Ok(MeshFile { labelled: !volume.boundary.is_empty(), volume, notes })
+}

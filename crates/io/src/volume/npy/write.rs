@@ -1,0 +1,152 @@
+//! Writes meshes.
+
+use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
+use super::notes::Notes;
+use crate::file::{Asked, AtomicFolder};
+use crate::npy::{Item, head};
+use crate::volume::content::MeshNotes;
+use anastomesh_mesh::beside::{Beside, Column};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::source::MeshSource;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// What values beside the mesh are called: at points, in tetrahedra, in boundary faces.
+const VALUES: [&str; 3] = ["point_", "tet_", "triangle_"];
+
+fn is_ours(file: &str) -> bool {
+    let is_array = |name: &str| ARRAYS.contains(&name) || VALUES.iter().any(|prefix| name.starts_with(prefix));
+    file == NOTES || file.strip_suffix(".npy").is_some_and(is_array)
+}
+
+/// Makes sure that the folder can be made or replaced. Leaves nothing behind.
+pub(in crate::volume) fn ensure_writable(path: &Path) -> io::Result<()> {
+    AtomicFolder::create(path, is_ours).map(drop)
+}
+
+/// Writes a mesh in passes, whole or not at all. Corners are `int32`, as programs want them, and `uint32` where there are more
+/// points than that numbers. `values` become arrays of their own: `point_radius`, `tet_branch`, `triangle_branch`.
+///
+/// # Errors
+/// What the operating system or reading the mesh reports.
+pub(in crate::volume) fn write(
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    values: Option<&dyn Beside>,
+    progress: &dyn Progress,
+) -> io::Result<()> {
+    let folder = AtomicFolder::create(path, is_ours)?;
+    let writer = Writer { folder: &folder, progress };
+    let counts = mesh.counts();
+    writer.array::<f64>(POINTS, counts.points, 3, |out| {
+        mesh.each_points(|points| points.iter().try_for_each(|p| p.iter().try_for_each(|x| x.put(out))))
+    })?;
+    if i32::try_from(counts.points).is_ok() {
+        writer.cells(mesh, |v| v as i32)?;
+    } else {
+        writer.cells(mesh, |v| v)?;
+    }
+    writer.labels(mesh)?;
+    if let Some(values) = values {
+        writer.values(mesh, values)?;
+    }
+    let text = serde_json::to_string_pretty(&Notes::new(notes, mesh.patches()))?;
+    folder.put(NOTES, text.as_bytes())?;
+    folder.commit()
+}
+
+/// Writes arrays into a folder.
+struct Writer<'a> {
+    folder: &'a AtomicFolder,
+    progress: &'a dyn Progress,
+}
+
+/// What an array is written to.
+type Out<'a> = Asked<'a, BufWriter<File>>;
+
+impl Writer<'_> {
+    fn array<T: Item>(
+        &self,
+        name: &str,
+        rows: usize,
+        columns: usize,
+        fill: impl FnOnce(&mut Out) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let mut out = Asked { out: self.folder.quick_file(&format!("{name}.npy"))?, progress: self.progress };
+        head::<T>(&mut out, rows, columns)?;
+        fill(&mut out)?;
+        out.flush()
+    }
+
+    /// The corners of tetrahedra and boundary faces.
+    fn cells<T: Item>(&self, mesh: &dyn MeshSource, number: impl Fn(u32) -> T) -> io::Result<()> {
+        let counts = mesh.counts();
+        self.array::<T>(TETS, counts.tets, 4, |out| {
+            mesh.each_tets(|piece| piece.tets.as_flattened().iter().try_for_each(|&v| number(v).put(out)))
+        })?;
+        self.array::<T>(TRIANGLES, counts.boundary, 3, |out| {
+            mesh.each_faces(|piece| piece.faces.as_flattened().iter().try_for_each(|&v| number(v).put(out)))
+        })
+    }
+
+    /// Blocks and patches.
+    fn labels(&self, mesh: &dyn MeshSource) -> io::Result<()> {
+        let counts = mesh.counts();
+        self.array::<i32>(TET_BLOCKS, counts.tets, 1, |out| {
+            mesh.each_tet_labels(|piece| put_labels(out, &piece.blocks, piece.count))
+        })?;
+        self.array::<i32>(TRIANGLE_PATCHES, counts.boundary, 1, |out| {
+            mesh.each_face_labels(|piece| put_labels(out, &piece.patches, piece.count))
+        })?;
+        self.array::<i32>(TRIANGLE_BLOCKS, counts.boundary, 1, |out| {
+            mesh.each_face_labels(|piece| put_labels(out, &piece.blocks, piece.count))
+        })
+    }
+
+    fn values(&self, mesh: &dyn MeshSource, values: &dyn Beside) -> io::Result<()> {
+        let counts = mesh.counts();
+        let [at_points, in_tets, in_faces] = VALUES;
+        for (i, column) in values.columns().iter().enumerate() {
+            if column.at_points {
+                let each = |give: Give| mesh.each_points(|points: &[Point3]| give(&values.at_points(i, points)));
+                self.column(at_points, column, counts.points, each)?;
+                continue;
+            }
+            let each = |give: Give| mesh.each_tet_corners(|tets| give(&values.in_tets(i, tets)));
+            self.column(in_tets, column, counts.tets, each)?;
+            let each = |give: Give| mesh.each_face_corners(|faces| give(&values.in_faces(i, faces)));
+            self.column(in_faces, column, counts.boundary, each)?;
+        }
+        Ok(())
+    }
+
+    fn column(
+        &self,
+        prefix: &str,
+        column: &Column,
+        rows: usize,
+        each: impl FnOnce(Give) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let name = format!("{prefix}{}", column.name);
+        if column.is_integer {
+            self.array::<i32>(&name, rows, 1, |out| {
+                each(&mut |values| values.iter().try_for_each(|&value| (value as i32).put(out)))
+            })
+        } else {
+            self.array::<f64>(&name, rows, 1, |out| {
+                each(&mut |values| values.iter().try_for_each(|value| value.put(out)))
+            })
+        }
+    }
+}
+
+/// What takes values.
+type Give<'a> = &'a mut dyn FnMut(&[f64]) -> io::Result<()>;
+
+/// Labels that are not known are 0.
+fn put_labels(out: &mut Out, labels: &[i32], count: usize) -> io::Result<()> {
+    (0..count).try_for_each(|i| labels.get(i).copied().unwrap_or(0).put(out))
+}

@@ -1,0 +1,63 @@
+//! Cases for `OpenFOAM`: a folder with the mesh in `constant/polyMesh` and all that `simpleFoam` asks for beside it.
+
+mod boundary;
+mod case;
+mod head;
+mod poly_mesh;
+#[cfg(test)]
+mod tests;
+
+use super::conditions::Flow;
+use super::content::MeshNotes;
+use crate::file::AtomicFolder;
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::source::MeshSource;
+use boundary::Boundary;
+use std::io;
+use std::path::Path;
+
+/// The folder's files beside those of the mesh, and what writes them.
+type Text = fn(&Boundary, &Flow) -> String;
+
+const TEXTS: [(&str, Text); 9] = [
+    ("constant/polyMesh/boundary", |boundary, _| case::boundary(boundary)),
+    ("constant/transportProperties", |_, flow| case::transport(flow)),
+    ("constant/turbulenceProperties", |_, _| case::turbulence()),
+    ("system/controlDict", |_, _| case::control()),
+    ("system/fvSchemes", |_, _| case::schemes()),
+    ("system/fvSolution", |_, _| case::solution()),
+    ("system/decomposeParDict", |_, _| case::decompose()),
+    ("0/U", case::velocity),
+    ("0/p", |boundary, _| case::pressure(boundary)),
+];
+
+/// What `ParaView` opens: an empty file that stands for the folder.
+const FOR_PARAVIEW: &str = "case.foam";
+
+/// Makes sure that the folder can be made or replaced. Leaves nothing behind.
+pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
+    AtomicFolder::create(path, is_ours).map(drop)
+}
+
+fn is_ours(name: &str) -> bool {
+    name == FOR_PARAVIEW || poly_mesh::FILES.contains(&name) || TEXTS.iter().any(|(text, _)| *text == name)
+}
+
+/// Writes a case, whole or not at all. Results of a solver that are in the folder are an error.
+///
+/// Tetrahedra are read twice, points once, the boundary three times. Held are the faces at which parts of the mesh meet, with
+/// some 50 bytes each, and of every patch its place: memory grows with nothing else.
+///
+/// # Errors
+/// What the operating system reports, or reading the mesh; `InvalidData` when the labelled faces are not its boundary.
+pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progress: &dyn Progress) -> io::Result<()> {
+    let folder = AtomicFolder::create(path, is_ours)?;
+    let boundary = Boundary::of(mesh)?;
+    poly_mesh::write(&folder, mesh, &boundary, progress)?;
+    let flow = &notes.flow_of(mesh.patches());
+    for (name, text) in TEXTS {
+        folder.put(name, text(&boundary, flow).as_bytes())?;
+    }
+    folder.put(FOR_PARAVIEW, b"")?;
+    folder.commit()
+}

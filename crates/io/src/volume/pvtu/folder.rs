@@ -1,0 +1,213 @@
+//! A folder of pieces that appears whole, together with the file that names them, or not at all.
+
+use crate::file::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A folder under a temporary name beside its target; `commit` moves it there, dropping it removes it.
+#[derive(Debug)]
+pub(in crate::volume) struct PieceFolder {
+    temporary: PathBuf,
+    /// Says that the temporary folder is in use.
+    lock: Option<File>,
+    target: PathBuf,
+    /// What the names of its files begin with.
+    stem: String,
+}
+
+impl PieceFolder {
+    /// The folder of the pieces of `index`: the path without its extension.
+    fn target_of(index: &Path) -> io::Result<(PathBuf, String)> {
+        let stem = index.file_stem().and_then(|stem| stem.to_str());
+        let stem = stem.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the name is no Unicode text"))?;
+        Ok((index.with_file_name(stem), stem.to_owned()))
+    }
+
+    /// Makes sure that the folder can be made or replaced: what is there is at most pieces of an earlier mesh.
+    pub(in crate::volume) fn ensure_replaceable(index: &Path) -> io::Result<()> {
+        let (target, stem) = Self::target_of(index)?;
+        let taken = |what: &str| {
+            let text = format!("the pieces go into the folder {}, but {what}", target.display());
+            Err(io::Error::new(io::ErrorKind::AlreadyExists, text))
+        };
+        let entries = match fs::read_dir(&target) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::NotADirectory => return taken("a file of that name exists"),
+            Err(error) => return Err(error),
+        };
+        for entry in entries {
+            if !is_piece(&entry?.file_name(), &stem) {
+                return taken("it holds other things");
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes a new temporary folder.
+    pub(super) fn create(index: &Path) -> io::Result<Self> {
+        Self::ensure_replaceable(index)?;
+        let (target, stem) = Self::target_of(index)?;
+        remove_left(&target, "part", |left| remove_pieces(left, &stem));
+        let (temporary, ()) = make_hidden(&target, "part", |path| fs::create_dir(path))?;
+        Ok(Self { lock: locked(File::open(&temporary)), temporary, target, stem })
+    }
+
+    /// Path of a piece, as long as the folder is temporary.
+    pub(super) fn piece(&self, number: usize) -> PathBuf {
+        self.temporary.join(piece_name(&self.stem, number))
+    }
+
+    /// Where a piece will be, as seen from the folder of the index.
+    pub(super) fn source(&self, number: usize) -> String {
+        format!("{}/{}", self.stem, piece_name(&self.stem, number))
+    }
+
+    /// Moves the folder and its index to their targets, replacing what was there. When that fails both are as before.
+    pub(super) fn commit(mut self, mut index: AtomicFile, path: &Path) -> io::Result<()> {
+        index.complete()?;
+        Self::ensure_replaceable(path)?;
+        // An empty folder takes the place that the one of the earlier pieces is moved to.
+        let earlier = if self.target.exists() {
+            Some(make_hidden(&self.target, "old", |old| fs::create_dir(old))?.0)
+        } else {
+            None
+        };
+        if let Some(old) = &earlier
+            && let Err(error) = fs::rename(&self.target, old)
+        {
+            let _ = fs::remove_dir(old);
+            return Err(error);
+        }
+        drop(self.lock.take());
+        let moved = fs::rename(&self.temporary, &self.target);
+        let done = moved.and_then(|()| {
+            index.commit().inspect_err(|_| {
+                let _ = fs::rename(&self.target, &self.temporary);
+            })
+        });
+        match (&earlier, &done) {
+            // Of the way back nothing can be asked more than to be tried.
+            (Some(old), Err(_)) => drop(fs::rename(old, &self.target)),
+            (Some(old), Ok(())) => remove_pieces(old, &self.stem),
+            (None, _) => {}
+        }
+        if done.is_ok() {
+            self.temporary = PathBuf::new();
+        }
+        done
+    }
+}
+
+impl Drop for PieceFolder {
+    fn drop(&mut self) {
+        if !self.temporary.as_os_str().is_empty() {
+            remove_pieces(&self.temporary, &self.stem);
+        }
+    }
+}
+
+fn piece_name(stem: &str, number: usize) -> String {
+    format!("{stem}_{number:04}.vtu")
+}
+
+/// Whether a file's name is that of a piece.
+fn is_piece(name: &std::ffi::OsStr, stem: &str) -> bool {
+    let number = name.to_str().and_then(|name| name.strip_prefix(stem)?.strip_prefix('_')?.strip_suffix(".vtu"));
+    number.is_some_and(|digits| digits.len() >= 4 && digits.bytes().all(|b| b.is_ascii_digit()))
+}
+
+/// Whether a file is a piece that was not written to its end.
+fn is_part(name: &std::ffi::OsStr, stem: &str) -> bool {
+    let piece = name.to_str().and_then(|name| name.strip_prefix('.')?.find(".vtu.").map(|end| &name[1..end + 5]));
+    piece.is_some_and(|piece| is_piece(piece.as_ref(), stem) && is_hidden_name(name, piece, "part"))
+}
+
+/// Removes a folder of pieces, and nothing else: a folder in which there is more stays.
+fn remove_pieces(folder: &Path, stem: &str) {
+    // Nothing can be done about a failure here, and no target is touched.
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_piece(&entry.file_name(), stem) || is_part(&entry.file_name(), stem) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+    let _ = fs::remove_dir(folder);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn made(index: &Path, text: &str) -> (PieceFolder, AtomicFile) {
+        let mut file = AtomicFile::create(index).unwrap();
+        file.write_all(text.as_bytes()).unwrap();
+        let folder = PieceFolder::create(index).unwrap();
+        fs::write(folder.piece(0), text).unwrap();
+        (folder, file)
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn appears_only_when_committed_and_replaces() {
+        let parent = tempfile::tempdir().unwrap();
+        let index = parent.path().join("a.b.pvtu");
+        drop(made(&index, "dropped"));
+        assert!(names(parent.path()).is_empty());
+        for text in ["first", "second"] {
+            let (folder, file) = made(&index, text);
+            assert_eq!(folder.source(0), "a.b/a.b_0000.vtu");
+            folder.commit(file, &index).unwrap();
+            assert_eq!(names(parent.path()), ["a.b", "a.b.pvtu"]);
+            assert_eq!(fs::read_to_string(parent.path().join("a.b/a.b_0000.vtu")).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn what_was_there_comes_back_when_the_index_cannot_be_moved() {
+        let parent = tempfile::tempdir().unwrap();
+        let index = parent.path().join("out.pvtu");
+        let (folder, file) = made(&index, "first");
+        folder.commit(file, &index).unwrap();
+        let (folder, file) = made(&index, "second");
+        fs::remove_file(&index).unwrap();
+        fs::create_dir(&index).unwrap();
+        assert!(folder.commit(file, &index).is_err());
+        assert_eq!(names(parent.path()), ["out", "out.pvtu"]);
+        assert_eq!(fs::read_to_string(parent.path().join("out/out_0000.vtu")).unwrap(), "first");
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_removed() {
+        let parent = tempfile::tempdir().unwrap();
+        let long_ago = std::time::SystemTime::now() - std::time::Duration::from_secs(3600);
+        for name in [".out.12-0.part", ".out.12-1.part"] {
+            let left = parent.path().join(name);
+            fs::create_dir(&left).unwrap();
+            fs::write(left.join("out_0000.vtu"), "whole").unwrap();
+            fs::write(left.join(".out_0001.vtu.12-0.part"), "half").unwrap();
+            File::open(&left).unwrap().set_modified(long_ago).unwrap();
+        }
+        // Something that nobody here has made.
+        let theirs = parent.path().join(".out.12-1.part/notes.txt");
+        fs::write(&theirs, "mine").unwrap();
+        File::open(theirs.parent().unwrap()).unwrap().set_modified(long_ago).unwrap();
+        drop(PieceFolder::create(&parent.path().join("out.pvtu")).unwrap());
+        assert_eq!(names(parent.path()), [".out.12-1.part"]);
+        assert_eq!(names(theirs.parent().unwrap()), ["notes.txt"]);
+    }
+
+    #[test]
+    fn names_of_pieces() {
+        let is = |name: &str| is_piece(name.as_ref(), "o_1");
+        assert!(is("o_1_0000.vtu") && is("o_1_12345.vtu"));
+        assert!(!is("o_1_000.vtu") && !is("o_1_000x.vtu") && !is("o_0000.vtu") && !is("o_1_0000.vtp"));
+    }
+}

@@ -1,0 +1,232 @@
+//! The order in which the parts of a mesh go into pieces: along the tree of parts that share points, so that pieces, which are
+//! ranges of this order, are cut from each other at few joints.
+
+use anastomesh_mesh::Patch;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
+use std::borrow::Cow;
+use std::collections::VecDeque;
+use std::io;
+
+/// No part.
+const NONE: u32 = u32::MAX;
+
+/// A mesh whose cells are read in another order of its parts. Points keep their order, and so their numbers.
+pub(super) struct Reordered<'a> {
+    mesh: &'a dyn MeshSource,
+    order: Vec<u32>,
+}
+
+impl<'a> Reordered<'a> {
+    /// Along the tree where each part is a block of its own, else as it is. Reads points and tetrahedra once.
+    ///
+    /// # Errors
+    /// What reading the mesh fails with.
+    pub(super) fn along_the_tree(mesh: &'a dyn MeshSource) -> io::Result<Self> {
+        let parts = Parts::of(mesh)?;
+        let order = parts.map_or_else(|| (0..mesh.parts()).collect(), |parts| parts.in_preorder());
+        Ok(Self { mesh, order })
+    }
+
+    fn part(&self, part: u32) -> u32 {
+        self.order[part as usize]
+    }
+}
+
+impl MeshSource for Reordered<'_> {
+    fn counts(&self) -> SourceCounts {
+        self.mesh.counts()
+    }
+
+    fn patches(&self) -> &[Patch] {
+        self.mesh.patches()
+    }
+
+    fn parts(&self) -> u32 {
+        self.mesh.parts()
+    }
+
+    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
+        self.mesh.points(part)
+    }
+
+    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
+        self.mesh.tets(self.part(part))
+    }
+
+    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
+        self.mesh.boundary(self.part(part))
+    }
+
+    fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
+        self.mesh.tet_labels(self.part(part))
+    }
+
+    fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
+        self.mesh.face_labels(self.part(part))
+    }
+
+    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
+        self.mesh.points_of(ids)
+    }
+}
+
+/// What a part says of itself.
+struct Joined {
+    /// Its block, if all of it is one.
+    block: Option<i32>,
+    tets: u64,
+    /// The other parts of whose points it has some.
+    owners: Vec<u32>,
+}
+
+impl Joined {
+    /// `starts`: the first of the points that each part adds.
+    fn of(piece: &TetPiece, part: u32, starts: &[u32]) -> Self {
+        let own = starts[part as usize]..starts[part as usize + 1];
+        let mut others: Vec<u32> = piece.tets.as_flattened().iter().copied().filter(|v| !own.contains(v)).collect();
+        others.sort_unstable();
+        others.dedup();
+        // A point that does not exist is a fault which the writer finds.
+        others.retain(|v| starts.last().is_some_and(|end| v < end));
+        let mut owners: Vec<u32> =
+            others.into_iter().map(|v| starts.partition_point(|&start| start <= v) as u32 - 1).collect();
+        owners.dedup();
+        let block = piece.blocks.first().copied().filter(|block| piece.blocks.iter().all(|other| other == block));
+        Self { block, tets: piece.tets.len() as u64, owners }
+    }
+}
+
+/// The graph of parts, joined where they share points.
+struct Parts {
+    neighbors: Vec<Vec<u32>>,
+    tets: Vec<u64>,
+}
+
+impl Parts {
+    /// None if some part is not one block, or a block several parts.
+    fn of(mesh: &dyn MeshSource) -> io::Result<Option<Self>> {
+        let mut starts = vec![0_u32];
+        let mut sum = 0;
+        mesh.each_part(
+            |part| Ok(mesh.points(part)?.len() as u32),
+            |count| {
+                sum += count;
+                starts.push(sum);
+                Ok(())
+            },
+        )?;
+        let mut parts = Self { neighbors: vec![Vec::new(); mesh.parts() as usize], tets: Vec::new() };
+        let mut blocks = Vec::with_capacity(parts.neighbors.len());
+        mesh.each_part(
+            |part| Ok(Joined::of(&mesh.tets(part)?, part, &starts)),
+            |Joined { block, tets, owners }| {
+                let part = parts.tets.len() as u32;
+                for other in owners {
+                    parts.neighbors[other as usize].push(part);
+                    parts.neighbors[part as usize].push(other);
+                }
+                parts.tets.push(tets);
+                blocks.push(block);
+                Ok(())
+            },
+        )?;
+        let count = blocks.len();
+        blocks.sort_unstable();
+        blocks.dedup();
+        Ok(Some(parts).filter(|_| blocks.len() == count && blocks.iter().all(Option::is_some)))
+    }
+
+    /// Each part before those behind it, small branches before large ones: wherever this order is cut, what lies before is
+    /// joined to what lies behind at some logarithm of the number of parts of places, as each branch that is begun and not
+    /// ended is at most half of the one before.
+    fn in_preorder(&self) -> Vec<u32> {
+        let (outward, parents) = self.spanning_trees();
+        let mut sizes = self.tets.clone();
+        for &part in outward.iter().rev() {
+            let parent = parents[part as usize];
+            if parent != NONE {
+                sizes[parent as usize] += sizes[part as usize];
+            }
+        }
+        let mut children: Vec<Vec<u32>> = vec![Vec::new(); self.tets.len()];
+        let mut pending = Vec::new();
+        for &part in outward.iter().rev() {
+            match parents[part as usize] {
+                NONE => pending.push(part),
+                parent => children[parent as usize].push(part),
+            }
+        }
+        let mut order = Vec::with_capacity(self.tets.len());
+        while let Some(part) = pending.pop() {
+            order.push(part);
+            let own = &mut children[part as usize];
+            // What is pushed last comes first.
+            own.sort_by_key(|&child| std::cmp::Reverse((sizes[child as usize], child)));
+            pending.append(own);
+        }
+        order
+    }
+
+    /// The parts breadth first from the lowest of each component, and the part before each.
+    fn spanning_trees(&self) -> (Vec<u32>, Vec<u32>) {
+        let count = self.tets.len();
+        let (mut order, mut parents, mut seen) = (Vec::with_capacity(count), vec![NONE; count], vec![false; count]);
+        for start in 0..count as u32 {
+            if std::mem::replace(&mut seen[start as usize], true) {
+                continue;
+            }
+            let mut front = VecDeque::from([start]);
+            while let Some(part) = front.pop_front() {
+                order.push(part);
+                for &next in &self.neighbors[part as usize] {
+                    if !std::mem::replace(&mut seen[next as usize], true) {
+                        parents[next as usize] = part;
+                        front.push_back(next);
+                    }
+                }
+            }
+        }
+        (order, parents)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The graph with these joints; all parts are of one size.
+    fn graph(count: usize, joints: &[[u32; 2]]) -> Parts {
+        let mut parts = Parts { neighbors: vec![Vec::new(); count], tets: vec![1; count] };
+        for &[a, b] in joints {
+            parts.neighbors[a as usize].push(b);
+            parts.neighbors[b as usize].push(a);
+        }
+        parts
+    }
+
+    #[test]
+    fn every_part_comes_once_and_small_branches_first() {
+        assert_eq!(graph(6, &[[0, 1], [0, 2], [1, 3], [1, 4], [0, 5]]).in_preorder(), [0, 2, 5, 1, 3, 4]);
+        assert_eq!(graph(4, &[[2, 3], [3, 2]]).in_preorder(), [0, 1, 2, 3]);
+        // A loop.
+        let mut order = graph(5, &[[0, 1], [1, 2], [2, 3], [3, 4], [4, 0]]).in_preorder();
+        order.sort_unstable();
+        assert_eq!(order, [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn a_cut_parts_few_joints() {
+        // A full binary tree, its joints numbered after its nodes as connectors are after clusters.
+        let nodes = 1023_u32;
+        let joints: Vec<[u32; 2]> =
+            (1..nodes).flat_map(|n| [[(n - 1) / 2, nodes + n - 1], [n, nodes + n - 1]]).collect();
+        let order = graph(2 * nodes as usize - 1, &joints).in_preorder();
+        let mut place = vec![0; order.len()];
+        (0..).zip(&order).for_each(|(i, &part)| place[part as usize] = i);
+        for cut in 0..order.len() {
+            let parted = joints.iter().filter(|j| (place[j[0] as usize] < cut) != (place[j[1] as usize] < cut)).count();
+            assert!(parted <= 20, "{parted} at {cut}");
+        }
+    }
+}

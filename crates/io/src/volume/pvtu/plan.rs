@@ -1,0 +1,172 @@
+//! Which tetrahedra and boundary faces go into which piece of a mesh.
+
+use anastomesh_mesh::source::MeshSource;
+use rustc_hash::FxHashMap;
+use std::io;
+
+/// The pieces: consecutive ranges of tetrahedra.
+#[derive(Debug)]
+pub(super) struct Plan {
+    /// Where each piece ends. There is at least one piece.
+    pub ends: Vec<usize>,
+    /// Where the tetrahedra of each block are.
+    spans: FxHashMap<i32, Span>,
+    /// All pieces, for faces of blocks without tetrahedra.
+    everywhere: Span,
+}
+
+/// The pieces that a block lies in.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    first: usize,
+    last: usize,
+    /// How many boundary faces the block has.
+    faces: usize,
+}
+
+impl Plan {
+    /// Cuts between blocks, so that no piece has more than `limit` tetrahedra; within a block only when it is larger.
+    /// Reads the tetrahedra and the boundary once. What is held grows with the number of blocks alone.
+    ///
+    /// # Errors
+    /// What reading the mesh fails with.
+    pub(super) fn of(mesh: &dyn MeshSource, limit: usize) -> io::Result<Self> {
+        let mut cutter = Cutter { limit: limit.max(1), ..Cutter::default() };
+        mesh.each_tets(|piece| {
+            for i in 0..piece.tets.len() {
+                cutter.add(piece.blocks.get(i).copied().unwrap_or(0));
+            }
+            Ok(())
+        })?;
+        let mut plan = cutter.finish();
+        mesh.each_faces(|piece| {
+            for i in 0..piece.faces.len() {
+                plan.span_mut(piece.blocks.get(i).copied().unwrap_or(0)).faces += 1;
+            }
+            Ok(())
+        })?;
+        Ok(plan)
+    }
+
+    fn span_mut(&mut self, block: i32) -> &mut Span {
+        self.spans.get_mut(&block).unwrap_or(&mut self.everywhere)
+    }
+
+    /// A new pass over the boundary faces.
+    pub(super) fn faces(&self) -> FacePlan<'_> {
+        FacePlan { plan: self, seen: FxHashMap::default() }
+    }
+}
+
+/// Tells of one boundary face after another where it belongs.
+pub(super) struct FacePlan<'a> {
+    plan: &'a Plan,
+    /// How many faces have come of blocks that lie in several pieces, or nowhere (none).
+    seen: FxHashMap<Option<i32>, usize>,
+}
+
+impl FacePlan<'_> {
+    /// The piece of the next face, which is one of its block. The faces of a block that lies in several are shared out
+    /// between these, in their order.
+    pub(super) fn next(&mut self, block: i32) -> usize {
+        let (key, span) = match self.plan.spans.get(&block) {
+            Some(span) => (Some(block), span),
+            None => (None, &self.plan.everywhere),
+        };
+        if span.first == span.last {
+            return span.first;
+        }
+        let seen = self.seen.entry(key).or_default();
+        let piece = span.first + *seen * (span.last + 1 - span.first) / span.faces.max(1);
+        *seen += 1;
+        piece.min(span.last)
+    }
+}
+
+/// Finds the cuts.
+#[derive(Default)]
+struct Cutter {
+    limit: usize,
+    at: usize,
+    start: usize,
+    /// Where the block under way begins.
+    change: usize,
+    block: Option<i32>,
+    /// Blocks that end in the piece under way.
+    pending: Vec<i32>,
+    ends: Vec<usize>,
+    spans: FxHashMap<i32, Span>,
+}
+
+impl Cutter {
+    fn add(&mut self, block: i32) {
+        if self.block != Some(block) {
+            self.pending.extend(self.block);
+            self.block = Some(block);
+            self.change = self.at;
+        }
+        if self.at - self.start == self.limit {
+            if self.change > self.start {
+                self.cut(self.change);
+            } else {
+                self.pending.push(block);
+                self.cut(self.at);
+            }
+        }
+        self.at += 1;
+    }
+
+    fn cut(&mut self, end: usize) {
+        let piece = self.ends.len();
+        for block in self.pending.drain(..) {
+            self.spans.entry(block).or_insert(Span { first: piece, last: piece, faces: 0 }).last = piece;
+        }
+        self.ends.push(end);
+        self.start = end;
+    }
+
+    fn finish(mut self) -> Plan {
+        self.pending.extend(self.block);
+        if self.at > self.start || self.ends.is_empty() {
+            self.cut(self.at);
+        }
+        let everywhere = Span { first: 0, last: self.ends.len() - 1, faces: 0 };
+        Plan { ends: self.ends, spans: self.spans, everywhere }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cut(blocks: &[i32], limit: usize) -> Plan {
+        let mut cutter = Cutter { limit, ..Cutter::default() };
+        for &block in blocks {
+            cutter.add(block);
+        }
+        cutter.finish()
+    }
+
+    #[test]
+    fn cuts_lie_between_blocks() {
+        assert_eq!(cut(&[0, 0, 1, 1, 1, 2, 2, 2], 5).ends, [5, 8]);
+        assert_eq!(cut(&[0, 0, 1, 1, 1, 2, 2, 2], 4).ends, [2, 5, 8]);
+        assert_eq!(cut(&[0, 0, 0, 0], 4).ends, [4]);
+        assert_eq!(cut(&[], 4).ends, [0]);
+    }
+
+    #[test]
+    fn a_large_block_is_cut() {
+        let mut plan = cut(&[7, 8, 8, 8, 8, 8, 9], 2);
+        assert_eq!(plan.ends, [1, 3, 5, 7]);
+        let pieces = |plan: &Plan, blocks: &[i32]| {
+            let mut faces = plan.faces();
+            blocks.iter().map(|&block| faces.next(block)).collect::<Vec<_>>()
+        };
+        plan.span_mut(8).faces = 6;
+        assert_eq!(pieces(&plan, &[8, 7, 8, 8, 9, 8, 8, 8]), [1, 0, 1, 2, 3, 2, 3, 3]);
+        // A block that no tetrahedron has.
+        plan.span_mut(5).faces += 4;
+        assert_eq!(pieces(&plan, &[5, 5, 5, 5]), [0, 1, 2, 3]);
+    }
+}

@@ -1,0 +1,273 @@
+//! Writes a mesh in pieces, as many at a time as memory allows.
+
+use super::folder::PieceFolder;
+use super::order::Reordered;
+use super::plan::Plan;
+use crate::file::{Asked, AtomicFile, write_whole};
+use crate::volume::content::MeshNotes;
+use crate::volume::options::GridOptions;
+use crate::volume::vtu::{GLOBAL_IDS, Grid};
+use anastomesh_mesh::VolumeMesh;
+use anastomesh_mesh::beside::{Beside, Column};
+use anastomesh_mesh::bits::Bits;
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::source::MeshSource;
+use rayon::prelude::*;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// How a mesh is cut into pieces.
+#[derive(Clone, Copy)]
+pub(in crate::volume) struct Pieces<'a> {
+    /// Tetrahedra in a piece at most. Cuts lie between blocks, unless one has more.
+    pub tets: usize,
+    /// How many bytes of pieces are held at a time, about; one piece is, in any case.
+    pub memory: usize,
+    /// How each of them is written.
+    pub grid: GridOptions,
+    /// Values beside the mesh.
+    pub values: Option<&'a dyn Beside>,
+}
+
+impl Default for Pieces<'_> {
+    fn default() -> Self {
+        Self { tets: 2_000_000, memory: 512 << 20, grid: GridOptions::default(), values: None }
+    }
+}
+
+/// Writes a mesh in pieces: `path`, and the folder of the same name without the extension. Both appear whole or not at
+/// all, and pieces of an earlier mesh are replaced; a folder that holds other things is not.
+///
+/// Blocks that are parts of their own are put in an order in which pieces part few joints. Of a mesh that is read in passes, as
+/// many pieces are held at a time as `pieces.memory` allows. Tetrahedra are read three times, points once and once more for
+/// every so many pieces, the boundary likewise.
+///
+/// # Errors
+/// What the operating system reports, or reading the mesh; `InvalidData` when a cell names a point that does not exist.
+pub(in crate::volume) fn write(
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    pieces: Pieces,
+    progress: &dyn Progress,
+) -> io::Result<()> {
+    let mut index = AtomicFile::create(path)?;
+    let folder = PieceFolder::create(path)?;
+    let mesh: &dyn MeshSource = &Reordered::along_the_tree(mesh)?;
+    let plan = Plan::of(mesh, pieces.tets)?;
+    let room = pieces.memory / bytes_of_piece(mesh, pieces.tets).max(1);
+    let points = mesh.counts().points;
+    Writer {
+        mesh,
+        notes,
+        plan: &plan,
+        folder: &folder,
+        room,
+        grid: pieces.grid,
+        values: pieces.values,
+        progress,
+        piece: Bits::new(points),
+        used: Bits::new(points),
+    }
+    .write()?;
+    write_index(&mut index, plan.ends.len(), &folder, pieces)?;
+    folder.commit(index, path)
+}
+
+/// Bytes that a piece takes in memory, about: its share of points and faces, a half more for those on its rim.
+fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
+    let counts = mesh.counts();
+    let shared = (28 * counts.points + 20 * counts.boundary) as f64 * 1.5 / counts.tets.max(1) as f64;
+    ((20.0 + shared) * tets.min(counts.tets.max(1)) as f64) as usize
+}
+
+fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, how: Pieces) -> io::Result<()> {
+    let grid = how.grid;
+    let compressor = if grid.raw { "" } else { " compressor=\"vtkZLibDataCompressor\"" };
+    let float = if grid.float32 { "Float32" } else { "Float64" };
+    let columns = how.values.map_or(&[][..], Beside::columns);
+    writeln!(
+        out,
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\"{compressor}>\n<PUnstructuredGrid GhostLevel=\"0\">\n\
+         <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n{}\
+         </PPointData>\n<PPoints>\n<PDataArray type=\"{float}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
+         <PCellData Scalars=\"patch\">\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
+         <PDataArray type=\"Int32\" Name=\"block\"/>\n{}</PCellData>",
+        announced(columns, true),
+        announced(columns, false)
+    )?;
+    for piece in 0..pieces {
+        let source = folder.source(piece);
+        writeln!(out, "<Piece Source=\"{}\"/>", quick_xml::escape::escape(source.as_str()))?;
+    }
+    out.write_all(b"</PUnstructuredGrid>\n</VTKFile>\n")
+}
+
+/// What the index says of the columns at points, or of those in cells.
+fn announced(columns: &[Column], at_points: bool) -> String {
+    let line = |column: &Column| {
+        let kind = if column.is_integer { "Int32" } else { "Float64" };
+        format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", column.name)
+    };
+    columns.iter().filter(|column| column.at_points == at_points).map(line).collect()
+}
+
+/// Writes pieces, some in each pass over points and boundary.
+struct Writer<'a> {
+    mesh: &'a dyn MeshSource,
+    notes: &'a MeshNotes,
+    plan: &'a Plan,
+    folder: &'a PieceFolder,
+    /// How many pieces may be held.
+    room: usize,
+    grid: GridOptions,
+    values: Option<&'a dyn Beside>,
+    progress: &'a dyn Progress,
+    /// The points of the piece under way.
+    piece: Bits,
+    /// The points of all pieces so far.
+    used: Bits,
+}
+
+/// A piece: a mesh of its own, first in the numbers of the whole, then in its own.
+#[derive(Default)]
+struct Piece {
+    volume: VolumeMesh,
+    /// Its points in the whole mesh, ascending.
+    ids: Vec<u32>,
+}
+
+/// Pieces that are held at a time.
+#[derive(Default)]
+struct Batch {
+    /// Number of the first.
+    first: usize,
+    pieces: Vec<Piece>,
+}
+
+impl Writer<'_> {
+    fn write(mut self) -> io::Result<()> {
+        let mut batch = Batch { first: 0, pieces: vec![self.piece_of(0)] };
+        let (mut at, mesh) = (0, self.mesh);
+        mesh.each_tets(|part| {
+            let mut taken = 0;
+            while taken < part.tets.len() {
+                let number = batch.first + batch.pieces.len() - 1;
+                let end = self.plan.ends.get(number).copied().unwrap_or(usize::MAX);
+                if at == end {
+                    self.open_next(&mut batch)?;
+                    continue;
+                }
+                let range = taken..part.tets.len().min(taken + end - at);
+                let Some(piece) = batch.pieces.last_mut() else { continue };
+                piece.volume.mesh.tets.extend_from_slice(&part.tets[range.clone()]);
+                let blocks = range.clone().map(|i| part.blocks.get(i).copied().unwrap_or(0));
+                piece.volume.tet_block.extend(blocks);
+                at += range.len();
+                taken = range.end;
+            }
+            Ok(())
+        })?;
+        self.write_batch(&mut batch)
+    }
+
+    /// Begins another piece; those before it are written when no more can be held.
+    fn open_next(&mut self, batch: &mut Batch) -> io::Result<()> {
+        if batch.pieces.len() >= self.room {
+            self.write_batch(batch)?;
+        }
+        batch.pieces.push(self.piece_of(batch.first + batch.pieces.len()));
+        Ok(())
+    }
+
+    /// A piece that is still empty.
+    fn piece_of(&self, number: usize) -> Piece {
+        let before = number.checked_sub(1).and_then(|n| self.plan.ends.get(n)).copied().unwrap_or(0);
+        let tets = self.plan.ends.get(number).map_or(0, |end| end - before);
+        let mut piece = Piece::default();
+        piece.volume.mesh.tets.reserve_exact(tets);
+        piece.volume.tet_block.reserve_exact(tets);
+        piece
+    }
+
+    fn write_batch(&mut self, batch: &mut Batch) -> io::Result<()> {
+        self.read_faces(batch)?;
+        let count = batch.pieces.len();
+        let last = batch.first + count == self.plan.ends.len();
+        for (i, piece) in batch.pieces.iter_mut().enumerate() {
+            self.number(piece, last && i + 1 == count)?;
+        }
+        self.read_points(batch)?;
+        for (i, piece) in batch.pieces.drain(..).enumerate() {
+            self.write_piece(batch.first + i, piece)?;
+        }
+        batch.first += count;
+        Ok(())
+    }
+
+    fn read_faces(&self, batch: &mut Batch) -> io::Result<()> {
+        let mut places = self.plan.faces();
+        self.mesh.each_faces(|part| {
+            for (i, &face) in part.faces.iter().enumerate() {
+                let block = part.blocks.get(i).copied().unwrap_or(0);
+                let place = places.next(block).checked_sub(batch.first);
+                let Some(piece) = place.and_then(|place| batch.pieces.get_mut(place)) else { continue };
+                piece.volume.boundary.push(face);
+                piece.volume.boundary_patch.push(part.patches.get(i).copied().unwrap_or(0));
+                piece.volume.boundary_block.push(block);
+            }
+            Ok(())
+        })
+    }
+
+    /// Finds the points of a piece and gives them numbers of its own. Points that no cell has go into the last piece.
+    fn number(&mut self, piece: &mut Piece, last: bool) -> io::Result<()> {
+        let (tets, faces) = (&mut piece.volume.mesh.tets, &mut piece.volume.boundary);
+        self.piece.clear();
+        for &v in tets.as_flattened().iter().chain(faces.as_flattened()) {
+            if !self.piece.insert(v) {
+                let text = format!("a cell names the point {v}, which does not exist");
+                return Err(io::Error::new(io::ErrorKind::InvalidData, text));
+            }
+        }
+        self.used.unite(&self.piece);
+        if last {
+            self.used.invert();
+            self.piece.unite(&self.used);
+        }
+        piece.ids = self.piece.ids();
+        let ranks = self.piece.ranks();
+        tets.par_iter_mut().for_each(|tet| *tet = tet.map(|v| ranks.rank(v)));
+        faces.par_iter_mut().for_each(|face| *face = face.map(|v| ranks.rank(v)));
+        Ok(())
+    }
+
+    fn read_points(&self, batch: &mut Batch) -> io::Result<()> {
+        for piece in &mut batch.pieces {
+            piece.volume.mesh.points.reserve_exact(piece.ids.len());
+        }
+        let mut before = 0_usize;
+        self.mesh.each_points(|points| {
+            batch.pieces.par_iter_mut().for_each(|piece| {
+                let known = &mut piece.volume.mesh.points;
+                for &v in piece.ids.get(known.len()..).unwrap_or_default() {
+                    let Some(&p) = points.get(v as usize - before) else { break };
+                    known.push(p);
+                }
+            });
+            before += points.len();
+            Ok(())
+        })
+    }
+
+    fn write_piece(&self, number: usize, mut piece: Piece) -> io::Result<()> {
+        let notes = (number == 0).then_some(self.notes);
+        if notes.is_some() {
+            piece.volume.patches = self.mesh.patches().to_vec();
+        }
+        let grid =
+            Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids), options: self.grid, values: self.values };
+        write_whole(&self.folder.piece(number), |out| grid.write(&mut Asked { out, progress: self.progress }))
+    }
+}

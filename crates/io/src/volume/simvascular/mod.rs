@@ -1,0 +1,170 @@
+//! The `mesh-complete` folder of `SimVascular`, which `svMultiPhysics` runs: tetrahedra, the boundary as a whole and patch by
+//! patch, everything numbered from 1 in 32 bits, and a `solver.xml`.
+
+mod layout;
+mod sheet;
+mod solver;
+mod spool;
+#[cfg(test)]
+mod tests;
+
+use super::conditions::plain;
+use super::content::MeshNotes;
+use super::vtu::arrays::{Array, INT32, Place, Width, cell_arrays, points_array};
+use super::vtu::{TetsAlone, file::File};
+use crate::file::{Asked, AtomicFile, AtomicFolder};
+use crate::patches::usual_name;
+use crate::vtk_xml::Blocks;
+use anastomesh_mesh::WALL;
+use anastomesh_mesh::faces::OuterFace;
+use anastomesh_mesh::progress::{Progress, ask};
+use anastomesh_mesh::source::MeshSource;
+use layout::{EXTERIOR, MESH, SOLVER, WALLS, is_ours, surface_path};
+use sheet::{CapSheet, Sheet, WideSheet, used};
+use spool::Spool;
+use std::collections::BTreeMap;
+use std::io::{self, Cursor, Seek, Write};
+use std::path::Path;
+
+/// Makes sure that the folder can be made or replaced. Leaves nothing behind.
+pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
+    AtomicFolder::create(path, is_ours).map(drop)
+}
+
+/// Writes a folder, whole or not at all.
+///
+/// The boundary is put down in a file without a name, with the tetrahedron under each face, and read from there. Held are
+/// the faces of inlets and outlets, those at which parts of the mesh meet, and a bit for each point.
+///
+/// # Errors
+/// What the operating system reports, or reading the mesh; `InvalidData` when the labelled faces are not its boundary.
+pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progress: &dyn Progress) -> io::Result<()> {
+    ensure_countable(mesh)?;
+    let folder = AtomicFolder::create(path, is_ours)?;
+    let spool = Spool::of(mesh, path, progress)?;
+    put(&folder, MESH, progress, &|out| write_tets(out, mesh))?;
+    put_wide(&folder, EXTERIOR, mesh, &spool, |_| true, progress)?;
+    let names: BTreeMap<i32, String> = mesh.patches().iter().map(|p| (p.id, plain(&p.name))).collect();
+    let surface = |id: i32| surface_path(names.get(&id).map_or(&usual_name(id), |name| name));
+    put_wide(&folder, WALLS, mesh, &spool, |face| face.patch == WALL, progress)?;
+    folder.copy(WALLS, &surface(WALL))?;
+    for (id, faces) in caps(&spool)? {
+        let cap = CapSheet::new(mesh, &faces)?;
+        let mut bytes = Cursor::new(Vec::new());
+        write_sheet(&mut bytes, &cap)?;
+        folder.put(&surface(id), bytes.get_ref())?;
+        ask(progress)?;
+    }
+    let flow = &notes.flow_of(mesh.patches());
+    folder.put(SOLVER, solver::text(mesh.patches(), flow).as_bytes())?;
+    folder.commit()
+}
+
+type Out<'a> = Asked<'a, &'a mut AtomicFile>;
+
+/// A file of the folder.
+fn put(
+    folder: &AtomicFolder,
+    name: &str,
+    progress: &dyn Progress,
+    write: &dyn Fn(&mut Out) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut file = folder.file(name)?;
+    write(&mut Asked { out: &mut file, progress })?;
+    file.commit()
+}
+
+/// A file of the faces that are chosen.
+fn put_wide(
+    folder: &AtomicFolder,
+    name: &str,
+    mesh: &dyn MeshSource,
+    spool: &Spool,
+    has: fn(&OuterFace) -> bool,
+    progress: &dyn Progress,
+) -> io::Result<()> {
+    let (used, faces) = used(mesh, spool, has)?;
+    let sheet = WideSheet { mesh, spool, has, used: &used, ranks: used.ranks(), faces };
+    put(folder, name, progress, &|out| write_sheet(out, &sheet))
+}
+
+/// The faces of every patch but the wall.
+fn caps(spool: &Spool) -> io::Result<BTreeMap<i32, Vec<OuterFace>>> {
+    let mut caps: BTreeMap<i32, Vec<OuterFace>> = BTreeMap::new();
+    spool.each(|faces| {
+        for &face in faces.iter().filter(|face| face.patch != WALL) {
+            caps.entry(face.patch).or_default().push(face);
+        }
+        Ok(())
+    })?;
+    Ok(caps)
+}
+
+/// Its readers count in 32 bits.
+fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
+    let counts = mesh.counts();
+    if Width::of(counts) == Width::Int32 {
+        return Ok(());
+    }
+    let text = format!(
+        "{} tetrahedra are more than SimVascular's numbers of 32 bits allow; mesh parts, or use a smaller --rho",
+        counts.tets
+    );
+    Err(io::Error::new(io::ErrorKind::InvalidInput, text))
+}
+
+/// Tetrahedra alone: the solver reads no other cells beside them.
+fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource) -> io::Result<()> {
+    let mesh: &dyn MeshSource = &TetsAlone(mesh);
+    let counts = mesh.counts();
+    let (points, tets) = (counts.points, counts.tets);
+    let mut arrays = vec![points_array(points, false, |each| mesh.each_points(each))];
+    arrays.extend(cell_arrays(mesh, Width::Int32));
+    let from_one = |place, name, count| {
+        Array::new(place, name, INT32, count, move |out| out.push(count, |i| (i as u32 + 1).to_le_bytes()))
+    };
+    arrays.push(from_one(Place::PointData, "GlobalNodeID", points));
+    arrays.push(from_one(Place::CellData, "GlobalElementID", tets));
+    arrays.push(Array::new(Place::CellData, "ModelRegionID", INT32, tets, move |out| {
+        out.push(tets, |_| 1_u32.to_le_bytes())
+    }));
+    let counts = format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{tets}\"");
+    File { kind: "UnstructuredGrid", counts, arrays, raw: false }.write(out)
+}
+
+/// A surface, with the numbers that its points and the tetrahedra under its faces have in the mesh.
+fn write_sheet(out: &mut (impl Write + Seek), sheet: &dyn Sheet) -> io::Result<()> {
+    let (points, faces) = sheet.counts();
+    let corners = Array::new(Place::Polys, "connectivity", INT32, 3 * faces, |out| {
+        sheet.each_faces(&mut |some| out.push(some.len(), |i| corners_of(sheet, &some[i])))
+    });
+    let offsets = move |out: &mut Blocks| out.push(faces, |face| (3 * (face as u32 + 1)).to_le_bytes());
+    let label = |name, of: fn(&OuterFace) -> u32| {
+        Array::new(Place::CellData, name, INT32, faces, move |out| {
+            sheet.each_faces(&mut |some| out.push(some.len(), |i| of(&some[i]).to_le_bytes()))
+        })
+    };
+    let nodes = Array::new(Place::PointData, "GlobalNodeID", INT32, points, |out| {
+        sheet.each_ids(&mut |ids| out.push(ids.len(), |i| (ids[i] + 1).to_le_bytes()))
+    });
+    let arrays = vec![
+        nodes,
+        points_array(points, false, |mut each| sheet.each_points(&mut each)),
+        Array { shrinks: false, ..corners },
+        Array::new(Place::Polys, "offsets", INT32, faces, offsets),
+        label("GlobalElementID", |face| face.tet + 1),
+        label("ModelRegionID", |_| 1),
+        label("ModelFaceID", |face| face.patch as u32),
+    ];
+    let counts = format!("NumberOfPoints=\"{points}\" NumberOfPolys=\"{faces}\"");
+    File { kind: "PolyData", counts, arrays, raw: false }.write(out)
+}
+
+fn corners_of(sheet: &dyn Sheet, face: &OuterFace) -> [u8; 12] {
+    let mut bytes = [0; 12];
+    let (words, _) = bytes.as_chunks_mut::<4>();
+    for (word, v) in words.iter_mut().zip(face.vertices) {
+        *word = sheet.own_number(v).to_le_bytes();
+    }
+    bytes
+}

@@ -1,0 +1,121 @@
+//! Parts of the boundary as surfaces of their own: those that are as large as the mesh, and caps.
+
+use super::spool::Spool;
+use anastomesh_mesh::bits::{Bits, Ranks};
+use anastomesh_mesh::faces::OuterFace;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::{MeshSource, miscounted};
+use std::io;
+
+/// What takes some of many things at a time.
+pub(super) type Take<'a, T> = &'a mut dyn FnMut(&[T]) -> io::Result<()>;
+
+/// A part of the boundary. Its points are numbered anew, in the order that they have in the mesh.
+pub(super) trait Sheet: Sync {
+    /// Numbers of points and faces.
+    fn counts(&self) -> (usize, usize);
+    /// Gives the points.
+    fn each_points(&self, each: Take<Point3>) -> io::Result<()>;
+    /// Gives the numbers of the points in the mesh.
+    fn each_ids(&self, each: Take<u32>) -> io::Result<()>;
+    /// Gives the faces, in the numbers of the mesh.
+    fn each_faces(&self, each: Take<OuterFace>) -> io::Result<()>;
+    /// The number here of a point of the mesh.
+    fn own_number(&self, id: u32) -> u32;
+}
+
+/// A part that may be large: nothing but a bit and a half for each point of the mesh is held.
+pub(super) struct WideSheet<'a> {
+    pub(super) mesh: &'a dyn MeshSource,
+    pub(super) spool: &'a Spool,
+    pub(super) has: fn(&OuterFace) -> bool,
+    pub(super) used: &'a Bits,
+    pub(super) ranks: Ranks<'a>,
+    pub(super) faces: usize,
+}
+
+/// The points that some faces have, and how many faces these are.
+pub(super) fn used(mesh: &dyn MeshSource, spool: &Spool, has: fn(&OuterFace) -> bool) -> io::Result<(Bits, usize)> {
+    let (mut used, mut count) = (Bits::new(mesh.counts().points), 0);
+    spool.each(|faces| {
+        for face in faces.iter().filter(|face| has(face)) {
+            count += 1;
+            if !face.vertices.iter().all(|&v| used.insert(v)) {
+                return Err(miscounted());
+            }
+        }
+        Ok(())
+    })?;
+    Ok((used, count))
+}
+
+impl Sheet for WideSheet<'_> {
+    fn counts(&self) -> (usize, usize) {
+        (self.used.count(), self.faces)
+    }
+
+    fn each_points(&self, each: Take<Point3>) -> io::Result<()> {
+        let mut before = 0;
+        self.mesh.each_points(|points| {
+            let own = (before..).zip(points).filter(|(v, _)| self.used.has(*v)).map(|(_, p)| *p);
+            before += points.len() as u32;
+            each(&own.collect::<Vec<_>>())
+        })
+    }
+
+    fn each_ids(&self, each: Take<u32>) -> io::Result<()> {
+        const AT_A_TIME: u32 = 1 << 16;
+        let end = self.mesh.counts().points as u32;
+        (0..end).step_by(AT_A_TIME as usize).try_for_each(|first| {
+            let some = first..end.min(first.saturating_add(AT_A_TIME));
+            each(&some.filter(|&v| self.used.has(v)).collect::<Vec<_>>())
+        })
+    }
+
+    fn each_faces(&self, each: Take<OuterFace>) -> io::Result<()> {
+        self.spool.each(|faces| each(&faces.iter().copied().filter(self.has).collect::<Vec<_>>()))
+    }
+
+    fn own_number(&self, id: u32) -> u32 {
+        self.ranks.rank(id)
+    }
+}
+
+/// An inlet or outlet, or several: small, and held.
+pub(super) struct CapSheet<'a> {
+    faces: &'a [OuterFace],
+    ids: Vec<u32>,
+    points: Vec<Point3>,
+}
+
+impl<'a> CapSheet<'a> {
+    pub(super) fn new(mesh: &dyn MeshSource, faces: &'a [OuterFace]) -> io::Result<Self> {
+        let mut ids: Vec<u32> = faces.iter().flat_map(|face| face.vertices).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let points = mesh.points_of(&ids)?;
+        Ok(Self { faces, ids, points })
+    }
+}
+
+impl Sheet for CapSheet<'_> {
+    fn counts(&self) -> (usize, usize) {
+        (self.ids.len(), self.faces.len())
+    }
+
+    fn each_points(&self, each: Take<Point3>) -> io::Result<()> {
+        each(&self.points)
+    }
+
+    fn each_ids(&self, each: Take<u32>) -> io::Result<()> {
+        each(&self.ids)
+    }
+
+    fn each_faces(&self, each: Take<OuterFace>) -> io::Result<()> {
+        each(self.faces)
+    }
+
+    fn own_number(&self, id: u32) -> u32 {
+        self.ids.partition_point(|&own| own < id) as u32
+    }
+}

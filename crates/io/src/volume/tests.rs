@@ -1,0 +1,267 @@
+//! Every format reads what it writes; what is written does not depend on how a mesh is read, and a disk that is full is
+//! an error.
+
+use super::content::MeshNotes;
+use super::fixtures::{Cut, labelled_tube};
+use super::format::MeshFormat;
+use super::options::WriteOptions;
+use super::read::read_mesh;
+use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_with};
+use crate::file::FileError;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::progress::StopsAfter;
+use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece, gather};
+use anastomesh_mesh::{Patch, VolumeMesh};
+use proptest::prelude::*;
+use std::borrow::Cow;
+use std::io::{self, Cursor, Seek, SeekFrom, Write};
+
+const STREAMED: [MeshFormat; 4] = [MeshFormat::Vtu, MeshFormat::Msh, MeshFormat::Msh2, MeshFormat::Medit];
+
+fn bytes_of(format: MeshFormat, mesh: &dyn MeshSource, notes: &MeshNotes) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_mesh_to(&mut bytes, format, mesh, notes).unwrap();
+    bytes
+}
+
+/// A tube with some patches, names of which there are more and fewer than patches that have faces.
+fn tube(layers: u32) -> (VolumeMesh, MeshNotes) {
+    let (mut volume, notes) = labelled_tube(layers);
+    for (i, patch) in volume.boundary_patch.iter_mut().enumerate() {
+        *patch += [0, 0, 4, 0, 2, 0, -7][i % 7];
+    }
+    (volume, notes)
+}
+
+fn same_bytes(volume: &VolumeMesh, notes: &MeshNotes, sizes: &[usize]) {
+    let cut = Cut { volume, sizes };
+    assert_eq!(&gather(&cut).unwrap().mesh, &volume.mesh);
+    for format in STREAMED {
+        assert!(bytes_of(format, &cut, notes) == bytes_of(format, volume, notes), "{format:?} {sizes:?}");
+    }
+}
+
+#[test]
+fn pieces_make_no_difference() {
+    // Enough layers for several compressed blocks and waves of them.
+    for (layers, sizes) in [(1, [1]), (40, [1]), (200, [7]), (3000, [1000])] {
+        let (volume, notes) = tube(layers);
+        same_bytes(&volume, &notes, &sizes);
+    }
+    let (mut volume, mut notes) = tube(20);
+    notes.regions = true;
+    same_bytes(&volume, &notes, &[13]);
+    volume.tet_block.clear();
+    volume.boundary_block.clear();
+    volume.boundary_patch.clear();
+    same_bytes(&volume, &notes, &[13]);
+    same_bytes(&VolumeMesh::default(), &MeshNotes::default(), &[1]);
+}
+
+#[test]
+fn pieces_make_no_difference_to_the_family_of_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let (volume, notes) = tube(9);
+    write_mesh(&folder.path().join("whole.ele"), &volume, &notes).unwrap();
+    write_mesh(&folder.path().join("cut.ele"), &Cut { volume: &volume, sizes: &[1, 7, 30] }, &notes).unwrap();
+    for kind in ["node", "ele", "face", "edge", "neigh"] {
+        let read = |name: &str| std::fs::read(folder.path().join(name).with_extension(kind)).unwrap();
+        assert!(read("cut") == read("whole"), "{kind}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20))]
+
+    #[test]
+    fn random_pieces_make_no_difference(layers in 1_u32..60, sizes in prop::collection::vec(1_usize..400, 1..20)) {
+        let (volume, notes) = tube(layers);
+        same_bytes(&volume, &notes, &sizes);
+    }
+}
+
+/// A source that gives another number of points than it says.
+struct Liar<'a>(Cut<'a>, usize);
+
+impl MeshSource for Liar<'_> {
+    fn counts(&self) -> SourceCounts {
+        let counts = self.0.counts();
+        SourceCounts { points: counts.points + self.1 - 1, ..counts }
+    }
+    fn patches(&self) -> &[Patch] {
+        self.0.patches()
+    }
+    fn parts(&self) -> u32 {
+        self.0.parts()
+    }
+    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
+        self.0.points(part)
+    }
+    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
+        self.0.tets(part)
+    }
+    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
+        self.0.boundary(part)
+    }
+}
+
+#[test]
+fn a_source_that_lies_is_found_out() {
+    let (volume, notes) = tube(4);
+    for error in [0, 2] {
+        let liar = Liar(Cut { volume: &volume, sizes: &[5] }, error);
+        for format in STREAMED {
+            let result = write_mesh_to(&mut Vec::new(), format, &liar, &notes);
+            assert_eq!(result.unwrap_err().kind(), io::ErrorKind::InvalidData, "{format:?}");
+        }
+    }
+}
+
+/// A disk with so much room.
+struct Disk {
+    bytes: Cursor<Vec<u8>>,
+    room: u64,
+}
+
+impl Write for Disk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let free = self.room.saturating_sub(self.bytes.position());
+        if free == 0 && !bytes.is_empty() {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.bytes.write(&bytes[..bytes.len().min(free as usize)])
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Disk {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.bytes.seek(to)
+    }
+}
+
+#[test]
+fn a_full_disk_is_an_error_wherever_it_happens() {
+    let (volume, notes) = tube(6);
+    for format in STREAMED {
+        let whole = bytes_of(format, &volume, &notes);
+        let length = whole.len() as u64;
+        for room in (0..length).step_by(53).chain([length - 1]) {
+            let mut disk = Disk { bytes: Cursor::default(), room };
+            let error = write_format(&mut disk, format, &volume, &notes).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{format:?} {room} of {length}");
+        }
+        let mut disk = Disk { bytes: Cursor::default(), room: length };
+        write_format(&mut disk, format, &volume, &notes).unwrap();
+        assert!(disk.bytes.into_inner() == whole);
+    }
+}
+
+/// A source that cannot be read to its end.
+struct Broken<'a>(&'a VolumeMesh);
+
+impl MeshSource for Broken<'_> {
+    fn counts(&self) -> SourceCounts {
+        self.0.counts()
+    }
+    fn patches(&self) -> &[Patch] {
+        &self.0.patches
+    }
+    fn parts(&self) -> u32 {
+        2
+    }
+    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
+        if part == 0 { self.0.points(0) } else { Ok(Cow::default()) }
+    }
+    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
+        let tets = &self.0.mesh.tets;
+        let half = TetPiece { tets: tets[..tets.len() / 2].into(), ..TetPiece::default() };
+        if part == 0 { Ok(half) } else { Err(io::Error::other("a block is gone")) }
+    }
+    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
+        if part == 0 { self.0.boundary(0) } else { Ok(FacePiece::default()) }
+    }
+}
+
+#[test]
+fn earlier_files_stay_when_writing_fails() {
+    let (volume, notes) = tube(6);
+    for name in ["a.vtu", "a.msh", "a.mesh", "a.ele", "a.pvtu"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        write_mesh(&path, &volume, &notes).unwrap();
+        let files = || std::fs::read_dir(folder.path()).unwrap().count();
+        let before = (files(), std::fs::read(&path).unwrap());
+        let error = write_mesh(&path, &Broken(&volume), &notes).unwrap_err().to_string();
+        assert!(error.contains("a block is gone"), "{error}");
+        assert!((files(), std::fs::read(&path).unwrap()) == before, "{name}");
+    }
+}
+
+#[test]
+fn a_full_disk_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.mesh");
+    std::fs::write(&path, "earlier").unwrap();
+    let (volume, _) = tube(6);
+    let error = crate::file::write_whole(&path, |file| {
+        let mut disk = Disk { bytes: Cursor::default(), room: 3000 };
+        let written = super::medit::write(&mut disk, &volume);
+        file.write_all(disk.bytes.get_ref())?;
+        written
+    });
+    let error: super::error::MeshFileError = FileError::write(&path)(error.unwrap_err());
+    let text = error.to_string();
+    assert!(text.contains("out.mesh: cannot be written: ") && text.contains("the disk is full"), "{text}");
+    assert_eq!(std::fs::read(&path).unwrap(), b"earlier");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn files_appear_whole_and_paths_are_tried_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tube.vtu");
+    let (volume, notes) = labelled_tube(2);
+    ensure_writable(&path).unwrap();
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    write_mesh(&path, &volume, &notes).unwrap();
+    assert_eq!(read_mesh(&path).unwrap().volume, volume);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    for wrong in ["missing/tube.vtu", "tube.docx", "tube"] {
+        assert!(ensure_writable(&folder.path().join(wrong)).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn every_format_reads_what_it_writes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (volume, notes) = labelled_tube(3);
+    for name in ["a.vtu", "a.msh", "a.mesh", "a.ele"] {
+        let path = folder.path().join(name);
+        ensure_writable(&path).unwrap();
+        write_mesh(&path, &volume, &notes).unwrap();
+        let back = read_mesh(&path).unwrap();
+        assert_eq!(back.volume.mesh, volume.mesh, "{name}");
+        assert_eq!(back.volume.boundary_patch, volume.boundary_patch, "{name}");
+        assert!(back.labelled, "{name}");
+    }
+    assert!(write_mesh_to(&mut Vec::new(), MeshFormat::Tetgen, &volume, &notes).is_err());
+}
+
+#[test]
+fn a_mesh_whose_writing_is_stopped_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let (volume, notes) = labelled_tube(400);
+    for name in ["a.vtu", "a.pvtu", "a.msh", "a.mesh", "a.ele"] {
+        let path = folder.path().join(name);
+        for times in [0, 3] {
+            let error =
+                write_mesh_with(&WriteOptions::default(), &path, &volume, &notes, &StopsAfter::new(times)).unwrap_err();
+            assert!(error.to_string().contains("cancelled"), "{error}");
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{name}");
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! The arrays of an unstructured grid, and where their values come from.
+
+use super::names::{GLOBAL_IDS, VTK_TETRA, VTK_TRIANGLE, field};
+use crate::volume::content::MeshNotes;
+use crate::vtk_xml::Blocks;
+use anastomesh_mesh::Patch;
+use anastomesh_mesh::beside::{Beside, Column};
+use anastomesh_mesh::boundary::BoundarySurface;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::{MeshSource, SourceCounts};
+use std::io;
+
+/// Where an array stands in the file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::volume) enum Place {
+    Field,
+    PointData,
+    Points,
+    Cells,
+    Polys,
+    CellData,
+}
+
+/// The name of a type of values, and the bytes that one takes.
+pub(in crate::volume) type Kind = (&'static str, usize);
+
+const UINT8: Kind = ("UInt8", 1);
+pub(in crate::volume) const INT32: Kind = ("Int32", 4);
+const INT64: Kind = ("Int64", 8);
+const FLOAT32: Kind = ("Float32", 4);
+const FLOAT64: Kind = ("Float64", 8);
+
+/// Gives an array's values, as little-endian bytes.
+pub(in crate::volume) type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
+
+/// One array of the file: what it is called and where its values come from.
+pub(in crate::volume) struct Array<'a> {
+    pub place: Place,
+    pub name: &'static str,
+    pub kind: &'static str,
+    /// Bytes of a value.
+    pub width: usize,
+    pub components: usize,
+    pub values: usize,
+    pub fill: Fill<'a>,
+    /// Whether compression saves enough for the time it takes: coordinates and vertex numbers shrink little.
+    pub shrinks: bool,
+}
+
+impl<'a> Array<'a> {
+    pub(in crate::volume) fn new(
+        place: Place,
+        name: &'static str,
+        (kind, width): Kind,
+        values: usize,
+        fill: impl Fn(&mut Blocks) -> io::Result<()> + 'a,
+    ) -> Self {
+        Self { place, name, kind, width, components: 1, values, fill: Box::new(fill), shrinks: true }
+    }
+}
+
+/// Points, cells and their labels.
+pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool) -> Vec<Array<'_>> {
+    let mut all = vec![points_array(mesh.counts().points, float32, |each| mesh.each_points(each))];
+    all.extend(cell_arrays(mesh, Width::of(mesh.counts())));
+    all.extend([patch_array(mesh), block_array(mesh)]);
+    all
+}
+
+/// Patches with larger ids have no name in the file: the list has a place for every number below.
+pub(super) const LARGEST_NAMED: i32 = 1 << 16;
+
+/// Names by patch id: `lumen` stands for the inside (0), ids that no patch has stay empty.
+fn patch_names(patches: &[Patch]) -> Vec<String> {
+    let largest = patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
+    let mut names = vec![String::new(); largest + 1];
+    names[0] = "lumen".into();
+    for patch in patches {
+        if patch.id > 0
+            && let Some(name) = names.get_mut(patch.id as usize)
+        {
+            name.clone_from(&patch.name);
+        }
+    }
+    names
+}
+
+/// The field data.
+pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<Array<'a>> {
+    let caps: Vec<_> = patches.iter().filter_map(|p| p.cap.map(|cap| (p.id, cap))).collect();
+    let mut arrays = vec![strings(field::PATCH_NAMES, &patch_names(patches))];
+    if !caps.is_empty() {
+        let vectors = |f: fn(&anastomesh_mesh::Cap) -> [f64; 3]| caps.iter().flat_map(|(_, cap)| f(cap)).collect();
+        arrays.push(ints(field::CAP_PATCH, caps.iter().map(|&(id, _)| i64::from(id)).collect()));
+        arrays.push(ints(field::CAP_NODE, caps.iter().map(|(_, cap)| i64::from(cap.node)).collect()));
+        arrays.push(floats(field::CAP_CENTER, 3, vectors(|cap| cap.center.coords.into())));
+        arrays.push(floats(field::CAP_NORMAL, 3, vectors(|cap| cap.normal.into())));
+        arrays.push(floats(field::CAP_RADIUS, 1, caps.iter().map(|(_, cap)| cap.radius).collect()));
+    }
+    if let Some(expected) = &notes.expectation {
+        arrays.push(ints(field::LOOPS, expected.loops.iter().map(|&n| i64::from(n)).collect()));
+        arrays.push(ints(field::TERMINALS, expected.terminals.iter().map(|&n| i64::from(n)).collect()));
+    }
+    for (name, text) in [(field::GENERATOR, &notes.generator), (field::OPTIONS, &notes.options)] {
+        if !text.is_empty() {
+            arrays.push(strings(name, std::slice::from_ref(text)));
+        }
+    }
+    // An array without values is legal in VTK but trips other readers.
+    arrays.retain(|array| array.values > 0);
+    arrays
+}
+
+/// Texts as bytes, the characters of each and a zero behind it, as VTK's string arrays have them; but such an array makes
+/// other readers (meshio) give the whole file up, and bytes do not.
+fn strings<'a>(name: &'static str, texts: &[String]) -> Array<'a> {
+    let mut bytes = Vec::new();
+    for text in texts {
+        bytes.extend(text.bytes().filter(|&b| b != 0));
+        bytes.push(0);
+    }
+    Array::new(Place::Field, name, UINT8, bytes.len(), move |out| out.push(bytes.len(), |i| [bytes[i]]))
+}
+
+fn ints<'a>(name: &'static str, values: Vec<i64>) -> Array<'a> {
+    let count = values.len();
+    Array::new(Place::Field, name, INT64, count, move |out| out.push(count, |i| values[i].to_le_bytes()))
+}
+
+fn floats<'a>(name: &'static str, components: usize, values: Vec<f64>) -> Array<'a> {
+    let count = values.len();
+    let fill = move |out: &mut Blocks| out.push(count, |i| values[i].to_le_bytes());
+    Array { components, ..Array::new(Place::Field, name, FLOAT64, count, fill) }
+}
+
+/// Which point of the whole mesh each point of a piece is.
+pub(super) fn of_ids(ids: &[u32]) -> Array<'_> {
+    let fill = |out: &mut Blocks| out.push(ids.len(), |i| u64::from(ids[i]).to_le_bytes());
+    Array::new(Place::PointData, GLOBAL_IDS, INT64, ids.len(), fill)
+}
+
+/// Does something with points, some at a time.
+type EachPoints<'a> = dyn FnMut(&[Point3]) -> io::Result<()> + 'a;
+
+/// `pass`: gives all points.
+pub(in crate::volume) fn points_array<'a>(
+    count: usize,
+    float32: bool,
+    pass: impl Fn(&mut EachPoints) -> io::Result<()> + 'a,
+) -> Array<'a> {
+    let kind = if float32 { FLOAT32 } else { FLOAT64 };
+    let fill = move |out: &mut Blocks| {
+        pass(&mut |points| {
+            if float32 {
+                out.push(points.len(), |i| point_bytes::<4, 12>(&points[i], |x| (x as f32).to_le_bytes()))
+            } else {
+                out.push(points.len(), |i| point_bytes::<8, 24>(&points[i], f64::to_le_bytes))
+            }
+        })
+    };
+    let array = Array::new(Place::Points, "Points", kind, 3 * count, fill);
+    Array { components: 3, shrinks: false, ..array }
+}
+
+fn point_bytes<const W: usize, const N: usize>(p: &Point3, word: impl Fn(f64) -> [u8; W]) -> [u8; N] {
+    let mut bytes = [0; N];
+    let (words, _) = bytes.as_chunks_mut::<W>();
+    for (place, x) in words.iter_mut().zip([p.x, p.y, p.z]) {
+        *place = word(x);
+    }
+    bytes
+}
+
+/// How wide vertex numbers and offsets are.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::volume) enum Width {
+    Int32,
+    Int64,
+}
+
+impl Width {
+    /// Ids are u32: within the signed range they can be written as they are, else they need 64 bits.
+    pub(in crate::volume) fn of(counts: SourceCounts) -> Self {
+        let fits = |count: usize| i32::try_from(count).is_ok();
+        let narrow = fits(4 * counts.tets + 3 * counts.boundary) && fits(counts.points);
+        if narrow { Self::Int32 } else { Self::Int64 }
+    }
+
+    fn kind(self) -> Kind {
+        if self == Self::Int32 { INT32 } else { INT64 }
+    }
+
+    fn push(self, out: &mut Blocks, count: usize, value: impl Fn(usize) -> u64 + Sync) -> io::Result<()> {
+        match self {
+            Self::Int32 => out.push(count, |i| (value(i) as u32).to_le_bytes()),
+            Self::Int64 => out.push(count, |i| value(i).to_le_bytes()),
+        }
+    }
+}
+
+pub(in crate::volume) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
+    let SourceCounts { tets, boundary, .. } = mesh.counts();
+    let corners = move |out: &mut Blocks| {
+        let mut push = |ids: &[u32]| width.push(out, ids.len(), |i| u64::from(ids[i]));
+        mesh.each_tets(|piece| push(piece.tets.as_flattened()))?;
+        mesh.each_faces(|piece| push(piece.faces.as_flattened()))
+    };
+    let offsets = move |out: &mut Blocks| {
+        width.push(out, tets, |tet| 4 * (tet as u64 + 1))?;
+        width.push(out, boundary, |face| 4 * tets as u64 + 3 * (face as u64 + 1))
+    };
+    let types = move |out: &mut Blocks| {
+        out.push(tets, |_| [VTK_TETRA])?;
+        out.push(boundary, |_| [VTK_TRIANGLE])
+    };
+    let corners = Array::new(Place::Cells, "connectivity", width.kind(), 4 * tets + 3 * boundary, corners);
+    [
+        // Half of a wide number is zeros.
+        Array { shrinks: width == Width::Int64, ..corners },
+        Array::new(Place::Cells, "offsets", width.kind(), tets + boundary, offsets),
+        Array::new(Place::Cells, "types", UINT8, tets + boundary, types),
+    ]
+}
+
+/// Points, triangles and labels of a boundary.
+pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec<Array<'a>> {
+    let counts = surface.counts();
+    let (width, faces) = (Width::of(counts), counts.boundary);
+    let corners = move |out: &mut Blocks| {
+        surface.each_faces(|piece| {
+            let ids = piece.faces.as_flattened();
+            width.push(out, ids.len(), |i| u64::from(ids[i]))
+        })
+    };
+    let offsets = move |out: &mut Blocks| width.push(out, faces, |face| 3 * (face as u64 + 1));
+    let patch = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.patches));
+    let block = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.blocks));
+    let corners = Array::new(Place::Polys, "connectivity", width.kind(), 3 * faces, corners);
+    vec![
+        points_array(counts.points, float32, |each| surface.each_points(each)),
+        Array { shrinks: width == Width::Int64, ..corners },
+        Array::new(Place::Polys, "offsets", width.kind(), faces, offsets),
+        Array::new(Place::CellData, "patch", INT32, faces, patch),
+        Array::new(Place::CellData, "block", INT32, faces, block),
+    ]
+}
+
+/// Values beside a mesh, at its points and in its cells. Those of cells follow from their corners.
+pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) -> Vec<Array<'a>> {
+    let SourceCounts { points, tets, boundary } = mesh.counts();
+    let array = |(column, named): (usize, &Column)| {
+        let Column { name, at_points, is_integer } = *named;
+        let kind = if is_integer { INT32 } else { FLOAT64 };
+        let push = move |out: &mut Blocks, found: Vec<f64>| {
+            if is_integer {
+                out.push(found.len(), |i| (found[i] as i32).to_le_bytes())
+            } else {
+                out.push(found.len(), |i| found[i].to_le_bytes())
+            }
+        };
+        if at_points {
+            return Array::new(Place::PointData, name, kind, points, move |out| {
+                mesh.each_points(|some| push(out, values.at_points(column, some)))
+            });
+        }
+        Array::new(Place::CellData, name, kind, tets + boundary, move |out| {
+            mesh.each_tet_corners(|some| push(out, values.in_tets(column, some)))?;
+            mesh.each_face_corners(|some| push(out, values.in_faces(column, some)))
+        })
+    };
+    values.columns().iter().enumerate().map(array).collect()
+}
+
+/// Patches of the boundary faces; those of tetrahedra are 0.
+fn patch_array(mesh: &dyn MeshSource) -> Array<'_> {
+    let SourceCounts { tets, boundary, .. } = mesh.counts();
+    Array::new(Place::CellData, "patch", INT32, tets + boundary, move |out| {
+        out.push(tets, |_| [0; 4])?;
+        mesh.each_face_labels(|piece| push_known(out, &piece.patches, piece.count))
+    })
+}
+
+fn block_array(mesh: &dyn MeshSource) -> Array<'_> {
+    let SourceCounts { tets, boundary, .. } = mesh.counts();
+    Array::new(Place::CellData, "block", INT32, tets + boundary, |out| {
+        mesh.each_tet_labels(|piece| push_known(out, &piece.blocks, piece.count))?;
+        mesh.each_face_labels(|piece| push_known(out, &piece.blocks, piece.count))
+    })
+}
+
+/// Pushes `count` values, 0 where they are not known.
+fn push_known(out: &mut Blocks, values: &[i32], count: usize) -> io::Result<()> {
+    let known = values.len().min(count);
+    out.push_ints(&values[..known])?;
+    out.push(count - known, |_| [0; 4])
+}

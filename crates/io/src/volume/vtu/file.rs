@@ -1,0 +1,112 @@
+//! A file of VTK: the text with the places of the arrays, and the arrays behind it.
+
+use super::arrays::{Array, Place};
+use super::names::GLOBAL_IDS;
+use crate::vtk_xml::{Packing, write_blocks, write_spaces};
+use flate2::Compression;
+use std::fmt::Write as _;
+use std::io::{self, Seek, SeekFrom, Write};
+
+/// What goes into a file of one piece.
+pub(in crate::volume) struct File<'a> {
+    /// VTK's name of the kind of file.
+    pub kind: &'static str,
+    /// How many points and cells there are, as attributes of the piece.
+    pub counts: String,
+    pub arrays: Vec<Array<'a>>,
+    /// Whether arrays are left as they are instead of compressed.
+    pub raw: bool,
+}
+
+/// The sections of a piece, in their order.
+const SECTIONS: [(Place, &str); 5] = [
+    (Place::PointData, "PointData"),
+    (Place::Points, "Points"),
+    (Place::Cells, "Cells"),
+    (Place::Polys, "Polys"),
+    (Place::CellData, "CellData"),
+];
+
+/// What is shown first, where it is there.
+const LABELS: &str = "patch";
+
+const APPENDED_OPEN: &[u8] = b"\n<AppendedData encoding=\"raw\">\n_";
+pub(super) const APPENDED_CLOSE: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
+
+impl File<'_> {
+    /// Writes it.
+    pub(in crate::volume) fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
+        // The offsets are known only after compression: room for the longest possible header is left in front.
+        let reserved = self.header(&vec![u64::MAX; self.arrays.len()]).len();
+        let start = out.stream_position()?;
+        write_spaces(out, reserved)?;
+        out.write_all(APPENDED_OPEN)?;
+        let base = out.stream_position()?;
+        let mut offsets = Vec::with_capacity(self.arrays.len());
+        for array in &self.arrays {
+            offsets.push(out.stream_position()? - base);
+            write_blocks(out, array.values, array.width, self.packing(array), &array.fill)?;
+        }
+        out.write_all(APPENDED_CLOSE)?;
+        let end = out.stream_position()?;
+        out.seek(SeekFrom::Start(start))?;
+        out.write_all(self.header(&offsets).as_bytes())?;
+        out.seek(SeekFrom::Start(end))?;
+        Ok(())
+    }
+
+    fn packing(&self, array: &Array) -> Packing {
+        if self.raw {
+            return Packing::Raw;
+        }
+        Packing::Zlib(if array.shrinks { Compression::fast() } else { Compression::none() })
+    }
+
+    fn header(&self, offsets: &[u64]) -> String {
+        let kind = self.kind;
+        let compressor = if self.raw { "" } else { " compressor=\"vtkZLibDataCompressor\"" };
+        let mut text = format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" \
+             header_type=\"UInt64\"{compressor}>\n<{kind}>\n"
+        );
+        self.section(&mut text, (Place::Field, "FieldData"), offsets);
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "<Piece {}>", self.counts);
+        for section in SECTIONS {
+            self.section(&mut text, section, offsets);
+        }
+        let _ = write!(text, "</Piece>\n</{kind}>");
+        text
+    }
+
+    fn section(&self, text: &mut String, (place, tag): (Place, &str), offsets: &[u64]) {
+        let arrays: Vec<_> = self.arrays.iter().zip(offsets).filter(|(array, _)| array.place == place).collect();
+        if arrays.is_empty() {
+            return;
+        }
+        let has_ids = arrays.iter().any(|(array, _)| array.name == GLOBAL_IDS);
+        let ids = if has_ids { format!(" GlobalIds=\"{GLOBAL_IDS}\"") } else { String::new() };
+        let has_labels = arrays.iter().any(|(array, _)| array.name == LABELS);
+        let labels = if has_labels { format!(" Scalars=\"{LABELS}\"") } else { String::new() };
+        let _ = writeln!(text, "<{tag}{labels}{ids}>");
+        for (array, offset) in arrays {
+            let _ = writeln!(text, "<DataArray {} format=\"appended\" offset=\"{offset}\"/>", attributes_of(array));
+        }
+        let _ = writeln!(text, "</{tag}>");
+    }
+}
+
+/// What the text says of an array, beside where it is.
+fn attributes_of(array: &Array) -> String {
+    let Array { name, kind, components, .. } = array;
+    // Field arrays carry their length; elsewhere the piece knows it.
+    let tuples = match array.place {
+        Place::Field => format!(" NumberOfTuples=\"{}\"", array.values / components),
+        _ => String::new(),
+    };
+    // VTK takes global ids only from arrays of its own type of ids.
+    let ids = if *name == GLOBAL_IDS { " IdType=\"1\"" } else { "" };
+    // One component is the default, and readers shape an explicit one as a column.
+    let width = if *components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
+    format!("type=\"{kind}\"{ids} Name=\"{name}\"{width}{tuples}")
+}

@@ -1,0 +1,22 @@
+//! What writer and reader have to agree on.
+
+/// VTK's cell types.
+pub(super) const VTK_TRIANGLE: u8 = 5;
+pub(super) const VTK_TETRA: u8 = 10;
+
+/// Names of the field arrays, shared by writer and reader.
+pub(super) mod field {
+    pub const PATCH_NAMES: &str = "patch_names";
+    pub const CAP_PATCH: &str = "cap_patch";
+    pub const CAP_NODE: &str = "cap_node";
+    pub const CAP_CENTER: &str = "cap_center";
+    pub const CAP_NORMAL: &str = "cap_normal";
+    pub const CAP_RADIUS: &str = "cap_radius";
+    pub const LOOPS: &str = "expected_loops";
+    pub const TERMINALS: &str = "expected_terminals";
+    pub const GENERATOR: &str = "generator";
+    pub const OPTIONS: &str = "options";
+}
+
+/// Name of the point array that says which point of the whole mesh each point of a piece is.
+pub(in crate::volume) const GLOBAL_IDS: &str = "GlobalPointIds";

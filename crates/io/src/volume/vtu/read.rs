@@ -1,0 +1,207 @@
+//! Reads tetrahedral meshes from VTK unstructured grids: those that are written here, and those of other programs.
+
+use super::error::VtuFault;
+use super::fields::Fields;
+use super::names::{GLOBAL_IDS, VTK_TETRA, VTK_TRIANGLE};
+use crate::volume::content::MeshFile;
+use crate::vtk_xml::{ElementId, VtkXml};
+use anastomesh_mesh::VolumeMesh;
+use anastomesh_mesh::geometry::Point3;
+
+/// Cell arrays that are taken for the labels of the boundary, in order of preference.
+const LABEL_ARRAYS: [&str; 9] = [
+    "patch",
+    "PatchId",
+    "patch_id",
+    "gmsh:physical",
+    "boundary",
+    "ModelFaceID",
+    "CellEntityIds",
+    "BoundaryId",
+    "medit:ref",
+];
+
+/// Reads a mesh from the bytes of a `.vtu` file. Tetrahedra and triangles are taken, points and lines among the cells
+/// passed over. A point id that is negative or beyond 32 bits becomes `u32::MAX`, for a check to find.
+///
+/// # Errors
+/// When the file is no such file or incomplete, its arrays do not fit each other, or it holds other cells.
+pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, VtuFault> {
+    let mut reader = GridReader::default();
+    reader.read(bytes)?;
+    Ok(reader.finish().0)
+}
+
+/// A mesh that is read from one file, or from several, one after another.
+#[derive(Default)]
+pub(in crate::volume) struct GridReader {
+    volume: VolumeMesh,
+    /// Name of the array of labels; a later piece uses that of the first.
+    label_array: Option<&'static str>,
+    /// The field data of the first file that has any.
+    fields: Fields,
+    /// The number of each point in the mesh of which this is a piece.
+    global_ids: Vec<i64>,
+}
+
+impl GridReader {
+    /// Reads a file.
+    pub(in crate::volume) fn read(&mut self, bytes: &[u8]) -> Result<(), VtuFault> {
+        let xml = VtkXml::parse(bytes, "UnstructuredGrid")?;
+        let grid = xml.child(VtkXml::ROOT, "UnstructuredGrid").ok_or(VtuFault::Missing { what: "UnstructuredGrid" })?;
+        for piece in xml.children(grid, "Piece") {
+            self.read_piece(&xml, piece)?;
+        }
+        if self.fields.is_empty() {
+            self.fields = Fields::read(&xml, grid)?;
+        }
+        Ok(())
+    }
+
+    /// What was read, and the global ids of its points: of all, or of none.
+    pub(in crate::volume) fn finish(self) -> (MeshFile, Vec<i64>) {
+        let mut file = MeshFile { volume: self.volume, labelled: false, notes: self.fields.notes() };
+        match self.label_array {
+            Some(name) if !file.volume.boundary.is_empty() => {
+                file.labelled = true;
+                file.volume.patches = self.fields.patches(name, &file.volume.boundary_patch);
+            }
+            // Triangles that no array labels are no boundary.
+            _ => {
+                file.volume.boundary.clear();
+                file.volume.boundary_patch.clear();
+                file.volume.boundary_block.clear();
+            }
+        }
+        let all_known = self.global_ids.len() == file.volume.mesh.points.len();
+        (file, if all_known { self.global_ids } else { Vec::new() })
+    }
+
+    fn read_piece(&mut self, xml: &VtkXml, piece: ElementId) -> Result<(), VtuFault> {
+        let points = &mut self.volume.mesh.points;
+        let first_point = points.len();
+        read_points(xml, piece, points)?;
+        self.global_ids.extend(global_ids(xml, piece, points.len() - first_point)?);
+        let cells = Cells::read(xml, piece)?;
+        let count = cells.types.len();
+        let data = xml.child(piece, "CellData");
+        let labels = match data {
+            Some(data) => self.label_values(xml, data, count)?,
+            None => None,
+        };
+        let array = |name| data.map_or(Ok(None), |data| int_array(xml, data, name, count));
+        let (blocks, ghosts) = (array("block")?, array("vtkGhostType")?);
+        self.add_cells(&cells, first_point as i64, &CellData { labels, blocks, ghosts })
+    }
+
+    /// Takes the cells of a piece whose points begin at a number.
+    fn add_cells(&mut self, cells: &Cells, first_point: i64, data: &CellData) -> Result<(), VtuFault> {
+        let volume = &mut self.volume;
+        let at = |values: &Option<Vec<i64>>, cell: usize| values.as_ref().map_or(0, |v| v[cell] as i32);
+        let id = |v: i64| u32::try_from(v + first_point).unwrap_or(u32::MAX);
+        let mut start = 0;
+        for (cell, (&kind, &end)) in cells.types.iter().zip(&cells.offsets).enumerate() {
+            let ids = usize::try_from(end).ok().and_then(|end| cells.connectivity.get(start..end));
+            let ids = ids.ok_or(VtuFault::BadOffset { cell })?;
+            start += ids.len();
+            if at(&data.ghosts, cell) & DUPLICATE != 0 {
+                continue;
+            }
+            match (kind as u8, ids) {
+                (VTK_TETRA, &[a, b, c, d]) => {
+                    volume.mesh.tets.push([id(a), id(b), id(c), id(d)]);
+                    volume.tet_block.push(at(&data.blocks, cell));
+                }
+                (VTK_TRIANGLE, &[a, b, c]) => {
+                    volume.boundary.push([id(a), id(b), id(c)]);
+                    volume.boundary_patch.push(at(&data.labels, cell));
+                    volume.boundary_block.push(at(&data.blocks, cell));
+                }
+                (VTK_TETRA | VTK_TRIANGLE, _) => return Err(VtuFault::BadOffset { cell }),
+                // Empty cells, points and lines bound no volume.
+                (0..=4, _) => {}
+                _ => return Err(VtuFault::UnsupportedCell { kind, cell }),
+            }
+        }
+        Ok(())
+    }
+
+    /// The labels of the cells of a piece.
+    fn label_values(&mut self, xml: &VtkXml, data: ElementId, count: usize) -> Result<Option<Vec<i64>>, VtuFault> {
+        for name in LABEL_ARRAYS {
+            if self.label_array.is_none_or(|chosen| chosen == name)
+                && let Some(values) = int_array(xml, data, name, count)?
+            {
+                self.label_array = Some(name);
+                return Ok(Some(values));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The bit in VTK's array of ghosts of a cell that another piece has.
+const DUPLICATE: i32 = 1;
+
+/// The global id of each point; empty when the file does not know.
+fn global_ids(xml: &VtkXml, piece: ElementId, points: usize) -> Result<Vec<i64>, VtuFault> {
+    let Some(data) = xml.child(piece, "PointData") else { return Ok(Vec::new()) };
+    let name = xml.attribute(data, "GlobalIds").unwrap_or(GLOBAL_IDS);
+    Ok(int_array(xml, data, name, points)?.unwrap_or_default())
+}
+
+fn read_points(xml: &VtkXml, piece: ElementId, into: &mut Vec<Point3>) -> Result<(), VtuFault> {
+    let expected = xml.count(piece, "NumberOfPoints")?.saturating_mul(3);
+    let points = xml.child(piece, "Points").and_then(|points| xml.arrays(points).next());
+    let values = match points {
+        Some((_, array)) => xml.read(array)?.into_floats(),
+        None => Vec::new(),
+    };
+    if values.len() != expected {
+        return Err(VtuFault::Length { array: "Points".into(), expected, found: values.len() });
+    }
+    let (triples, _) = values.as_chunks::<3>();
+    into.extend(triples.iter().map(|&p| Point3::from(p)));
+    Ok(())
+}
+
+/// What the cells of a piece carry; none where the file has no such array.
+struct CellData {
+    labels: Option<Vec<i64>>,
+    blocks: Option<Vec<i64>>,
+    ghosts: Option<Vec<i64>>,
+}
+
+struct Cells {
+    connectivity: Vec<i64>,
+    offsets: Vec<i64>,
+    types: Vec<i64>,
+}
+
+impl Cells {
+    fn read(xml: &VtkXml, piece: ElementId) -> Result<Self, VtuFault> {
+        let count = xml.count(piece, "NumberOfCells")?;
+        let Some(cells) = xml.child(piece, "Cells") else {
+            return match count {
+                0 => Ok(Self { connectivity: Vec::new(), offsets: Vec::new(), types: Vec::new() }),
+                _ => Err(VtuFault::Missing { what: "Cells" }),
+            };
+        };
+        let required = |name, length| int_array(xml, cells, name, length)?.ok_or(VtuFault::Missing { what: name });
+        let offsets = required("offsets", count)?;
+        let types = required("types", count)?;
+        let length = offsets.last().map_or(0, |&end| end.max(0) as usize);
+        Ok(Self { connectivity: required("connectivity", length)?, offsets, types })
+    }
+}
+
+/// The integer array of one name among an element's arrays; none when there is none of that name, or it is not of
+/// integers.
+fn int_array(xml: &VtkXml, parent: ElementId, name: &str, length: usize) -> Result<Option<Vec<i64>>, VtuFault> {
+    let Some((_, array)) = xml.arrays(parent).find(|(n, _)| *n == name) else { return Ok(None) };
+    let Some(values) = xml.read(array)?.into_ints() else { return Ok(None) };
+    if values.len() != length {
+        return Err(VtuFault::Length { array: name.into(), expected: length, found: values.len() });
+    }
+    Ok(Some(values))
+}

@@ -1,0 +1,191 @@
+//! Writes a mesh in any format.
+
+use super::content::MeshNotes;
+use super::error::MeshFileError;
+use super::format::MeshFormat;
+use super::options::{GridOptions, WriteOptions, boundary_beside};
+use super::pvtu::{PieceFolder, Pieces};
+use super::{medit, msh, npy, openfoam, pvtu, simvascular, vtu};
+use crate::file::{Asked, AtomicFile, FileError, write_whole};
+use crate::tetgen::MeshFamily;
+use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
+use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::source::{MeshSource, gather};
+use std::io::{self, Cursor, Seek, Write};
+use std::path::Path;
+
+/// Makes sure, before any work is done, that a mesh can be written to `path`: the format is known, and a file can be
+/// made in its folder. Leaves nothing behind.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
+    ensure_writable_as(MeshFormat::of(path)?, path)
+}
+
+/// As [`ensure_writable`], whatever the extension says.
+///
+/// # Errors
+/// `Write` with the reason.
+pub fn ensure_writable_as(format: MeshFormat, path: &Path) -> Result<(), MeshFileError> {
+    let file = || AtomicFile::create(path).map(drop);
+    match format {
+        MeshFormat::OpenFoam => openfoam::ensure_writable(path),
+        MeshFormat::SimVascular => simvascular::ensure_writable(path),
+        MeshFormat::Npy => npy::ensure_writable(path),
+        MeshFormat::Pvtu => file().and_then(|()| PieceFolder::ensure_replaceable(path)),
+        _ => file(),
+    }
+    .map_err(FileError::write(path))
+}
+
+/// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all. The bytes depend
+/// on the mesh and the notes alone. No format but `TetGen`'s holds a mesh that is read in passes: see the writers of each.
+///
+/// ```
+/// use anastomesh_io::{MeshNotes, read_mesh, write_mesh};
+/// use anastomesh_mesh::{Point3, TetMesh, VolumeMesh};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+/// let volume = VolumeMesh { mesh, tet_block: vec![0], ..VolumeMesh::default() };
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("one.vtu");
+/// write_mesh(&path, &volume, &MeshNotes::default())?;
+/// assert_eq!(read_mesh(&path)?.volume.mesh, volume.mesh);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Result<(), MeshFileError> {
+    write_mesh_with(&WriteOptions::default(), path, mesh, notes, &())
+}
+
+/// As [`write_mesh`], as the options say. Ends, and leaves nothing, when it is told to.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn write_mesh_with(
+    options: &WriteOptions,
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    progress: &dyn Progress,
+) -> Result<(), MeshFileError> {
+    let grid = options.grid;
+    let format = options.format.map_or_else(|| MeshFormat::of(path), Ok)?;
+    let write = || match format {
+        MeshFormat::Pvtu => {
+            let usual = Pieces::default();
+            let memory = options.memory.unwrap_or(usual.memory);
+            pvtu::write(path, mesh, notes, Pieces { memory, grid, values: options.values, ..usual }, progress)
+        }
+        MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, progress),
+        MeshFormat::Npy => npy::write(path, mesh, notes, options.values, progress),
+        MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
+        MeshFormat::Vtu => {
+            write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid, options.values))
+        }
+        MeshFormat::Msh => {
+            write_whole(path, |out| msh::write(&mut Asked { out, progress }, mesh, notes, options.values))
+        }
+        MeshFormat::Msh2 => {
+            write_whole(path, |out| msh::write_2(&mut Asked { out, progress }, mesh, notes, options.values))
+        }
+        format => write_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
+    };
+    match format {
+        MeshFormat::Tetgen => write_family(path, mesh, progress),
+        MeshFormat::Vtu | MeshFormat::Pvtu if grid.tets_alone => {
+            let boundary = complete_boundary(path, mesh, notes, grid, progress)?;
+            write().and_then(|()| boundary.commit()).map_err(FileError::write(path))
+        }
+        _ => write().map_err(FileError::write(path)),
+    }
+}
+
+/// The boundary beside a grid of tetrahedra alone, which only has to be put in its place when the grid is.
+fn complete_boundary(
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    grid: GridOptions,
+    progress: &dyn Progress,
+) -> Result<AtomicFile, MeshFileError> {
+    let beside = boundary_beside(path);
+    let make = || {
+        let mut file = AtomicFile::create(&beside)?;
+        let surface = BoundarySurface::new(mesh, BoundaryPart::Whole)?;
+        vtu::write_boundary(&mut Asked { out: &mut file, progress }, &surface, notes, grid)?;
+        file.complete()?;
+        Ok(file)
+    };
+    make().map_err(FileError::write(&beside))
+}
+
+/// The neighbours of tetrahedra are not found in passes: this format holds the mesh in memory.
+fn write_family(path: &Path, mesh: &dyn MeshSource, progress: &dyn Progress) -> Result<(), MeshFileError> {
+    let gathered;
+    let volume = if let Some(volume) = mesh.whole() {
+        volume
+    } else {
+        gathered = gather(mesh).map_err(FileError::write(path))?;
+        &gathered
+    };
+    match MeshFamily::of_volume(volume).progress(progress).write(path) {
+        Ok(_) => Ok(()),
+        Err(FileError::BadMesh { path, cell }) => {
+            let source = io::Error::new(io::ErrorKind::InvalidInput, format!("cell {cell} names no point"));
+            Err(FileError::Write { path, source })
+        }
+        Err(error) => Err(error.widen()),
+    }
+}
+
+/// Writes a mesh to a stream, such as standard output; the file is put together in memory first.
+///
+/// ```
+/// use anastomesh_io::MeshNotes;
+/// use anastomesh_io::volume::{MeshFormat, read_mesh_from, write_mesh_to};
+/// use anastomesh_mesh::{Point3, TetMesh, VolumeMesh};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+/// let volume = VolumeMesh { mesh, tet_block: vec![0], ..VolumeMesh::default() };
+/// let mut bytes = Vec::new();
+/// write_mesh_to(&mut bytes, MeshFormat::Msh, &volume, &MeshNotes::default())?;
+/// assert_eq!(read_mesh_from(&bytes, MeshFormat::Msh)?.volume.mesh, volume.mesh);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// What the stream reports.
+pub fn write_mesh_to(
+    out: &mut impl Write,
+    format: MeshFormat,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+) -> io::Result<()> {
+    let mut bytes = Cursor::new(Vec::new());
+    write_format(&mut bytes, format, mesh, notes)?;
+    out.write_all(bytes.get_ref())
+}
+
+/// Writes a mesh in a format that is one file.
+pub(super) fn write_format(
+    out: &mut (impl Write + Seek),
+    format: MeshFormat,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+) -> io::Result<()> {
+    match format {
+        MeshFormat::Vtu => vtu::write(out, mesh, notes, GridOptions::default(), None),
+        MeshFormat::Msh => msh::write(out, mesh, notes, None),
+        MeshFormat::Msh2 => msh::write_2(out, mesh, notes, None),
+        MeshFormat::Medit => medit::write(out, mesh),
+        MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::Npy | MeshFormat::OpenFoam | MeshFormat::SimVascular => {
+            Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Whether a mesh is valid: every line of the definition, checked exactly.
+//!
+//! A mesh is valid when every tetrahedron is positive by the exact predicate; each interior face is shared by two
+//! tetrahedra on opposite sides; the boundary is a closed 2-manifold that does not meet itself; no point is duplicate or
+//! unused; there is one component per component of the skeleton, whose boundary has the genus that the skeleton's loops
+//! ask for; and every terminal has its flat cap while every other boundary face is wall.
+
+mod cells;
+mod labels;
+mod nested;
+pub mod parts;
+mod result;
+mod surface;
+mod surfaces;
+pub mod text;
+
+#[cfg(test)]
+mod tests;
+
+pub use result::{
+    CheckReport, Counts, Expectation, Line, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict,
+};
+
+use super::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
+use super::quality::TetQuality;
+use super::{TetMesh, VolumeMesh};
+use surface::Boundary;
+
+/// Checks a labelled mesh.
+///
+/// ```
+/// use anastomesh_mesh::check::{Expectation, Line, check_volume};
+/// use anastomesh_mesh::{Patch, Point3, TetMesh, VolumeMesh, WALL};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let mut volume = VolumeMesh {
+///     mesh: TetMesh { points, tets: vec![[0, 1, 2, 3]] },
+///     tet_block: vec![0],
+///     boundary: vec![[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]],
+///     boundary_block: vec![0; 4],
+///     boundary_patch: vec![WALL; 4],
+///     patches: vec![Patch { id: WALL, name: "wall".into(), cap: None }],
+/// };
+/// let expected = Expectation { loops: vec![0], terminals: vec![] };
+/// assert!(check_volume(&volume, Some(&expected)).is_valid());
+/// volume.mesh.tets[0].swap(0, 1);
+/// let report = check_volume(&volume, Some(&expected));
+/// assert!(report.failed().any(|failed| failed.line == Line::PositiveTets));
+/// ```
+pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> CheckReport {
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(None)
+}
+
+/// As [`check_volume`], for callers who have just called [`tet_adjacency`] on this mesh.
+pub fn check_volume_with(
+    volume: &VolumeMesh,
+    adjacency: TetAdjacency,
+    expectation: Option<&Expectation>,
+) -> CheckReport {
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(Some(adjacency))
+}
+
+/// Checks a mesh without labels; the lines about labels are not checked.
+///
+/// ```
+/// use anastomesh_mesh::check::{Line, Outcome, Verdict, check_tets};
+/// use anastomesh_mesh::{Point3, TetMesh};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let report = check_tets(&TetMesh { points, tets: vec![[1, 0, 2, 3]] }, None);
+/// assert_eq!(report.verdict, Verdict::Invalid);
+/// let inverted = report.line(Line::PositiveTets).expect("it is always looked at");
+/// assert_eq!((inverted.outcome, inverted.count), (Outcome::Fail, 1));
+/// ```
+pub fn check_tets(mesh: &TetMesh, expectation: Option<&Expectation>) -> CheckReport {
+    Check { mesh, volume: None, expectation }.run(None)
+}
+
+const LABEL_LINES: [Line; 9] = [
+    Line::LabelsMatchBoundary,
+    Line::WallOrCap,
+    Line::OwnPatch,
+    Line::CapPerTerminal,
+    Line::CapDisc,
+    Line::CapFlat,
+    Line::CapCentred,
+    Line::CapArea,
+    Line::CapNormal,
+];
+
+struct Check<'a> {
+    mesh: &'a TetMesh,
+    volume: Option<&'a VolumeMesh>,
+    expectation: Option<&'a Expectation>,
+}
+
+impl Check<'_> {
+    fn run(&self, adjacency: Option<TetAdjacency>) -> CheckReport {
+        let mesh = self.mesh;
+        let counts = Counts { points: mesh.points.len(), tets: mesh.tets.len(), ..Counts::default() };
+        let mut lines = vec![cells::not_empty(mesh), cells::finite_points(mesh), cells::indices_in_range(mesh)];
+        // Without sound arrays nothing else has a meaning.
+        if let Some(line) = first_failure(&lines) {
+            let missing = Line::ALL.into_iter().filter(|l| lines.iter().all(|result| result.line != *l));
+            let rest: Vec<LineResult> = missing.map(|l| LineResult::skipped(l, Skipped::Because(line))).collect();
+            lines.extend(rest);
+            return CheckReport::new(counts, lines, None, Vec::new());
+        }
+        let adjacency = adjacency.unwrap_or_else(|| tet_adjacency(&mesh.tets, mesh.points.len()));
+        self.run_on_sound_arrays(counts, lines, adjacency)
+    }
+
+    fn run_on_sound_arrays(
+        &self,
+        mut counts: Counts,
+        mut lines: Vec<LineResult>,
+        adjacency: TetAdjacency,
+    ) -> CheckReport {
+        let mesh = self.mesh;
+        lines.extend(cells::lines(mesh, &adjacency));
+        lines.push(cells::no_duplicate_points(mesh));
+        counts.components = cells::component_count(&adjacency);
+        counts.volume = cells::volume(mesh);
+        lines.push(result::components(self.expectation, counts.components));
+        let faces = boundary_of(mesh, &adjacency);
+        drop(adjacency);
+        let boundary = Boundary::new(&mesh.points, &faces);
+        counts.boundary_faces = faces.len();
+        counts.boundary_components = boundary.surfaces().all.len();
+        lines.push(boundary.edges_closed());
+        lines.push(boundary.single_fans());
+        let open = [Line::BoundaryEdges, Line::BoundaryFans].into_iter().find(|&line| fails(&lines, line));
+        let (line, intersections) = boundary.self_intersections(!fails(&lines, Line::BoundaryEdges));
+        lines.push(line);
+        lines.push(self.loops(&boundary, open));
+        drop(boundary);
+        lines.extend(self.labels(&faces));
+        counts.caps = self.volume.map_or(0, |v| v.patches.iter().filter(|p| p.cap.is_some()).count());
+        CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections)
+    }
+
+    /// The genus is defined for closed manifolds alone: `open` is the line that says the boundary is none.
+    fn loops(&self, boundary: &Boundary, open: Option<Line>) -> LineResult {
+        match (self.expectation, open) {
+            (None, _) => LineResult::skipped(Line::Loops, Skipped::NoExpectation),
+            (_, Some(line)) => LineResult::skipped(Line::Loops, Skipped::Because(line)),
+            (Some(expected), None) => boundary.loops(&expected.loops),
+        }
+    }
+
+    fn labels(&self, faces: &[[u32; 3]]) -> Vec<LineResult> {
+        let Some(volume) = self.volume else {
+            return LABEL_LINES.map(|line| LineResult::skipped(line, Skipped::NoLabels)).into();
+        };
+        let mut lines = vec![labels::labels_match(volume, faces)];
+        if volume.boundary.as_flattened().iter().all(|&v| (v as usize) < volume.mesh.points.len()) {
+            lines.extend(labels::cap_lines(volume, self.expectation));
+        } else {
+            let why = Skipped::Because(Line::LabelsMatchBoundary);
+            lines.extend(LABEL_LINES[1..].iter().map(|&line| LineResult::skipped(line, why)));
+        }
+        lines
+    }
+}
+
+fn first_failure(lines: &[LineResult]) -> Option<Line> {
+    lines.iter().find(|result| result.outcome == Outcome::Fail).map(|result| result.line)
+}
+
+fn fails(lines: &[LineResult], line: Line) -> bool {
+    lines.iter().any(|result| result.line == line && result.outcome == Outcome::Fail)
+}
+
+fn boundary_of(mesh: &TetMesh, adjacency: &TetAdjacency) -> Vec<[u32; 3]> {
+    adjacency.boundary().map(|handle| face_vertices(&mesh.tets, handle)).collect()
+}

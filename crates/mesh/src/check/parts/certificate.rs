@@ -1,0 +1,321 @@
+//! What is known of one part once it has been checked alone.
+
+use super::sums::face_sum;
+use super::{Certificate, Fault, HeldCap, HeldJoint, HeldSurface, PartView};
+use crate::TetMesh;
+use crate::adjacency::{NONE, TetAdjacency, face_vertices};
+use crate::check::cells;
+use crate::check::labels;
+use crate::check::nested::{Enclosed, enclosed};
+use crate::check::result::{Line, LineResult, Offender, OffenderKind, Tally};
+use crate::check::surface::Boundary;
+use crate::check::surfaces::{Surface, Surfaces};
+use crate::face_key;
+use crate::geometry::Aabb;
+use crate::geometry::DisjointSets;
+use crate::geometry::predicates::{in_exact_range, orient3d};
+use crate::quality::{QualitySum, volume6};
+
+/// Pairs of faces that meet improperly which a certificate keeps.
+const KEPT_INTERSECTIONS: usize = 100;
+
+/// What owns a boundary face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Owner {
+    Wall,
+    Joint(u32),
+    Cap(u32),
+}
+
+/// Checks a part alone; see the [module](super) for what that says of the whole. Sequential: the thread that made a part
+/// certifies it. `adjacency` gives what [`tet_adjacency`](crate::adjacency::tet_adjacency) says of the part's mesh.
+pub fn certify_with(part: &PartView, adjacency: impl FnOnce() -> TetAdjacency) -> Certificate {
+    let mesh = part.mesh;
+    let mut certificate = Certificate {
+        points: mesh.points.len() as u32,
+        tets: mesh.tets.len() as u32,
+        joints: vec![HeldJoint::default(); part.joints.len()],
+        ..Certificate::default()
+    };
+    if !has_sound_arrays(mesh) {
+        certificate.take([cells::finite_points(mesh), cells::indices_in_range(mesh)]);
+        certificate.unsound = true;
+        return certificate;
+    }
+    let adjacency = adjacency();
+    if !certificate.measure_cells(mesh, &adjacency) {
+        certificate.take(cells::lines(mesh, &adjacency));
+    }
+    certificate.look_at_boundary(part, &adjacency);
+    // Else equal points are excluded by what has been found, see `super`.
+    if !certificate.faults.is_empty() {
+        certificate.take([cells::no_duplicate_points(mesh)]);
+    }
+    certificate
+}
+
+/// As [`certify_with`], for a part that is its closed surface `hull` alone. What concerns tetrahedra holds of those that
+/// could fill it.
+pub fn certify_hollow(part: &PartView, hull: &[[u32; 3]]) -> Certificate {
+    let mesh = part.mesh;
+    let mut certificate = Certificate {
+        points: mesh.points.len() as u32,
+        joints: vec![HeldJoint::default(); part.joints.len()],
+        ..Certificate::default()
+    };
+    let all_there = hull.as_flattened().iter().all(|&v| (v as usize) < mesh.points.len());
+    if !has_sound_arrays(mesh) || !all_there {
+        certificate.take([cells::finite_points(mesh)]);
+        certificate.unsound = true;
+        return certificate;
+    }
+    certificate.look_at_hull(part, hull);
+    if !certificate.faults.is_empty() {
+        certificate.take([cells::no_duplicate_points(mesh)]);
+    }
+    certificate
+}
+
+fn has_sound_arrays(mesh: &TetMesh) -> bool {
+    let count = mesh.points.len();
+    mesh.points.iter().all(|p| p.iter().all(|&x| x.is_finite() && in_exact_range(x)))
+        && mesh.tets.as_flattened().iter().all(|&v| (v as usize) < count)
+}
+
+impl Certificate {
+    /// Keeps the lines that fail.
+    fn take(&mut self, lines: impl IntoIterator<Item = LineResult>) {
+        for line in lines.into_iter().filter(LineResult::fails) {
+            self.faults.push(Fault { line: line.line, count: line.count, offenders: line.offenders });
+        }
+    }
+
+    /// Measures the tetrahedra, and says whether all lines about them hold.
+    fn measure_cells(&mut self, mesh: &TetMesh, adjacency: &TetAdjacency) -> bool {
+        // Positive tetrahedra have four vertices each. Two with the same vertices are neighbours by a face (or it is
+        // crowded), and when both are positive they see it turn the same way.
+        let mut sound = adjacency.crowded.is_empty();
+        let mut used = vec![false; mesh.points.len()];
+        let mut quality = QualitySum::default();
+        let mut volume = 0.0;
+        for t in &mesh.tets {
+            let p = t.map(|v| {
+                used[v as usize] = true;
+                &mesh.points[v as usize]
+            });
+            sound &= orient3d(p[0], p[1], p[2], p[3]) > 0.0;
+            volume += volume6(p[0], p[1], p[2], p[3]);
+            quality.include(p);
+        }
+        self.volume = volume / 6.0;
+        self.quality = quality.piece();
+        sound && used.iter().all(|&used| used) && neighbors_are_opposite(mesh, adjacency)
+    }
+
+    /// Everything about the part's closed surface.
+    fn look_at_boundary(&mut self, part: &PartView, adjacency: &TetAdjacency) {
+        let handles: Vec<u32> = adjacency.boundary().collect();
+        let faces: Vec<[u32; 3]> = handles.iter().map(|&handle| face_vertices(&part.mesh.tets, handle)).collect();
+        let (owners, surfaces) = self.look_at_faces(part, &faces);
+        let enclosed = match surfaces.all.len() {
+            // The tetrahedra tell better.
+            1 => vec![Enclosed::exactly(self.volume)],
+            _ => enclosed(&part.mesh.points, &faces, &surfaces),
+        };
+        self.hold_surfaces(&faces, &owners, &surfaces, enclosed);
+        self.hold_components(adjacency, &handles, &owners);
+        self.hold_joints(part, &surfaces);
+        self.hold_caps(part);
+    }
+
+    /// The same where there is nothing else. What one surface encloses is one component.
+    fn look_at_hull(&mut self, part: &PartView, faces: &[[u32; 3]]) {
+        let (owners, surfaces) = self.look_at_faces(part, faces);
+        let enclosed = enclosed(&part.mesh.points, faces, &surfaces);
+        self.volume = enclosed.iter().map(Enclosed::volume).sum();
+        self.components = enclosed.iter().filter(|enclosed| !enclosed.is_cavity()).count() as u32;
+        self.hold_surfaces(faces, &owners, &surfaces, enclosed);
+        self.hold_joints(part, &surfaces);
+        self.hold_caps(part);
+    }
+
+    /// Who owns each face, and which surface it belongs to.
+    fn look_at_faces(&mut self, part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, Surfaces) {
+        let points = &part.mesh.points[..];
+        let (owners, labels) = owners(part, faces);
+        let boundary = Boundary::new(points, faces);
+        let (contacts, intersections) = boundary.self_intersections(false);
+        self.take([labels, boundary.edges_closed(), boundary.single_fans(), contacts]);
+        self.intersections = intersections;
+        self.intersections.truncate(KEPT_INTERSECTIONS);
+        let box_of = Aabb::of_points(faces.as_flattened().iter().map(|&v| &points[v as usize]));
+        self.bounds = [box_of.min.coords.into(), box_of.max.coords.into()];
+        for (face, owner) in faces.iter().zip(&owners) {
+            let sum = face_sum(face.map(|v| &points[v as usize]));
+            match *owner {
+                Owner::Joint(j) => self.joints[j as usize].sum = self.joints[j as usize].sum.wrapping_add(sum),
+                Owner::Wall | Owner::Cap(_) => {
+                    self.wall_sum = self.wall_sum.wrapping_add(sum);
+                    self.wall_faces += 1;
+                }
+            }
+        }
+        (owners, boundary.into_surfaces())
+    }
+
+    fn hold_surfaces(&mut self, faces: &[[u32; 3]], owners: &[Owner], surfaces: &Surfaces, enclosed: Vec<Enclosed>) {
+        let held = |(surface, enclosed): (&Surface, Enclosed)| HeldSurface {
+            vertex: NONE,
+            euler: surface.euler() as i32,
+            enclosed,
+        };
+        self.surfaces = surfaces.all.iter().zip(enclosed).map(held).collect();
+        // Vertices inside joints are none of the whole's boundary.
+        for (face, _) in faces.iter().zip(owners).filter(|(_, owner)| !matches!(owner, Owner::Joint(_))) {
+            for &v in face {
+                let held = &mut self.surfaces[surfaces.of[v as usize] as usize];
+                held.vertex = held.vertex.min(v);
+            }
+        }
+    }
+
+    fn hold_components(&mut self, adjacency: &TetAdjacency, handles: &[u32], owners: &[Owner]) {
+        let count = adjacency.neighbors.len();
+        if is_connected(adjacency) {
+            self.components = count.min(1) as u32;
+            return;
+        }
+        let mut sets = DisjointSets::new(count);
+        for (tet, row) in adjacency.neighbors.iter().enumerate() {
+            for &neighbor in row.iter().filter(|&&neighbor| neighbor != NONE) {
+                sets.join(tet as u32, neighbor / 4);
+            }
+        }
+        let mut number = vec![NONE; count];
+        for tet in (0..count as u32).filter(|&tet| sets.root(tet) == tet).collect::<Vec<_>>() {
+            number[tet as usize] = self.components;
+            self.components += 1;
+        }
+        for (handle, owner) in handles.iter().zip(owners) {
+            if let Owner::Joint(j) = *owner {
+                self.joints[j as usize].component = number[sets.root(handle / 4) as usize];
+            }
+        }
+    }
+
+    /// Joints must be discs without common vertices.
+    fn hold_joints(&mut self, part: &PartView, surfaces: &Surfaces) {
+        let points = &part.mesh.points;
+        let mut fans = Tally::new(Line::BoundaryFans);
+        let mut joint_of = vec![NONE; points.len()];
+        for (j, faces) in (0..).zip(part.joints) {
+            let held = &mut self.joints[j as usize];
+            held.faces = faces.len() as u32;
+            let exist = faces.as_flattened().iter().all(|&v| (v as usize) < points.len());
+            let Some(first) = faces.first() else {
+                fans.add(|| Offender { kind: OffenderKind::Face, ids: Vec::new(), position: None });
+                continue;
+            };
+            if !exist {
+                // Named with the labels.
+                continue;
+            }
+            for &v in faces.as_flattened() {
+                let of = &mut joint_of[v as usize];
+                held.vertices += u32::from(*of != j);
+                if *of != NONE && *of != j {
+                    fans.add(|| cells::point_offender(points, v));
+                }
+                *of = j;
+            }
+            held.surface = surfaces.of[first[0] as usize];
+            if !labels::is_disc(faces) {
+                fans.add(|| cells::face_offender(points, *first));
+            }
+        }
+        self.take([fans.done()]);
+    }
+
+    fn hold_caps(&mut self, part: &PartView) {
+        let points = &part.mesh.points;
+        let hold = |(cap, faces): &(crate::Cap, Vec<[u32; 3]>)| HeldCap {
+            node: cap.node,
+            center: cap.center.coords.into(),
+            normal: cap.normal.into(),
+            radius: cap.radius,
+            faces: faces.len() as u32,
+            shape: if faces.as_flattened().iter().all(|&v| (v as usize) < points.len()) {
+                labels::cap_shape(points, cap, faces)
+            } else {
+                [false; 5]
+            },
+        };
+        self.caps = part.caps.iter().map(hold).collect();
+    }
+}
+
+/// As [`cells::opposite_sides`], without saying where not.
+fn neighbors_are_opposite(mesh: &TetMesh, adjacency: &TetAdjacency) -> bool {
+    adjacency.neighbors.as_flattened().iter().enumerate().all(|(handle, &neighbor)| {
+        let handle = handle as u32;
+        neighbor == NONE
+            || handle > neighbor
+            || !cells::same_turn(face_vertices(&mesh.tets, handle), face_vertices(&mesh.tets, neighbor))
+    })
+}
+
+fn is_connected(adjacency: &TetAdjacency) -> bool {
+    let count = adjacency.neighbors.len();
+    let mut met = vec![false; count];
+    let mut pending: Vec<u32> = Vec::with_capacity(count.min(1));
+    if let Some(first) = met.first_mut() {
+        *first = true;
+        pending.push(0);
+    }
+    let mut left = count;
+    while let Some(tet) = pending.pop() {
+        left -= 1;
+        for &neighbor in &adjacency.neighbors[tet as usize] {
+            if neighbor != NONE && !std::mem::replace(&mut met[neighbor as usize / 4], true) {
+                pending.push(neighbor / 4);
+            }
+        }
+    }
+    left == 0
+}
+
+/// Who owns each boundary face. Faces of joints and caps must be boundary faces, turned as they are, each named once.
+fn owners(part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, LineResult) {
+    let points = &part.mesh.points;
+    let mut named: Vec<([u32; 3], Owner, [u32; 3])> = Vec::new();
+    for (j, list) in (0..).zip(part.joints) {
+        named.extend(list.iter().map(|&face| (face_key(face), Owner::Joint(j), face)));
+    }
+    for (c, (_, list)) in (0..).zip(part.caps) {
+        named.extend(list.iter().map(|&face| (face_key(face), Owner::Cap(c), face)));
+    }
+    named.sort_by_key(|entry| entry.0);
+    let mut on = vec![false; points.len()];
+    for &v in named.iter().flat_map(|(key, ..)| key) {
+        if let Some(on) = on.get_mut(v as usize) {
+            *on = true;
+        }
+    }
+    let mut met = vec![false; named.len()];
+    let mut owner_of = |&face: &[u32; 3]| {
+        if face.iter().all(|&v| on[v as usize])
+            && let Ok(i) = named.binary_search_by_key(&face_key(face), |entry| entry.0)
+            && cells::same_turn(face, named[i].2)
+        {
+            met[i] = true;
+            return named[i].1;
+        }
+        Owner::Wall
+    };
+    let owners = faces.iter().map(&mut owner_of).collect();
+    let mut tally = Tally::new(Line::LabelsMatchBoundary);
+    for ((.., face), _) in named.iter().zip(&met).filter(|(_, met)| !**met) {
+        tally.add(|| labels::face_at(points, *face));
+    }
+    (owners, tally.done())
+}

@@ -1,0 +1,186 @@
+//! Joined joints: the same faces with the same ids, turned against each other, and bit-equal points.
+
+use super::glue::{Held, invalid, sum_of};
+use super::tallies::Tallies;
+use super::{FacesApart, Parts};
+use crate::check::cells::{centroid, same_turn};
+use crate::check::result::{Line, Offender, OffenderKind};
+use crate::face_key;
+use crate::geometry::Point3;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::io;
+
+/// Pairs of joints that are compared at a time.
+const COMPARED: usize = 1 << 14;
+
+/// What came of the joints.
+#[derive(Debug, Default)]
+pub(super) struct Joined {
+    /// Pairs that are joined, as (part, number of the joint).
+    pub pairs: Vec<[(u32, u32); 2]>,
+    /// A line that is broken because a joint is.
+    pub broken: Option<Line>,
+}
+
+/// For each joint, by its number, whether it is joined to something.
+pub(super) fn flags(parts: &dyn Parts, held: &Held) -> io::Result<Vec<bool>> {
+    let mut flags = vec![false; held.joint_count()];
+    for pair in parts.joined() {
+        for number in numbers(held, pair)? {
+            flags[number as usize] = true;
+        }
+    }
+    Ok(flags)
+}
+
+fn numbers(held: &Held, pair: &[(u32, u32); 2]) -> io::Result<[u32; 2]> {
+    match pair.map(|joint| held.joint_number(joint)) {
+        [Some(a), Some(b)] => Ok([a, b]),
+        _ => Err(invalid(format!("parts have no such joints: {pair:?}"))),
+    }
+}
+
+/// Looks at every pair of joints.
+pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io::Result<Joined> {
+    let mut joined = Joined { pairs: Vec::with_capacity(parts.joined().len()), broken: None };
+    let mut seen = vec![false; held.joint_count()];
+    for pair in parts.joined() {
+        let [a, b] = numbers(held, pair)?;
+        let mut free = a != b;
+        for (number, &(part, joint)) in [a, b].into_iter().zip(pair) {
+            if std::mem::replace(&mut seen[number as usize], true) {
+                free = false;
+                if let Some(joint) = read(parts, held, (part, joint))? {
+                    third_tets(&joint, tallies);
+                }
+            }
+        }
+        if free {
+            joined.pairs.push([(pair[0].0, a), (pair[1].0, b)]);
+        } else {
+            joined.broken = Some(Line::FacesSharedByTwo);
+        }
+    }
+    drop(seen);
+    let mut keep = Vec::with_capacity(joined.pairs.len());
+    for some in joined.pairs.chunks(COMPARED) {
+        let compare = |pair: &[(u32, u32); 2]| compare(parts, held, &pair.map(|joint| held.joint_place(joint)));
+        for differences in some.par_iter().map(compare).collect::<io::Result<Vec<Differences>>>()? {
+            keep.push(!differences.all);
+            if differences.all {
+                joined.broken = Some(Line::LabelsMatchBoundary);
+            }
+            for (line, offender) in differences.found {
+                joined.broken = Some(line);
+                tallies.add(line, offender);
+            }
+        }
+    }
+    let mut keep = keep.into_iter();
+    joined.pairs.retain(|_| keep.next().unwrap_or(true));
+    Ok(joined)
+}
+
+/// The faces of a joint that is joined more than once.
+fn third_tets(joint: &FacesApart, tallies: &mut Tallies) {
+    for face in &joint.faces {
+        // Both joints may be named: the same faces, turned against each other.
+        let mut offender = face_of(joint, *face);
+        offender.ids.sort_unstable();
+        tallies.add(Line::FacesSharedByTwo, offender);
+    }
+}
+
+fn face_of(joint: &FacesApart, face: [u32; 3]) -> Offender {
+    let ids = face.map(|v| joint.vertices[v as usize]);
+    Offender::new(OffenderKind::Face, &ids, Some(centroid(&joint.points, &face)))
+}
+
+#[derive(Default)]
+struct Differences {
+    found: Vec<(Line, Offender)>,
+    /// Nothing is the same.
+    all: bool,
+}
+
+/// Reads a joint and makes sure that it is the one that was certified. None where a joint is not on the boundary, which
+/// is a fault already.
+fn read(parts: &dyn Parts, held: &Held, (part, joint): (u32, u32)) -> io::Result<Option<FacesApart>> {
+    let read = parts.joint(part, joint)?;
+    let sum = sum_of(&read.points, &read.faces).filter(|_| read.points.len() == read.vertices.len());
+    let certified = held.joint_number((part, joint)).map(|number| held.joint(number));
+    let same = certified.is_some_and(|c| c.faces as usize == read.faces.len() && sum == Some(c.sum));
+    match same {
+        true => Ok(Some(read)),
+        false if sum.is_some() && !held.is_sound(part) => Ok(None),
+        false => Err(invalid(format!("joint {joint} of part {part} is not what was certified"))),
+    }
+}
+
+fn compare(parts: &dyn Parts, held: &Held, pair: &[(u32, u32); 2]) -> io::Result<Differences> {
+    let mut differences = Differences::default();
+    if let (Some(a), Some(b)) = (read(parts, held, pair[0])?, read(parts, held, pair[1])?) {
+        compare_faces(&a, &b, &mut differences);
+        compare_points(&a, &b, &mut differences);
+    } else {
+        differences.all = true;
+    }
+    Ok(differences)
+}
+
+/// The faces by their ids, ascending.
+fn by_ids(joint: &FacesApart) -> Vec<([u32; 3], [u32; 3], [u32; 3])> {
+    let ids = |face: &[u32; 3]| face.map(|v| joint.vertices[v as usize]);
+    let mut faces: Vec<_> = joint.faces.iter().map(|face| (face_key(ids(face)), ids(face), *face)).collect();
+    faces.sort_unstable();
+    faces
+}
+
+fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut Differences) {
+    let (first, second) = (by_ids(a), by_ids(b));
+    let (mut i, mut j, mut same) = (0, 0, 0);
+    while i < first.len() || j < second.len() {
+        let order = match (first.get(i), second.get(j)) {
+            (Some(x), Some(y)) => x.0.cmp(&y.0),
+            (Some(_), None) => Ordering::Less,
+            _ => Ordering::Greater,
+        };
+        match order {
+            Ordering::Equal => {
+                same += 1;
+                if same_turn(first[i].1, second[j].1) {
+                    differences.found.push((Line::OppositeSides, face_of(a, first[i].2)));
+                }
+            }
+            Ordering::Less => differences.found.push((Line::LabelsMatchBoundary, face_of(a, first[i].2))),
+            Ordering::Greater => differences.found.push((Line::LabelsMatchBoundary, face_of(b, second[j].2))),
+        }
+        i += usize::from(order.is_le());
+        j += usize::from(order.is_ge());
+    }
+    differences.all = same == 0;
+}
+
+/// Ids that both have must have the same points, and stand for one point each.
+fn compare_points(a: &FacesApart, b: &FacesApart, differences: &mut Differences) {
+    let by_id = |joint: &FacesApart| {
+        let mut ids: Vec<(u32, Point3)> = joint.vertices.iter().copied().zip(joint.points.iter().copied()).collect();
+        ids.sort_by_key(|entry| entry.0);
+        ids
+    };
+    let (first, second) = (by_id(a), by_id(b));
+    let point = |&(id, p): &(u32, Point3)| Offender::new(OffenderKind::Point, &[id], Some(p));
+    for ids in [&first, &second] {
+        for pair in ids.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            differences.found.push((Line::BoundaryFans, point(&pair[0])));
+        }
+    }
+    for entry in &first {
+        let Ok(other) = second.binary_search_by_key(&entry.0, |entry| entry.0) else { continue };
+        let bits = |p: &Point3| [p.x, p.y, p.z].map(f64::to_bits);
+        if bits(&entry.1) != bits(&second[other].1) {
+            differences.found.push((Line::NoDuplicatePoints, point(entry)));
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! What breaks lines, collected from parts in numbers of the whole.
+
+use super::{Fault, Parts};
+use crate::check::result::{KEPT_OFFENDERS, Line, LineResult, Offender, OffenderKind, Outcome, Tally};
+use std::collections::BTreeMap;
+
+/// More offenders than that are not held at a time.
+const MOST_HELD: usize = 4096;
+
+/// Offenders of lines, in numbers of the whole.
+#[derive(Debug, Default)]
+pub(super) struct Tallies(BTreeMap<Line, (u64, Vec<Offender>)>);
+
+impl Tallies {
+    pub(super) fn add(&mut self, line: Line, offender: Offender) {
+        self.add_some(line, 1, [offender]);
+    }
+
+    pub(super) fn add_some(&mut self, line: Line, count: u64, offenders: impl IntoIterator<Item = Offender>) {
+        let (all, held) = self.0.entry(line).or_default();
+        *all += count;
+        held.extend(offenders);
+        if held.len() > MOST_HELD {
+            *all -= tidy(held);
+            held.truncate(KEPT_OFFENDERS);
+        }
+    }
+
+    /// Adds what a part breaks.
+    pub(super) fn add_fault(&mut self, parts: &dyn Parts, part: u32, fault: &Fault) {
+        let id = |kind: OffenderKind, id: i64| match (kind, u32::try_from(id)) {
+            (OffenderKind::Patch | OffenderKind::Node, _) | (_, Err(_)) => id,
+            (OffenderKind::Tet | OffenderKind::TetPair, Ok(tet)) => parts.tet(part, tet) as i64,
+            (_, Ok(vertex)) => i64::from(parts.vertex(part, vertex)),
+        };
+        let whole = |offender: &Offender| Offender {
+            ids: offender.ids.iter().map(|&i| id(offender.kind, i)).collect(),
+            ..offender.clone()
+        };
+        self.add_some(fault.line, fault.count, fault.offenders.iter().map(whole));
+    }
+
+    pub(super) fn fails(&self, line: Line) -> bool {
+        self.0.contains_key(&line)
+    }
+
+    pub(super) fn first_of(&self, lines: &[Line]) -> Option<Line> {
+        lines.iter().copied().find(|&line| self.fails(line))
+    }
+
+    pub(super) fn take(&mut self, line: Line) -> LineResult {
+        let Some((mut count, mut offenders)) = self.0.remove(&line) else { return Tally::new(line).done() };
+        count -= tidy(&mut offenders);
+        offenders.truncate(KEPT_OFFENDERS);
+        LineResult { outcome: Outcome::Fail, count, offenders, ..Tally::new(line).done() }
+    }
+}
+
+/// Sorts offenders; how many were there twice (as both parts of a joint name what is on it).
+fn tidy(offenders: &mut Vec<Offender>) -> u64 {
+    let before = offenders.len();
+    offenders.sort_by(|a, b| a.ids.cmp(&b.ids));
+    offenders.dedup_by(|a, b| a.ids == b.ids);
+    (before - offenders.len()) as u64
+}

@@ -1,0 +1,363 @@
+//! What a check found: one entry per line of the definition of 'valid'.
+
+use crate::geometry::Point3;
+use crate::quality::TetQuality;
+use serde::{Deserialize, Serialize};
+
+/// What a mesh has to be, known from the network it was made of.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Expectation {
+    /// Number of independent loops of each component of the skeleton, in any order: as many components are expected, and
+    /// these are the genera of their boundaries.
+    pub loops: Vec<u32>,
+    /// Nodes that need a cap each (indices in the network as it was read), in any order.
+    pub terminals: Vec<u32>,
+}
+
+/// The lines of the definition of 'valid', in the order in which they are reported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Line {
+    /// The mesh has tetrahedra.
+    NotEmpty,
+    /// Every coordinate is finite and in the range in which the predicates are exact.
+    FinitePoints,
+    /// Every tetrahedron names points that exist.
+    IndicesInRange,
+    /// The four vertices of a tetrahedron differ.
+    NoRepeatedVertex,
+    /// No two tetrahedra have the same four vertices.
+    NoDuplicateTets,
+    /// Every tetrahedron is positive by the exact predicate.
+    PositiveTets,
+    /// No face belongs to more than two tetrahedra.
+    FacesSharedByTwo,
+    /// The two tetrahedra of an interior face lie on opposite sides of it.
+    OppositeSides,
+    /// No two points are equal.
+    NoDuplicatePoints,
+    /// Every point belongs to a tetrahedron.
+    NoUnusedPoints,
+    /// Every boundary edge is in two boundary faces, which run along it in opposite directions.
+    BoundaryEdges,
+    /// The boundary faces round a vertex form a single fan.
+    BoundaryFans,
+    /// The boundary does not meet itself, and no boundary surface lies within the mesh.
+    NoSelfIntersection,
+    /// As many components (tetrahedra joined by faces) as the skeleton has.
+    Components,
+    /// One boundary surface per component, of the genus that its loops ask for.
+    Loops,
+    /// The labelled triangles are the boundary faces, each once, oriented outwards.
+    LabelsMatchBoundary,
+    /// Every boundary face is wall or belongs to a cap.
+    WallOrCap,
+    /// Every cap has a patch of its own, and patches have different ids and names.
+    OwnPatch,
+    /// Every terminal has one cap, and every cap a terminal.
+    CapPerTerminal,
+    /// Every cap is one disc: connected, with one boundary loop, Euler number 1.
+    CapDisc,
+    /// Every cap is flat to 1e-9 of its radius; where all its coordinates are numbers of 32 bits, to their rounding.
+    CapFlat,
+    /// The centre of every cap is within 0.1 radii of its node.
+    CapCentred,
+    /// The area of every cap is within 5 % of πr².
+    CapArea,
+    /// The triangles of every cap face the way its normal points.
+    CapNormal,
+}
+
+impl Line {
+    /// All lines in order.
+    pub const ALL: [Self; 24] = [
+        Self::NotEmpty,
+        Self::FinitePoints,
+        Self::IndicesInRange,
+        Self::NoRepeatedVertex,
+        Self::NoDuplicateTets,
+        Self::PositiveTets,
+        Self::FacesSharedByTwo,
+        Self::OppositeSides,
+        Self::NoDuplicatePoints,
+        Self::NoUnusedPoints,
+        Self::BoundaryEdges,
+        Self::BoundaryFans,
+        Self::NoSelfIntersection,
+        Self::Components,
+        Self::Loops,
+        Self::LabelsMatchBoundary,
+        Self::WallOrCap,
+        Self::OwnPatch,
+        Self::CapPerTerminal,
+        Self::CapDisc,
+        Self::CapFlat,
+        Self::CapCentred,
+        Self::CapArea,
+        Self::CapNormal,
+    ];
+
+    /// Whether it says something of a boundary that is not filled with tetrahedra.
+    pub(super) fn concerns_surfaces(self) -> bool {
+        self >= Self::BoundaryEdges || matches!(self, Self::FinitePoints | Self::NoDuplicatePoints)
+    }
+
+    /// What holds when the line passes.
+    pub fn statement(self) -> &'static str {
+        match self {
+            Self::NotEmpty => "the mesh has tetrahedra",
+            Self::FinitePoints => "coordinates are finite",
+            Self::IndicesInRange => "tetrahedra name points that exist",
+            Self::NoRepeatedVertex => "the vertices of a tetrahedron differ",
+            Self::NoDuplicateTets => "no tetrahedron is there twice",
+            Self::PositiveTets => "every tetrahedron is positive",
+            Self::FacesSharedByTwo => "a face belongs to at most two tetrahedra",
+            Self::OppositeSides => "two tetrahedra lie on opposite sides of their face",
+            Self::NoDuplicatePoints => "no point is there twice",
+            Self::NoUnusedPoints => "every point is used",
+            Self::BoundaryEdges => "the boundary is closed: every edge in two faces",
+            Self::BoundaryFans => "the boundary faces round a vertex form one fan",
+            Self::NoSelfIntersection => "the boundary does not meet itself",
+            Self::Components => "components as expected",
+            Self::Loops => "loops (genus) as expected",
+            Self::LabelsMatchBoundary => "the labelled triangles are the boundary",
+            Self::WallOrCap => "every boundary face is wall or cap",
+            Self::OwnPatch => "every cap has its own patch",
+            Self::CapPerTerminal => "every terminal has its cap",
+            Self::CapDisc => "every cap is one disc",
+            Self::CapFlat => "caps are flat (1e-9 r)",
+            Self::CapCentred => "caps are centred on their node (0.1 r)",
+            Self::CapArea => "caps have their area (5 % of πr²)",
+            Self::CapNormal => "caps face outwards",
+        }
+    }
+}
+
+/// Why a line was not checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Skipped {
+    /// The mesh labels no boundary.
+    NoLabels,
+    /// Nothing says what to expect.
+    NoExpectation,
+    /// No patch says what cap it is.
+    NoCaps,
+    /// The line has no meaning while this one fails.
+    Because(Line),
+}
+
+/// How a line came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// It holds.
+    Pass,
+    /// It does not.
+    Fail,
+    /// It was not checked.
+    NotChecked(Skipped),
+}
+
+/// What an offender's ids are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OffenderKind {
+    Point,
+    /// Two points.
+    Edge,
+    /// A tetrahedron.
+    Tet,
+    /// Two tetrahedra.
+    TetPair,
+    /// Three points: a face.
+    Face,
+    /// Six points: two faces.
+    FacePair,
+    Patch,
+    /// A node of the network.
+    Node,
+}
+
+/// Something that breaks a line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Offender {
+    /// What the ids are.
+    pub kind: OffenderKind,
+    /// Ids, counted from 0 in the order of the mesh (patches and nodes: their own ids).
+    pub ids: Vec<i64>,
+    /// Where it is; none where there is no place.
+    pub position: Option<[f64; 3]>,
+}
+
+impl Offender {
+    pub(super) fn new(kind: OffenderKind, ids: &[u32], position: Option<Point3>) -> Self {
+        let position = position.map(|p| p.coords.into());
+        Self { kind, ids: ids.iter().map(|&i| i64::from(i)).collect(), position }
+    }
+}
+
+/// Offenders that are kept per line.
+pub const KEPT_OFFENDERS: usize = 10;
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LineResult {
+    pub line: Line,
+    /// How it came out.
+    pub outcome: Outcome,
+    /// Number of offenders.
+    pub count: u64,
+    /// The first of them.
+    pub offenders: Vec<Offender>,
+    /// For lines that compare: what was expected, ascending.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expected: Option<Vec<u32>>,
+    /// For lines that compare: what was found, ascending.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub found: Option<Vec<u32>>,
+}
+
+impl LineResult {
+    pub(super) fn fails(&self) -> bool {
+        self.outcome == Outcome::Fail
+    }
+
+    pub(super) fn skipped(line: Line, why: Skipped) -> Self {
+        Self { outcome: Outcome::NotChecked(why), ..Tally::new(line).done() }
+    }
+}
+
+/// Collects the offenders of one line.
+#[derive(Debug)]
+pub(super) struct Tally(LineResult);
+
+impl Tally {
+    pub(super) fn new(line: Line) -> Self {
+        Self(LineResult { line, outcome: Outcome::Pass, count: 0, offenders: Vec::new(), expected: None, found: None })
+    }
+
+    /// Counts an offender; the description is made only when it is kept.
+    pub(super) fn add(&mut self, offender: impl FnOnce() -> Offender) {
+        self.0.count += 1;
+        if self.0.offenders.len() < KEPT_OFFENDERS {
+            self.0.offenders.push(offender());
+        }
+    }
+
+    /// Compares two ascending lists; fails when they differ.
+    pub(super) fn compare(&mut self, expected: Vec<u32>, found: Vec<u32>) {
+        if expected != found {
+            self.0.outcome = Outcome::Fail;
+        }
+        (self.0.expected, self.0.found) = (Some(expected), Some(found));
+    }
+
+    pub(super) fn done(mut self) -> LineResult {
+        if self.0.count > 0 {
+            self.0.outcome = Outcome::Fail;
+        }
+        self.0
+    }
+}
+
+/// Whether there are as many components as the skeleton has.
+pub(super) fn components(expectation: Option<&Expectation>, found: usize) -> LineResult {
+    let Some(expected) = expectation else {
+        return LineResult::skipped(Line::Components, Skipped::NoExpectation);
+    };
+    let mut tally = Tally::new(Line::Components);
+    tally.compare(vec![expected.loops.len() as u32], vec![found as u32]);
+    tally.done()
+}
+
+/// Sizes of what was checked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Counts {
+    /// Number of points.
+    pub points: usize,
+    /// Number of tetrahedra.
+    pub tets: usize,
+    /// Number of boundary faces.
+    pub boundary_faces: usize,
+    /// Number of components (tetrahedra joined by faces).
+    pub components: usize,
+    /// Number of boundary surfaces (faces joined by vertices).
+    pub boundary_components: usize,
+    /// Number of caps.
+    pub caps: usize,
+    /// Volume of all tetrahedra, in the cube of the mesh's unit.
+    pub volume: f64,
+}
+
+/// The verdict over all lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Every line was checked and holds.
+    Valid,
+    /// Every line that could be checked holds, but not all could.
+    NoFaultFound,
+    /// A line fails.
+    Invalid,
+}
+
+/// Two boundary faces that meet improperly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Intersection {
+    /// Their vertices; the same face twice when it has no area.
+    pub faces: [[u32; 3]; 2],
+    /// How they meet.
+    pub kind: crate::geometry::Improper,
+}
+
+/// The result of a check.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CheckReport {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Sizes.
+    pub counts: Counts,
+    /// One entry per line of the definition, in order.
+    pub lines: Vec<LineResult>,
+    /// Shape of the tetrahedra; none when their points cannot be used.
+    pub quality: Option<TetQuality>,
+    /// All pairs of boundary faces that meet improperly, ascending.
+    #[serde(skip)]
+    pub intersections: Vec<Intersection>,
+}
+
+impl CheckReport {
+    pub(super) fn new(
+        counts: Counts,
+        mut lines: Vec<LineResult>,
+        quality: Option<TetQuality>,
+        intersections: Vec<Intersection>,
+    ) -> Self {
+        lines.sort_by_key(|line| line.line);
+        let verdict = if lines.iter().any(|line| line.outcome == Outcome::Fail) {
+            Verdict::Invalid
+        } else if lines.iter().all(|line| line.outcome == Outcome::Pass) {
+            Verdict::Valid
+        } else {
+            Verdict::NoFaultFound
+        };
+        Self { verdict, counts, lines, quality, intersections }
+    }
+
+    /// Whether every line was checked and holds.
+    pub fn is_valid(&self) -> bool {
+        self.verdict == Verdict::Valid
+    }
+
+    /// The result of one line.
+    pub fn line(&self, line: Line) -> Option<&LineResult> {
+        self.lines.iter().find(|result| result.line == line)
+    }
+
+    /// The lines that fail.
+    pub fn failed(&self) -> impl Iterator<Item = &LineResult> {
+        self.lines.iter().filter(|line| line.outcome == Outcome::Fail)
+    }
+}

@@ -1,0 +1,174 @@
+//! Lines about the boundary as a surface.
+
+use super::cells::{centroid, face_offender, point_offender};
+use super::nested::nested_surfaces;
+use super::result::{Intersection, Line, LineResult, Offender, OffenderKind, Tally};
+use super::surfaces::{Surface, Surfaces, surfaces};
+use crate::adjacency::{NONE, TriAdjacency, tri_adjacency};
+use crate::geometry::DisjointSets;
+use crate::geometry::{Point3, self_contacts};
+
+/// The boundary faces with their edges matched.
+pub(super) struct Boundary<'a> {
+    points: &'a [Point3],
+    faces: &'a [[u32; 3]],
+    edges: TriAdjacency,
+    surfaces: Surfaces,
+}
+
+impl<'a> Boundary<'a> {
+    pub(super) fn new(points: &'a [Point3], faces: &'a [[u32; 3]]) -> Self {
+        Self { points, faces, edges: tri_adjacency(faces, points.len()), surfaces: surfaces(points.len(), faces) }
+    }
+
+    /// Start and end of an edge (`3 · face + i`).
+    fn ends(&self, handle: u32) -> [u32; 2] {
+        let face = &self.faces[handle as usize / 3];
+        let i = handle as usize % 3;
+        [face[i], face[(i + 1) % 3]]
+    }
+
+    fn undirected(&self, handle: u32) -> [u32; 2] {
+        let [a, b] = self.ends(handle);
+        [a.min(b), a.max(b)]
+    }
+
+    /// Edges of more than two faces, grouped by their vertices.
+    fn crowded_edges(&self) -> Vec<([u32; 2], u32)> {
+        let mut edges: Vec<_> = self.edges.crowded.iter().map(|&handle| (self.undirected(handle), handle)).collect();
+        edges.sort_unstable();
+        edges
+    }
+
+    pub(super) fn edges_closed(&self) -> LineResult {
+        let mut wrong: Vec<[u32; 2]> = Vec::new();
+        for (handle, &other) in self.edges.neighbors.as_flattened().iter().enumerate() {
+            let handle = handle as u32;
+            // Open and crowded edges have no partner; partners have to run the other way.
+            if other == NONE || (handle < other && self.ends(handle) == self.ends(other)) {
+                wrong.push(self.undirected(handle));
+            }
+        }
+        wrong.sort_unstable();
+        wrong.dedup();
+        let mut tally = Tally::new(Line::BoundaryEdges);
+        for edge in wrong {
+            let place = Some(centroid(self.points, &edge));
+            tally.add(|| Offender::new(OffenderKind::Edge, &edge, place));
+        }
+        tally.done()
+    }
+
+    /// Vertices at which the boundary faces form more than one fan.
+    pub(super) fn single_fans(&self) -> LineResult {
+        let mut corners = DisjointSets::new(3 * self.faces.len());
+        let mut join = |a: u32, b: u32| {
+            for v in self.ends(a) {
+                if let (Some(i), Some(j)) = (self.corner(a / 3, v), self.corner(b / 3, v)) {
+                    corners.join(i, j);
+                }
+            }
+        };
+        for (handle, &other) in self.edges.neighbors.as_flattened().iter().enumerate() {
+            if other != NONE && (handle as u32) < other {
+                join(handle as u32, other);
+            }
+        }
+        for pair in self.crowded_edges().windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            join(pair[0].1, pair[1].1);
+        }
+        let mut fans = vec![0_u8; self.points.len()];
+        for (corner, &v) in self.faces.as_flattened().iter().enumerate() {
+            if corners.root(corner as u32) == corner as u32 {
+                fans[v as usize] = fans[v as usize].saturating_add(1);
+            }
+        }
+        let mut tally = Tally::new(Line::BoundaryFans);
+        for (v, _) in fans.iter().enumerate().filter(|&(_, &fans)| fans > 1) {
+            tally.add(|| Offender::new(OffenderKind::Point, &[v as u32], Some(self.points[v])));
+        }
+        tally.done()
+    }
+
+    fn corner(&self, face: u32, vertex: u32) -> Option<u32> {
+        let i = self.faces[face as usize].iter().position(|&v| v == vertex)?;
+        Some(3 * face + i as u32)
+    }
+
+    pub(super) fn surfaces(&self) -> &Surfaces {
+        &self.surfaces
+    }
+
+    pub(super) fn into_surfaces(self) -> Surfaces {
+        self.surfaces
+    }
+
+    /// Compares the genera of the boundary surfaces, which must be closed manifolds, with the expected loops.
+    pub(super) fn loops(&self, expected: &[u32]) -> LineResult {
+        let genus = |s: &Surface| genus(s.euler());
+        compare_loops(expected, self.surfaces.all.iter().map(|s| (genus(s), s.vertex)).collect(), |vertex| {
+            point_offender(self.points, vertex)
+        })
+    }
+
+    /// Faces that meet improperly; when the boundary is closed and there are none, surfaces that lie within the mesh.
+    pub(super) fn self_intersections(&self, closed: bool) -> (LineResult, Vec<Intersection>) {
+        let mut tally = Tally::new(Line::NoSelfIntersection);
+        let contacts = self_contacts(self.points, self.faces);
+        let mut intersections = Vec::with_capacity(contacts.len());
+        for (i, j, kind) in contacts {
+            let faces = [self.faces[i as usize], self.faces[j as usize]];
+            intersections.push(Intersection { faces, kind });
+            if i == j {
+                tally.add(|| face_offender(self.points, faces[0]));
+            } else {
+                let place = Some(centroid(self.points, faces.as_flattened()));
+                tally.add(|| Offender::new(OffenderKind::FacePair, faces.as_flattened(), place));
+            }
+        }
+        if closed && intersections.is_empty() {
+            for surface in nested_surfaces(self.points, self.faces, &self.surfaces) {
+                let vertex = self.surfaces.all[surface as usize].vertex;
+                tally.add(|| point_offender(self.points, vertex));
+            }
+        }
+        (tally.done(), intersections)
+    }
+}
+
+/// Genus of a closed surface of this Euler number, 2 − 2 genus.
+pub(super) fn genus(euler: i64) -> u32 {
+    (1 - euler.div_euclid(2)).max(0) as u32
+}
+
+/// Compares boundary surfaces, each given by its genus and a vertex, with the expected loops.
+pub(super) fn compare_loops(
+    expected: &[u32],
+    mut found: Vec<(u32, u32)>,
+    offender: impl Fn(u32) -> Offender,
+) -> LineResult {
+    let mut tally = Tally::new(Line::Loops);
+    let mut expected = expected.to_vec();
+    expected.sort_unstable();
+    let mut genera: Vec<u32> = found.iter().map(|&(genus, _)| genus).collect();
+    genera.sort_unstable();
+    let mut left = Vec::new();
+    for &genus in &expected {
+        match left.last_mut() {
+            Some((g, count)) if *g == genus => *count += 1,
+            _ => left.push((genus, 1_usize)),
+        }
+    }
+    found.retain(|(genus, _)| match left.binary_search_by_key(genus, |entry| entry.0) {
+        Ok(i) if left[i].1 > 0 => {
+            left[i].1 -= 1;
+            false
+        }
+        _ => true,
+    });
+    for (_, vertex) in found {
+        tally.add(|| offender(vertex));
+    }
+    tally.compare(expected, genera);
+    tally.done()
+}

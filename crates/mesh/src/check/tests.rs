@@ -1,0 +1,359 @@
+//! Every line fails on a mesh in which its fault was planted, and none on a sound one.
+
+use super::result::KEPT_OFFENDERS;
+use super::*;
+use crate::adjacency::boundary_faces;
+use crate::geometry::{Point3, Vec3};
+use crate::shapes::{cube_lattice, tube_lattice};
+use crate::{Cap, Patch, WALL};
+
+const HEIGHT: f64 = 2.5;
+
+/// A straight vessel of radius 1 with an inlet at its foot (node 7) and an outlet at its head (node 3).
+fn tube() -> (VolumeMesh, Expectation) {
+    let mesh = tube_lattice(4, 10, HEIGHT / 10.0);
+    let cap = |node, z, normal| Cap { node, center: Point3::new(0.0, 0.0, z), normal, radius: 1.0 };
+    let patch = |id, name: &str, cap| Patch { id, name: name.into(), cap };
+    let boundary = boundary_faces(&mesh);
+    let flat = |f: &[u32; 3], z: f64| f.iter().all(|&v| (mesh.points[v as usize].z - z).abs() < 1e-12);
+    let label = |f: &[u32; 3]| match (flat(f, 0.0), flat(f, HEIGHT)) {
+        (true, _) => 2,
+        (_, true) => 3,
+        _ => WALL,
+    };
+    let volume = VolumeMesh {
+        tet_block: vec![0; mesh.tets.len()],
+        boundary_block: vec![0; boundary.len()],
+        boundary_patch: boundary.iter().map(label).collect(),
+        patches: vec![
+            patch(WALL, "wall", None),
+            patch(2, "inlet", Some(cap(7, 0.0, -Vec3::z()))),
+            patch(3, "outlet_0", Some(cap(3, HEIGHT, Vec3::z()))),
+        ],
+        boundary,
+        mesh,
+    };
+    (volume, Expectation { loops: vec![0], terminals: vec![3, 7] })
+}
+
+fn failing(volume: &VolumeMesh, expectation: &Expectation) -> Vec<Line> {
+    let report = check_volume(volume, Some(expectation));
+    assert_eq!(report.is_valid(), report.failed().next().is_none());
+    report.failed().map(|result| result.line).collect()
+}
+
+/// The lines that fail after a change to the sound tube.
+fn planted(change: impl FnOnce(&mut VolumeMesh, &mut Expectation)) -> Vec<Line> {
+    let (mut volume, mut expectation) = tube();
+    change(&mut volume, &mut expectation);
+    let report = check_volume(&volume, Some(&expectation));
+    assert_eq!(report.verdict, Verdict::Invalid);
+    report.failed().map(|result| result.line).collect()
+}
+
+/// The lines about the mesh itself that fail, labels left aside.
+fn planted_in_mesh(change: impl FnOnce(&mut TetMesh)) -> Vec<Line> {
+    let mut mesh = cube_lattice(3);
+    change(&mut mesh);
+    let report = check_tets(&mesh, Some(&Expectation { loops: vec![0], terminals: Vec::new() }));
+    assert_eq!(report.verdict, Verdict::Invalid);
+    report.failed().map(|result| result.line).collect()
+}
+
+fn append(mesh: &mut TetMesh, other: &TetMesh, shift: Vec3) {
+    let first = mesh.points.len() as u32;
+    mesh.points.extend(other.points.iter().map(|p| p + shift));
+    mesh.tets.extend(other.tets.iter().map(|t| t.map(|v| v + first)));
+}
+
+#[test]
+fn a_sound_tube_passes_every_line() {
+    let (volume, expectation) = tube();
+    let report = check_volume(&volume, Some(&expectation));
+    assert_eq!(report.failed().collect::<Vec<_>>(), Vec::<&LineResult>::new());
+    assert!(report.is_valid());
+    assert_eq!(report.lines.iter().map(|result| result.line).collect::<Vec<_>>(), Line::ALL);
+    assert_eq!((report.counts.components, report.counts.boundary_components, report.counts.caps), (1, 1, 2));
+}
+
+#[test]
+fn without_labels_no_verdict_of_validity() {
+    let report = check_tets(&tube().0.mesh, None);
+    assert_eq!(report.verdict, Verdict::NoFaultFound);
+    let skipped = |line| report.line(line).map(|result| result.outcome);
+    assert_eq!(skipped(Line::CapDisc), Some(Outcome::NotChecked(Skipped::NoLabels)));
+    assert_eq!(skipped(Line::Loops), Some(Outcome::NotChecked(Skipped::NoExpectation)));
+}
+
+#[test]
+fn faults_of_arrays() {
+    assert_eq!(planted(|v, _| v.mesh.points[5].y = f64::NAN), [Line::FinitePoints]);
+    assert_eq!(planted(|v, _| v.mesh.points[5].y = f64::INFINITY), [Line::FinitePoints]);
+    assert_eq!(planted(|v, _| v.mesh.tets[5][2] = 1_000_000), [Line::IndicesInRange]);
+    assert_eq!(planted(|v, _| v.mesh.tets.clear()), [Line::NotEmpty]);
+}
+
+#[test]
+fn faults_of_tetrahedra() {
+    let lines = planted_in_mesh(|m| m.tets[20][1] = m.tets[20][0]);
+    assert!(lines.contains(&Line::NoRepeatedVertex) && lines.contains(&Line::PositiveTets));
+    let lines = planted_in_mesh(|m| m.tets.push(m.tets[20]));
+    assert!(lines.contains(&Line::NoDuplicateTets));
+    let lines = planted_in_mesh(|m| m.tets.push([m.tets[20][1], m.tets[20][0], m.tets[20][2], m.tets[20][3]]));
+    assert!(lines.contains(&Line::NoDuplicateTets));
+    assert_eq!(planted_in_mesh(|m| m.tets[20].swap(0, 1)), [Line::PositiveTets, Line::OppositeSides]);
+    // A flat one: an inner point moved into the plane of a face opposite.
+    let lines = planted_in_mesh(|m| m.points[21] = m.points[22]);
+    assert!(lines.contains(&Line::PositiveTets) && lines.contains(&Line::NoDuplicatePoints));
+}
+
+#[test]
+fn an_inner_point_pulled_through_a_face_inverts_tetrahedra_only() {
+    let inner = 21;
+    let lines = planted_in_mesh(|m| m.points[inner] += Vec3::new(0.9, 0.2, 0.1));
+    assert_eq!(lines, [Line::PositiveTets]);
+}
+
+#[test]
+fn faults_of_faces() {
+    // A third tetrahedron on an inner face.
+    let lines = planted_in_mesh(|m| {
+        let [a, b, c, _] = m.tets[80];
+        m.points.push(Point3::new(9.0, 9.0, 9.0));
+        m.tets.push([a, b, c, m.points.len() as u32 - 1]);
+    });
+    assert!(lines.contains(&Line::FacesSharedByTwo));
+    // A second tetrahedron outside the boundary, folded to the inside: both on one side of the face.
+    let mut mesh = TetMesh {
+        points: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.1, 0.1, 0.5]].map(Point3::from).into(),
+        tets: vec![[0, 1, 2, 3], [0, 1, 2, 4]],
+    };
+    let report = check_tets(&mesh, None);
+    assert!(report.failed().any(|result| result.line == Line::OppositeSides));
+    mesh.points[4].z = -1.0;
+    mesh.tets[1].swap(0, 1);
+    assert_eq!(check_tets(&mesh, None).failed().count(), 0);
+}
+
+#[test]
+fn faults_of_points() {
+    assert_eq!(planted_in_mesh(|m| m.points.push(Point3::new(0.5, 0.25, 0.125))), [Line::NoUnusedPoints]);
+    // The first tetrahedron gets its own copy of a point of the boundary.
+    let lines = planted_in_mesh(|m| {
+        m.points.push(m.points[0]);
+        let at = m.tets[0].iter().position(|&v| v == 0).unwrap();
+        m.tets[0][at] = m.points.len() as u32 - 1;
+    });
+    assert!(lines.contains(&Line::NoDuplicatePoints) && lines.contains(&Line::NoSelfIntersection));
+    let minus_zero = planted_in_mesh(|m| {
+        append(m, &TetMesh { points: m.points[..1].to_vec(), tets: Vec::new() }, Vec3::zeros());
+        m.points.last_mut().unwrap().x = -0.0;
+    });
+    assert_eq!(minus_zero, [Line::NoDuplicatePoints, Line::NoUnusedPoints]);
+}
+
+/// Two cubes that share one vertex, and two that share one edge.
+#[test]
+fn faults_of_the_boundary() {
+    let glued = |shift: Vec3| {
+        let mut mesh = cube_lattice(2);
+        let cube = mesh.clone();
+        append(&mut mesh, &cube, shift);
+        let count = cube.points.len();
+        for t in mesh.tets.iter_mut().flatten().filter(|v| **v as usize >= count) {
+            let p = mesh.points[*t as usize];
+            *t = mesh.points.iter().position(|q| *q == p).unwrap() as u32;
+        }
+        let used = crate::adjacency::vertices_of(&mesh.tets, mesh.points.len());
+        let kept: Vec<u32> = (0..mesh.points.len() as u32).filter(|&v| used[v as usize]).collect();
+        for v in mesh.tets.iter_mut().flatten() {
+            *v = kept.binary_search(v).unwrap() as u32;
+        }
+        mesh.points = kept.iter().map(|&v| mesh.points[v as usize]).collect();
+        check_tets(&mesh, None).failed().map(|result| (result.line, result.count)).collect::<Vec<_>>()
+    };
+    assert_eq!(glued(Vec3::new(1.0, 1.0, 1.0)), [(Line::BoundaryFans, 1)]);
+    // The middle vertex of the edge keeps two fans, its ends have one each that is pinched into an edge of four faces.
+    assert!(glued(Vec3::new(1.0, 1.0, 0.0)).iter().any(|&(line, count)| line == Line::BoundaryEdges && count == 2));
+    assert_eq!(glued(Vec3::new(1.0, 0.0, 0.0)), []);
+}
+
+#[test]
+fn faults_of_shape() {
+    // Another vessel that passes through, with points of its own.
+    let lines = planted_in_mesh(|m| append(m, &cube_lattice(2), Vec3::new(0.55, 0.45, 0.35)));
+    assert_eq!(lines, [Line::NoSelfIntersection, Line::Components, Line::Loops]);
+    // One beside it.
+    let lines = planted_in_mesh(|m| append(m, &cube_lattice(2), Vec3::new(5.0, 0.0, 0.0)));
+    assert_eq!(lines, [Line::Components, Line::Loops]);
+    // One that touches it in a single point.
+    let lines = planted_in_mesh(|m| append(m, &cube_lattice(1), Vec3::new(1.0, 0.51, 0.52)));
+    assert_eq!(lines, [Line::NoSelfIntersection, Line::Components, Line::Loops]);
+}
+
+/// The middle column of cells taken out leaves a ring.
+#[test]
+fn the_genus_is_compared_with_the_loops() {
+    let mut mesh = cube_lattice(3);
+    let cell = |t: &[u32; 4]| t.iter().fold(Vec3::zeros(), |s, &v| s + mesh.points[v as usize].coords) / 4.0;
+    let hole = |c: Vec3| (c.x - 0.5).abs() < 1.0 / 6.0 && (c.y - 0.5).abs() < 1.0 / 6.0;
+    mesh.tets = mesh.tets.iter().filter(|t| !hole(cell(t))).copied().collect();
+    let lines = |loops: Vec<u32>| {
+        let report = check_tets(&mesh, Some(&Expectation { loops, terminals: Vec::new() }));
+        report.failed().map(|result| (result.line, result.found.clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(lines(vec![1]), []);
+    assert_eq!(lines(vec![0]), [(Line::Loops, Some(vec![1]))]);
+    assert_eq!(lines(vec![1, 0]), [(Line::Components, Some(vec![1])), (Line::Loops, Some(vec![1]))]);
+}
+
+/// A hollow in the middle is a second boundary surface of the same component.
+#[test]
+fn a_cavity_fails() {
+    let lines = planted_in_mesh(|m| {
+        let points = m.points.clone();
+        let middle = |t: &[u32; 4]| t.iter().fold(Vec3::zeros(), |s, &v| s + points[v as usize].coords) / 4.0;
+        m.tets.retain(|t| (middle(t) - Vec3::repeat(0.5)).amax() > 1.0 / 6.0);
+    });
+    assert_eq!(lines, [Line::Loops]);
+}
+
+#[test]
+fn faults_of_labels() {
+    let wall = |v: &VolumeMesh| v.boundary_patch.iter().position(|&id| id == WALL).unwrap();
+    let lines = planted(|v, _| {
+        let face = wall(v);
+        v.boundary.remove(face);
+        v.boundary_patch.remove(face);
+    });
+    assert_eq!(lines, [Line::LabelsMatchBoundary]);
+    let lines = planted(|v, _| {
+        let face = wall(v);
+        v.boundary[face].swap(0, 1);
+    });
+    assert_eq!(lines, [Line::LabelsMatchBoundary]);
+    assert_eq!(planted(|v, _| v.boundary[0][0] = 1_000_000), [Line::LabelsMatchBoundary]);
+    assert_eq!(planted(|v, _| v.boundary.push([u32::MAX; 3])), [Line::LabelsMatchBoundary]);
+    let lines = planted(|v, _| {
+        v.boundary.push(v.boundary[wall(v)]);
+        v.boundary_patch.push(WALL);
+    });
+    assert_eq!(lines, [Line::LabelsMatchBoundary]);
+    let lines = planted(|v, _| {
+        let face = wall(v);
+        v.boundary_patch[face] = 0;
+    });
+    assert_eq!(lines, [Line::WallOrCap]);
+    let lines = planted(|v, _| {
+        v.patches.push(Patch { id: 9, name: "other".into(), cap: None });
+        let face = wall(v);
+        v.boundary_patch[face] = 9;
+    });
+    assert_eq!(lines, [Line::WallOrCap]);
+}
+
+#[test]
+fn faults_of_caps() {
+    assert!(planted(|v, _| v.patches[2].id = 2).contains(&Line::OwnPatch));
+    assert_eq!(planted(|v, _| v.patches[2].name = "inlet".into()), [Line::OwnPatch]);
+    assert_eq!(planted(|_, e| e.terminals.push(11)), [Line::CapPerTerminal]);
+    assert_eq!(planted(|_, e| e.terminals.retain(|&n| n != 3)), [Line::CapPerTerminal]);
+    assert_eq!(planted(|v, _| v.patches[2].cap.as_mut().unwrap().node = 7), [Line::CapPerTerminal]);
+    assert_eq!(planted(|v, _| v.patches[2].cap.as_mut().unwrap().center.x = 0.11), [Line::CapCentred]);
+    assert_eq!(planted(|v, _| v.patches[2].cap.as_mut().unwrap().radius = 1.03), [Line::CapArea]);
+    assert_eq!(planted(|v, _| v.patches[2].cap.as_mut().unwrap().normal *= -1.0), [Line::CapNormal]);
+    let tilt = Vec3::new(1e-8, 0.0, 1.0).normalize();
+    assert_eq!(planted(|v, _| v.patches[2].cap.as_mut().unwrap().normal = tilt), [Line::CapFlat]);
+    let bump = planted(|v, _| {
+        let head = v.boundary.iter().zip(&v.boundary_patch).find(|(_, id)| **id == 3).unwrap().0[0];
+        v.mesh.points[head as usize].z += 1e-8;
+    });
+    assert_eq!(bump, [Line::CapFlat]);
+}
+
+/// The tube somewhere else and askew, its coordinates as 32 bits keep them.
+fn rounded(offset: f64) -> (VolumeMesh, Expectation) {
+    let (mut volume, expectation) = tube();
+    let turn = nalgebra::Rotation3::from_euler_angles(0.3, 0.7, 0.2);
+    let put = |p: Point3| turn * p + Vec3::new(offset, -2.0 * offset, offset);
+    for p in &mut volume.mesh.points {
+        *p = put(*p).map(|x| f64::from(x as f32));
+    }
+    for cap in volume.patches.iter_mut().filter_map(|patch| patch.cap.as_mut()) {
+        cap.center = put(cap.center);
+        cap.normal = turn * cap.normal;
+    }
+    (volume, expectation)
+}
+
+#[test]
+fn caps_of_rounded_coordinates_are_flat_to_their_rounding() {
+    for offset in [0.0, 10.0, 1000.0] {
+        let (mut volume, expectation) = rounded(offset);
+        assert_eq!(failing(&volume, &expectation), [], "{offset}");
+        let head = volume.boundary.iter().zip(&volume.boundary_patch).find(|(_, id)| **id == 3).unwrap().0[0] as usize;
+        let place = volume.mesh.points[head];
+        // What rounding does not explain, though it is a number of 32 bits.
+        let bump = 4.0 * f64::from(f32::EPSILON) * (1.0 + 4.0 * offset);
+        volume.mesh.points[head] = (place + volume.patches[2].cap.unwrap().normal * bump).map(|x| f64::from(x as f32));
+        assert_eq!(failing(&volume, &expectation), [Line::CapFlat], "{offset}");
+        // One coordinate of 64 bits, and nothing is owed to rounding.
+        volume.mesh.points[head] = place;
+        volume.mesh.points[head].x += 1e-12 * (1.0 + offset);
+        assert_eq!(failing(&volume, &expectation), [Line::CapFlat], "{offset}");
+    }
+}
+
+/// A label moved from the cap's middle to the wall leaves a hole; one on the far side of the wall, a second piece.
+#[test]
+fn caps_that_are_no_discs() {
+    let centre_face = |v: &VolumeMesh| {
+        v.boundary.iter().position(|f| {
+            f.iter().all(|&i| {
+                let p = v.mesh.points[i as usize];
+                p.z > HEIGHT - 1e-9 && p.x.hypot(p.y) < 0.6
+            })
+        })
+    };
+    let lines = planted(|v, _| {
+        let face = centre_face(v).unwrap();
+        v.boundary_patch[face] = WALL;
+    });
+    assert_eq!(lines, [Line::CapDisc]);
+    let lines = planted(|v, _| {
+        let face = v.boundary_patch.iter().position(|&id| id == WALL).unwrap();
+        v.boundary_patch[face] = 3;
+    });
+    assert!(lines.contains(&Line::CapDisc) && lines.contains(&Line::CapNormal));
+    let lines = planted(|v, _| v.boundary_patch.iter_mut().filter(|id| **id == 3).for_each(|id| *id = WALL));
+    assert_eq!(lines, [Line::CapDisc, Line::CapFlat, Line::CapCentred, Line::CapArea, Line::CapNormal]);
+}
+
+#[test]
+fn only_the_first_offenders_are_kept() {
+    let (mut volume, expectation) = tube();
+    for t in &mut volume.mesh.tets {
+        t.swap(0, 1);
+    }
+    let report = check_volume(&volume, Some(&expectation));
+    let line = report.line(Line::PositiveTets).unwrap();
+    assert_eq!((line.count as usize, line.offenders.len()), (volume.mesh.tets.len(), KEPT_OFFENDERS));
+    assert_eq!(line.offenders[3].ids, [3]);
+    assert!(failing(&volume, &expectation).contains(&Line::PositiveTets));
+}
+
+#[test]
+fn of_outlets_that_are_one_patch_the_caps_are_not_known() {
+    let group = |v: &mut VolumeMesh, e: &mut Expectation| {
+        v.patches[2] = Patch { id: 3, name: "outlets".into(), cap: None };
+        e.terminals.retain(|&n| n != 3);
+    };
+    let (mut volume, mut expectation) = tube();
+    group(&mut volume, &mut expectation);
+    assert_ne!(check_volume(&volume, Some(&expectation)).verdict, Verdict::Invalid);
+    let both_gone = |v: &mut VolumeMesh, e: &mut Expectation| {
+        group(v, e);
+        v.patches[1].cap = None;
+    };
+    assert_eq!(planted(both_gone), [Line::CapPerTerminal]);
+}

@@ -1,0 +1,188 @@
+//! What a check found, for people; its JSON form is `CheckReport` itself.
+
+use super::{CheckReport, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict};
+use crate::units::{digits, grouped, place};
+use std::fmt::{self, Write as _};
+
+/// Offenders of a line that are spelt out in a summary.
+const SPELT_OUT: usize = 3;
+
+/// For people: a line per line of the definition, the first offenders below those that fail, sizes and shape, and the
+/// verdict at the end.
+impl fmt::Display for CheckReport {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(out, "{}\n{}", conditions(self), sizes(self))?;
+        if let Some(shape) = shape(self) {
+            writeln!(out, "{shape}")?;
+        }
+        writeln!(out, "{}", verdict(self.verdict))
+    }
+}
+
+/// How large a mesh is.
+pub fn sizes(check: &CheckReport) -> String {
+    let counts = &check.counts;
+    let tets = if counts.tets > 0 { format!("{} tetrahedra, ", grouped(counts.tets)) } else { String::new() };
+    let [points, faces] = [counts.points, counts.boundary_faces].map(grouped);
+    let components = match counts.components {
+        1 => String::new(),
+        n => format!(", {} components", grouped(n)),
+    };
+    let (caps, volume) = (grouped(counts.caps), digits(counts.volume));
+    format!("{tets}{points} points, {faces} boundary faces, {caps} inlets and outlets{components}, volume {volume}")
+}
+
+/// How good its tetrahedra are.
+pub fn shape(check: &CheckReport) -> Option<String> {
+    let q = check.quality.as_ref()?;
+    let angles = format!("dihedral angles {:.0}° to {:.0}°", q.dihedral_min, q.dihedral_max);
+    Some(format!("radius ratio {:.2} in the mean, {:.2} at least; {angles}", q.mean, q.min))
+}
+
+/// How many conditions hold; whether they are listed elsewhere.
+pub fn tally(check: &CheckReport, listed: bool) -> String {
+    let (all, failed) = (check.lines.len(), check.failed().count());
+    let unchecked = check.lines.iter().filter(|line| matches!(line.outcome, Outcome::NotChecked(_))).count();
+    let unlooked = match unchecked {
+        0 => String::new(),
+        n => format!(", {n} could not be checked"),
+    };
+    let hint = if listed { "" } else { " (-v lists them)" };
+    match failed + unchecked {
+        0 => format!("all {all} conditions hold{hint}"),
+        other => format!("{} of {all} conditions hold{unlooked}{hint}", all - other),
+    }
+}
+
+/// The conditions that do not hold, with the first offenders of each.
+pub fn faults(check: &CheckReport) -> String {
+    let mut out = String::new();
+    for failed in check.failed() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "FAIL {}: {}", failed.line.statement(), extent(failed));
+        let shown = failed.offenders.len().min(SPELT_OUT);
+        for offender in &failed.offenders[..shown] {
+            let _ = writeln!(out, "         {}", describe(offender));
+        }
+        let hidden = failed.count.saturating_sub(shown as u64);
+        if hidden > 0 {
+            let hidden = grouped(hidden as usize);
+            let _ = writeln!(out, "         and {hidden} more (-v shows ten, --report where they are)");
+        }
+    }
+    out
+}
+
+pub fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Valid => "valid",
+        Verdict::NoFaultFound => "no fault found, but not every line could be checked",
+        Verdict::Invalid => "NOT valid",
+    }
+}
+
+/// A line per line of the definition, with the first offenders.
+pub fn conditions(check: &CheckReport) -> String {
+    let mut out = String::new();
+    for line in &check.lines {
+        let statement = line.line.statement();
+        let _ = match line.outcome {
+            Outcome::Pass => writeln!(out, "  ok   {statement}"),
+            Outcome::NotChecked(why) => writeln!(out, "  -    {statement}: not checked, {}", reason(why)),
+            Outcome::Fail => writeln!(out, "  FAIL {statement}: {}", extent(line)),
+        };
+        for offender in &line.offenders {
+            let _ = writeln!(out, "         {}", describe(offender));
+        }
+        let hidden = line.count - line.offenders.len() as u64;
+        if hidden > 0 {
+            let _ = writeln!(out, "         and {} more", grouped(hidden as usize));
+        }
+    }
+    out
+}
+
+pub fn reason(why: Skipped) -> String {
+    match why {
+        Skipped::NoLabels => "the boundary has no labels".into(),
+        Skipped::NoExpectation => "the file does not say what to expect".into(),
+        Skipped::NoCaps => "the labels do not say which caps they are".into(),
+        Skipped::Because(line) => format!("because this fails: {}", line.statement()),
+    }
+}
+
+/// How many offenders, or what was expected and what found.
+pub fn extent(result: &LineResult) -> String {
+    match (&result.expected, &result.found) {
+        (Some(expected), Some(found)) => format!("expected {}, found {}", list(expected), list(found)),
+        _ => format!("{} found", grouped(result.count as usize)),
+    }
+}
+
+/// A list of numbers, in full when it is short.
+fn list(numbers: &[u32]) -> String {
+    const SHOWN: usize = 12;
+    let shown: Vec<String> = numbers.iter().take(SHOWN).map(ToString::to_string).collect();
+    match numbers.len() {
+        0 => "none".into(),
+        n if n > SHOWN => format!("{} … ({n} in all)", shown.join(" ")),
+        _ => shown.join(" "),
+    }
+}
+
+pub fn describe(offender: &Offender) -> String {
+    let kind = match offender.kind {
+        OffenderKind::Point => "point",
+        OffenderKind::Edge => "points",
+        OffenderKind::Tet => "tetrahedron",
+        OffenderKind::TetPair => "tetrahedra",
+        OffenderKind::Face => "face of points",
+        OffenderKind::FacePair => "faces of points",
+        OffenderKind::Patch => "patch",
+        OffenderKind::Node => "node",
+    };
+    let separator = |i| if offender.kind == OffenderKind::FacePair && i == 3 { " and " } else { " " };
+    let ids: String = offender.ids.iter().enumerate().map(|(i, id)| format!("{}{id}", separator(i))).collect();
+    let place = offender.position.map_or_else(String::new, |at| format!(" at {}", place(at)));
+    format!("{kind}{ids}{place}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Expectation, check_tets};
+    use crate::TetMesh;
+    use crate::shapes::cube_lattice;
+
+    fn text_of(mesh: &TetMesh) -> String {
+        check_tets(mesh, Some(&Expectation { loops: vec![0], terminals: Vec::new() })).to_string()
+    }
+
+    #[test]
+    fn a_sound_mesh_without_labels() {
+        let text = text_of(&cube_lattice(2));
+        assert!(text.contains("  ok   every tetrahedron is positive\n"));
+        assert!(text.contains("  -    caps face outwards: not checked, the boundary has no labels\n"));
+        assert!(text.ends_with("no fault found, but not every line could be checked\n"));
+        assert!(text.contains("48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets, volume 1.0000"));
+    }
+
+    #[test]
+    fn a_fault_is_shown_with_its_places() {
+        let mut mesh = cube_lattice(2);
+        mesh.tets[3].swap(0, 1);
+        for t in &mut mesh.tets[20..35] {
+            t.swap(0, 1);
+        }
+        let text = text_of(&mesh);
+        assert!(text.contains("  FAIL every tetrahedron is positive: 16 found\n         tetrahedron 3 at "));
+        assert!(text.contains("         and 6 more\n") && text.ends_with("NOT valid\n"));
+        mesh = cube_lattice(1);
+        let other = mesh.clone();
+        mesh.points.extend(other.points.iter().map(|p| p + crate::geometry::Vec3::repeat(0.5)));
+        mesh.tets.extend(other.tets.iter().map(|t| t.map(|v| v + 8)));
+        let text = text_of(&mesh);
+        assert!(text.contains("  FAIL components as expected: expected 1, found 2\n"));
+        assert!(text.contains("  FAIL loops (genus) as expected: expected 0, found 0 0\n"));
+        assert!(text.contains("         faces of points ") && text.contains(" and "));
+    }
+}

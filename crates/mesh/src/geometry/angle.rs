@@ -1,0 +1,8 @@
+//! Angles.
+
+/// An angle brought into (−π, π].
+pub fn turn(angle: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    let a = angle.rem_euclid(TAU);
+    if a > PI { a - TAU } else { a }
+}

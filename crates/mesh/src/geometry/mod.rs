@@ -1,0 +1,39 @@
+//! Floor 1: points, tubes and cross-sections; predicates, intersections, distances and search trees.
+
+mod aabb;
+mod angle;
+mod bvh;
+mod convex;
+mod disjoint_sets;
+mod distance;
+mod dyadic;
+mod fans;
+pub mod hilbert;
+pub mod implicit;
+mod integer;
+mod normal;
+mod place;
+pub mod predicates;
+mod ray;
+mod total;
+mod tri_tri;
+mod tube;
+
+pub use aabb::Aabb;
+pub use angle::turn;
+pub use bvh::Bvh;
+pub use convex::minimise_convex;
+pub use disjoint_sets::DisjointSets;
+pub use distance::{point_segment, point_triangle, point_tube, segment_segment, tube_tube};
+pub use normal::unit_normal;
+pub use place::place_key;
+pub use ray::crossing;
+pub use total::Total;
+pub use tri_tri::{Contact, Improper, Triangle, classify, classify_triangles, self_contacts, self_intersections};
+pub use tube::{Section, Tube};
+
+/// A point in space; the unit is the network's.
+pub type Point3 = nalgebra::Point3<f64>;
+
+/// A displacement or direction.
+pub type Vec3 = nalgebra::Vector3<f64>;

@@ -1,0 +1,220 @@
+//! Exact geometric predicates: an inline error filter first; when it is not sure, integers where the numbers fit, else
+//! Shewchuk's adaptive expansions (`robust`). The only user of `robust`.
+//!
+//! Signs are exact for coordinates that [`in_exact_range`] accepts: expansions must neither overflow nor underflow.
+
+use super::{Point3, integer};
+use robust::{Coord, Coord3D};
+
+/// Smallest magnitude of a coordinate other than zero. The fifth powers of differences of such numbers, and their
+/// roundoff, stay clear of underflow.
+pub const MIN_MAGNITUDE: f64 = 1e-42;
+
+/// Largest magnitude of a coordinate; fifth powers of differences stay clear of overflow.
+pub const MAX_MAGNITUDE: f64 = 1e58;
+
+/// Bound of the roundoff of the `orient3d` determinant, relative to the product of the largest differences: Shewchuk's
+/// (7 + 56ε)ε times the six products of the permanent, rounded up.
+pub const ORIENT3D_BOUND: f64 = 5e-15;
+
+/// The same for `insphere`: (16 + 224ε)ε times 24 products times the largest lift, rounded up.
+pub const INSPHERE_BOUND: f64 = 4.5e-14;
+
+/// Whether the predicates are exact on points with this coordinate.
+pub fn in_exact_range(x: f64) -> bool {
+    let m = x.abs();
+    m == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&m)
+}
+
+#[inline]
+fn coord3(p: &Point3) -> Coord3D<f64> {
+    Coord3D { x: p.x, y: p.y, z: p.z }
+}
+
+/// Positive, zero or negative with `det(b − a, c − a, d − a)`: positive when `a, b, c` run counter-clockwise seen from
+/// `d`. The magnitude is an estimate of the determinant.
+#[inline]
+pub fn orient3d(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
+    let (bx, by, bz) = (b.x - a.x, b.y - a.y, b.z - a.z);
+    let (cx, cy, cz) = (c.x - a.x, c.y - a.y, c.z - a.z);
+    let (dx, dy, dz) = (d.x - a.x, d.y - a.y, d.z - a.z);
+    let det = bx * (cy * dz - cz * dy) + by * (cz * dx - cx * dz) + bz * (cx * dy - cy * dx);
+    let mx = bx.abs().max(cx.abs()).max(dx.abs());
+    let my = by.abs().max(cy.abs()).max(dy.abs());
+    let mz = bz.abs().max(cz.abs()).max(dz.abs());
+    if det.abs() > ORIENT3D_BOUND * mx * my * mz { det } else { orient3d_exact(a, b, c, d) }
+}
+
+#[cold]
+fn orient3d_exact(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
+    // `robust` is positive when d lies below abc: the opposite sign.
+    let expanded = || -robust::orient3d(coord3(a), coord3(b), coord3(c), coord3(d));
+    integer::orient3d([b, c, d], a).unwrap_or_else(expanded)
+}
+
+/// Positive when `e` lies inside the sphere through the positive tetrahedron `a, b, c, d`, negative outside, zero on
+/// it. The sign flips for a negative tetrahedron.
+#[inline]
+pub fn insphere(a: &Point3, b: &Point3, c: &Point3, d: &Point3, e: &Point3) -> f64 {
+    let (ax, ay, az) = (a.x - e.x, a.y - e.y, a.z - e.z);
+    let (bx, by, bz) = (b.x - e.x, b.y - e.y, b.z - e.z);
+    let (cx, cy, cz) = (c.x - e.x, c.y - e.y, c.z - e.z);
+    let (dx, dy, dz) = (d.x - e.x, d.y - e.y, d.z - e.z);
+    let (ab, bc, cd) = (ax * by - bx * ay, bx * cy - cx * by, cx * dy - dx * cy);
+    let (da, ac, bd) = (dx * ay - ax * dy, ax * cy - cx * ay, bx * dy - dx * by);
+    let abc = az * bc - bz * ac + cz * ab;
+    let bcd = bz * cd - cz * bd + dz * bc;
+    let cda = cz * da + dz * ac + az * cd;
+    let dab = dz * ab + az * bd + bz * da;
+    let al = ax * ax + ay * ay + az * az;
+    let bl = bx * bx + by * by + bz * bz;
+    let cl = cx * cx + cy * cy + cz * cz;
+    let dl = dx * dx + dy * dy + dz * dz;
+    let det = (cl * dab - dl * abc) + (al * bcd - bl * cda);
+    let mx = ax.abs().max(bx.abs()).max(cx.abs().max(dx.abs()));
+    let my = ay.abs().max(by.abs()).max(cy.abs().max(dy.abs()));
+    let mz = az.abs().max(bz.abs()).max(cz.abs().max(dz.abs()));
+    let ml = al.max(bl).max(cl.max(dl));
+    if det.abs() > INSPHERE_BOUND * mx * my * mz * ml { det } else { insphere_exact(a, b, c, d, e) }
+}
+
+/// Bound of the roundoff of [`insphere`]'s determinant of these points, evaluated in floating point as there.
+#[inline]
+pub fn insphere_bound(p: [&Point3; 4], e: &Point3) -> f64 {
+    let [a, b, c, d] = p.map(|p| p - e);
+    let largest = |i: usize| a[i].abs().max(b[i].abs()).max(c[i].abs().max(d[i].abs()));
+    let lift = a.norm_squared().max(b.norm_squared()).max(c.norm_squared().max(d.norm_squared()));
+    INSPHERE_BOUND * largest(0) * largest(1) * largest(2) * lift
+}
+
+/// As [`insphere`], without the filter.
+#[cold]
+pub fn insphere_exact(a: &Point3, b: &Point3, c: &Point3, d: &Point3, e: &Point3) -> f64 {
+    let expanded = || -robust::insphere(coord3(a), coord3(b), coord3(c), coord3(d), coord3(e));
+    integer::insphere([a, b, c, d], e).unwrap_or_else(expanded)
+}
+
+/// Positive when the points of the plane `a, b, c` run counter-clockwise, zero when they are collinear.
+#[inline]
+pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    let at = |p: [f64; 2]| Coord { x: p[0], y: p[1] };
+    robust::orient2d(at(a), at(b), at(c))
+}
+
+/// Whether three points of space lie on one line: their shadows on all three coordinate planes do.
+pub fn collinear(a: &Point3, b: &Point3, c: &Point3) -> bool {
+    [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| orient2d([a[i], a[j]], [b[i], b[j]], [c[i], c[j]]) == 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_rational::BigRational;
+    use proptest::prelude::*;
+
+    type Row = Vec<BigRational>;
+
+    fn exact(x: f64) -> BigRational {
+        BigRational::from_float(x).expect("finite")
+    }
+
+    fn det(m: &[Row]) -> BigRational {
+        if m.len() == 1 {
+            return m[0][0].clone();
+        }
+        let mut sum = exact(0.0);
+        for (k, head) in m[0].iter().enumerate() {
+            let minor: Vec<Row> = m[1..]
+                .iter()
+                .map(|r| r.iter().enumerate().filter(|&(j, _)| j != k).map(|(_, x)| x.clone()).collect())
+                .collect();
+            let term = head * det(&minor);
+            sum = if k % 2 == 0 { sum + term } else { sum - term };
+        }
+        sum
+    }
+
+    fn sign(x: &BigRational) -> i32 {
+        let zero = exact(0.0);
+        i32::from(*x > zero) - i32::from(*x < zero)
+    }
+
+    fn sign_f(x: f64) -> i32 {
+        i32::from(x > 0.0) - i32::from(x < 0.0)
+    }
+
+    fn differences(from: &Point3, to: &[&Point3]) -> Vec<Row> {
+        to.iter().map(|p| (0..3).map(|i| exact(p[i]) - exact(from[i])).collect()).collect()
+    }
+
+    fn orient3d_oracle(p: &[Point3]) -> i32 {
+        sign(&det(&differences(&p[0], &[&p[1], &p[2], &p[3]])))
+    }
+
+    fn insphere_oracle(p: &[Point3]) -> i32 {
+        let mut rows = differences(&p[4], &[&p[0], &p[1], &p[2], &p[3]]);
+        for r in &mut rows {
+            let lift = r.iter().map(|x| x * x).fold(exact(0.0), |s, x| s + x);
+            r.push(lift);
+        }
+        -sign(&det(&rows))
+    }
+
+    /// Coordinates on a coarse grid, on it but for a few ulps, or anywhere: degenerate, nearly so, or neither.
+    fn coordinate() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            (-4i32..4).prop_map(f64::from),
+            (-4i32..4, -3i64..3).prop_map(|(g, ulps)| f64::from(g) + ulps as f64 * f64::EPSILON * 4.0),
+            (-3i32..3).prop_map(|g| f64::from(g) * 0.1),
+            -1.0..1.0f64,
+        ]
+    }
+
+    fn points(n: usize, scale: f64) -> impl Strategy<Value = Vec<Point3>> {
+        prop::collection::vec((coordinate(), coordinate(), coordinate()), n)
+            .prop_map(move |v| v.iter().map(|&(x, y, z)| Point3::new(x * scale, y * scale, z * scale)).collect())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn orient3d_has_the_exact_sign(p in points(4, 1.0)) {
+            prop_assert_eq!(sign_f(orient3d(&p[0], &p[1], &p[2], &p[3])), orient3d_oracle(&p));
+        }
+
+        #[test]
+        fn insphere_has_the_exact_sign(p in points(5, 1.0)) {
+            prop_assert_eq!(sign_f(insphere(&p[0], &p[1], &p[2], &p[3], &p[4])), insphere_oracle(&p));
+        }
+
+        #[test]
+        fn signs_are_exact_at_the_ends_of_the_range(p in points(5, 1e-26), q in points(5, 2e57)) {
+            for p in [p, q] {
+                prop_assume!(p.iter().all(|p| p.iter().all(|&x| in_exact_range(x))));
+                prop_assert_eq!(sign_f(orient3d(&p[0], &p[1], &p[2], &p[3])), orient3d_oracle(&p));
+                prop_assert_eq!(sign_f(insphere(&p[0], &p[1], &p[2], &p[3], &p[4])), insphere_oracle(&p));
+            }
+        }
+
+        #[test]
+        fn collinear_is_exact(p in points(3, 1.0)) {
+            let rows = differences(&p[0], &[&p[1], &p[2]]);
+            let zero = [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| {
+                sign(&(&rows[0][i] * &rows[1][j] - &rows[0][j] * &rows[1][i])) == 0
+            });
+            prop_assert_eq!(collinear(&p[0], &p[1], &p[2]), zero);
+        }
+    }
+
+    #[test]
+    fn signs_follow_the_house_convention() {
+        let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+        let (o, x, y, z) = (p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(0., 0., 1.));
+        assert!(orient3d(&o, &x, &y, &z) > 0.0);
+        assert!(insphere(&o, &x, &y, &z, &p(0.2, 0.2, 0.2)) > 0.0);
+        assert!(insphere(&o, &x, &y, &z, &p(2.0, 2.0, 2.0)) < 0.0);
+        assert!(insphere(&o, &x, &y, &z, &p(1.0, 1.0, 1.0)) == 0.0);
+        assert!(orient2d([0., 0.], [1., 0.], [0., 1.]) > 0.0);
+    }
+}

@@ -1,0 +1,15 @@
+//! Faces and cells by their vertices, whichever way they are turned.
+
+/// The vertices of a face in ascending order: the same for both its sides.
+#[inline]
+pub fn face_key([a, b, c]: [u32; 3]) -> [u32; 3] {
+    let (a, b) = (a.min(b), a.max(b));
+    let (b, c) = (b.min(c), b.max(c));
+    [a.min(b), a.max(b), c]
+}
+
+/// The vertices of a tetrahedron in ascending order.
+pub fn tet_key(mut tet: [u32; 4]) -> [u32; 4] {
+    tet.sort_unstable();
+    tet
+}

@@ -1,0 +1,214 @@
+//! Whether a branch may be cut, and where: equations 11 and 12 of the paper, measured along the branch, with room for a
+//! connector, and straight enough for it. What a report calls cuttable is what the partition decides.
+
+use super::course::{Course, Courses, Way};
+use super::{Adjacency, NodeId, Skeleton};
+use anastomesh_mesh::geometry::Vec3;
+
+/// 2 ω of equation 11 with ω = 1.1: how far from a node a cut stays, in radii of the node; and, of an edge between two such
+/// nodes, its length in sums of their radii.
+pub const CUT_DISTANCE: f64 = 2.2;
+
+/// ω of equation 12. Walls are level sets of a convolution field, whose tubes fuse when they come closer than 1.1 sums of
+/// their radii: with the paper's 1.1 they do so at cuts.
+pub const ANGLE_MARGIN: f64 = 1.25;
+
+/// Room that a connector needs between its two planes, in radii.
+pub const CONNECTOR_ROOM: f64 = 2.0;
+
+/// How much of equation 11's distance is counted in radii of the vessel itself, the rest in those of its neighbours.
+const OWN_SHARE: f64 = 0.6;
+/// Over how many radii of the node the direction of a branch is measured.
+const DIRECTION_WINDOW: f64 = 3.0;
+/// How much of the vessel a terminal keeps at least when its branch is cut, in radii.
+const TERMINAL_KEEPS: f64 = 3.0;
+
+/// What a cut needs. Lengths are in radii of the vessel concerned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutRules {
+    /// Least distance of a cut plane from a junction, in radii of the node (2 ω of equation 11).
+    pub node_distance: f64,
+    /// Margin factor on the angle condition (ω of equation 12).
+    pub angle_margin: f64,
+    /// Room that a connector needs between its two planes.
+    pub room: f64,
+    /// Largest turn, in radians, of a vessel over one radius inside a connector: bends are left to the clusters.
+    pub max_turn: f64,
+}
+
+impl Default for CutRules {
+    fn default() -> Self {
+        Self {
+            node_distance: CUT_DISTANCE,
+            angle_margin: ANGLE_MARGIN,
+            room: CONNECTOR_ROOM,
+            max_turn: 20.0_f64.to_radians(),
+        }
+    }
+}
+
+impl CutRules {
+    /// Room that a connector between planes at `lo` and `hi` needs.
+    pub fn room_between(&self, course: &Course, lo: f64, hi: f64) -> f64 {
+        self.room * 0.5 * (course.radius(lo, Way::Onward) + course.radius(hi, Way::Back))
+    }
+
+    /// Whether a connector has this many times the room that it needs between planes at `lo` and `hi`.
+    pub fn fits(&self, course: &Course, [lo, hi]: [f64; 2], times: f64) -> bool {
+        hi > lo && hi - lo >= times * self.room_between(course, lo, hi)
+    }
+}
+
+/// Equation 12: how far from their node two vessels of the given radii that leave it along `u` and `v` are separate,
+/// measured along the first; 0 unless the angle is acute.
+pub fn separation(u: &Vec3, v: &Vec3, radii: [f64; 2]) -> f64 {
+    let lengths = u.norm() * v.norm();
+    separation_at(u.dot(v) / lengths, u.cross(v).norm() / lengths, radii)
+}
+
+/// The same by cosine and sine of the angle: (r2 + r1 cos φ) / sin φ.
+fn separation_at(cosine: f64, sine: f64, radii: [f64; 2]) -> f64 {
+    if cosine <= 0.0 { 0.0 } else { (radii[1] + radii[0] * cosine) / sine }
+}
+
+/// Why a branch cannot be cut, whatever other vessels are near it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Uncuttable {
+    /// Too short (equation 11, and room for a connector).
+    Length,
+    /// Too short for the angle at which it leaves another branch (equation 12).
+    Angle,
+    /// Nowhere straight enough for a connector.
+    Bend,
+}
+
+/// Where a branch may be cut.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutWindow {
+    /// Arc lengths between which planes may stand.
+    pub reach: [f64; 2],
+    /// The parts of it that are straight enough for a connector.
+    pub straight: Vec<[f64; 2]>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BranchEnd {
+    Junction,
+    Terminal,
+    /// The node where a ring was opened: of valence 2.
+    Seam,
+}
+
+impl BranchEnd {
+    /// Of a branch that ends at a node.
+    pub fn of(adjacency: &Adjacency, node: NodeId) -> Self {
+        match adjacency.valence(node) {
+            1 => Self::Terminal,
+            2 => Self::Seam,
+            _ => Self::Junction,
+        }
+    }
+}
+
+/// The two ends of a branch leave a node with these directions and radii.
+#[derive(Clone, Copy)]
+struct Leaving {
+    branch: u32,
+    way: Way,
+    direction: Vec3,
+    /// Radius over the window in which the direction is measured.
+    radius: f64,
+    /// Radius at the node.
+    root_radius: f64,
+}
+
+impl Leaving {
+    fn of(skeleton: &Skeleton, course: &Course, branch: u32, node: NodeId, way: Way) -> Self {
+        let window = DIRECTION_WINDOW * skeleton.node(node).radius;
+        let half = (0.5 * window).min(0.5 * course.length());
+        let s = if way == Way::Onward { half } else { course.length() - half };
+        let root_radius = course.radius(if way == Way::Onward { 0.0 } else { course.length() }, way);
+        Self { branch, way, direction: course.leaving(way, window), radius: course.radius(s, way), root_radius }
+    }
+
+    /// Equation 12 beside another one.
+    fn separation(&self, other: &Self) -> f64 {
+        let sine = self.direction.cross(&other.direction).norm();
+        separation_at(self.direction.dot(&other.direction), sine, [self.radius, other.radius])
+    }
+}
+
+/// Says of each branch of a skeleton where it may be cut.
+pub struct Cuttability<'a> {
+    adjacency: &'a Adjacency,
+    courses: Courses<'a>,
+    rules: CutRules,
+    /// What leaves each node: a range of `leaving`.
+    first: Vec<u32>,
+    leaving: Vec<Leaving>,
+}
+
+impl<'a> Cuttability<'a> {
+    /// `courses`: all branches of the skeleton.
+    pub fn new(adjacency: &'a Adjacency, courses: Courses<'a>, rules: CutRules) -> Self {
+        let skeleton = courses.skeleton;
+        let mut first = vec![0_u32; skeleton.nodes.len() + 1];
+        for branch in 0..courses.len() as u32 {
+            for node in courses.chains.ends(branch) {
+                first[node.index() + 1] += 1;
+            }
+        }
+        for i in 1..first.len() {
+            first[i] += first[i - 1];
+        }
+        let mut next = first.clone();
+        let blank = Leaving { branch: 0, way: Way::Onward, direction: Vec3::zeros(), radius: 0.0, root_radius: 0.0 };
+        let mut leaving = vec![blank; 2 * courses.len()];
+        for (branch, course) in (0..).zip(courses.iter()) {
+            for (node, way) in course.branch.ends().into_iter().zip([Way::Onward, Way::Back]) {
+                let at = &mut next[node.index()];
+                leaving[*at as usize] = Leaving::of(skeleton, &course, branch, node, way);
+                *at += 1;
+            }
+        }
+        Self { adjacency, courses, rules, first, leaving }
+    }
+
+    /// Where a branch may be cut, or why nowhere.
+    pub fn window(&self, branch: u32) -> Result<CutWindow, Uncuttable> {
+        let course = &self.courses.get(branch);
+        let [[near0, angle0], [near1, angle1]] = [Way::Onward, Way::Back].map(|way| self.distances(branch, way));
+        let reach = [near0.max(angle0), course.length() - near1.max(angle1)];
+        if !self.rules.fits(course, reach, 1.0) {
+            let by_length = self.rules.fits(course, [near0, course.length() - near1], 1.0);
+            return Err(if by_length { Uncuttable::Angle } else { Uncuttable::Length });
+        }
+        let straight = course.straight_parts(reach[0], reach[1], self.rules.max_turn);
+        if straight.iter().any(|&part| self.rules.fits(course, part, 1.0)) {
+            Ok(CutWindow { reach, straight })
+        } else {
+            Err(Uncuttable::Bend)
+        }
+    }
+
+    /// Least distances of a plane from the end of `branch` that leaves its node by `way`: by (11), and by (12).
+    fn distances(&self, branch: u32, way: Way) -> [f64; 2] {
+        let node = self.courses.chains.ends(branch)[way.side()];
+        let radius = self.courses.skeleton.node(node).radius;
+        if BranchEnd::of(self.adjacency, node) == BranchEnd::Terminal {
+            return [TERMINAL_KEEPS * radius, 0.0];
+        }
+        let around = &self.leaving[self.first[node.index()] as usize..self.first[node.index() + 1] as usize];
+        let Some(own) = around.iter().find(|l| l.branch == branch && l.way == way) else {
+            return [self.rules.node_distance * radius, 0.0];
+        };
+        let (mut angle, mut thickest) = (0.0_f64, 0.0_f64);
+        for other in around.iter().filter(|l| !(l.branch == branch && l.way == way)) {
+            angle = angle.max(own.separation(other));
+            thickest = thickest.max(other.root_radius);
+        }
+        // What has to be passed is the wall of the thickest neighbour; with equal radii that is equation 11.
+        let wall = (self.rules.node_distance - OWN_SHARE) * thickest + OWN_SHARE * own.root_radius;
+        [wall.min(self.rules.node_distance * radius), self.rules.angle_margin * angle]
+    }
+}

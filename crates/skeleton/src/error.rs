@@ -1,0 +1,74 @@
+//! What can be wrong with a skeleton.
+
+use super::{EdgeId, NodeId};
+use anastomesh_mesh::geometry::Point3;
+
+/// Why a skeleton cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SkeletonError {
+    /// There is no edge, so there is no vessel.
+    #[error(
+        "the network has {nodes} node(s) and no edge of a length above zero: there is no vessel to mesh; \
+         it takes two nodes at different places and an edge between them"
+    )]
+    NoVessel {
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// An edge names a node that does not exist.
+    #[error("edge {} names node {}, but there are only {nodes} nodes (numbered from 0)", edge.0, node.0)]
+    UnknownNode {
+        /// The edge.
+        edge: EdgeId,
+        /// What it names.
+        node: NodeId,
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// A coordinate is infinite or not a number, or too large to be computed with.
+    #[error("node {original} has the position {position}: coordinates must be finite and below {LARGEST:e}")]
+    BadPosition {
+        /// The node, as numbered in the file (from 0).
+        original: u32,
+        /// Its position.
+        position: Point3,
+    },
+    /// A radius is zero, negative, infinite or not a number.
+    #[error("node {original} has the radius {radius}: radii must be finite and above zero")]
+    BadNodeRadius {
+        /// The node, as numbered in the file (from 0).
+        original: u32,
+        /// Its radius.
+        radius: f64,
+    },
+    /// A radius of an edge is zero, negative, infinite or not a number.
+    #[error("edge {} has the radius {radius}: radii must be finite and above zero", edge.0)]
+    BadEdgeRadius {
+        /// The edge.
+        edge: EdgeId,
+        /// Its radius.
+        radius: f64,
+    },
+    /// An edge has no length: both its ends are one node, or lie at one point.
+    #[error("edge {} has no length", edge.0)]
+    NoLength {
+        /// The edge.
+        edge: EdgeId,
+    },
+    /// Two edges join the same two nodes.
+    #[error("edges {} and {} join the same two nodes", edges[0].0, edges[1].0)]
+    RepeatedEdge {
+        /// The two edges.
+        edges: [EdgeId; 2],
+    },
+    /// A node has no edge.
+    #[error("node {} has no edge", node.0)]
+    Isolated {
+        /// The node.
+        node: NodeId,
+    },
+}
+
+/// Coordinates stay below this, so that no product of five of them overflows in the predicates.
+pub const LARGEST: f64 = 1e50;

@@ -1,0 +1,359 @@
+//! The library's front door.
+
+use super::certify::{Place, certify_conforming};
+use super::complex::Complex;
+use super::contacts;
+use super::error::TetError;
+use super::fill::fill;
+use super::layer::Layers;
+use super::layers::{LayerSummary, layered};
+use super::optimize::{Effort, OptimizeReport};
+use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
+use super::outside::without;
+use super::plc::LeftOut;
+use super::plc::{InputKind, Plc};
+use super::progress::{Progress, Stage, Watch};
+use super::recover::RecoverySummary;
+use super::refine::RefineReport;
+use super::request::Request;
+use super::{delaunay, input, sized};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::{TetMesh, TriMesh};
+use std::sync::Arc;
+
+/// Makes tetrahedral meshes of surfaces, of piecewise linear complexes and of points. See the module's text for an
+/// example.
+///
+/// It can be cloned, sent to other threads and used again; runs share nothing.
+///
+/// ```
+/// use anastomesh_tet::{Interior, Plc, Tetrahedralizer};
+///
+/// let surface = anastomesh_mesh::shapes::sphere_surface(2);
+/// let made = Tetrahedralizer::new().interior(Interior::None).optimize(false).run(&Plc::from(&surface))?;
+/// assert_eq!(made.faces, surface.triangles);
+/// # Ok::<(), anastomesh_tet::TetError>(())
+/// ```
+#[derive(Clone)]
+pub struct Tetrahedralizer {
+    kind: InputKind,
+    interior: Interior,
+    refinement: Option<Refinement>,
+    sizing: Sizing,
+    boundary: Boundary,
+    layers: Option<Layers>,
+    optimize: bool,
+    effort: Effort,
+    strict: bool,
+    progress: Option<Arc<dyn Progress + Send>>,
+}
+
+/// A certified mesh, and what it took.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Tetrahedralization {
+    /// The mesh; its points begin with the input's, in their order and bit for bit, also those that no tetrahedron has.
+    pub mesh: TetMesh,
+    /// Region of each tetrahedron; empty when there is only one and no seed has given it an id.
+    pub regions: Vec<i32>,
+    /// The triangles of the input, in their order, or their pieces where they were split, without those that are left
+    /// out (`summary.left_out`). Those on the boundary are oriented outwards; those inside as they came.
+    pub faces: Vec<[u32; 3]>,
+    /// Marker of each of `faces`; empty when the input has none.
+    pub face_markers: Vec<i32>,
+    /// The triangle of the input that each of `faces` is, or is a piece of; empty when each is the one of the same
+    /// number, as it is where none may be split and none is left out.
+    pub origins: Vec<u32>,
+    /// What it took.
+    pub summary: Summary,
+}
+
+/// What a mesh took.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Summary {
+    /// What recovery did.
+    pub recovery: RecoverySummary,
+    /// What improvement did, where it was asked for.
+    pub optimize: Option<OptimizeReport>,
+    /// What refinement did, where it was asked for.
+    pub refine: Option<RefineReport>,
+    /// Number of regions.
+    pub regions: usize,
+    /// Triangles of the boundary that came oriented inwards.
+    pub reversed: usize,
+    /// Triangles of the input between two tetrahedra.
+    pub interior_faces: usize,
+    /// Triangles and segments of the input that lie outside of what is filled, or in a hole: the mesh does not have
+    /// them. There are none in a strict run.
+    pub left_out: LeftOut,
+    /// What became of layers, where they were asked for.
+    pub layers: Option<LayerSummary>,
+}
+
+impl Default for Tetrahedralizer {
+    fn default() -> Self {
+        let TetOptions { interior, optimize, .. } = TetOptions::default();
+        Self {
+            kind: InputKind::default(),
+            interior,
+            refinement: None,
+            sizing: Sizing::default(),
+            boundary: Boundary::default(),
+            layers: None,
+            optimize,
+            effort: Effort::Full,
+            strict: false,
+            progress: None,
+        }
+    }
+}
+
+impl Tetrahedralizer {
+    /// For closed surfaces, kept as they are, with a lattice of points inside and the mesh improved.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What the input is.
+    #[must_use]
+    pub fn kind(mut self, kind: InputKind) -> Self {
+        self.kind = kind;
+        self
+    }
+
+    /// Which points are put inside before anything else.
+    #[must_use]
+    pub fn interior(mut self, interior: Interior) -> Self {
+        self.interior = interior;
+        self
+    }
+
+    /// Delaunay refinement: tetrahedra that are too large or badly shaped are split.
+    #[must_use]
+    pub fn refine(mut self, refinement: Option<Refinement>) -> Self {
+        self.refinement = refinement;
+        self
+    }
+
+    /// How long the edges of a refined mesh are to be.
+    #[must_use]
+    pub fn sizing(mut self, sizing: Sizing) -> Self {
+        self.sizing = sizing;
+        self
+    }
+
+    /// Whether the triangles of the input may be split.
+    #[must_use]
+    pub fn boundary(mut self, boundary: Boundary) -> Self {
+        self.boundary = boundary;
+        self
+    }
+
+    /// Layers of thin tetrahedra along a closed surface, in place of the same as everywhere. What else is asked for holds inside
+    /// of them.
+    #[must_use]
+    pub fn layers(mut self, layers: Option<Layers>) -> Self {
+        self.layers = layers;
+        self
+    }
+
+    /// Whether the mesh is improved, with its boundary as it is.
+    #[must_use]
+    pub fn optimize(mut self, optimize: bool) -> Self {
+        self.optimize = optimize;
+        self
+    }
+
+    /// How hard the improvement tries; all it can unless told otherwise.
+    #[must_use]
+    pub fn effort(mut self, effort: Effort) -> Self {
+        self.effort = effort;
+        self
+    }
+
+    /// Whether triangles and segments with the outside, or holes, on all their sides are an error,
+    /// [`TetError::Outside`]. Otherwise they are left out, and the summary lists them; their points stay, unused.
+    #[must_use]
+    pub fn strict(mut self, strict: bool) -> Self {
+        self.strict = strict;
+        self
+    }
+
+    /// Who is told about the progress, and asked whether to stop; a run then ends with [`TetError::Cancelled`].
+    #[must_use]
+    pub fn progress(mut self, progress: impl Progress + Send + 'static) -> Self {
+        self.progress = Some(Arc::new(progress));
+        self
+    }
+
+    /// The refinement and the sizing asked for.
+    pub(super) fn wishes(&self) -> (Option<&Refinement>, &Sizing) {
+        (self.refinement.as_ref(), &self.sizing)
+    }
+
+    fn watch(&self) -> Watch<'_> {
+        self.progress.as_deref().map_or(Watch::NOBODY, |progress| Watch::of(progress))
+    }
+
+    /// Makes a mesh of a complex. Success means that it has passed the certificate: each triangle of the input that bounds or lies in what is filled is a face
+    /// of it.
+    ///
+    /// # Errors
+    /// [`TetError`]: what is wrong with the input, or what could not be recovered.
+    pub fn run(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
+        let watch = self.watch();
+        watch.report(Stage::Validate, 0, 1)?;
+        input::check_lengths(plc)?;
+        let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
+        let edges = input::validate(&surface, &plc.edges, self.kind)?;
+        watch.report(Stage::Validate, 1, 1)?;
+        self.check_layers(plc)?;
+        if self.boundary == Boundary::Split {
+            sized::check(self.refinement.as_ref(), &self.sizing, plc.points.len())?;
+            return self.run_split(plc);
+        }
+        let request = Request {
+            surface: &surface,
+            edges: &edges,
+            segments: &plc.edges,
+            kind: self.kind,
+            holes: if self.kind == InputKind::Plc { &plc.holes } else { &[] },
+            regions: &plc.regions,
+            interior: &self.interior,
+            refinement: self.refinement.as_ref(),
+            sizing: &self.sizing,
+            optimize: self.optimize,
+            certify: true,
+            effort: self.effort,
+            strict: self.strict,
+            label: true,
+            watch: &watch,
+        };
+        let (filled, layers) = match &self.layers {
+            Some(layers) => layered(&request, layers).map(|(filled, about)| (filled, Some(about)))?,
+            None => (fill(&request)?, None),
+        };
+        let outward = |(t, place): (&[u32; 3], &Place)| match place {
+            Place::Reversed => [t[0], t[2], t[1]],
+            Place::Boundary | Place::Inside => *t,
+        };
+        let count = |wanted: Place| filled.places.iter().filter(|&&p| p == wanted).count();
+        let outside = &filled.left_out.triangles;
+        let kept = filled.left_out.kept_surface(&surface);
+        let origins = if outside.is_empty() { Vec::new() } else { without(&triangle_ids(&surface), outside) };
+        Ok(Tetrahedralization {
+            faces: kept.triangles.iter().zip(&filled.places).map(outward).collect(),
+            face_markers: without(&plc.markers, outside),
+            origins,
+            summary: Summary {
+                recovery: filled.recovery,
+                optimize: filled.optimize,
+                refine: filled.refine,
+                regions: filled.region_count,
+                reversed: count(Place::Reversed),
+                interior_faces: count(Place::Inside),
+                left_out: filled.left_out,
+                layers,
+            },
+            mesh: filled.mesh,
+            regions: filled.regions,
+        })
+    }
+
+    /// Whether the layers that are asked for make sense, and with what they are asked for.
+    fn check_layers(&self, plc: &Plc) -> Result<(), TetError> {
+        let Some(layers) = &self.layers else { return Ok(()) };
+        layers.check()?;
+        let along = |what| Err(TetError::LayersAlong(what));
+        match () {
+            () if self.boundary == Boundary::Split => along("they may not be split"),
+            () if self.kind == InputKind::Plc => along("this is a complex of facets"),
+            () if !plc.edges.is_empty() => along("there are segments besides"),
+            () => Ok(()),
+        }
+    }
+
+    /// Checks an input without meshing it: all that [`Tetrahedralizer::run`] checks, and that no points coincide, no
+    /// triangle is there twice, no two triangles meet but in common vertices and edges, and no further point lies in a
+    /// triangle. Segments are not tested against triangles.
+    ///
+    /// ```
+    /// use anastomesh_tet::{Plc, TetError, Tetrahedralizer};
+    ///
+    /// let mut surface = anastomesh_mesh::shapes::sphere_surface(2);
+    /// surface.triangles.pop();
+    /// let fault = Tetrahedralizer::new().check(&Plc::from(surface));
+    /// assert!(matches!(fault, Err(TetError::Open { edges: 3, .. })), "{fault:?}");
+    /// # Ok::<(), anastomesh_tet::TetError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The first fault, with the ids of the offenders.
+    pub fn check(&self, plc: &Plc) -> Result<(), TetError> {
+        let watch = self.watch();
+        watch.report(Stage::Validate, 0, 1)?;
+        input::check_lengths(plc)?;
+        let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
+        input::validate(&surface, &plc.edges, self.kind)?;
+        input::no_duplicate_points(&surface.points)?;
+        input::no_duplicate_triangles(&surface.triangles)?;
+        contacts::no_contacts(&surface, &watch)?;
+        contacts::no_points_in_triangles(&surface)?;
+        watch.report(Stage::Validate, 1, 1)
+    }
+
+    /// The Delaunay tetrahedralization of points. `faces` are those of the convex hull.
+    ///
+    /// ```
+    /// use anastomesh_mesh::Point3;
+    ///
+    /// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+    /// let made = anastomesh_tet::Tetrahedralizer::new().delaunay(&points)?;
+    /// assert_eq!((made.mesh.tets.len(), made.faces.len()), (1, 4));
+    /// # Ok::<(), anastomesh_tet::TetError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`],
+    /// [`TetError::Cancelled`].
+    pub fn delaunay(&self, points: &[Point3]) -> Result<Tetrahedralization, TetError> {
+        let watch = self.watch();
+        watch.report(Stage::Delaunay, 0, 1)?;
+        let complex = delaunay::delaunay_watched(points, &watch)?;
+        watch.report(Stage::Delaunay, 1, 1)?;
+        watch.report(Stage::Certify, 0, 1)?;
+        let faces = hull(&complex);
+        let mesh = complex.into_mesh();
+        certify_conforming(&mesh)?;
+        watch.report(Stage::Certify, 1, 1)?;
+        Ok(Tetrahedralization { mesh, faces, ..Tetrahedralization::default() })
+    }
+}
+
+fn triangle_ids(surface: &TriMesh) -> Vec<u32> {
+    (0..surface.triangles.len() as u32).collect()
+}
+
+/// The faces under the ghosts, oriented outwards.
+fn hull(c: &Complex) -> Vec<[u32; 3]> {
+    let halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
+    halves.filter(|&h| c.is_ghost(c.mate(h) >> 2)).map(|h| c.face(h)).collect()
+}
+
+impl std::fmt::Debug for Tetrahedralizer {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Tetrahedralizer")
+            .field("kind", &self.kind)
+            .field("interior", &self.interior)
+            .field("refinement", &self.refinement)
+            .field("sizing", &self.sizing)
+            .field("boundary", &self.boundary)
+            .field("optimize", &self.optimize)
+            .field("effort", &self.effort)
+            .field("strict", &self.strict)
+            .field("watch", &self.watch())
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,170 @@
+//! Carving: what lies outside of the recovered surface goes.
+
+use super::complex::{Complex, NONE};
+use super::error::TetError;
+use super::plc::InputKind;
+use super::regions::tets_of_seeds;
+use super::star::Star;
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::Point3;
+
+const UNSEEN: u8 = 2;
+const OUTSIDE: u8 = 0;
+const INSIDE: u8 = 1;
+
+/// The side of each tetrahedron of a complex.
+pub(super) struct Sides(Vec<u8>);
+
+impl Sides {
+    /// Finds them for a surface whose triangles are the frozen faces of `c`.
+    ///
+    /// # Errors
+    /// [`TetError::NotSeparating`] when a triangle of a closed surface has the same side on both sides;
+    /// [`TetError::NothingEnclosed`] and [`TetError::BadSeed`] for other complexes.
+    pub(super) fn find(c: &Complex, surface: &TriMesh, kind: InputKind, holes: &[Point3]) -> Result<Self, TetError> {
+        match kind {
+            InputKind::Closed => sides_by_parity(c, surface),
+            InputKind::Plc => sides_by_reach(c, holes),
+        }
+        .map(Self)
+    }
+
+    /// Whether a tetrahedron is kept.
+    pub(super) fn is_inside(&self, t: u32) -> bool {
+        self.0[t as usize] == INSIDE
+    }
+
+    /// Whether neither of the tetrahedra at a half-face is kept.
+    pub(super) fn outside_of_both(&self, c: &Complex, half: u32) -> bool {
+        !self.is_inside(half >> 2) && !self.is_inside(c.mate(half) >> 2)
+    }
+
+    /// Whether there are triangles of the surface between two tetrahedra that are not kept.
+    pub(super) fn has_faces_outside(&self, c: &Complex) -> bool {
+        let mut halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
+        halves.any(|h| c.is_frozen(h) && self.outside_of_both(c, h))
+    }
+}
+
+/// Keeps the tetrahedra inside the surface and drops the points that are neither the surface's nor in use.
+pub(super) fn carve(c: &Complex, surface: &TriMesh, sides: &Sides) -> Complex {
+    let n = surface.points.len();
+    let mut id = vec![NONE; c.points.len()];
+    for (v, slot) in id.iter_mut().enumerate().take(n) {
+        *slot = v as u32;
+    }
+    for t in c.real_tets().filter(|&t| sides.is_inside(t)) {
+        for v in c.verts(t) {
+            if v as usize >= n {
+                id[v as usize] = 0;
+            }
+        }
+    }
+    let mut points = surface.points.clone();
+    for (slot, p) in id.iter_mut().zip(&c.points).skip(n) {
+        if *slot == 0 {
+            *slot = points.len() as u32;
+            points.push(*p);
+        }
+    }
+    c.part(points, &id, |t| sides.is_inside(t))
+}
+
+/// Some ghost: it is outside.
+fn infinity(c: &Complex) -> Option<u32> {
+    (0..c.slots() as u32).find(|&t| c.is_alive(t) && c.is_ghost(t))
+}
+
+/// For every tetrahedron the parity of frozen faces on the way from infinity: crossing one changes sides, so shells may
+/// be nested, and it does not matter which way they are turned.
+fn sides_by_parity(c: &Complex, surface: &TriMesh) -> Result<Vec<u8>, TetError> {
+    let mut side = vec![UNSEEN; c.slots()];
+    let mut stack = Vec::new();
+    if let Some(ghost) = infinity(c) {
+        side[ghost as usize] = OUTSIDE;
+        stack.push(ghost);
+    }
+    while let Some(t) = stack.pop() {
+        for i in 0..4 {
+            let half = 4 * t + i;
+            let n = c.mate(half) >> 2;
+            if side[n as usize] == UNSEEN {
+                side[n as usize] = side[t as usize] ^ u8::from(c.is_frozen(half));
+                stack.push(n);
+            }
+        }
+    }
+    let halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
+    let mut lost = halves
+        .filter(|&h| (side[(h >> 2) as usize] == side[(c.mate(h) >> 2) as usize]) == c.is_frozen(h))
+        .map(|h| triangle_at(c, surface, h));
+    match lost.next() {
+        Some(triangle) => Err(TetError::NotSeparating { triangle }),
+        None => Ok(side),
+    }
+}
+
+/// The triangle with the vertices of a half-face.
+fn triangle_at(c: &Complex, surface: &TriMesh, half: u32) -> u32 {
+    let f = c.face(half);
+    surface.triangles.iter().position(|t| t.iter().all(|v| f.contains(v))).unwrap_or(0) as u32
+}
+
+/// For every tetrahedron whether it can be reached from infinity or from a hole without crossing a frozen face.
+fn sides_by_reach(c: &Complex, holes: &[Point3]) -> Result<Vec<u8>, TetError> {
+    let mut side = vec![INSIDE; c.slots()];
+    let mut stack: Vec<u32> = infinity(c).into_iter().collect();
+    for (index, (t, &position)) in tets_of_seeds(c, holes).into_iter().zip(holes).enumerate() {
+        stack.push(t.ok_or(TetError::BadSeed { what: "holes", index: index as u32, position })?);
+    }
+    for &t in &stack {
+        side[t as usize] = OUTSIDE;
+    }
+    while let Some(t) = stack.pop() {
+        for i in 0..4 {
+            let half = 4 * t + i;
+            let n = c.mate(half) >> 2;
+            if side[n as usize] == INSIDE && !c.is_frozen(half) {
+                side[n as usize] = OUTSIDE;
+                stack.push(n);
+            }
+        }
+    }
+    if !c.real_tets().any(|t| side[t as usize] == INSIDE) {
+        return Err(TetError::NothingEnclosed);
+    }
+    Ok(side)
+}
+
+/// Freezes the faces around the segments of a complex that are no edges of triangles, so that no improvement of the
+/// mesh removes them. Returns the faces, to be thawed by [`release_segments`].
+pub(super) fn hold_segments(c: &mut Complex, segments: &[[u32; 2]]) -> Vec<[u32; 3]> {
+    let mut star = Star::default();
+    let mut ring = super::star::EdgeRing::default();
+    let mut held = Vec::new();
+    for &[a, b] in segments {
+        let Some(t) = star.find_edge(c, a, b) else { continue };
+        if !ring.collect(c, t, a, b, usize::MAX) || ring.touches_ghost() {
+            continue;
+        }
+        for i in 0..ring.len() {
+            if let Some(half) = ring.spoke(c, i)
+                && !c.is_frozen(half)
+            {
+                c.freeze(half);
+                held.push(c.face(half));
+            }
+        }
+    }
+    held
+}
+
+/// Thaws faces.
+pub(super) fn release_segments(c: &mut Complex, held: &[[u32; 3]]) {
+    let mut star = Star::default();
+    for &f in held {
+        if let Some(half) = star.find_face(c, f) {
+            c.thaw(half);
+        }
+    }
+}

@@ -1,0 +1,543 @@
+//! The tetrahedral complex: an array of tetrahedra, neighbours glued face to face.
+//!
+//! A *half-face* `4 * tet + face` is face `face` of tetrahedron `tet` (opposite its vertex `face`); gluing pairs
+//! half-faces. *Ghost* tetrahedra, whose last vertex is [`GHOST`], stand on the outer side of every boundary face, so
+//! that each half-face has a mate. Around a convex hull as around a carved domain, ghosts are glued to each other
+//! across the boundary's edges.
+
+use anastomesh_mesh::adjacency::tet_adjacency;
+pub(crate) use anastomesh_mesh::face_key;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::{TET_FACES, TetMesh};
+
+/// The vertex at infinity, last vertex of every ghost tetrahedron.
+pub const GHOST: u32 = u32::MAX;
+
+/// First vertex of a deleted tetrahedron.
+const DEAD: u32 = u32::MAX - 1;
+
+/// No tetrahedron, no half-face.
+pub const NONE: u32 = u32::MAX;
+
+/// `OTHERS[i][j]`: the other two vertices `(k, l)` of a tetrahedron, so that `(i, j, k, l)` is an even permutation.
+pub const OTHERS: [[[usize; 2]; 4]; 4] = [
+    [[0, 0], [2, 3], [3, 1], [1, 2]],
+    [[3, 2], [0, 0], [0, 3], [2, 0]],
+    [[1, 3], [3, 0], [0, 0], [0, 1]],
+    [[2, 1], [0, 2], [1, 0], [0, 0]],
+];
+
+/// Why arrays are not a complex.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ComplexError {
+    /// A vertex index out of range, or one vertex twice in a tetrahedron.
+    #[error("tetrahedron {tet} has vertices {vertices:?}, which are out of range or not distinct")]
+    BadVertices {
+        /// The tetrahedron.
+        tet: u32,
+        vertices: [u32; 4],
+    },
+    /// A tetrahedron that is flat or inverted by the exact predicate.
+    #[error("tetrahedron {tet} with vertices {vertices:?} is not positive")]
+    NotPositive {
+        /// The tetrahedron.
+        tet: u32,
+        vertices: [u32; 4],
+    },
+    /// A face that more than two tetrahedra share, or two on the same side of it.
+    #[error("face {face:?} is shared by more than two tetrahedra, or by two on the same side")]
+    FaceNotConforming {
+        /// Vertices of the face.
+        face: [u32; 3],
+    },
+    /// Half-faces that do not point at each other, or that are not the same face.
+    #[error("face {face} of tetrahedron {tet} is not glued properly")]
+    NotGlued {
+        /// The tetrahedron.
+        tet: u32,
+        /// Face of the tetrahedron.
+        face: u32,
+    },
+    /// The tetrahedron kept for a vertex does not contain it.
+    #[error("the tetrahedron kept for vertex {vertex} does not contain it")]
+    BadVertexTet { vertex: u32 },
+}
+
+/// A tetrahedron: its vertices, and across each of them the half-face glued to the opposite face. One half of a cache
+/// line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Cell {
+    pub(super) verts: [u32; 4],
+    pub(super) mates: [u32; 4],
+}
+
+impl Cell {
+    /// No tetrahedron.
+    pub(super) const EMPTY: Self = Self { verts: [NONE; 4], mates: [NONE; 4] };
+}
+
+/// Tetrahedra and ghosts over a set of points. See the module's text for half-faces and ghosts.
+#[derive(Clone, Debug, Default)]
+pub struct Complex {
+    /// Vertex positions.
+    pub points: Vec<Point3>,
+    cells: Vec<Cell>,
+    /// Bit `i`: face `i` may not be flipped away. Both half-faces of a frozen face carry it.
+    frozen: Vec<u8>,
+    free: Vec<u32>,
+    vertex_tet: Vec<u32>,
+    scratch: ReplaceScratch,
+}
+
+#[derive(Clone, Debug, Default)]
+struct ReplaceScratch {
+    faces: Vec<FaceRecord>,
+    slots: Vec<u32>,
+}
+
+/// A face on its way to being glued: its sorted vertices, whether it belongs to a new tetrahedron, its half-face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct FaceRecord {
+    key: [u32; 3],
+    inner: bool,
+    half: u32,
+}
+
+/// The vertices of face `i` of a tetrahedron, counter-clockwise seen from outside.
+#[inline]
+pub fn face_of(v: &[u32; 4], i: usize) -> [u32; 3] {
+    TET_FACES[i].map(|k| v[k])
+}
+
+impl Complex {
+    /// A complex of points without tetrahedra.
+    pub fn new(points: Vec<Point3>) -> Self {
+        let n = points.len();
+        Self { points, vertex_tet: vec![NONE; n], ..Self::default() }
+    }
+
+    /// Makes room for `tets` tetrahedra.
+    pub fn reserve(&mut self, tets: usize) {
+        self.cells.reserve(tets);
+        self.frozen.reserve(tets);
+    }
+
+    /// A complex of glued cells, with the ghost vertex last where there is one, as [`Complex::sanity_check`] wants it.
+    /// The slots `free` hold no tetrahedra.
+    pub(super) fn from_cells(points: Vec<Point3>, cells: Vec<Cell>, free: Vec<u32>, vertex_tet: Vec<u32>) -> Self {
+        let frozen = vec![0; cells.len()];
+        let mut c = Self { points, cells, frozen, vertex_tet, free, scratch: ReplaceScratch::default() };
+        for k in 0..c.free.len() {
+            c.cells[c.free[k] as usize].verts = [DEAD; 4];
+        }
+        c
+    }
+
+    /// Glues tetrahedra and closes their boundary with ghosts. The boundary may be any shape, also one that touches
+    /// itself in edges or vertices.
+    ///
+    /// # Errors
+    /// Indices out of range, tetrahedra that are not positive, faces that do not conform.
+    pub fn from_mesh(points: Vec<Point3>, tets: &[[u32; 4]]) -> Result<Self, ComplexError> {
+        let mut c = Self::new(points);
+        for (t, v) in tets.iter().enumerate() {
+            c.check_vertices(t as u32, v)?;
+            c.alloc(*v);
+        }
+        let open = c.glue_all(tets)?;
+        c.add_ghosts(&open);
+        Ok(c)
+    }
+
+    fn check_vertices(&self, tet: u32, v: &[u32; 4]) -> Result<(), ComplexError> {
+        let distinct = (0..4).all(|i| (0..i).all(|j| v[i] != v[j]));
+        if !distinct || v.iter().any(|&x| x as usize >= self.points.len()) {
+            return Err(ComplexError::BadVertices { tet, vertices: *v });
+        }
+        if self.orient(v) > 0.0 { Ok(()) } else { Err(ComplexError::NotPositive { tet, vertices: *v }) }
+    }
+
+    /// Glues all faces that two tetrahedra share; returns the half-faces that are left over.
+    fn glue_all(&mut self, tets: &[[u32; 4]]) -> Result<Vec<u32>, ComplexError> {
+        let adjacency = tet_adjacency(tets, self.points.len());
+        if let Some(&half) = adjacency.crowded.first() {
+            return Err(ComplexError::FaceNotConforming { face: self.face(half) });
+        }
+        let mut open = Vec::new();
+        for half in 0..4 * tets.len() as u32 {
+            let mate = adjacency.neighbors[(half >> 2) as usize][(half & 3) as usize];
+            if mate == NONE {
+                open.push(half);
+            } else if mate > half && !opposed(self.face(half), self.face(mate)) {
+                return Err(ComplexError::FaceNotConforming { face: self.face(half) });
+            }
+        }
+        for (cell, mates) in self.cells.iter_mut().zip(adjacency.neighbors) {
+            cell.mates = mates;
+        }
+        Ok(open)
+    }
+
+    /// The part of the complex whose tetrahedra have `keep`, with the vertices `id[v]` (others are [`NONE`]) at
+    /// `points`; ghosts close it. Frozen faces stay frozen.
+    pub(super) fn part(&self, points: Vec<Point3>, id: &[u32], keep: impl Fn(u32) -> bool) -> Self {
+        let mut part = Self::new(points);
+        let mut new_tet = vec![NONE; self.slots()];
+        let kept: Vec<u32> = self.real_tets().filter(|&t| keep(t)).collect();
+        // Ghosts are about a tenth.
+        part.reserve(kept.len() + kept.len() / 8);
+        for &t in &kept {
+            new_tet[t as usize] = part.alloc(self.verts(t).map(|v| id[v as usize]));
+        }
+        let mut open = Vec::new();
+        for (new, &t) in kept.iter().enumerate() {
+            part.frozen[new] = self.frozen[t as usize];
+            for i in 0..4 {
+                let mate = self.cells[t as usize].mates[i];
+                let n = new_tet[(mate >> 2) as usize];
+                if n == NONE {
+                    open.push(4 * new as u32 + i as u32);
+                } else {
+                    part.cells[new].mates[i] = 4 * n + (mate & 3);
+                }
+            }
+        }
+        part.add_ghosts(&open);
+        for &half in &open {
+            if part.is_frozen(half) {
+                part.freeze(half);
+            }
+        }
+        part
+    }
+
+    /// Stands a ghost on each of the open half-faces and glues the ghosts to each other.
+    fn add_ghosts(&mut self, open: &[u32]) {
+        for &half in open {
+            let [a, b, c] = self.face(half);
+            let ghost = self.alloc([a, b, c, GHOST]);
+            self.glue(half, 4 * ghost + 3);
+        }
+        for &half in open {
+            let ghost = self.mate(half) / 4;
+            for i in 0..3 {
+                if self.mate(4 * ghost + i) == NONE {
+                    self.glue_ghost_edge(half, ghost, i);
+                }
+            }
+        }
+    }
+
+    /// Glues face `i` of a ghost to the ghost on the boundary face that ends the fan of tetrahedra around their edge.
+    fn glue_ghost_edge(&mut self, half: u32, ghost: u32, i: u32) {
+        let f = self.face(half);
+        let edge = [f[(i as usize + 1) % 3], f[(i as usize + 2) % 3]];
+        let mut h = half;
+        loop {
+            // The other face of the tetrahedron at the edge.
+            let t = h / 4;
+            let next = (0..4)
+                .find(|&j| j != h % 4 && !edge.contains(&self.cells[t as usize].verts[j as usize]))
+                .map_or(h, |j| 4 * t + j);
+            let mate = self.mate(next);
+            if !self.is_ghost(mate / 4) {
+                h = mate;
+                continue;
+            }
+            let other = mate / 4;
+            let v = self.cells[other as usize].verts;
+            if let Some(j) = (0..3).find(|&j| !edge.contains(&v[j as usize])) {
+                self.glue(4 * ghost + i, 4 * other + j);
+            }
+            return;
+        }
+    }
+
+    /// The real tetrahedra, in the order of their slots, and all points.
+    pub fn into_mesh(self) -> TetMesh {
+        let tets = self.real_tets().map(|t| self.cells[t as usize].verts).collect();
+        TetMesh { points: self.points, tets }
+    }
+
+    /// As [`Complex::into_mesh`], without the points from `fixed` on that no tetrahedron has.
+    pub fn into_compact_mesh(self, fixed: usize) -> TetMesh {
+        let mut mesh = self.into_mesh();
+        mesh.drop_unused_points(fixed);
+        mesh
+    }
+
+    /// Number of slots; tetrahedra are numbered below it, deleted ones included.
+    pub fn slots(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Whether slot `t` holds a tetrahedron, real or ghost.
+    #[inline]
+    pub fn is_alive(&self, t: u32) -> bool {
+        self.cells[t as usize].verts[0] != DEAD
+    }
+
+    /// Whether `t` stands outside the boundary.
+    #[inline]
+    pub fn is_ghost(&self, t: u32) -> bool {
+        self.cells[t as usize].verts[3] == GHOST
+    }
+
+    /// Whether `t` is alive and no ghost.
+    #[inline]
+    pub fn is_real(&self, t: u32) -> bool {
+        self.is_alive(t) && !self.is_ghost(t)
+    }
+
+    /// The real tetrahedra in the order of their slots.
+    pub fn real_tets(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.slots() as u32).filter(|&t| self.is_real(t))
+    }
+
+    /// The four vertices of `t`.
+    #[inline]
+    pub fn verts(&self, t: u32) -> [u32; 4] {
+        self.cells[t as usize].verts
+    }
+
+    /// What a slot holds.
+    #[inline]
+    pub(super) fn cell(&self, t: u32) -> &Cell {
+        &self.cells[t as usize]
+    }
+
+    /// The half-face glued to `half`.
+    #[inline]
+    pub fn mate(&self, half: u32) -> u32 {
+        self.cells[(half >> 2) as usize].mates[(half & 3) as usize]
+    }
+
+    /// The tetrahedron across face `i` of `t`.
+    #[inline]
+    pub fn neighbor(&self, t: u32, i: usize) -> u32 {
+        self.cells[t as usize].mates[i] >> 2
+    }
+
+    /// Vertices of a half-face, counter-clockwise seen from outside its tetrahedron.
+    #[inline]
+    pub fn face(&self, half: u32) -> [u32; 3] {
+        face_of(&self.cells[(half >> 2) as usize].verts, (half & 3) as usize)
+    }
+
+    /// The vertex of the half-face's tetrahedron opposite to it.
+    #[inline]
+    pub fn apex(&self, half: u32) -> u32 {
+        self.cells[(half >> 2) as usize].verts[(half & 3) as usize]
+    }
+
+    /// Slot of vertex `v` in `t`.
+    #[inline]
+    pub fn slot_of(&self, t: u32, v: u32) -> Option<usize> {
+        self.cells[t as usize].verts.iter().position(|&x| x == v)
+    }
+
+    /// A tetrahedron (perhaps a ghost) at vertex `v`; [`NONE`] when no tetrahedron has it.
+    #[inline]
+    pub fn vertex_tet(&self, v: u32) -> u32 {
+        self.vertex_tet[v as usize]
+    }
+
+    /// Whether the face may not be flipped away.
+    #[inline]
+    pub fn is_frozen(&self, half: u32) -> bool {
+        self.frozen[(half >> 2) as usize] & (1 << (half & 3)) != 0
+    }
+
+    /// Freezes a face on both sides: no flip removes it.
+    pub fn freeze(&mut self, half: u32) {
+        let mate = self.mate(half);
+        for h in [half, mate] {
+            self.frozen[(h >> 2) as usize] |= 1 << (h & 3);
+        }
+    }
+
+    /// Thaws a face on both sides.
+    pub fn thaw(&mut self, half: u32) {
+        let mate = self.mate(half);
+        for h in [half, mate] {
+            self.frozen[(h >> 2) as usize] &= !(1 << (h & 3));
+        }
+    }
+
+    /// Exact orientation of a tetrahedron of real vertices: positive, zero or negative.
+    #[inline]
+    pub fn orient(&self, v: &[u32; 4]) -> f64 {
+        let [a, b, c, d] = v.map(|i| &self.points[i as usize]);
+        orient3d(a, b, c, d)
+    }
+
+    /// Adds a point without a tetrahedron; returns its vertex.
+    pub fn add_point(&mut self, p: Point3) -> u32 {
+        self.points.push(p);
+        self.vertex_tet.push(NONE);
+        self.points.len() as u32 - 1
+    }
+
+    /// Takes back the point added last, which no tetrahedron may have.
+    pub(super) fn pop_point(&mut self) {
+        self.points.pop();
+        self.vertex_tet.pop();
+    }
+
+    /// Takes a slot for a tetrahedron, unglued.
+    #[inline]
+    pub fn alloc(&mut self, v: [u32; 4]) -> u32 {
+        let t = if let Some(t) = self.free.pop() {
+            self.cells[t as usize] = Cell { verts: v, mates: [NONE; 4] };
+            self.frozen[t as usize] = 0;
+            t
+        } else {
+            self.cells.push(Cell { verts: v, mates: [NONE; 4] });
+            self.frozen.push(0);
+            self.cells.len() as u32 - 1
+        };
+        self.set_vertex_tets(t);
+        t
+    }
+
+    #[inline]
+    fn set_vertex_tets(&mut self, t: u32) {
+        for v in self.cells[t as usize].verts {
+            if v != GHOST {
+                self.vertex_tet[v as usize] = t;
+            }
+        }
+    }
+
+    /// Deletes a tetrahedron. Its mates keep pointing at it until they are glued anew.
+    #[inline]
+    pub fn free(&mut self, t: u32) {
+        self.cells[t as usize].verts = [DEAD; 4];
+        self.free.push(t);
+    }
+
+    /// Glues two half-faces.
+    #[inline]
+    pub fn glue(&mut self, a: u32, b: u32) {
+        self.cells[(a >> 2) as usize].mates[(a & 3) as usize] = b;
+        self.cells[(b >> 2) as usize].mates[(b & 3) as usize] = a;
+    }
+
+    /// Exchanges the tetrahedra `old` for others that fill the same room: the faces of `new` must match each other and
+    /// the boundary of `old`. Every local change is made through this. Frozen faces on the boundary stay frozen. The
+    /// slots of `new` are put into `created`. Returns false, and changes nothing, when the faces do not match.
+    ///
+    /// Geometry is not looked at: the caller has made sure that each of `new` is positive.
+    pub fn replace(&mut self, old: &[u32], new: &[[u32; 4]], created: &mut Vec<u32>) -> bool {
+        let mut s = std::mem::take(&mut self.scratch);
+        let fits = self.collect_faces(old, new, &mut s.faces);
+        if fits {
+            self.apply(old, new, &mut s, created);
+        }
+        self.scratch = s;
+        fits
+    }
+
+    /// Sorts the faces of `new` (as half-faces of `4 * position + face`) and the outer mates of `old` into pairs.
+    fn collect_faces(&self, old: &[u32], new: &[[u32; 4]], faces: &mut Vec<FaceRecord>) -> bool {
+        faces.clear();
+        for &t in old {
+            for i in 0..4 {
+                let half = 4 * t + i;
+                let mate = self.mate(half);
+                if !old.contains(&(mate >> 2)) {
+                    faces.push(FaceRecord { key: face_key(self.face(half)), inner: false, half: mate });
+                }
+            }
+        }
+        for (k, v) in new.iter().enumerate() {
+            for i in 0..4 {
+                faces.push(FaceRecord { key: face_key(face_of(v, i)), inner: true, half: (4 * k + i) as u32 });
+            }
+        }
+        faces.sort_unstable();
+        let face = |r: &FaceRecord| {
+            if r.inner { face_of(&new[(r.half >> 2) as usize], (r.half & 3) as usize) } else { self.face(r.half) }
+        };
+        faces.len().is_multiple_of(2)
+            && faces.chunks_exact(2).all(|p| p[0].key == p[1].key && p[1].inner && opposed(face(&p[0]), face(&p[1])))
+            && faces.windows(3).all(|p| p[0].key != p[2].key)
+    }
+
+    fn apply(&mut self, old: &[u32], new: &[[u32; 4]], s: &mut ReplaceScratch, created: &mut Vec<u32>) {
+        for &t in old {
+            for v in self.verts(t) {
+                if v != GHOST {
+                    self.vertex_tet[v as usize] = NONE;
+                }
+            }
+            self.free(t);
+        }
+        s.slots.clear();
+        for v in new {
+            s.slots.push(self.alloc(*v));
+        }
+        let place = |half: u32| 4 * s.slots[(half >> 2) as usize] + (half & 3);
+        for pair in s.faces.chunks_exact(2) {
+            let b = place(pair[1].half);
+            if pair[0].inner {
+                self.glue(place(pair[0].half), b);
+            } else {
+                let a = pair[0].half;
+                self.glue(a, b);
+                if self.is_frozen(a) {
+                    self.frozen[(b >> 2) as usize] |= 1 << (b & 3);
+                }
+            }
+        }
+        created.clear();
+        created.extend_from_slice(&s.slots);
+    }
+
+    /// Checks every invariant: gluing is mutual, glued faces are one face seen from both sides, every real tetrahedron
+    /// is positive by the exact predicate, ghosts stand on all boundary faces, vertices know a tetrahedron of theirs.
+    ///
+    /// # Errors
+    /// The first invariant that does not hold.
+    pub fn sanity_check(&self) -> Result<(), ComplexError> {
+        for t in (0..self.slots() as u32).filter(|&t| self.is_alive(t)) {
+            let vertices = self.verts(t);
+            let real = if self.is_ghost(t) { 3 } else { 4 };
+            let known = vertices[..real].iter().all(|&v| (v as usize) < self.points.len());
+            if !known || (0..4).any(|i| (0..i).any(|j| vertices[i] == vertices[j])) {
+                return Err(ComplexError::BadVertices { tet: t, vertices });
+            }
+            if real == 4 && self.orient(&vertices) <= 0.0 {
+                return Err(ComplexError::NotPositive { tet: t, vertices });
+            }
+            for i in 0..4 {
+                let half = 4 * t + i;
+                let mate = self.mate(half);
+                let glued = mate != NONE
+                    && ((mate >> 2) as usize) < self.slots()
+                    && self.is_alive(mate >> 2)
+                    && self.mate(mate) == half
+                    && self.is_frozen(half) == self.is_frozen(mate)
+                    && opposed(self.face(half), self.face(mate));
+                if !glued {
+                    return Err(ComplexError::NotGlued { tet: t, face: i });
+                }
+            }
+        }
+        for (v, &t) in self.vertex_tet.iter().enumerate() {
+            if t != NONE && (!self.is_alive(t) || !self.verts(t).contains(&(v as u32))) {
+                return Err(ComplexError::BadVertexTet { vertex: v as u32 });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether two faces are the same face with opposite rotation.
+pub fn opposed(f: [u32; 3], g: [u32; 3]) -> bool {
+    let back = [g[0], g[2], g[1]];
+    f == back || f == [back[1], back[2], back[0]] || f == [back[2], back[0], back[1]]
+}

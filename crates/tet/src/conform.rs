@@ -1,0 +1,204 @@
+//! A complex that has all of the surface: Delaunay, then recovery in one way after the other.
+
+use super::complex::Complex;
+use super::error::TetError;
+use super::input;
+use super::lattice;
+use super::options::{Interior, Refinement};
+use super::progress::Stage;
+use super::recover::exact::{Missing, Way, recover_exact};
+use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
+use super::request::Request;
+use super::{contacts, delaunay, sized};
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::predicates::MIN_MAGNITUDE;
+
+/// Side of the lattice's cubes in mean edge lengths of the surface.
+const CELL: f64 = 1.4;
+
+/// Distance of the lattice from the wall in mean edge lengths of the surface.
+const CLEARANCE: f64 = 0.45;
+
+/// Volume of the lattice's tetrahedra over the bound on volumes.
+const VOLUME_SHARE: f64 = 0.6;
+
+/// A failure whose cause may be the surface: then that is named instead.
+pub(super) fn diagnosis(r: &Request, error: TetError) -> TetError {
+    let checked = input::no_duplicate_points(&r.surface.points)
+        .and_then(|()| input::no_duplicate_triangles(&r.surface.triangles))
+        .and_then(|()| contacts::no_contacts(r.surface, r.watch))
+        .and_then(|()| contacts::no_points_in_triangles(r.surface));
+    checked.err().unwrap_or(error)
+}
+
+/// A complex that has all of the surface: by flips and vertices off it, and where these leave something over exactly.
+pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
+    let surface = r.surface;
+    r.watch.report(Stage::Delaunay, 0, 1)?;
+    let points = points(r)?;
+    let mut complex = delaunay::delaunay_watched(&points, r.watch)
+        .map_err(|e| name_interior(e, surface.points.len(), points.len() - 8))?;
+    r.watch.report(Stage::Delaunay, 1, 1)?;
+    let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, Rule::Positive, r.watch) {
+        Ok(summary) => return Ok((complex, summary)),
+        Err(TetError::NotRecovered { edges, triangles }) => (edges, triangles),
+        Err(TetError::Cancelled) => return Err(TetError::Cancelled),
+        Err(error) => return Err(diagnosis(r, error)),
+    };
+    // Exact recovery takes for granted that the surface does not meet itself.
+    contacts::no_contacts(surface, r.watch)?;
+    contacts::no_points_in_triangles(surface)?;
+    let missing = Missing { edges: &edges, triangles: &triangles };
+    exactly(r, &points, &complex, missing)
+}
+
+/// Recovers what flips have left over, in one way after the other.
+fn exactly(
+    r: &Request,
+    points: &[Point3],
+    complex: &Complex,
+    missing: Missing,
+) -> Result<(Complex, RecoverySummary), TetError> {
+    let flat = flat_height(&r.surface.points);
+    let single = flat_height_in_single(&r.surface.points);
+    let go_on = |ways: &[Way]| go_on(r, complex, points.len(), missing, (ways, flat));
+    let anew_in = |flat, ways: &[Way]| anew(r, points, flat, ways);
+    let anew = |flat| anew_in(flat, &Way::TURNED);
+    let rounded = single.filter(|&coarse| lies_turned(r.surface, missing.edges, coarse));
+    let planes = lies_in_planes(r.surface, missing.edges, flat);
+    let turned = planes || lies_turned(r.surface, missing.edges, flat) || has_flat(complex, flat, missing.edges.len());
+    let first = match rounded {
+        Some(coarse) => anew(coarse),
+        None if turned => anew(flat),
+        None => go_on(&Way::FIRST),
+    };
+    let second = again(first, || match single.filter(|_| rounded.is_none()) {
+        Some(coarse) => anew(coarse),
+        None if turned || rounded.is_some() => go_on(&Way::FIRST),
+        None => anew(flat),
+    });
+    let third = again(second, || go_on(&Way::OTHERS));
+    again(third, || anew_in(rounded.unwrap_or(flat), &Way::LAST))
+}
+
+/// Whether flips have left more flat tetrahedra than edges: they have met with flat parts.
+fn has_flat(complex: &Complex, height: f64, edges: usize) -> bool {
+    let flat = complex.real_tets().filter(|&t| !Rule::Thick(height).allows(complex, &complex.verts(t)));
+    flat.take(edges + 1).count() > edges
+}
+
+/// Tries another way after an error that may be owed to the way.
+fn again<T>(result: Result<T, TetError>, other: impl FnOnce() -> Result<T, TetError>) -> Result<T, TetError> {
+    if matches!(result, Err(TetError::Stuck { .. })) { other() } else { result }
+}
+
+/// Goes on in a complex that flips have left, in some ways.
+fn go_on(
+    r: &Request,
+    complex: &Complex,
+    points: usize,
+    missing: Missing,
+    ways: (&[Way], f64),
+) -> Result<(Complex, RecoverySummary), TetError> {
+    let before = complex.points.len() - points;
+    let (complex, exact) = recover_exact(complex, r.surface, r.edges, missing, ways, r.watch)?;
+    let (missing_edges, missing_triangles) = (missing.edges.len(), missing.triangles.len());
+    Ok((complex, RecoverySummary { missing_edges, missing_triangles, steiner_points: before + exact.steiner_points }))
+}
+
+/// Begins anew, and makes nothing that is thinner than `flat`; then goes on in some ways.
+fn anew(r: &Request, points: &[Point3], flat: f64, ways: &[Way]) -> Result<(Complex, RecoverySummary), TetError> {
+    let mut complex = delaunay::delaunay_watched(points, r.watch)?;
+    match recover::recover(&mut complex, r.surface, r.edges, Rule::Thick(flat), r.watch) {
+        Ok(summary) => Ok((complex, summary)),
+        Err(TetError::NotRecovered { edges, triangles }) => {
+            let missing = Missing { edges: &edges, triangles: &triangles };
+            go_on(r, &complex, points.len(), missing, (ways, flat))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The surface's points, those inside, and at last eight around.
+fn points(r: &Request) -> Result<Vec<Point3>, TetError> {
+    let surface = r.surface;
+    let mut points = surface.points.clone();
+    match sized::sized_points(r) {
+        Some(inside) => points.extend(inside),
+        None => points.extend(interior_points(surface, &for_volume(surface, r.interior, r.refinement))?),
+    }
+    // The smaller the box, the smaller the bound on the roundoff in it; there is room to flip in for smooth walls.
+    let tight = matches!(r.interior, Interior::Graded { .. } | Interior::Local { .. });
+    points.extend(if tight { box_around(&surface.points, 0.2) } else { box_corners(&surface.points) });
+    Ok(points)
+}
+
+/// The interior asked for; a lattice whose size is left open gets tetrahedra within the bound on volumes.
+fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refinement>) -> Interior {
+    let usual = CELL * surface.mean_edge();
+    match (interior, refinement.and_then(|r| r.bounds.max_volume)) {
+        (Interior::Lattice { cell: None, clearance }, Some(bound)) => {
+            // A cube holds twelve tetrahedra.
+            let cell = (12.0 * VOLUME_SHARE * bound).cbrt().min(usual);
+            let near = CLEARANCE / CELL * cell.max(0.5 * usual);
+            Interior::Lattice { cell: Some(cell), clearance: Some(clearance.unwrap_or(near)) }
+        }
+        _ => interior.clone(),
+    }
+}
+
+fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>, TetError> {
+    match interior {
+        Interior::None => Ok(Vec::new()),
+        Interior::Lattice { cell, clearance } | Interior::Graded { cell, clearance } => {
+            let h = surface.mean_edge();
+            let (cell, clearance) = (cell.unwrap_or(CELL * h), clearance.unwrap_or(CLEARANCE * h));
+            let graded = matches!(interior, Interior::Graded { .. });
+            let points = if graded { lattice::graded_lattice_points } else { lattice::lattice_points };
+            Ok(points(surface, cell, clearance))
+        }
+        Interior::Local { cell, clearance } => Ok(lattice::local_lattice_points(surface, *cell, *clearance)),
+        Interior::Points(points) => {
+            let inside = points.iter().zip(0..).find(|(p, _)| !p.iter().all(|x| x.is_finite()));
+            match inside {
+                Some((&position, index)) => Err(TetError::BadInteriorPoint { index, position }),
+                None => Ok(points.clone()),
+            }
+        }
+    }
+}
+
+/// Eight points well outside, so that the hull of all points is no part of the surface and all of the surface can be
+/// flipped to.
+pub(super) fn box_corners(points: &[Point3]) -> Vec<Point3> {
+    box_around(points, 1.0)
+}
+
+/// The corners of a box that stands off by so many sizes of the points' own.
+fn box_around(points: &[Point3], share: f64) -> Vec<Point3> {
+    let Some(first) = points.first() else { return Vec::new() };
+    let (mut low, mut high) = (*first, *first);
+    for p in points {
+        low = low.inf(p);
+        high = high.sup(p);
+    }
+    let margin = share * (high - low).max();
+    let safe = |x: f64| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x };
+    let ends = [low.map(|x| safe(x - margin)), high.map(|x| safe(x + margin))];
+    (0..8).map(|i: usize| Point3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[i >> 2].z)).collect()
+}
+
+/// A point given twice is a fault of the surface, or of the interior points.
+fn name_interior(error: TetError, surface: usize, inner: usize) -> TetError {
+    let given = |v: u32| (surface..inner).contains(&(v as usize));
+    match error {
+        TetError::DuplicatePoints { ref pairs, position, .. } => match pairs.first() {
+            Some(&[_, second]) if given(second) => {
+                TetError::BadInteriorPoint { index: second - surface as u32, position }
+            }
+            _ => error,
+        },
+        other => other,
+    }
+}

@@ -1,0 +1,388 @@
+//! One insertion: locate by walking, dig the cavity, fill it with the star of the new point.
+
+use super::conflict::{Bounds, Site, View, in_sphere};
+use crate::complex::{Cell, GHOST, NONE, face_of};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::predicates::orient3d;
+use rustc_hash::FxHashMap;
+
+/// Cavities with at most this many vertices match the new tetrahedra through a square table.
+const TABLE: usize = 64;
+
+/// `BACK[i][k]`: which vertex of a tetrahedron stands at place `k` of its face `i` seen from inside.
+const BACK: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// Marks of the cavity's search on a tetrahedron's first vertex: vertices have numbers far below.
+const INSIDE: u32 = 1 << 31;
+const OUTSIDE: u32 = 1 << 30;
+const MARKS: u32 = INSIDE | OUTSIDE;
+
+/// A face of the cavity's boundary: the half-face outside, and its vertices counter-clockwise seen from inside.
+#[derive(Clone, Copy, Debug)]
+struct Wall {
+    outer: u32,
+    face: [u32; 3],
+}
+
+/// The growing tetrahedralization and the buffers of its insertions. The ghost vertex has the number behind the last
+/// point's here, and a site at that place.
+pub(super) struct Inserter {
+    sites: Vec<Site>,
+    cells: Vec<Cell>,
+    free: Vec<u32>,
+    bounds: Bounds,
+    ghost: u32,
+    now: u32,
+    cavity: Vec<u32>,
+    walls: Vec<Wall>,
+    created: Vec<u32>,
+    table: Box<[u32; TABLE * TABLE]>,
+    pairs: FxHashMap<(u32, u32), u32>,
+    hint: u32,
+}
+
+impl Inserter {
+    pub(super) fn new(points: &[Point3]) -> Self {
+        let n = points.len();
+        let site = |at: Point3| Site { at, stamp: 0, local: 0 };
+        let mut sites = Vec::with_capacity(n + 1);
+        sites.extend(points.iter().map(|&at| site(at)));
+        sites.push(site(Point3::origin()));
+        Self {
+            sites,
+            cells: Vec::with_capacity(7 * n + 64),
+            free: Vec::new(),
+            bounds: Bounds::of(points),
+            ghost: n as u32,
+            now: 0,
+            cavity: Vec::new(),
+            walls: Vec::new(),
+            created: Vec::new(),
+            table: Box::new([NONE; TABLE * TABLE]),
+            pairs: FxHashMap::default(),
+            hint: 0,
+        }
+    }
+
+    #[inline]
+    fn at(&self, v: u32) -> &Point3 {
+        &self.sites[v as usize].at
+    }
+
+    #[inline]
+    fn corners(&self, v: &[u32; 4]) -> [&Point3; 4] {
+        v.map(|v| self.at(v))
+    }
+
+    #[inline]
+    fn cell(&self, t: u32) -> &Cell {
+        &self.cells[t as usize]
+    }
+
+    /// Begins with one positive tetrahedron and its four ghosts.
+    pub(super) fn start(&mut self, v: [u32; 4]) {
+        self.cells.push(Cell { verts: v, mates: [7, 11, 15, 19] });
+        for i in 0..4 {
+            let [a, b, c] = face_of(&v, i);
+            self.cells.push(Cell { verts: [a, b, c, self.ghost], mates: [NONE, NONE, NONE, i as u32] });
+        }
+        // Across from vertex k of ghost i stands the ghost that lacks that vertex.
+        for i in 0..4 {
+            for k in 0..3 {
+                let lacks = self.cells[i + 1].verts[k];
+                let other = (0..4).find(|&j| v[j] == lacks).unwrap_or(0);
+                let back = (0..3).find(|&j| self.cells[other + 1].verts[j] == v[i]).unwrap_or(0);
+                self.cells[i + 1].mates[k] = 4 * (other as u32 + 1) + back as u32;
+            }
+        }
+    }
+
+    /// Inserts vertex `v`.
+    ///
+    /// # Errors
+    /// The vertex that stands at the same place already; nothing is changed.
+    pub(super) fn insert(&mut self, v: u32) -> Result<(), u32> {
+        let p = *self.at(v);
+        let first = self.locate(&p);
+        let twin = |&&w: &&u32| w != self.ghost && *self.at(w) == p;
+        if let Some(&twin) = self.cell(first).verts.iter().find(twin) {
+            return Err(twin);
+        }
+        self.dig(first, &p);
+        self.fill(v);
+        Ok(())
+    }
+
+    /// A tetrahedron in conflict with `p`: one whose sphere it is in for sure, one whose closure holds it, or a ghost
+    /// whose face sees it from outside. Where `p` is a vertex, one that has it. Visibility walks in regular
+    /// triangulations have no cycles (Edelsbrunner 1990), so exact tests suffice for an end.
+    #[inline(never)]
+    fn locate(&self, p: &Point3) -> u32 {
+        let mut t = self.hint;
+        let mut from = 4;
+        let first = self.cell(t);
+        if first.verts[3] == self.ghost {
+            t = first.mates[3] >> 2;
+        }
+        loop {
+            let cell = self.cell(t);
+            if cell.verts[3] == self.ghost {
+                return t;
+            }
+            let view = View::new(self.corners(&cell.verts), p);
+            if view.sphere > self.bounds.sphere {
+                return t;
+            }
+            let exit = self.exit(&cell.verts, &view, from, p);
+            let Some(&mate) = cell.mates.get(exit) else { return t };
+            (t, from) = (mate >> 2, (mate & 3) as usize);
+        }
+    }
+
+    /// A face of the tetrahedron that has `p` strictly behind it, the one with the largest volume between; 4 when there
+    /// is none.
+    #[inline]
+    fn exit(&self, v: &[u32; 4], view: &View, from: usize, p: &Point3) -> usize {
+        let mut exit = 4;
+        let mut least = -self.bounds.orient;
+        for (i, &w) in view.weights.iter().enumerate() {
+            if w < least {
+                (exit, least) = (i, w);
+            }
+        }
+        if exit == 4 { self.exit_close(v, view, from, p) } else { exit }
+    }
+
+    /// As [`Self::exit`], where no face is clearly between.
+    fn exit_close(&self, v: &[u32; 4], view: &View, from: usize, p: &Point3) -> usize {
+        let q = self.corners(v);
+        let behind = |&i: &usize| {
+            let [a, b, c] = face_of(&[0, 1, 2, 3], i).map(|k| q[k as usize]);
+            i != from && view.weights[i] <= self.bounds.orient && orient3d(a, b, c, p) > 0.0
+        };
+        (0..4).find(behind).unwrap_or(4)
+    }
+
+    /// Whether `p` destroys a tetrahedron.
+    #[inline]
+    fn in_conflict(&self, cell: &Cell, p: &Point3) -> bool {
+        if cell.verts[3] == self.ghost {
+            return self.ghost_in_conflict(cell, p);
+        }
+        in_sphere(self.corners(&cell.verts), p, &self.bounds)
+    }
+
+    #[inline(never)]
+    fn ghost_in_conflict(&self, cell: &Cell, p: &Point3) -> bool {
+        let v = &cell.verts;
+        let side = orient3d(self.at(v[0]), self.at(v[1]), self.at(v[2]), p);
+        if side != 0.0 {
+            return side > 0.0;
+        }
+        // In the plane of a hull face the circle through it decides: the sphere of the tetrahedron behind it.
+        let mut behind = self.cell(cell.mates[3] >> 2).verts;
+        behind[0] &= !MARKS;
+        in_sphere(self.corners(&behind), p, &self.bounds)
+    }
+
+    /// Collects the connected tetrahedra in conflict with `p`, and the walls around them.
+    #[inline(never)]
+    fn dig(&mut self, first: u32, p: &Point3) {
+        self.cavity.clear();
+        self.walls.clear();
+        self.cells[first as usize].verts[0] |= INSIDE;
+        self.cavity.push(first);
+        let mut head = 0;
+        while let Some(&t) = self.cavity.get(head) {
+            head += 1;
+            let mut cell = *self.cell(t);
+            cell.verts[0] &= !MARKS;
+            for i in 0..4 {
+                let outer = cell.mates[i];
+                let n = outer >> 2;
+                let next = self.cell(n);
+                let marks = next.verts[0] & MARKS;
+                if marks == INSIDE {
+                    continue;
+                }
+                if marks == 0 {
+                    let inside = self.in_conflict(next, p);
+                    self.cells[n as usize].verts[0] |= if inside { INSIDE } else { OUTSIDE };
+                    if inside {
+                        self.cavity.push(n);
+                        continue;
+                    }
+                }
+                self.walls.push(Wall { outer, face: BACK[i].map(|k| cell.verts[k]) });
+            }
+        }
+    }
+
+    /// Replaces the cavity by the tetrahedra between `v` and its walls.
+    #[inline(never)]
+    fn fill(&mut self, v: u32) {
+        self.now += 1;
+        self.take_slots();
+        let vertices = self.number_vertices();
+        if vertices <= TABLE {
+            self.stand_by_table(v);
+        } else {
+            self.stand_by_hash(v);
+        }
+        self.hint = self.created.last().copied().unwrap_or(self.hint);
+    }
+
+    /// Finds a slot for each wall, the cavity's first.
+    fn take_slots(&mut self) {
+        let needed = self.walls.len();
+        std::mem::swap(&mut self.cavity, &mut self.created);
+        while self.created.len() > needed {
+            self.free.extend(self.created.pop());
+        }
+        while self.created.len() < needed {
+            let slot = self.free.pop().unwrap_or_else(|| {
+                self.cells.push(Cell::EMPTY);
+                self.cells.len() as u32 - 1
+            });
+            self.created.push(slot);
+        }
+    }
+
+    /// Numbers the vertices of the walls from 0; returns how many there are.
+    #[inline(never)]
+    fn number_vertices(&mut self) -> usize {
+        let mut count = 0u32;
+        for w in &self.walls {
+            for x in w.face {
+                let site = &mut self.sites[x as usize];
+                if site.stamp != self.now {
+                    site.stamp = self.now;
+                    site.local = count;
+                    count += 1;
+                }
+            }
+        }
+        count as usize
+    }
+
+    /// Stands a tetrahedron on each wall and glues them to each other: each edge of the walls is run through once in
+    /// each direction.
+    #[inline(never)]
+    fn stand_by_table(&mut self, v: u32) {
+        for (w, &t) in self.walls.iter().zip(&self.created) {
+            let l = w.face.map(|x| self.sites[x as usize].local as usize);
+            let turn = turn_of(&w.face, self.ghost);
+            for i in 0..3 {
+                let (from, to) = (l[(i + 1) % 3], l[(i + 2) % 3]);
+                self.table[(from * TABLE + to) % (TABLE * TABLE)] = 4 * t + turn[i];
+            }
+        }
+        for (w, &t) in self.walls.iter().zip(&self.created) {
+            let l = w.face.map(|x| self.sites[x as usize].local as usize);
+            let turn = turn_of(&w.face, self.ghost);
+            let mate = |i: usize| {
+                let (from, to) = (l[(i + 1) % 3], l[(i + 2) % 3]);
+                self.table[(to * TABLE + from) % (TABLE * TABLE)]
+            };
+            let cell = placed(w, v, [mate(0), mate(1), mate(2)], turn);
+            self.cells[t as usize] = cell;
+            let outer = &mut self.cells[(w.outer >> 2) as usize];
+            outer.mates[(w.outer & 3) as usize] = 4 * t + turn[3];
+            outer.verts[0] &= !MARKS;
+        }
+    }
+
+    /// As [`Self::stand_by_table`], for any number of vertices.
+    #[cold]
+    fn stand_by_hash(&mut self, v: u32) {
+        let mut pairs = std::mem::take(&mut self.pairs);
+        pairs.clear();
+        for (w, &t) in self.walls.iter().zip(&self.created) {
+            let turn = turn_of(&w.face, self.ghost);
+            for i in 0..3 {
+                pairs.insert((w.face[(i + 1) % 3], w.face[(i + 2) % 3]), 4 * t + turn[i]);
+            }
+        }
+        for (w, &t) in self.walls.iter().zip(&self.created) {
+            let turn = turn_of(&w.face, self.ghost);
+            let mates = [0, 1, 2]
+                .map(|i: usize| pairs.get(&(w.face[(i + 2) % 3], w.face[(i + 1) % 3])).copied().unwrap_or(NONE));
+            self.cells[t as usize] = placed(w, v, mates, turn);
+            let outer = &mut self.cells[(w.outer >> 2) as usize];
+            outer.mates[(w.outer & 3) as usize] = 4 * t + turn[3];
+            outer.verts[0] &= !MARKS;
+        }
+        self.pairs = pairs;
+    }
+
+    /// Empties the slots that are free now and hold tetrahedra of the past, and lets go of what only insertion needs.
+    fn without_past(mut self) -> Self {
+        self.sites = Vec::new();
+        for &t in &self.free {
+            self.cells[t as usize].verts = [NONE; 4];
+        }
+        self
+    }
+
+    /// The tetrahedra, vertex `v` having become `order[v]`, and the slots without one.
+    pub(super) fn into_cells(self, order: &[u32]) -> (Vec<Cell>, Vec<u32>) {
+        let Self { mut cells, free, .. } = self.without_past();
+        for v in cells.iter_mut().flat_map(|cell| &mut cell.verts) {
+            *v = order.get(*v as usize).copied().unwrap_or(GHOST);
+        }
+        (cells, free)
+    }
+
+    /// The tetrahedra over the points in their original order, vertex `v` having become `order[v]`; the slots without
+    /// one; for each point a tetrahedron that has it.
+    pub(super) fn finish(self, order: &[u32]) -> (Vec<Cell>, Vec<u32>, Vec<u32>) {
+        let Self { mut cells, free, ghost, .. } = self.without_past();
+        let mut own = vec![NONE; order.len()];
+        for (t, cell) in (0..).zip(&mut cells) {
+            for v in &mut cell.verts {
+                if *v == ghost {
+                    *v = GHOST;
+                } else if let Some(&new) = order.get(*v as usize) {
+                    own[*v as usize] = t;
+                    *v = new;
+                }
+            }
+        }
+        let mut vertex_tet = vec![NONE; order.len()];
+        for (&new, &t) in order.iter().zip(&own) {
+            vertex_tet[new as usize] = t;
+        }
+        (cells, free, vertex_tet)
+    }
+}
+
+/// At which places of a new tetrahedron the vertices of its wall stand, and the new vertex: in their order, or with the
+/// ghost last.
+#[inline]
+fn turn_of(face: &[u32; 3], ghost: u32) -> [u32; 4] {
+    if face[0] == ghost {
+        [3, 1, 0, 2]
+    } else if face[1] == ghost {
+        [0, 3, 1, 2]
+    } else if face[2] == ghost {
+        [1, 0, 3, 2]
+    } else {
+        [0, 1, 2, 3]
+    }
+}
+
+/// The tetrahedron on a wall.
+#[inline]
+fn placed(w: &Wall, v: u32, mates: [u32; 3], turn: [u32; 4]) -> Cell {
+    let [a, b, c] = w.face;
+    let plain = Cell { verts: [a, b, c, v], mates: [mates[0], mates[1], mates[2], w.outer] };
+    if turn[3] == 3 {
+        return plain;
+    }
+    let mut cell = plain;
+    for i in 0..4 {
+        cell.verts[turn[i] as usize] = plain.verts[i];
+        cell.mates[turn[i] as usize] = plain.mates[i];
+    }
+    cell
+}

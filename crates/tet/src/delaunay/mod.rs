@@ -1,0 +1,69 @@
+//! Delaunay tetrahedralization: incremental insertion along a Hilbert curve in random rounds (Amenta, Choi, Rote,
+//! 'Incremental constructions con BRIO', 2003), location by walking, Bowyer–Watson cavities, all decided exactly.
+//!
+//! Cospherical points are decided by a symbolic perturbation of their lifts (Devillers, Teillaud, 'Perturbations and
+//! Delaunay triangulations in 3D', 2003), which depends on coordinates alone: the answer is unique, whatever the order
+//! of the points, and has no flat tetrahedra. Large sets are therefore cut in two, which are tetrahedralized in parallel
+//! and merged.
+
+mod conflict;
+mod insert;
+mod merge;
+mod order;
+mod parallel;
+mod perturb;
+mod sequence;
+
+use super::complex::Complex;
+use super::error::TetError;
+use super::progress::Watch;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::predicates::in_exact_range;
+use order::brio;
+pub(super) use order::hash;
+use sequence::insert_all;
+
+/// The Delaunay tetrahedralization of points, with ghosts around their convex hull. Vertices are numbered as the
+/// points are.
+///
+/// # Errors
+/// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`].
+pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
+    delaunay_watched(points, &Watch::NOBODY)
+}
+
+/// As [`delaunay`], watched.
+///
+/// # Errors
+/// As there; [`TetError::Cancelled`] when the watch says so.
+pub(super) fn delaunay_watched(points: &[Point3], watch: &Watch) -> Result<Complex, TetError> {
+    validate(points)?;
+    if points.len() >= parallel::SPLIT_FROM
+        && let Some((cells, vertex_tet)) = parallel::tetrahedralize(points, watch)
+    {
+        return Ok(Complex::from_cells(points.to_vec(), cells, Vec::new(), vertex_tet));
+    }
+    let order = brio(points);
+    let inserter = insert_all(points, &order, watch)?;
+    let (cells, free, vertex_tet) = inserter.finish(&order);
+    Ok(Complex::from_cells(points.to_vec(), cells, free, vertex_tet))
+}
+
+fn validate(points: &[Point3]) -> Result<(), TetError> {
+    if points.is_empty() {
+        return Err(TetError::Empty { points: 0, triangles: 0 });
+    }
+    // Half-faces are numbered 4 × tetrahedron + face in a `u32`; there are about seven tetrahedra to a point.
+    if points.len() > (u32::MAX / 64) as usize {
+        return Err(TetError::TooLarge { points: points.len() });
+    }
+    match points.iter().position(|p| !p.iter().all(|&x| in_exact_range(x))) {
+        Some(i) => Err(TetError::OutOfRange { points: vec![i as u32], count: 1, position: points[i] }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod properties;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! Large sets: cut in two by a plane, tetrahedralized in parallel, merged.
+//!
+//! Where the cuts are depends on the points alone, never on the number of threads, and so do the numbers of the
+//! tetrahedra.
+
+use super::merge::{Cut, Half, compact, merge};
+use super::order::hash;
+use super::order::{brio_of_sorted, hilbert};
+use super::sequence::insert_all;
+use crate::complex::{Cell, GHOST, NONE};
+use crate::progress::Watch;
+use anastomesh_mesh::geometry::Point3;
+use rayon::prelude::*;
+
+/// Sets of as many points are cut in two. Merging adds a seventh to the work, whether or not there are threads that
+/// share it; less than this takes two or three seconds in one piece.
+pub(super) const SPLIT_FROM: usize = 1_200_000;
+
+/// Size of the sample that tells whether cutting is worth while.
+const SAMPLE: usize = 16_000;
+
+/// Largest part of the sample's tetrahedra that may reach across the cut. In space filled evenly it is a fifth; of
+/// points on a sphere, all do.
+const CROSSING: f64 = 0.45;
+
+/// The tetrahedra of points, ghosts included, without unused slots, and for each point one that has it; none when they
+/// are better tetrahedralized at one piece, when something is wrong with them, or when the
+/// watch says to stop.
+pub(super) fn tetrahedralize(points: &[Point3], watch: &Watch) -> Option<(Vec<Cell>, Vec<u32>)> {
+    in_parts(points, SPLIT_FROM, watch)
+}
+
+/// As [`tetrahedralize`], with a bound on the parts' size.
+pub(super) fn in_parts(points: &[Point3], from: usize, watch: &Watch) -> Option<(Vec<Cell>, Vec<u32>)> {
+    let order = hilbert(points);
+    let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
+    let mut cells = split(&sorted, from, watch)?;
+    drop(sorted);
+    let mut vertex_tet = vec![NONE; points.len()];
+    for (&v, t) in order.iter().zip(vertex_tets(&cells, points.len())) {
+        vertex_tet[v as usize] = t;
+    }
+    rename(&mut cells, &order);
+    Some((cells, vertex_tet))
+}
+
+fn rename(cells: &mut [Cell], names: &[u32]) {
+    let named = |v: u32| names.get(v as usize).copied().unwrap_or(GHOST);
+    cells.par_iter_mut().for_each(|cell| cell.verts = cell.verts.map(named));
+}
+
+/// As [`in_parts`], of points along the Hilbert curve.
+fn split(points: &[Point3], from: usize, watch: &Watch) -> Option<Vec<Cell>> {
+    let cut = middle(points)?;
+    if !worth_while(points, cut, watch) {
+        return None;
+    }
+    let sides: [Vec<u32>; 2] = {
+        let below = |&i: &u32| points[i as usize][cut.axis] < cut.at;
+        (0..points.len() as u32).partition(below).into()
+    };
+    let (low, high) = rayon::join(|| part(points, &sides[0], from, watch), || part(points, &sides[1], from, watch));
+    let halves = [Half::new(points, low?, cut, true), Half::new(points, high?, cut, false)];
+    merge(points, halves, |ids| part(points, ids, from, watch))
+}
+
+/// The tetrahedra of some of the points.
+fn part(points: &[Point3], ids: &[u32], from: usize, watch: &Watch) -> Option<Vec<Cell>> {
+    let own: Vec<Point3> = ids.iter().map(|&i| points[i as usize]).collect();
+    if own.len() >= from
+        && let Some(mut cells) = split(&own, from, watch)
+    {
+        rename(&mut cells, ids);
+        return Some(cells);
+    }
+    let mut order = brio_of_sorted(own.len());
+    let inserter = insert_all(&own, &order, watch).ok()?;
+    drop(own);
+    for i in &mut order {
+        *i = ids[*i as usize];
+    }
+    let (cells, free) = inserter.into_cells(&order);
+    Some(compact(cells, free))
+}
+
+/// The plane that halves the points across the longest side of their box; none when most share a coordinate.
+fn middle(points: &[Point3]) -> Option<Cut> {
+    let first = points.first()?;
+    let (low, high) = points.iter().fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
+    let axis = (high - low).imax();
+    let mut coordinates: Vec<f64> = points.iter().map(|p| p[axis]).collect();
+    let half = coordinates.len() / 2;
+    let (below, &mut at, _) = coordinates.select_nth_unstable_by(half, f64::total_cmp);
+    let below = below.iter().filter(|&&x| x < at).count();
+    (4 * below > points.len()).then_some(Cut { axis, at })
+}
+
+/// Whether most of the tetrahedra of a sample keep to one side of the cut.
+fn worth_while(points: &[Point3], cut: Cut, watch: &Watch) -> bool {
+    let every = (points.len() / SAMPLE).max(1) as u64;
+    let sample: Vec<Point3> =
+        (0..).zip(points).filter(|&(i, _)| hash(i).is_multiple_of(every)).map(|(_, &p)| p).collect();
+    let order = brio_of_sorted(sample.len());
+    let Ok(inserter) = insert_all(&sample, &order, watch) else { return false };
+    let (cells, _) = inserter.into_cells(&order);
+    let count = cells.len() as f64;
+    let low = Half::new(&sample, cells, cut, true);
+    let final_count = low.final_count();
+    let final_count = final_count + Half::new(&sample, low.into_cells(), cut, false).final_count();
+    count - final_count as f64 <= CROSSING * count
+}
+
+/// For each point a tetrahedron that has it.
+fn vertex_tets(cells: &[Cell], points: usize) -> Vec<u32> {
+    let mut tets = vec![NONE; points];
+    for (t, cell) in (0..).zip(cells) {
+        for v in cell.verts {
+            if let Some(own) = tets.get_mut(v as usize) {
+                *own = t;
+            }
+        }
+    }
+    tets
+}

@@ -1,0 +1,359 @@
+//! What can go wrong in the tetrahedralizer.
+
+use super::complex::{ComplexError, face_key};
+use super::layer::LayersError;
+use anastomesh_mesh::geometry::Point3;
+
+/// A part of the surface that another part meets; ids are those of the surface's points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Obstacle {
+    /// A triangle, met in its inside.
+    Triangle([u32; 3]),
+    /// An edge, met between its ends.
+    Edge([u32; 2]),
+    /// A point.
+    Point(u32),
+}
+
+impl Obstacle {
+    /// The same, a triangle as the input has it: a face of a complex may begin with another of its corners.
+    pub(super) fn as_given(self, triangles: &[[u32; 3]]) -> Self {
+        let Self::Triangle(face) = self else { return self };
+        let key = face_key(face);
+        Self::Triangle(triangles.iter().copied().find(|&t| face_key(t) == key).unwrap_or(face))
+    }
+}
+
+impl std::fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Triangle([a, b, c]) => write!(f, "triangle {a} {b} {c}"),
+            Self::Edge([a, b]) => write!(f, "edge {a} {b}"),
+            Self::Point(p) => write!(f, "point {p}"),
+        }
+    }
+}
+
+/// Offenders that an error names; it counts all of them.
+pub(super) const NAMED: usize = 10;
+
+/// The ids of the first offenders, as a sentence has them. What follows itself is named once: pieces of one polygon have
+/// its number.
+fn list<T: std::fmt::Debug + PartialEq>(ids: &[T], count: usize) -> String {
+    list_as(ids, count, |id| format!("{id:?}"))
+}
+
+fn list_as<T: PartialEq>(ids: &[T], count: usize, shown: impl Fn(&T) -> String) -> String {
+    let named: Vec<String> = ids.chunk_by(|a, b| a == b).map(|same| shown(&same[0])).collect();
+    let more = if count > ids.len() { format!(" and {} more", count - ids.len()) } else { String::new() };
+    named.join(", ") + &more
+}
+
+/// Which triangles are there twice.
+fn twice(pairs: &[[u32; 2]], count: usize) -> String {
+    match pairs {
+        [[first, again]] if count == 1 => format!("triangle {first} is there twice (also as {again})"),
+        _ => {
+            let named = list_as(pairs, count, |[first, again]| format!("{first} (also as {again})"));
+            format!("{count} triangles are there twice: {named}")
+        }
+    }
+}
+
+/// Why the exact tier of recovery has to leave a part of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stuck {
+    /// The surface meets itself there.
+    Intersection,
+    /// No place for a vertex was found off the parts of the surface that meet there; that proves nothing.
+    Precision,
+    /// The edge has fewer than two triangles, and no room was found beside it.
+    Dangling,
+    /// The budget of work was used up.
+    Budget,
+    /// Layers at a triangle of the wall would turn over, and its corners may be nowhere else.
+    Layer,
+}
+
+impl std::fmt::Display for Stuck {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Intersection => "the surface meets itself there",
+            Self::Precision => {
+                "no room for a vertex was found between the parts that meet there, in any of the ways that there are"
+            }
+            Self::Dangling => "it has fewer than two triangles and no room was found beside it",
+            Self::Budget => "the budget of work was used up",
+            Self::Layer => "layers along it would turn over, and its corners may be nowhere else further in",
+        })
+    }
+}
+
+/// Why there is no tetrahedral mesh. Ids are those of the input's points and triangles, in ascending order; the first
+/// ten are named, `count` is that of all.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TetError {
+    /// No points or no triangles.
+    #[error("nothing to tetrahedralize: {points} points, {triangles} triangles")]
+    Empty {
+        /// Number of points.
+        points: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// More points than `u32` ids can carry.
+    #[error("{points} points are more than the tetrahedralizer can number")]
+    TooLarge {
+        /// Number of points.
+        points: usize,
+    },
+    /// Coordinates that are not finite, or too large or too close to zero for exact arithmetic.
+    #[error(
+        "{count} points have coordinates that are not finite or out of the range of exact arithmetic: {}; \
+         the first is at {position}", list(points, *count)
+    )]
+    OutOfRange {
+        /// The points.
+        points: Vec<u32>,
+        /// Number of points.
+        count: usize,
+        /// Where the first is.
+        position: Point3,
+    },
+    /// Points at the same place.
+    #[error("{count} points repeat an earlier one: {}; the first two are at {position}", list(pairs, *count))]
+    DuplicatePoints {
+        /// A point, and one before it at the same place; the earlier first.
+        pairs: Vec<[u32; 2]>,
+        /// Number of points that repeat an earlier one.
+        count: usize,
+        /// Place of the first pair.
+        position: Point3,
+    },
+    /// All points lie in one plane.
+    #[error("all points lie in one plane")]
+    Flat,
+    /// Triangles with an index out of range or a repeated vertex.
+    #[error(
+        "{count} triangles have vertices out of range or not distinct: {}; the first has {vertices:?}",
+        list(triangles, *count)
+    )]
+    BadTriangle {
+        /// The triangles.
+        triangles: Vec<u32>,
+        /// Number of triangles.
+        count: usize,
+        /// Vertices of the first.
+        vertices: [u32; 3],
+    },
+    /// Segments with an index out of range or equal ends.
+    #[error("{count} segments have ends out of range or not distinct: {}", list(segments, *count))]
+    BadSegment {
+        /// The segments, as indices into [`super::Plc::edges`].
+        segments: Vec<u32>,
+        /// Number of segments.
+        count: usize,
+    },
+    /// Triangles whose vertices lie on one line.
+    #[error(
+        "{count} triangles have no area: {}; the first has the vertices {vertices:?}, which lie on one line",
+        list(triangles, *count)
+    )]
+    FlatTriangle {
+        /// The triangles.
+        triangles: Vec<u32>,
+        /// Number of triangles.
+        count: usize,
+        /// Vertices of the first.
+        vertices: [u32; 3],
+    },
+    /// Triangles with the vertices of an earlier one, turned one way or the other.
+    #[error("{}", twice(pairs, *count))]
+    DuplicateTriangles {
+        /// A triangle, and one after it with the same vertices.
+        pairs: Vec<[u32; 2]>,
+        /// Number of triangles that repeat an earlier one.
+        count: usize,
+    },
+    /// An array that has to have a value for each of something else has not.
+    #[error("{found} {what} were given, {expected} are needed")]
+    WrongLength {
+        /// What the array holds.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it has to have.
+        expected: usize,
+    },
+    /// Edges that only one triangle has.
+    #[error("the surface is open: {count} triangles have an edge of their own: {}; one is {edge:?}", list(triangles, *count))]
+    Open {
+        /// Triangles with such an edge.
+        triangles: Vec<u32>,
+        /// Number of such triangles.
+        count: usize,
+        /// Ends of one such edge.
+        edge: [u32; 2],
+        /// Number of such edges.
+        edges: usize,
+    },
+    /// Edges that only one triangle has each, at the place of one another: each triangle, or each part of the surface,
+    /// has corners of its own.
+    #[error(
+        "corners are not shared: {count} triangles have an edge at the place of another's: {}; one is {edge:?}",
+        list(triangles, *count)
+    )]
+    NotShared {
+        /// Triangles with such an edge.
+        triangles: Vec<u32>,
+        /// Number of such triangles.
+        count: usize,
+        /// Ends of one such edge.
+        edge: [u32; 2],
+        /// Number of such edges.
+        edges: usize,
+    },
+    /// Edges that more than two triangles share.
+    #[error(
+        "the surface is not manifold: {count} triangles have an edge with two or more others: {}; one is {edge:?}",
+        list(triangles, *count)
+    )]
+    NotManifold {
+        /// Triangles with such an edge.
+        triangles: Vec<u32>,
+        /// Number of such triangles.
+        count: usize,
+        /// Ends of one such edge.
+        edge: [u32; 2],
+        /// Number of such edges.
+        edges: usize,
+    },
+    /// Two triangles run through an edge in the same direction.
+    #[error(
+        "the surface is not consistently oriented: {count} triangles are turned otherwise than a neighbour: {}; \
+         one such edge is {edge:?}", list(triangles, *count)
+    )]
+    NotOriented {
+        /// Triangles with such an edge.
+        triangles: Vec<u32>,
+        /// Number of such triangles.
+        count: usize,
+        /// Ends of one such edge.
+        edge: [u32; 2],
+        /// Number of such edges.
+        edges: usize,
+    },
+    /// The surface encloses a negative volume: its triangles face inwards. An error of the short form only.
+    #[error("the surface is oriented inwards: it encloses the volume {volume}")]
+    InsideOut {
+        /// The volume enclosed, negative.
+        volume: f64,
+    },
+    /// An interior point that lies on the surface or coincides with another point.
+    #[error("interior point {index} at {position} coincides with another point, or is not finite")]
+    BadInteriorPoint {
+        /// Index among the interior points given.
+        index: u32,
+        /// Where it is.
+        position: Point3,
+    },
+    /// The seed of a hole or region that lies in no such part of space.
+    #[error("the seed {index} of the {what} at {position} lies in none")]
+    BadSeed {
+        /// `"holes"` or `"regions"`.
+        what: &'static str,
+        /// Index among them.
+        index: u32,
+        /// Where it is.
+        position: Point3,
+    },
+    /// An option with a value that makes no sense.
+    #[error("the option {option} has the value {value}, which makes no sense")]
+    BadOption {
+        /// Its name.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// Layers that cannot be.
+    #[error(transparent)]
+    Layers(#[from] LayersError),
+    /// Layers are put along closed surfaces that stay as they are, and nothing else.
+    #[error("layers are made along closed surfaces whose triangles stay as they are: {0}")]
+    LayersAlong(&'static str),
+    /// The surface meets itself: pairs of triangles have more in common than the vertices that they share.
+    #[error(
+        "the surface meets itself: {}{count} pairs of triangles intersect: {}",
+        if *complete { "" } else { "at least " }, list(pairs, *count)
+    )]
+    SelfIntersection {
+        /// The triangles of each pair.
+        pairs: Vec<[u32; 2]>,
+        /// Number of pairs.
+        count: usize,
+        /// Whether all pairs were counted; where there are very many, counting ends.
+        complete: bool,
+    },
+    /// An edge runs through a triangle, another edge, or a point.
+    #[error("edge {} {} runs through {obstacle}", edge[0], edge[1])]
+    EdgeMeets {
+        /// Ends of the edge.
+        edge: [u32; 2],
+        /// What it meets.
+        obstacle: Obstacle,
+    },
+    /// Recovery ended before all of the surface was in the mesh, although the surface does not meet itself.
+    #[error("{} edges and {} triangles of the surface could not be recovered", edges.len(), triangles.len())]
+    NotRecovered {
+        /// Edges that are not in the mesh.
+        edges: Vec<[u32; 2]>,
+        /// Triangles that are not in the mesh.
+        triangles: Vec<u32>,
+    },
+    /// The exact tier of recovery could not keep a part of the surface.
+    #[error("{part} of the surface could not be recovered: {reason}")]
+    Stuck {
+        /// The part.
+        part: Obstacle,
+        /// Why.
+        reason: Stuck,
+    },
+    /// The orientation of the surface does not tell inside from outside: shells are nested the wrong way. An error of
+    /// the short form only.
+    #[error("triangle {triangle} does not separate inside from outside")]
+    NotSeparating {
+        /// The triangle.
+        triangle: u32,
+    },
+    /// The facets enclose nothing: all of space is reached from infinity or from a hole without crossing one.
+    #[error("the facets enclose no volume")]
+    NothingEnclosed,
+    /// Facets or segments that are not part of the volume: both sides of the facet lie outside or in a hole.
+    #[error("{count} {what} lie outside of what is filled: {}", list(ids, *count))]
+    Outside {
+        /// `"triangles"` or `"segments"`.
+        what: &'static str,
+        /// Their ids.
+        ids: Vec<u32>,
+        /// Number of them.
+        count: usize,
+    },
+    /// An option, or a combination of options, that is not there.
+    #[error("not supported: {what}")]
+    Unsupported {
+        /// What was asked for.
+        what: &'static str,
+    },
+    /// The caller's callback said so.
+    #[error("cancelled")]
+    Cancelled,
+    /// The finished mesh did not pass the certificate. A bug of this program, or a surface that meets itself.
+    #[error("the mesh did not pass the certificate")]
+    NotCertified(#[from] super::certify::CertifyError),
+    /// The complex broke. A bug of this program.
+    #[error("the tetrahedral complex is broken")]
+    Broken(#[from] ComplexError),
+}

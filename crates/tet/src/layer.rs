@@ -1,0 +1,107 @@
+//! Which layers can be asked for along a wall.
+
+/// What layers are asked for.
+///
+/// ```
+/// use anastomesh_tet::Layers;
+///
+/// let layers = Layers { count: 3, growth: 2.0, thickness: 0.35 };
+/// assert_eq!(layers.depths(), [1.0 / 7.0, 3.0 / 7.0, 1.0]);
+/// assert!(Layers { growth: 0.0, ..layers }.check().is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Layers {
+    /// How many.
+    pub count: u32,
+    /// How much thicker each is than the one before it, from the wall on.
+    pub growth: f64,
+    /// Thickness of all together, as a share of the radius: for surfaces that are no vessels, of half the way across.
+    pub thickness: f64,
+}
+
+/// Layers that cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LayersError {
+    /// Too few or too many.
+    #[error("{0} layers: give 1 to {most}", most = Layers::MOST)]
+    Count(u32),
+    /// A growth outside of what makes sense.
+    #[error("a growth of {0} from layer to layer: give {least} to {most}", least = Layers::GROWTH[0], most = Layers::GROWTH[1])]
+    Growth(f64),
+    /// All layers together are thicker than what they are in, or have no thickness.
+    #[error(
+        "layers of {0} of the radius together: give {least} to {most}, so that there is room inside",
+        least = Layers::THICKNESS[0], most = Layers::THICKNESS[1]
+    )]
+    Thickness(f64),
+    /// The thinnest of them is too thin.
+    #[error(
+        "the thinnest of {count} layers would be {thinnest:.1e} of the radius; there is room for {} and more: fewer layers, \
+         a growth nearer to 1, or thicker ones",
+        Layers::THINNEST
+    )]
+    Thin {
+        /// How many layers.
+        count: u32,
+        /// The thinnest, as a share of the radius.
+        thinnest: f64,
+    },
+}
+
+impl Default for Layers {
+    /// Three, so thin at the wall that wall shear comes out within some percents with linear elements.
+    fn default() -> Self {
+        Self { count: 3, growth: 2.5, thickness: 0.12 }
+    }
+}
+
+impl Layers {
+    /// Most layers.
+    pub const MOST: u32 = 30;
+    /// Limits of the growth.
+    pub const GROWTH: [f64; 2] = [0.2, 5.0];
+    /// Limits of the thickness.
+    pub const THICKNESS: [f64; 2] = [1e-3, 0.8];
+    /// The thinnest layer, as a share of the radius.
+    pub const THINNEST: f64 = 1e-4;
+
+    /// How deep each layer reaches, from the wall on, as a share of the thickness of all.
+    pub fn depths(&self) -> Vec<f64> {
+        let sizes = (0..self.count as i32).map(|i| self.growth.powi(i));
+        let all: f64 = sizes.clone().sum();
+        let mut depths: Vec<f64> =
+            sizes.scan(0.0, |sum, size| Some(std::mem::replace(sum, *sum + size) + size)).collect();
+        for depth in &mut depths {
+            *depth /= all;
+        }
+        // The last one is the whole, whatever rounding makes of the sum.
+        depths.pop();
+        depths.push(1.0);
+        depths
+    }
+
+    /// Whether they can be.
+    ///
+    /// # Errors
+    /// The first thing that is out of its limits, with these.
+    pub fn check(&self) -> Result<(), LayersError> {
+        let within = |[least, most]: [f64; 2], x: f64| (least..=most).contains(&x);
+        if !(1..=Self::MOST).contains(&self.count) {
+            return Err(LayersError::Count(self.count));
+        }
+        if !within(Self::GROWTH, self.growth) {
+            return Err(LayersError::Growth(self.growth));
+        }
+        if !within(Self::THICKNESS, self.thickness) {
+            return Err(LayersError::Thickness(self.thickness));
+        }
+        let depths = self.depths();
+        let steps = depths.iter().scan(0.0, |before, &depth| Some(depth - std::mem::replace(before, depth)));
+        let thinnest = self.thickness * steps.fold(f64::INFINITY, f64::min);
+        if thinnest < Self::THINNEST {
+            return Err(LayersError::Thin { count: self.count, thinnest });
+        }
+        Ok(())
+    }
+}

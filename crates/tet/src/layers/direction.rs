@@ -1,0 +1,80 @@
+//! The way in from each vertex of a wall.
+
+use anastomesh_mesh::geometry::unit_normal;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+
+/// Steps towards the middle of the smallest cap that holds all normals at a vertex.
+const STEPS: u32 = 40;
+/// Passes in which ways in are drawn towards those of their neighbours.
+const PASSES: usize = 3;
+/// A way in that is smoothed sees its triangles as well as this share of what the best one does.
+const KEEPS: f64 = 0.6;
+
+/// The way in at each vertex of a wall, and the triangles round each.
+pub struct Directions {
+    /// Unit vectors into the volume; zero off the wall, and where no direction leads away from all triangles of a vertex.
+    pub ways: Vec<Vec3>,
+    /// For each vertex of the wall, normals of its triangles, outwards.
+    normals: Vec<Vec<Vec3>>,
+}
+
+impl Directions {
+    /// Of the triangles of a wall, seen from outside counter-clockwise. Each vertex's way in sees all of its triangles from
+    /// behind as steeply as can be: it is the middle of the smallest cap of the sphere that holds their normals, turned
+    /// round.
+    pub fn new(points: &[Point3], wall: &[[u32; 3]]) -> Self {
+        let mut normals: Vec<Vec<Vec3>> = vec![Vec::new(); points.len()];
+        for triangle in wall {
+            let [a, b, c] = triangle.map(|v| points[v as usize].coords);
+            let normal = unit_normal(a, b, c);
+            for &v in triangle {
+                normals[v as usize].push(normal);
+            }
+        }
+        let ways = normals.iter().map(|of_vertex| way_in(of_vertex)).collect();
+        Self { ways, normals }
+    }
+
+    /// Draws ways in towards those of neighbours, but for vertices that are held, as far as each sees its triangles no worse than
+    /// it may.
+    pub fn smooth(&mut self, wall: &[[u32; 3]], is_held: &[bool]) {
+        for _ in 0..PASSES {
+            let mut sums = vec![Vec3::zeros(); self.ways.len()];
+            for &[a, b, c] in wall {
+                for (v, [x, y]) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
+                    sums[v as usize] += self.ways[x as usize] + self.ways[y as usize];
+                }
+            }
+            for (v, sum) in sums.into_iter().enumerate().filter(|(v, _)| !is_held[*v]) {
+                let own = self.ways[v];
+                let Some(way) = sum.try_normalize(0.0).and_then(|sum| (sum + own).try_normalize(0.0)) else { continue };
+                if steepness(&way, &self.normals[v]) >= KEEPS * steepness(&own, &self.normals[v]) {
+                    self.ways[v] = way;
+                }
+            }
+        }
+    }
+}
+
+/// The cosine of the angle between a way in and the flattest of the normals, turned round.
+fn steepness(way: &Vec3, normals: &[Vec3]) -> f64 {
+    normals.iter().map(|normal| -way.dot(normal)).fold(1.0, f64::min)
+}
+
+/// The way in at a vertex; zero where there is none. Steps towards whatever normal is furthest, shorter each time, end in the
+/// middle of the smallest ball that holds them all (Bădoiu, Clarkson 2003).
+fn way_in(normals: &[Vec3]) -> Vec3 {
+    let mut middle: Vec3 = -normals.iter().sum::<Vec3>() / normals.len().max(1) as f64;
+    let mut best = (0.0, Vec3::zeros());
+    for step in 1..=STEPS {
+        let Some(way) = middle.try_normalize(0.0) else { break };
+        let seen = steepness(&way, normals);
+        if seen > best.0 {
+            best = (seen, way);
+        }
+        let far = |a: &Vec3| (middle + *a).norm_squared();
+        let Some(furthest) = normals.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { break };
+        middle += (-furthest - middle) / f64::from(step + 1);
+    }
+    best.1
+}

@@ -1,0 +1,161 @@
+//! The prisms between a wall and its places further in, cut into layers of tetrahedra.
+
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::{TetMesh, TriMesh};
+
+/// Which number each copy of a vertex has: first the vertices of the surface, then the copies of each that has any, from the
+/// wall on. A vertex without copies is its own copy in each layer.
+#[derive(Clone, Debug)]
+pub struct Numbers {
+    /// How many vertices with copies come before it; none: it has none.
+    slot: Vec<Option<u32>>,
+    /// Vertices of the wall that a triangle off the wall has, too.
+    is_rim: Vec<bool>,
+    layers: u32,
+    /// How many have copies.
+    copied: u32,
+}
+
+impl Numbers {
+    pub fn new(copied: impl IntoIterator<Item = bool>, is_rim: Vec<bool>, layers: u32) -> Self {
+        let mut next = 0;
+        let mut slot = |copied: bool| {
+            let slot = copied.then_some(next);
+            next += u32::from(copied);
+            slot
+        };
+        let slot = copied.into_iter().map(&mut slot).collect();
+        Self { slot, is_rim, layers, copied: next }
+    }
+
+    /// A vertex's copy that many layers from the wall.
+    pub fn copy(&self, v: u32, layer: u32) -> u32 {
+        match self.slot[v as usize] {
+            Some(slot) if layer > 0 => self.slot.len() as u32 + slot * self.layers + layer - 1,
+            _ => v,
+        }
+    }
+
+    /// How many there are with all copies.
+    pub fn len(&self) -> u32 {
+        self.slot.len() as u32 + self.copied * self.layers
+    }
+
+    /// The surface's vertices and their copies, each `depths[i]` of the way to its place further in; vertices without copies
+    /// at that place.
+    pub fn points(&self, outer: &[Point3], inner: &[Point3], depths: &[f64]) -> Vec<Point3> {
+        let own =
+            self.slot.iter().zip(outer.iter().zip(inner)).map(|(slot, (o, i))| if slot.is_some() { *o } else { *i });
+        let both = self.slot.iter().zip(outer.iter().zip(inner)).filter(|(slot, _)| slot.is_some());
+        own.chain(both.flat_map(|(_, (o, i))| depths.iter().map(|&depth| toward(o, i, depth)))).collect()
+    }
+
+    /// From which of two vertices the diagonals between their copies start at the wall: rims come first, so that no
+    /// tetrahedron has a face on the wall and one beside it.
+    fn rank(&self, v: u32) -> (bool, u32) {
+        (!self.is_rim[v as usize], v)
+    }
+
+    /// A flat disc that ends the wall, given as its triangles without layers: further in, with the layers round it.
+    pub fn disc(&self, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+        let inner = |v: u32| self.copy(v, self.layers);
+        let mut out: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(inner)).collect();
+        let mut sides: Vec<[u32; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        sides.sort_unstable();
+        let rim = sides.iter().filter(|[a, b]| sides.binary_search(&[*b, *a]).is_err());
+        for &[a, b] in rim {
+            for layer in 0..self.layers {
+                let [a0, a1, b0, b1] =
+                    [(a, layer), (a, layer + 1), (b, layer), (b, layer + 1)].map(|(v, i)| self.copy(v, i));
+                let two = if self.rank(a) < self.rank(b) {
+                    [[a0, b0, b1], [a0, b1, a1]]
+                } else {
+                    [[a0, b0, a1], [b0, b1, a1]]
+                };
+                out.extend(two.into_iter().filter(|[a, b, c]| a != b && b != c && c != a));
+            }
+        }
+        out
+    }
+
+    /// The tetrahedra of a layer at a triangle of the wall that runs counter-clockwise seen from outside; fewer than three
+    /// where it has vertices without copies.
+    fn prism(&self, triangle: [u32; 3], layer: u32) -> impl Iterator<Item = [u32; 4]> {
+        let mut sorted = triangle;
+        sorted.sort_unstable_by_key(|&v| self.rank(v));
+        let [a, b, c] = sorted;
+        let turned = (0..3).all(|i| [triangle[i], triangle[(i + 1) % 3], triangle[(i + 2) % 3]] != sorted);
+        let [a0, b0, c0] = sorted.map(|v| self.copy(v, layer));
+        let [a1, b1, c1] = [a, b, c].map(|v| self.copy(v, layer + 1));
+        let three = [(c0 != c1, [b0, a0, c0, c1]), (b0 != b1, [a0, b0, b1, c1]), (a0 != a1, [a1, a0, b1, c1])];
+        let set = move |[p, q, r, s]: [u32; 4]| if turned { [q, p, r, s] } else { [p, q, r, s] };
+        three.into_iter().filter(|(there, _)| *there).map(move |(_, tet)| set(tet))
+    }
+}
+
+/// A surface, and the places of its vertices further in.
+#[derive(Clone, Debug)]
+pub struct Stack<'a> {
+    /// Triangles that have layers, seen from outside.
+    wall: &'a [[u32; 3]],
+    pub numbers: Numbers,
+    points: Vec<Point3>,
+}
+
+impl<'a> Stack<'a> {
+    /// `wall`: the triangles of the surface that have layers, counter-clockwise seen from outside. Vertices whose place is where
+    /// they are have no copies, nor have those off the wall.
+    pub fn new(outer: &[Point3], wall: &'a [[u32; 3]], is_rim: Vec<bool>, inner: &[Point3], depths: &[f64]) -> Self {
+        let mut on_wall = vec![false; outer.len()];
+        wall.iter().flatten().for_each(|&v| on_wall[v as usize] = true);
+        let copied = on_wall.iter().zip(outer.iter().zip(inner)).map(|(&on_wall, (o, i))| on_wall && o != i);
+        let numbers = Numbers::new(copied, is_rim, depths.len() as u32);
+        let points = numbers.points(outer, inner, depths);
+        Self { wall, numbers, points }
+    }
+
+    /// The triangles of the wall with a tetrahedron that is not positive.
+    pub fn turned(&self) -> Vec<[u32; 3]> {
+        let is_turned = |triangle: &&[u32; 3]| {
+            self.tets_at(**triangle).any(|tet| {
+                let [a, b, c, d] = tet.map(|v| &self.points[v as usize]);
+                orient3d(a, b, c, d) <= 0.0
+            })
+        };
+        self.wall.iter().filter(is_turned).copied().collect()
+    }
+
+    fn tets_at(&self, triangle: [u32; 3]) -> impl Iterator<Item = [u32; 4]> {
+        (0..self.numbers.layers).flat_map(move |layer| self.numbers.prism(triangle, layer))
+    }
+
+    /// All layers and the mesh inside them, whose points begin with the places further in. Its points begin with the surface's:
+    /// those off the wall are at their place further in. The tetrahedra of the layers come first; how many they are.
+    pub fn around(self, core: &TetMesh) -> (TetMesh, usize) {
+        let given = self.numbers.slot.len() as u32;
+        let mut tets: Vec<[u32; 4]> = self.wall.iter().flat_map(|&triangle| self.tets_at(triangle)).collect();
+        let of_layers = tets.len();
+        let Self { numbers, mut points, .. } = self;
+        let name = |v: u32| if v < given { numbers.copy(v, numbers.layers) } else { numbers.len() + v - given };
+        tets.extend(core.tets.iter().map(|tet| tet.map(name)));
+        points.extend_from_slice(&core.points[given as usize..]);
+        (TetMesh { points, tets }, of_layers)
+    }
+}
+
+/// The point a share of the way from one to another; bit for bit `to` at 1.
+pub fn toward(from: &Point3, to: &Point3, share: f64) -> Point3 {
+    if share == 1.0 { *to } else { from + (to - from) * share }
+}
+
+/// Which vertices both triangles of the wall and others have.
+pub fn rims(surface: &TriMesh, is_wall: impl Fn(usize) -> bool) -> Vec<bool> {
+    let mut sides = vec![[false; 2]; surface.points.len()];
+    for (i, triangle) in surface.triangles.iter().enumerate() {
+        for &v in triangle {
+            sides[v as usize][usize::from(is_wall(i))] = true;
+        }
+    }
+    sides.into_iter().map(|both| both == [true; 2]).collect()
+}

@@ -1,0 +1,161 @@
+use crate::layer::Layers;
+use crate::{Boundary, InputKind, Plc, TetError, Tetrahedralization, Tetrahedralizer};
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::shapes::sphere_surface;
+
+const THREE: Layers = Layers { count: 3, growth: 1.5, thickness: 0.3 };
+
+fn layered(surface: &TriMesh, layers: Layers) -> Tetrahedralization {
+    let made = Tetrahedralizer::new().layers(Some(layers)).run(&Plc::from(surface)).expect("certified");
+    assert_eq!(made.mesh.points[..surface.points.len()], surface.points);
+    made
+}
+
+/// A box with one corner at `from`, its faces outwards.
+fn cuboid(from: Point3, size: Vec3) -> TriMesh {
+    let corner = |i: usize| from + Vec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64).component_mul(&size);
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriMesh { points: (0..8).map(corner).collect(), triangles }
+}
+
+fn joined(parts: &[TriMesh]) -> TriMesh {
+    let mut all = TriMesh::default();
+    for part in parts {
+        let first = all.points.len() as u32;
+        all.points.extend_from_slice(&part.points);
+        all.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    all
+}
+
+#[test]
+fn depths_grow_by_the_factor_and_end_at_the_whole() {
+    for (count, growth) in [(1, 1.0), (3, 2.0), (7, 0.7), (30, 1.1)] {
+        let depths = Layers { count, growth, thickness: 0.3 }.depths();
+        assert_eq!((depths.len(), depths[depths.len() - 1]), (count as usize, 1.0));
+        let sizes: Vec<f64> = std::iter::once(0.0).chain(depths.iter().copied()).collect();
+        let sizes: Vec<f64> = sizes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        for pair in sizes.windows(2) {
+            assert!((pair[1] / pair[0] - growth).abs() < 1e-9, "{sizes:?}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_the_limits() {
+    let bad = [
+        (Layers { count: 0, ..THREE }, "1 to 30"),
+        (Layers { count: 31, ..THREE }, "1 to 30"),
+        (Layers { growth: 0.0, ..THREE }, "0.2 to 5"),
+        (Layers { growth: f64::NAN, ..THREE }, "0.2 to 5"),
+        (Layers { thickness: 1.0, ..THREE }, "0.001 to 0.8"),
+        (Layers { thickness: 0.0, ..THREE }, "0.001 to 0.8"),
+        (Layers { count: 20, growth: 2.0, ..THREE }, "fewer layers"),
+    ];
+    for (layers, limits) in bad {
+        let error = layers.check().expect_err("refused").to_string();
+        assert!(error.contains(limits), "{error}");
+        let plc = Plc::from(sphere_surface(1));
+        assert!(matches!(Tetrahedralizer::new().layers(Some(layers)).run(&plc), Err(TetError::Layers(_))));
+    }
+}
+
+#[test]
+fn layers_are_for_closed_surfaces_that_stay() {
+    let plc = Plc::from(sphere_surface(1));
+    let layers = || Tetrahedralizer::new().layers(Some(THREE));
+    let dangling = Plc { edges: vec![[0, 1]], ..plc.clone() };
+    let refused = [
+        layers().kind(InputKind::Plc).run(&plc),
+        layers().boundary(Boundary::Split).run(&plc),
+        layers().run(&dangling),
+    ];
+    assert!(refused.iter().all(|made| matches!(made, Err(TetError::LayersAlong(_)))), "{refused:?}");
+}
+
+#[test]
+fn a_sphere_has_all_its_layers_as_thick_as_asked() {
+    let sphere = sphere_surface(3);
+    let made = layered(&sphere, THREE);
+    let summary = made.summary.layers.expect("a summary");
+    assert_eq!(summary.tets, 9 * sphere.triangles.len());
+    assert_eq!((summary.thin, summary.without.len()), (0, 0));
+    // Radii of the copies of the first vertex: a sphere's half width is its radius.
+    let depths = THREE.depths();
+    let n = sphere.points.len();
+    for (copy, depth) in made.mesh.points[n..n + 3].iter().zip(depths) {
+        assert!((copy.coords.norm() - (1.0 - 0.3 * depth)).abs() < 0.01, "{copy} {depth}");
+    }
+}
+
+#[test]
+fn a_box_of_twelve_triangles_has_layers() {
+    let made = layered(&cuboid(Point3::origin(), Vec3::new(1.0, 2.0, 3.0)), THREE);
+    assert_eq!(made.summary.layers.expect("a summary").tets, 9 * 12);
+}
+
+#[test]
+fn plates_are_as_thin_as_can_be_and_keep_their_layers() {
+    for thickness in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let made = layered(&cuboid(Point3::origin(), Vec3::new(1.0, 1.0, thickness)), THREE);
+        let summary = made.summary.layers.expect("a summary");
+        assert_eq!((summary.tets, summary.without.len()), (9 * 12, 0), "{thickness}");
+    }
+}
+
+#[test]
+fn shells_within_shells_have_layers_on_both_sides_whatever_way_they_are_turned() {
+    let hollow = |turned: bool| {
+        let mut inner = cuboid(Point3::new(1.0, 1.0, 1.0), Vec3::new(1.0, 1.0, 1.0));
+        if turned {
+            inner.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        joined(&[cuboid(Point3::origin(), Vec3::new(3.0, 3.0, 3.0)), inner])
+    };
+    for turned in [false, true] {
+        let made = layered(&hollow(turned), THREE);
+        assert_eq!(made.summary.layers.expect("a summary").tets, 9 * 24);
+        assert_eq!(made.summary.reversed, if turned { 0 } else { 12 });
+    }
+}
+
+#[test]
+fn lumps_apart_are_regions_still() {
+    let two = joined(&[0.0, 5.0].map(|x| cuboid(Point3::new(x, 0.0, 0.0), Vec3::new(1.0, 1.0, 1.0))));
+    let plain = Tetrahedralizer::new().run(&Plc::from(&two)).expect("certified");
+    let made = layered(&two, THREE);
+    assert_eq!(made.summary.regions, plain.summary.regions);
+    for (tet, region) in made.mesh.tets.iter().zip(&made.regions) {
+        assert_eq!(made.mesh.points[tet[0] as usize].x > 3.0, *region != made.regions[0], "{tet:?}");
+    }
+}
+
+#[test]
+fn a_vertex_from_which_nothing_leads_in_has_no_layer_and_is_named() {
+    // Two pyramids over one apex: what is inside lies on two sides of it.
+    let square = |z: f64| [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point3::new(x, y, z));
+    let mut surface = TriMesh { points: vec![Point3::origin()], triangles: Vec::new() };
+    surface.points.extend(square(1.0).into_iter().chain(square(-1.0)));
+    for i in 0..4_u32 {
+        let (a, b) = (1 + i, 1 + (i + 1) % 4);
+        surface.triangles.extend([[0, b, a], [0, a + 4, b + 4]]);
+    }
+    surface.triangles.extend([[1, 2, 3], [1, 3, 4], [5, 7, 6], [5, 8, 7]]);
+    let made = layered(&surface, THREE);
+    assert_eq!(made.summary.layers.expect("a summary").without, [0]);
+}
+
+#[test]
+fn bounds_are_for_what_is_inside_of_the_layers() {
+    let inside = |refinement| {
+        let plc = Plc::from(sphere_surface(2));
+        let made = Tetrahedralizer::new().layers(Some(THREE)).refine(refinement).run(&plc).expect("certified");
+        let layers = made.summary.layers.expect("a summary").tets;
+        assert_eq!(layers, 9 * plc.triangles.len());
+        made.mesh.tets.len() - layers
+    };
+    let fine = crate::Refinement::default().max_volume(2e-4);
+    assert!(inside(Some(fine)) > 2 * inside(None));
+}

@@ -1,0 +1,55 @@
+//! Improvement of a tetrahedral mesh whose surface stays as it is: smoothing of the inner vertices, edge and face
+//! removal, insertion and contraction of vertices where those do not suffice. (Freitag, Ollivier-Gooch 1997;
+//! Klingner, Shewchuk, 'Aggressive tetrahedral mesh improvement', 2007.)
+//!
+//! Every change keeps all tetrahedra positive by the exact predicate, and every change of the connection raises the
+//! worst radius ratio of the tetrahedra that it touches.
+
+mod allowance;
+mod cavity;
+mod flat;
+mod flipping;
+mod improver;
+mod options;
+mod reconnect;
+mod reconnecting;
+mod smoothing;
+mod star_energy;
+mod strain;
+mod thorough;
+
+pub use improver::Improver;
+pub use options::{Effort, OptimizeOptions, OptimizeReport};
+pub(super) use strain::score;
+
+use super::complex::{Complex, ComplexError};
+use super::progress::Watch;
+use anastomesh_mesh::TetMesh;
+
+/// Improves a mesh; its boundary faces and fixed points stay. Points that are not fixed may be moved, added, removed
+/// and renumbered (unless `keep_points` says otherwise); those that no tetrahedron uses are dropped.
+///
+/// # Errors
+/// When the arrays are not a mesh of positive, conforming tetrahedra; the mesh is then unchanged.
+pub fn optimize(mesh: &mut TetMesh, options: &OptimizeOptions) -> Result<OptimizeReport, ComplexError> {
+    let count = mesh.points.len();
+    let mut complex = Complex::from_mesh(mesh.points.clone(), &mesh.tets)?;
+    let report = optimize_complex(&mut complex, options, &Watch::NOBODY);
+    *mesh = complex.into_mesh();
+    let kept = if options.keep_points { count } else { options.fixed_points };
+    mesh.drop_unused_points(kept);
+    Ok(report)
+}
+
+/// Improves a complex in place, ghosts, frozen faces and all. Points that are no longer used stay in the list. Ends early,
+/// with what it has come to, when the watch says so.
+pub fn optimize_complex(complex: &mut Complex, options: &OptimizeOptions, watch: &Watch) -> OptimizeReport {
+    let mut improver = Improver::new(std::mem::take(complex), options).watched(*watch);
+    improver.run();
+    let (improved, report) = improver.finish();
+    *complex = improved;
+    report
+}
+
+#[cfg(test)]
+mod tests;

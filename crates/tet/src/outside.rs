@@ -1,0 +1,71 @@
+//! What of an input is no part of what is filled: triangles and segments with nothing around them but the outside, or
+//! holes.
+
+use super::carve::Sides;
+use super::complex::Complex;
+use super::error::{NAMED, TetError};
+use super::plc::LeftOut;
+use super::star::{EdgeRing, Star};
+use anastomesh_mesh::TriMesh;
+use std::borrow::Cow;
+
+impl LeftOut {
+    /// Finds what lies outside in a complex that has all of the input.
+    ///
+    /// # Errors
+    /// [`TetError::NotRecovered`] when the complex lacks something.
+    pub(super) fn find(c: &Complex, sides: &Sides, surface: &TriMesh, segments: &[[u32; 2]]) -> Result<Self, TetError> {
+        let mut found = Self::default();
+        let (mut lost_edges, mut lost_triangles) = (Vec::new(), Vec::new());
+        let mut star = Star::default();
+        if sides.has_faces_outside(c) {
+            for (&triangle, i) in surface.triangles.iter().zip(0..) {
+                match star.find_face(c, triangle) {
+                    None => lost_triangles.push(i),
+                    Some(half) if sides.outside_of_both(c, half) => found.triangles.push(i),
+                    Some(_) => {}
+                }
+            }
+        }
+        let mut ring = EdgeRing::default();
+        for (&[a, b], i) in segments.iter().zip(0..) {
+            match star.find_edge(c, a, b) {
+                Some(t) if ring.collect(c, t, a, b, usize::MAX) => {
+                    if !ring.tets.iter().any(|&t| sides.is_inside(t)) {
+                        found.segments.push(i);
+                    }
+                }
+                _ => lost_edges.push([a, b]),
+            }
+        }
+        if lost_edges.is_empty() && lost_triangles.is_empty() {
+            return Ok(found);
+        }
+        Err(TetError::NotRecovered { edges: lost_edges, triangles: lost_triangles })
+    }
+
+    /// The error that it is where nothing may be left out.
+    pub(super) fn as_error(&self) -> Option<TetError> {
+        let (what, ids) = match (self.triangles.as_slice(), self.segments.as_slice()) {
+            ([], []) => return None,
+            ([], segments) => ("segments", segments),
+            (triangles, _) => ("triangles", triangles),
+        };
+        Some(TetError::Outside { what, ids: ids.iter().take(NAMED).copied().collect(), count: ids.len() })
+    }
+
+    /// The surface without what is left out of it; all points stay.
+    pub(super) fn kept_surface<'a>(&self, surface: &'a TriMesh) -> Cow<'a, TriMesh> {
+        if self.triangles.is_empty() {
+            return Cow::Borrowed(surface);
+        }
+        let triangles = without(&surface.triangles, &self.triangles);
+        Cow::Owned(TriMesh { points: surface.points.clone(), triangles })
+    }
+}
+
+/// The items but those with the ids in `dropped`, which are ascending.
+pub(super) fn without<T: Copy>(items: &[T], dropped: &[u32]) -> Vec<T> {
+    let mut dropped = dropped.iter().copied().peekable();
+    items.iter().zip(0_u32..).filter(|(_, i)| dropped.next_if_eq(i).is_none()).map(|(item, _)| *item).collect()
+}

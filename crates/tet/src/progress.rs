@@ -1,0 +1,52 @@
+//! Telling a caller how far things are, and being told to stop.
+
+use super::error::TetError;
+pub use anastomesh_mesh::progress::{Progress, Stage};
+
+/// Who watches a run. Long loops report to it every now and then, and end with [`TetError::Cancelled`] when told so.
+#[derive(Clone, Copy, Default)]
+pub struct Watch<'a> {
+    who: Option<&'a dyn Progress>,
+    is_told: bool,
+}
+
+impl<'a> Watch<'a> {
+    pub const NOBODY: Watch<'static> = Watch { who: None, is_told: false };
+
+    /// Is told everything, and asked whether to stop.
+    pub fn of(who: &'a dyn Progress) -> Self {
+        Self { who: Some(who), is_told: true }
+    }
+
+    /// Is asked, often, whether to stop, and told nothing: the run is a part of what it listens to.
+    pub fn asking(who: &'a dyn Progress) -> Self {
+        Self { who: Some(who), is_told: false }
+    }
+
+    /// Reports, then asks whether to go on.
+    ///
+    /// # Errors
+    /// [`TetError::Cancelled`] when the caller says so.
+    #[inline]
+    pub fn report(&self, stage: Stage, done: usize, total: usize) -> Result<(), TetError> {
+        if let Some(who) = self.who.filter(|_| self.is_told) {
+            who.at(stage, done as u64, total as u64);
+        }
+        self.ask()
+    }
+
+    /// Asks whether to go on.
+    ///
+    /// # Errors
+    /// [`TetError::Cancelled`] when the caller says so.
+    #[inline]
+    pub fn ask(&self) -> Result<(), TetError> {
+        if self.who.is_some_and(Progress::is_cancelled) { Err(TetError::Cancelled) } else { Ok(()) }
+    }
+}
+
+impl std::fmt::Debug for Watch<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Watch").field("who", &self.who.is_some()).field("is_told", &self.is_told).finish()
+    }
+}

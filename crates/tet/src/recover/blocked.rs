@@ -1,0 +1,118 @@
+//! Flips that clear their own way: an edge that cannot be removed has its ring made smaller first.
+
+use super::{Recovery, blocked};
+use crate::complex::{Complex, GHOST};
+use crate::delaunay::hash;
+use crate::flips::{MAX_RING, Refusal};
+use crate::star::EdgeRing;
+
+/// Largest ring that is worked on.
+const LARGE_RING: usize = 4 * MAX_RING;
+
+impl Recovery<'_> {
+    /// Removes a face by a 2-3 flip, or else one of its edges at which the two tetrahedra are not convex.
+    pub(super) fn clear_face(&mut self, half: u32, depth: u32) -> bool {
+        if self.c.is_frozen(half) {
+            return false;
+        }
+        match self.flip_face(half) {
+            Ok(()) => true,
+            Err(refusal) if blocked(refusal) => {
+                let f = self.c.face(half);
+                let (a, d) = (self.c.apex(half), self.c.apex(self.c.mate(half)));
+                // Reflex edges first; flat ones are in the way as well.
+                let reflex = |i: usize| !self.rule.allows(self.c, &[a, d, f[i], f[(i + 1) % 3]]);
+                let sides: [bool; 3] = std::array::from_fn(reflex);
+                let turn = self.round as usize;
+                (turn..turn + 3).map(|i| i % 3).any(|i| {
+                    sides[i]
+                        && self
+                            .star
+                            .find_edge(self.c, f[i], f[(i + 1) % 3])
+                            .is_some_and(|t| self.clear_edge(t, f[i], f[(i + 1) % 3], depth))
+                })
+            }
+            Err(_) => false,
+        }
+    }
+
+    /// Removes an edge; when its ring has no valid triangulation, the ring is reduced by flipping its spokes, to a
+    /// bounded depth.
+    pub(super) fn clear_edge(&mut self, t: u32, p: u32, q: u32, depth: u32) -> bool {
+        if self.edges.contains(p, q) || self.budget == 0 {
+            return false;
+        }
+        self.budget -= 1;
+        match self.remove_edge(t, p, q) {
+            Ok(()) => return true,
+            Err(refusal) if !blocked(refusal) || depth == 0 => return false,
+            Err(_) => {}
+        }
+        let mut ring = EdgeRing::default();
+        let mut start = t;
+        // Each success makes the ring one smaller, so this ends.
+        while ring.collect(self.c, start, p, q, LARGE_RING) && self.reduce_ring(&ring, depth) {
+            let Some(next) = self.star.find_edge(self.c, p, q) else { return true };
+            start = next;
+            if self.remove_edge(start, p, q).is_ok() {
+                return true;
+            }
+            if self.budget == 0 {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// Removes an edge by some valid triangulation of its ring; another one in each round, so that what was stuck in
+    /// one may come loose in the next.
+    fn remove_edge(&mut self, t: u32, p: u32, q: u32) -> Result<(), Refusal> {
+        let (round, salt) = (self.round, Self::salt(self.round));
+        let rule = self.rule;
+        let score = |c: &Complex, v: &[u32; 4]| {
+            let coin = v.iter().fold(salt, |h, &x| hash(h ^ u64::from(x)));
+            rule.allows(c, v).then_some(if round == 0 { 1.0 } else { 1.0 + (coin >> 32) as f64 })
+        };
+        self.flipper.plan_edge(self.c, t, p, q, MAX_RING, score)?;
+        self.flipper.commit(self.c)
+    }
+
+    /// Exchanges a face for the edge between the two apices.
+    pub(super) fn flip_face(&mut self, half: u32) -> Result<(), Refusal> {
+        let rule = self.rule;
+        self.flipper.plan_face(self.c, half, |c, v| rule.allows(c, v).then_some(1.0))?;
+        self.flipper.commit(self.c)
+    }
+
+    /// Takes one spoke out of a ring.
+    fn reduce_ring(&mut self, ring: &EdgeRing, depth: u32) -> bool {
+        for i in 0..ring.len() {
+            if self.budget == 0 {
+                return false;
+            }
+            if let Some(half) = ring.spoke(self.c, i)
+                && !self.c.is_frozen(half)
+            {
+                self.budget -= 1;
+                if self.flip_face(half).is_ok() {
+                    return true;
+                }
+            }
+        }
+        for i in 0..ring.len() {
+            for end in [ring.a, ring.b] {
+                // The spoke's own edge at which its two tetrahedra are not convex keeps it from being flipped.
+                let (r, before) = (ring.rim[i], ring.rim[(i + ring.len() - 1) % ring.len()]);
+                let after = ring.rim[(i + 1) % ring.len()];
+                if [before, after, r].contains(&GHOST) {
+                    return false;
+                }
+                let convex = if end == ring.a { [after, before, end, r] } else { [before, after, end, r] };
+                if !self.rule.allows(self.c, &convex) && self.clear_edge(ring.tets[i], end, r, depth - 1) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}

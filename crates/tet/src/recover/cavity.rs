@@ -1,0 +1,115 @@
+//! A cavity that respects what is frozen, for a new vertex.
+
+use crate::complex::{Complex, GHOST};
+use crate::input::SurfaceEdges;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::predicates::{insphere, orient3d};
+
+/// Largest cavity.
+pub(super) const MAX_CAVITY: usize = 64;
+
+/// Digs cavities for single points; keeps its buffers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cavity {
+    tets: Vec<u32>,
+    new: Vec<[u32; 4]>,
+    created: Vec<u32>,
+}
+
+impl Cavity {
+    /// Inserts `p` in a cavity that holds at least `core`, tetrahedra whose common room `p` sees strictly inside. The
+    /// cavity does not cross frozen faces, keeps the edges of the surface and loses no vertex. Returns the new vertex,
+    /// or nothing when already the core does not allow that.
+    pub(super) fn insert(&mut self, c: &mut Complex, edges: &SurfaceEdges, core: &[u32], p: Point3) -> Option<u32> {
+        self.dig(c, core, &p);
+        while let Some(bad) = self.flaw(c, edges, core, &p) {
+            if core.contains(&bad) {
+                if self.tets.len() == core.len() {
+                    return None;
+                }
+                self.tets.truncate(core.len());
+            } else {
+                self.tets.retain(|&x| x != bad);
+            }
+        }
+        let v = c.points.len() as u32;
+        self.new.clear();
+        for &x in &self.tets {
+            for i in 0..4u32 {
+                let half = 4 * x + i;
+                if !self.tets.contains(&(c.mate(half) >> 2)) {
+                    let [a, b, d] = c.face(half);
+                    self.new.push([a, d, b, v]);
+                }
+            }
+        }
+        c.add_point(p);
+        if c.replace(&self.tets, &self.new, &mut self.created) {
+            Some(v)
+        } else {
+            c.pop_point();
+            None
+        }
+    }
+
+    fn dig(&mut self, c: &Complex, core: &[u32], p: &Point3) {
+        self.tets.clear();
+        self.tets.extend_from_slice(core);
+        let mut head = 0;
+        while head < self.tets.len() && self.tets.len() < MAX_CAVITY {
+            let cur = self.tets[head];
+            head += 1;
+            for i in 0..4 {
+                let half = 4 * cur + i;
+                let n = c.mate(half) >> 2;
+                if c.is_frozen(half) || c.is_ghost(n) || self.tets.contains(&n) {
+                    continue;
+                }
+                let [a, b, d, e] = c.verts(n).map(|v| &c.points[v as usize]);
+                if insphere(a, b, d, e, p) > 0.0 {
+                    self.tets.push(n);
+                }
+            }
+        }
+    }
+
+    /// A tetrahedron that must leave the cavity: one with a wall that `p` does not see, or one that hides a vertex, an
+    /// edge of the surface or a frozen face inside the cavity.
+    fn flaw(&self, c: &Complex, edges: &SurfaceEdges, core: &[u32], p: &Point3) -> Option<u32> {
+        let mut walls: Vec<[u32; 3]> = Vec::new();
+        for &x in &self.tets {
+            for i in 0..4u32 {
+                let half = 4 * x + i;
+                if !self.tets.contains(&(c.mate(half) >> 2)) {
+                    let f = c.face(half);
+                    if !sees(c, &f, p) {
+                        return Some(x);
+                    }
+                    walls.push(f);
+                } else if c.is_frozen(half) {
+                    // The cavity has grown around the rim of what is recovered so far: keep the part on one side.
+                    return Some(if core.contains(&x) { c.mate(half) >> 2 } else { x });
+                }
+            }
+        }
+        self.tets.iter().rev().copied().find(|&x| {
+            let v = c.verts(x);
+            let hidden = v.iter().any(|y| !walls.iter().any(|w| w.contains(y)));
+            hidden
+                || (0..4).any(|i| {
+                    (0..i).any(|j| {
+                        edges.contains(v[i], v[j]) && !walls.iter().any(|w| w.contains(&v[i]) && w.contains(&v[j]))
+                    })
+                })
+        })
+    }
+}
+
+/// Whether `p` lies strictly behind a face that runs counter-clockwise seen from its front.
+fn sees(c: &Complex, f: &[u32; 3], p: &Point3) -> bool {
+    if f.contains(&GHOST) {
+        return false;
+    }
+    let [a, b, d] = f.map(|v| &c.points[v as usize]);
+    orient3d(a, b, d, p) < 0.0
+}

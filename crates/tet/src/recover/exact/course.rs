@@ -1,0 +1,121 @@
+//! How far off the walls of a cavity a segment runs: floating point, and a proposal; exact predicates decide.
+
+use super::space::Space;
+use anastomesh_mesh::geometry::implicit::OnTriangle;
+use anastomesh_mesh::geometry::{Point3, Vec3, unit_normal};
+
+/// Exchanges of a wall in the search for the deepest place; a handful are usual.
+const EXCHANGES: usize = 64;
+
+/// The rest of a segment, behind the vertex to which it has come.
+pub(super) struct Course {
+    start: Point3,
+    along: Vec3,
+    /// Share of the segment that lies behind.
+    from: f64,
+}
+
+/// The place on a course that lies furthest from all walls.
+pub(super) struct Deepest {
+    /// Share of the segment before it.
+    share: f64,
+    /// Its distance from the nearest walls, over the size of the cavity; negative where no place sees all walls.
+    pub depth: f64,
+    /// The nearest walls, as half-faces of the cavity.
+    pub tight: [Option<u32>; 2],
+}
+
+/// The distance from a wall, `at + slope · share`.
+#[derive(Clone, Copy)]
+struct Height {
+    at: f64,
+    slope: f64,
+    half: Option<u32>,
+}
+
+impl Height {
+    /// Where two are equal.
+    fn meets(&self, other: &Self) -> f64 {
+        (self.at - other.at) / (other.slope - self.slope)
+    }
+}
+
+impl Course {
+    pub(super) fn new(s: &Space, at: u32, [p, q]: [u32; 2]) -> Self {
+        let (start, end) = (*s.point(p), *s.point(q));
+        let along = end - start;
+        let from = ((s.point(at) - start).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        Self { start, along, from }
+    }
+
+    /// Distances from a wall.
+    fn height(&self, s: &Space, half: u32) -> Height {
+        let [a, b, c] = s.wall(half).map(|v| s.point(v) - self.start);
+        let n = unit_normal(a, b, c);
+        Height { at: -n.dot(&a), slope: n.dot(&self.along), half: Some(half) }
+    }
+
+    /// The deepest place in a cavity: its least distance from the walls is concave along the segment, so the walls that
+    /// bound it from both sides are exchanged until none is nearer.
+    pub(super) fn deepest(&self, s: &Space, walls: &[u32]) -> Deepest {
+        let size = self.along.norm();
+        // The ends of the segment bound the place as well.
+        let mut low = Height { at: -self.from * size, slope: size, half: None };
+        let mut high = Height { at: size, slope: -size, half: None };
+        let heights: Vec<Height> = walls.iter().map(|&half| self.height(s, half)).collect();
+        let mut share = low.meets(&high);
+        let mut depth = low.at + low.slope * share;
+        for _ in 0..EXCHANGES {
+            let value = |h: &Height| h.at + h.slope * share;
+            let Some(nearest) = heights.iter().min_by(|x, y| value(x).total_cmp(&value(y))) else { break };
+            let least = value(nearest);
+            if least >= depth - 1e-12 * depth.abs() - f64::MIN_POSITIVE {
+                break;
+            }
+            depth = least;
+            let flat = nearest.slope == 0.0;
+            if nearest.slope >= 0.0 {
+                low = *nearest;
+            }
+            if nearest.slope <= 0.0 {
+                high = *nearest;
+            }
+            if flat {
+                break;
+            }
+            share = low.meets(&high).clamp(self.from, 1.0);
+            depth = low.at + low.slope * share;
+        }
+        let room = self.size(s, walls, share);
+        Deepest { share, depth: depth / room, tight: [low.half, high.half] }
+    }
+
+    /// Distance of the furthest corner of some walls from a place.
+    fn size(&self, s: &Space, walls: &[u32], share: f64) -> f64 {
+        let place = self.start + self.along * share;
+        let far = |&half: &u32| s.wall(half).map(|v| (s.point(v) - place).norm_squared());
+        walls.iter().flat_map(far).fold(f64::MIN_POSITIVE, f64::max).sqrt()
+    }
+
+    /// Least distance of a vertex from the walls that it is no corner of, over the size of the cavity.
+    pub(super) fn depth_from(&self, s: &Space, v: u32, walls: &[u32]) -> f64 {
+        let p = s.point(v) - self.start;
+        let mut least = f64::INFINITY;
+        for &half in walls {
+            let corners = s.wall(half);
+            if !corners.contains(&v) {
+                let [a, b, c] = corners.map(|v| s.point(v) - self.start);
+                least = least.min(unit_normal(a, b, c).dot(&(p - a)));
+            }
+        }
+        least / self.size(s, walls, self.from)
+    }
+
+    /// The weight of a place, with no more bits than it takes to stay near: that makes exact arithmetic short.
+    pub(super) fn weight(place: &Deepest) -> u128 {
+        // Sixteenths of the depth, at least ten bits, at most what a number has.
+        let bits = (-(place.depth.max(1e-15) / 16.0).log2()).ceil().clamp(10.0, 52.0) as u32;
+        let steps = (place.share.clamp(0.0, 1.0) * (1_u64 << bits) as f64).round() as u128;
+        steps * (OnTriangle::ONE >> bits)
+    }
+}

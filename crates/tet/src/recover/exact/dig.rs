@@ -1,0 +1,338 @@
+//! Cavities for vertices on a segment: what it crosses first, made wider where the part of the segment that sees all
+//! walls is too short, and then longer along the segment as far as one vertex can see.
+
+use super::course::{Course, Deepest};
+use super::space::Space;
+use crate::star::EdgeRing;
+use anastomesh_mesh::geometry::implicit::{self, OnTriangle, Site};
+use rustc_hash::FxHashMap;
+
+/// Bits of a weight below those that the length of its interval has.
+const BITS: u32 = 4;
+
+/// Steps by which a cavity grows at most.
+const STEPS: usize = 32;
+
+/// Steps by which it grows at most, where it is to be deep.
+const DEEP_STEPS: usize = 64;
+
+/// Steps without a gain after which it is as deep as it gets.
+const PATIENCE: usize = 6;
+
+/// Distance of a vertex from the walls, over their size, that is deep enough. What is flatter than that counts as flat:
+/// far above what rounding of coordinates leaves of flat parts, even to single precision.
+const DEEP: f64 = 1e-5;
+
+/// Part of the segment that should see the walls.
+const WIDE: i128 = (OnTriangle::ONE >> 24).cast_signed();
+
+/// A cavity.
+pub(super) enum Dug {
+    /// One that can be joined to the vertex from which the segment comes, which leads to the segment's end.
+    Joins(Vec<u32>),
+    /// One all of whose walls are seen from a place on the segment.
+    Place(Vec<u32>, u128),
+}
+
+pub(super) struct Dig<'a> {
+    s: &'a Space,
+    /// Number of the input's points.
+    points: usize,
+    /// Edges that may not go.
+    keep: &'a dyn Fn(u32, u32) -> bool,
+    /// Where the segment comes from.
+    at: u32,
+    ends: [u32; 2],
+    course: Course,
+    known: FxHashMap<u32, Sight>,
+}
+
+/// The weights from which all walls are seen from inside, those between two, and the walls, as half-faces of the
+/// cavity, that bound them.
+#[derive(Clone, Copy)]
+struct View {
+    low: (u128, u32),
+    high: (u128, u32),
+    /// A wall that is seen from nowhere on the segment.
+    blind: Option<u32>,
+}
+
+/// Where on a segment a wall is seen from inside.
+#[derive(Clone, Copy)]
+enum Sight {
+    Everywhere,
+    /// Before this weight.
+    Before(u128),
+    /// Behind this weight.
+    Behind(u128),
+    Nowhere,
+}
+
+impl Sight {
+    fn of(s: &Space, ends: [u32; 2], half: u32) -> Self {
+        let [x, y, z] = s.c.face(half);
+        let inside = ends.map(|end| s.orient([x, z, y, end]) > 0);
+        if inside == [true; 2] {
+            return Self::Everywhere;
+        }
+        let weight = || implicit::parameter([x, z, y].map(|v| s.site(v)), ends.map(|v| s.site(v)));
+        match inside {
+            [true, false] => weight().map_or(Self::Nowhere, Self::Before),
+            [false, true] => weight().map_or(Self::Nowhere, Self::Behind),
+            _ => Self::Nowhere,
+        }
+    }
+}
+
+impl View {
+    fn of(walls: impl Iterator<Item = (u32, Sight)>) -> Self {
+        let mut view = Self { low: (0, u32::MAX), high: (OnTriangle::ONE, u32::MAX), blind: None };
+        for (half, sight) in walls {
+            match sight {
+                Sight::Before(t) if t < view.high.0 => view.high = (t, half),
+                Sight::Behind(t) if t >= view.low.0 => view.low = (t, half),
+                Sight::Nowhere => view.blind = Some(half),
+                _ => {}
+            }
+        }
+        view
+    }
+
+    fn width(&self) -> i128 {
+        if self.blind.is_some() { i128::MIN } else { self.high.0.cast_signed() - self.low.0.cast_signed() }
+    }
+
+    /// A weight in the middle half, with few bits: that makes exact arithmetic short.
+    fn middle(&self) -> u128 {
+        let (low, width) = (self.low.0, self.high.0 - self.low.0);
+        let shift = width.max(1).ilog2().saturating_sub(BITS);
+        let middle = low + width / 2;
+        ((middle >> shift) << shift).max(low + width / 4)
+    }
+}
+
+/// A weight on a segment from which all walls of a cavity are seen.
+pub(super) fn middle(s: &Space, ends: [u32; 2], cavity: &[u32]) -> Option<u128> {
+    let view = View::of(s.outer(cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
+    (view.width() > 0).then(|| view.middle())
+}
+
+impl<'a> Dig<'a> {
+    pub(super) fn new(
+        s: &'a Space,
+        points: usize,
+        keep: &'a dyn Fn(u32, u32) -> bool,
+        at: u32,
+        ends: [u32; 2],
+    ) -> Self {
+        Self { s, points, keep, at, ends, course: Course::new(s, at, ends), known: FxHashMap::default() }
+    }
+
+    /// The cavity for the next vertex of the segment behind what it crosses first.
+    pub(super) fn dig(&mut self, first: Vec<u32>, deep: bool) -> Option<Dug> {
+        let dug = if deep { self.deep(first.clone()) } else { None };
+        dug.or_else(|| self.seen(first))
+    }
+
+    /// A cavity in which the vertex lies well off all walls: what is nearly flat is taken as well, on both sides.
+    fn deep(&self, mut tets: Vec<u32>) -> Option<Dug> {
+        let mut best: Option<(f64, Dug)> = None;
+        let mut deepest_yet = (f64::NEG_INFINITY, 0);
+        for step in 0..DEEP_STEPS {
+            let walls = self.s.outer(&tets);
+            let deepest = self.course.deepest(self.s, &walls);
+            if deepest.depth > deepest_yet.0 {
+                deepest_yet = (deepest.depth, step);
+            } else if step > deepest_yet.1 + PATIENCE && deepest_yet.0 < DEEP {
+                break;
+            }
+            let so_far = best.as_ref().map_or(0.0, |b| b.0);
+            let joined = self.depth_of_join(&walls).filter(|&depth| depth > so_far);
+            let better = deepest.depth > so_far || deepest.depth >= DEEP;
+            if (joined.is_some() || better) && self.keeps(&tets, &walls) {
+                if let Some(depth) = joined.filter(|_| self.joins(&walls)) {
+                    if depth >= DEEP {
+                        return Some(Dug::Joins(tets));
+                    }
+                    best = Some((depth, Dug::Joins(tets.clone())));
+                }
+                let so_far = best.as_ref().map_or(0.0, |b| b.0);
+                if (deepest.depth > so_far || deepest.depth >= DEEP)
+                    && let Some(weight) = self.place(&walls, &deepest)
+                {
+                    best = Some((deepest.depth.min(DEEP), Dug::Place(tets.clone(), weight)));
+                }
+            } else if so_far >= DEEP {
+                break;
+            }
+            let further =
+                if deepest.depth < DEEP { self.deepen(&mut tets, &deepest) } else { self.lengthen(&mut tets) };
+            if !further {
+                break;
+            }
+        }
+        best.map(|b| b.1)
+    }
+
+    /// Least distance of the vertex from which the segment comes from the walls that it is no corner of, over their
+    /// size, if one of them has the segment's end.
+    fn depth_of_join(&self, walls: &[u32]) -> Option<f64> {
+        let s = self.s;
+        let leads = walls.iter().any(|&half| s.c.face(half).contains(&self.ends[1]));
+        leads.then(|| self.course.depth_from(s, self.at, walls)).filter(|&depth| depth > 0.0)
+    }
+
+    /// The weight of a place near the deepest one that sees all walls.
+    fn place(&self, walls: &[u32], deepest: &Deepest) -> Option<u128> {
+        let weight = Course::weight(deepest);
+        let on = OnTriangle::on_segment(self.ends.map(|v| *self.s.point(v)), weight);
+        let at = on.rounded();
+        let site = Site { at: &at, on: Some(&on) };
+        let sees = |&half: &u32| {
+            let [a, b, c] = self.s.wall(half).map(|v| self.s.site(v));
+            implicit::orient3d([a, b, c, site]) > 0
+        };
+        walls.iter().all(sees).then_some(weight)
+    }
+
+    /// Adds what lies behind one of the walls nearest to the deepest place, the one that gains more.
+    fn deepen(&self, tets: &mut Vec<u32>, deepest: &Deepest) -> bool {
+        let mut best: Option<(f64, u32)> = None;
+        for half in deepest.tight.into_iter().flatten() {
+            let next = self.s.c.mate(half) >> 2;
+            if self.s.c.is_frozen(half) || self.s.c.is_ghost(next) {
+                continue;
+            }
+            tets.push(next);
+            let depth = self.course.deepest(self.s, &self.s.outer(tets)).depth;
+            tets.pop();
+            if best.is_none_or(|(d, _)| depth > d) {
+                best = Some((depth, next));
+            }
+        }
+        tets.extend(best.map(|b| b.1));
+        best.is_some()
+    }
+
+    /// A cavity whose walls are all seen from somewhere on the segment, however near they are.
+    fn seen(&mut self, first: Vec<u32>) -> Option<Dug> {
+        let mut tets = first;
+        let mut best: Option<(Vec<u32>, View)> = None;
+        for step in 0..STEPS {
+            let walls = self.s.outer(&tets);
+            let view = self.view(&walls);
+            let so_far = best.as_ref().map_or(0, |b| b.1.width());
+            let joins = self.joins(&walls);
+            let better = view.width() >= WIDE || view.width() > so_far;
+            if (joins || better) && (step == 0 || self.keeps(&tets, &walls)) {
+                if joins {
+                    return Some(Dug::Joins(tets));
+                }
+                best = Some((tets.clone(), view));
+            } else if so_far >= WIDE {
+                break;
+            }
+            let further = if view.width() < WIDE { self.widen(&mut tets, &view) } else { self.lengthen(&mut tets) };
+            if !further {
+                break;
+            }
+        }
+        best.map(|(tets, view)| Dug::Place(tets, view.middle()))
+    }
+
+    fn view(&mut self, walls: &[u32]) -> View {
+        let (s, ends, known) = (self.s, self.ends, &mut self.known);
+        View::of(walls.iter().map(|&half| (half, *known.entry(half).or_insert_with(|| Sight::of(s, ends, half)))))
+    }
+
+    /// Whether the vertex from which the segment comes sees all walls, one of which has the end.
+    fn joins(&self, walls: &[u32]) -> bool {
+        let s = self.s;
+        let sees = |half: u32| {
+            let [a, b, c] = s.c.face(half);
+            [a, b, c].contains(&self.at) || s.orient([a, c, b, self.at]) > 0
+        };
+        walls.iter().any(|&half| s.c.face(half).contains(&self.ends[1])) && walls.iter().all(|&half| sees(half))
+    }
+
+    /// Adds what lies behind one of the walls that bound the view, the one that gains more.
+    fn widen(&mut self, tets: &mut Vec<u32>, view: &View) -> bool {
+        let mut best: Option<(i128, u32)> = None;
+        let bounds = if let Some(half) = view.blind { vec![half] } else { vec![view.low.1, view.high.1] };
+        for half in bounds {
+            if half == u32::MAX || self.s.c.is_frozen(half) || self.s.c.is_ghost(self.s.c.mate(half) >> 2) {
+                continue;
+            }
+            let next = self.s.c.mate(half) >> 2;
+            tets.push(next);
+            let walls = self.s.outer(tets);
+            let width = self.view(&walls).width();
+            tets.pop();
+            if best.is_none_or(|(w, _)| width > w) {
+                best = Some((width, next));
+            }
+        }
+        tets.extend(best.map(|b| b.1));
+        best.is_some()
+    }
+
+    /// Adds what the segment crosses next behind a cavity.
+    fn lengthen(&self, tets: &mut Vec<u32>) -> bool {
+        let (s, [p, q]) = (self.s, self.ends);
+        for half in self.s.outer(tets) {
+            let f = s.c.face(half);
+            if s.orient([f[0], f[1], f[2], q]) <= 0 {
+                continue;
+            }
+            let sides: [i32; 3] = std::array::from_fn(|i| s.orient([p, q, f[i], f[(i + 1) % 3]]));
+            if sides.iter().any(|&x| x < 0) {
+                continue;
+            }
+            let zeros: Vec<usize> = (0..3).filter(|&i| sides[i] == 0).collect();
+            return match zeros[..] {
+                [] => self.pass_face(tets, half),
+                [i] => self.pass_edge(tets, half >> 2, [f[i], f[(i + 1) % 3]]),
+                _ => false,
+            };
+        }
+        false
+    }
+
+    fn pass_face(&self, tets: &mut Vec<u32>, half: u32) -> bool {
+        let next = self.s.c.mate(half) >> 2;
+        let free = !self.s.c.is_frozen(half) && !self.s.c.is_ghost(next);
+        if free {
+            tets.push(next);
+        }
+        free
+    }
+
+    fn pass_edge(&self, tets: &mut Vec<u32>, t: u32, [u, v]: [u32; 2]) -> bool {
+        let mut ring = EdgeRing::default();
+        let found = ring.collect(&self.s.c, t, u, v, usize::MAX) && !ring.touches_ghost();
+        if !found || (self.keep)(u, v) {
+            return false;
+        }
+        for t in ring.tets {
+            if !tets.contains(&t) {
+                tets.push(t);
+            }
+        }
+        true
+    }
+
+    /// Whether nothing that has to stay is inside of a cavity.
+    fn keeps(&self, tets: &[u32], walls: &[u32]) -> bool {
+        let faces: Vec<[u32; 3]> = walls.iter().map(|&half| self.s.c.face(half)).collect();
+        let has = |part: &[u32]| faces.iter().any(|f| part.iter().all(|x| f.contains(x)));
+        tets.iter().all(|&t| {
+            let v = self.s.c.verts(t);
+            // Free vertices may go.
+            let stays = |x: u32| (x as usize) < self.points || self.s.is_implicit(x);
+            let frozen = |half| self.s.c.is_frozen(half) && tets.contains(&(self.s.c.mate(half) >> 2));
+            v.iter().all(|&x| !stays(x) || has(&[x]))
+                && !(4 * t..4 * t + 4).any(frozen)
+                && (0..4).all(|i| (0..i).all(|j| !(self.keep)(v[i], v[j]) || has(&[v[i], v[j]])))
+        })
+    }
+}

@@ -1,0 +1,100 @@
+//! One part of what is missing, from its edges to vertices that have given way.
+
+use super::facets::cover;
+use super::helpers::add_helpers;
+use super::parts::Part;
+use super::push::Push;
+use crate::delaunay::hash;
+use crate::error::{Obstacle, Stuck, TetError};
+use crate::progress::Watch;
+use anastomesh_mesh::TriMesh;
+
+/// What the exact tier did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct ExactSummary {
+    /// Vertices that were put on edges.
+    pub on_segments: usize,
+    /// Vertices that were put inside of triangles.
+    pub on_facets: usize,
+    /// Vertices off the surface that remain.
+    pub steiner_points: usize,
+}
+
+/// What happens to helpers is told of the edge that they were to help.
+pub(super) fn about_input(error: TetError, surface: &TriMesh, part: &Part) -> TetError {
+    let known = |v: &u32| (*v as usize) < surface.points.len();
+    let of_input = |part: &Obstacle| match part {
+        Obstacle::Triangle(v) => v.iter().all(known),
+        Obstacle::Edge(v) => v.iter().all(known),
+        Obstacle::Point(v) => known(v),
+    };
+    let error = match error {
+        TetError::EdgeMeets { edge, obstacle } => {
+            TetError::EdgeMeets { edge, obstacle: obstacle.as_given(&surface.triangles) }
+        }
+        other => other,
+    };
+    let told = match &error {
+        TetError::EdgeMeets { edge, obstacle } => edge.iter().all(known) && of_input(obstacle),
+        TetError::Stuck { part, .. } => of_input(part),
+        _ => true,
+    };
+    let dangling = part.edges.first().filter(|_| !told);
+    dangling.map_or(error, |&edge| TetError::Stuck { part: Obstacle::Edge(edge), reason: Stuck::Dangling })
+}
+
+/// Recovers one part: its edges, then its triangles, then what was put on them gives way.
+///
+/// # Errors
+/// As the tier; `push` is of no use then.
+pub(super) fn recover_part(
+    push: &mut Push,
+    part: &Part,
+    salt: u64,
+    summary: &mut ExactSummary,
+    budget: usize,
+    watch: &Watch,
+) -> Result<(), TetError> {
+    let spend = |push: &Push, on: Obstacle| {
+        watch.ask()?;
+        let over = push.s.implicit_vertices() > budget;
+        if over { Err(TetError::Stuck { part: on, reason: Stuck::Budget }) } else { Ok(()) }
+    };
+    let helpers = add_helpers(push, part, salt);
+    // At random: fans of long thin triangles come in halves of halves then, where one after the other each next chain
+    // would have to fit between the one before and what lies beyond.
+    let mut edges = part.edges.clone();
+    edges.sort_by_key(|&[a, b]| (hash(salt ^ (u64::from(a) << 32 | u64::from(b))), a, b));
+    for &ends in &edges {
+        spend(push, Obstacle::Edge(ends))?;
+        let id = push.segments.cut(&mut push.s, ends)?;
+        summary.on_segments += push.add_segment(id);
+    }
+    let beside = push.segments.list.len() as u32;
+    for &ends in &helpers.edges {
+        spend(push, Obstacle::Edge(ends))?;
+        push.segments.cut(&mut push.s, ends)?;
+    }
+    #[cfg(test)]
+    push.s.check();
+    for &t in &part.triangles {
+        spend(push, Obstacle::Triangle(push.triangles[t as usize]))?;
+        let cover = cover(&mut push.s, &push.segments, push.triangles[t as usize])?;
+        summary.on_facets += push.add_facet(t, cover);
+    }
+    let mut inner = Vec::new();
+    for &t in &helpers.triangles {
+        let cover = cover(&mut push.s, &push.segments, push.triangles[t as usize])?;
+        inner.extend(push.add_helper(t, cover));
+    }
+    #[cfg(test)]
+    push.s.check();
+    push.settle()?;
+    if !helpers.triangles.is_empty() {
+        push.drop_helpers(&helpers.triangles, beside..push.segments.list.len() as u32, inner);
+        push.settle()?;
+    }
+    summary.steiner_points += push.finish();
+    let lost = part.triangles.iter().map(|&t| push.triangles[t as usize]).find(|&t| push.s.find_face(t).is_none());
+    lost.map_or(Ok(()), |t| Err(TetError::Stuck { part: Obstacle::Triangle(t), reason: Stuck::Precision }))
+}

@@ -1,0 +1,139 @@
+//! Polygons in the plane of a facet.
+
+use super::space::Space;
+use crate::error::{Obstacle, Stuck, TetError};
+use anastomesh_mesh::geometry::implicit::{self, Site};
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+
+/// A point off the plane of a triangle, from which it runs counter-clockwise.
+pub(super) fn point_above(s: &Space, triangle: [u32; 3]) -> Result<Point3, TetError> {
+    let [a, b, c] = triangle.map(|v| *s.point(v));
+    let size = (b - a).norm().max((c - a).norm());
+    let normal = (b - a).cross(&(c - a));
+    let unit = normal.try_normalize(0.0).unwrap_or(Vec3::zeros());
+    let mut directions = vec![unit];
+    for axis in [Vec3::x(), Vec3::y(), Vec3::z()] {
+        directions.extend([axis, -axis]);
+    }
+    let above = directions.iter().map(|d| a + d * size).find(|p| s.orient_to(triangle, p) > 0);
+    above.ok_or(TetError::Stuck { part: Obstacle::Triangle(triangle), reason: Stuck::Precision })
+}
+
+/// Triangulates a simple polygon in the plane below `above`, counter-clockwise seen from there, some of whose corners
+/// may be flat: ears are cut off, the best-shaped first. False when it is not simple.
+pub(super) fn triangulate(s: &Space, polygon: &[u32], above: &Point3, out: &mut Vec<[u32; 3]>) -> bool {
+    out.clear();
+    if polygon.len() < 3 {
+        return false;
+    }
+    let mut rest = Ears::new(s, polygon, above);
+    for _ in 3..polygon.len() {
+        let Some(k) = rest.next_ear() else { return false };
+        out.push(rest.corner(k));
+        rest.cut(k);
+    }
+    let Some(k) = (0..polygon.len()).find(|&k| rest.turn[k].is_some()) else { return false };
+    out.push(rest.corner(k));
+    rest.turn[k] == Some(1)
+}
+
+/// What is left of a polygon.
+struct Ears<'a> {
+    s: &'a Space,
+    polygon: &'a [u32],
+    above: Site<'a>,
+    before: Vec<usize>,
+    after: Vec<usize>,
+    /// How the polygon turns at each corner that is left.
+    turn: Vec<Option<i32>>,
+    /// Corners where it turns inwards, the best-shaped first.
+    convex: BTreeSet<(Reverse<u64>, usize)>,
+    /// A corner in the triangle of each, where one was found: as long as it is there, the first is no ear.
+    inside: Vec<Option<usize>>,
+}
+
+impl<'a> Ears<'a> {
+    fn new(s: &'a Space, polygon: &'a [u32], above: &'a Point3) -> Self {
+        let n = polygon.len();
+        let (before, after) = ((0..n).map(|k| (k + n - 1) % n).collect(), (0..n).map(|k| (k + 1) % n).collect());
+        let above = Site { at: above, on: None };
+        let mut ears = Self {
+            s,
+            polygon,
+            above,
+            before,
+            after,
+            turn: vec![None; n],
+            convex: BTreeSet::new(),
+            inside: vec![None; n],
+        };
+        (0..n).for_each(|k| ears.look(k));
+        ears
+    }
+
+    fn corner(&self, k: usize) -> [u32; 3] {
+        [self.before[k], k, self.after[k]].map(|k| self.polygon[k])
+    }
+
+    fn turn_of(&self, [p, q, r]: [u32; 3]) -> i32 {
+        implicit::orient3d([self.s.site(p), self.s.site(q), self.s.site(r), self.above])
+    }
+
+    /// Shapes are not negative, so their bits have their order.
+    fn key(&self, k: usize) -> (Reverse<u64>, usize) {
+        (Reverse(shape(self.s, self.corner(k)).to_bits()), k)
+    }
+
+    fn look(&mut self, k: usize) {
+        let turn = self.turn_of(self.corner(k));
+        self.turn[k] = Some(turn);
+        self.inside[k] = None;
+        if turn > 0 {
+            self.convex.insert(self.key(k));
+        }
+    }
+
+    /// The best-shaped corner whose triangle has no other corner in it. Where one lies in it, one at which the polygon
+    /// does not turn inwards does.
+    fn next_ear(&mut self) -> Option<usize> {
+        let is_blunt = |turn: Option<i32>| turn.is_some_and(|t| t <= 0);
+        let mut blunt: Option<Vec<usize>> = None;
+        let mut ear = None;
+        for &(_, k) in &self.convex {
+            if self.inside[k].is_some_and(|w| is_blunt(self.turn[w])) {
+                continue;
+            }
+            let blunt = blunt.get_or_insert_with(|| (0..self.turn.len()).filter(|&w| is_blunt(self.turn[w])).collect());
+            let [p, q, r] = self.corner(k);
+            let within = |w: u32| {
+                ![p, q, r].contains(&w) && [[r, p, w], [p, q, w], [q, r, w]].into_iter().all(|t| self.turn_of(t) >= 0)
+            };
+            self.inside[k] = blunt.iter().copied().find(|&w| within(self.polygon[w]));
+            if self.inside[k].is_none() {
+                ear = Some(k);
+                break;
+            }
+        }
+        ear
+    }
+
+    fn cut(&mut self, k: usize) {
+        let (before, after) = (self.before[k], self.after[k]);
+        for k in [before, k, after] {
+            self.convex.remove(&self.key(k));
+        }
+        self.turn[k] = None;
+        (self.after[before], self.before[after]) = (after, before);
+        self.look(before);
+        self.look(after);
+    }
+}
+
+/// Area over the square of the longest side; a heuristic.
+fn shape(s: &Space, corners: [u32; 3]) -> f64 {
+    let [p, q, r] = corners.map(|v| s.point(v));
+    let longest = (q - p).norm_squared().max((r - q).norm_squared()).max((p - r).norm_squared());
+    (q - p).cross(&(r - p)).norm() / longest
+}

@@ -1,0 +1,247 @@
+//! The room that faces leave for a vertex, and its deepest point: a linear program in four variables. That is
+//! floating point, and a proposal; exact predicates decide.
+
+use super::space::Space;
+use anastomesh_mesh::geometry::{Point3, Vec3, unit_normal};
+use nalgebra::{Matrix4, Vector4};
+
+/// Least distances of a new vertex from the planes around, over the size of its room, that are asked for one after the
+/// other.
+pub(super) const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
+
+/// Shares of the way from the segment to the deepest point of the room at which a position is looked for.
+const SHARES: [f64; 9] = [1.0, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4];
+
+/// Roundoff of distances over the size of the room.
+const ROUNDOFF: f64 = 1e-14;
+
+/// Exchanges of a constraint in a linear program at most; ten are usual.
+const EXCHANGES: usize = 100;
+
+/// What takes the place of a vertex in a sector.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Apex {
+    /// One of the vertices around it.
+    Vertex(u32),
+    /// A new one.
+    Point(Point3),
+}
+
+/// The room that some faces leave for a vertex that has to see all of them counter-clockwise, in coordinates relative
+/// to a place nearby.
+pub(super) struct Room<'a> {
+    origin: Point3,
+    faces: &'a [[u32; 3]],
+    /// Unit normal towards the room and height of the origin, per face.
+    planes: Vec<(Vec3, f64)>,
+    /// Largest distance of a corner.
+    pub size: f64,
+}
+
+impl<'a> Room<'a> {
+    pub(super) fn new(s: &Space, origin: Point3, faces: &'a [[u32; 3]]) -> Self {
+        let mut planes = Vec::with_capacity(faces.len());
+        let mut size = 0.0_f64;
+        for f in faces {
+            let [a, b, c] = f.map(|x| s.point(x) - origin);
+            size = size.max(a.norm()).max(b.norm()).max(c.norm());
+            let n = unit_normal(a, b, c);
+            planes.push((n, -n.dot(&a)));
+        }
+        Self { origin, faces, planes, size }
+    }
+
+    /// Least distance from the planes of the faces.
+    pub(super) fn depth(&self, x: &Vec3) -> f64 {
+        self.planes.iter().map(|(n, h)| n.dot(x) + h).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Least distance of corner `w` from the planes of the faces that it is no corner of, if it is above a bound.
+    fn depth_of(&self, s: &Space, w: u32, bound: f64) -> Option<f64> {
+        let x = s.point(w) - self.origin;
+        let mut least = f64::INFINITY;
+        for ((n, h), face) in self.planes.iter().zip(self.faces) {
+            let d = n.dot(&x) + h;
+            if d < least && !face.contains(&w) {
+                if d <= bound {
+                    return None;
+                }
+                least = d;
+            }
+        }
+        Some(least)
+    }
+
+    /// The corner that sees all faces that do not have it, the one furthest from their planes; at least `least` times
+    /// the size. Where there is none, the largest such distance over the size that a corner further down has.
+    pub(super) fn neighbor(&self, s: &Space, least: f64) -> Result<u32, f64> {
+        let mut rim: Vec<u32> = self.faces.iter().flatten().copied().collect();
+        rim.sort_unstable();
+        rim.dedup();
+        // Where nothing is asked for, roundoff may not decide.
+        let bound = (least - ROUNDOFF) * self.size;
+        let mut near = f64::NEG_INFINITY;
+        let mut deep: Vec<(f64, u32)> = Vec::new();
+        for w in rim {
+            match self.depth_of(s, w, near) {
+                Some(d) if d > bound => deep.push((d, w)),
+                Some(d) => near = d,
+                None => {}
+            }
+        }
+        deep.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let sees = |w: u32| self.faces.iter().all(|&[a, b, c]| [a, b, c].contains(&w) || s.orient([a, b, c, w]) > 0);
+        deep.into_iter().map(|(_, w)| w).find(|&w| sees(w)).ok_or(near / self.size + ROUNDOFF)
+    }
+
+    /// What may take the place of the vertex, with at least `least` times the size of room; a corner if there is one.
+    pub(super) fn apex(&self, s: &Space, least: f64) -> Result<Apex, f64> {
+        self.neighbor(s, least)
+            .map(Apex::Vertex)
+            .or_else(|at_corners| self.place(s, least).map(Apex::Point).map_err(|inside| inside.max(at_corners)))
+    }
+
+    /// The faces that bound the room at its deepest point, up to four, and its depth over the size.
+    pub(super) fn bounds(&self) -> Option<(Vec<usize>, f64)> {
+        let highest = highest(&constraints(&self.planes, self.size))?;
+        let faces = highest.tight.iter().filter_map(|i| i.checked_sub(BOUNDS)).collect();
+        Some((faces, highest.x[3]))
+    }
+
+    /// A point that sees all faces and lies as far in a direction as can be, from a distance of at least `least` times the
+    /// size: between walls that are steep it is taller than the deepest place, and leaves more room below.
+    pub(super) fn tallest(&self, s: &Space, up: &Vec3, least: f64) -> Option<Point3> {
+        let mut constraints = constraints(&self.planes, self.size);
+        let deepest = highest(&constraints)?.x[3];
+        let kept = least.max(KEPT * deepest);
+        if deepest < least {
+            return None;
+        }
+        for (a, b) in &mut constraints[BOUNDS..] {
+            *b -= kept;
+            a[3] = 0.0;
+        }
+        constraints.push((Vector4::new(-up.x, -up.y, -up.z, 1.0), 0.0));
+        let aim = highest(&constraints)?.x.xyz() * self.size;
+        let p = self.origin + aim;
+        self.faces.iter().all(|f| s.orient_to(*f, &p) > 0).then_some(p)
+    }
+
+    /// A point that sees all faces, from a distance of at least `least` times the size. Where there is none, the largest
+    /// such distance over the size, if a look for less may find one.
+    pub(super) fn place(&self, s: &Space, least: f64) -> Result<Point3, f64> {
+        let Highest { x, .. } = highest(&constraints(&self.planes, self.size)).ok_or(f64::NEG_INFINITY)?;
+        let (aim, depth) = (x.xyz() * self.size, x[3]);
+        if depth < least {
+            return Err(depth);
+        }
+        let sees = |p: &Point3| self.faces.iter().all(|f| s.orient_to(*f, p) > 0);
+        SHARES.iter().map(|share| self.origin + aim * *share).find(sees).ok_or(f64::NEG_INFINITY)
+    }
+}
+
+/// Part of the room's depth that its tallest place keeps from the walls.
+const KEPT: f64 = 0.1;
+
+/// `a · x ≤ b`.
+type Constraint = (Vector4<f64>, f64);
+
+/// Constraints that bound all coordinates.
+const BOUNDS: usize = 8;
+
+/// That the point `x`, given as its coordinates over `size` and a distance over `size`, lies no nearer than that to the
+/// planes `normal · x + height = 0`, on their positive sides; normals have length 1.
+fn constraints(planes: &[(Vec3, f64)], size: f64) -> Vec<Constraint> {
+    let mut constraints = Vec::with_capacity(planes.len() + BOUNDS);
+    constraints.extend((0..BOUNDS).map(|k| (Vector4::ith(k % 4, if k < 4 { 1.0 } else { -1.0 }), 1.0)));
+    constraints.extend(planes.iter().map(|(n, h)| (Vector4::new(-n.x, -n.y, -n.z, 1.0), h / size)));
+    constraints
+}
+
+/// A solution of a linear program.
+struct Highest {
+    x: Vector4<f64>,
+    /// Constraints that hold with equality there, by number.
+    tight: [usize; 4],
+}
+
+/// The point with the largest last coordinate that satisfies all constraints, the first four of which bound it from
+/// above. Dual simplex method: four constraints hold with equality; the most violated one takes the place of one of them
+/// as long as there is one.
+fn highest(constraints: &[Constraint]) -> Option<Highest> {
+    let mut tight = [0, 1, 2, 3];
+    for _ in 0..EXCHANGES {
+        let rows = Matrix4::from_rows(&tight.map(|i: usize| constraints[i].0.transpose()));
+        let lu = rows.lu();
+        // Not by the inverse: the tight constraints hold to the last bits, however thin the wedge between them is.
+        let x = lu.solve(&Vector4::from(tight.map(|i| constraints[i].1)))?;
+        let inverse = lu.try_inverse()?;
+        let mut worst = (1e-13, None);
+        for (i, (a, b)) in constraints.iter().enumerate() {
+            let excess = a.dot(&x) - b;
+            if excess > worst.0 {
+                worst = (excess, Some(i));
+            }
+        }
+        let Some(enters) = worst.1 else { return Some(Highest { x, tight }) };
+        // The objective's gradient is a sum of these rows with weights that are not negative, and stays one.
+        let weight = inverse.row(3);
+        let share = inverse.tr_mul(&constraints[enters].0);
+        let slack = |k: usize| weight[k].max(0.0) / share[k];
+        let leaves = (0..4)
+            .filter(|&k| share[k] > 1e-12)
+            .min_by(|&j, &k| slack(j).total_cmp(&slack(k)).then(share[k].total_cmp(&share[j])));
+        tight[leaves?] = enters;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delaunay::hash;
+
+    /// The deepest point between planes, and its distance from them.
+    fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
+        highest(&constraints(planes, size)).map(|h| (h.x.xyz() * size, h.x[3] * size))
+    }
+
+    #[test]
+    fn the_deepest_point_of_a_box_is_its_middle() {
+        let mut planes = Vec::new();
+        for axis in [Vec3::x(), Vec3::y(), Vec3::z()] {
+            planes.push((axis, 0.0));
+            planes.push((-axis, 3.0));
+        }
+        planes.push((Vec3::new(1.0, 1.0, 1.0).normalize(), 0.0));
+        let (x, depth) = deepest(&planes, 10.0).unwrap();
+        assert!((depth - 1.5).abs() < 1e-9 && (x - Vec3::repeat(1.5)).norm() < 1e-9, "{x} {depth}");
+    }
+
+    #[test]
+    fn a_thin_wedge_has_a_deepest_point() {
+        let angle = 1e-7_f64;
+        let planes = [
+            (Vec3::y(), 0.0),
+            (Vec3::new(angle.sin(), -angle.cos(), 0.0), 0.0),
+            (-Vec3::x(), 1.0),
+            (Vec3::z(), 0.5),
+            (-Vec3::z(), 0.5),
+        ];
+        let (x, depth) = deepest(&planes, 2.0).unwrap();
+        assert!((depth - angle / 2.0).abs() < 1e-9 && x.x > 0.9, "{x} {depth}");
+    }
+
+    #[test]
+    fn random_rooms_hold_their_deepest_point() {
+        for seed in 0..200 {
+            let coin = |k: u64| (hash(seed * 1000 + k) >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+            let planes: Vec<(Vec3, f64)> = (0..60)
+                .map(|k| (Vec3::new(coin(4 * k), coin(4 * k + 1), coin(4 * k + 2)).normalize(), coin(4 * k + 3).abs()))
+                .collect();
+            let (x, depth) = deepest(&planes, 4.0).unwrap();
+            let worst = planes.iter().map(|(n, h)| n.dot(&x) + h).fold(f64::INFINITY, f64::min);
+            assert!((worst - depth).abs() < 1e-9 && depth > 0.0, "{worst} {depth}");
+        }
+    }
+}

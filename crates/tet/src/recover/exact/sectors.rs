@@ -1,0 +1,159 @@
+//! The star of a vertex on the surface, cut into sectors by the facets around it, and these facets without the vertex.
+
+use super::polygon::{point_above, triangulate};
+use super::room::Apex;
+use super::space::Space;
+use crate::complex::face_key;
+use crate::error::TetError;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// A facet around a vertex that lies on it: its faces at the vertex, and those that take their place.
+pub(super) struct Fan {
+    pub facet: u32,
+    pub old: Vec<[u32; 3]>,
+    pub new: Vec<[u32; 3]>,
+}
+
+impl Fan {
+    /// A facet without the vertex `v`; on a segment between `ends`, or inside of the facet. Nothing if its faces make no
+    /// simple polygon.
+    pub(super) fn of(
+        s: &Space,
+        pieces: &[[u32; 3]],
+        (facet, triangle): (u32, [u32; 3]),
+        v: u32,
+        ends: Option<[u32; 2]>,
+    ) -> Result<Option<Self>, TetError> {
+        let old: Vec<[u32; 3]> = pieces.iter().filter(|f| f.contains(&v)).copied().collect();
+        let mut next: FxHashMap<u32, u32> = FxHashMap::default();
+        for f in &old {
+            if let Some(k) = f.iter().position(|&x| x == v) {
+                next.insert(f[(k + 1) % 3], f[(k + 2) % 3]);
+            }
+        }
+        let Some(polygon) = outline(&next, ends) else { return Ok(None) };
+        let above = point_above(s, triangle)?;
+        let mut new = Vec::new();
+        let simple = triangulate(s, &polygon, &above, &mut new);
+        Ok(simple.then_some(Self { facet, old, new }))
+    }
+}
+
+/// The vertices around one, in order: from one of `ends` to the other, or all around.
+pub(super) fn outline(next: &FxHashMap<u32, u32>, ends: Option<[u32; 2]>) -> Option<Vec<u32>> {
+    let (start, last) = match ends {
+        Some([p, q]) if next.contains_key(&p) => (p, q),
+        Some([p, q]) => (q, p),
+        None => next.keys().min().map(|&v| (v, v))?,
+    };
+    let mut polygon = vec![start];
+    let mut at = *next.get(&start)?;
+    while at != last {
+        if polygon.len() > next.len() {
+            return None;
+        }
+        polygon.push(at);
+        at = *next.get(&at)?;
+    }
+    if ends.is_some() {
+        polygon.push(last);
+    }
+    let faces = if ends.is_some() { polygon.len() - 1 } else { polygon.len() };
+    (faces == next.len() && polygon.len() >= 3).then_some(polygon)
+}
+
+/// The faces that the vertex that takes the place of another has to see in one sector, counter-clockwise from there.
+#[derive(Clone)]
+pub(super) struct Sector {
+    pub faces: Vec<[u32; 3]>,
+    /// What the first of these are as half-faces of the sector's tetrahedra; the others are new faces of facets.
+    pub halves: Vec<u32>,
+}
+
+/// The sectors around a vertex. They have the faces of the star opposite to the vertex, and the new faces of fans. Nothing
+/// if a frozen face is none of the fans'.
+pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<Vec<Sector>> {
+    let mut of: FxHashMap<[u32; 3], (usize, [u32; 3])> = FxHashMap::default();
+    for (k, fan) in fans.iter().enumerate() {
+        of.extend(fan.old.iter().map(|&piece| (face_key(piece), (k, piece))));
+    }
+    let mut seen: FxHashSet<u32> = FxHashSet::default();
+    let mut sectors = Vec::new();
+    for &first in star {
+        if !seen.insert(first) {
+            continue;
+        }
+        let mut halves = Vec::new();
+        // Per fan, whether the sector lies in front of it, behind it.
+        let mut touched = vec![[false; 2]; fans.len()];
+        let mut stack = vec![first];
+        while let Some(t) = stack.pop() {
+            for half in 4 * t..4 * t + 4 {
+                let f = s.c.face(half);
+                if s.c.apex(half) == v {
+                    halves.push(half);
+                } else if let Some(&(k, piece)) = of.get(&face_key(f)) {
+                    // Seen from outside its tetrahedron the face runs as the facet: the sector lies behind.
+                    touched[k][usize::from(same_turn(f, piece))] = true;
+                } else if s.c.is_frozen(half) {
+                    return None;
+                } else {
+                    let n = s.c.mate(half) >> 2;
+                    if seen.insert(n) {
+                        stack.push(n);
+                    }
+                }
+            }
+        }
+        let mut faces: Vec<[u32; 3]> = halves.iter().map(|&half| s.wall(half)).collect();
+        for (fan, touched) in fans.iter().zip(&touched) {
+            if touched[0] {
+                faces.extend(&fan.new);
+            }
+            if touched[1] {
+                faces.extend(fan.new.iter().map(|&[a, b, c]| [a, c, b]));
+            }
+        }
+        sectors.push(Sector { faces, halves });
+    }
+    Some(sectors)
+}
+
+/// Fills the room of some tetrahedra, sector by sector, each joined to its apex. The new faces of facets are frozen, and
+/// what was frozen between sectors. Returns the new tetrahedra; nothing happens when they do not fit.
+pub(super) fn refill(
+    s: &mut Space,
+    cavity: &[u32],
+    sectors: &[(Sector, Apex)],
+    facets: &[[u32; 3]],
+) -> Option<Vec<[u32; 4]>> {
+    let walls = sectors.iter().flat_map(|(sector, _)| &sector.halves).filter(|&&half| s.c.is_frozen(half));
+    let mut frozen: FxHashSet<[u32; 3]> = walls.map(|&half| face_key(s.c.face(half))).collect();
+    frozen.extend(facets.iter().map(|&face| face_key(face)));
+    let before = s.c.points.len();
+    let mut new = Vec::new();
+    for (sector, apex) in sectors {
+        let apex = match *apex {
+            Apex::Vertex(w) => w,
+            Apex::Point(p) => s.add_point(p),
+        };
+        let faces = sector.faces.iter().filter(|f| !f.contains(&apex));
+        new.extend(faces.map(|&[a, b, c]| [a, b, c, apex]));
+    }
+    let mut created = Vec::new();
+    if !s.c.replace(cavity, &new, &mut created) {
+        s.forget_points(before);
+        return None;
+    }
+    for half in created.into_iter().flat_map(|t| 4 * t..4 * t + 4) {
+        if frozen.contains(&face_key(s.c.face(half))) {
+            s.c.freeze(half);
+        }
+    }
+    Some(new)
+}
+
+/// Whether two orders of the same three vertices have the same orientation.
+fn same_turn(f: [u32; 3], g: [u32; 3]) -> bool {
+    f == g || f == [g[1], g[2], g[0]] || f == [g[2], g[0], g[1]]
+}

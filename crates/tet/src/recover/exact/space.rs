@@ -1,0 +1,204 @@
+//! A complex some of whose vertices are implicit, and the exact predicates on its vertices.
+
+use crate::complex::{Complex, NONE};
+use crate::star::{EdgeRing, Star};
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::implicit::{self, OnTriangle, Site};
+use anastomesh_mesh::geometry::predicates;
+use std::cmp::Ordering;
+
+/// A complex whose points are rounded where they are implicit.
+#[derive(Clone)]
+pub(super) struct Space {
+    pub c: Complex,
+    /// What is thinner than that is flat.
+    pub flat: f64,
+    /// What the implicit points are.
+    on: Vec<OnTriangle>,
+    /// For each vertex its place in `on`, or [`NONE`].
+    place: Vec<u32>,
+    created: Vec<u32>,
+    star: Star,
+}
+
+impl Space {
+    pub(super) fn new(c: Complex, flat: f64) -> Self {
+        let place = vec![NONE; c.points.len()];
+        Self { c, flat, on: Vec::new(), place, created: Vec::new(), star: Star::default() }
+    }
+
+    /// The tetrahedra at a vertex.
+    pub(super) fn star(&mut self, v: u32) -> Vec<u32> {
+        self.star.around(&self.c, v).to_vec()
+    }
+
+    /// The ring around an edge, inside the complex.
+    pub(super) fn ring(&mut self, a: u32, b: u32) -> Option<EdgeRing> {
+        let t = self.star.find_edge(&self.c, a, b)?;
+        let mut ring = EdgeRing::default();
+        (ring.collect(&self.c, t, a, b, usize::MAX) && !ring.touches_ghost()).then_some(ring)
+    }
+
+    pub(super) fn has_edge(&mut self, a: u32, b: u32) -> bool {
+        self.star.find_edge(&self.c, a, b).is_some()
+    }
+
+    /// The half-face with three vertices.
+    pub(super) fn find_face(&mut self, face: [u32; 3]) -> Option<u32> {
+        self.star.find_face(&self.c, face)
+    }
+
+    #[inline]
+    pub(super) fn point(&self, v: u32) -> &Point3 {
+        &self.c.points[v as usize]
+    }
+
+    #[inline]
+    pub(super) fn site(&self, v: u32) -> Site<'_> {
+        Site { at: self.point(v), on: self.on.get(self.place[v as usize] as usize) }
+    }
+
+    #[inline]
+    pub(super) fn is_implicit(&self, v: u32) -> bool {
+        self.place[v as usize] != NONE
+    }
+
+    /// Number of implicit vertices that were made.
+    pub(super) fn implicit_vertices(&self) -> usize {
+        self.on.len()
+    }
+
+    /// Adds a vertex without a tetrahedron.
+    pub(super) fn add_point(&mut self, p: Point3) -> u32 {
+        self.place.push(NONE);
+        self.c.add_point(p)
+    }
+
+    /// Takes back the points added last, without tetrahedra, down to so many.
+    pub(super) fn forget_points(&mut self, count: usize) {
+        while self.c.points.len() > count {
+            self.c.pop_point();
+            self.place.pop();
+        }
+    }
+
+    /// Puts a vertex in the place of `cavity`, joined to all its walls, which are counter-clockwise seen from inside;
+    /// nothing happens when they do not fit.
+    pub(super) fn fill(&mut self, cavity: &[u32], walls: &[[u32; 3]], p: Point3) -> Option<u32> {
+        let v = self.add_point(p);
+        let new: Vec<[u32; 4]> = walls.iter().map(|&[a, b, c]| [a, b, c, v]).collect();
+        if self.c.replace(cavity, &new, &mut self.created) {
+            return Some(v);
+        }
+        self.forget_points(v as usize);
+        None
+    }
+
+    /// Puts an implicit vertex in the place of `cavity`. It has to see all its walls; nothing happens when it does not.
+    pub(super) fn insert(&mut self, cavity: &[u32], walls: &[[u32; 3]], on: OnTriangle) -> Option<u32> {
+        let at = on.rounded();
+        let site = Site { at: &at, on: Some(&on) };
+        let sees = |&[a, b, c]: &[u32; 3]| implicit::orient3d([self.site(a), self.site(c), self.site(b), site]) > 0;
+        if !walls.iter().all(sees) {
+            return None;
+        }
+        let v = self.c.add_point(at);
+        self.place.push(self.on.len() as u32);
+        self.on.push(on);
+        let new: Vec<[u32; 4]> = walls.iter().map(|&[a, b, c]| [a, c, b, v]).collect();
+        let fits = self.c.replace(cavity, &new, &mut self.created);
+        debug_assert!(fits, "the walls are those of the cavity");
+        fits.then_some(v)
+    }
+
+    /// Puts a vertex into the tetrahedron that has a place inside; nothing where none has.
+    pub(super) fn insert_point(&mut self, p: Point3) -> Option<u32> {
+        let inside = |t: u32| (4 * t..4 * t + 4).all(|half| self.orient_to(self.c.face(half), &p) < 0);
+        let t = self.c.real_tets().find(|&t| inside(t))?;
+        let walls: Vec<[u32; 3]> = self.outer(&[t]).into_iter().map(|half| self.wall(half)).collect();
+        self.fill(&[t], &walls, p)
+    }
+
+    /// Moves an implicit vertex, whose star has the walls, to where it sees them all; nothing happens when it does not.
+    pub(super) fn move_to(&mut self, v: u32, walls: &[[u32; 3]], on: OnTriangle) -> bool {
+        let at = on.rounded();
+        let site = Site { at: &at, on: Some(&on) };
+        let sees = |&[a, b, c]: &[u32; 3]| implicit::orient3d([self.site(a), self.site(c), self.site(b), site]) > 0;
+        let Some(place) = self.on.get(self.place[v as usize] as usize).filter(|_| walls.iter().all(sees)) else {
+            return false;
+        };
+        if *place == on {
+            return false;
+        }
+        let place = self.place[v as usize] as usize;
+        self.on[place] = on;
+        self.c.points[v as usize] = at;
+        true
+    }
+
+    /// Joins all walls of `cavity` to one of its vertices, if that sees those that it is no corner of.
+    pub(super) fn join(&mut self, cavity: &[u32], walls: &[[u32; 3]], apex: u32) -> bool {
+        let others = walls.iter().filter(|f| !f.contains(&apex));
+        let new: Vec<[u32; 4]> = others.map(|&[a, b, c]| [a, c, b, apex]).collect();
+        new.iter().all(|&tet| self.orient(tet) > 0) && self.c.replace(cavity, &new, &mut self.created)
+    }
+
+    /// The half-faces of some tetrahedra that have their mate outside.
+    pub(super) fn outer(&self, cavity: &[u32]) -> Vec<u32> {
+        let halves = cavity.iter().flat_map(|&t| 4 * t..4 * t + 4);
+        halves.filter(|&half| !cavity.contains(&(self.c.mate(half) >> 2))).collect()
+    }
+
+    /// The faces around some tetrahedra, counter-clockwise seen from outside.
+    pub(super) fn walls(&self, cavity: &[u32]) -> Vec<[u32; 3]> {
+        self.outer(cavity).into_iter().map(|half| self.c.face(half)).collect()
+    }
+
+    /// A half-face as a wall of a cavity that has its tetrahedron, counter-clockwise seen from inside.
+    pub(super) fn wall(&self, half: u32) -> [u32; 3] {
+        let [a, b, c] = self.c.face(half);
+        [a, c, b]
+    }
+
+    /// The sign of the orientation of four vertices. Exact.
+    #[inline]
+    pub(super) fn orient(&self, v: [u32; 4]) -> i32 {
+        if v.iter().any(|&x| self.is_implicit(x)) {
+            return implicit::orient3d(v.map(|x| self.site(x)));
+        }
+        let [a, b, c, d] = v.map(|x| self.point(x));
+        let o = predicates::orient3d(a, b, c, d);
+        i32::from(o > 0.0) - i32::from(o < 0.0)
+    }
+
+    /// The same for a point that is no vertex.
+    #[inline]
+    pub(super) fn orient_to(&self, [a, b, c]: [u32; 3], p: &Point3) -> i32 {
+        implicit::orient3d([self.site(a), self.site(b), self.site(c), Site { at: p, on: None }])
+    }
+
+    /// Lexicographic order of two vertices. Exact.
+    pub(super) fn compare(&self, v: u32, w: u32) -> Ordering {
+        implicit::compare(self.site(v), self.site(w))
+    }
+
+    /// Whether all tetrahedra are positive, with implicit points as they are. For tests.
+    #[cfg(test)]
+    pub(super) fn check(&self) {
+        if self.c.slots() > 50_000 {
+            return;
+        }
+        for t in self.c.real_tets() {
+            assert!(self.orient(self.c.verts(t)) > 0, "tetrahedron {t} is not positive");
+        }
+        for t in (0..self.c.slots() as u32).filter(|&t| self.c.is_alive(t)) {
+            for i in 0..4 {
+                let half = 4 * t + i;
+                let mate = self.c.mate(half);
+                assert_eq!(self.c.mate(mate), half);
+                assert_eq!(self.c.is_frozen(mate), self.c.is_frozen(half));
+                assert!(crate::complex::opposed(self.c.face(half), self.c.face(mate)));
+            }
+        }
+    }
+}

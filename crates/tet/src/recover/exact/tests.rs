@@ -1,0 +1,263 @@
+use super::*;
+use crate::delaunay::delaunay;
+use crate::error::Obstacle;
+use crate::input::validate;
+use crate::plc::InputKind;
+use crate::recover::flat_height;
+use crate::survey::survey;
+use crate::{carve, certify, conform};
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::Vec3;
+use proptest::prelude::*;
+
+/// Recovers all of a surface by this tier alone, carves, certifies.
+fn fills(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<ExactSummary, TetError> {
+    let edges = validate(surface, segments, kind)?;
+    let mut points = surface.points.clone();
+    points.extend(conform::box_corners(&surface.points));
+    let mut c = delaunay(&points)?;
+    let (lost_edges, lost_triangles) = survey(&mut c, surface, &edges);
+    let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
+    let (c, summary) =
+        recover_exact(&c, surface, &edges, missing, (&Way::OTHERS, flat_height(&surface.points)), &Watch::NOBODY)?;
+    c.sanity_check()?;
+    let mut c = c;
+    assert_eq!(survey(&mut c, surface, &edges), (Vec::new(), Vec::new()));
+    if kind == InputKind::Closed {
+        let sides = carve::Sides::find(&c, surface, kind, &[])?;
+        let mesh = carve::carve(&c, surface, &sides).into_compact_mesh(surface.points.len());
+        certify::certify(&mesh, surface)?;
+    }
+    Ok(summary)
+}
+
+fn fills_all(surface: &TriMesh) -> ExactSummary {
+    fills(surface, &[], InputKind::Closed).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A prism over a regular polygon, its top turned, with the diagonals that make its sides bend inwards.
+fn twisted_prism(n: u32, turn: f64, height: f64) -> TriMesh {
+    let mut s = TriMesh::default();
+    for (z, turn) in [(0.0, 0.0), (height, turn)] {
+        for i in 0..n {
+            let w = f64::from(i) / f64::from(n) * std::f64::consts::TAU + turn;
+            s.points.push(Point3::new(w.cos(), w.sin(), z));
+        }
+    }
+    for i in 0..n {
+        let j = (i + 1) % n;
+        s.triangles.push([i, j, n + i]);
+        s.triangles.push([j, n + j, n + i]);
+    }
+    for i in 1..n - 1 {
+        s.triangles.push([0, i + 1, i]);
+        s.triangles.push([n, n + i, n + i + 1]);
+    }
+    s
+}
+
+/// The point of a box over a grid of `n × n` squares, below or above.
+fn corner(n: u32, i: u32, j: u32, top: u32) -> u32 {
+    (i * (n + 1) + j) * 2 + top
+}
+
+/// All squares of such a box, counter-clockwise seen from outside.
+fn box_of_squares(n: u32, mut square: impl FnMut(u32, u32, u32, u32)) {
+    let at = |i, j, top| corner(n, i, j, top);
+    for i in 0..n {
+        for j in 0..n {
+            square(at(i, j, 1), at(i + 1, j, 1), at(i + 1, j + 1, 1), at(i, j + 1, 1));
+            square(at(i, j, 0), at(i, j + 1, 0), at(i + 1, j + 1, 0), at(i + 1, j, 0));
+        }
+        square(at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1));
+        square(at(i + 1, n, 0), at(i, n, 0), at(i, n, 1), at(i + 1, n, 1));
+        square(at(0, i + 1, 0), at(0, i, 0), at(0, i, 1), at(0, i + 1, 1));
+        square(at(n, i, 0), at(n, i + 1, 0), at(n, i + 1, 1), at(n, i, 1));
+    }
+}
+
+/// A thin box with `n × n` squares above and below, the diagonals turned by a coin.
+fn sheet(n: u32, thickness: f64, origin: f64, salt: u64) -> TriMesh {
+    let mut s = TriMesh::default();
+    for i in 0..=n {
+        for j in 0..=n {
+            for z in [0.0, thickness] {
+                s.points.push(Point3::new(f64::from(i) + origin, f64::from(j) - origin, z));
+            }
+        }
+    }
+    let square = |a: u32, b: u32, c: u32, d: u32| {
+        let coin = crate::delaunay::hash(u64::from(a) ^ (u64::from(c) << 20) ^ salt) & 1 == 0;
+        s.triangles.extend(if coin { [[a, b, c], [a, c, d]] } else { [[b, c, d], [b, d, a]] });
+    };
+    box_of_squares(n, square);
+    s
+}
+
+/// The polyhedron of Chazelle: a box with wedge-shaped notches from above and below that nearly meet in a saddle.
+fn chazelle(notches: u32, gap: f64) -> TriMesh {
+    // Ridges of the bottom notches run along x on z = x y, those of the top notches along y on z = x y + gap; both are
+    // approximated by one zigzag sheet each over a grid.
+    let n = 2 * notches;
+    let mut s = TriMesh::default();
+    let half = f64::from(n) / 2.0;
+    for i in 0..=n {
+        for j in 0..=n {
+            let (x, y) = (f64::from(i) - half, f64::from(j) - half);
+            let low = if j % 2 == 1 && i > 0 && i < n { x * y } else { -half * half - 1.0 };
+            let high = if i % 2 == 1 && j > 0 && j < n { x * y + gap } else { half * half + 1.0 };
+            s.points.push(Point3::new(x, y, low));
+            s.points.push(Point3::new(x, y, high));
+        }
+    }
+    let square = |a: u32, b: u32, c: u32, d: u32| s.triangles.extend([[a, b, c], [a, c, d]]);
+    box_of_squares(n, square);
+    s
+}
+
+#[test]
+fn twisted_prisms_are_filled() {
+    // Schönhardt's is the one with three sides; those with more have only triangles that bend inwards as well.
+    for n in 3..9 {
+        for turn in [-0.5, -0.1, 0.3] {
+            for height in [0.3, 1.0, 20.0] {
+                fills_all(&twisted_prism(n, turn * 6.0 / f64::from(n), height));
+            }
+        }
+    }
+    assert!(fills_all(&twisted_prism(3, -0.5, 1.0)).on_segments > 0);
+}
+
+#[test]
+fn thin_sheets_with_unlike_sides_are_filled() {
+    for (n, thickness) in [(1, 0.1), (4, 0.1), (4, 1e-3), (6, 1e-6), (3, 1e-9)] {
+        for salt in 0..3 {
+            fills_all(&sheet(n, thickness, 0.0, salt));
+        }
+    }
+    fills_all(&sheet(4, 1e-3, 1e6, 1));
+}
+
+#[test]
+fn wider_cavities_fill_as_well() {
+    push::WIDER_FIRST.set(true);
+    fills_all(&twisted_prism(5, 0.3, 1.0));
+    fills_all(&chazelle(2, 0.1));
+    let wide = fills_all(&sheet(6, 1e-3, 0.0, 1));
+    push::WIDER_FIRST.set(false);
+    let narrow = fills_all(&sheet(6, 1e-3, 0.0, 1));
+    assert!(wide.steiner_points < narrow.steiner_points, "{wide:?} {narrow:?}");
+}
+
+#[test]
+fn notched_boxes_are_filled() {
+    for (n, gap) in [(1, 0.5), (2, 0.1), (3, 0.01)] {
+        fills_all(&chazelle(n, gap));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn spheres_of_random_points_are_filled(
+        raw in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, 0.2..1.0f64), 12..60), flat in 0.01..1.0f64
+    ) {
+        // The hull of random points on a sphere, then moved along their rays: star-shaped, with long thin triangles.
+        let points: Vec<Point3> = raw
+            .iter()
+            .map(|&(x, y, z, _)| Point3::from(Vec3::new(x, y, z).normalize()))
+            .collect();
+        prop_assume!(points.iter().all(|p| p.x.is_finite()));
+        let c = delaunay(&points).unwrap();
+        let ghosts = (0..c.slots() as u32).filter(|&t| c.is_alive(t) && c.is_ghost(t));
+        let triangles: Vec<[u32; 3]> = ghosts.map(|t| c.face(c.mate(4 * t + 3))).collect();
+        let inside = triangles.iter().all(|t| {
+            let [p, q, r] = t.map(|v| points[v as usize]);
+            anastomesh_mesh::geometry::predicates::orient3d(&Point3::origin(), &p, &q, &r) > 0.0
+        });
+        prop_assume!(inside);
+        let moved = points.iter().zip(&raw).map(|(p, r)| {
+            let p = p.coords * r.3;
+            Point3::new(p.x, p.y, p.z * flat)
+        });
+        let used: Vec<Point3> = moved.collect();
+        fills_all(&TriMesh { points: used, triangles });
+    }
+}
+
+/// A fan of long thin triangles from one point, closed by another fan below, with the rim in a zigzag.
+fn fan(n: u32, length: f64) -> TriMesh {
+    let mut s =
+        TriMesh { points: vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.1, 0.0, -0.05)], ..TriMesh::default() };
+    for i in 0..=n {
+        let x = f64::from(i) / f64::from(n) - 0.5;
+        s.points.push(Point3::new(length, x, if i % 2 == 0 { 0.0 } else { 1e-3 }));
+    }
+    for i in 0..n {
+        s.triangles.push([0, i + 2, i + 3]);
+        s.triangles.push([1, i + 3, i + 2]);
+    }
+    s.triangles.push([0, 1, 2]);
+    s.triangles.push([1, 0, n + 2]);
+    s
+}
+
+#[test]
+fn fans_of_thin_triangles_are_filled() {
+    for (n, length) in [(10, 3.0), (60, 20.0), (150, 5.0)] {
+        fills_all(&fan(n, length));
+    }
+}
+
+/// Points in a box at random.
+fn scatter(n: u64) -> Vec<Point3> {
+    let coin = |k: u64| (crate::delaunay::hash(k) >> 11) as f64 / (1u64 << 53) as f64;
+    (0..n).map(|k| Point3::new(coin(3 * k), coin(3 * k + 1), coin(3 * k + 2))).collect()
+}
+
+#[test]
+fn facets_that_edges_pierce_are_recovered() {
+    // Pairs of points above and below a triangle, nearer to each other than to its corners.
+    let mut points: Vec<Point3> =
+        [(-9.0, -5.0), (9.0, -5.5), (0.5, 9.0)].map(|(x, y)| Point3::new(x, y, 0.01 * x)).into();
+    for p in scatter(12) {
+        points.push(Point3::new(p.x - 0.5, p.y - 0.5, 0.3 + p.z));
+        points.push(Point3::new(p.y - 0.5, p.x - 0.5, -0.3 - p.z));
+    }
+    let surface = TriMesh { points, triangles: vec![[0, 1, 2]] };
+    let summary = fills(&surface, &[], InputKind::Plc).unwrap();
+    assert!(summary.on_facets > 3, "{summary:?}");
+}
+
+#[test]
+fn segments_and_facets_that_dangle_are_recovered() {
+    let mut points = scatter(300);
+    let mut place = |x: f64, y: f64, z: f64| {
+        points.push(Point3::new(x, y, z));
+        points.len() as u32 - 1
+    };
+    let (mut segments, mut triangles) = (Vec::new(), Vec::new());
+    for k in 0..5 {
+        let z = 0.1 + 0.15 * f64::from(k);
+        segments.push([place(-0.2, 0.51, z), place(1.2, 0.503, z + 0.01)]);
+        triangles.push([(-0.1, -0.1), (1.1, -0.1), (0.4, 0.46)].map(|(x, y)| place(x, y, z + 0.003)));
+    }
+    let surface = TriMesh { points, triangles };
+    let summary = fills(&surface, &segments, InputKind::Plc).unwrap();
+    assert!(summary.on_segments > 20 && summary.on_facets > 20, "{summary:?}");
+}
+
+#[test]
+fn parts_that_meet_are_named() {
+    let mut points = scatter(60);
+    let n = points.len() as u32;
+    for p in [[0.1, 0.1, 0.5], [0.9, 0.1, 0.5], [0.5, 0.9, 0.5], [0.5, 0.4, -0.1], [0.5, 0.4, 1.1]] {
+        points.push(Point3::from(p));
+    }
+    let surface = TriMesh { points, triangles: vec![[n, n + 1, n + 2]] };
+    let met = fills(&surface, &[[n + 3, n + 4]], InputKind::Plc).unwrap_err();
+    let expected = TetError::EdgeMeets { edge: [n + 3, n + 4], obstacle: Obstacle::Triangle([n, n + 1, n + 2]) };
+    assert_eq!(met, expected);
+}

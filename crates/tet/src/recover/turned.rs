@@ -1,0 +1,62 @@
+//! Whether a surface has flat parts that are flat no longer, but for rounding: then flips are in vain, and what is missing
+//! is recovered as in the plane.
+
+use super::rule::least_height;
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::predicates::orient3d;
+use rustc_hash::FxHashMap;
+
+/// See [`lies_in_planes`].
+const MANY: usize = 2000;
+
+/// Whether more than three quarters of some edges lie between two triangles that are one plane to within a height, and not exactly.
+pub(crate) fn lies_turned(surface: &TriMesh, edges: &[[u32; 2]], height: f64) -> bool {
+    most_lie_flat(surface, edges, height, |sign| sign != 0.0)
+}
+
+/// Whether edges are so many, and more than three quarters of them between two triangles that are one plane to within a
+/// height, that recovering them as in the plane is quickest, be the planes exact or not.
+pub(crate) fn lies_in_planes(surface: &TriMesh, edges: &[[u32; 2]], height: f64) -> bool {
+    edges.len() > MANY && most_lie_flat(surface, edges, height, |_| true)
+}
+
+/// Whether more than three quarters of some edges lie between two triangles that are one plane to within a height, and
+/// whose orientation is wanted.
+fn most_lie_flat(surface: &TriMesh, edges: &[[u32; 2]], height: f64, wanted: impl Fn(f64) -> bool) -> bool {
+    let sorted = |a: u32, b: u32| [a.min(b), a.max(b)];
+    let mut across: FxHashMap<[u32; 2], Vec<u32>> = edges.iter().map(|&[a, b]| (sorted(a, b), Vec::new())).collect();
+    for &[a, b, c] in &surface.triangles {
+        for (p, q, apex) in [(a, b, c), (b, c, a), (c, a, b)] {
+            if let Some(apices) = across.get_mut(&sorted(p, q)) {
+                apices.push(apex);
+            }
+        }
+    }
+    let turned = across.iter().filter(|(edge, apices)| {
+        let [x, y] = apices[..] else { return false };
+        let corners @ [p, q, r, s] = [edge[0], edge[1], x, y].map(|v| &surface.points[v as usize]);
+        wanted(orient3d(p, q, r, s)) && least_height(corners) < height
+    });
+    4 * turned.count() > 3 * edges.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::geometry::Point3;
+
+    /// Two triangles at a diagonal that is missing, one corner so high above the others' plane.
+    fn folded(height: f64) -> TriMesh {
+        let points = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, height]];
+        let points = points.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();
+        TriMesh { points, triangles: vec![[0, 2, 1], [1, 3, 0]] }
+    }
+
+    #[test]
+    fn only_what_is_nearly_flat_counts() {
+        let counts = |height| lies_turned(&folded(height), &[[0, 1]], 1e-10);
+        assert!(counts(1e-14) && !counts(0.0) && !counts(1e-3));
+        let flat = |height| most_lie_flat(&folded(height), &[[0, 1]], 1e-10, |_| true);
+        assert!(flat(1e-14) && flat(0.0) && !flat(1e-3));
+    }
+}

@@ -1,0 +1,85 @@
+//! When a tetrahedron is split.
+
+use anastomesh_mesh::Bounds;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::quality::dihedral_range;
+
+/// Edges may be this much longer than the size wanted: those of the graded lattice are up to 1.9 times as long.
+const LONGER: f64 = 2.2;
+
+/// The volume of a regular tetrahedron is its edge to the third over this.
+const REGULAR: f64 = 8.485_281_374;
+
+/// What each tetrahedron has to fulfil, as far as the boundary allows.
+#[derive(Clone, Copy, Default)]
+pub struct Goals<'a> {
+    /// Bounds on its shape and volume.
+    pub bounds: Bounds,
+    /// The edge length wanted at a place.
+    pub size: Option<&'a dyn Fn(&Point3) -> f64>,
+    /// Most points that are added.
+    pub max_points: Option<usize>,
+}
+
+impl std::fmt::Debug for Goals<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Goals")
+            .field("bounds", &self.bounds)
+            .field("size", &self.size.is_some())
+            .field("max_points", &self.max_points)
+            .finish()
+    }
+}
+
+/// A tetrahedron that does not fulfil the goals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fault {
+    /// By how much: above 1, the larger the worse.
+    pub excess: f64,
+    /// Edges that a new point may make have at least this length.
+    pub spacing: f64,
+}
+
+impl Goals<'_> {
+    /// What is wrong with a tetrahedron, if anything; `bound` is that on its volume from its region.
+    pub fn fault(&self, p: [&Point3; 4], bound: f64) -> Option<Fault> {
+        let edges = [p[1] - p[0], p[2] - p[0], p[3] - p[0], p[2] - p[1], p[3] - p[1], p[3] - p[2]].map(|e| e.norm());
+        let longest = edges.iter().copied().fold(0.0, f64::max);
+        let shortest = edges.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut worst: Option<Fault> = None;
+        let mut note = |excess: f64, spacing: f64| {
+            if excess > 1.0 && worst.is_none_or(|w| excess > w.excess) {
+                worst = Some(Fault { excess, spacing });
+            }
+        };
+        let volume = bound.min(self.bounds.max_volume.unwrap_or(f64::INFINITY));
+        if volume < f64::INFINITY {
+            let own = (p[1] - p[0]).cross(&(p[2] - p[0])).dot(&(p[3] - p[0])) / 6.0;
+            note((own / volume).cbrt(), 0.5 * (REGULAR * volume).cbrt());
+        }
+        if let Some(size) = self.size {
+            let sum: Vec3 = p.iter().map(|x| x.coords).sum();
+            let wanted = size(&Point3::from(sum / 4.0));
+            if wanted > 0.0 {
+                note(longest / (LONGER * wanted), 0.6 * wanted);
+            }
+        }
+        if let Some(bound) = self.bounds.max_radius_edge {
+            let radius = circumcenter(p).map_or(f64::INFINITY, |c| (c - p[0]).norm());
+            note((radius / shortest / bound).min(1e3), shortest);
+        }
+        if let Some(bound) = self.bounds.min_dihedral {
+            let angle = dihedral_range(p).0.to_degrees();
+            note((bound / angle).min(1e3), shortest);
+        }
+        worst
+    }
+}
+
+/// The centre of the sphere through four points; none where it is not finite.
+pub(super) fn circumcenter(p: [&Point3; 4]) -> Option<Point3> {
+    let (u, v, w) = (p[1] - p[0], p[2] - p[0], p[3] - p[0]);
+    let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
+    let c = (vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared()) / (2.0 * uv.dot(&w));
+    c.iter().all(|x| x.is_finite()).then(|| p[0] + c)
+}

@@ -1,0 +1,60 @@
+//! Edge lengths wanted at the vertices of a surface, and what else bounds them.
+
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::Point3;
+
+/// The size at a vertex is at most this multiple of its shortest edge: tetrahedra at that edge have their other
+/// vertices near enough for a dihedral angle of some 15 degrees.
+const SHORTEST: f64 = 3.0;
+
+/// The size at a vertex is at least this part of the mean length of its edges, however short the shortest is.
+const LEAST: f64 = 1.0 / 32.0;
+
+/// When more than one vertex in so many has a much shorter edge than its mean, the surface is made of needles, which
+/// interior points cannot mend: the mean alone counts then.
+const NEEDLES: usize = 20;
+
+/// An upper bound on the length of edges, next to what the surface says.
+#[derive(Clone, Copy)]
+pub enum SizeLimit<'a> {
+    /// The same everywhere.
+    Constant(f64),
+    /// At each vertex of the surface.
+    PerVertex(&'a [f64]),
+    /// A function of the place; called from one thread, for places in and near the surface's box.
+    Function(&'a (dyn Fn(&Point3) -> f64 + 'a)),
+}
+
+impl std::fmt::Debug for SizeLimit<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Constant(size) => write!(f, "Constant({size})"),
+            Self::PerVertex(sizes) => write!(f, "PerVertex({} values)", sizes.len()),
+            Self::Function(_) => write!(f, "Function"),
+        }
+    }
+}
+
+/// The length of edges wanted at each vertex of a surface: the mean length of its edges there, less where one of them
+/// is very short. Vertices without edges get 0.
+pub fn vertex_sizes(surface: &TriMesh) -> Vec<f64> {
+    let n = surface.points.len();
+    let (mut sum, mut count, mut least) = (vec![0.0_f64; n], vec![0_u32; n], vec![f64::INFINITY; n]);
+    for t in &surface.triangles {
+        for i in 0..3 {
+            let (a, b) = (t[i] as usize, t[(i + 1) % 3] as usize);
+            let length = (surface.points[a] - surface.points[b]).norm();
+            for v in [a, b] {
+                sum[v] += length;
+                count[v] += 1;
+                least[v] = least[v].min(length);
+            }
+        }
+    }
+    let mean: Vec<f64> = sum.iter().zip(&count).map(|(s, &c)| s / f64::from(c.max(1))).collect();
+    let short = (0..n).filter(|&v| SHORTEST * least[v] < 0.5 * mean[v]).count();
+    if short * NEEDLES > n {
+        return mean;
+    }
+    (0..n).map(|v| mean[v].min((SHORTEST * least[v]).max(LEAST * mean[v]))).collect()
+}
