@@ -4,6 +4,7 @@ mod common;
 
 use anastomesh::TriMesh;
 use anastomesh::io::read_surface;
+use common::oracle::missing;
 use common::program::*;
 use common::{fixture, shared};
 use std::collections::BTreeMap;
@@ -103,8 +104,7 @@ fn what_cannot_be_written_is_refused_before_any_work() {
 fn slicers_accept_it() {
     let Some(shared) = shared() else { return };
     if Command::new("admesh").arg("--version").output().is_err() {
-        eprintln!("skipped: admesh is not there (apt-get install admesh)");
-        return;
+        return missing("admesh is not there (apt-get install admesh)");
     }
     let folder = folder();
     let out = folder.path().join("wall.stl");

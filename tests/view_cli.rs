@@ -3,6 +3,7 @@
 mod common;
 
 use common::fixture;
+use common::oracle::missing;
 use common::program::*;
 use serde_json::Value;
 use std::fs;
@@ -148,8 +149,7 @@ fn a_browser_shows_it_and_names_what_is_there() {
     let inside = cap.center - cap.normal * cap.radius;
     assert_code(&view(&tree, &page, &["-q", "--network", network.to_str().expect("a path")]), FINE);
     let Some(html) = shown(&page, inside.into()) else {
-        eprintln!("skipped: there is no browser (apt-get install chromium)");
-        return;
+        return missing("no browser was found (apt-get install chromium)");
     };
     assert!(html.contains("data-ready=") && !html.contains("id=\"wait\""));
     for word in ["patch 1: wall", "block ", "vessel (branch)", "nearest node", "radius "] {
