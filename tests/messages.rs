@@ -113,7 +113,7 @@ fn each_is_written_down() {
             let inside = path.strip_prefix(root.join(package)).expect("a source of ours");
             let Some(_) = found.first() else { continue };
             let out = groups.entry(group(package, inside)).or_default();
-            let _ = writeln!(out, "{}", inside.display());
+            let _ = writeln!(out, "{}", inside.to_string_lossy().replace('\\', "/"));
             for message in found {
                 count += 1;
                 let _ = writeln!(out, "    {}", message.replace('\n', "\n    "));
