@@ -32,12 +32,15 @@ const ENDS: [[&str; 2]; 16] = [
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, CsvError> {
     let trimmed = bytes.trim_ascii_end();
     let mut begin = 0;
+    // Blank lines before the first table separate nothing.
+    let mut in_table = false;
     for line in trimmed.split_inclusive(|&b| b == b'\n') {
         let end = begin + line.len();
-        // Blank lines before the first table part nothing.
-        if line.trim_ascii().is_empty() && !trimmed[..begin].trim_ascii().is_empty() {
+        let blank = line.trim_ascii().is_empty();
+        if blank && in_table {
             return tables((&trimmed[..begin], 0), (&trimmed[end..], lines(&trimmed[..end])), options);
         }
+        in_table |= !blank;
         begin = end;
     }
     Err(CsvError::OneTable)
