@@ -12,8 +12,8 @@ const KEEPS: f64 = 0.6;
 
 /// Inward directions at the vertices of a wall, and the triangle normals around each.
 pub struct Directions {
-    /// Unit vectors into the volume. Zero off the wall, and where no direction leads away from all triangles of a
-    /// vertex.
+    /// Unit vectors into the volume; zero off the wall, and if no direction leads away from all of a vertex's
+    /// triangles.
     pub ways: Vec<Vec3>,
     /// Outward normals of the triangles at each vertex of the wall.
     normals: Vec<Vec<Vec3>>,

@@ -38,8 +38,7 @@ pub(super) fn half_widths(surface: &TriMesh, ways: &[Vec3]) -> Vec<f64> {
     (0..).zip(surface.points.iter().zip(ways)).map(half).collect()
 }
 
-/// Distance along a ray to a triangle, edges included (Möller, Trumbore 1997). Rounding errors are acceptable for a
-/// length.
+/// Distance along a ray to a triangle, edges included (Möller, Trumbore 1997). Rounding is acceptable here.
 fn hit(from: &Point3, way: &Vec3, [a, b, c]: [&Point3; 3]) -> Option<f64> {
     let (u, v) = (b - a, c - a);
     let p = way.cross(&v);

@@ -131,8 +131,8 @@ impl<'a> Stack<'a> {
     }
 
     /// Joins all layers with the `core` mesh inside, whose points begin with the inner positions. The result's points
-    /// begin with the surface's; those off the wall are at their inner position. Layer tetrahedra come first; returns
-    /// their number.
+    /// begin with the surface's, those off the wall at their inner position. Returns the number of layer tetrahedra,
+    /// which come first.
     pub fn around(self, core: &TetMesh) -> (TetMesh, usize) {
         let given = self.numbers.slot.len() as u32;
         let mut tets: Vec<[u32; 4]> = self.wall.iter().flat_map(|&triangle| self.tets_at(triangle)).collect();

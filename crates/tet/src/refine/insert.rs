@@ -252,8 +252,7 @@ impl Refiner<'_, '_> {
         }
     }
 
-    /// Removes tetrahedra that hide a face, a vertex or a frozen face from `p`. Returns false if `start` is one of
-    /// them.
+    /// Removes tetrahedra that hide a face, vertex or frozen face from `p`. Returns false if `start` is one.
     fn trim(&mut self, start: u32, p: &Point3) -> bool {
         for _ in 0..MAX_TRIMS {
             self.flawed.clear();
