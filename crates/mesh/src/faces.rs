@@ -81,7 +81,7 @@ impl<'a> Faces<'a> {
     /// true if these are all: some labels may be in another part than their face.
     ///
     /// # Errors
-    /// Errors of reading the mesh or of `each`; `InvalidData` as [`of`](Self::of), and if the mesh contradicts its own
+    /// Errors of reading the mesh or of `each`; `InvalidData` as [`of`](Self::of), and if the mesh contradicts its
     /// counts.
     pub fn each_own(
         mesh: &'a dyn MeshSource,
@@ -139,8 +139,7 @@ impl<'a> Faces<'a> {
         Ok(Self { mesh, first, known: joined(&loose)? })
     }
 
-    /// Opposite side of a face not paired within its part. `None` if that side has the lower tetrahedron, which stores
-    /// the face.
+    /// Opposite side of a face not paired within its part. `None` if the lower tetrahedron, which stores it, is there.
     fn other_side(&self, sorted: &Sorted, first: u32, handle: u32) -> Option<Side> {
         let at = (first + (handle >> 2), face_key(face_of(&sorted.tets, handle)));
         let place = self.known.binary_search_by_key(&at, |&(tet, key, _)| (tet, key)).ok()?;

@@ -98,8 +98,7 @@ impl Stage {
 /// ```
 pub trait Progress: Sync {
     /// Reports the progress of a stage in its own units; `total` is 0 if unknown. A stage begins with the first call
-    /// that names it and ends when another one is named or `done` is `total`. Calls from several threads may arrive out
-    /// of order.
+    /// that names it and ends when another one is named or `done` is `total`. Threads may report out of order.
     fn at(&self, _stage: Stage, _done: u64, _total: u64) {}
 
     /// Passes on a message for the user.

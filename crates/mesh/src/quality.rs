@@ -65,8 +65,8 @@ fn dihedral_sides(corners: [&Point3; 4]) -> [[f64; 2]; 6] {
     });
     let volume = volume6(a, b, c, d).abs();
     TET_EDGES.map(|[i, j]| {
-        // The faces at an edge are opposite the two other vertices; |n₁ × n₂| = |edge| · 6V is exact in real
-        // arithmetic, without cancellation at angles near 0 or π.
+        // The faces at an edge are opposite the two other vertices. |n₁ × n₂| = |edge| · 6V holds exactly in reals, and
+        // does not cancel at angles near 0 or π.
         let [k, l] = opposite_pair(i, j);
         [(corners[j] - corners[i]).norm() * volume, -normals[k].dot(&normals[l])]
     })
@@ -92,7 +92,7 @@ pub fn dihedral_range(corners: [&Point3; 4]) -> (f64, f64) {
     cotangents.angles()
 }
 
-/// Range of the cotangents of dihedral angles. On [0, π] they fall from ∞ to −∞, so only the extreme angles need to be
+/// Range of the cotangents of dihedral angles. They fall from ∞ to −∞ on [0, π], so only the extreme angles are
 /// computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CotangentRange {

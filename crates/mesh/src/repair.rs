@@ -74,8 +74,7 @@ pub fn repair(surface: &TriMesh) -> Repaired {
     repaired(surface, true)
 }
 
-/// Repairs facets, which may lie anywhere: as [`repair`], but one of several duplicate triangles stays, whatever their
-/// orientation.
+/// Repairs facets, which may lie anywhere: as [`repair`], but one of several duplicates stays in any orientation.
 pub fn repair_facets(surface: &TriMesh) -> Repaired {
     repaired(surface, false)
 }
@@ -142,8 +141,7 @@ fn drop_triangles(r: &mut Repaired, bounds: bool) {
     }
 }
 
-/// Removes triangles without area, which have a vertex on their longest edge. The triangle behind that edge is split
-/// there.
+/// Removes triangles without area. Their middle vertex splits the triangle behind the longest edge.
 fn flip_flat(r: &mut Repaired) {
     // Each round may make new flat triangles beside the old ones, in a strip of them.
     for _ in 0..TRIES {

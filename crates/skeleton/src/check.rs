@@ -3,8 +3,7 @@
 use super::{Edge, EdgeId, LARGEST, NodeId, Skeleton, SkeletonError};
 
 impl Skeleton {
-    /// Checks that ids exist, numbers are finite, radii positive, edges have a length, no edge is repeated and every
-    /// node has an edge.
+    /// Checks that ids exist, numbers are finite, radii positive, edges distinct and not empty, and nodes not isolated.
     ///
     /// # Errors
     /// The first violation.

@@ -87,8 +87,7 @@ impl Course {
         &self.branch.arc
     }
 
-    /// Edge at `s`. A node belongs to the edge before it (`Onward`, as a plane there ends that edge) or after it
-    /// (`Back`).
+    /// Edge at `s`. A node belongs to the edge before it (`Onward`: a plane there ends it) or after it (`Back`).
     fn edge_at(&self, s: f64, way: Way) -> usize {
         let inner = &self.arc()[1..self.radii.len()];
         match way {
@@ -235,8 +234,8 @@ impl Course {
     }
 
     /// Maximal parts of [lo, hi] away from nodes where the vessel turns by more than `max_turn` over one radius. The
-    /// distance is about one radius, and larger at sharp turns, whose two limbs are like branches at a junction
-    /// (equation 12 with equal radii is r tan(turn / 2)).
+    /// distance is about one radius, and larger at sharp turns. Their limbs are like branches at a junction, where
+    /// equation 12 with equal radii is r tan(turn / 2).
     pub fn straight_parts(&self, lo: f64, hi: f64, max_turn: f64) -> Vec<[f64; 2]> {
         let mut parts = Vec::new();
         let mut start = lo;

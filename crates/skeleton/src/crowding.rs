@@ -16,8 +16,8 @@ pub struct CrowdedTerminals {
 }
 
 impl Skeleton {
-    /// Pairs of terminals closer than the sum of their radii, in ascending order. Terminals at one point are one node
-    /// after cleaning.
+    /// Pairs of terminals closer than the sum of their radii, in ascending order. Cleaning merges terminals at one
+    /// point.
     pub fn crowded_terminals(&self, adjacency: &Adjacency) -> Vec<CrowdedTerminals> {
         self.crowded_among(&adjacency.terminals())
     }

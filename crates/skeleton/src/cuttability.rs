@@ -1,5 +1,5 @@
-//! Cut conditions of a branch: equations 11 and 12 of the paper, measured along the branch, with room for a connector
-//! that is straight enough. Reports and the partition use the same conditions.
+//! Cut conditions of a branch: equations 11 and 12 of the paper, measured along the branch, and a straight part that is
+//! long enough for a connector. Reports and the partition use the same conditions.
 
 use super::course::{Course, Courses, Way};
 use super::{Adjacency, NodeId, Skeleton};
@@ -59,8 +59,8 @@ impl CutRules {
     }
 }
 
-/// Equation 12: distance from their node at which two vessels of the given radii that leave along `u` and `v` are
-/// separate, measured along the first; 0 unless the angle is acute.
+/// Distance from the node at which two vessels along `u` and `v` are separate (equation 12), measured along the first.
+/// Zero unless the angle is acute.
 pub fn separation(u: &Vec3, v: &Vec3, radii: [f64; 2]) -> f64 {
     let lengths = u.norm() * v.norm();
     separation_at(u.dot(v) / lengths, u.cross(v).norm() / lengths, radii)

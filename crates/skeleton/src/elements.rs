@@ -21,8 +21,7 @@ pub struct Node {
     pub position: Point3,
     /// Radius of the vessel there.
     pub radius: f64,
-    /// Index of the node in its input file (0-based order of the points). For a node made by a split, that of the node
-    /// that was split.
+    /// Index of the node in its input file (0-based order of the points). After a split, that of the split node.
     pub original: u32,
 }
 

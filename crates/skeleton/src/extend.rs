@@ -1,5 +1,4 @@
-//! Extension of terminals by straight pieces, so that flow is fully developed at outlets and boundary conditions do not
-//! affect the vessels.
+//! Straight extension of terminals, so that outflow is fully developed and boundary conditions do not affect vessels.
 
 use super::{Edge, Node, NodeId, Skeleton};
 use rustc_hash::FxHashMap;
@@ -17,8 +16,7 @@ pub struct Extended {
 const HALVINGS: u32 = 3;
 
 impl Skeleton {
-    /// Extends terminals straight, by the given number of radii each; 0 changes nothing. No extension overlaps another
-    /// vessel.
+    /// Extends terminals by the given number of radii each; 0 changes nothing. No extension overlaps another vessel.
     pub fn extended(&self, radii: &FxHashMap<NodeId, f64>) -> Extended {
         let mut terminals: Vec<(NodeId, f64, u32)> = radii.iter().map(|(&node, &by)| (node, by, 0)).collect();
         terminals.sort_unstable_by_key(|(node, ..)| *node);

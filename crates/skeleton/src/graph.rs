@@ -179,8 +179,7 @@ impl Skeleton {
         (0..self.edges.len() as u32).map(EdgeId)
     }
 
-    /// Radius of the second thickest vessel at a node, which is that of the lumen shared by a thick side branch and its
-    /// trunk.
+    /// Radius of the second thickest vessel at a node: that of the lumen shared by a thick side branch and its trunk.
     pub fn shared_radius(&self, adjacency: &Adjacency, node: NodeId) -> f64 {
         let (mut first, mut second) = (0.0_f64, 0.0_f64);
         for &id in adjacency.edges(node) {
@@ -196,8 +195,8 @@ impl Skeleton {
         (self.node(b).position - self.node(a).position).norm()
     }
 
-    /// Inlet of each component: its terminal of largest radius (the smallest id among equals); `None` for a component
-    /// without terminals.
+    /// Inlet of each component: its terminal of largest radius (the smallest id among equals); `None` without
+    /// terminals.
     pub fn roots(&self, adjacency: &Adjacency, components: &Components) -> Vec<Option<NodeId>> {
         let mut roots: Vec<Option<NodeId>> = vec![None; components.list.len()];
         for node in adjacency.terminals() {

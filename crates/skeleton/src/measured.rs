@@ -15,8 +15,7 @@ impl Skeleton {
         folds.collect()
     }
 
-    /// True if a network was measured rather than generated: its vessels are polylines. Nodes at which a vessel turns
-    /// back do not count.
+    /// True if a network was measured rather than generated: its vessels are polylines, without counting folds.
     pub fn is_measured(&self) -> bool {
         let adjacency = self.adjacency();
         let folds = self.folds(&adjacency);

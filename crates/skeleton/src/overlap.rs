@@ -183,9 +183,8 @@ fn tube_box(tube: &Tube) -> Aabb {
 /// Deepest overlap of two tubes among points not close along the skeleton; `None` without overlap.
 ///
 /// They overlap if their distance is below `clearance` times the sum of their radii. `way[i][j]` is the distance along
-/// the skeleton from end i of `a` to end j of `b`. Each path from s to t passes one of the four pairs of ends, so "more
-/// than 6 r apart" is a set of linear conditions on (s, t). The admissible set is a convex polygon, and the gap is
-/// convex on it.
+/// the skeleton from end i of `a` to end j of `b`. Each path from s to t passes one of four pairs of ends. So "more
+/// than 6 r apart" is a set of linear conditions. The admissible set is a convex polygon, and the gap is convex on it.
 pub fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: f64) -> Option<(f64, f64)> {
     let conditions = apart_conditions(a, b, way);
     let polygon = clip_square(&conditions)?;
@@ -205,7 +204,7 @@ pub fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: f64) -> 
     (best.0 < 0.0).then_some((best.1, best.2))
 }
 
-/// Conditions k0 + k1 s + k2 t > 0 for s on `a` and t on `b` to be more than 6 r apart along the skeleton.
+/// Conditions k0 + k1 s + k2 t > 0 for points to be more than 6 r apart along the skeleton.
 fn apart_conditions(a: &Tube, b: &Tube, way: [[f64; 2]; 2]) -> Vec<[f64; 3]> {
     let (la, lb) = (a.length(), b.length());
     let mut conditions = Vec::with_capacity(8);

@@ -2,8 +2,7 @@
 //!
 //! A *half-face* `4 * tet + face` is face `face` of tetrahedron `tet` (opposite its vertex `face`); mates are paired
 //! half-faces. *Ghost* tetrahedra, whose last vertex is [`GHOST`], lie on the outer side of every boundary face, so
-//! that each half-face has a mate. Around a convex hull or a carved domain, ghosts are connected to each other across
-//! the boundary's edges.
+//! that each half-face has a mate. Around a hull or a carved domain, ghosts are connected across the boundary's edges.
 
 use anastomesh_mesh::adjacency::tet_adjacency;
 pub(crate) use anastomesh_mesh::face_key;
@@ -496,8 +495,8 @@ impl Complex {
         created.extend_from_slice(&s.slots);
     }
 
-    /// Checks every invariant: mates are mutual and one face seen from both sides, real tetrahedra are positive by the
-    /// exact predicate, ghosts cover all boundary faces, vertices know a tetrahedron of theirs.
+    /// Checks every invariant: mates are mutual and have equal vertices, real tetrahedra are positive, ghosts cover all
+    /// boundary faces, vertices know one of their tetrahedra.
     ///
     /// # Errors
     /// The first violated invariant.

@@ -128,7 +128,7 @@ fn points(r: &Request) -> Result<Vec<Point3>, TetError> {
         Some(inside) => points.extend(inside),
         None => points.extend(interior_points(surface, &for_volume(surface, r.interior, r.refinement))?),
     }
-    // A smaller box has a smaller roundoff bound. Smooth walls still leave room for flips.
+    // A smaller box has a smaller roundoff bound. Smooth walls still leave space for flips.
     let tight = matches!(r.interior, Interior::Graded { .. } | Interior::Local { .. });
     points.extend(if tight { box_around(&surface.points, 0.2) } else { box_corners(&surface.points) });
     Ok(points)

@@ -69,10 +69,9 @@ impl Flipper {
         Ok(worst)
     }
 
-    /// Plans the removal of edge `a, b` of tetrahedron `t`. Chooses the triangulation of the ring with the best worst
-    /// score, by Klincsek's dynamic programming (Shewchuk, 'Two discrete optimization algorithms for the topological
-    /// improvement of tetrahedral meshes', 2002). Returns that score. `score` must be `None` for a tetrahedron that is
-    /// not positive.
+    /// Plans the removal of edge `a, b` of tetrahedron `t`. Triangulates the ring by Klincsek's dynamic programming
+    /// (Shewchuk, 'Two discrete optimization algorithms for the topological improvement of tetrahedral meshes', 2002).
+    /// Returns the maximal worst score. `score` must be `None` for a tetrahedron that is not positive.
     ///
     /// # Errors
     /// See [`Refusal`].

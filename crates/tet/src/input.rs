@@ -79,8 +79,7 @@ impl<T> FromIterator<T> for Offenders<T> {
 }
 
 /// Checks the arrays of a surface and lists its edges, including `segments`. Self-intersections and coincident points
-/// are not checked. A general complex may have no triangle twice; a closed surface may have two on the same vertices,
-/// back to back.
+/// are not checked. A general complex may have no triangle twice; a closed surface may have two back to back.
 pub(super) fn validate(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<SurfaceEdges, TetError> {
     check_arrays(surface)?;
     check_segments(segments, surface.points.len())?;

@@ -1,5 +1,4 @@
-//! Tests of the messages about unusable input: they name the cause rather than its consequences, in the caller's
-//! numbering.
+//! Tests of messages about unusable input: they name the cause, not its consequences, in the caller's numbering.
 
 use super::*;
 use crate::names::Names;

@@ -1,9 +1,9 @@
 //! Meshes with a split surface ([`Boundary::Split`]). Surface edges that are too long, and edges of triangles under
-//! badly shaped tetrahedra, are halved until the goals are met or nothing is gained. The pieces are then kept like any
+//! badly shaped tetrahedra, are halved until the goals are met or nothing is gained. The pieces are kept like any
 //! input.
 //!
-//! A midpoint is rounded to f64, so the pieces of a triangle are coplanar only up to rounding. The result is certified
-//! against the pieces.
+//! Midpoints are rounded, so the pieces of a triangle are coplanar up to rounding. The certificate refers to the
+//! pieces.
 
 use super::builder::{Tetrahedralization, Tetrahedralizer};
 use super::complex::face_key;

@@ -100,8 +100,7 @@ impl Star {
         (0..4).find(|&i| !face.contains(&c.verts(t)[i])).map(|i| 4 * t + i as u32)
     }
 
-    /// A wanted tetrahedron at both vertices. A few vertices may have most of the complex around them; the other vertex
-    /// then has fewer.
+    /// A wanted tetrahedron at both vertices. A few vertices may have most of the complex around them.
     fn find_either(&mut self, c: &Complex, [a, b]: [u32; 2], wanted: impl Fn(u32) -> bool) -> Option<u32> {
         let Self { walk, other } = self;
         walk.start(c, a);

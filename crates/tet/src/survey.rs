@@ -6,8 +6,7 @@ use super::star::Star;
 use anastomesh_mesh::TriMesh;
 
 /// Freezes the triangles of the surface that are faces. Returns the missing edges and triangles, in ascending order.
-/// One pass over the faces of the complex finds the triangles. Edges of present triangles exist, so only the others are
-/// searched.
+/// One pass over the faces finds the triangles. Edges of present triangles exist, so only the others are searched.
 pub(super) fn survey(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges) -> (Vec<[u32; 2]>, Vec<u32>) {
     let triangles = ByLowest::new(surface);
     let mut found = vec![false; surface.triangles.len()];

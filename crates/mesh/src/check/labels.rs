@@ -75,8 +75,8 @@ pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) 
     lines
 }
 
-/// Conditions on patches and caps for boundaries labelled by others, without cap data. The same holds if all outlets
-/// form one patch.
+/// Conditions on patches and caps for boundaries labelled by others, without cap data. Likewise if all outlets are one
+/// patch.
 pub(super) fn lines_without_caps(patches: &[Patch], expectation: Option<&Expectation>) -> Option<Vec<LineResult>> {
     let no_caps = patches.iter().all(|patch| patch.cap.is_none());
     let grouped = patches.iter().any(|patch| patch.is_outlet() && patch.cap.is_none());

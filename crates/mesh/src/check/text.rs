@@ -7,8 +7,7 @@ use std::fmt::{self, Write as _};
 /// Maximum offenders per condition in a summary.
 const SPELT_OUT: usize = 3;
 
-/// Text report: one line per condition, the first offenders below the failed ones, sizes and shape, and the verdict at
-/// the end.
+/// Text report: one line per condition, the first offenders of failed ones, sizes and shape, and finally the verdict.
 impl fmt::Display for CheckReport {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         writeln!(out, "{}\n{}", conditions(self), sizes(self))?;

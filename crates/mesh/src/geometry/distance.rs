@@ -16,8 +16,7 @@ pub struct SegmentPair {
     pub distance: f64,
 }
 
-/// Parameter in [0, 1] of the point of segment `ab` closest to `p`, and its distance. A segment of length 0 gives
-/// parameter 0.
+/// Parameter in [0, 1] of the point of segment `ab` closest to `p`, and its distance. Length 0 gives 0.
 pub fn point_segment(p: &Point3, a: &Point3, b: &Point3) -> (f64, f64) {
     let d = b - a;
     let along = (p - a).dot(&d);
@@ -32,8 +31,7 @@ pub fn point_segment(p: &Point3, a: &Point3, b: &Point3) -> (f64, f64) {
     (t, (p - (a + d * t)).norm())
 }
 
-/// Closest points of the segments `a` and `b`. Parallel and degenerate segments are valid; among several closest pairs
-/// one is chosen.
+/// Closest points of the segments `a` and `b`. Parallel and degenerate segments are valid and give one closest pair.
 pub fn segment_segment(a: [&Point3; 2], b: [&Point3; 2]) -> SegmentPair {
     let (d, e, w) = (a[1] - a[0], b[1] - b[0], a[0] - b[0]);
     let (dd, de, ee) = (d.norm_squared(), d.dot(&e), e.norm_squared());

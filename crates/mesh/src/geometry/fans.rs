@@ -1,13 +1,13 @@
 //! Proof, for most vertices of a smooth surface, that the adjacent triangles intersect only where connected.
 //!
 //! Suppose a linear map to the plane gives all triangles of a vertex one orientation, and together one turn around it.
-//! Then the images do not overlap, nor do the triangles. Signs are those of the exact values; if rounding could change
-//! one, nothing is proved.
+//! Then the images do not overlap, nor do the triangles. Signs are those of the exact values; doubtful signs prove
+//! nothing.
 
 use super::{Point3, Vec3};
 
-/// Relative error bound of a cross product of images, with a wide margin (errors are below 30 units of 1.1e-16), and an
-/// absolute bound against underflow.
+/// Relative error bound of a cross product of images, and an absolute bound against underflow. The margin is wide:
+/// errors are below 30 units of 1.1e-16.
 const RELATIVE: f64 = 1e-13;
 const ABSOLUTE: f64 = 1e-280;
 

@@ -1,9 +1,9 @@
 //! Implicit points on segments and triangles, and exact predicates on them.
 //!
-//! The point `a + s · (b − a) + t · (c − a)` with floating-point `a`, `b`, `c` and dyadic `s`, `t` is dyadic in each
-//! coordinate, so no division is needed. Among the implicit points of Attene, 'Indirect predicates for geometric
-//! constructions', 2020, this is the kind without a denominator. Predicates first use the rounded points, with an error
-//! bound that includes the rounding, and otherwise evaluate integers.
+//! For floating-point `a`, `b`, `c` and dyadic `s`, `t`, the point `a + s · (b − a) + t · (c − a)` is dyadic. Among the
+//! implicit points of Attene, 'Indirect predicates for geometric constructions', 2020, this is the kind without a
+//! denominator. Predicates first use the rounded points, with an error bound that includes the rounding, and otherwise
+//! evaluate integers.
 
 use super::Point3;
 use super::dyadic::{Int, decompose};
@@ -244,8 +244,7 @@ fn volume<const N: usize>(rows: &[Row], [a, b, c, d]: [usize; 4]) -> Int<N> {
     det3(&[from(b), from(c), from(d)])
 }
 
-/// Weights, rounded down, of the point where the line through `p` and `q` crosses a triangle; `None` if it crosses
-/// outside.
+/// Weights, rounded down, of the point where the line through `p` and `q` crosses a triangle, if it does.
 pub fn crossing([a, b, c]: [Site; 3], [p, q]: [Site; 2]) -> Option<[u128; 2]> {
     let (rows, bits) = rows(&[a, b, c, p, q]);
     // Three sums of six products of three differences.

@@ -6,8 +6,7 @@
 use super::{Point3, integer};
 use robust::{Coord, Coord3D};
 
-/// Smallest magnitude of a non-zero coordinate. Fifth powers of differences of such numbers, and their roundoff, do not
-/// underflow.
+/// Smallest magnitude of a non-zero coordinate. Fifth powers of differences and their roundoff do not underflow.
 pub const MIN_MAGNITUDE: f64 = 1e-42;
 
 /// Largest magnitude of a coordinate. Fifth powers of differences do not overflow.

@@ -23,8 +23,7 @@ pub fn crossing(p: &Point3, [a, b, c]: [&Point3; 3]) -> Option<i32> {
     Some(if ahead { turn } else { 0 })
 }
 
-/// Side of the edge from `a` to `b` on which the perturbed ray passes, seen against x: 1 to the left; 0 if the edge is
-/// parallel to the ray.
+/// Side of the edge from `a` to `b` on which the perturbed ray passes, seen against x: 1 to the left, 0 if parallel.
 fn passes(a: &Point3, b: &Point3, p: &Point3) -> i32 {
     let flat = |p: &Point3| [p.y, p.z];
     let turn = orient2d(flat(a), flat(b), flat(p));

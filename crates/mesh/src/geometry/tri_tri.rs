@@ -49,8 +49,8 @@ pub enum Improper {
 }
 
 /// Corners of the intersection of two triangles, as a set of feature pairs. Bit 7 i + j stands for feature i of the
-/// first and j of the second. Features 0 to 2 are the vertices, 3 to 5 the edges (3 + i runs from vertex i to vertex i
-/// + 1), 6 the inside.
+/// first and j of the second. Features 0 to 2 are the vertices, 3 to 5 the edges, 6 the inside. Edge 3 + i starts at
+/// vertex i.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Hits(u64);
 
@@ -174,8 +174,8 @@ fn separated(sides: [i8; 3], shared: u32) -> bool {
     count(1) == 3 - shared || count(-1) == 3 - shared
 }
 
-/// Hits of two triangles in different planes: each corner of the intersection is where a vertex or edge of one meets
-/// the plane of the other.
+/// Hits of two triangles in different planes: at each corner of the intersection, a vertex or edge of one meets the
+/// other's plane.
 fn hits_across(p: &Triangle, q: &Triangle, p_sides: [i8; 3], q_sides: [i8; 3]) -> Hits {
     let mut hits = Hits::default();
     half_across(p, q, p_sides, |of_p, of_q| hits.add(of_p, of_q));
@@ -290,8 +290,8 @@ const BATCH: usize = 1 << 16;
 /// Minimum pairs per thread.
 const SHARE: usize = 1 << 12;
 
-/// All pairs `(i, j)`, i < j, of triangles that intersect improperly, ascending, and `(i, i)` for every triangle
-/// without area, which is excluded from the pairs. Coordinates must be finite.
+/// All pairs `(i, j)`, i < j, of triangles that intersect improperly, ascending. A triangle without area gives only
+/// `(i, i)`. Coordinates must be finite.
 ///
 /// Neighbours are identified by the ids of their vertices. The result does not depend on the number of threads.
 pub fn self_intersections(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32)> {

@@ -1,5 +1,5 @@
-//! Sheets: two triangles back to back that enclose nothing. Both are removed, unless the surface needs one of them to
-//! be closed.
+//! Sheets: two triangles back to back that enclose nothing. Both are removed, unless one is needed to close the
+//! surface.
 //!
 //! A closed surface has an even number of triangles at each edge. If a sheet is alone with other triangles at an edge,
 //! their number decides, and then perhaps the next sheet. Undecided sheets form a surface in which every triangle has a

@@ -28,7 +28,7 @@ pub struct PairGradient {
     pub by_end: [Vec3; 4],
 }
 
-/// Kernel of the barrier: K(d, h) = 3 B(2 d / h) / (2 (d / unit)² + ε), with B the cubic B-spline and h `support` times
+/// Kernel of the barrier: K(d, h) = 3 B(2 d / h) / (2 (d / unit)² + ε). B is the cubic B-spline, h is `support` times
 /// the sum of the radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barrier {
@@ -78,8 +78,8 @@ impl Barrier {
 
     /// Double integral (5) over two tubes and its gradient; `None` if they are too far from each other.
     ///
-    /// Only the parts within the support of each other are integrated, in panels no longer than half of the support,
-    /// with six points each.
+    /// Only the parts within the support of each other are integrated, in panels of at most half of it, with six
+    /// points.
     pub fn pair(&self, a: &Tube, b: &Tube) -> Option<PairGradient> {
         let reach = self.support * (a.max_radius() + b.max_radius());
         let on_a = within(a, b, reach)?;

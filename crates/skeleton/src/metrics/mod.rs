@@ -36,8 +36,7 @@ impl Share {
 /// Dimensionless measures of a skeleton besides its overlaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
-    /// Barrier potential (equations 1 to 6) over all pairs of edges without a common node, each pair once, in units of
-    /// 1 / (sum of the radii)².
+    /// Barrier potential (equations 1 to 6) over all pairs of edges without a common node, in 1 / (sum of the radii)².
     pub barrier: f64,
     /// Edges shorter than 2 radii (the larger of the edge's two).
     pub shorter_than_2: Share,
@@ -53,8 +52,7 @@ pub struct Metrics {
     pub long_enough: Share,
     /// Edges longer than the lengths required by equation 12 at their two ends.
     pub open_enough: Share,
-    /// Inner branches (no end is a terminal) with a straight part for a cut by equations 11 and 12, as decided by the
-    /// partition.
+    /// Inner branches (no end is a terminal) with a straight part for a cut by equations 11 and 12.
     pub cuttable: Share,
 }
 

@@ -24,8 +24,7 @@ struct Wall {
     face: [u32; 3],
 }
 
-/// The growing tetrahedralization and the insertion buffers. The ghost vertex is numbered after the last point, and has
-/// a site there.
+/// The growing tetrahedralization and the insertion buffers. The ghost vertex and its site follow the last point.
 pub(super) struct Inserter {
     sites: Vec<Site>,
     cells: Vec<Cell>,
@@ -139,8 +138,7 @@ impl Inserter {
         }
     }
 
-    /// Face of the tetrahedron with `p` strictly behind it, the one with the largest volume between; 4 if there is
-    /// none.
+    /// Face of the tetrahedron with `p` strictly behind it and the largest volume between; 4 if there is none.
     #[inline]
     fn exit(&self, v: &[u32; 4], view: &View, from: usize, p: &Point3) -> usize {
         let mut exit = 4;
@@ -265,8 +263,7 @@ impl Inserter {
         count as usize
     }
 
-    /// Builds a tetrahedron on each face and connects them. Each edge of the cavity's boundary occurs once in each
-    /// direction.
+    /// Builds a tetrahedron on each face and connects them. Each edge of the boundary occurs once in each direction.
     #[inline(never)]
     fn stand_by_table(&mut self, v: u32) {
         for (w, &t) in self.walls.iter().zip(&self.created) {
@@ -356,8 +353,7 @@ impl Inserter {
     }
 }
 
-/// Positions in a new tetrahedron of the vertices of its face and of the new vertex: in their order, or with the ghost
-/// last.
+/// Positions of the vertices of a face and of the new vertex in a tetrahedron: in order, or with the ghost last.
 #[inline]
 fn turn_of(face: &[u32; 3], ghost: u32) -> [u32; 4] {
     if face[0] == ghost {

@@ -1,10 +1,10 @@
 //! Merging of two Delaunay tetrahedralizations on the two sides of a plane.
 //!
 //! A tetrahedron is *final* if its circumsphere does not reach the plane. No point of the other side can lie in it, so
-//! it belongs to the result. All other tetrahedra of the result have vertices only of tetrahedra or ghosts that are not
-//! final, since a vertex with a final star keeps it. These vertices form a layer along the plane with few others. Their
-//! Delaunay tetrahedralization contains everything missing, outside the boundary faces of the final part. The perturbed
-//! result is unique, so both sides of each such face fit.
+//! it belongs to the result. A vertex with a final star keeps it. So all other tetrahedra of the result have only
+//! vertices of tetrahedra or ghosts that are not final. These vertices form a layer along the plane with few others.
+//! Their Delaunay tetrahedralization contains everything missing, outside the boundary faces of the final part. The
+//! perturbed result is unique, so both sides of each such face fit.
 
 use crate::complex::{Cell, GHOST, NONE, face_key, face_of, opposed};
 use anastomesh_mesh::geometry::Point3;
@@ -64,8 +64,7 @@ impl Half {
 /// True if the circumsphere of the positive tetrahedron `a, b, c, d` certainly stays on its side of the cut. Roundoff
 /// may make the answer false, never true.
 ///
-/// With `a` as origin the centre is `n / 2v`, and the sphere ends before the distance `h` of the plane if `n_y² + n_z²
-/// < 4 h v (h v − n_x)`.
+/// With `a` as origin the centre is `n / 2v`. The sphere ends before distance `h` if `n_y² + n_z² < 4 h v (h v − n_x)`.
 fn clear_of(cut: Cut, lower: bool, [a, b, c, d]: [&Point3; 4]) -> bool {
     let (b, c, d) = (b - a, c - a, d - a);
     let size = b.amax().max(c.amax()).max(d.amax());
@@ -150,8 +149,7 @@ fn open_vertices(points: usize, halves: [&Half; 2]) -> Vec<u32> {
     (0..).zip(open).filter(|&(_, open)| open).map(|(v, _)| v).collect()
 }
 
-/// Faces between final and other tetrahedra: sorted vertices to the half-face of the final tetrahedron and its vertices
-/// seen from there.
+/// Faces between final and other tetrahedra: sorted vertices to the final half-face and its vertices seen from there.
 type Seam = FxHashMap<[u32; 3], (u32, [u32; 3])>;
 
 /// Adds the seam of one side, with tetrahedra numbered from `shift`.

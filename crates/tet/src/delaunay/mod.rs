@@ -22,8 +22,7 @@ use order::brio;
 pub(super) use order::hash;
 use sequence::insert_all;
 
-/// Computes the Delaunay tetrahedralization of points, with ghosts around their convex hull. Vertices are numbered like
-/// the points.
+/// Computes the Delaunay tetrahedralization of points, with ghosts around the hull. Vertices are numbered like points.
 ///
 /// # Errors
 /// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`].

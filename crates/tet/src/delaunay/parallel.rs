@@ -18,8 +18,8 @@ pub(super) const SPLIT_FROM: usize = 1_200_000;
 /// Size of the sample that decides if a split pays off.
 const SAMPLE: usize = 16_000;
 
-/// Maximum fraction of the sample's tetrahedra that may reach across the cut. It is 0.2 for evenly filled space, and 1
-/// for points on a sphere.
+/// Maximum fraction of the sample's tetrahedra that may reach across the cut. It is 0.2 in evenly filled space, 1 on a
+/// sphere.
 const CROSSING: f64 = 0.45;
 
 /// Tetrahedralizes points in parts. Returns the tetrahedra with ghosts and without unused slots, and one tetrahedron at

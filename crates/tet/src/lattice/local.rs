@@ -15,9 +15,9 @@ const APART: f64 = 0.62;
 
 const MOST_BANDS: usize = 12;
 
-/// Points of body-centred cubic lattices inside the closed `surface`, with cubes of side `cell` and at least
-/// `clearance` from it, both in nearby edge lengths of the surface. Away from the surface cubes are 2, 4, ... times as
-/// large. The result is deterministic.
+/// Points of body-centred cubic lattices inside the closed `surface`. Cubes have side `cell`, and points at least
+/// `clearance` from the surface, both in nearby edge lengths. Away from the surface cubes are 2, 4, ... times as large.
+/// The result is deterministic.
 pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
     let sizes = edges_at_vertices(surface);
     let Some(bands) = Bands::of(&sizes) else {

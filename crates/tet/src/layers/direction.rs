@@ -12,8 +12,7 @@ const KEEPS: f64 = 0.6;
 
 /// Inward directions at the vertices of a wall, and the triangle normals around each.
 pub struct Directions {
-    /// Unit vectors into the volume; zero off the wall, and if no direction leads away from all of a vertex's
-    /// triangles.
+    /// Unit vectors into the volume; zero off the wall, and if no direction leads away from all triangles.
     pub ways: Vec<Vec3>,
     /// Outward normals of the triangles at each vertex of the wall.
     normals: Vec<Vec<Vec3>>,
@@ -36,8 +35,7 @@ impl Directions {
         Self { ways, normals }
     }
 
-    /// Averages the directions of vertices that are not held with those of their neighbours, within the minimum
-    /// steepness.
+    /// Averages directions with those of neighbours, within the minimum steepness, except at held vertices.
     pub fn smooth(&mut self, wall: &[[u32; 3]], is_held: &[bool]) {
         for _ in 0..PASSES {
             let mut sums = vec![Vec3::zeros(); self.ways.len()];

@@ -12,8 +12,7 @@ const DRAWN_BACK: f64 = 0.6;
 const LEAST: f64 = 2e-3;
 /// Maximum difference of neighbouring offsets, relative to their distance, after a reduction.
 const GRADE: f64 = 0.5;
-/// Successive factors of the offset if filling fails without self-intersection, which takes long to find out. Zero
-/// after these.
+/// Successive factors of the offset if filling fails without self-intersection, a slow test. Zero after these.
 const STUCK: [f64; 3] = [0.5, 0.2, 0.2];
 /// Round from which obstructing vertices return to the wall at once, and maximum rounds.
 const PATIENT: usize = 40;
@@ -50,8 +49,7 @@ pub struct Inset {
 /// The mesh made by `fill` must keep the surface, and its points must begin with the surface's.
 ///
 /// # Errors
-/// Errors of `fill`; [`TetError::Stuck`] with a triangle of the wall whose prism is inverted and whose vertices cannot
-/// move.
+/// Errors of `fill`; [`TetError::Stuck`] with a wall triangle whose prism is inverted and whose vertices cannot move.
 pub fn inset(
     places: &Places,
     depths: &[f64],

@@ -79,8 +79,7 @@ impl Numbers {
         out
     }
 
-    /// Tetrahedra of a layer at a wall triangle, counter-clockwise seen from outside. Vertices without copies leave
-    /// fewer than three.
+    /// Tetrahedra of a layer at a wall triangle seen from outside. Vertices without copies leave fewer than three.
     fn prism(&self, triangle: [u32; 3], layer: u32) -> impl Iterator<Item = [u32; 4]> {
         let mut sorted = triangle;
         sorted.sort_unstable_by_key(|&v| self.rank(v));
@@ -132,7 +131,7 @@ impl<'a> Stack<'a> {
 
     /// Joins all layers with the `core` mesh inside, whose points begin with the inner positions. The result's points
     /// begin with the surface's, those off the wall at their inner position. Returns the number of layer tetrahedra,
-    /// which come first.
+    /// the first ones.
     pub fn around(self, core: &TetMesh) -> (TetMesh, usize) {
         let given = self.numbers.slot.len() as u32;
         let mut tets: Vec<[u32; 4]> = self.wall.iter().flat_map(|&triangle| self.tets_at(triangle)).collect();

@@ -170,7 +170,7 @@ impl Improver<'_> {
     }
 
     /// Tries a new vertex in growing layers of tetrahedra around `t` and the tetrahedra below a radius ratio connected
-    /// to it. If they all lie in a flat patch, the vertex goes off its plane, where there is room.
+    /// to it. If they all lie in a flat patch, the vertex goes off its plane.
     pub(super) fn insert_beside(&mut self, t: u32, below: f64, layers: usize) -> bool {
         let mut k = std::mem::take(&mut self.cavity);
         let mut done = false;
@@ -235,7 +235,7 @@ impl Improver<'_> {
         }
     }
 
-    /// Adds the neighbours of tetrahedra, since the ring of a short edge leaves no room between its ends.
+    /// Adds the neighbours of tetrahedra, since the ring of a short edge is too narrow.
     fn widen(&self, tets: &mut Vec<u32>) {
         for at in 0..tets.len() {
             for half in 4 * tets[at]..4 * tets[at] + 4 {

@@ -20,8 +20,7 @@ const CAVITY: (usize, usize) = (20, 5000);
 const LAYERS: usize = 3;
 
 impl Improver<'_> {
-    /// Removes flat and thin tetrahedra, except those with all faces on the surface. Returns the number of flat ones
-    /// left.
+    /// Removes flat and thin tetrahedra, unless all faces are on the surface. Returns the number of flat ones left.
     pub(super) fn dissolve_flat(&mut self) -> usize {
         let list = self.worst_first(THIN);
         let none = list.is_empty();

@@ -15,8 +15,8 @@ pub enum Effort {
 /// Targets and work limits of an improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OptimizeOptions {
-    /// Number of leading points that keep their index and exact coordinates. Points on the boundary or on a frozen face
-    /// stay, too.
+    /// Number of leading points that keep their index and exact coordinates. Points on boundary or frozen faces stay,
+    /// too.
     pub fixed_points: usize,
     /// Rounds of smoothing followed by flips.
     pub rounds: usize,

@@ -20,8 +20,7 @@ const MAX_VERTICES: usize = 14;
 const MAX_FRONT: usize = 64;
 /// The search ends once the strain has fallen to this fraction of its old value.
 const GOOD: f64 = 0.3;
-/// Estimated fraction of the summed least strains of the front's faces that its tetrahedra will have. Most close at
-/// most two faces.
+/// Estimated strain of the front's tetrahedra over the summed least strains of its faces. Most close one or two faces.
 const SHARE: f64 = 0.4;
 
 const fn choose(n: usize, k: usize) -> usize {
@@ -240,8 +239,7 @@ impl Reconnection {
         })
     }
 
-    /// Table entry of four local vertices, if positive. Most queries need only the sign, so ratio and strain are
-    /// computed lazily.
+    /// Table entry of four local vertices, if positive. Ratio and strain are computed lazily.
     fn tet(&mut self, room: Room, v: [u8; 4]) -> Option<Entry> {
         if !self.is_positive(room, v) {
             return None;

@@ -1,5 +1,5 @@
-//! Smoothing of inner vertices: Newton steps on the shape energy of the star, and a direct search that raises its worst
-//! radius ratio.
+//! Smoothing of inner vertices: Newton steps on the shape energy of the star, and a direct search for the worst radius
+//! ratio.
 
 use super::Improver;
 use super::improver::STALE;
@@ -201,8 +201,7 @@ impl Improver<'_> {
         }
     }
 
-    /// Best position of a new vertex in a star-shaped cavity with these faces, starting from `p`, and the worst radius
-    /// ratio there.
+    /// Best position of a new vertex in a star-shaped cavity, searched from `p`, and the worst radius ratio there.
     pub(super) fn best_in_room(&mut self, p: Point3, faces: &[[u32; 3]]) -> (Point3, f64) {
         self.energy.faces.clear();
         self.energy.aim = Aim::Worst;
@@ -231,8 +230,8 @@ impl Improver<'_> {
     }
 }
 
-/// Direct search for a better position: along the axes, and away from and towards the worst face. The step halves if
-/// nothing is found.
+/// Direct search for a better position: along the axes, and away from the worst face. The step halves if nothing is
+/// found.
 fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
     let reach = star.faces.iter().map(|f| (f[0] - start).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
     let (mut best, mut value) = (start, before);

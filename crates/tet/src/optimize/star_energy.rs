@@ -6,9 +6,9 @@ use anastomesh_mesh::geometry::{Point3, Vec3, predicates::orient3d};
 use anastomesh_mesh::quality::radius_ratio;
 use std::cell::Cell;
 
-/// Star of an inner vertex as a function of the vertex's displacement x. With Q the sum of squared edge lengths and V
-/// six times the volume, the energy is the sum of Q³ / (432 V²) = 1 / (mean ratio)³, at least 1 each. Both Q and V are
-/// cheap polynomials in x.
+/// Star of an inner vertex as a function of the vertex's displacement x. Q is the sum of squared edge lengths, V six
+/// times the volume, both cheap polynomials in x. The energy is the sum of Q³ / (432 V²) = 1 / (mean ratio)³, at least
+/// 1 each.
 #[derive(Clone, Debug, Default)]
 pub struct StarEnergy {
     pub(super) cells: Vec<Summand>,
@@ -126,9 +126,9 @@ impl StarEnergy {
         (energy, solve_symmetric(hessian, -gradient))
     }
 
-    /// True if no radius ratio is below `least` at displacement `x`, where the vertex is at `p`. The energy e of a
-    /// tetrahedron bounds its radius ratio from below by 1 / e (Liu, Joe, 'Relationship between tetrahedron shape
-    /// measures', 1994), so most ratios are not computed.
+    /// True if no radius ratio is below `least` at displacement `x`, where the vertex is at `p`. The radius ratio is at
+    /// least 1 / e, with e the energy of a tetrahedron (Liu, Joe, 'Relationship between tetrahedron shape measures',
+    /// 1994). So most ratios are not computed.
     pub(super) fn keeps_above(&self, x: &Vec3, p: &Point3, least: f64) -> bool {
         self.cells
             .iter()

@@ -53,8 +53,8 @@ impl Purse {
 }
 
 impl Improver<'_> {
-    /// Treats all tetrahedra below the stubborn limit, worst first, except those on needles that are close to the
-    /// attainable quality.
+    /// Treats all tetrahedra below the stubborn limit, worst first, except those on needles close to the attainable
+    /// quality.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
         let mut purse = Purse::of(self.c.real_tets().count());
         for _ in 0..ROUNDS {

@@ -36,8 +36,7 @@ impl Recovery<'_> {
         }
     }
 
-    /// Removes an edge. If its ring has no valid triangulation, the ring is reduced by flipping its spokes, to a
-    /// bounded depth.
+    /// Removes an edge. If its ring has no valid triangulation, its spokes are flipped first, to a bounded depth.
     pub(super) fn clear_edge(&mut self, t: u32, p: u32, q: u32, depth: u32) -> bool {
         if self.edges.contains(p, q) || self.budget == 0 {
             return false;
@@ -64,8 +63,7 @@ impl Recovery<'_> {
         false
     }
 
-    /// Removes an edge by a valid triangulation of its ring. Each round prefers another triangulation, to release edges
-    /// stuck in earlier ones.
+    /// Removes an edge by a valid triangulation of its ring, another one each round to release stuck edges.
     fn remove_edge(&mut self, t: u32, p: u32, q: u32) -> Result<(), Refusal> {
         let (round, salt) = (self.round, Self::salt(self.round));
         let rule = self.rule;

@@ -18,7 +18,7 @@ pub(super) struct Cavity {
 
 impl Cavity {
     /// Inserts `p` in a cavity that contains at least `core`; `p` lies strictly inside the union of the core. The
-    /// cavity crosses no frozen face, keeps surface edges and loses no vertex. Returns the new vertex, or `None` if the
+    /// cavity crosses no frozen face, keeps surface edges and loses no vertex. Returns the vertex, or `None` if the
     /// core violates this.
     pub(super) fn insert(&mut self, c: &mut Complex, edges: &SurfaceEdges, core: &[u32], p: Point3) -> Option<u32> {
         self.dig(c, core, &p);

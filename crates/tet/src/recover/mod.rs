@@ -2,9 +2,9 @@
 //!
 //! Parts present in the Delaunay tetrahedralization are frozen first. Missing edges are recovered by flipping away
 //! their crossings, missing triangles by removing the edges that pierce them. If flips are stuck, Steiner points off
-//! the surface make room for more. A [`rule`] defines the tetrahedra that flips may make. If it forbids flat ones,
-//! those of the Delaunay tetrahedralization are dissolved first ([`flat`]). Each tier has a work budget and leaves the
-//! rest to the next tier.
+//! the surface enable more. A [`rule`] defines the tetrahedra that flips may make. If it forbids flat ones, those of
+//! the Delaunay tetrahedralization are dissolved first ([`flat`]). Each tier has a work budget; the next tier gets the
+//! rest.
 
 mod blocked;
 mod cavity;

@@ -42,8 +42,7 @@ impl Recovery<'_> {
         added
     }
 
-    /// Inserts a point just off a face. The face is replaced by ones that can be flipped, even if all its edges are
-    /// surface edges.
+    /// Inserts a point just off a face. Its replacements can be flipped, even if all its edges are surface edges.
     fn split_face(&mut self, half: u32, round: u32) -> bool {
         let other = self.c.mate(half) >> 2;
         if self.c.is_ghost(half >> 2) || self.c.is_ghost(other) || self.c.is_frozen(half) {

@@ -20,8 +20,7 @@ pub(crate) fn lies_in_planes(surface: &TriMesh, edges: &[[u32; 2]], height: f64)
     edges.len() > MANY && most_lie_flat(surface, edges, height, |_| true)
 }
 
-/// True if over 3/4 of the edges lie between two triangles that are coplanar within `height` and have a `wanted`
-/// orientation.
+/// True if over 3/4 of the edges lie between triangles coplanar within `height` and with a `wanted` orientation.
 fn most_lie_flat(surface: &TriMesh, edges: &[[u32; 2]], height: f64, wanted: impl Fn(f64) -> bool) -> bool {
     let sorted = |a: u32, b: u32| [a.min(b), a.max(b)];
     let mut across: FxHashMap<[u32; 2], Vec<u32>> = edges.iter().map(|&[a, b]| (sorted(a, b), Vec::new())).collect();

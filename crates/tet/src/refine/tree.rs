@@ -21,8 +21,8 @@ const MAX_INDEX: f64 = 1_000_000.0;
 /// Options of a size field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeOptions {
-    /// Cube side relative to the edge length at mean surface edges. Sides are this times the mean edge length, times a
-    /// power of two.
+    /// Cube side relative to the edge length at mean surface edges. Sides are this times the mean, times a power of
+    /// two.
     pub cell: f64,
     /// True if inner cubes may exceed the size asked for by the coarse parts of the surface.
     pub coarsen: bool,
@@ -34,7 +34,7 @@ impl Default for TreeOptions {
     }
 }
 
-/// Octree of a size field. Levels count from the coarsest cubes; cube `[i, j, k]` of level `l` has its lowest corner at
+/// Octree of a size field. Levels count from the coarsest cubes. Cube `[i, j, k]` of level `l` has its lowest corner at
 /// `origin + [i, j, k] * side / 2^l`.
 #[derive(Clone, Debug)]
 pub struct SizeTree {

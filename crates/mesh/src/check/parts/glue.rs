@@ -198,7 +198,7 @@ impl Held {
         })
     }
 
-    /// True if a wall is the certified one. Joints off the boundary never match, but are faults already.
+    /// True if a wall is the certified one. Joints off the boundary are faults already.
     pub(super) fn is_wall(&self, part: u32, is_joined: &[bool], wall: &FacesApart) -> bool {
         let (faces, sum) = self.wall(part, is_joined);
         let Some(found) = sum_of(&wall.points, &wall.faces) else { return false };

@@ -104,8 +104,7 @@ struct Differences {
     all: bool,
 }
 
-/// Reads a joint and verifies that it is the certified one. `None` for a joint off the boundary, which is a fault
-/// already.
+/// Reads a joint and verifies that it is the certified one. `None` for a joint off the boundary, already a fault.
 fn read(parts: &dyn Parts, held: &Held, (part, joint): (u32, u32)) -> io::Result<Option<FacesApart>> {
     let read = parts.joint(part, joint)?;
     let sum = sum_of(&read.points, &read.faces).filter(|_| read.points.len() == read.vertices.len());

@@ -6,12 +6,12 @@
 //!
 //! # Correctness
 //!
-//! Conditions on a part: its arrays are valid; its tetrahedra are positive, share faces in pairs from opposite sides
-//! and use all points; its boundary, including joints, is a closed manifold with single fans and no self-intersection;
-//! caps and joints consist of boundary faces, each in one of them; joints are discs without common vertices. Conditions
-//! on the whole: no joint is connected twice; connected joints have the same faces with the same ids, opposite
-//! orientation, and bit-equal points; no id stands for two points except at connected joints; walls of different parts
-//! do not intersect; no boundary surface lies inside the mesh. Then, condition by condition:
+//! Each part is checked as follows. Its arrays are valid. Its tetrahedra are positive, share faces in pairs from
+//! opposite sides and use all points. Its boundary, including joints, is a closed manifold with single fans and no
+//! self-intersection. Caps and joints consist of boundary faces, each in one of them. Joints are discs without common
+//! vertices. The whole is checked as follows. No joint is connected twice. Connected joints have the same faces with
+//! the same ids, opposite orientation, and bit-equal points. No id stands for two points except at connected joints.
+//! Walls of different parts do not intersect. No boundary surface lies inside the mesh. Then, condition by condition:
 //!
 //! - *Valid arrays, positive and distinct tetrahedra, used points*: properties of single tetrahedra and points. Two
 //!   equal tetrahedra of different parts would overlap, which is excluded below.

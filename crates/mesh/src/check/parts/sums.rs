@@ -2,8 +2,7 @@
 
 use crate::geometry::Point3;
 
-/// Checksum of a triangle, invariant under rotation but not reversal. Checksums of faces are added, so their order does
-/// not matter.
+/// Checksum of a triangle, invariant under rotation but not reversal. Sums of checksums do not depend on order.
 pub(super) fn face_sum(corners: [&Point3; 3]) -> u64 {
     let [a, b, c] = corners.map(point_sum);
     let turned = |x: u64, y: u64, z: u64| mix(x ^ mix(y ^ mix(z).rotate_left(17)).rotate_left(29));

@@ -55,7 +55,7 @@ impl Course {
         Height { at: -n.dot(&a), slope: n.dot(&self.along), half: Some(half) }
     }
 
-    /// Finds the deepest position in a cavity. The minimum distance from the faces is concave along the segment, so the
+    /// Finds the deepest position in a cavity. The minimum distance from the faces is concave along the segment. The
     /// face that limits it on either side is replaced until none is nearer.
     pub(super) fn deepest(&self, s: &Space, walls: &[u32]) -> Deepest {
         let size = self.along.norm();

@@ -173,8 +173,8 @@ impl<'a> Dig<'a> {
         best.map(|b| b.1)
     }
 
-    /// Minimum distance of the start vertex from the faces without it, relative to their size. `None` unless a face has
-    /// the segment's end.
+    /// Minimum distance of the start vertex from the faces without it, relative to their size. `None` if no face has
+    /// the end.
     fn depth_of_join(&self, walls: &[u32]) -> Option<f64> {
         let s = self.s;
         let leads = walls.iter().any(|&half| s.c.face(half).contains(&self.ends[1]));

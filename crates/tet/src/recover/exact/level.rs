@@ -2,8 +2,7 @@
 //! diagonal of its quadrilateral (Sloan, 'A fast algorithm for generating constrained Delaunay triangulations', 1993).
 //! In space, the exchange removes the ring of tetrahedra around the edge. Each half of the ring, above and below the
 //! plane, is joined to an apex that sees all of it. The apex is a corner, a vertex far above the plane with the
-//! tetrahedra between removed, or a new vertex. No vertex is inserted between points of the plane, where there is no
-//! clearance.
+//! tetrahedra between removed, or a new vertex. Points of the plane leave no clearance for vertices between them.
 
 use super::parts::{Missing, sides, sorted};
 use super::plane::{Patch, Plane};
@@ -60,8 +59,7 @@ struct Measure {
     thin: f64,
 }
 
-/// Strict first, since vertices with little clearance obstruct later edges. Each recovered edge leaves fewer obstacles
-/// for the rest.
+/// Strict first, since vertices with little clearance obstruct later edges. Recovered edges leave fewer obstacles.
 const MEASURES: [Measure; 4] = [
     Measure { flat: 1.0, clearance: 20.0, thin: 1.0 },
     Measure { flat: 1.0, clearance: 5.0, thin: 1.0 },
@@ -204,8 +202,7 @@ impl<'a> Level<'a> {
         self.planes.clear();
     }
 
-    /// Makes an edge if it lies in the plane of one of its facets. If this fails, the changes made so far are harmless
-    /// and stay.
+    /// Makes an edge if it lies in the plane of one of its facets. After a failure, harmless changes stay.
     pub(super) fn insert(&mut self, [a, b]: [u32; 2]) -> bool {
         if self.s.has_edge(a, b) {
             return true;
@@ -460,7 +457,7 @@ impl<'a> Level<'a> {
         (sector, apex)
     }
 
-    /// Minimum clearance relative to the size of the room.
+    /// Minimum clearance relative to the size.
     fn least(&self, room: &Room) -> f64 {
         self.clearance / room.size
     }

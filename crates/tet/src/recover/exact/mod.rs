@@ -1,9 +1,8 @@
-//! Exact recovery, which cannot fail in exact arithmetic. Implicit vertices are inserted where missing parts cross the
-//! complex, then moved off the surface (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary
-//! polyhedron', 2003). Tetrahedra that no missing part crosses stay unchanged.
+//! Exact recovery, which cannot fail in exact arithmetic. Implicit vertices are inserted at crossings, then moved off
+//! the surface (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary polyhedron', 2003). Tetrahedra
+//! that no missing part crosses stay unchanged.
 //!
-//! Edges in planes of facets, up to rounding, are recovered first by exchanges in the plane ([`level`], [`pierce`]).
-//! Then:
+//! Edges in planes of facets, up to rounding, are first recovered by exchanges there ([`level`], [`pierce`]). Then:
 //!
 //! 1. [`segments`]: missing edges become chains of edges, with a vertex at each face or edge that they cross.
 //! 2. [`facets`]: missing triangles become unions of faces, with a vertex at each edge that pierces them.

@@ -1,6 +1,6 @@
-//! Moves vertices off segments and facets, with one copy in each sector between the facets around them (George,
-//! Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary polyhedron', 2003). Positions are floating point
-//! and verified by exact predicates.
+//! Moves vertices off segments and facets, into each sector between the facets (George, Borouchaki, Saltel, 'Ultimate
+//! robustness in meshing an arbitrary polyhedron', 2003). Positions are floating point and verified by exact
+//! predicates.
 
 use super::dig;
 use super::facets::Cover;

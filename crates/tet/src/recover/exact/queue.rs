@@ -82,8 +82,7 @@ impl<'a, 'b> Queue<'a, 'b> {
         Ok((self.push, self.summary))
     }
 
-    /// Recovers remaining edges in planes of facets, after flat tetrahedra have been dissolved. Returns the parts still
-    /// missing.
+    /// Recovers remaining edges in planes of facets, after dissolving flat tetrahedra. Returns the parts still missing.
     fn level(&mut self, waiting: &[Part]) -> Result<Vec<Part>, Failed> {
         let edges: Vec<[u32; 2]> = waiting.iter().flat_map(|part| &part.edges).copied().collect();
         let triangles: Vec<u32> = waiting.iter().flat_map(|part| &part.triangles).copied().collect();

@@ -5,7 +5,7 @@ use super::space::Space;
 use anastomesh_mesh::geometry::{Point3, Vec3, unit_normal};
 use nalgebra::{Matrix4, Vector4};
 
-/// Minimum distances of a new vertex from the surrounding planes, relative to the size of the room, in the order tried.
+/// Minimum distances of a new vertex from the surrounding planes, relative to the size, in the order tried.
 pub(super) const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
 
 /// Fractions of the way from the segment to the deepest point at which a position is tried.
@@ -30,7 +30,7 @@ pub(super) enum Apex {
 pub(super) struct Room<'a> {
     origin: Point3,
     faces: &'a [[u32; 3]],
-    /// Unit normal towards the room and height of the origin, per face.
+    /// Inward unit normal and height of the origin, per face.
     planes: Vec<(Vec3, f64)>,
     /// Largest distance of a corner from the origin.
     pub size: f64,
@@ -99,7 +99,7 @@ impl<'a> Room<'a> {
             .or_else(|at_corners| self.place(s, least).map(Apex::Point).map_err(|inside| inside.max(at_corners)))
     }
 
-    /// Faces that limit the room at its deepest point, at most four, and the depth relative to the size.
+    /// Faces closest to the deepest point, at most four, and the depth relative to the size.
     pub(super) fn bounds(&self) -> Option<(Vec<usize>, f64)> {
         let highest = highest(&constraints(&self.planes, self.size))?;
         let faces = highest.tight.iter().filter_map(|i| i.checked_sub(BOUNDS)).collect();

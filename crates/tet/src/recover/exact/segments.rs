@@ -1,6 +1,5 @@
 //! Cutting of segments: a missing edge becomes a chain of edges. The first face or edge that it crosses is removed with
-//! the tetrahedra around it. A vertex on the segment that sees the whole cavity replaces them; the rest of the segment
-//! crosses less.
+//! the tetrahedra around it. A vertex on the segment that sees the whole cavity replaces them.
 
 use super::dig::{Dig, Dug};
 use super::parts::sorted;
@@ -126,8 +125,8 @@ impl<'a> Segments<'a> {
         (near < s.flat && self.of_piece(edge[0], edge[1]).is_none()).then_some(edge)
     }
 
-    /// Advances from vertex `at` to the next vertex on the segment, inserting it if needed. Returns `None` if an edge
-    /// leads to the end.
+    /// Advances from vertex `at` to the next vertex on the segment, inserting it if needed. Returns `None` at the last
+    /// piece.
     fn step(&self, s: &mut Space, at: u32, ends: [u32; 2]) -> Result<Option<u32>, TetError> {
         let meets = |obstacle| TetError::EdgeMeets { edge: ends, obstacle };
         let first = match first_crossing(s, at, ends) {

@@ -97,8 +97,8 @@ fn sheet(n: u32, thickness: f64, origin: f64, salt: u64) -> TriMesh {
 
 /// Chazelle's polyhedron: a box with wedge-shaped notches from above and below that nearly meet in a saddle.
 fn chazelle(notches: u32, gap: f64) -> TriMesh {
-    // Ridges of the bottom notches run along x on z = x y, those of the top notches along y on z = x y + gap; both are
-    // approximated by one zigzag sheet each over a grid.
+    // Ridges of the bottom notches run along x on z = x y, those of the top notches along y on z = x y + gap. One
+    // zigzag sheet over a grid approximates each.
     let n = 2 * notches;
     let mut s = TriMesh::default();
     let half = f64::from(n) / 2.0;

@@ -9,15 +9,13 @@ const VERTICES_DEEP: (usize, usize) = (64, 100_000);
 /// Maximum implicit vertices while other strategies remain that may need fewer.
 const VERTICES_FIRST: (usize, usize) = (4, 25_000);
 
-/// Maximum fraction of missing edges left after recovery in planes. Beyond it the gain is small, and new vertices
-/// obstruct the rest.
+/// Maximum fraction of missing edges left after recovery in planes. Beyond it, new vertices are mere obstacles.
 const WORTHWHILE: f64 = 0.2;
 
 /// A recovery strategy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
-    /// If set, edges in facet planes are recovered first, and the strategy stops if more than this fraction of edges
-    /// remains.
+    /// If set, edges in facet planes are recovered first; the strategy stops if more than this fraction remains.
     pub level: Option<f64>,
     /// True if new vertices must lie well off the faces of their cavity, rather than merely see them.
     pub deep: bool,
@@ -38,8 +36,7 @@ impl Way {
     /// Remaining strategies.
     pub(crate) const OTHERS: [Self; 4] = [Self::seen(0), Self::seen(1), Self::deep(true, 2), Self::deep(false, 3)];
 
-    /// Last strategies, for parts that may be flat. They exchange edges in planes whatever the gain, then use other
-    /// orders.
+    /// Last strategies, for parts that may be flat. They exchange edges in planes whatever the gain.
     pub(crate) const LAST: [Self; 7] = [
         Self::deep(true, 0).in_any_case(),
         Self::level(1).in_any_case(),

@@ -1,5 +1,5 @@
-//! Cavities wider than a sector of a star. If a sector has too little clearance, the tetrahedra behind the faces that
-//! limit it are added, or behind faces that the apex does not see.
+//! Cavities wider than a sector of a star. If a sector has too little clearance, the tetrahedra behind its limiting or
+//! hidden faces are added.
 
 use super::parts::{sides, sorted};
 use super::room::{Apex, Room};
@@ -31,8 +31,7 @@ impl<'a> Wider<'a> {
         Self { s, stays, v, origin, cavity }
     }
 
-    /// Finds an apex for a sector with clearance of at least `least` times its size. Enlarges the sector by at most
-    /// `steps` tetrahedra.
+    /// Finds an apex with clearance of at least `least` times the size. Adds at most `steps` tetrahedra to the sector.
     pub(super) fn apex(&mut self, sector: &mut Sector, least: f64, steps: usize) -> Option<Apex> {
         for _ in 0..steps {
             if let Ok(apex) = Room::new(self.s, self.origin, &sector.faces).apex(self.s, least) {
