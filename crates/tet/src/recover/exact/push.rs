@@ -1,5 +1,5 @@
-//! Moves vertices off segments and facets, into each sector between the facets (George, Borouchaki, Saltel, 'Ultimate
-//! robustness in meshing an arbitrary polyhedron', 2003). Positions are floating point and verified by exact
+//! Moves vertices off segments and facets, one copy into each sector between facets (George, Borouchaki, Saltel,
+//! 'Ultimate robustness in meshing an arbitrary polyhedron', 2003). Positions are floating point and verified by exact
 //! predicates.
 
 use super::dig;
