@@ -1,5 +1,4 @@
-//! Surface of a connector (section 3.2.3 of the paper, Fig. 6): two reversed end surfaces and a regular tube between
-//! them.
+//! Surface of a connector (section 3.2.3 of the paper, Fig. 6): a regular tube between two reversed end surfaces.
 
 use super::end_surface::{EndSurface, StoredEnd};
 use super::path::{AxisPath, PathEnd};

@@ -28,8 +28,7 @@ pub struct Finished {
     pub shared: u32,
     /// Boundary faces that belong to no joint and no cap.
     pub wall: Vec<u32>,
-    /// Interfaces with other blocks: cut ends of a cluster in the order of `Cluster::ends`, or sides 0 and 1 of a
-    /// connector.
+    /// Interfaces with other blocks: a cluster's cut ends in the order of `Cluster::ends`, or a connector's two sides.
     pub joints: Vec<FinishedJoint>,
     /// Caps, in the order of `Cluster::ends`.
     pub caps: Vec<FinishedCap>,

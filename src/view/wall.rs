@@ -231,8 +231,7 @@ impl Local {
         group
     }
 
-    /// Simplifies a group: ring points according to the vessel's screen size, and as few faces between them as
-    /// possible.
+    /// Simplifies a group: ring points by the vessel's screen size, and as few faces between them as possible.
     fn coarser(self, Coarse { pixels, share }: Coarse) -> Group {
         let Group { patch, points, triangles, quality, .. } = self.group;
         let mut stands: Vec<u32> = (0..points.len() as u32).collect();
