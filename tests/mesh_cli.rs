@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-// ---- What works -----------------------------------------------------------------------------------------------------
+// ---- Successful runs ------------------------------------------------------------------------------------------------
 
 #[test]
 fn the_fixture_becomes_a_valid_mesh_in_both_formats() {
@@ -451,7 +451,7 @@ fn the_root_of_an_swc_file_is_the_inlet() {
     assert_eq!(inlet.cap.map(|c| c.node), Some(0));
 }
 
-// ---- How VTK's files are written ------------------------------------------------------------------------------------
+// ---- Encodings of VTK files -----------------------------------------------------------------------------------------
 
 #[test]
 fn a_grid_of_tetrahedra_alone_has_its_boundary_beside_it() {

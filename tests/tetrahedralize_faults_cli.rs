@@ -17,7 +17,7 @@ fn check(mesh: &Path) -> Output {
     run("check", &[mesh], &[])
 }
 
-// ---- Input that cannot be used ---------------------------------------------------------------------------------------
+// ---- Input that cannot be used --------------------------------------------------------------------------------------
 
 /// Asserts exit code 3, one message with the file name and all parts, and no output files.
 #[track_caller]
@@ -139,7 +139,7 @@ fn paths_that_cannot_be_used() {
     assert_eq!(entries(folder.path()), ["c.off", "d.off"]);
 }
 
-// ---- Checking and repairing ------------------------------------------------------------------------------------------
+// ---- Checking and repairing -----------------------------------------------------------------------------------------
 
 #[test]
 fn inputs_are_checked_without_meshing() {
@@ -197,7 +197,7 @@ fn what_needs_no_choice_is_repaired() {
     assert_eq!(markers, [10, 11, 12, 13, 14, 15]);
 }
 
-// ---- What other programs write ---------------------------------------------------------------------------------------
+// ---- Files of other programs ----------------------------------------------------------------------------------------
 
 /// The cube, counted from 1, with facets and a segment outside or inside. Facet 7 is a distant square, 8 hangs on an
 /// outer edge, 9 is inside, and 10 holds the segment.
