@@ -1,8 +1,8 @@
 //! The 256 sign cases of a grid cell, derived from one rule: inside corners stay separate on ambiguous faces. Both
 //! cells of a face see it alike, so the patches of neighbouring cells always match.
 //!
-//! Corner c of a cell lies at offset (c & 1, c >> 1 & 1, c >> 2 & 1). Edge 4·d + k runs along axis d, from the corner
-//! with offset k & 1 along axis d + 1 and k >> 1 along axis d + 2. Face 2·d + s lies across axis d at offset s.
+//! Corner c of a cell lies at offset (c & 1, c >> 1 & 1, c >> 2 & 1). Edge 4·d + k runs along axis d; its start has
+//! offset k & 1 along axis d + 1 and k >> 1 along axis d + 2. Face 2·d + s lies across axis d at offset s.
 
 /// Topology of the wall within a cell.
 #[derive(Clone, Copy, Debug)]
