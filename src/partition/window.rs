@@ -65,7 +65,7 @@ impl<'a> Cutter<'a> {
         course.length() > self.params.long * course.mean_radius() || large > self.params.taper * small
     }
 
-    /// Selects the longest straight part of [lo, hi], then repeats where a long piece remains beside it.
+    /// Selects the longest straight part of `[lo, hi]`, then repeats where a long piece remains beside it.
     fn choose(&self, course: &Course, branch: u32, [lo, hi]: [f64; 2], parts: &[[f64; 2]], out: &mut Vec<Slot>) {
         // Intervals to search, each with the vessel piece that remains uncut if the search fails.
         let mut pending = vec![(lo, hi, 0.0, course.length())];
