@@ -24,8 +24,9 @@ pub struct CapFlow {
     pub resistance: f64,
 }
 
-/// Blood, in SI units.
+/// Density of blood, kg/m³.
 pub const BLOOD_DENSITY: f64 = 1060.0;
+/// Dynamic viscosity of blood, Pa·s.
 pub const BLOOD_VISCOSITY: f64 = 3.5e-3;
 
 /// Default Reynolds number (mean velocity, diameter) of inlets without a given flow: creeping flow for any unit of
