@@ -13,6 +13,7 @@ impl Bits {
     }
 
     /// Inserts a point. Returns false if the point does not exist.
+    #[inline]
     pub fn insert(&mut self, v: u32) -> bool {
         let there = (v as usize) < self.points;
         if let Some(word) = self.words.get_mut(v as usize / 64).filter(|_| there) {
@@ -22,6 +23,7 @@ impl Bits {
     }
 
     /// True if the set contains a point.
+    #[inline]
     pub fn has(&self, v: u32) -> bool {
         self.words.get(v as usize / 64).is_some_and(|word| word >> (v % 64) & 1 == 1)
     }
@@ -81,6 +83,7 @@ pub struct Ranks<'a> {
 
 impl Ranks<'_> {
     /// Number of points of the set below `v`, which is the index of a point in the set.
+    #[inline]
     pub fn rank(&self, v: u32) -> u32 {
         let (word, bit) = (v as usize / 64, v % 64);
         let here = self.words.get(word).map_or(0, |word| (word & ((1 << bit) - 1)).count_ones());

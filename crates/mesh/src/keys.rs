@@ -9,6 +9,7 @@ pub fn face_key([a, b, c]: [u32; 3]) -> [u32; 3] {
 }
 
 /// Vertices of a tetrahedron in ascending order.
+#[inline]
 pub fn tet_key(mut tet: [u32; 4]) -> [u32; 4] {
     tet.sort_unstable();
     tet

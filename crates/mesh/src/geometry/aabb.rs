@@ -28,6 +28,7 @@ impl Aabb {
     }
 
     /// Grows the box to contain `p`.
+    #[inline]
     pub fn include(&mut self, p: &Point3) {
         self.min = self.min.inf(p);
         self.max = self.max.sup(p);
@@ -35,12 +36,14 @@ impl Aabb {
 
     /// Bounding box of both.
     #[must_use]
+    #[inline]
     pub fn union(&self, other: &Self) -> Self {
         Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
     }
 
     /// The box grown by `margin` on every side.
     #[must_use]
+    #[inline]
     pub fn grown(&self, margin: f64) -> Self {
         let m = super::Vec3::repeat(margin);
         Self { min: self.min - m, max: self.max + m }
@@ -49,6 +52,7 @@ impl Aabb {
     /// True if the boxes have a point in common.
     #[inline]
     #[allow(clippy::needless_bitwise_bool)]
+    #[inline]
     pub fn overlaps(&self, other: &Self) -> bool {
         // Without short circuits: unpredictable branches cost more.
         (self.min.x <= other.max.x)
@@ -65,6 +69,7 @@ impl Aabb {
     }
 
     /// Length of the diagonal; 0 for the empty box.
+    #[inline]
     pub fn diagonal(&self) -> f64 {
         if self.min.x > self.max.x {
             return 0.0;

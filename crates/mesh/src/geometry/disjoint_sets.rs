@@ -10,6 +10,7 @@ impl DisjointSets {
     }
 
     /// Adds a number in a set of its own.
+    #[inline]
     pub fn push(&mut self) -> u32 {
         let new = self.0.len() as u32;
         self.0.push(new);
@@ -22,6 +23,7 @@ impl DisjointSets {
     }
 
     /// Smallest number in the set of `i`, with path compression.
+    #[inline]
     pub fn root(&mut self, mut i: u32) -> u32 {
         while self.0[i as usize] != i {
             let above = self.0[self.0[i as usize] as usize];
@@ -32,6 +34,7 @@ impl DisjointSets {
     }
 
     /// Smallest number in the set of `i`, without path compression.
+    #[inline]
     pub fn find(&self, mut i: u32) -> u32 {
         while self.0[i as usize] != i {
             i = self.0[i as usize];
@@ -40,6 +43,7 @@ impl DisjointSets {
     }
 
     /// Joins the sets of two numbers.
+    #[inline]
     pub fn join(&mut self, i: u32, j: u32) {
         let (i, j) = (self.root(i), self.root(j));
         self.0[i.max(j) as usize] = i.min(j);

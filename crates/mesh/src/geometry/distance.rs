@@ -17,6 +17,7 @@ pub struct SegmentPair {
 }
 
 /// Parameter in [0, 1] of the point of segment `ab` closest to `p`, and its distance. Length 0 gives 0.
+#[inline]
 pub fn point_segment(p: &Point3, a: &Point3, b: &Point3) -> (f64, f64) {
     let d = b - a;
     let along = (p - a).dot(&d);

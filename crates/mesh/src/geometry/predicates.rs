@@ -20,6 +20,7 @@ pub const ORIENT3D_BOUND: f64 = 5e-15;
 pub const INSPHERE_BOUND: f64 = 4.5e-14;
 
 /// True if the predicates are exact on points with this coordinate.
+#[inline]
 pub fn in_exact_range(x: f64) -> bool {
     let m = x.abs();
     m == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&m)
@@ -101,6 +102,7 @@ pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 }
 
 /// True if three points in space are collinear: their projections on all three coordinate planes are.
+#[inline]
 pub fn collinear(a: &Point3, b: &Point3, c: &Point3) -> bool {
     [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| orient2d([a[i], a[j]], [b[i], b[j]], [c[i], c[j]]) == 0.0)
 }

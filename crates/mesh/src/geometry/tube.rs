@@ -17,26 +17,31 @@ pub struct Tube {
 
 impl Tube {
     /// Length of the axis.
+    #[inline]
     pub fn length(&self) -> f64 {
         (self.b - self.a).norm()
     }
 
     /// Axis point at parameter `t` in [0, 1].
+    #[inline]
     pub fn point(&self, t: f64) -> Point3 {
         self.a + (self.b - self.a) * t
     }
 
     /// Radius at parameter `t` in [0, 1].
+    #[inline]
     pub fn radius(&self, t: f64) -> f64 {
         self.ra + (self.rb - self.ra) * t
     }
 
     /// Smaller of the two radii.
+    #[inline]
     pub fn min_radius(&self) -> f64 {
         self.ra.min(self.rb)
     }
 
     /// Larger of the two radii.
+    #[inline]
     pub fn max_radius(&self) -> f64 {
         self.ra.max(self.rb)
     }
@@ -66,6 +71,7 @@ impl Section {
     }
 
     /// Signed distance of `p` from the plane, positive on the side to which `axis` points.
+    #[inline]
     pub fn height(&self, p: &Point3) -> f64 {
         (p - self.origin).dot(&self.axis)
     }
