@@ -1,4 +1,4 @@
-//! `surface` as it is run: the wall of a network in every format, as other programs see it.
+//! Command line tests of `surface`: the wall of a network in every format, as read by other programs.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn surface(network: &Path, out: &Path, options: &[&str]) -> std::process::Output
     run("surface", &[network, Path::new("--output"), out], options)
 }
 
-/// Edges that have no partner that runs the other way.
+/// Number of edges without an opposite partner.
 fn open_edges(mesh: &TriMesh) -> usize {
     let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
     for &[a, b, c] in &mesh.triangles {
@@ -112,7 +112,7 @@ fn slicers_accept_it() {
     assert_code(&made, FINE);
     let said = Command::new("admesh").arg(&out).output().expect("admesh runs");
     let said = stdout(&said);
-    // What it would repair, were there something.
+    // Repairs that it would report.
     for line in
         ["Edges fixed", "Facets removed", "Facets added", "Facets reversed", "Backwards edges", "Degenerate facets"]
     {
