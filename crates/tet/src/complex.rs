@@ -65,10 +65,10 @@ pub enum ComplexError {
     BadVertexTet { vertex: u32 },
 }
 
-/// A tetrahedron: its vertices, and across each of them the half-face glued to the opposite face. One half of a cache
-/// line.
+/// A tetrahedron: its vertices, and across each of them the half-face glued to the opposite face. Aligned as its vertices
+/// alone are, see [`Complex::into_mesh`].
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
+#[repr(C)]
 pub(super) struct Cell {
     pub(super) verts: [u32; 4],
     pub(super) mates: [u32; 4],
@@ -256,9 +256,12 @@ impl Complex {
         }
     }
 
-    /// The real tetrahedra, in the order of their slots, and all points.
+    /// The real tetrahedra, in the order of their slots, and all points. They take the place of the cells in memory: a vector
+    /// is collected in place from one whose elements are aligned alike.
     pub fn into_mesh(self) -> TetMesh {
-        let tets = self.real_tets().map(|t| self.cells[t as usize].verts).collect();
+        let real = |cell: &Cell| cell.verts[0] != DEAD && cell.verts[3] != GHOST;
+        let mut tets: Vec<[u32; 4]> = self.cells.into_iter().filter(real).map(|cell| cell.verts).collect();
+        tets.shrink_to_fit();
         TetMesh { points: self.points, tets }
     }
 
@@ -307,6 +310,13 @@ impl Complex {
     #[inline]
     pub(super) fn cell(&self, t: u32) -> &Cell {
         &self.cells[t as usize]
+    }
+
+    /// What the slots from `first` on hold, at most `count` of them.
+    #[inline]
+    pub(super) fn block(&self, first: u32, count: usize) -> &[Cell] {
+        let rest = &self.cells[first as usize..];
+        &rest[..count.min(rest.len())]
     }
 
     /// The half-face glued to `half`.
@@ -538,6 +548,7 @@ impl Complex {
 
 /// Whether two faces are the same face with opposite rotation.
 pub fn opposed(f: [u32; 3], g: [u32; 3]) -> bool {
-    let back = [g[0], g[2], g[1]];
-    f == back || f == [back[1], back[2], back[0]] || f == [back[2], back[0], back[1]]
+    // Without branches: which rotation it is cannot be predicted.
+    let turned = |i: usize, j: usize, k: usize| (f[0] == g[i]) & (f[1] == g[j]) & (f[2] == g[k]);
+    turned(0, 2, 1) | turned(2, 1, 0) | turned(1, 0, 2)
 }
