@@ -549,6 +549,6 @@ impl Complex {
 /// Whether two faces are the same face with opposite rotation.
 pub fn opposed(f: [u32; 3], g: [u32; 3]) -> bool {
     // Without branches: which rotation it is cannot be predicted.
-    let turned = |i: usize, j: usize, k: usize| (f[0] == g[i]) & (f[1] == g[j]) & (f[2] == g[k]);
-    turned(0, 2, 1) | turned(2, 1, 0) | turned(1, 0, 2)
+    let difference = |i: usize, j: usize, k: usize| (f[0] ^ g[i]) | (f[1] ^ g[j]) | (f[2] ^ g[k]);
+    difference(0, 2, 1).min(difference(2, 1, 0)).min(difference(1, 0, 2)) == 0
 }
