@@ -304,7 +304,7 @@ impl Args {
     fn finish(&self, done: Done, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
-        let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh));
+        let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh)).transpose()?;
         let options = WriteOptions {
             format: self.format.format,
             memory: Some((self.blocks.memory / 4) as usize),

@@ -159,7 +159,7 @@ impl PictureArgs {
                 "--clip shows tetrahedra, of which a network has none; --cut-away opens its wall",
             ));
         }
-        let picture = NetworkPicture::new(network, self.color.map_or(Colour::Radius, Colour::from), roots);
+        let picture = NetworkPicture::new(network, self.color.map_or(Colour::Radius, Colour::from), roots)?;
         let outline = picture.outline();
         let mut canvas = self.canvas(&outline);
         canvas.cut = self.cut_away.map(|wish| wish.plane(&canvas.camera, &outline));
@@ -177,8 +177,8 @@ impl PictureArgs {
         let failed = |e: io::Error| Failure::input(format!("{}: {e}; run `anastomesh check`", path.display()));
         let vessels = match (self.datum(), network) {
             (Some(datum), Some(network)) => {
-                let legend = legend(datum, network, mesh);
-                Some((VesselData::new(vec![datum], network, mesh), legend))
+                let legend = legend(datum, network, mesh)?;
+                Some((VesselData::new(vec![datum], network, mesh)?, legend))
             }
             (Some(datum), None) => {
                 let what = datum.name();
@@ -214,17 +214,17 @@ impl PictureArgs {
 }
 
 /// The scale of what is known of a network's vessels.
-fn legend(datum: Datum, network: &Skeleton, mesh: &dyn MeshSource) -> Legend {
+fn legend(datum: Datum, network: &Skeleton, mesh: &dyn MeshSource) -> Result<Legend, Failure> {
     if datum == Datum::Radius {
-        return Legend::of(network.edges.iter().flat_map(|e| e.radii), true);
+        return Ok(Legend::of(network.edges.iter().flat_map(|e| e.radii), true));
     }
-    let data = VesselData::new(vec![datum], network, mesh);
+    let data = VesselData::new(vec![datum], network, mesh)?;
     let middle = |e| {
         let tube = network.tube(e);
         Point3::from((tube.a.coords + tube.b.coords) * 0.5)
     };
     let places: Vec<[Point3; 3]> = network.edge_ids().map(|e| [middle(e); 3]).collect();
-    Legend::of(data.in_faces(0, &places).into_iter(), false)
+    Ok(Legend::of(data.in_faces(0, &places).into_iter(), false))
 }
 
 #[cfg(test)]

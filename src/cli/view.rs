@@ -92,7 +92,7 @@ impl Args {
             Kind::Network => {
                 let (network, inlets) = vessels(&self.input)?;
                 faults.extend(Fault::of_overlaps(&network));
-                know_network(&mut page, &network, &inlets);
+                know_network(&mut page, &network, &inlets)?;
             }
             Kind::Surface => {
                 let surface = read_surface(path).map_err(|e| Failure::input(e.to_string()))?;
@@ -126,8 +126,8 @@ impl Args {
             Some(network) => Some(vessels(&NetworkArgs { network: network.clone(), ..self.input.clone() })?),
             None => None,
         };
-        let data =
-            network.as_ref().map(|(network, _)| VesselData::new(vec![Datum::Radius, Datum::Strahler], network, mesh));
+        let data = |(network, _): &(Skeleton, _)| VesselData::new(vec![Datum::Radius, Datum::Strahler], network, mesh);
+        let data = network.as_ref().map(data).transpose()?;
         let options = WallOptions { vessels: data.as_ref().map(|data| data as _) };
         let wall = Wall::of(mesh, &options).map_err(failed)?;
         if wall.triangles() == 0 {
@@ -138,7 +138,7 @@ impl Args {
         let missing = Fault::of_missing(&wall, mesh.patches());
         page.add_wall(wall, mesh.patches());
         if let Some((network, inlets)) = &network {
-            know_network(page, network, inlets);
+            know_network(page, network, inlets)?;
         }
         Ok(missing)
     }
@@ -172,7 +172,8 @@ impl Args {
     }
 }
 
-fn know_network(page: &mut Page, network: &Skeleton, inlets: &[NodeId]) {
-    let fact = add_network(network, inlets, &mut page.pack);
+fn know_network(page: &mut Page, network: &Skeleton, inlets: &[NodeId]) -> Result<(), Failure> {
+    let fact = add_network(network, inlets, &mut page.pack)?;
     page.know("network", fact);
+    Ok(())
 }

@@ -3,9 +3,9 @@
 //! Nothing is ever subtracted, so that every pressure is right to some units in the last place, however far conductances lie
 //! apart: those of vessels differ by more than what a sum of them in doubles can tell. A tree is eliminated from its tips and
 //! fills nothing in; loops fill in what their cuts are wide. A bed of capillaries has cuts of thousands: where many nodes are
-//! left that have many neighbours each, these are solved for by iteration (`iterate`).
+//! left that have many neighbours each, these are solved for by iteration (`conjugate_gradient`).
 
-use super::iterate::Linked;
+use super::conjugate_gradient::{NodalSystem, NotConverged};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -53,7 +53,7 @@ impl Conductors {
     }
 
     /// The pressure of each node; 0 where nothing leads to the ground, and nothing may flow in there.
-    pub(super) fn pressures(mut self) -> Vec<f64> {
+    pub(super) fn pressures(mut self) -> Result<Vec<f64>, NotConverged> {
         // Those with few neighbours first, of equals the first.
         let entry = |node: usize, around: &[(u32, f64)]| Reverse((around.len() as u32, node as u32));
         let mut next: BinaryHeap<_> = self.around.iter().enumerate().map(|(node, list)| entry(node, list)).collect();
@@ -76,7 +76,7 @@ impl Conductors {
         }
         drop(next);
         let mut pressure = vec![0.0; self.around.len()];
-        for (node, found) in core.iter().zip(self.linked(&core).pressures()) {
+        for (node, found) in core.iter().zip(self.core_system(&core).pressures()?) {
             pressure[*node as usize] = found;
         }
         for Gone { node, total, star } in gone.iter().rev() {
@@ -85,19 +85,19 @@ impl Conductors {
                 pressure[*node as usize] = (self.inflow[*node as usize] + through) / total;
             }
         }
-        pressure
+        Ok(pressure)
     }
 
-    /// The nodes that are left, numbered anew; ascending.
-    fn linked(&mut self, core: &[u32]) -> Linked {
+    /// Takes the equations of the nodes that are left, ascending, numbered anew.
+    fn core_system(&mut self, core: &[u32]) -> NodalSystem {
         let number = |node: u32| core.partition_point(|&other| other < node) as u32;
-        let mut linked = Linked::default();
+        let mut system = NodalSystem::default();
         for &node in core {
             let around = std::mem::take(&mut self.around[node as usize]);
             let around = around.into_iter().map(|(other, g)| (number(other), g));
-            linked.add(around, self.ground[node as usize], self.inflow[node as usize]);
+            system.add(around, self.ground[node as usize], self.inflow[node as usize]);
         }
-        linked
+        system
     }
 
     fn eliminate(&mut self, node: u32) -> Gone {
@@ -154,7 +154,7 @@ mod tests {
         for &(node, flow) in inflow {
             network.let_in(node, flow);
         }
-        network.pressures()
+        network.pressures().unwrap()
     }
 
     #[test]

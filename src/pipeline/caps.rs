@@ -74,7 +74,7 @@ impl Caps {
     /// Of the mesh of a network. Inlets and outlets are known by the names of their patches.
     ///
     /// # Errors
-    /// When the mesh cannot be read.
+    /// When the mesh cannot be read, or the pressures in the network cannot be found.
     pub fn of(mesh: &dyn MeshSource, network: &Skeleton, fluid: Fluid) -> io::Result<Self> {
         let adjacency = network.adjacency();
         let terminals: BTreeMap<u32, NodeId> =
@@ -87,7 +87,7 @@ impl Caps {
         let usual = |cap: &Cap| flow_of_reynolds(USUAL_REYNOLDS, cap.radius, fluid.density, fluid.viscosity);
         let inlets = caps.iter().filter(|(patch, ..)| patch.is_inlet());
         let inlets = inlets.map(|(_, cap, node)| (*node, fluid.inflow.unwrap_or_else(|| usual(cap)))).collect();
-        let solved = solve(network, &inlets, fluid.viscosity);
+        let solved = solve(network, &inlets, fluid.viscosity).map_err(io::Error::other)?;
         let orders = Orders::of(network, &solved.pressure);
         let drops = drops(network, &solved, &inlets);
         let areas = areas(mesh)?;

@@ -1,14 +1,21 @@
 //! A network: to be drawn, or to tell what a place of its mesh belongs to.
 
 use super::pack::{Grid, Pack};
-use crate::flow::{Orders, solve};
+use crate::flow::{NotConverged, Orders};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// Steps of the grid of its nodes, and of its radii.
 const STEPS: u32 = 1 << 20;
 
 /// Adds a network whose inlets these are; what the page has to know of it.
-pub fn add_network(network: &Skeleton, inlets: &[NodeId], pack: &mut Pack) -> serde_json::Value {
+///
+/// # Errors
+/// When its Strahler orders cannot be found.
+pub fn add_network(
+    network: &Skeleton,
+    inlets: &[NodeId],
+    pack: &mut Pack,
+) -> Result<serde_json::Value, NotConverged> {
     let grid = Grid::of(network.nodes.iter().map(|n| &n.position), STEPS);
     pack.add("node", &grid.steps(network.nodes.iter().map(|n| &n.position)), 3);
     pack.add("nodeName", &network.nodes.iter().map(|n| n.original as i32).collect::<Vec<_>>(), 1);
@@ -18,12 +25,11 @@ pub fn add_network(network: &Skeleton, inlets: &[NodeId], pack: &mut Pack) -> se
     let step = if widest > 0.0 { widest / f64::from(STEPS) } else { 1.0 };
     let radii: Vec<i32> = network.edges.iter().flat_map(|e| e.radii.map(|r| (r / step).round() as i32)).collect();
     pack.add("edgeRadius", &radii, 2);
-    let inflow = inlets.iter().map(|&node| (node, 1.0)).collect();
-    let orders = Orders::of(network, &solve(network, &inflow, 1.0).pressure).strahler;
+    let orders = Orders::from_inlets(network, inlets.iter().copied())?.strahler;
     pack.add("edgeOrder", &orders.iter().map(|&o| o as i32).collect::<Vec<_>>(), 1);
     let branches = network.branches(&network.adjacency()).of_edge;
     pack.add("edgeBranch", &branches.iter().map(|(b, _)| b.0 as i32).collect::<Vec<_>>(), 1);
     let narrowest = network.edges.iter().flat_map(|e| e.radii).fold(widest, f64::min);
-    serde_json::json!({ "grid": grid, "radiusStep": step, "radii": [narrowest, widest],
-        "orders": orders.iter().max(), "edges": network.edges.len() })
+    Ok(serde_json::json!({ "grid": grid, "radiusStep": step, "radii": [narrowest, widest],
+        "orders": orders.iter().max(), "edges": network.edges.len() }))
 }

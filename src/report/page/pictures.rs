@@ -49,7 +49,7 @@ pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> 
 
 /// A network, some of whose edges are marked.
 pub fn network_picture(network: &Skeleton, marked: &[EdgeId], caption: &str) -> (Image, String) {
-    let mut picture = NetworkPicture::new(network, Colour::Radius, &[]);
+    let mut picture = NetworkPicture::by_radius(network);
     picture.mark(marked);
     let camera = Camera::new(Direction::Broadside, &picture.outline(), SIZE.map(|n| n * SAMPLES), 1.0, None);
     let mut canvas = Canvas::new(camera, SAMPLES);
