@@ -32,6 +32,7 @@ mod report;
 mod surface;
 #[cfg(feature = "cli")]
 mod view;
+#[cfg(feature = "woven")]
 mod woven;
 
 pub use anastomesh_io as io;
@@ -91,6 +92,7 @@ pub mod testing {
     ///
     /// # Errors
     /// The block's.
+    #[cfg(feature = "woven")]
     pub fn mesh_trimmed(
         id: ClusterId,
         cluster: &Cluster,

@@ -1,7 +1,6 @@
 //! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
 
 use super::buried::buried;
-use super::corners::part_corners;
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::faithful::Astray;
@@ -18,7 +17,7 @@ use crate::surface::{
 use anastomesh_mesh::geometry::{Section, Tube};
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_skeleton::NodeId;
-use anastomesh_tet::parts::Inset;
+use anastomesh_tet::parts::{Inset, split_corner_tets};
 use anastomesh_tet::{
     TetError,
     parts::{Watch, tetrahedralize_watched},
@@ -152,7 +151,7 @@ fn inside(cluster: &Cluster, surface: &CappedSurface, params: &BlockParams, watc
     let mut mesh = fill(&surface.mesh)?;
     // Discs at cuts are on no boundary of the whole.
     let of_cut = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Cut { .. });
-    part_corners(&mut mesh, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
+    split_corner_tets(&mut mesh, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
     Ok(Inside { mesh, hull: Vec::new(), discs, thin: None })
 }
 

@@ -38,6 +38,10 @@ pub enum BlockError {
     /// A parameter makes no sense.
     #[error("block parameter {name} = {value} is out of range")]
     Parameter { name: &'static str, value: f64 },
+    /// Trimmed ends are an optional part of the program.
+    #[cfg(not(feature = "woven"))]
+    #[error("this program was built without woven joints: build it with the cargo feature `woven`")]
+    NoWovenJoints,
     /// The wall could not be made.
     #[error("cluster {}: {source}", cluster.0)]
     Surface {

@@ -9,7 +9,6 @@ mod buried;
 mod cluster;
 mod connector;
 mod connector_surface;
-mod corners;
 mod dump;
 mod end_surface;
 mod error;

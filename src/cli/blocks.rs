@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::network::{NetworkArgs, PreparedNetwork};
-use super::room::size;
+use super::limits::size;
 use crate::pipeline::MeshPlan;
 use crate::prepare::PrepareParams;
 use anastomesh_skeleton::resolution::{FOLLOW, RHO};

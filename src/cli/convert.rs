@@ -12,7 +12,7 @@ use super::grid::GridArgs;
 use super::kind::{Kind, OpenedMesh, boundary_of};
 use super::log;
 use super::progress::Bars;
-use super::room;
+use super::limits;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::prepare::directed;
 use crate::report::rows::row;
@@ -44,7 +44,7 @@ pub struct Args {
     no_caps: bool,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
     /// held as a whole
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
     #[command(flatten)]
     grid: GridArgs,

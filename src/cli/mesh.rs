@@ -18,7 +18,7 @@ use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::room::{self, BlockPlace};
+use super::limits::{self, BlockPlace};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Fidelity};
@@ -285,7 +285,7 @@ impl Args {
         };
         let kept = store.bytes_on_disk();
         let format = self.format.of(&self.output)?;
-        let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, (&self.output, format));
+        let fits = |estimate: &Estimate| limits::fits(estimate, plan, &place, kept, (&self.output, format));
         let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
         let Made { stored, before } = before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;
         let Stored { whole, expectation, check, report } = stored;

@@ -34,7 +34,7 @@ pub struct PictureArgs {
     at: Option<Point3>,
     /// What colours tell (default: patch for a mesh, radius for a network)
     #[arg(long, value_enum)]
-    color: Option<Colours>,
+    color: Option<Colour>,
     /// Background
     #[arg(long, value_enum, default_value_t = Ground::Light)]
     background: Ground,
@@ -51,22 +51,6 @@ pub struct PictureArgs {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Colours {
-    /// Nothing
-    Plain,
-    /// Wall, inlets, outlets
-    Patch,
-    /// The block (of a network: the branch)
-    Block,
-    /// The radius of the vessel (of a mesh with --network)
-    Radius,
-    /// Strahler's order of the vessel (of a mesh with --network)
-    Order,
-    /// Radius ratios, from bad (red) to good (blue)
-    Quality,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Ground {
     /// White
     Light,
@@ -74,19 +58,6 @@ enum Ground {
     Dark,
     /// None: transparent
     None,
-}
-
-impl From<Colours> for Colour {
-    fn from(colours: Colours) -> Self {
-        match colours {
-            Colours::Plain => Self::Plain,
-            Colours::Patch => Self::Patch,
-            Colours::Block => Self::Block,
-            Colours::Radius => Self::Radius,
-            Colours::Order => Self::Order,
-            Colours::Quality => Self::Quality,
-        }
-    }
 }
 
 /// Pixels of a picture, at most.
@@ -146,8 +117,8 @@ impl PictureArgs {
     /// What the colours tell, where they tell something of the network.
     fn datum(&self) -> Option<Datum> {
         match self.color {
-            Some(Colours::Radius) => Some(Datum::Radius),
-            Some(Colours::Order) => Some(Datum::Strahler),
+            Some(Colour::Radius) => Some(Datum::Radius),
+            Some(Colour::Order) => Some(Datum::Strahler),
             _ => None,
         }
     }

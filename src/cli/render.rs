@@ -8,7 +8,7 @@ use super::kind::{Kind, OpenedMesh, boundary_of, left_in};
 use super::log;
 use super::network::NetworkArgs;
 use super::picture::{PictureArgs, vessels};
-use super::room;
+use super::limits;
 use crate::picture::{Colour, Image, Shown};
 use crate::report::rows::row;
 use anastomesh_io::surface::read_surface;
@@ -32,7 +32,7 @@ pub struct Args {
     picture: PictureArgs,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
     /// held as a whole
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
     /// Number of threads (default: all cores); the picture does not depend on it
     #[arg(short = 'j', long, value_name = "N")]

@@ -8,7 +8,7 @@ use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
 use super::log;
 use super::progress::Bars;
-use super::room::size;
+use super::limits::size;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::block::{BlockDump, BlockError, Finished};
 use crate::pipeline::{Estimate, TooLarge, replay};

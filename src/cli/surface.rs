@@ -13,7 +13,7 @@ use super::network::NetworkArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::room::{self, BlockPlace};
+use super::limits::{self, BlockPlace};
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport};
 use crate::report::advice::advice;
@@ -85,7 +85,7 @@ impl Args {
     fn make(&self, before: Before, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
         let rough = Estimate::rough(&before.network, plan);
         let (_, store) = BlockPlace::beside(&self.output, &rough, plan.memory)?;
-        let fits = |estimate: &Estimate| room::block_fits(estimate, plan);
+        let fits = |estimate: &Estimate| limits::block_fits(estimate, plan);
         let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
         let Made { stored: mut made, before } =
             before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;

@@ -12,7 +12,7 @@ use super::kind::{Kind, OpenedMesh, boundary_of, left_in};
 use super::log;
 use super::network::NetworkArgs;
 use super::picture::vessels;
-use super::room;
+use super::limits;
 use crate::block::BlockDump;
 use crate::pipeline::{Datum, VesselData};
 use crate::view::{Fault, Page, Wall, WallOptions, add_network, add_tets};
@@ -49,7 +49,7 @@ pub struct Args {
     no_check: bool,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
     /// held as a whole
-    #[arg(long, value_name = "SIZE", default_value = "1GiB", value_parser = room::size)]
+    #[arg(long, value_name = "SIZE", default_value = "1GiB", value_parser = limits::size)]
     memory: u64,
     /// Number of threads (default: all cores); the page does not depend on it
     #[arg(short = 'j', long, value_name = "N")]

@@ -5,20 +5,21 @@ use anastomesh_mesh::{Patch, WALL};
 /// Red, green and blue as screens have them.
 pub type Rgb = [u8; 3];
 
-/// What colours tell.
+/// The quantity that a picture shows by colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Colour {
-    /// Nothing.
+    /// Nothing
     Plain,
-    /// Wall, inlets and outlets.
+    /// Wall, inlets, outlets
     Patch,
-    /// The block.
+    /// The block (of a network: the branch)
     Block,
-    /// The radius of the vessel.
+    /// The radius of the vessel (of a mesh with --network)
     Radius,
-    /// Strahler's order of the vessel.
+    /// Strahler's order of the vessel (of a mesh with --network)
     Order,
-    /// The shape of cells, from bad to good.
+    /// Radius ratios, from bad (red) to good (blue)
     Quality,
 }
 

@@ -20,6 +20,7 @@ use super::timing::Clock;
 use super::whole::Whole;
 use crate::partition::CutId;
 use crate::refine::split_shared;
+#[cfg(feature = "woven")]
 use crate::woven::Assembly;
 use anastomesh_mesh::check::parts::PartsCheck;
 use anastomesh_mesh::check::{CheckReport, Expectation, check_volume_with};
@@ -75,6 +76,7 @@ pub struct Stored<'a> {
 pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress) -> Result<Meshed, RunError> {
     let (store, network) = (Store::in_memory(), &Arc::new(network.clone()));
     let clock = &mut Clock::default();
+    #[cfg(feature = "woven")]
     if plan.smooths_joints() {
         return mesh_smoothed(&store, network, plan, progress, clock);
     }
@@ -164,6 +166,7 @@ fn mesh_timed<'a>(
 }
 
 /// The mesh in memory, its joints smoothed.
+#[cfg(feature = "woven")]
 fn mesh_smoothed(
     store: &Store,
     network: &Arc<Skeleton>,

@@ -3,6 +3,7 @@
 mod bend;
 mod contact;
 mod crowd;
+mod cut_length;
 mod figures;
 mod forces;
 mod frame;
@@ -11,7 +12,6 @@ mod leash;
 mod params;
 mod push;
 mod residual;
-mod room;
 mod shape;
 mod solve;
 mod split;

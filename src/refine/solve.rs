@@ -9,7 +9,7 @@ use super::history::{Displacement, Sample};
 use super::leash::Leashes;
 use super::params::{RefineError, RefineParams};
 use super::push::Push;
-use super::{room, shape};
+use super::{cut_length, shape};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
@@ -206,7 +206,7 @@ impl<'a> Solver<'a> {
         }
         let contacts = self.contacts.pushes(&self.frame, self.params.clearance);
         // Where nothing is to move but what overlaps, no vessel is lengthened or opened for the sake of a cut.
-        let room = if self.leashes.is_some() { room::lengths(&self.frame) } else { room::pushes(&self.frame) };
+        let room = if self.leashes.is_some() { cut_length::lengths(&self.frame) } else { cut_length::pushes(&self.frame) };
         add(&contacts);
         add(&room);
         for (sum, &count) in sum.iter_mut().zip(&count) {

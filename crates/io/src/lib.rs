@@ -19,6 +19,7 @@ mod file;
 pub mod network;
 pub mod npy;
 mod patches;
+mod scalar;
 pub mod surface;
 #[doc(hidden)]
 pub mod tetgen;

@@ -46,6 +46,7 @@ pub(crate) mod certify;
 pub(crate) mod complex;
 mod conform;
 mod contacts;
+mod corner_tets;
 pub(crate) mod delaunay;
 pub(crate) mod error;
 mod fill;
@@ -85,6 +86,7 @@ use progress::Watch;
 #[doc(hidden)]
 pub mod parts {
     pub use crate::complex::Complex;
+    pub use crate::corner_tets::split_corner_tets;
     pub use crate::delaunay::delaunay;
     pub use crate::error::Stuck;
     pub use crate::layers::{Directions, Inset, Numbers, Places, inset, rims, toward};

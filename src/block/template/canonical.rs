@@ -3,7 +3,6 @@
 //! goes, and kept.
 
 use crate::block::connector_surface::{ConnectorSurface, Division, connector_surface};
-use crate::block::corners::part_corners;
 use crate::block::free_ends::FreeEnds;
 use crate::block::layered::{Walled, discs_first, renumbered};
 use crate::block::params::BlockParams;
@@ -12,7 +11,7 @@ use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_mesh::quality::radius_ratio;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_skeleton::BranchId;
-use anastomesh_tet::parts::Inset;
+use anastomesh_tet::parts::{Inset, split_corner_tets};
 use anastomesh_tet::{
     Effort,
     parts::{OptimizeOptions, optimize},
@@ -148,7 +147,7 @@ impl Inside {
         let mut mesh = core(&tube.surface)?;
         if caps != [false; 2] {
             let of_disc = tube.end_triangles as usize / 2;
-            part_corners(&mut mesh, &tube.surface, |i| caps.get(i / of_disc).copied().unwrap_or(true));
+            split_corner_tets(&mut mesh, &tube.surface, |i| caps.get(i / of_disc).copied().unwrap_or(true));
         }
         let (ends, wall) = faces(tube);
         Ok(Some(Self { mesh, disc: tube.shared.len() as u32 / 2, ends, wall, layers: 0 }))

@@ -6,6 +6,7 @@ use super::fixtures::{Cut, labelled_tube};
 use super::format::MeshFormat;
 use super::options::WriteOptions;
 use super::read::read_mesh;
+use super::vtu::Recounted;
 use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_with};
 use crate::file::FileError;
 use anastomesh_mesh::geometry::Point3;
@@ -80,36 +81,13 @@ proptest! {
     }
 }
 
-/// A source that gives another number of points than it says.
-struct Liar<'a>(Cut<'a>, usize);
-
-impl MeshSource for Liar<'_> {
-    fn counts(&self) -> SourceCounts {
-        let counts = self.0.counts();
-        SourceCounts { points: counts.points + self.1 - 1, ..counts }
-    }
-    fn patches(&self) -> &[Patch] {
-        self.0.patches()
-    }
-    fn parts(&self) -> u32 {
-        self.0.parts()
-    }
-    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        self.0.points(part)
-    }
-    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        self.0.tets(part)
-    }
-    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
-        self.0.boundary(part)
-    }
-}
-
 #[test]
 fn a_source_that_lies_is_found_out() {
     let (volume, notes) = tube(4);
     for error in [0, 2] {
-        let liar = Liar(Cut { volume: &volume, sizes: &[5] }, error);
+        let cut = Cut { volume: &volume, sizes: &[5] };
+        let counts = SourceCounts { points: cut.counts().points + error - 1, ..cut.counts() };
+        let liar = Recounted { mesh: &cut, counts };
         for format in STREAMED {
             let result = write_mesh_to(&mut Vec::new(), format, &liar, &notes);
             assert_eq!(result.unwrap_err().kind(), io::ErrorKind::InvalidData, "{format:?}");

@@ -1,5 +1,6 @@
 //! Lines about the labels of the boundary: wall and caps.
 
+use super::LABEL_LINES;
 use super::cells::{face_offender, same_turn};
 use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally};
 use crate::face_key;
@@ -84,7 +85,8 @@ pub(super) fn lines_without_caps(patches: &[Patch], expectation: Option<&Expecta
         return None;
     }
     let mut lines = vec![own_patch(patches)];
-    lines.extend(CAP_LINES.map(|line| LineResult::skipped(line, Skipped::NoCaps)));
+    let of_caps = LABEL_LINES.into_iter().filter(|line| !matches!(line, Line::LabelsMatchBoundary | Line::OwnPatch));
+    lines.extend(of_caps.map(|line| LineResult::skipped(line, Skipped::NoCaps)));
     if let Some(expected) = expectation {
         lines[2] = cap_per_terminal(patches, expected);
     }
@@ -97,16 +99,6 @@ pub(super) fn terminals_with_caps(patches: &[Patch], expectation: Option<&Expect
         None => LineResult::skipped(Line::CapPerTerminal, Skipped::NoExpectation),
     }
 }
-
-const CAP_LINES: [Line; 7] = [
-    Line::WallOrCap,
-    Line::CapPerTerminal,
-    Line::CapDisc,
-    Line::CapFlat,
-    Line::CapCentred,
-    Line::CapArea,
-    Line::CapNormal,
-];
 
 fn wall_or_cap(volume: &VolumeMesh) -> LineResult {
     let mut caps: Vec<i32> = volume.patches.iter().filter(|p| p.cap.is_some()).map(|p| p.id).collect();

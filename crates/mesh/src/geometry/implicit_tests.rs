@@ -1,10 +1,7 @@
 use super::*;
+use crate::geometry::exact_oracle::{det, exact, sign};
 use num_rational::BigRational;
 use proptest::prelude::*;
-
-fn exact(x: f64) -> BigRational {
-    BigRational::from_float(x).expect("finite")
-}
 
 /// A point of either kind with its rounded coordinates.
 #[derive(Clone, Debug)]
@@ -28,27 +25,6 @@ impl Sample {
             }
         }
     }
-}
-
-fn det(m: &[Vec<BigRational>]) -> BigRational {
-    if m.len() == 1 {
-        return m[0][0].clone();
-    }
-    let mut sum = exact(0.0);
-    for (k, head) in m[0].iter().enumerate() {
-        let minor: Vec<Vec<BigRational>> = m[1..]
-            .iter()
-            .map(|r| r.iter().enumerate().filter(|&(j, _)| j != k).map(|(_, x)| x.clone()).collect())
-            .collect();
-        let term = head * det(&minor);
-        sum = if k % 2 == 0 { sum + term } else { sum - term };
-    }
-    sum
-}
-
-fn sign_of(x: &BigRational) -> i32 {
-    let zero = exact(0.0);
-    i32::from(*x > zero) - i32::from(*x < zero)
 }
 
 fn rows(from: &Sample, to: &[Sample]) -> Vec<Vec<BigRational>> {
@@ -102,7 +78,7 @@ fn implicit(on: OnTriangle) -> Sample {
 }
 
 fn check_orient(p: &[Sample]) {
-    let oracle = sign_of(&det(&rows(&p[0], &p[1..4])));
+    let oracle = sign(&det(&rows(&p[0], &p[1..4])));
     let sites = [p[0].site(), p[1].site(), p[2].site(), p[3].site()];
     assert_eq!(orient3d(sites), oracle);
     assert_eq!(orient3d_exact(&sites), oracle);
@@ -164,14 +140,14 @@ proptest! {
         let volume = |q: [&Sample; 4]| det(&rows(q[0], &q[1..].iter().map(|s| (*s).clone()).collect::<Vec<_>>()));
         let [x, y, z] = [volume([u, v, b, c]), volume([u, v, c, a]), volume([u, v, a, b])];
         let sum = &x + &y + &z;
-        let inside = [&x, &y, &z].iter().all(|w| sign_of(w) != 0 && sign_of(w) == sign_of(&sum));
+        let inside = [&x, &y, &z].iter().all(|w| sign(w) != 0 && sign(w) == sign(&sum));
         let found = crossing([a.site(), b.site(), c.site()], [u.site(), v.site()]);
         prop_assert_eq!(found.is_some(), inside);
         if let Some([s, t]) = found {
             prop_assert!(is_floor(s, &(&y / &sum)) && is_floor(t, &(&z / &sum)));
         }
         let (below, above) = (volume([a, b, c, u]), volume([a, b, c, v]));
-        if sign_of(&below) * sign_of(&above) < 0 {
+        if sign(&below) * sign(&above) < 0 {
             let t = parameter([a.site(), b.site(), c.site()], [u.site(), v.site()]).unwrap();
             prop_assert!(is_floor(t, &(&below / (&below - &above))));
         }

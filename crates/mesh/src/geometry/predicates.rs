@@ -109,35 +109,11 @@ pub fn collinear(a: &Point3, b: &Point3, c: &Point3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::exact_oracle::{det, exact, sign};
     use num_rational::BigRational;
     use proptest::prelude::*;
 
     type Row = Vec<BigRational>;
-
-    fn exact(x: f64) -> BigRational {
-        BigRational::from_float(x).expect("finite")
-    }
-
-    fn det(m: &[Row]) -> BigRational {
-        if m.len() == 1 {
-            return m[0][0].clone();
-        }
-        let mut sum = exact(0.0);
-        for (k, head) in m[0].iter().enumerate() {
-            let minor: Vec<Row> = m[1..]
-                .iter()
-                .map(|r| r.iter().enumerate().filter(|&(j, _)| j != k).map(|(_, x)| x.clone()).collect())
-                .collect();
-            let term = head * det(&minor);
-            sum = if k % 2 == 0 { sum + term } else { sum - term };
-        }
-        sum
-    }
-
-    fn sign(x: &BigRational) -> i32 {
-        let zero = exact(0.0);
-        i32::from(*x > zero) - i32::from(*x < zero)
-    }
 
     fn sign_f(x: f64) -> i32 {
         i32::from(x > 0.0) - i32::from(x < 0.0)

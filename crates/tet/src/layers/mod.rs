@@ -6,12 +6,12 @@
 //! is a mesh of an embedded surface, so the whole is one of the first surface: a map that nowhere turns over and is one to one
 //! on the boundary is so inside.
 //!
-//! How far a place is in depends on what is asked for and on the room there is (`room`); where a prism turns over or the second
+//! How far a place is in depends on what is asked for and on the room there is (`half_width`); where a prism turns over or the second
 //! surface meets itself, places draw back towards the wall (`inset`), at last on to it: there is no layer there then.
 
 mod direction;
+mod half_width;
 mod inset;
-mod room;
 mod stack;
 #[cfg(test)]
 mod tests;

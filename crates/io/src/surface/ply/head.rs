@@ -1,5 +1,6 @@
 //! The head of a PLY file: which elements follow, with which properties, in which encoding.
 
+use crate::scalar::Scalar;
 use crate::surface::error::SurfaceFault;
 use crate::text::Place;
 use crate::text::{TextFault, Words};
@@ -12,47 +13,19 @@ pub(super) enum Encoding {
     Big,
 }
 
-/// The type of a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
-
-impl Scalar {
-    fn of(word: &[u8]) -> Option<Self> {
-        Some(match word {
-            b"char" | b"int8" => Self::I8,
-            b"uchar" | b"uint8" => Self::U8,
-            b"short" | b"int16" => Self::I16,
-            b"ushort" | b"uint16" => Self::U16,
-            b"int" | b"int32" => Self::I32,
-            b"uint" | b"uint32" => Self::U32,
-            b"float" | b"float32" => Self::F32,
-            b"double" | b"float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    /// Bytes of such a number.
-    pub(super) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-
-    fn is_integer(self) -> bool {
-        !matches!(self, Self::F32 | Self::F64)
-    }
+/// Returns the number type of a name in a PLY header.
+fn scalar_of(word: &[u8]) -> Option<Scalar> {
+    Some(match word {
+        b"char" | b"int8" => Scalar::I8,
+        b"uchar" | b"uint8" => Scalar::U8,
+        b"short" | b"int16" => Scalar::I16,
+        b"ushort" | b"uint16" => Scalar::U16,
+        b"int" | b"int32" => Scalar::I32,
+        b"uint" | b"uint32" => Scalar::U32,
+        b"float" | b"float32" => Scalar::F32,
+        b"double" | b"float64" => Scalar::F64,
+        _ => return None,
+    })
 }
 
 /// One property of an element.
@@ -162,7 +135,7 @@ fn encoding(word: &[u8], place: Place) -> Result<Encoding, SurfaceFault> {
 
 fn property(words: &mut Words, place: Place) -> Result<Property, SurfaceFault> {
     let scalar =
-        |word: &[u8]| Scalar::of(word).ok_or_else(|| SurfaceFault::unexpected(word, "a type of numbers", place));
+        |word: &[u8]| scalar_of(word).ok_or_else(|| SurfaceFault::unexpected(word, "a type of numbers", place));
     let kind = words.need_here("the property's type")?;
     if kind != b"list" {
         let value = scalar(kind)?;
@@ -170,7 +143,7 @@ fn property(words: &mut Words, place: Place) -> Result<Property, SurfaceFault> {
     }
     let counted = words.need_here("the type of the list's count")?;
     let count = scalar(counted)?;
-    if !count.is_integer() {
+    if count.is_float() {
         return Err(SurfaceFault::unexpected(counted, "a type of integers", place));
     }
     let value = scalar(words.need_here("the type of the list's values")?)?;

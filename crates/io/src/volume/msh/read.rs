@@ -125,17 +125,7 @@ impl Parts {
             let group = groups.get(&entity).copied().unwrap_or(0);
             for _ in 0..cursor.size()? {
                 let tag = cursor.size()?;
-                match kind {
-                    MSH_TRIANGLE => self.triangles.push((tag, cursor.sizes()?, group)),
-                    MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
-                    // Lines and points bound no volume.
-                    1 => drop(cursor.sizes::<2>()?),
-                    15 => drop(cursor.size()?),
-                    _ => {
-                        let cell = self.tets.len() + self.triangles.len();
-                        return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
-                    }
-                }
+                self.read_corners(cursor, tag, kind, group)?;
             }
         }
         Ok(())
@@ -159,19 +149,26 @@ impl Parts {
                 let value = cursor.int()?;
                 group = if i == 0 { value } else { group };
             }
-            match kind {
-                MSH_TRIANGLE => {
-                    // What a reader of version 4.1 knows from the entities.
-                    self.group_of_surface.insert(group, group);
-                    self.triangles.push((tag, cursor.sizes()?, group));
-                }
-                MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
-                1 => drop(cursor.sizes::<2>()?),
-                15 => drop(cursor.size()?),
-                _ => {
-                    let cell = self.tets.len() + self.triangles.len();
-                    return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
-                }
+            if kind == MSH_TRIANGLE {
+                // What a reader of version 4.1 knows from the entities.
+                self.group_of_surface.insert(group, group);
+            }
+            self.read_corners(cursor, tag, kind, group)?;
+        }
+        Ok(())
+    }
+
+    /// Reads the vertices of an element of a type.
+    fn read_corners(&mut self, cursor: &mut Cursor, tag: u64, kind: i32, group: i32) -> Result<(), MshFault> {
+        match kind {
+            MSH_TRIANGLE => self.triangles.push((tag, cursor.sizes()?, group)),
+            MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
+            // Lines and points bound no volume.
+            1 => drop(cursor.sizes::<2>()?),
+            15 => drop(cursor.size()?),
+            _ => {
+                let cell = self.tets.len() + self.triangles.len();
+                return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
             }
         }
         Ok(())

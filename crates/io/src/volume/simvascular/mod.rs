@@ -11,7 +11,7 @@ mod tests;
 use super::conditions::plain;
 use super::content::MeshNotes;
 use super::vtu::arrays::{Array, INT32, Place, Width, cell_arrays, points_array};
-use super::vtu::{TetsAlone, file::File};
+use super::vtu::{Recounted, file::File};
 use crate::file::{Asked, AtomicFile, AtomicFolder};
 use crate::patches::usual_name;
 use crate::vtk_xml::Blocks;
@@ -115,7 +115,7 @@ fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
 
 /// Tetrahedra alone: the solver reads no other cells beside them.
 fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource) -> io::Result<()> {
-    let mesh: &dyn MeshSource = &TetsAlone(mesh);
+    let mesh: &dyn MeshSource = &Recounted::without_boundary(mesh);
     let counts = mesh.counts();
     let (points, tets) = (counts.points, counts.tets);
     let mut arrays = vec![points_array(points, false, |each| mesh.each_points(each))];

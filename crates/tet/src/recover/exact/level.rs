@@ -8,7 +8,7 @@
 use super::parts::{Missing, sides, sorted};
 use super::plane::{Patch, Plane};
 use super::push::Push;
-use super::room::{Apex, LEVELS, Room};
+use super::kernel::{Apex, LEVELS, Kernel};
 use super::sectors::{Sector, refill};
 use super::space::Space;
 use super::wider::Wider;
@@ -402,10 +402,10 @@ impl<'a> Level<'a> {
     /// where there is none, a wider sector.
     pub(super) fn apex(&self, wider: &mut Wider, sector: Sector) -> Option<(Sector, Apex)> {
         let origin = wider.origin;
-        let least = self.least(&Room::new(self.s, origin, &sector.faces));
+        let least = self.least(&Kernel::new(self.s, origin, &sector.faces));
         let direct = |levels: &[f64]| {
-            let room = Room::new(self.s, origin, &sector.faces);
-            levels.iter().find_map(|level| room.apex(self.s, level.max(least)).ok())
+            let kernel = Kernel::new(self.s, origin, &sector.faces);
+            levels.iter().find_map(|level| kernel.apex(self.s, level.max(least)).ok())
         };
         let (ample, scant) = LEVELS.split_at(AMPLE);
         if let Some(found) = self.corner(wider, &sector, ample, least) {
@@ -426,8 +426,8 @@ impl<'a> Level<'a> {
     /// A sector and a corner of its faces that sees them all; or one of the highest, and what is in its view goes as well.
     /// As long as few vertices high above see all of the plane, the next exchanges have room; new ones would be ever lower.
     fn corner(&self, wider: &mut Wider, sector: &Sector, ample: &[f64], least: f64) -> Option<(Sector, Apex)> {
-        let room = Room::new(self.s, wider.origin, &sector.faces);
-        if let Some(w) = ample.iter().find_map(|level| room.neighbor(self.s, level.max(least)).ok()) {
+        let kernel = Kernel::new(self.s, wider.origin, &sector.faces);
+        if let Some(w) = ample.iter().find_map(|level| kernel.neighbor(self.s, level.max(least)).ok()) {
             return Some((sector.clone(), Apex::Vertex(w)));
         }
         let [a, b, c] = sector.faces.last()?.map(|v| self.s.point(v).coords);
@@ -452,8 +452,8 @@ impl<'a> Level<'a> {
         let mut apex = apex;
         if let (Apex::Point(_), Some(&face)) = (apex, sector.faces.last()) {
             let [a, b, c] = face.map(|v| self.s.point(v).coords);
-            let room = Room::new(self.s, origin, &sector.faces);
-            if let Some(p) = room.tallest(self.s, &unit_normal(a, b, c), least) {
+            let kernel = Kernel::new(self.s, origin, &sector.faces);
+            if let Some(p) = kernel.tallest(self.s, &unit_normal(a, b, c), least) {
                 apex = Apex::Point(p);
             }
         }
@@ -461,8 +461,8 @@ impl<'a> Level<'a> {
     }
 
     /// Least distance over the size of a room that is asked for.
-    fn least(&self, room: &Room) -> f64 {
-        self.clearance / room.size
+    fn least(&self, kernel: &Kernel) -> f64 {
+        self.clearance / kernel.size
     }
 }
 

@@ -7,12 +7,13 @@
 //! 1. [`segments`]: missing edges become chains of edges, with a vertex at each face or edge that they cross.
 //! 2. [`facets`]: missing triangles become unions of faces, with a vertex at each edge that pierces them.
 //! 3. [`push`]: each of these vertices gives way to copies inside the sectors between the facets around it ([`sectors`],
-//!    [`room`]); where a sector is too narrow, what lies beside it is taken as well ([`wider`]).
+//!    [`kernel`]); where a sector is too narrow, what lies beside it is taken as well ([`wider`]).
 
 mod course;
 mod dig;
 mod facets;
 mod helpers;
+mod kernel;
 mod level;
 mod looks;
 mod one;
@@ -22,7 +23,6 @@ mod plane;
 mod polygon;
 mod push;
 mod queue;
-mod room;
 mod sectors;
 mod segments;
 mod space;

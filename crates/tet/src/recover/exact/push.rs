@@ -6,7 +6,7 @@ use super::dig;
 use super::facets::Cover;
 use super::looks::{Looks, Way};
 use super::parts::sides;
-use super::room::{Apex, LEVELS, Room};
+use super::kernel::{Apex, LEVELS, Kernel};
 use super::sectors::{Fan, Sector, refill, sectors};
 use super::segments::Segments;
 use super::space::Space;
@@ -259,8 +259,8 @@ impl<'a> Push<'a> {
                     faces.push([a, c, b]);
                 }
             }
-            let room = Room::new(&self.s, *self.s.point(v), &faces);
-            if let Ok(w) = room.neighbor(&self.s, least) {
+            let kernel = Kernel::new(&self.s, *self.s.point(v), &faces);
+            if let Ok(w) = kernel.neighbor(&self.s, least) {
                 let others = faces.iter().filter(|f| !f.contains(&w));
                 let new: Vec<[u32; 4]> = others.map(|&[a, b, c]| [a, b, c, w]).collect();
                 if self.s.c.replace(&star, &new, &mut Vec::new()) {
@@ -268,8 +268,8 @@ impl<'a> Push<'a> {
                     return false;
                 }
             }
-            let here = room.depth(&Vec3::zeros()) / room.size;
-            if let Ok(p) = room.place(&self.s, 1.2 * here) {
+            let here = kernel.depth(&Vec3::zeros()) / kernel.size;
+            if let Ok(p) = kernel.place(&self.s, 1.2 * here) {
                 self.s.c.points[v as usize] = p;
                 self.looks.change(faces.iter().flatten().copied());
             }
@@ -300,10 +300,10 @@ impl<'a> Push<'a> {
         let mut wider = Wider::new(&self.s, &stays, Some(v), *self.s.point(v), star);
         let mut filled = Vec::with_capacity(sectors.len());
         for mut sector in sectors {
-            let room = Room::new(&self.s, *self.s.point(v), &sector.faces);
+            let kernel = Kernel::new(&self.s, *self.s.point(v), &sector.faces);
             let apex = match way {
-                Way::Corners => room.neighbor(&self.s, least).map(Apex::Vertex),
-                Way::Points => room.apex(&self.s, least),
+                Way::Corners => kernel.neighbor(&self.s, least).map(Apex::Vertex),
+                Way::Points => kernel.apex(&self.s, least),
                 Way::Wider => wider.apex(&mut sector, least, STEPS).ok_or(least.next_down()),
             };
             match apex {

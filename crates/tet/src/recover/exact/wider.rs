@@ -2,7 +2,7 @@
 //! walls that bound it, or that a vertex does not see, are taken as well.
 
 use super::parts::{sides, sorted};
-use super::room::{Apex, Room};
+use super::kernel::{Apex, Kernel};
 use super::sectors::Sector;
 use super::space::Space;
 use anastomesh_mesh::geometry::{Point3, unit_normal};
@@ -35,7 +35,7 @@ impl<'a> Wider<'a> {
     /// least `least` times its size of room.
     pub(super) fn apex(&mut self, sector: &mut Sector, least: f64, steps: usize) -> Option<Apex> {
         for _ in 0..steps {
-            if let Ok(apex) = Room::new(self.s, self.origin, &sector.faces).apex(self.s, least) {
+            if let Ok(apex) = Kernel::new(self.s, self.origin, &sector.faces).apex(self.s, least) {
                 return Some(apex);
             }
             if !self.step(sector) {
@@ -125,13 +125,13 @@ impl<'a> Wider<'a> {
     /// Adds to a sector the tetrahedron behind one of the walls that bound its room, the one that gains most. False when
     /// there is none.
     fn step(&mut self, sector: &mut Sector) -> bool {
-        let Some((walls, _)) = Room::new(self.s, self.origin, &sector.faces).bounds() else { return false };
+        let Some((walls, _)) = Kernel::new(self.s, self.origin, &sector.faces).bounds() else { return false };
         let mut best: Option<(f64, u32, Sector)> = None;
         for wall in walls {
             let Some(half) = sector.halves.get(wall) else { continue };
             let next = self.s.c.mate(*half) >> 2;
             let Some(wider) = self.add(sector, next) else { continue };
-            let Some((_, depth)) = Room::new(self.s, self.origin, &wider.faces).bounds() else { continue };
+            let Some((_, depth)) = Kernel::new(self.s, self.origin, &wider.faces).bounds() else { continue };
             if best.as_ref().is_none_or(|b| depth > b.0) {
                 best = Some((depth, next, wider));
             }

@@ -1,21 +1,20 @@
-//! The room that faces leave for a vertex, and its deepest point: a linear program in four variables. That is
-//! floating point, and a proposal; exact predicates decide.
+//! Kernel of a star-shaped cavity (the points that see all of its faces) and its deepest point: a linear program in four
+//! variables. Floating point proposes a position; exact predicates accept it.
 
 use super::space::Space;
 use anastomesh_mesh::geometry::{Point3, Vec3, unit_normal};
 use nalgebra::{Matrix4, Vector4};
 
-/// Least distances of a new vertex from the planes around, over the size of its room, that are asked for one after the
-/// other.
+/// Minimum distances of a new vertex from the planes of the faces, over the size of the kernel, to try in this order.
 pub(super) const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
 
-/// Shares of the way from the segment to the deepest point of the room at which a position is looked for.
+/// Positions to try, as shares of the distance from the segment to the deepest point of the kernel.
 const SHARES: [f64; 9] = [1.0, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4];
 
-/// Roundoff of distances over the size of the room.
+/// Roundoff of distances over the size of the kernel.
 const ROUNDOFF: f64 = 1e-14;
 
-/// Exchanges of a constraint in a linear program at most; ten are usual.
+/// Maximum constraint exchanges in a linear program. Ten are usual.
 const EXCHANGES: usize = 100;
 
 /// What takes the place of a vertex in a sector.
@@ -27,18 +26,17 @@ pub(super) enum Apex {
     Point(Point3),
 }
 
-/// The room that some faces leave for a vertex that has to see all of them counter-clockwise, in coordinates relative
-/// to a place nearby.
-pub(super) struct Room<'a> {
+/// The points that see all of some faces counter-clockwise, in coordinates relative to a point nearby.
+pub(super) struct Kernel<'a> {
     origin: Point3,
     faces: &'a [[u32; 3]],
-    /// Unit normal towards the room and height of the origin, per face.
+    /// Unit normal towards the kernel and height of the origin, per face.
     planes: Vec<(Vec3, f64)>,
     /// Largest distance of a corner.
     pub size: f64,
 }
 
-impl<'a> Room<'a> {
+impl<'a> Kernel<'a> {
     pub(super) fn new(s: &Space, origin: Point3, faces: &'a [[u32; 3]]) -> Self {
         let mut planes = Vec::with_capacity(faces.len());
         let mut size = 0.0_f64;
@@ -94,14 +92,14 @@ impl<'a> Room<'a> {
         deep.into_iter().map(|(_, w)| w).find(|&w| sees(w)).ok_or(near / self.size + ROUNDOFF)
     }
 
-    /// What may take the place of the vertex, with at least `least` times the size of room; a corner if there is one.
+    /// A replacement for the vertex, at least `least` times the size from the planes; a corner if there is one.
     pub(super) fn apex(&self, s: &Space, least: f64) -> Result<Apex, f64> {
         self.neighbor(s, least)
             .map(Apex::Vertex)
             .or_else(|at_corners| self.place(s, least).map(Apex::Point).map_err(|inside| inside.max(at_corners)))
     }
 
-    /// The faces that bound the room at its deepest point, up to four, and its depth over the size.
+    /// The faces that bound the kernel at its deepest point, up to four, and its depth over the size.
     pub(super) fn bounds(&self) -> Option<(Vec<usize>, f64)> {
         let highest = highest(&constraints(&self.planes, self.size))?;
         let faces = highest.tight.iter().filter_map(|i| i.checked_sub(BOUNDS)).collect();
@@ -140,7 +138,7 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Part of the room's depth that its tallest place keeps from the walls.
+/// Share of the kernel's depth that its tallest point keeps from the walls.
 const KEPT: f64 = 0.1;
 
 /// `a · x ≤ b`.
@@ -233,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn random_rooms_hold_their_deepest_point() {
+    fn random_kernels_hold_their_deepest_point() {
         for seed in 0..200 {
             let coin = |k: u64| (hash(seed * 1000 + k) >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
             let planes: Vec<(Vec3, f64)> = (0..60)
