@@ -71,7 +71,7 @@ pub mod testing {
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
-    pub use crate::prepare::{Fault, SpurReason, TouchedBy};
+    pub use crate::prepare::{RadiusDefect, SpurReason, TouchedBy};
     pub use crate::refine::split;
     pub use crate::report::info::NetworkInfo;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};

@@ -91,7 +91,7 @@ pub(crate) fn mesh_cluster_watched(
     let (surface, voxel, astray) = cluster_surface(id, cluster, params)?;
     let edge = surface.mesh.mean_edge();
     let failed = |source| BlockError::Tetrahedra { cluster: id, source };
-    let Inside { mesh, hull, discs, thin } = inside(cluster, &surface, params, watch).map_err(failed)?;
+    let FilledSurface { mesh, hull, discs, thin } = inside(cluster, &surface, params, watch).map_err(failed)?;
     let caps = caps(cluster, &discs);
     let surface_triangles = surface.mesh.triangles.len();
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
@@ -123,7 +123,7 @@ pub(crate) fn mesh_cluster_watched(
 }
 
 /// What lies within the surface of a cluster.
-struct Inside {
+struct FilledSurface {
     /// Points and tetrahedra, or points alone where it is to be hollow.
     mesh: TetMesh,
     /// The closed surface where it is to be hollow; else empty.
@@ -134,7 +134,12 @@ struct Inside {
     thin: Option<ThinLayers>,
 }
 
-fn inside(cluster: &Cluster, surface: &CappedSurface, params: &BlockParams, watch: &Watch) -> Result<Inside, TetError> {
+fn inside(
+    cluster: &Cluster,
+    surface: &CappedSurface,
+    params: &BlockParams,
+    watch: &Watch,
+) -> Result<FilledSurface, TetError> {
     let discs: Vec<Vec<[u32; 3]>> = (0..cluster.ends.len() as u32).map(|end| faces_of(surface, end)).collect();
     let fill = |surface: &TriMesh| tetrahedralize_watched(surface, &filling(surface, params.core), watch);
     if let Some(layers) = &params.layers {
@@ -142,17 +147,17 @@ fn inside(cluster: &Cluster, surface: &CappedSurface, params: &BlockParams, watc
         let axes = cluster.tubes.iter().map(|tube| [tube.a, tube.b]).collect();
         let (Inset { mesh, numbers, .. }, thin) = Walled { surface: &surface.mesh, caps, axes }.fill(layers, fill)?;
         let discs = discs.iter().map(|disc| numbers.disc(disc)).collect();
-        return Ok(Inside { mesh, hull: Vec::new(), discs, thin });
+        return Ok(FilledSurface { mesh, hull: Vec::new(), discs, thin });
     }
     if params.hollow {
         let TriMesh { points, triangles } = surface.mesh.clone();
-        return Ok(Inside { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, discs, thin: None });
+        return Ok(FilledSurface { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, discs, thin: None });
     }
     let mut mesh = fill(&surface.mesh)?;
     // Discs at cuts are on no boundary of the whole.
     let of_cut = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Cut { .. });
     split_corner_tets(&mut mesh, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
-    Ok(Inside { mesh, hull: Vec::new(), discs, thin: None })
+    Ok(FilledSurface { mesh, hull: Vec::new(), discs, thin: None })
 }
 
 /// A cluster that is one tube, by template.

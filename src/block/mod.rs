@@ -36,7 +36,7 @@ pub use connector_surface::ConnectorEnd;
 pub(crate) use connector_surface::{Division, connector_surface};
 pub use dump::{BlockDump, BlockInput};
 pub use end_surface::{CutEnd, EndSurface, StoredEnd};
-pub(crate) use end_surface::{Plane, cross, crossing, disc_rim};
+pub(crate) use end_surface::{CutPlane, cross, crossing, disc_rim};
 pub use error::{BlockError, ConnectorAttempt, FlattenFailure};
 pub use faithful::Astray;
 pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};

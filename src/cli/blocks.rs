@@ -1,8 +1,8 @@
 //! How the blocks of a network are made: arguments of every verb that makes them.
 
 use super::exit::Failure;
-use super::network::{NetworkArgs, PreparedNetwork};
 use super::limits::size;
+use super::network::{NetworkArgs, PreparedNetwork};
 use crate::pipeline::MeshPlan;
 use crate::prepare::PrepareParams;
 use anastomesh_skeleton::resolution::{FOLLOW, RHO};

@@ -12,13 +12,13 @@ use super::flow::FlowArgs;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
 use super::layers::LayerArgs;
+use super::limits::{self, BlockPlace};
 use super::log;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::limits::{self, BlockPlace};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Fidelity};
@@ -65,8 +65,8 @@ pub struct Args {
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
     /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
     /// vessel is cut
-    #[arg(long, help_heading = "Run", value_enum, default_value_t = Joint::Disc)]
-    joint: Joint,
+    #[arg(long, help_heading = "Run", value_enum, default_value_t = JointArg::Disc)]
+    joint: JointArg,
     /// Leave woven joints as the blocks have them instead of smoothing across them
     #[arg(long, help_heading = "Run")]
     frozen_joints: bool,
@@ -111,7 +111,7 @@ pub struct Args {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Joint {
+enum JointArg {
     Disc,
     Woven,
     None,
@@ -222,9 +222,9 @@ impl Args {
             core: self.core.unwrap_or_else(|| self.usual_core()),
             layers: self.layers.asked()?,
             joint: match self.joint {
-                Joint::Woven => JointStyle::Woven,
-                Joint::Disc => JointStyle::Disc,
-                Joint::None => JointStyle::None,
+                JointArg::Woven => JointStyle::Woven,
+                JointArg::Disc => JointStyle::Disc,
+                JointArg::None => JointStyle::None,
             },
             frozen_joints: self.frozen_joints,
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),

@@ -6,8 +6,8 @@ use std::path::Path;
 use super::exit::Failure;
 use super::network::NetworkArgs;
 use crate::picture::{
-    Background, Camera, Canvas, Colour, Cut, Direction, Image, Legend, MeshPicture, NetworkPicture, Outline, PlaneWish,
-    Shown,
+    Background, Camera, Canvas, Colour, Direction, Image, Legend, MeshPicture, NetworkPicture, Opening, Outline,
+    PlaneWish, Shown,
 };
 use crate::pipeline::{Datum, VesselData};
 use anastomesh_mesh::beside::Beside;
@@ -36,8 +36,8 @@ pub struct PictureArgs {
     #[arg(long, value_enum)]
     color: Option<Colour>,
     /// Background
-    #[arg(long, value_enum, default_value_t = Ground::Light)]
-    background: Ground,
+    #[arg(long, value_enum, default_value_t = BackgroundColour::Light)]
+    background: BackgroundColour,
     /// Take tetrahedra away that are before a plane, as the viewer sees it: x, y, z or view; -x, -y, -z: that are behind it. In the
     /// middle of the picture or at a coordinate or share: x:12.5, view:40%
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true)]
@@ -51,7 +51,7 @@ pub struct PictureArgs {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Ground {
+enum BackgroundColour {
     /// White
     Light,
     /// All but black
@@ -163,7 +163,7 @@ impl PictureArgs {
         let outline = MeshPicture::outline(mesh).map_err(failed)?;
         let mut canvas = self.canvas(&outline);
         let cut = |wish: PlaneWish| wish.plane(&canvas.camera, &outline);
-        let cut = self.clip.map(|wish| Cut::Tets(cut(wish))).or(self.cut_away.map(|wish| Cut::Wall(cut(wish))));
+        let cut = self.clip.map(|wish| Opening::Tets(cut(wish))).or(self.cut_away.map(|wish| Opening::Wall(cut(wish))));
         MeshPicture { mesh, colour, values }.draw(&mut canvas, cut).map_err(failed)?;
         Ok((canvas.finish(self.background()), shown))
     }
@@ -177,9 +177,9 @@ impl PictureArgs {
 
     fn background(&self) -> Background {
         match self.background {
-            Ground::Light => Background::Light,
-            Ground::Dark => Background::Dark,
-            Ground::None => Background::None,
+            BackgroundColour::Light => Background::Light,
+            BackgroundColour::Dark => Background::Dark,
+            BackgroundColour::None => Background::None,
         }
     }
 }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::common::print;
 use super::exit::{Exit, Failure};
+use super::limits::{self, BlockPlace};
 use super::log;
 use super::progress::Bars;
-use super::limits::{self, BlockPlace};
 use crate::pipeline::{
     KeyMaker, Manifest, MeshPlan, NoShard, Role, RunError, Shard, ShareReport, Store, StoreError, fingerprint,
     make_share, two_numbers,

@@ -98,7 +98,8 @@ impl NodalSystem {
     /// Iterates from a pressure and its residual until the largest residual is within the tolerance; returns the number of
     /// iterations.
     fn iterate(&self, pressure: &mut [f64], mut residual: Vec<f64>, tolerance: f64, max_iterations: usize) -> usize {
-        let precondition = |residual: &[f64]| -> Vec<f64> { residual.iter().zip(&self.diagonal).map(|(r, d)| r / d).collect() };
+        let precondition =
+            |residual: &[f64]| -> Vec<f64> { residual.iter().zip(&self.diagonal).map(|(r, d)| r / d).collect() };
         let mut direction = precondition(&residual);
         let mut rho = dot(&residual, &direction);
         for iteration in 0..max_iterations {
@@ -125,7 +126,9 @@ impl NodalSystem {
 
     /// Returns the product of the matrix and a vector: the net outflow of each node at a pressure.
     fn apply(&self, pressure: &[f64]) -> Vec<f64> {
-        (0..pressure.len()).map(|node| self.diagonal[node] * pressure[node] - self.from_neighbors(node, pressure)).collect()
+        (0..pressure.len())
+            .map(|node| self.diagonal[node] * pressure[node] - self.from_neighbors(node, pressure))
+            .collect()
     }
 
     /// Returns the inflow of each node less its net outflow.

@@ -23,11 +23,7 @@ const SHORTEST: f64 = 1e-9;
 ///
 /// # Errors
 /// When the iteration for what elimination leaves does not converge.
-pub fn solve(
-    skeleton: &Skeleton,
-    inlets: &BTreeMap<NodeId, f64>,
-    viscosity: f64,
-) -> Result<NetworkFlow, NotConverged> {
+pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64) -> Result<NetworkFlow, NotConverged> {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);
     let terminals = adjacency.terminals();

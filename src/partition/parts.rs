@@ -25,7 +25,7 @@ pub struct Partition {
     pub cut_arcs: Vec<[f64; 2]>,
     /// The pieces of the branches that the clusters hold, by branch and arc length. With the cuts they cover every
     /// branch exactly once.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<BranchPiece>,
     /// The branches that are in one cluster from end to end, and why.
     pub uncut: Vec<(BranchId, UncutReason)>,
     /// What may go wrong in a cluster.
@@ -42,7 +42,7 @@ impl Partition {
 
 /// A piece of a branch in a cluster.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
+pub struct BranchPiece {
     pub cluster: ClusterId,
     pub branch: BranchId,
     /// Arc lengths between which it lies.

@@ -18,7 +18,7 @@ use std::io;
 
 /// What a plane takes away.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cut {
+pub enum Opening {
     /// Tetrahedra, as wholes.
     Tets(Plane),
     /// The wall, sharply: the inside of the other side is seen.
@@ -60,11 +60,11 @@ impl MeshPicture<'_> {
     ///
     /// # Errors
     /// What reading the mesh fails with.
-    pub fn draw(&self, canvas: &mut Canvas, cut: Option<Cut>) -> io::Result<()> {
+    pub fn draw(&self, canvas: &mut Canvas, cut: Option<Opening>) -> io::Result<()> {
         canvas.cut = None;
         let plane = match cut {
-            Some(Cut::Tets(plane)) => plane,
-            Some(Cut::Wall(plane)) => {
+            Some(Opening::Tets(plane)) => plane,
+            Some(Opening::Wall(plane)) => {
                 canvas.cut = Some(plane);
                 return self.draw_faces(canvas, |_, _| true);
             }

@@ -98,7 +98,9 @@ impl Default for MeshPlan {
 #[non_exhaustive]
 pub enum PlanError {
     /// Woven joints are an optional part of the program.
-    #[error("this program was built without woven joints: give --joint disc, or build it with the cargo feature `woven`")]
+    #[error(
+        "this program was built without woven joints: give --joint disc, or build it with the cargo feature `woven`"
+    )]
     NoWovenJoints,
     /// ρ outside of what makes sense.
     #[error("rho = {0} is not usable: it must be a number of at least 2.5 (3 to 5 are usual; larger is finer)")]

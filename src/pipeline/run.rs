@@ -12,7 +12,7 @@ use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{Meeting, MeshSize, RunReport};
-use super::rounds::Run;
+use super::rounds::RunContext;
 use super::seen::Seen;
 use super::store::Store;
 use super::terminals::{self, TerminalPatches};
@@ -222,8 +222,8 @@ impl<'a, 'b> Job<'a, 'b> {
         Workshop { skeleton: &self.skeleton, plan: self.plan, store: self.store }
     }
 
-    fn run<'c>(&'c self, clock: &'c mut Clock) -> Run<'c> {
-        Run { overlaps: &self.overlaps, shop: self.shop(), progress: self.progress, clock }
+    fn run<'c>(&'c self, clock: &'c mut Clock) -> RunContext<'c> {
+        RunContext { overlaps: &self.overlaps, shop: self.shop(), progress: self.progress, clock }
     }
 
     /// The whole over all blocks.

@@ -153,7 +153,7 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
             cluster,
             plan,
             false,
-            attempts::Way::Usual,
+            attempts::RetryStrategy::Usual,
             |node| node.0,
             &anastomesh_tet::parts::Watch::NOBODY,
         )

@@ -22,7 +22,7 @@ const APART: f64 = f64::MIN_POSITIVE * 1e20;
 /// What is wrong with a radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Fault {
+pub enum RadiusDefect {
     /// It is zero, negative, infinite or no number.
     Missing,
     /// It is ten times that of all its neighbours, or less than a tenth of what the vessel has to both sides near by, or at
@@ -40,7 +40,7 @@ pub struct FilledRadius {
     /// What it is now, in the unit of the network.
     pub filled: f64,
     /// What was wrong.
-    pub fault: Fault,
+    pub fault: RadiusDefect,
 }
 
 /// The network with usable radii, and the nodes whose radius was filled: between those of the nodes around it that are
@@ -52,7 +52,7 @@ pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), Skel
     check_all_but_radii(raw)?;
     let mut network = raw.clone();
     let places = Places::of(raw);
-    let faults: Vec<Option<Fault>> = places.faults(raw);
+    let faults: Vec<Option<RadiusDefect>> = places.faults(raw);
     let mut radii: Vec<Option<f64>> = vec![None; places.count];
     for (i, node) in raw.nodes.iter().enumerate() {
         if faults[i].is_none() {
@@ -150,7 +150,7 @@ impl Places {
     }
 
     /// What is wrong with the radius of each node.
-    fn faults(&self, raw: &Skeleton) -> Vec<Option<Fault>> {
+    fn faults(&self, raw: &Skeleton) -> Vec<Option<RadiusDefect>> {
         let mut at = vec![0.0_f64; self.count];
         for (node, &place) in raw.nodes.iter().zip(&self.of_node) {
             if good(node.radius) {
@@ -170,8 +170,8 @@ impl Places {
             *radius = 0.0;
         }
         let fault = |(node, &place): (&anastomesh_skeleton::Node, &u32)| match node.radius {
-            r if !good(r) => Some(Fault::Missing),
-            _ if all[place as usize] || self.is_dip(place, &told) => Some(Fault::Absurd),
+            r if !good(r) => Some(RadiusDefect::Missing),
+            _ if all[place as usize] || self.is_dip(place, &told) => Some(RadiusDefect::Absurd),
             _ => None,
         };
         raw.nodes.iter().zip(&self.of_node).map(fault).collect()

@@ -1,9 +1,9 @@
 //! The three forces of the paper (section 3.1), with their signs and reaches as they have to be.
 
 use super::contact::Contacts;
+use super::cut_length;
 use super::frame::{Chain, Frame};
 use super::push::Push;
-use super::cut_length;
 use anastomesh_mesh::geometry::Vec3;
 use anastomesh_skeleton::{Barrier, NARROW, NodeId};
 use rayon::prelude::*;

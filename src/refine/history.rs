@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// The metrics after some iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sample {
+pub struct HistorySample {
     /// How many iterations.
     pub iteration: usize,
     /// Displacement of the nodes.

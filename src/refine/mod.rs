@@ -20,7 +20,7 @@ mod tests;
 
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
-pub use history::{Displacement, Sample};
+pub use history::{Displacement, HistorySample};
 pub use leash::FarNode;
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
 pub use residual::{ResidualReport, Treatment};
@@ -99,7 +99,7 @@ pub struct RefineReport {
     /// Metrics that are worse in the end than they were given.
     pub worse: Vec<Metric>,
     /// The metrics over the iterations.
-    pub history: Vec<Sample>,
+    pub history: Vec<HistorySample>,
 }
 
 /// Refines a skeleton (3.1 of the paper): nodes of more than three vessels are split; the paper's three forces act; then

@@ -160,7 +160,12 @@ impl Field {
 
 /// Visits the pieces that count near a point, in order.
 #[inline]
-fn each_near(locator: &mut Option<Locator>, pieces: &[TaperedSegment], p: &Point3, mut visit: impl FnMut(&TaperedSegment)) {
+fn each_near(
+    locator: &mut Option<Locator>,
+    pieces: &[TaperedSegment],
+    p: &Point3,
+    mut visit: impl FnMut(&TaperedSegment),
+) {
     let Some(locator) = locator else { return pieces.iter().for_each(visit) };
     let (start, end) = locator.range(pieces, p);
     for &i in &locator.lists[start as usize..end as usize] {

@@ -1,6 +1,6 @@
 //! A network: to be drawn, or to tell what a place of its mesh belongs to.
 
-use super::pack::{Grid, Pack};
+use super::pack::{Pack, QuantizationGrid};
 use crate::flow::{NotConverged, Orders};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
@@ -11,12 +11,8 @@ const STEPS: u32 = 1 << 20;
 ///
 /// # Errors
 /// When its Strahler orders cannot be found.
-pub fn add_network(
-    network: &Skeleton,
-    inlets: &[NodeId],
-    pack: &mut Pack,
-) -> Result<serde_json::Value, NotConverged> {
-    let grid = Grid::of(network.nodes.iter().map(|n| &n.position), STEPS);
+pub fn add_network(network: &Skeleton, inlets: &[NodeId], pack: &mut Pack) -> Result<serde_json::Value, NotConverged> {
+    let grid = QuantizationGrid::of(network.nodes.iter().map(|n| &n.position), STEPS);
     pack.add("node", &grid.steps(network.nodes.iter().map(|n| &n.position)), 3);
     pack.add("nodeName", &network.nodes.iter().map(|n| n.original as i32).collect::<Vec<_>>(), 1);
     let ends: Vec<i32> = network.edges.iter().flat_map(|e| e.nodes.map(|n| n.0 as i32)).collect();

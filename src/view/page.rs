@@ -22,12 +22,12 @@ const SCRIPTS: [&str; 5] = [
 ];
 
 /// A page in the making.
-pub struct Page {
+pub struct ViewerPage {
     pub pack: Pack,
     facts: Map<String, Value>,
 }
 
-impl Page {
+impl ViewerPage {
     /// Of a file.
     pub fn new(title: &str) -> Self {
         let mut facts = Map::new();

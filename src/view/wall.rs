@@ -47,7 +47,7 @@ pub struct Group {
 
 /// The wall of a block.
 #[derive(Clone, Debug, Default)]
-pub struct Piece {
+pub struct BlockWall {
     pub block: i32,
     /// Of its rings, in the mean; infinite where it has none.
     pub radius: f64,
@@ -59,7 +59,7 @@ pub struct Piece {
 /// A wall.
 #[derive(Debug)]
 pub struct Wall {
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<BlockWall>,
     /// Whether it is shown as it is.
     pub exact: bool,
     /// Faces of the mesh's boundary.
@@ -140,12 +140,12 @@ fn made(
     corners: &[[Point3; 3]],
     coarse: Option<Coarse>,
     options: &WallOptions,
-) -> Piece {
+) -> BlockWall {
     let mut patches: BTreeMap<i32, Vec<usize>> = BTreeMap::new();
     for &i in faces {
         patches.entry(piece.patches.get(i).copied().unwrap_or(0)).or_default().push(i);
     }
-    let mut out = Piece { block, radius: f64::INFINITY, ..Piece::default() };
+    let mut out = BlockWall { block, radius: f64::INFINITY, ..BlockWall::default() };
     let locals: Vec<Local> = patches.iter().map(|(&patch, faces)| Local::of(patch, faces, piece, corners)).collect();
     // That with the most faces is the wall.
     if let Some(wall) = locals.iter().max_by_key(|local| local.group.triangles.len()) {
@@ -332,7 +332,7 @@ mod tests {
         let mesh = tube();
         let piece = mesh.boundary(0).unwrap();
         let corners = (&mesh as &dyn MeshSource).corners_of(&piece.faces).unwrap();
-        let blocks: Vec<Piece> = by_block(&piece)
+        let blocks: Vec<BlockWall> = by_block(&piece)
             .into_iter()
             .map(|(block, faces)| {
                 made(
@@ -346,7 +346,7 @@ mod tests {
             })
             .collect();
         // The points of a group's rings, exactly: those at the joint are the same in both blocks.
-        let rims = |piece: &Piece, patch: i32| -> BTreeSet<[u64; 3]> {
+        let rims = |piece: &BlockWall, patch: i32| -> BTreeSet<[u64; 3]> {
             let group = piece.groups.iter().find(|g| g.patch == patch).unwrap();
             let key = |&v: &u32| <[f64; 3]>::from(group.points[v as usize].coords).map(f64::to_bits);
             rings(&group.triangles).iter().flatten().map(key).collect()

@@ -18,7 +18,7 @@ const TRIANGLE_FLOOR: f64 = 0.6;
 /// Triangles of the end surface keep this cosine against the plane, or what they have.
 const COSINE_FLOOR: f64 = 0.5;
 
-pub(super) struct Relaxation<'a> {
+pub(super) struct EndRelaxation<'a> {
     pub region: &'a Region,
     pub removed: &'a [bool],
     pub section: &'a Section,
@@ -32,7 +32,7 @@ struct Worst {
     cosine: f64,
 }
 
-impl Relaxation<'_> {
+impl EndRelaxation<'_> {
     /// Moves `points` (global) of the end surface's vertices. `triangles` and `rim` are in local vertices.
     pub(super) fn run(&self, points: &mut [Point3], triangles: &[[u32; 3]], rim: &[u32]) {
         let inner = inner_vertices(triangles, rim);

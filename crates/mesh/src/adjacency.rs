@@ -157,12 +157,12 @@ fn match_sides<const SIDES: usize>(cells: usize, vertices: usize, key: impl Fn(u
 
 /// The sides met so far that have the same smallest vertex, chained by their middle vertex: few have that in common.
 struct Bucket {
-    sides: Vec<Side>,
+    sides: Vec<HalfFace>,
     /// For each vertex the newest side whose middle vertex it is.
     newest: Vec<u32>,
 }
 
-struct Side {
+struct HalfFace {
     middle: u32,
     last: u32,
     handle: u32,
@@ -199,7 +199,7 @@ impl Bucket {
             _ => matching.crowded.push(handle),
         }
         self.newest[middle as usize] = self.sides.len() as u32;
-        self.sides.push(Side { middle, last, handle, older });
+        self.sides.push(HalfFace { middle, last, handle, older });
     }
 
     fn clear(&mut self) {

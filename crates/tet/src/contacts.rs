@@ -90,8 +90,10 @@ pub(super) fn no_points_in_triangles(surface: &TriMesh) -> Result<(), TetError> 
         });
         if let Some((triangle, place)) = met {
             return Err(match place {
-                Place::Inside => TetError::Stuck { part: Obstacle::Triangle(triangle), reason: Stuck::Intersection },
-                Place::Edge(k) => {
+                TrianglePlace::Inside => {
+                    TetError::Stuck { part: Obstacle::Triangle(triangle), reason: Stuck::Intersection }
+                }
+                TrianglePlace::Edge(k) => {
                     let edge = [triangle[k], triangle[(k + 1) % 3]];
                     TetError::EdgeMeets { edge, obstacle: Obstacle::Point(v) }
                 }
@@ -112,14 +114,14 @@ fn boxes_of(surface: &TriMesh) -> Vec<Aabb> {
 
 /// Where in a triangle a point lies.
 #[derive(Clone, Copy)]
-enum Place {
+enum TrianglePlace {
     Inside,
     /// On the edge from this vertex to the next.
     Edge(usize),
 }
 
 /// Where in a triangle with area a point lies; none when it is not in the triangle. Exact.
-fn place_in([a, b, c]: [&Point3; 3], p: &Point3) -> Option<Place> {
+fn place_in([a, b, c]: [&Point3; 3], p: &Point3) -> Option<TrianglePlace> {
     if orient3d(a, b, c, p) != 0.0 {
         return None;
     }
@@ -129,5 +131,5 @@ fn place_in([a, b, c]: [&Point3; 3], p: &Point3) -> Option<Place> {
     let turn = orient2d(a, b, c).signum();
     let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| turn * orient2d(from, to, p));
     let on_edge = sides.iter().position(|&side| side == 0.0);
-    sides.iter().all(|&side| side >= 0.0).then(|| on_edge.map_or(Place::Inside, Place::Edge))
+    sides.iter().all(|&side| side >= 0.0).then(|| on_edge.map_or(TrianglePlace::Inside, TrianglePlace::Edge))
 }

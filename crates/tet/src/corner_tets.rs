@@ -113,7 +113,8 @@ fn split_disjoint(mesh: &mut TetMesh, corners: &[CornerTet]) -> bool {
         if touched.contains(&corner.tet) {
             continue;
         }
-        let mut ways: Vec<LocalChange> = corner.outside.iter().filter_map(|&v| incidence.flip(mesh, corner, v)).collect();
+        let mut ways: Vec<LocalChange> =
+            corner.outside.iter().filter_map(|&v| incidence.flip(mesh, corner, v)).collect();
         ways.extend(incidence.split(mesh, corner.inside));
         let worth = |way: &LocalChange| way.worst * if way.vertex.is_some() { NEW_VERTEX_FACTOR } else { 1.0 };
         let best = ways.into_iter().reduce(|best, way| if worth(&way) > worth(&best) { way } else { best });

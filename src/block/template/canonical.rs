@@ -73,11 +73,11 @@ pub struct Template {
 
 /// What a template is found by: the number of corners of its discs, the power of its length, which of its ends are caps, and
 /// its layers: how many, and the bits of growth and thickness; and the bits of how long edges are on its axis.
-type Key = (u32, i32, [bool; 2], Option<(u32, [u64; 2])>, u64);
+type TemplateKey = (u32, i32, [bool; 2], Option<(u32, [u64; 2])>, u64);
 /// None: it cannot be made.
-type Kept = Arc<OnceLock<Option<Template>>>;
+type CacheEntry = Arc<OnceLock<Option<Template>>>;
 
-static TEMPLATES: LazyLock<RwLock<FxHashMap<Key, Kept>>> = LazyLock::new(RwLock::default);
+static TEMPLATES: LazyLock<RwLock<FxHashMap<TemplateKey, CacheEntry>>> = LazyLock::new(RwLock::default);
 
 /// The template of a length near to `length` radii, for discs that have so many corners. Ends that are caps are on the boundary
 /// of the whole. Of the parameters, ρ, core and layers count.
@@ -94,7 +94,7 @@ pub fn with<R>(
     kept.get_or_init(|| Template::best(params, STEP.powi(power), caps)).as_ref().map(then)
 }
 
-fn slot(key: Key) -> Kept {
+fn slot(key: TemplateKey) -> CacheEntry {
     // A thread that panicked left whole entries only.
     if let Some(kept) = TEMPLATES.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
         return Arc::clone(kept);
@@ -113,13 +113,13 @@ impl Template {
         let tube = connector_surface(&cut.path, ends.both(), DIVISION).ok()?;
         let rings = Rings { corners, length, rows: tube.rings + 1, radius: 1.0, core: params.core };
         let inside = match &params.layers {
-            None => Inside::plain(&tube, |surface| core(surface, &rings), caps),
+            None => TubeInterior::plain(&tube, |surface| core(surface, &rings), caps),
             Some(layers) => {
                 let rings = Rings { radius: 1.0 - layers.thickness, ..rings };
-                Inside::layered(&tube, &cut.path, layers, |surface| core(surface, &rings))
+                TubeInterior::layered(&tube, &cut.path, layers, |surface| core(surface, &rings))
             }
         };
-        let Inside { mesh, disc, ends, wall, layers } = inside.ok()??;
+        let TubeInterior { mesh, disc, ends, wall, layers } = inside.ok()??;
         let TetMesh { mut points, tets } = mesh;
         let least = radius_ratios(&points, &tets[..layers]).fold(1.0, f64::min);
         for point in &mut points {
@@ -130,7 +130,7 @@ impl Template {
 }
 
 /// A straight tube, filled, under the numbers of a template.
-struct Inside {
+struct TubeInterior {
     mesh: TetMesh,
     disc: u32,
     ends: [Vec<[u32; 3]>; 2],
@@ -138,7 +138,7 @@ struct Inside {
     layers: usize,
 }
 
-impl Inside {
+impl TubeInterior {
     fn plain(
         tube: &ConnectorSurface,
         core: impl Fn(&TriMesh) -> Result<TetMesh, TetError>,

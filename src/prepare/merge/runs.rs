@@ -1,6 +1,6 @@
 //! Where a line runs together with those that are kept, and how much of it goes.
 
-use super::line::Line;
+use super::line::SampledLine;
 use anastomesh_mesh::geometry::{Aabb, Bvh, DisjointSets, Point3, Vec3, point_segment};
 use anastomesh_skeleton::{EdgeId, Kinship, LineGroup, NodeId, Skeleton};
 
@@ -34,7 +34,7 @@ pub(super) struct Foot {
 
 /// A stretch of a line that goes, by its first and last node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run {
+pub(super) struct DoubledStretch {
     pub first: usize,
     pub last: usize,
     /// The nodes at which the line leaves the tube, where the run does not reach the line's end.
@@ -42,7 +42,7 @@ pub(super) struct Run {
 }
 
 /// The search for lines that are kept.
-pub(super) struct Kept<'a> {
+pub(super) struct KeptLines<'a> {
     skeleton: &'a Skeleton,
     tree: Bvh,
     tangents: Vec<Vec3>,
@@ -55,7 +55,7 @@ pub(super) struct Kept<'a> {
     looks: usize,
 }
 
-impl<'a> Kept<'a> {
+impl<'a> KeptLines<'a> {
     pub(super) fn new(skeleton: &'a Skeleton, groups: Vec<Option<LineGroup>>) -> Self {
         let boxes = skeleton.edge_ids().map(|e| {
             let tube = skeleton.tube(e);
@@ -80,7 +80,7 @@ impl<'a> Kept<'a> {
     }
 
     /// Keeps a line but for its runs.
-    pub(super) fn keep(&mut self, line: &Line, runs: &[Run]) {
+    pub(super) fn keep(&mut self, line: &SampledLine, runs: &[DoubledStretch]) {
         let gone = |piece: usize| runs.iter().any(|r| r.first <= piece && piece < r.last);
         for (piece, &edge) in line.edges.iter().enumerate().filter(|(piece, _)| !gone(*piece)) {
             let ends = [piece == 0 || gone(piece - 1), piece + 1 == line.edges.len() || gone(piece + 1)];
@@ -134,7 +134,7 @@ impl<'a> Kept<'a> {
 
     /// Of each edge of a line, whether the points between its nodes have feet too: the nodes of a short vessel between two
     /// others always do.
-    pub(super) fn along(&mut self, line: &Line) -> Vec<bool> {
+    pub(super) fn along(&mut self, line: &SampledLine) -> Vec<bool> {
         let mut along = Vec::with_capacity(line.edges.len());
         for piece in 0..line.edges.len() {
             let [a, b] = [piece, piece + 1].map(|i| self.skeleton.node(line.nodes[i]).position);
@@ -151,7 +151,7 @@ impl<'a> Kept<'a> {
     }
 
     /// The feet of all nodes of a line.
-    pub(super) fn feet(&mut self, line: &Line) -> Vec<Option<Foot>> {
+    pub(super) fn feet(&mut self, line: &SampledLine) -> Vec<Option<Foot>> {
         let feet = (0..line.nodes.len()).map(|i| {
             let point = self.skeleton.node(line.nodes[i]).position;
             self.foot(&point, line.radii[i], &line.tangents[i], line.edges[i.min(line.edges.len() - 1)])
@@ -162,7 +162,7 @@ impl<'a> Kept<'a> {
 
 /// A line and where it runs with others.
 pub(super) struct Course<'a> {
-    pub line: &'a Line,
+    pub line: &'a SampledLine,
     /// Of each node.
     pub feet: &'a [Option<Foot>],
     /// Of each edge, whether it runs with others between its nodes.
@@ -172,7 +172,7 @@ pub(super) struct Course<'a> {
 }
 
 /// The stretches of a line that go. `open` says which of its ends are tips.
-pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<Run> {
+pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<DoubledStretch> {
     let Course { line, feet, along, .. } = course;
     let inside = |i: usize| feet[i].is_some_and(|f| !f.at_end);
     let mut together: Vec<[usize; 2]> = Vec::new();
@@ -190,7 +190,7 @@ pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<Run> {
 }
 
 /// A run that comes within a radius of a tip takes it along: lines of one vessel do not end at the very same place.
-fn to_tips(line: &Line, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [usize; 2] {
+fn to_tips(line: &SampledLine, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [usize; 2] {
     if first == last {
         return [first, last];
     }
@@ -205,7 +205,7 @@ fn to_tips(line: &Line, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [
 
 impl Course<'_> {
     /// What of a run goes, once the places where the line parts are found.
-    fn run(&self, [first, last]: [usize; 2], open: [bool; 2]) -> Option<Run> {
+    fn run(&self, [first, last]: [usize; 2], open: [bool; 2]) -> Option<DoubledStretch> {
         let line = self.line;
         let radius = line.radii[first].max(line.radii[last]);
         let [from, to] =
@@ -214,7 +214,11 @@ impl Course<'_> {
         if to <= from || line.arc[to] - line.arc[from] < SHORTEST * radius && !whole {
             return None;
         }
-        Some(Run { first: from, last: to, parts: [(from > 0).then_some(first), (to < line.last()).then_some(last)] })
+        Some(DoubledStretch {
+            first: from,
+            last: to,
+            parts: [(from > 0).then_some(first), (to < line.last()).then_some(last)],
+        })
     }
 
     /// Where a run ends at one side: where the two vessels part, or with the line. `at_end`: it reaches the line's end.

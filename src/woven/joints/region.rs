@@ -15,7 +15,7 @@ pub type Improve<'a> = dyn Fn(&mut TetMesh, usize) -> bool + Sync + 'a;
 
 /// A part of a mesh with its own numbering: first the points that the inside's improvement may not move, then the
 /// inner ones.
-pub(super) struct Region {
+pub(super) struct JointRegion {
     pub mesh: TetMesh,
     /// The first so many points are not inner points.
     pub fixed: usize,
@@ -30,7 +30,7 @@ pub(super) struct Region {
     slots: Vec<u32>,
 }
 
-impl Region {
+impl JointRegion {
     /// Takes out the tetrahedra `tets`. `degree` counts the tetrahedra around each vertex of the whole: a vertex whose
     /// tetrahedra are not all in the region is shared with the rest and stays.
     pub fn new(whole: &TetMesh, tet_block: &[i32], tets: &[u32], degree: &[u32], frozen: &[bool]) -> Self {

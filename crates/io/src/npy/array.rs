@@ -6,7 +6,7 @@ use crate::scalar::Scalar;
 
 /// An array as it stands in its file, whose length is that of its header.
 #[derive(Clone, Debug)]
-pub(super) struct Array<'a> {
+pub(super) struct NpyArray<'a> {
     header: Header,
     scalar: Scalar,
     /// Whether the first byte of an item is the highest.
@@ -31,7 +31,7 @@ fn scalar_of(name: &str) -> Option<Scalar> {
     })
 }
 
-impl<'a> Array<'a> {
+impl<'a> NpyArray<'a> {
     /// Reads the header, and holds what it says against the length of the file.
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, NpyFault> {
         let (header, data) = Header::read(bytes)?;

@@ -14,7 +14,7 @@ const DEEPEST: usize = 64;
 pub struct ElementId(usize);
 
 #[derive(Debug, Default)]
-struct Element<'a> {
+struct XmlElement<'a> {
     name: String,
     attributes: Vec<(String, String)>,
     text: Cow<'a, str>,
@@ -42,7 +42,7 @@ pub(super) struct Appended<'a> {
 /// A parsed VTK XML file that borrows the file's bytes.
 #[derive(Debug)]
 pub struct VtkXml<'a> {
-    elements: Vec<Element<'a>>,
+    elements: Vec<XmlElement<'a>>,
     layout: Layout,
     appended: Option<Appended<'a>>,
 }
@@ -197,9 +197,9 @@ fn parse_appended(tail: &[u8], at: usize) -> Result<Appended<'_>, VtkError> {
 }
 
 /// Builds the tree. With `open_end`, the text ends inside elements because the rest of the file was cut off.
-fn parse_elements(text: &str, open_end: bool) -> Result<Vec<Element<'_>>, VtkError> {
+fn parse_elements(text: &str, open_end: bool) -> Result<Vec<XmlElement<'_>>, VtkError> {
     let mut reader = quick_xml::Reader::from_str(text);
-    let mut elements: Vec<Element> = Vec::new();
+    let mut elements: Vec<XmlElement> = Vec::new();
     let mut open: Vec<ElementId> = Vec::new();
     loop {
         let event = reader.read_event().map_err(|source| VtkError::Xml { byte: reader.error_position(), source })?;
@@ -235,7 +235,7 @@ fn append_text<'a>(text: &mut Cow<'a, str>, more: Cow<'a, str>) {
 }
 
 fn add_element(
-    elements: &mut Vec<Element>,
+    elements: &mut Vec<XmlElement>,
     open: &[ElementId],
     byte: u64,
     tag: &BytesStart,
@@ -244,7 +244,7 @@ fn add_element(
     if open.len() >= DEEPEST {
         return Err(VtkError::TooDeep);
     }
-    let mut element = Element { name: tag.name().into_inner().to_owned(), ..Element::default() };
+    let mut element = XmlElement { name: tag.name().into_inner().to_owned(), ..XmlElement::default() };
     for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute.map_err(|_| VtkError::BadAttribute { byte })?;
         let value = quick_xml::escape::unescape(&attribute.value).map_err(|_| VtkError::BadAttribute { byte })?;

@@ -70,7 +70,7 @@ impl FrontFace {
 
 /// Where the search takes place.
 #[derive(Clone, Copy)]
-pub(super) struct Room<'a> {
+pub(super) struct SearchScope<'a> {
     pub c: &'a Complex,
     pub allowance: &'a Allowance,
 }
@@ -118,7 +118,7 @@ impl Reconnection {
     /// of the search. None of them is below the radius ratio `least`.
     pub(super) fn find(
         &mut self,
-        room: Room,
+        room: SearchScope,
         [t, size, nodes]: [usize; 3],
         least: f64,
         strain_of: impl Fn(&[u32]) -> f64,
@@ -218,7 +218,7 @@ impl Reconnection {
 
     /// Where the tetrahedron of four local vertices is in the table, and whether it is turned over there; none when a
     /// vertex is there twice. Its volume is known then.
-    fn entry(&mut self, room: Room, v: [u8; 4]) -> Option<(usize, bool)> {
+    fn entry(&mut self, room: SearchScope, v: [u8; 4]) -> Option<(usize, bool)> {
         let (sorted, odd) = sort4(v);
         let [i, j, k, l] = sorted.map(usize::from);
         if i == j || j == k || k == l {
@@ -233,7 +233,7 @@ impl Reconnection {
     }
 
     /// Whether the tetrahedron of four local vertices is positive.
-    fn is_positive(&mut self, room: Room, v: [u8; 4]) -> bool {
+    fn is_positive(&mut self, room: SearchScope, v: [u8; 4]) -> bool {
         self.entry(room, v).is_some_and(|(at, odd)| {
             let volume = self.table[at].volume;
             if odd { volume < 0.0 } else { volume > 0.0 }
@@ -242,7 +242,7 @@ impl Reconnection {
 
     /// The tetrahedron of four local vertices, if it is positive: radius ratio, as a part of what is allowed, volume and
     /// strain. Most are asked for their sign alone, so the rest waits.
-    fn tet(&mut self, room: Room, v: [u8; 4]) -> Option<Entry> {
+    fn tet(&mut self, room: SearchScope, v: [u8; 4]) -> Option<Entry> {
         if !self.is_positive(room, v) {
             return None;
         }
@@ -264,7 +264,7 @@ impl Reconnection {
         Some(Entry { volume: if odd { -entry.volume } else { entry.volume }, ..entry })
     }
 
-    fn search(&mut self, room: Room) {
+    fn search(&mut self, room: SearchScope) {
         self.table.clear();
         self.table.resize(choose(self.vertices.len(), 4), NO_ENTRY);
         self.faces.clear();
@@ -292,7 +292,7 @@ impl Reconnection {
     }
 
     /// A face to be closed.
-    fn front_face(&mut self, room: Room, f: [u8; 3]) -> FrontFace {
+    fn front_face(&mut self, room: SearchScope, f: [u8; 3]) -> FrontFace {
         let place = face_index(f);
         let at = usize::from(place);
         if self.faces[at].mates == UNKNOWN {
@@ -348,7 +348,7 @@ impl Reconnection {
     }
 
     /// Closes the front with tetrahedra above the floor; depth is bounded by the volume and by the number of steps.
-    fn branch(&mut self, room: Room, sum: f64, volume: f64) {
+    fn branch(&mut self, room: SearchScope, sum: f64, volume: f64) {
         if self.front.is_empty() {
             if sum < self.limit && volume.abs() <= self.slack * 1e3 {
                 self.limit = sum;
@@ -399,7 +399,7 @@ impl Reconnection {
     }
 
     /// Puts tetrahedron (v, face `at`) into the room, goes on, and takes it out again.
-    fn take(&mut self, room: Room, at: usize, v: u8, sum: f64, volume: f64) {
+    fn take(&mut self, room: SearchScope, at: usize, v: u8, sum: f64, volume: f64) {
         let [a, b, d] = self.front[at].v;
         if self.encloses(room, [v, a, b, d]) {
             return;
@@ -450,7 +450,7 @@ impl Reconnection {
     }
 
     /// Whether another vertex of the front lies strictly inside.
-    fn encloses(&mut self, room: Room, v: [u8; 4]) -> bool {
+    fn encloses(&mut self, room: SearchScope, v: [u8; 4]) -> bool {
         let Some((at, _)) = self.entry(room, v) else { return true };
         if self.table[at].enclosed == UNKNOWN {
             let [v, a, b, d] = v;

@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 
 /// What the elements inside belong to.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Owner {
+enum ElementOwner {
     Node(u32),
     Edge(u32),
 }
@@ -20,7 +20,7 @@ struct Reading {
     graph: Graph,
     /// Names of the elements that are open.
     open: Vec<String>,
-    owner: Option<(usize, Owner)>,
+    owner: Option<(usize, ElementOwner)>,
     /// The attribute that is open: at which depth, its name, its text.
     value: Option<(usize, String, String)>,
     /// GraphML: what the keys are called.
@@ -70,12 +70,12 @@ impl Reading {
             }
             "node" => {
                 let row = self.graph.node(&needed(tag, byte, "node", "id")?, place)?;
-                self.owner = Some((self.open.len(), Owner::Node(row)));
+                self.owner = Some((self.open.len(), ElementOwner::Node(row)));
             }
             "edge" => {
                 let [from, to] = [["source", "from"], ["target", "to"]].map(|names| either(tag, byte, names));
                 let row = self.graph.edge([&from?, &to?], place)?;
-                self.owner = Some((self.open.len(), Owner::Edge(row)));
+                self.owner = Some((self.open.len(), ElementOwner::Edge(row)));
             }
             "data" => {
                 let key = needed(tag, byte, "data", "key")?;
@@ -104,8 +104,8 @@ impl Reading {
             && let Some((_, owner)) = self.owner
         {
             match owner {
-                Owner::Node(row) => self.graph.nodes.set(row, &name, Value::of(&text)),
-                Owner::Edge(row) => self.graph.edges.set(row, &name, Value::of(&text)),
+                ElementOwner::Node(row) => self.graph.nodes.set(row, &name, Value::of(&text)),
+                ElementOwner::Edge(row) => self.graph.edges.set(row, &name, Value::of(&text)),
             }
         }
         self.owner.take_if(|(at, _)| *at == depth);

@@ -26,7 +26,7 @@ fn scalar_of(name: &str) -> Option<Scalar> {
 
 /// Values that lie in the file.
 #[derive(Clone, Debug)]
-pub(super) struct Array<'a> {
+pub(super) struct LegacyArray<'a> {
     /// What the file calls it.
     pub name: String,
     /// Number of values.
@@ -39,7 +39,7 @@ pub(super) struct Array<'a> {
     binary: bool,
 }
 
-impl<'a> Array<'a> {
+impl<'a> LegacyArray<'a> {
     /// Takes an array of numbers.
     pub(super) fn take(
         cursor: &mut Cursor<'a>,

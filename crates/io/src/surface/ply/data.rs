@@ -1,6 +1,6 @@
 //! The numbers behind the head of a PLY file.
 
-use super::head::{Element, Encoding, Head};
+use super::head::{Encoding, PlyElement, PlyHeader};
 use crate::scalar::Scalar;
 use crate::surface::error::SurfaceFault;
 use crate::text::Place;
@@ -14,7 +14,7 @@ pub(super) enum Data<'a> {
 
 impl<'a> Data<'a> {
     /// What follows the head.
-    pub(super) fn new(bytes: &'a [u8], head: &Head) -> Self {
+    pub(super) fn new(bytes: &'a [u8], head: &PlyHeader) -> Self {
         if head.encoding == Encoding::Text {
             Self::Text(Words::from_line(&bytes[head.end..], head.line))
         } else {
@@ -31,7 +31,7 @@ impl<'a> Data<'a> {
     }
 
     /// Refuses an element that cannot fit into the rest of the file.
-    pub(super) fn ensure_room(&self, element: &Element) -> Result<(), SurfaceFault> {
+    pub(super) fn ensure_room(&self, element: &PlyElement) -> Result<(), SurfaceFault> {
         let (encoding, rest) = match self {
             Self::Text(words) => (Encoding::Text, words.rest() as u64 + 1),
             Self::Binary { bytes, at, .. } => (Encoding::Little, (bytes.len() - at) as u64),

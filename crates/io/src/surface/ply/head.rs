@@ -40,14 +40,14 @@ pub(super) struct Property {
 
 /// A kind of items.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Element {
+pub(super) struct PlyElement {
     pub(super) name: Vec<u8>,
     /// How many items there are, as the file says.
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
 }
 
-impl Element {
+impl PlyElement {
     /// The fewest bytes an item takes.
     pub(super) fn least(&self, encoding: Encoding) -> usize {
         // A number of a text takes a digit and a blank.
@@ -63,9 +63,9 @@ impl Element {
 
 /// What the head says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Head {
+pub(super) struct PlyHeader {
     pub(super) encoding: Encoding,
-    pub(super) elements: Vec<Element>,
+    pub(super) elements: Vec<PlyElement>,
     /// Where the data begin.
     pub(super) end: usize,
     /// In which line the data begin.
@@ -73,8 +73,8 @@ pub(super) struct Head {
 }
 
 /// Parses the head.
-pub(super) fn parse(bytes: &[u8]) -> Result<Head, SurfaceFault> {
-    let mut head = Head { encoding: Encoding::Text, elements: Vec::new(), end: 0, line: 1 };
+pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, SurfaceFault> {
+    let mut head = PlyHeader { encoding: Encoding::Text, elements: Vec::new(), end: 0, line: 1 };
     let mut encoded = false;
     while let Some(length) = bytes[head.end..].iter().position(|&b| b == b'\n') {
         let line = &bytes[head.end..head.end + length];
@@ -99,7 +99,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Head, SurfaceFault> {
                     what: "the element's count",
                     value: count,
                 })?;
-                head.elements.push(Element { name, count, properties: Vec::new() });
+                head.elements.push(PlyElement { name, count, properties: Vec::new() });
             }
             b"property" => {
                 let property = property(&mut words, place)?;

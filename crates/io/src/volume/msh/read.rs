@@ -1,6 +1,6 @@
 //! Reads tetrahedral meshes from Gmsh's MSH: 4.1, text or binary, and 2.2, text.
 
-use super::cursor::{Cursor, Version};
+use super::cursor::{MshCursor, Version};
 use super::error::MshFault;
 use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION};
 use crate::patches::{distinct, usual_name};
@@ -15,8 +15,8 @@ use rustc_hash::FxHashMap;
 /// # Errors
 /// When the file is no such file or incomplete, or holds other elements.
 pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
-    let mut cursor = Cursor::new(bytes);
-    let mut parts = Parts::default();
+    let mut cursor = MshCursor::new(bytes);
+    let mut parts = MshSections::default();
     if cursor.next_section()? != Some("MeshFormat") {
         return Err(MshFault::Missing { what: "$MeshFormat" });
     }
@@ -46,7 +46,7 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
 
 /// The sections' content.
 #[derive(Default)]
-struct Parts {
+struct MshSections {
     /// Names of the physical groups of surfaces.
     names: Vec<(i32, String)>,
     /// First physical group of each surface.
@@ -59,8 +59,8 @@ struct Parts {
     extra: Extra,
 }
 
-impl Parts {
-    fn read_names(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+impl MshSections {
+    fn read_names(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         // Text also in binary files.
         let count: u64 = cursor.line()?.parse().map_err(|_| cursor.bad())?;
         for _ in 0..count {
@@ -76,7 +76,7 @@ impl Parts {
         Ok(())
     }
 
-    fn read_entities(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_entities(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         let counts: [u64; 4] = cursor.sizes()?;
         for (dimension, count) in counts.into_iter().enumerate() {
             for _ in 0..count {
@@ -100,7 +100,7 @@ impl Parts {
         Ok(())
     }
 
-    fn read_nodes(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_nodes(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         let [blocks, ..]: [u64; 4] = cursor.sizes()?;
         for _ in 0..blocks {
             let (dimension, _tag, parametric) = (cursor.int()?, cursor.int()?, cursor.int()?);
@@ -117,7 +117,7 @@ impl Parts {
         Ok(())
     }
 
-    fn read_elements(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_elements(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         let [blocks, ..]: [u64; 4] = cursor.sizes()?;
         for _ in 0..blocks {
             let (_dimension, entity, kind) = (cursor.int()?, cursor.int()?, cursor.int()?);
@@ -132,7 +132,7 @@ impl Parts {
     }
 
     /// Version 2: a tag and a place each.
-    fn read_node_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_node_list(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         for _ in 0..cursor.size()? {
             let tag = cursor.size()?;
             self.nodes.push((tag, Point3::new(cursor.float()?, cursor.float()?, cursor.float()?)));
@@ -141,7 +141,7 @@ impl Parts {
     }
 
     /// Version 2: a tag, a type, a number of further tags (the first is the physical group), those, and the corners.
-    fn read_element_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_element_list(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         for _ in 0..cursor.size()? {
             let (tag, kind, tags) = (cursor.size()?, cursor.int()?, cursor.size()?);
             let mut group = 0;
@@ -159,7 +159,7 @@ impl Parts {
     }
 
     /// Reads the vertices of an element of a type.
-    fn read_corners(&mut self, cursor: &mut Cursor, tag: u64, kind: i32, group: i32) -> Result<(), MshFault> {
+    fn read_corners(&mut self, cursor: &mut MshCursor, tag: u64, kind: i32, group: i32) -> Result<(), MshFault> {
         match kind {
             MSH_TRIANGLE => self.triangles.push((tag, cursor.sizes()?, group)),
             MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
@@ -174,7 +174,7 @@ impl Parts {
         Ok(())
     }
 
-    fn read_extra(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_extra(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         let line = cursor.line()?;
         self.extra = serde_json::from_str(line).map_err(|_| cursor.bad())?;
         Ok(())

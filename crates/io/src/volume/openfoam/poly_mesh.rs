@@ -38,7 +38,7 @@ pub(super) fn write(
     let counts = mesh.counts();
     let note =
         format!("nPoints:{}  nCells:{}  nFaces:{faces}  nInternalFaces:{}", counts.points, counts.tets, boundary.inner);
-    let mut lists = Lists {
+    let mut lists = FaceLists {
         corners: corner_list(folder, &note, faces, progress)?,
         owner: label_list(folder, OWNER, &note, faces)?,
         neighbour: label_list(folder, NEIGHBOUR, &note, boundary.inner)?,
@@ -61,7 +61,7 @@ pub(super) fn write(
         }
         Ok(())
     })?;
-    [lists.corners, lists.owner, lists.neighbour].into_iter().try_for_each(List::finish)
+    [lists.corners, lists.owner, lists.neighbour].into_iter().try_for_each(LabelList::finish)
 }
 
 fn write_points(folder: &AtomicFolder, mesh: &dyn MeshSource, progress: &dyn Progress) -> io::Result<()> {
@@ -77,13 +77,13 @@ fn write_points(folder: &AtomicFolder, mesh: &dyn MeshSource, progress: &dyn Pro
 }
 
 /// The lists that are written side by side.
-struct Lists {
-    corners: List,
-    owner: List,
-    neighbour: List,
+struct FaceLists {
+    corners: LabelList,
+    owner: LabelList,
+    neighbour: LabelList,
 }
 
-impl Lists {
+impl FaceLists {
     /// Faces of one patch, from the place of the first.
     fn put_outer(&mut self, place: u64, faces: &[OuterFace]) -> io::Result<()> {
         let corners: Vec<[u32; 3]> = faces.iter().map(|face| face.vertices).collect();
@@ -93,7 +93,7 @@ impl Lists {
 }
 
 /// A list of labels in a file, so many for each face, which are put where they belong.
-struct List {
+struct LabelList {
     file: AtomicFile,
     /// Where the first label is.
     start: u64,
@@ -105,7 +105,7 @@ struct List {
     at: u64,
 }
 
-impl List {
+impl LabelList {
     fn begin(mut file: AtomicFile, width: u64, faces: u64) -> io::Result<Self> {
         write!(file, "{}\n(", width * faces)?;
         let start = file.stream_position()?;
@@ -130,14 +130,14 @@ impl List {
     }
 }
 
-fn label_list(folder: &AtomicFolder, path: &str, note: &str, faces: u64) -> io::Result<List> {
+fn label_list(folder: &AtomicFolder, path: &str, note: &str, faces: u64) -> io::Result<LabelList> {
     let mut file = folder.file(path)?;
     file.write_all(head::binary("labelList", path, note).as_bytes())?;
-    List::begin(file, 1, faces)
+    LabelList::begin(file, 1, faces)
 }
 
 /// The corners of all faces, after the list of where those of each face begin.
-fn corner_list(folder: &AtomicFolder, note: &str, faces: u64, progress: &dyn Progress) -> io::Result<List> {
+fn corner_list(folder: &AtomicFolder, note: &str, faces: u64, progress: &dyn Progress) -> io::Result<LabelList> {
     /// Labels that are written at a time.
     const AT_A_TIME: u32 = 1 << 16;
     let mut file = folder.file(FACES)?;
@@ -149,5 +149,5 @@ fn corner_list(folder: &AtomicFolder, note: &str, faces: u64, progress: &dyn Pro
         out.write_all(&some.flat_map(|face| (3 * face).to_le_bytes()).collect::<Vec<u8>>())?;
     }
     out.write_all(b")\n")?;
-    List::begin(file, 3, faces)
+    LabelList::begin(file, 3, faces)
 }

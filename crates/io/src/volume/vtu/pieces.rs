@@ -1,7 +1,7 @@
 //! VTU files that are too large to be held, read a block of the mesh at a time: those that are written here, where the
 //! tetrahedra and the faces of each block stand together.
 
-use super::layout::{Counts, Head, Piece, VtuPiecesError, check_offsets, count_tets, pieces, runs};
+use super::layout::{BlockPiece, Counts, VtuHeader, VtuPiecesError, check_offsets, count_tets, pieces, runs};
 use crate::volume::content::MeshNotes;
 use crate::vtk_xml::{BlockFile, PackedArray};
 use anastomesh_mesh::Patch;
@@ -27,7 +27,7 @@ pub struct VtuPieces {
     /// Whether coordinates take 8 bytes.
     double: bool,
     counts: Counts,
-    pieces: Vec<Piece>,
+    pieces: Vec<BlockPiece>,
     patches: Vec<Patch>,
     notes: MeshNotes,
 }
@@ -40,7 +40,7 @@ impl VtuPieces {
     /// system's reason or `InvalidData` when an array cannot be decompressed.
     pub fn open(path: &Path, memory: usize) -> Result<Self, VtuPiecesError> {
         let file = BlockFile::open(path, memory)?;
-        let head = Head::read(&file, memory)?;
+        let head = VtuHeader::read(&file, memory)?;
         let counts = head.counts;
         let array = |offset, values, width| file.array(offset, values, width, head.zlib);
         let index = if head.wide { 8 } else { 4 };
@@ -119,13 +119,13 @@ impl MeshSource for VtuPieces {
     }
 
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        let Piece { block, tets, .. } = &self.pieces[part as usize];
+        let BlockPiece { block, tets, .. } = &self.pieces[part as usize];
         let tets = self.corners(4 * tets.start..4 * tets.end)?;
         Ok(TetPiece { blocks: vec![*block; tets.len()].into(), tets: tets.into() })
     }
 
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
-        let Piece { block, faces, .. } = &self.pieces[part as usize];
+        let BlockPiece { block, faces, .. } = &self.pieces[part as usize];
         let at = |cell: u64| 4 * self.counts.tets + 3 * (cell - self.counts.tets);
         let patches = self.file.values(&self.patch, faces.clone())?;
         let patches: Vec<i32> = patches.as_chunks().0.iter().map(|w| i32::from_le_bytes(*w)).collect();

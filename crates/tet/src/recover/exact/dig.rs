@@ -50,7 +50,7 @@ pub(super) struct Dig<'a> {
 /// The weights from which all walls are seen from inside, those between two, and the walls, as half-faces of the
 /// cavity, that bound them.
 #[derive(Clone, Copy)]
-struct View {
+struct VisibleFaces {
     low: (u128, u32),
     high: (u128, u32),
     /// A wall that is seen from nowhere on the segment.
@@ -84,7 +84,7 @@ impl Sight {
     }
 }
 
-impl View {
+impl VisibleFaces {
     fn of(walls: impl Iterator<Item = (u32, Sight)>) -> Self {
         let mut view = Self { low: (0, u32::MAX), high: (OnTriangle::ONE, u32::MAX), blind: None };
         for (half, sight) in walls {
@@ -113,7 +113,7 @@ impl View {
 
 /// A weight on a segment from which all walls of a cavity are seen.
 pub(super) fn middle(s: &Space, ends: [u32; 2], cavity: &[u32]) -> Option<u128> {
-    let view = View::of(s.outer(cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
+    let view = VisibleFaces::of(s.outer(cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
     (view.width() > 0).then(|| view.middle())
 }
 
@@ -217,7 +217,7 @@ impl<'a> Dig<'a> {
     /// A cavity whose walls are all seen from somewhere on the segment, however near they are.
     fn seen(&mut self, first: Vec<u32>) -> Option<Dug> {
         let mut tets = first;
-        let mut best: Option<(Vec<u32>, View)> = None;
+        let mut best: Option<(Vec<u32>, VisibleFaces)> = None;
         for step in 0..STEPS {
             let walls = self.s.outer(&tets);
             let view = self.view(&walls);
@@ -240,9 +240,11 @@ impl<'a> Dig<'a> {
         best.map(|(tets, view)| Dug::Place(tets, view.middle()))
     }
 
-    fn view(&mut self, walls: &[u32]) -> View {
+    fn view(&mut self, walls: &[u32]) -> VisibleFaces {
         let (s, ends, known) = (self.s, self.ends, &mut self.known);
-        View::of(walls.iter().map(|&half| (half, *known.entry(half).or_insert_with(|| Sight::of(s, ends, half)))))
+        VisibleFaces::of(
+            walls.iter().map(|&half| (half, *known.entry(half).or_insert_with(|| Sight::of(s, ends, half)))),
+        )
     }
 
     /// Whether the vertex from which the segment comes sees all walls, one of which has the end.
@@ -256,7 +258,7 @@ impl<'a> Dig<'a> {
     }
 
     /// Adds what lies behind one of the walls that bound the view, the one that gains more.
-    fn widen(&mut self, tets: &mut Vec<u32>, view: &View) -> bool {
+    fn widen(&mut self, tets: &mut Vec<u32>, view: &VisibleFaces) -> bool {
         let mut best: Option<(i128, u32)> = None;
         let bounds = if let Some(half) = view.blind { vec![half] } else { vec![view.low.1, view.high.1] };
         for half in bounds {

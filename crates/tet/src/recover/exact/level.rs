@@ -5,10 +5,10 @@
 //! way, or a new one. Nothing is put
 //! between points that lie in the plane, where there is no room.
 
+use super::kernel::{Apex, Kernel, LEVELS};
 use super::parts::{Missing, sides, sorted};
 use super::plane::{Patch, Plane};
 use super::push::Push;
-use super::kernel::{Apex, LEVELS, Kernel};
 use super::sectors::{Sector, refill};
 use super::space::Space;
 use super::wider::Wider;

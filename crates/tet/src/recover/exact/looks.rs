@@ -3,7 +3,7 @@
 
 /// How a place for a vertex is looked for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum PlacementMethod {
     /// At its neighbors.
     Corners,
     /// There, or anywhere in its star.
@@ -49,7 +49,7 @@ impl Looks {
     }
 
     /// Whether there may be a place with at least `least` room for a vertex.
-    pub(super) fn worth(&mut self, v: u32, least: f64, way: Way) -> bool {
+    pub(super) fn worth(&mut self, v: u32, least: f64, way: PlacementMethod) -> bool {
         let since = self.since;
         let known = self.of(v);
         let (when, room) = known.places[way as usize];
@@ -57,7 +57,7 @@ impl Looks {
     }
 
     /// There is no place with more than that much room for a vertex.
-    pub(super) fn found(&mut self, v: u32, room: f64, way: Way) {
+    pub(super) fn found(&mut self, v: u32, room: f64, way: PlacementMethod) {
         let now = self.now + 1;
         self.of(v).places[way as usize] = (now, room);
     }

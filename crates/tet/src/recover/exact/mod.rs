@@ -41,7 +41,7 @@ use push::Push;
 use queue::{Failed, Queue};
 use segments::Segments;
 use space::Space;
-pub(crate) use ways::Way;
+pub(crate) use ways::RecoveryStrategy;
 
 /// Recovers what is missing in a complex that has all the rest of the surface, its triangles frozen, in the first of the
 /// ways that succeeds. The surface may not meet itself; its triangles may share whole edges and vertices in any way, well
@@ -55,7 +55,7 @@ pub(crate) fn recover_exact(
     surface: &TriMesh,
     edges: &SurfaceEdges,
     missing: Missing,
-    (ways, flat): (&[Way], f64),
+    (ways, flat): (&[RecoveryStrategy], f64),
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
     let segments = Segments::new(edges, surface.points.len());

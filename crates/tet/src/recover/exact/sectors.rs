@@ -1,7 +1,7 @@
 //! The star of a vertex on the surface, cut into sectors by the facets around it, and these facets without the vertex.
 
-use super::polygon::{point_above, triangulate};
 use super::kernel::Apex;
+use super::polygon::{point_above, triangulate};
 use super::space::Space;
 use crate::complex::face_key;
 use crate::error::TetError;

@@ -15,7 +15,7 @@ const WORTHWHILE: f64 = 0.2;
 
 /// A way to recover what is missing.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
+pub(crate) struct RecoveryStrategy {
     /// Whether edges in planes of faces are turned first; then the share of those missing that may be left for the others
     /// to be gone on with.
     pub level: Option<f64>,
@@ -27,7 +27,7 @@ pub(crate) struct Way {
     vertices: (usize, usize),
 }
 
-impl Way {
+impl RecoveryStrategy {
     /// What is quickest where it succeeds, given up early.
     pub(crate) const FIRST: [Self; 1] = [Self { vertices: VERTICES_FIRST, ..Self::seen(0) }];
 

@@ -1,8 +1,8 @@
 //! Cavities that are wider than a sector of a star: where the room in a sector is too small, the tetrahedra behind the
 //! walls that bound it, or that a vertex does not see, are taken as well.
 
-use super::parts::{sides, sorted};
 use super::kernel::{Apex, Kernel};
+use super::parts::{sides, sorted};
 use super::sectors::Sector;
 use super::space::Space;
 use anastomesh_mesh::geometry::{Point3, unit_normal};
