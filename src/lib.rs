@@ -12,8 +12,8 @@
 //! Points, surfaces and meshes are the plain types of this page. Loops run in the current thread pool of `rayon`; results
 //! do not depend on its size. `ARCHITECTURE.md` describes the crates and modules.
 
-// Without the command line, what only it uses is not used at all.
-#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
+// What only an optional part uses is not used without it.
+#![cfg_attr(not(all(feature = "cli", feature = "woven")), allow(dead_code, unused_imports))]
 
 mod block;
 #[cfg(feature = "cli")]

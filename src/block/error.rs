@@ -39,7 +39,6 @@ pub enum BlockError {
     #[error("block parameter {name} = {value} is out of range")]
     Parameter { name: &'static str, value: f64 },
     /// Trimmed ends are an optional part of the program.
-    #[cfg(not(feature = "woven"))]
     #[error("this program was built without woven joints: build it with the cargo feature `woven`")]
     NoWovenJoints,
     /// The wall could not be made.
@@ -174,7 +173,7 @@ impl BlockError {
     /// What was being done, for people.
     pub fn stage(&self) -> &'static str {
         match self {
-            Self::Parameter { .. } => "parameters",
+            Self::Parameter { .. } | Self::NoWovenJoints => "parameters",
             Self::Surface { .. } | Self::Genus { .. } | Self::Outside { .. } | Self::Fused { .. } => "wall",
             Self::Cap { .. } => "caps",
             Self::Tetrahedra { .. } => "tetrahedra",

@@ -26,6 +26,7 @@ pub mod tetgen;
 mod text;
 pub mod volume;
 mod vtk_xml;
+mod xml;
 
 pub use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 pub use file::{ensure_text_writable, write_bytes, write_text};

@@ -2,8 +2,9 @@
 //! an error.
 
 use super::content::MeshNotes;
-use super::fixtures::{Cut, labelled_tube};
+use super::fixtures::labelled_tube;
 use super::format::MeshFormat;
+use super::in_pieces::InPieces;
 use super::options::WriteOptions;
 use super::read::read_mesh;
 use super::vtu::Recounted;
@@ -35,7 +36,7 @@ fn tube(layers: u32) -> (VolumeMesh, MeshNotes) {
 }
 
 fn same_bytes(volume: &VolumeMesh, notes: &MeshNotes, sizes: &[usize]) {
-    let cut = Cut { volume, sizes };
+    let cut = InPieces { volume, sizes };
     assert_eq!(&gather(&cut).unwrap().mesh, &volume.mesh);
     for format in STREAMED {
         assert!(bytes_of(format, &cut, notes) == bytes_of(format, volume, notes), "{format:?} {sizes:?}");
@@ -64,7 +65,7 @@ fn pieces_make_no_difference_to_the_family_of_files() {
     let folder = tempfile::tempdir().unwrap();
     let (volume, notes) = tube(9);
     write_mesh(&folder.path().join("whole.ele"), &volume, &notes).unwrap();
-    write_mesh(&folder.path().join("cut.ele"), &Cut { volume: &volume, sizes: &[1, 7, 30] }, &notes).unwrap();
+    write_mesh(&folder.path().join("cut.ele"), &InPieces { volume: &volume, sizes: &[1, 7, 30] }, &notes).unwrap();
     for kind in ["node", "ele", "face", "edge", "neigh"] {
         let read = |name: &str| std::fs::read(folder.path().join(name).with_extension(kind)).unwrap();
         assert!(read("cut") == read("whole"), "{kind}");
@@ -85,7 +86,7 @@ proptest! {
 fn a_source_that_lies_is_found_out() {
     let (volume, notes) = tube(4);
     for error in [0, 2] {
-        let cut = Cut { volume: &volume, sizes: &[5] };
+        let cut = InPieces { volume: &volume, sizes: &[5] };
         let counts = SourceCounts { points: cut.counts().points + error - 1, ..cut.counts() };
         let liar = Recounted { mesh: &cut, counts };
         for format in STREAMED {

@@ -3,6 +3,7 @@
 //! Binary data after `<AppendedData encoding="raw">` is no XML: it is cut off before parsing.
 
 use super::error::VtkError;
+use crate::xml;
 use quick_xml::events::{BytesStart, Event};
 use std::borrow::Cow;
 
@@ -57,7 +58,7 @@ impl<'a> VtkXml<'a> {
     /// When the bytes are no such file, or cut short.
     pub fn parse(bytes: &'a [u8], file_type: &'static str) -> Result<Self, VtkError> {
         let (head, tail) = split_appended(bytes);
-        let head = std::str::from_utf8(head).map_err(|e| VtkError::NotText { byte: e.valid_up_to() })?;
+        let head = xml::text(head, "VTK file (.vtp, .vtu)")?;
         let elements = parse_elements(head, tail.is_some())?;
         let mut document =
             Self { elements, layout: Layout { big_endian: false, wide_header: false, zlib: false }, appended: None };
@@ -202,8 +203,7 @@ fn parse_elements(text: &str, open_end: bool) -> Result<Vec<XmlElement<'_>>, Vtk
     let mut elements: Vec<XmlElement> = Vec::new();
     let mut open: Vec<ElementId> = Vec::new();
     loop {
-        let event = reader.read_event().map_err(|source| VtkError::Xml { byte: reader.error_position(), source })?;
-        match event {
+        match xml::next_event(&mut reader)? {
             Event::Start(tag) => {
                 let id = add_element(&mut elements, &open, reader.buffer_position(), &tag)?;
                 open.push(id);
@@ -245,10 +245,9 @@ fn add_element(
         return Err(VtkError::TooDeep);
     }
     let mut element = XmlElement { name: tag.name().into_inner().to_owned(), ..XmlElement::default() };
-    for attribute in tag.attributes().with_checks(false) {
-        let attribute = attribute.map_err(|_| VtkError::BadAttribute { byte })?;
-        let value = quick_xml::escape::unescape(&attribute.value).map_err(|_| VtkError::BadAttribute { byte })?;
-        element.attributes.push((attribute.key.into_inner().to_owned(), value.into_owned()));
+    for attribute in xml::attributes(tag, byte) {
+        let (name, value) = attribute?;
+        element.attributes.push((name.into_owned(), value.into_owned()));
     }
     elements.push(element);
     if let Some(parent) = open.last() {

@@ -1,5 +1,7 @@
 //! What can be wrong with a VTK XML file.
 
+use crate::xml::XmlFault;
+
 /// Why a VTK XML file could not be understood.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -7,26 +9,9 @@ pub enum VtkError {
     /// There is no element in it.
     #[error("there is no XML element in the file; is it a VTK file (.vtp, .vtu)?")]
     Empty,
-    /// The part that should be XML is not UTF-8 text.
-    #[error("no XML: byte {byte} is not text; is it a VTK file (.vtp, .vtu)?")]
-    NotText {
-        /// Where.
-        byte: usize,
-    },
-    /// The XML parser gave up.
-    #[error("no well-formed XML at byte {byte}: {source}; correct the file, or copy it again if it was cut short")]
-    Xml {
-        /// Where.
-        byte: u64,
-        /// Why.
-        source: quick_xml::Error,
-    },
-    /// A tag's attributes cannot be read.
-    #[error("the attributes of the tag before byte {byte} cannot be read: write them as name=\"value\"")]
-    BadAttribute {
-        /// Where.
-        byte: u64,
-    },
+    /// The file is no XML.
+    #[error(transparent)]
+    Xml(#[from] XmlFault),
     /// Elements are nested absurdly deep.
     #[error("elements are nested deeper than any VTK file has them: save the file again")]
     TooDeep,

@@ -1,31 +1,15 @@
 //! What can be wrong with a graph in XML.
 
 use crate::network::graph::GraphFault;
+use crate::xml::XmlFault;
 
 /// Why a GraphML or GXL file is no usable network.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GraphXmlError {
-    /// The bytes are not text.
-    #[error("no XML: byte {byte} is not text; is it a graph (.graphml, .gxl)?")]
-    NotText {
-        /// Where.
-        byte: usize,
-    },
-    /// The XML parser gave up.
-    #[error("no well-formed XML at byte {byte}: {source}; correct the file, or copy it again if it was cut short")]
-    Xml {
-        /// Where.
-        byte: u64,
-        /// Why.
-        source: quick_xml::Error,
-    },
-    /// A tag's attributes cannot be read.
-    #[error("byte {byte}: the attributes of the tag before it cannot be read: write them as name=\"value\"")]
-    BadAttribute {
-        /// Where.
-        byte: usize,
-    },
+    /// The file is no XML.
+    #[error(transparent)]
+    Xml(#[from] XmlFault),
     /// The outermost element is none of a graph.
     #[error("the outermost XML element is <{root}>, not <graphml> or <gxl>: give the file the extension of its format")]
     NotAGraph {

@@ -4,6 +4,7 @@ use super::error::GraphXmlError;
 use crate::network::columns::Value;
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::graph::{Graph, GraphPlace};
+use crate::xml;
 use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
@@ -29,12 +30,11 @@ struct Reading {
 
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, GraphXmlError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let text = std::str::from_utf8(bytes).map_err(|e| GraphXmlError::NotText { byte: e.valid_up_to() })?;
+    let text = xml::text(bytes, "graph (.graphml, .gxl)")?;
     let mut reader = quick_xml::Reader::from_str(text);
     let mut reading = Reading::default();
     loop {
-        let event =
-            reader.read_event().map_err(|source| GraphXmlError::Xml { byte: reader.error_position(), source })?;
+        let event = xml::next_event(&mut reader)?;
         let byte = reader.buffer_position() as usize;
         match event {
             Event::Start(tag) => reading.start(&tag, byte)?,
@@ -114,11 +114,9 @@ impl Reading {
 
 /// An attribute of a tag without the blanks around it, if it is there.
 fn attribute(tag: &BytesStart, byte: usize, name: &str) -> Result<Option<String>, GraphXmlError> {
-    for attribute in tag.attributes().with_checks(false) {
-        let attribute = attribute.map_err(|_| GraphXmlError::BadAttribute { byte })?;
-        if attribute.key.into_inner() == name {
-            let value = quick_xml::escape::unescape(&attribute.value);
-            let value = value.map_err(|_| GraphXmlError::BadAttribute { byte })?;
+    for attribute in xml::attributes(tag, byte as u64) {
+        let (key, value) = attribute?;
+        if key == name {
             return Ok(Some(value.trim().to_owned()));
         }
     }

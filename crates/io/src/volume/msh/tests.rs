@@ -5,7 +5,8 @@ use super::read::read;
 use super::write::write;
 use super::write_2::write as write_2;
 use crate::volume::content::{MeshFile, MeshNotes};
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::fixtures::labelled_tube;
+use crate::volume::in_pieces::InPieces;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::Point3;
@@ -147,7 +148,7 @@ fn values_stand_beside_nodes_and_elements() {
             bytes
         };
         let bytes = bytes_of(&volume, Some(&PointHeights));
-        assert!(bytes == bytes_of(&Cut { volume: &volume, sizes: &[7] }, Some(&PointHeights)));
+        assert!(bytes == bytes_of(&InPieces { volume: &volume, sizes: &[7] }, Some(&PointHeights)));
         let file = read(&bytes).unwrap();
         let heights = rows(&bytes, "NodeData", "height", binary);
         let points = &file.volume.mesh.points;
