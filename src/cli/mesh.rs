@@ -28,7 +28,6 @@ use crate::pipeline::{
     VesselData,
 };
 use crate::refine::{RefineParams, Refined};
-use crate::report::advice::advice;
 use crate::report::caps;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
@@ -330,7 +329,7 @@ impl Args {
         self.write_page(plan, before, &report, Some(&found))?;
         self.print(plan, before, &report, Some((check, &fidelity)))?;
         let invalid = !check.is_valid() || !report.keeps_vessels(plan.fuse);
-        self.advise(&report, invalid);
+        self.blocks.advise(&report, invalid);
         let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
         if let Some(words) = &unfaithful {
             log::note(words);
@@ -343,13 +342,6 @@ impl Args {
         })
     }
 
-    /// Says what may help.
-    fn advise(&self, run: &RunReport, invalid: bool) {
-        for line in advice(run, invalid, self.blocks.refine.is_some(), self.blocks.rho) {
-            log::note(&line);
-        }
-    }
-
     /// What went wrong, for people.
     fn explain(&self, error: RunError, plan: &MeshPlan, before: &Before) -> Failure {
         match error {
@@ -358,7 +350,7 @@ impl Args {
                 if let Err(failure) = paged.and_then(|()| self.print(plan, before, &report, None)) {
                     return failure;
                 }
-                self.advise(&report, true);
+                self.blocks.advise(&report, true);
                 Failure::stage(format!(
                     "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
                     report.failed.len()

@@ -1,6 +1,8 @@
-//! Rational arithmetic as an oracle for the predicates' tests.
+//! Rational arithmetic as an oracle for the predicates' tests, and points that are degenerate or nearly so.
 
+use super::Point3;
 use num_rational::BigRational;
+use proptest::prelude::*;
 
 pub(super) fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).expect("finite")
@@ -26,4 +28,18 @@ pub(super) fn det(m: &[Vec<BigRational>]) -> BigRational {
 pub(super) fn sign(x: &BigRational) -> i32 {
     let zero = exact(0.0);
     i32::from(*x > zero) - i32::from(*x < zero)
+}
+
+/// Coordinates on a coarse grid, on it but for a few ulps, or anywhere.
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        (-4i32..4).prop_map(f64::from),
+        (-4i32..4, -3i64..3).prop_map(|(g, ulps)| f64::from(g) + ulps as f64 * f64::EPSILON * 4.0),
+        (-3i32..3).prop_map(|g| f64::from(g) * 0.1),
+        -1.0..1.0f64,
+    ]
+}
+
+pub(super) fn point(scale: f64) -> impl Strategy<Value = Point3> {
+    (coordinate(), coordinate(), coordinate()).prop_map(move |(x, y, z)| Point3::new(x * scale, y * scale, z * scale))
 }

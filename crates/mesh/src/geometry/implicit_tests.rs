@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::exact_oracle::{det, exact, sign};
+use crate::geometry::exact_oracle::{det, exact, point, sign};
 use num_rational::BigRational;
 use proptest::prelude::*;
 
@@ -30,19 +30,6 @@ impl SitePoint {
 fn rows(from: &SitePoint, to: &[SitePoint]) -> Vec<Vec<BigRational>> {
     let origin = from.exact();
     to.iter().map(|p| p.exact().iter().zip(&origin).map(|(x, y)| x - y).collect()).collect()
-}
-
-fn coordinate() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        (-4i32..4).prop_map(f64::from),
-        (-4i32..4, -3i64..3).prop_map(|(g, ulps)| f64::from(g) + ulps as f64 * f64::EPSILON * 4.0),
-        (-3i32..3).prop_map(|g| f64::from(g) * 0.1),
-        -1.0..1.0f64,
-    ]
-}
-
-fn point(scale: f64) -> impl Strategy<Value = Point3> {
-    (coordinate(), coordinate(), coordinate()).prop_map(move |(x, y, z)| Point3::new(x * scale, y * scale, z * scale))
 }
 
 fn weight() -> impl Strategy<Value = u128> {

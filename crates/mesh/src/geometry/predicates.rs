@@ -109,7 +109,7 @@ pub fn collinear(a: &Point3, b: &Point3, c: &Point3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::exact_oracle::{det, exact, sign};
+    use crate::geometry::exact_oracle::{det, exact, point, sign};
     use num_rational::BigRational;
     use proptest::prelude::*;
 
@@ -136,19 +136,8 @@ mod tests {
         -sign(&det(&rows))
     }
 
-    /// Coordinates on a coarse grid, on it but for a few ulps, or anywhere: degenerate, nearly so, or neither.
-    fn coordinate() -> impl Strategy<Value = f64> {
-        prop_oneof![
-            (-4i32..4).prop_map(f64::from),
-            (-4i32..4, -3i64..3).prop_map(|(g, ulps)| f64::from(g) + ulps as f64 * f64::EPSILON * 4.0),
-            (-3i32..3).prop_map(|g| f64::from(g) * 0.1),
-            -1.0..1.0f64,
-        ]
-    }
-
     fn points(n: usize, scale: f64) -> impl Strategy<Value = Vec<Point3>> {
-        prop::collection::vec((coordinate(), coordinate(), coordinate()), n)
-            .prop_map(move |v| v.iter().map(|&(x, y, z)| Point3::new(x * scale, y * scale, z * scale)).collect())
+        prop::collection::vec(point(scale), n)
     }
 
     proptest! {
