@@ -1,6 +1,5 @@
 //! Lines about the labels of the boundary: wall and caps.
 
-use super::LABEL_LINES;
 use super::cells::{face_offender, same_turn};
 use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally};
 use crate::face_key;
@@ -64,6 +63,19 @@ fn by_vertices(triangles: &[[u32; 3]]) -> Vec<([u32; 3], u32)> {
     keys.sort_unstable();
     keys
 }
+
+/// All lines about labels.
+pub(super) const LABEL_LINES: [Line; 9] = [
+    Line::LabelsMatchBoundary,
+    Line::WallOrCap,
+    Line::OwnPatch,
+    Line::CapPerTerminal,
+    Line::CapDisc,
+    Line::CapFlat,
+    Line::CapCentred,
+    Line::CapArea,
+    Line::CapNormal,
+];
 
 /// The lines about patches and caps; the labelled triangles must name points that exist.
 pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) -> Vec<LineResult> {
