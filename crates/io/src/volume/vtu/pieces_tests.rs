@@ -134,8 +134,8 @@ fn vertex_numbers_of_64_bits() {
     let head = format!(
         "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
          compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid><FieldData>{names}</FieldData>\
-         <BlockPiece NumberOfPoints=\"4\" NumberOfCells=\"2\"><Points>{points}</Points><Cells>{cells}</Cells>\
-         <CellData>{data}</CellData></BlockPiece></UnstructuredGrid><AppendedData encoding=\"raw\">_"
+         <Piece NumberOfPoints=\"4\" NumberOfCells=\"2\"><Points>{points}</Points><Cells>{cells}</Cells>\
+         <CellData>{data}</CellData></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_"
     );
     let pieces = open(&[head.as_bytes(), body.get_ref()].concat()).unwrap();
     assert_eq!(&*pieces.tets(0).unwrap().tets, [[0, 1, 2, 3]]);

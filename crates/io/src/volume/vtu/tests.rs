@@ -149,18 +149,18 @@ fn every_cut_is_noticed() {
 fn files_of_other_programs() {
     // Two pieces, a line among the cells, labels under another name and without names for them, one bad index.
     let text = r#"<VTKFile type="UnstructuredGrid"><UnstructuredGrid>
-        <BlockPiece NumberOfPoints="4" NumberOfCells="3">
+        <Piece NumberOfPoints="4" NumberOfCells="3">
         <Points><DataArray type="Float32" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>
         <Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 0 1 2 3 0 2 1</DataArray>
         <DataArray type="Int32" Name="offsets" format="ascii">2 6 9</DataArray>
         <DataArray type="UInt8" Name="types" format="ascii">3 10 5</DataArray></Cells>
-        <CellData><DataArray type="Int64" Name="ModelFaceID" format="ascii">0 0 2</DataArray></CellData></BlockPiece>
-        <BlockPiece NumberOfPoints="4" NumberOfCells="1">
+        <CellData><DataArray type="Int64" Name="ModelFaceID" format="ascii">0 0 2</DataArray></CellData></Piece>
+        <Piece NumberOfPoints="4" NumberOfCells="1">
         <Points><DataArray type="Float32" NumberOfComponents="3" format="ascii">0 0 5 1 0 5 0 1 5 0 0 6</DataArray></Points>
         <Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 -9</DataArray>
         <DataArray type="Int32" Name="offsets" format="ascii">4</DataArray>
         <DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells>
-        <CellData><DataArray type="Int64" Name="ModelFaceID" format="ascii">0</DataArray></CellData></BlockPiece>
+        <CellData><DataArray type="Int64" Name="ModelFaceID" format="ascii">0</DataArray></CellData></Piece>
         </UnstructuredGrid></VTKFile>"#;
     let file = read(text.as_bytes()).unwrap();
     assert_eq!(file.volume.mesh.points.len(), 8);
