@@ -12,8 +12,8 @@
 //! Points, surfaces and meshes are the plain types of this page. Loops run in the current thread pool of `rayon`; results
 //! do not depend on its size. `ARCHITECTURE.md` describes the crates and modules.
 
-// Without the command line, what only it uses is not used at all.
-#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
+// What only an optional part uses is not used without it.
+#![cfg_attr(not(all(feature = "cli", feature = "woven")), allow(dead_code, unused_imports))]
 
 mod block;
 #[cfg(feature = "cli")]
@@ -32,6 +32,7 @@ mod report;
 mod surface;
 #[cfg(feature = "cli")]
 mod view;
+#[cfg(feature = "woven")]
 mod woven;
 
 pub use anastomesh_io as io;
@@ -70,7 +71,7 @@ pub mod testing {
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
-    pub use crate::prepare::{Fault, SpurReason, TouchedBy};
+    pub use crate::prepare::{RadiusDefect, SpurReason, TouchedBy};
     pub use crate::refine::split;
     pub use crate::report::info::NetworkInfo;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
@@ -91,6 +92,7 @@ pub mod testing {
     ///
     /// # Errors
     /// The block's.
+    #[cfg(feature = "woven")]
     pub fn mesh_trimmed(
         id: ClusterId,
         cluster: &Cluster,

@@ -72,6 +72,7 @@ fn subtree_289_clear_is_valid() {
 }
 
 #[test]
+#[cfg(feature = "woven")]
 fn subtree_289_clear_is_as_fine_everywhere_on_request() {
     let Some(shared) = shared() else { return };
     let mut plan = MeshPlan::default();

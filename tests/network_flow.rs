@@ -23,7 +23,7 @@ fn balanced(name: &str, outlets: usize) {
     let terminals = skeleton.adjacency().terminals();
     let radius = |node: NodeId| skeleton.nodes[node.0 as usize].radius;
     let inlet = terminals.iter().copied().max_by(|&a, &b| radius(a).total_cmp(&radius(b))).expect("a terminal");
-    let flow = network_flow(&skeleton, &BTreeMap::from([(inlet, 1.0)]), 1.0);
+    let flow = network_flow(&skeleton, &BTreeMap::from([(inlet, 1.0)]), 1.0).expect("pressures");
     let out: Vec<f64> = terminals.iter().filter(|&&node| node != inlet).map(|node| flow.of_terminal[node]).collect();
     assert_eq!(out.len(), outlets);
     assert!((out.iter().sum::<f64>() - 1.0).abs() < 1e-10, "{}", out.iter().sum::<f64>());

@@ -6,7 +6,7 @@ mod common;
 use anastomesh::Point3;
 use anastomesh::io::{NetworkOptions, read_network};
 use anastomesh::network::{Edge, Node, NodeId, PrepareParams, Prepared, Skeleton, Touching, prepare};
-use anastomesh::testing::{Aabb, Bvh, Fault, SpurReason, TouchedBy, Tube, point_segment};
+use anastomesh::testing::{Aabb, Bvh, RadiusDefect, SpurReason, TouchedBy, Tube, point_segment};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -104,14 +104,17 @@ fn radii_are_filled_between_good_ones() {
         assert!((made.skeleton.nodes[node].radius - expected).abs() < 1e-6, "{:?}", made.skeleton.nodes);
     }
     let told: Vec<_> = made.report.radii.iter().map(|r| (r.node, r.given, r.fault)).collect();
-    assert_eq!(told, [(1, Some(0.0), Fault::Missing), (2, None, Fault::Missing), (3, None, Fault::Missing)]);
+    assert_eq!(
+        told,
+        [(1, Some(0.0), RadiusDefect::Missing), (2, None, RadiusDefect::Missing), (3, None, RadiusDefect::Missing)]
+    );
     assert!(prepare(&s, &PrepareParams::as_is()).is_err());
 
     s.nodes[1].radius = 2.0;
     s.nodes[2].radius = 50.0;
     s.nodes[3].radius = 2.0;
     let made = done(&s, &PrepareParams::default());
-    assert_eq!((made.report.radii[0].node, made.report.radii[0].fault), (2, Fault::Absurd));
+    assert_eq!((made.report.radii[0].node, made.report.radii[0].fault), (2, RadiusDefect::Absurd));
     for node in &mut s.nodes {
         node.radius = 0.0;
     }

@@ -1,7 +1,6 @@
 //! Meshing of a cluster: wall, caps, tetrahedra, end surfaces (section 3.2.2 of the paper).
 
 use super::buried::buried;
-use super::corners::part_corners;
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
 use super::faithful::Astray;
@@ -18,7 +17,7 @@ use crate::surface::{
 use anastomesh_mesh::geometry::{Section, Tube};
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_skeleton::NodeId;
-use anastomesh_tet::parts::Inset;
+use anastomesh_tet::parts::{Inset, split_corner_tets};
 use anastomesh_tet::{
     TetError,
     parts::{Watch, tetrahedralize_watched},
@@ -92,7 +91,7 @@ pub(crate) fn mesh_cluster_watched(
     let (surface, voxel, astray) = cluster_surface(id, cluster, params)?;
     let edge = surface.mesh.mean_edge();
     let failed = |source| BlockError::Tetrahedra { cluster: id, source };
-    let Inside { mesh, hull, discs, thin } = inside(cluster, &surface, params, watch).map_err(failed)?;
+    let FilledSurface { mesh, hull, discs, thin } = inside(cluster, &surface, params, watch).map_err(failed)?;
     let caps = caps(cluster, &discs);
     let surface_triangles = surface.mesh.triangles.len();
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
@@ -124,7 +123,7 @@ pub(crate) fn mesh_cluster_watched(
 }
 
 /// Interior of a cluster's surface.
-struct Inside {
+struct FilledSurface {
     /// Points and tetrahedra; points only if hollow.
     mesh: TetMesh,
     /// Closed surface if hollow, else empty.
@@ -135,7 +134,12 @@ struct Inside {
     thin: Option<ThinLayers>,
 }
 
-fn inside(cluster: &Cluster, surface: &CappedSurface, params: &BlockParams, watch: &Watch) -> Result<Inside, TetError> {
+fn inside(
+    cluster: &Cluster,
+    surface: &CappedSurface,
+    params: &BlockParams,
+    watch: &Watch,
+) -> Result<FilledSurface, TetError> {
     let discs: Vec<Vec<[u32; 3]>> = (0..cluster.ends.len() as u32).map(|end| faces_of(surface, end)).collect();
     let fill = |surface: &TriMesh| tetrahedralize_watched(surface, &filling(surface, params.core), watch);
     if let Some(layers) = &params.layers {
@@ -143,17 +147,17 @@ fn inside(cluster: &Cluster, surface: &CappedSurface, params: &BlockParams, watc
         let axes = cluster.tubes.iter().map(|tube| [tube.a, tube.b]).collect();
         let (Inset { mesh, numbers, .. }, thin) = Walled { surface: &surface.mesh, caps, axes }.fill(layers, fill)?;
         let discs = discs.iter().map(|disc| numbers.disc(disc)).collect();
-        return Ok(Inside { mesh, hull: Vec::new(), discs, thin });
+        return Ok(FilledSurface { mesh, hull: Vec::new(), discs, thin });
     }
     if params.hollow {
         let TriMesh { points, triangles } = surface.mesh.clone();
-        return Ok(Inside { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, discs, thin: None });
+        return Ok(FilledSurface { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, discs, thin: None });
     }
     let mut mesh = fill(&surface.mesh)?;
     // Discs at cuts lie inside the final mesh.
     let of_cut = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Cut { .. });
-    part_corners(&mut mesh, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
-    Ok(Inside { mesh, hull: Vec::new(), discs, thin: None })
+    split_corner_tets(&mut mesh, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
+    Ok(FilledSurface { mesh, hull: Vec::new(), discs, thin: None })
 }
 
 /// Meshes a single-tube cluster by template.

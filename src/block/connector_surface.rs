@@ -4,7 +4,7 @@ use super::end_surface::{EndSurface, StoredEnd};
 use super::path::{AxisPath, PathEnd};
 use super::rings::{Rim, RingVertex, rings, strip_count};
 use super::strip::best_strip;
-use super::wall::Wall;
+use super::wall::TubeWall;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Section};
 use std::f64::consts::TAU;
@@ -156,7 +156,7 @@ fn build_wall(
         let strip = best_strip(&points, &pair[0].0, &pair[1].0, place.origin, place.axis);
         triangles.extend(strip.ok_or(ConnectorFault::Fold(k as u32))?.0);
     }
-    let mut wall = Wall::new(path, points, triangles, first_free, vertices);
+    let mut wall = TubeWall::new(path, points, triangles, first_free, vertices);
     wall.improve();
     out.surface.points = wall.points;
     out.surface.triangles.extend(wall.triangles);

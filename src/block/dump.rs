@@ -85,7 +85,7 @@ pub enum DumpError {
 
 /// Common header of dumps of all versions.
 #[derive(Deserialize)]
-struct Head {
+struct DumpHeader {
     format: Option<u32>,
     #[serde(default)]
     program: String,
@@ -160,13 +160,13 @@ impl BlockDump {
         let fault = |e: serde_json::Error| if cut_off(&e) { DumpError::CutOff(e) } else { DumpError::Other(e) };
         // The format version is checked first, as the contents of other versions are unknown.
         match serde_json::from_slice(text).map_err(fault)? {
-            Head { format: None, .. } => Err(DumpError::NoFormat),
-            Head { format: Some(FORMAT), .. } => {
+            DumpHeader { format: None, .. } => Err(DumpError::NoFormat),
+            DumpHeader { format: Some(FORMAT), .. } => {
                 let dump: Self = serde_json::from_slice(text).map_err(fault)?;
                 dump.check().map_err(|what| DumpError::Senseless { what })?;
                 Ok(dump)
             }
-            Head { format: Some(format), program } => Err(DumpError::Format { format, program }),
+            DumpHeader { format: Some(format), program } => Err(DumpError::Format { format, program }),
         }
     }
 

@@ -54,7 +54,7 @@ pub enum EndFault {
 
 /// Plane coordinates of points in a section's frame, on an integer grid. The grid is fine enough that snapping is
 /// negligible and coarse enough that `cross` is exact.
-pub(crate) struct Plane {
+pub(crate) struct CutPlane {
     section: Section,
     u: anastomesh_mesh::geometry::Vec3,
     w: anastomesh_mesh::geometry::Vec3,
@@ -64,7 +64,7 @@ pub(crate) struct Plane {
 /// Grid coordinates stay below 2^26 in magnitude: differences below 2^27, products below 2^54, sums below 2^55.
 const GRID: f64 = (1u64 << 25) as f64;
 
-impl Plane {
+impl CutPlane {
     /// `extent` bounds the distance of projected points from the axis.
     pub(crate) fn new(section: &Section, extent: f64) -> Self {
         let (u, w) = section.frame();
@@ -214,7 +214,7 @@ impl EndSurface {
             .flatten()
             .map(|&v| (points[v as usize] - self.section.origin).norm())
             .fold(self.section.radius, f64::max);
-        let plane = Plane::new(&self.section, extent);
+        let plane = CutPlane::new(&self.section, extent);
         for (i, t) in self.triangles.iter().enumerate() {
             let [a, b, c] = t.map(|v| plane.snap(&points[v as usize]));
             if cross(a, b, c) <= 0 {

@@ -38,6 +38,9 @@ pub enum BlockError {
     /// A parameter is out of range.
     #[error("block parameter {name} = {value} is out of range")]
     Parameter { name: &'static str, value: f64 },
+    /// Trimmed ends are an optional part of the program.
+    #[error("this program was built without woven joints: build it with the cargo feature `woven`")]
+    NoWovenJoints,
     /// The wall could not be created.
     #[error("cluster {}: {source}", cluster.0)]
     Surface {
@@ -170,7 +173,7 @@ impl BlockError {
     /// Readable name of the failed stage.
     pub fn stage(&self) -> &'static str {
         match self {
-            Self::Parameter { .. } => "parameters",
+            Self::Parameter { .. } | Self::NoWovenJoints => "parameters",
             Self::Surface { .. } | Self::Genus { .. } | Self::Outside { .. } | Self::Fused { .. } => "wall",
             Self::Cap { .. } => "caps",
             Self::Tetrahedra { .. } => "tetrahedra",

@@ -19,7 +19,7 @@ struct Station {
 
 /// Position on the axis with its frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct AxisFrame {
     /// Point on the axis.
     pub origin: Point3,
     /// Unit tangent.
@@ -87,7 +87,7 @@ impl AxisPath {
     }
 
     /// Position at arc length `s`; extrapolated straight beyond the ends.
-    pub fn at(&self, s: f64) -> Place {
+    pub fn at(&self, s: f64) -> AxisFrame {
         let k = self.stations.partition_point(|x| x.s <= s).clamp(1, self.stations.len() - 1);
         let (a, b) = (&self.stations[k - 1], &self.stations[k]);
         let t = (s - a.s) / (b.s - a.s);
@@ -97,7 +97,7 @@ impl AxisPath {
         let origin = a.origin + (b.origin - a.origin) * c + along;
         let u = a.u * (1.0 - c) + b.u * c;
         let u = (u - axis * axis.dot(&u)).normalize();
-        Place { origin, axis, u, w: axis.cross(&u), radius: a.radius + (b.radius - a.radius) * c }
+        AxisFrame { origin, axis, u, w: axis.cross(&u), radius: a.radius + (b.radius - a.radius) * c }
     }
 
     /// Arc length, angle and distance from the axis of a point near an end.
@@ -110,7 +110,7 @@ impl AxisPath {
     }
 }
 
-impl Place {
+impl AxisFrame {
     /// Point at an angle and a distance from the axis.
     pub fn point(&self, theta: f64, distance: f64) -> Point3 {
         self.origin + (self.u * theta.cos() + self.w * theta.sin()) * distance

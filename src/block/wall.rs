@@ -17,7 +17,7 @@ const GAIN: f64 = 1e-3;
 
 /// Wall triangles between two rims. Vertices from `first_free` on are ring vertices, whose path coordinates are in
 /// `rings`.
-pub(super) struct Wall<'a> {
+pub(super) struct TubeWall<'a> {
     pub path: &'a AxisPath,
     pub points: Vec<Point3>,
     pub triangles: Vec<[u32; 3]>,
@@ -29,7 +29,7 @@ pub(super) struct Wall<'a> {
     shapes: Vec<f64>,
 }
 
-impl<'a> Wall<'a> {
+impl<'a> TubeWall<'a> {
     /// Creates a wall from strips.
     pub(super) fn new(
         path: &'a AxisPath,

@@ -1,10 +1,12 @@
 //! How the blocks of a network are made: arguments of every verb that makes them.
 
 use super::exit::Failure;
+use super::limits::size;
+use super::log;
 use super::network::{NetworkArgs, PreparedNetwork};
-use super::room::size;
-use crate::pipeline::MeshPlan;
+use crate::pipeline::{MeshPlan, RunReport};
 use crate::prepare::PrepareParams;
+use crate::report::advice::advice;
 use anastomesh_skeleton::resolution::{FOLLOW, RHO};
 use anastomesh_skeleton::{NodeSizes, SizeAt};
 use std::fmt;
@@ -75,6 +77,13 @@ pub struct BlockArgs {
 }
 
 impl BlockArgs {
+    /// Says what may help.
+    pub fn advise(&self, run: &RunReport, invalid: bool) {
+        for line in advice(run, invalid, self.refine.is_some(), self.rho) {
+            log::note(&line);
+        }
+    }
+
     /// The plan that they ask for. `fuse`: vessels that overlap once the network is refined are meshed together.
     pub fn plan(&self, fuse: bool) -> MeshPlan {
         MeshPlan {

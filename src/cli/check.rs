@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::kind::{OpenedMesh, held, unreadable};
+use super::limits;
 use super::log;
 use super::page::ReportArgs;
 use super::progress::Bars;
-use super::room;
 use super::stop::Stop;
 use crate::report::page::{self, Section};
 use crate::report::summary::{of_check, of_mesh};
@@ -31,7 +31,7 @@ pub struct Args {
     mesh: PathBuf,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is checked block by block. All other
     /// files are held as a whole
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
     #[command(flatten)]
     report: ReportArgs,

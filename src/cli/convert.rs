@@ -9,10 +9,10 @@ use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::format::FormatArgs;
 use super::grid::GridArgs;
-use super::kind::{Kind, OpenedMesh, boundary_of};
+use super::kind::{FileKind, OpenedMesh, boundary_of};
+use super::limits;
 use super::log;
 use super::progress::Bars;
-use super::room;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::prepare::directed;
 use crate::report::rows::row;
@@ -44,7 +44,7 @@ pub struct Args {
     no_caps: bool,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
     /// held as a whole
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
     #[command(flatten)]
     grid: GridArgs,
@@ -56,15 +56,15 @@ pub struct Args {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{from} does not become {to} by being converted{}", instead(*.from, *.to))]
 struct Unlike {
-    from: Kind,
-    to: Kind,
+    from: FileKind,
+    to: FileKind,
 }
 
-fn instead(from: Kind, to: Kind) -> &'static str {
+fn instead(from: FileKind, to: FileKind) -> &'static str {
     match (from, to) {
-        (Kind::Network, Kind::Mesh) => "; `anastomesh mesh` makes it",
-        (Kind::Network, Kind::Surface) => "; `anastomesh surface` makes it",
-        (Kind::Surface, Kind::Mesh) => "; `anastomesh tetrahedralize` fills it",
+        (FileKind::Network, FileKind::Mesh) => "; `anastomesh mesh` makes it",
+        (FileKind::Network, FileKind::Surface) => "; `anastomesh surface` makes it",
+        (FileKind::Surface, FileKind::Mesh) => "; `anastomesh tetrahedralize` fills it",
         _ => "",
     }
 }
@@ -73,8 +73,8 @@ fn instead(from: Kind, to: Kind) -> &'static str {
 #[derive(Serialize)]
 struct Output {
     program: &'static str,
-    from: Kind,
-    to: Kind,
+    from: FileKind,
+    to: FileKind,
     #[serde(flatten)]
     counts: Written,
 }
@@ -109,16 +109,16 @@ impl fmt::Display for Written {
 
 /// Converts a file.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let from = Kind::of(&args.input, "convert")?;
+    let from = FileKind::of(&args.input, "convert")?;
     let to = args.target(from)?;
     let pool = thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     stop.keep();
     let counts = pool.install(|| match from {
-        Kind::Mesh => args.convert_mesh(to, &bars),
-        Kind::Surface => args.convert_surface(&bars),
-        Kind::Network => args.convert_network(),
+        FileKind::Mesh => args.convert_mesh(to, &bars),
+        FileKind::Surface => args.convert_surface(&bars),
+        FileKind::Network => args.convert_network(),
     })?;
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
@@ -131,37 +131,41 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 
 impl Args {
     /// What the output is to hold; makes sure that it can be written.
-    fn target(&self, from: Kind) -> Result<Kind, Failure> {
+    fn target(&self, from: FileKind) -> Result<FileKind, Failure> {
         let path = &self.output;
         // A .vtp holds a network or a surface, as what becomes of it asks.
-        let to = match Kind::of(path, "convert") {
-            _ if self.format.format.is_some() => Kind::Mesh,
+        let to = match FileKind::of(path, "convert") {
+            _ if self.format.format.is_some() => FileKind::Mesh,
             _ if npy::is_folder(path) => from,
             // Pictures and printers have formats that are not read.
-            Ok(Kind::Network) | Err(_) if from != Kind::Network => Kind::Surface,
+            Ok(FileKind::Network) | Err(_) if from != FileKind::Network => FileKind::Surface,
             found => found?,
         };
         match (from, to) {
-            (Kind::Mesh, Kind::Mesh) => ensure_writable_as(self.format.of(path)?, path).map_err(|e| e.to_string()),
-            (Kind::Mesh | Kind::Surface, Kind::Surface) => ensure_boundary_writable(path).map_err(|e| e.to_string()),
-            (Kind::Network, Kind::Network) => ensure_tree_writable(path).map_err(|e| e.to_string()),
+            (FileKind::Mesh, FileKind::Mesh) => {
+                ensure_writable_as(self.format.of(path)?, path).map_err(|e| e.to_string())
+            }
+            (FileKind::Mesh | FileKind::Surface, FileKind::Surface) => {
+                ensure_boundary_writable(path).map_err(|e| e.to_string())
+            }
+            (FileKind::Network, FileKind::Network) => ensure_tree_writable(path).map_err(|e| e.to_string()),
             (from, to) => return Err(Failure::usage(Unlike { from, to }.to_string())),
         }
         .map_err(Failure::input)?;
         Ok(to)
     }
 
-    fn convert_mesh(&self, to: Kind, bars: &Bars) -> Result<Written, Failure> {
+    fn convert_mesh(&self, to: FileKind, bars: &Bars) -> Result<Written, Failure> {
         let stopped = |failure| if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { failure };
         let mut opened = OpenedMesh::open(&self.input, self.memory).map_err(stopped)?;
-        if to == Kind::Surface {
+        if to == FileKind::Surface {
             opened.label_boundary();
         }
         self.write(opened.source(), opened.notes(), to, bars)
     }
 
-    fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: Kind, bars: &Bars) -> Result<Written, Failure> {
-        if to == Kind::Mesh {
+    fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: FileKind, bars: &Bars) -> Result<Written, Failure> {
+        if to == FileKind::Mesh {
             let options = WriteOptions {
                 format: self.format.format,
                 memory: Some((self.memory / 4) as usize),
@@ -186,7 +190,7 @@ impl Args {
             write_surface(&self.output, &mesh).map_err(|e| failed(&e, bars))?;
             return Ok(Written::Surface { points: mesh.points.len(), triangles: mesh.triangles.len() });
         }
-        self.write(&boundary_of(mesh), &MeshNotes::default(), Kind::Surface, bars)
+        self.write(&boundary_of(mesh), &MeshNotes::default(), FileKind::Surface, bars)
     }
 
     fn convert_network(&self) -> Result<Written, Failure> {

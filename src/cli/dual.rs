@@ -31,7 +31,7 @@ pub struct Args {
 
 /// What was grown.
 #[derive(Serialize)]
-struct Grown {
+struct GrownDual {
     nodes: usize,
     edges: usize,
     shared_terminals: usize,
@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         }
     }
     let both = dual(&network.skeleton);
-    let grown = Grown {
+    let grown = GrownDual {
         nodes: both.skeleton.nodes.len(),
         edges: both.skeleton.edges.len(),
         shared_terminals: both.tree.iter().filter(|t| **t == 2).count(),

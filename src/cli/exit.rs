@@ -4,6 +4,8 @@ use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::flow::NotConverged;
+
 /// The exit codes, as in `docs/meshing.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
@@ -52,6 +54,12 @@ pub struct Failure {
     pub exit: Exit,
     /// What is wrong, where, and what to do.
     pub message: String,
+}
+
+impl From<NotConverged> for Failure {
+    fn from(error: NotConverged) -> Self {
+        Self::stage(error.to_string())
+    }
 }
 
 impl Failure {

@@ -22,13 +22,13 @@ const MEMORY_PER_BYTE: u64 = 4;
 /// What a file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum FileKind {
     Mesh,
     Surface,
     Network,
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for FileKind {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::Mesh => "a volume mesh",
@@ -38,7 +38,7 @@ impl fmt::Display for Kind {
     }
 }
 
-impl Kind {
+impl FileKind {
     /// What a file to be read by `verb` holds, by its extension.
     pub fn of(path: &Path, verb: &str) -> Result<Self, Failure> {
         if SurfaceFormat::of(path).is_ok() {

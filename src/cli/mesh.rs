@@ -12,13 +12,13 @@ use super::flow::FlowArgs;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
 use super::layers::LayerArgs;
+use super::limits::{self, BlockPlace};
 use super::log;
 use super::network::{NetworkArgs, PreparedNetwork};
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::room::{self, BlockPlace};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Fidelity};
@@ -28,7 +28,6 @@ use crate::pipeline::{
     VesselData,
 };
 use crate::refine::{RefineParams, Refined};
-use crate::report::advice::advice;
 use crate::report::caps;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
@@ -65,8 +64,8 @@ pub struct Args {
     /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
     /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
     /// vessel is cut
-    #[arg(long, help_heading = "Run", value_enum, default_value_t = Joint::Disc)]
-    joint: Joint,
+    #[arg(long, help_heading = "Run", value_enum, default_value_t = JointArg::Disc)]
+    joint: JointArg,
     /// Leave woven joints as the blocks have them instead of smoothing across them
     #[arg(long, help_heading = "Run")]
     frozen_joints: bool,
@@ -111,7 +110,7 @@ pub struct Args {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Joint {
+enum JointArg {
     Disc,
     Woven,
     None,
@@ -222,9 +221,9 @@ impl Args {
             core: self.core.unwrap_or_else(|| self.usual_core()),
             layers: self.layers.asked()?,
             joint: match self.joint {
-                Joint::Woven => JointStyle::Woven,
-                Joint::Disc => JointStyle::Disc,
-                Joint::None => JointStyle::None,
+                JointArg::Woven => JointStyle::Woven,
+                JointArg::Disc => JointStyle::Disc,
+                JointArg::None => JointStyle::None,
             },
             frozen_joints: self.frozen_joints,
             dump_dir: Some(self.dump_dir.clone().unwrap_or_else(|| beside.into())),
@@ -285,7 +284,7 @@ impl Args {
         };
         let kept = store.bytes_on_disk();
         let format = self.format.of(&self.output)?;
-        let fits = |estimate: &Estimate| room::fits(estimate, plan, &place, kept, (&self.output, format));
+        let fits = |estimate: &Estimate| limits::fits(estimate, plan, &place, kept, (&self.output, format));
         let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
         let Made { stored, before } = before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;
         let Stored { whole, expectation, check, report } = stored;
@@ -304,7 +303,7 @@ impl Args {
     fn finish(&self, done: Done, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
         let Done { mesh, expectation, check, mut report } = done;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
-        let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh));
+        let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh)).transpose()?;
         let options = WriteOptions {
             format: self.format.format,
             memory: Some((self.blocks.memory / 4) as usize),
@@ -330,7 +329,7 @@ impl Args {
         self.write_page(plan, before, &report, Some(&found))?;
         self.print(plan, before, &report, Some((check, &fidelity)))?;
         let invalid = !check.is_valid() || !report.keeps_vessels(plan.fuse);
-        self.advise(&report, invalid);
+        self.blocks.advise(&report, invalid);
         let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
         if let Some(words) = &unfaithful {
             log::note(words);
@@ -343,13 +342,6 @@ impl Args {
         })
     }
 
-    /// Says what may help.
-    fn advise(&self, run: &RunReport, invalid: bool) {
-        for line in advice(run, invalid, self.blocks.refine.is_some(), self.blocks.rho) {
-            log::note(&line);
-        }
-    }
-
     /// What went wrong, for people.
     fn explain(&self, error: RunError, plan: &MeshPlan, before: &Before) -> Failure {
         match error {
@@ -358,7 +350,7 @@ impl Args {
                 if let Err(failure) = paged.and_then(|()| self.print(plan, before, &report, None)) {
                     return failure;
                 }
-                self.advise(&report, true);
+                self.blocks.advise(&report, true);
                 Failure::stage(format!(
                     "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
                     report.failed.len()

@@ -6,8 +6,8 @@ use std::path::Path;
 use super::exit::Failure;
 use super::network::NetworkArgs;
 use crate::picture::{
-    Background, Camera, Canvas, Colour, Cut, Direction, Image, Legend, MeshPicture, NetworkPicture, Outline, PlaneWish,
-    Shown,
+    Background, Camera, Canvas, Colour, Direction, Image, Legend, MeshPicture, NetworkPicture, Opening, Outline,
+    PlaneWish, Shown,
 };
 use crate::pipeline::{Datum, VesselData};
 use anastomesh_mesh::beside::Beside;
@@ -34,10 +34,10 @@ pub struct PictureArgs {
     at: Option<Point3>,
     /// What colours tell (default: patch for a mesh, radius for a network)
     #[arg(long, value_enum)]
-    color: Option<Colours>,
+    color: Option<Colour>,
     /// Background
-    #[arg(long, value_enum, default_value_t = Ground::Light)]
-    background: Ground,
+    #[arg(long, value_enum, default_value_t = BackgroundColour::Light)]
+    background: BackgroundColour,
     /// Take tetrahedra away that are before a plane, as the viewer sees it: x, y, z or view; -x, -y, -z: that are behind it. In the
     /// middle of the picture or at a coordinate or share: x:12.5, view:40%
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true)]
@@ -51,42 +51,13 @@ pub struct PictureArgs {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Colours {
-    /// Nothing
-    Plain,
-    /// Wall, inlets, outlets
-    Patch,
-    /// The block (of a network: the branch)
-    Block,
-    /// The radius of the vessel (of a mesh with --network)
-    Radius,
-    /// Strahler's order of the vessel (of a mesh with --network)
-    Order,
-    /// Radius ratios, from bad (red) to good (blue)
-    Quality,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Ground {
+enum BackgroundColour {
     /// White
     Light,
     /// All but black
     Dark,
     /// None: transparent
     None,
-}
-
-impl From<Colours> for Colour {
-    fn from(colours: Colours) -> Self {
-        match colours {
-            Colours::Plain => Self::Plain,
-            Colours::Patch => Self::Patch,
-            Colours::Block => Self::Block,
-            Colours::Radius => Self::Radius,
-            Colours::Order => Self::Order,
-            Colours::Quality => Self::Quality,
-        }
-    }
 }
 
 /// Pixels of a picture, at most.
@@ -146,8 +117,8 @@ impl PictureArgs {
     /// What the colours tell, where they tell something of the network.
     fn datum(&self) -> Option<Datum> {
         match self.color {
-            Some(Colours::Radius) => Some(Datum::Radius),
-            Some(Colours::Order) => Some(Datum::Strahler),
+            Some(Colour::Radius) => Some(Datum::Radius),
+            Some(Colour::Order) => Some(Datum::Strahler),
             _ => None,
         }
     }
@@ -159,7 +130,7 @@ impl PictureArgs {
                 "--clip shows tetrahedra, of which a network has none; --cut-away opens its wall",
             ));
         }
-        let picture = NetworkPicture::new(network, self.color.map_or(Colour::Radius, Colour::from), roots);
+        let picture = NetworkPicture::new(network, self.color.map_or(Colour::Radius, Colour::from), roots)?;
         let outline = picture.outline();
         let mut canvas = self.canvas(&outline);
         canvas.cut = self.cut_away.map(|wish| wish.plane(&canvas.camera, &outline));
@@ -177,8 +148,8 @@ impl PictureArgs {
         let failed = |e: io::Error| Failure::input(format!("{}: {e}; run `anastomesh check`", path.display()));
         let vessels = match (self.datum(), network) {
             (Some(datum), Some(network)) => {
-                let legend = legend(datum, network, mesh);
-                Some((VesselData::new(vec![datum], network, mesh), legend))
+                let legend = legend(datum, network, mesh)?;
+                Some((VesselData::new(vec![datum], network, mesh)?, legend))
             }
             (Some(datum), None) => {
                 let what = datum.name();
@@ -192,7 +163,7 @@ impl PictureArgs {
         let outline = MeshPicture::outline(mesh).map_err(failed)?;
         let mut canvas = self.canvas(&outline);
         let cut = |wish: PlaneWish| wish.plane(&canvas.camera, &outline);
-        let cut = self.clip.map(|wish| Cut::Tets(cut(wish))).or(self.cut_away.map(|wish| Cut::Wall(cut(wish))));
+        let cut = self.clip.map(|wish| Opening::Tets(cut(wish))).or(self.cut_away.map(|wish| Opening::Wall(cut(wish))));
         MeshPicture { mesh, colour, values }.draw(&mut canvas, cut).map_err(failed)?;
         Ok((canvas.finish(self.background()), shown))
     }
@@ -206,25 +177,25 @@ impl PictureArgs {
 
     fn background(&self) -> Background {
         match self.background {
-            Ground::Light => Background::Light,
-            Ground::Dark => Background::Dark,
-            Ground::None => Background::None,
+            BackgroundColour::Light => Background::Light,
+            BackgroundColour::Dark => Background::Dark,
+            BackgroundColour::None => Background::None,
         }
     }
 }
 
 /// The scale of what is known of a network's vessels.
-fn legend(datum: Datum, network: &Skeleton, mesh: &dyn MeshSource) -> Legend {
+fn legend(datum: Datum, network: &Skeleton, mesh: &dyn MeshSource) -> Result<Legend, Failure> {
     if datum == Datum::Radius {
-        return Legend::of(network.edges.iter().flat_map(|e| e.radii), true);
+        return Ok(Legend::of(network.edges.iter().flat_map(|e| e.radii), true));
     }
-    let data = VesselData::new(vec![datum], network, mesh);
+    let data = VesselData::new(vec![datum], network, mesh)?;
     let middle = |e| {
         let tube = network.tube(e);
         Point3::from((tube.a.coords + tube.b.coords) * 0.5)
     };
     let places: Vec<[Point3; 3]> = network.edge_ids().map(|e| [middle(e); 3]).collect();
-    Legend::of(data.in_faces(0, &places).into_iter(), false)
+    Ok(Legend::of(data.in_faces(0, &places).into_iter(), false))
 }
 
 #[cfg(test)]

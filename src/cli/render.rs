@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use super::common::{ended, thread_pool};
 use super::exit::{Exit, Failure};
-use super::kind::{Kind, OpenedMesh, boundary_of, left_in};
+use super::kind::{FileKind, OpenedMesh, boundary_of, left_in};
+use super::limits;
 use super::log;
 use super::network::NetworkArgs;
 use super::picture::{PictureArgs, vessels};
-use super::room;
 use crate::picture::{Colour, Image, Shown};
 use crate::report::rows::row;
 use anastomesh_io::surface::read_surface;
@@ -32,7 +32,7 @@ pub struct Args {
     picture: PictureArgs,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
     /// held as a whole
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = room::size)]
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
     /// Number of threads (default: all cores); the picture does not depend on it
     #[arg(short = 'j', long, value_name = "N")]
@@ -67,16 +67,16 @@ impl Args {
         if let Some(left) = left_in(path)? {
             return self.picture.mesh(path, &left.whole(&()), self.vessels()?.as_ref());
         }
-        match Kind::of(path, "render")? {
-            Kind::Network => {
+        match FileKind::of(path, "render")? {
+            FileKind::Network => {
                 let (network, roots) = vessels(&self.input)?;
                 self.picture.network(&network, &roots)
             }
-            Kind::Surface => {
+            FileKind::Surface => {
                 let surface = read_surface(path).map_err(|e| Failure::input(e.to_string()))?;
                 self.picture.mesh(path, &boundary_of(surface), self.vessels()?.as_ref())
             }
-            Kind::Mesh => {
+            FileKind::Mesh => {
                 let mut opened = OpenedMesh::open(path, self.memory)?;
                 opened.label_boundary();
                 self.picture.mesh(path, opened.source(), self.vessels()?.as_ref())

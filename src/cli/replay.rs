@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
+use super::limits::size;
 use super::log;
 use super::progress::Bars;
-use super::room::size;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::block::{BlockDump, BlockError, Finished};
 use crate::pipeline::{Estimate, TooLarge, replay};
@@ -43,7 +43,7 @@ struct Output<'a> {
     nodes: &'a [u32],
     /// None when it came out.
     failed: Option<Failed>,
-    mesh: Option<Made>,
+    mesh: Option<ReplayedMesh>,
 }
 
 /// Where it failed.
@@ -55,7 +55,7 @@ struct Failed {
 
 /// What came out.
 #[derive(Serialize)]
-struct Made {
+struct ReplayedMesh {
     points: usize,
     tets: usize,
     quality: TetQuality,
@@ -103,7 +103,8 @@ impl Args {
         let volume = block.into_volume();
         let mesh = &volume.mesh;
         let file = self.output.as_ref().map(|path| path.display().to_string());
-        let made = Made { points: mesh.points.len(), tets: mesh.tets.len(), quality: TetQuality::of(mesh), file };
+        let made =
+            ReplayedMesh { points: mesh.points.len(), tets: mesh.tets.len(), quality: TetQuality::of(mesh), file };
         if let Some(path) = &self.output {
             let notes = MeshNotes {
                 expectation: None,
@@ -120,7 +121,7 @@ impl Args {
         Ok(Exit::Fine)
     }
 
-    fn print(&self, dump: &BlockDump, failed: Option<Failed>, mesh: Option<Made>) -> Result<(), Failure> {
+    fn print(&self, dump: &BlockDump, failed: Option<Failed>, mesh: Option<ReplayedMesh>) -> Result<(), Failure> {
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
             let (written_by, block, nodes) = (dump.program.as_str(), dump.name(), dump.nodes.as_slice());
@@ -130,7 +131,7 @@ impl Args {
                 String::new,
             );
         }
-        if let Some(Made { points, tets, .. }) = mesh {
+        if let Some(ReplayedMesh { points, tets, .. }) = mesh {
             let (block, nodes) = (dump.name(), &dump.nodes);
             let [tets, points] = [tets, points].map(grouped);
             let hint = if self.output.is_none() { " (-o MESH writes it)" } else { "" };

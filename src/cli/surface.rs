@@ -8,15 +8,14 @@ use super::before::{Before, Made, Meshing};
 use super::blocks::BlockArgs;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::limits::{self, BlockPlace};
 use super::log;
 use super::network::NetworkArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::room::{self, BlockPlace};
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport};
-use crate::report::advice::advice;
 use crate::report::summary::Summary;
 use anastomesh_io::surface::{ensure_boundary_writable, write_boundary_watched};
 use anastomesh_io::volume::MeshNotes;
@@ -85,7 +84,7 @@ impl Args {
     fn make(&self, before: Before, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
         let rough = Estimate::rough(&before.network, plan);
         let (_, store) = BlockPlace::beside(&self.output, &rough, plan.memory)?;
-        let fits = |estimate: &Estimate| room::block_fits(estimate, plan);
+        let fits = |estimate: &Estimate| limits::block_fits(estimate, plan);
         let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
         let Made { stored: mut made, before } =
             before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;
@@ -107,19 +106,12 @@ impl Args {
         made.report.stages.extend(clock.stages());
         self.print(plan, &before, &made.report, Some(&made.check))?;
         let invalid = !made.check.is_valid() || !made.report.keeps_vessels(plan.fuse);
-        self.advise(&made.report, invalid);
+        self.blocks.advise(&made.report, invalid);
         Ok(match () {
             () if !made.report.failed.is_empty() => Exit::StageFailed,
             () if invalid => Exit::GateNotMet,
             () => Exit::Fine,
         })
-    }
-
-    /// Says what may help.
-    fn advise(&self, run: &RunReport, invalid: bool) {
-        for line in advice(run, invalid, self.blocks.refine.is_some(), self.blocks.rho) {
-            log::note(&line);
-        }
     }
 
     /// What went wrong, for people.
@@ -129,7 +121,7 @@ impl Args {
                 if let Err(failure) = self.print(plan, before, &report, None) {
                     return failure;
                 }
-                self.advise(&report, true);
+                self.blocks.advise(&report, true);
                 Failure::stage(format!(
                     "{} block(s) have no sound surface, named above. --keep-going leaves them out",
                     report.failed.len()

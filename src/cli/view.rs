@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 use super::check::check_opened;
 use super::common::{ended, thread_pool};
 use super::exit::{Exit, Failure};
-use super::kind::{Kind, OpenedMesh, boundary_of, left_in};
+use super::kind::{FileKind, OpenedMesh, boundary_of, left_in};
+use super::limits;
 use super::log;
 use super::network::NetworkArgs;
 use super::picture::vessels;
-use super::room;
 use crate::block::BlockDump;
 use crate::pipeline::{Datum, VesselData};
-use crate::view::{Fault, Page, Wall, WallOptions, add_network, add_tets};
+use crate::view::{Fault, ViewerPage, Wall, WallOptions, add_network, add_tets};
 use anastomesh_io::surface::read_surface;
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::source::MeshSource;
@@ -49,7 +49,7 @@ pub struct Args {
     no_check: bool,
     /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
     /// held as a whole
-    #[arg(long, value_name = "SIZE", default_value = "1GiB", value_parser = room::size)]
+    #[arg(long, value_name = "SIZE", default_value = "1GiB", value_parser = limits::size)]
     memory: u64,
     /// Number of threads (default: all cores); the page does not depend on it
     #[arg(short = 'j', long, value_name = "N")]
@@ -70,7 +70,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_text_writable(&output).map_err(unwritable)?;
     let title = input.file_name().unwrap_or(input.as_os_str()).to_string_lossy().into_owned();
     let pool = thread_pool(args.threads)?;
-    let page = pool.install(|| args.page(Page::new(&title)))?;
+    let page = pool.install(|| args.page(ViewerPage::new(&title)))?;
     let html = page.html().map_err(unwritable)?;
     write_text(&output, &html).map_err(unwritable)?;
     if !args.quiet {
@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
-    fn page(&self, mut page: Page) -> Result<Page, Failure> {
+    fn page(&self, mut page: ViewerPage) -> Result<ViewerPage, Failure> {
         let path: &Path = &self.input.network;
         let mut faults = self.dumps()?;
         if let Some(left) = left_in(path)? {
@@ -88,17 +88,17 @@ impl Args {
             page.add_faults(&faults);
             return Ok(page);
         }
-        match Kind::of(path, "view")? {
-            Kind::Network => {
+        match FileKind::of(path, "view")? {
+            FileKind::Network => {
                 let (network, inlets) = vessels(&self.input)?;
                 faults.extend(Fault::of_overlaps(&network));
-                know_network(&mut page, &network, &inlets);
+                know_network(&mut page, &network, &inlets)?;
             }
-            Kind::Surface => {
+            FileKind::Surface => {
                 let surface = read_surface(path).map_err(|e| Failure::input(e.to_string()))?;
                 faults.extend(self.add_mesh(&mut page, &boundary_of(surface))?);
             }
-            Kind::Mesh => {
+            FileKind::Mesh => {
                 let mut opened = OpenedMesh::open(path, self.memory)?;
                 faults.extend(self.faults_of(&opened)?);
                 opened.label_boundary();
@@ -119,15 +119,15 @@ impl Args {
     }
 
     /// Adds a mesh; where blocks of it are missing.
-    fn add_mesh(&self, page: &mut Page, mesh: &dyn MeshSource) -> Result<Vec<Fault>, Failure> {
+    fn add_mesh(&self, page: &mut ViewerPage, mesh: &dyn MeshSource) -> Result<Vec<Fault>, Failure> {
         let path = self.input.network.display();
         let failed = |e: io::Error| Failure::input(format!("{path}: {e}; run `anastomesh check`"));
         let network = match &self.made_of {
             Some(network) => Some(vessels(&NetworkArgs { network: network.clone(), ..self.input.clone() })?),
             None => None,
         };
-        let data =
-            network.as_ref().map(|(network, _)| VesselData::new(vec![Datum::Radius, Datum::Strahler], network, mesh));
+        let data = |(network, _): &(Skeleton, _)| VesselData::new(vec![Datum::Radius, Datum::Strahler], network, mesh);
+        let data = network.as_ref().map(data).transpose()?;
         let options = WallOptions { vessels: data.as_ref().map(|data| data as _) };
         let wall = Wall::of(mesh, &options).map_err(failed)?;
         if wall.triangles() == 0 {
@@ -138,7 +138,7 @@ impl Args {
         let missing = Fault::of_missing(&wall, mesh.patches());
         page.add_wall(wall, mesh.patches());
         if let Some((network, inlets)) = &network {
-            know_network(page, network, inlets);
+            know_network(page, network, inlets)?;
         }
         Ok(missing)
     }
@@ -172,7 +172,8 @@ impl Args {
     }
 }
 
-fn know_network(page: &mut Page, network: &Skeleton, inlets: &[NodeId]) {
-    let fact = add_network(network, inlets, &mut page.pack);
+fn know_network(page: &mut ViewerPage, network: &Skeleton, inlets: &[NodeId]) -> Result<(), Failure> {
+    let fact = add_network(network, inlets, &mut page.pack)?;
     page.know("network", fact);
+    Ok(())
 }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::common::print;
 use super::exit::{Exit, Failure};
+use super::limits::{self, BlockPlace};
 use super::log;
 use super::progress::Bars;
-use super::room::{self, BlockPlace};
 use crate::pipeline::{
     KeyMaker, Manifest, MeshPlan, NoShard, Role, RunError, Shard, ShareReport, Store, StoreError, fingerprint,
     make_share, two_numbers,
@@ -100,7 +100,7 @@ impl WorkDir {
         (network, plan): (Skeleton, &MeshPlan),
         bars: &Bars,
     ) -> Result<ShareReport, RunError> {
-        let fits = |estimate: &_| room::block_fits(estimate, plan);
+        let fits = |estimate: &_| limits::block_fits(estimate, plan);
         make_share(&self.store, network, plan, shard, &fits, bars)
     }
 }

@@ -5,7 +5,7 @@
 //! fill-in according to their cut width. A capillary bed has cuts of thousands, so a dense remainder is solved
 //! iteratively (`iterate`).
 
-use super::iterate::Linked;
+use super::conjugate_gradient::{NodalSystem, NotConverged};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -53,7 +53,7 @@ impl Conductors {
     }
 
     /// Pressure of each node; 0 in components without ground, which must not have inflow.
-    pub(super) fn pressures(mut self) -> Vec<f64> {
+    pub(super) fn pressures(mut self) -> Result<Vec<f64>, NotConverged> {
         // Nodes with few neighbours first, then in order of index.
         let entry = |node: usize, around: &[(u32, f64)]| Reverse((around.len() as u32, node as u32));
         let mut next: BinaryHeap<_> = self.around.iter().enumerate().map(|(node, list)| entry(node, list)).collect();
@@ -76,7 +76,7 @@ impl Conductors {
         }
         drop(next);
         let mut pressure = vec![0.0; self.around.len()];
-        for (node, found) in core.iter().zip(self.linked(&core).pressures()) {
+        for (node, found) in core.iter().zip(self.core_system(&core).pressures()?) {
             pressure[*node as usize] = found;
         }
         for Gone { node, total, star } in gone.iter().rev() {
@@ -85,19 +85,19 @@ impl Conductors {
                 pressure[*node as usize] = (self.inflow[*node as usize] + through) / total;
             }
         }
-        pressure
+        Ok(pressure)
     }
 
     /// Remaining nodes, renumbered in ascending order.
-    fn linked(&mut self, core: &[u32]) -> Linked {
+    fn core_system(&mut self, core: &[u32]) -> NodalSystem {
         let number = |node: u32| core.partition_point(|&other| other < node) as u32;
-        let mut linked = Linked::default();
+        let mut system = NodalSystem::default();
         for &node in core {
             let around = std::mem::take(&mut self.around[node as usize]);
             let around = around.into_iter().map(|(other, g)| (number(other), g));
-            linked.add(around, self.ground[node as usize], self.inflow[node as usize]);
+            system.add(around, self.ground[node as usize], self.inflow[node as usize]);
         }
-        linked
+        system
     }
 
     fn eliminate(&mut self, node: u32) -> Gone {
@@ -154,7 +154,7 @@ mod tests {
         for &(node, flow) in inflow {
             network.let_in(node, flow);
         }
-        network.pressures()
+        network.pressures().unwrap()
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! One-dimensional network flow: vessels are cones with Poiseuille resistance, and nodes conserve the flow.
 
 mod conductors;
-mod iterate;
+mod conjugate_gradient;
 mod orders;
 mod poiseuille;
 
+pub use conjugate_gradient::NotConverged;
 pub use orders::Orders;
 pub use poiseuille::{NetworkFlow, solve};

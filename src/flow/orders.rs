@@ -1,5 +1,7 @@
 //! Strahler orders and diameter-defined orders of vessels.
 
+use super::conjugate_gradient::NotConverged;
+use super::poiseuille::solve;
 use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 
 /// Orders of all vessels, from 1.
@@ -17,6 +19,15 @@ pub struct Orders {
 const ROUNDS: usize = 100;
 
 impl Orders {
+    /// Computes the orders of the vessels of a network with equal inflow at each inlet.
+    ///
+    /// # Errors
+    /// When the pressures cannot be found.
+    pub fn from_inlets(skeleton: &Skeleton, inlets: impl IntoIterator<Item = NodeId>) -> Result<Self, NotConverged> {
+        let inflow = inlets.into_iter().map(|node| (node, 1.0)).collect();
+        Ok(Self::of(skeleton, &solve(skeleton, &inflow, 1.0)?.pressure))
+    }
+
     /// Orders of a network's vessels with these node pressures.
     pub fn of(skeleton: &Skeleton, pressure: &[f64]) -> Self {
         let strahler = strahler(skeleton, pressure);
@@ -91,12 +102,10 @@ fn bounds(orders: &[u32], radii: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flow::solve;
     use anastomesh_skeleton::fixtures::{network, tangle};
 
     fn orders(skeleton: &Skeleton) -> Orders {
-        let flow = solve(skeleton, &[(NodeId(0), 1.0)].into(), 1.0);
-        Orders::of(skeleton, &flow.pressure)
+        Orders::from_inlets(skeleton, [NodeId(0)]).unwrap()
     }
 
     #[test]

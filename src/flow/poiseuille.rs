@@ -1,6 +1,7 @@
 //! Poiseuille flow with given inflow and zero pressure at the outlets.
 
 use super::conductors::Conductors;
+use super::conjugate_gradient::NotConverged;
 use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -19,7 +20,7 @@ const SHORTEST: f64 = 1e-9;
 
 /// Solves for the node pressures. `inlets` holds terminals with their volume inflow rate; all other terminals are
 /// outlets at pressure 0.
-pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64) -> NetworkFlow {
+pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64) -> Result<NetworkFlow, NotConverged> {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);
     let terminals = adjacency.terminals();
@@ -45,7 +46,7 @@ pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64
     for (&node, &flow) in inlets {
         network.let_in(node.0, let_in(node, flow));
     }
-    let pressure = network.pressures();
+    let pressure = network.pressures()?;
     let through = |node: NodeId| {
         if let Some(&flow) = inlets.get(&node) {
             return let_in(node, flow);
@@ -54,7 +55,7 @@ pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64
         conductance(skeleton, edge, viscosity) * pressure[skeleton.edge(edge).other(node).index()]
     };
     let of_terminal = terminals.iter().map(|&node| (node, through(node))).collect();
-    NetworkFlow { pressure, of_terminal }
+    Ok(NetworkFlow { pressure, of_terminal })
 }
 
 /// Conductance of a straight cone: 3 π a³ b³ / (8 μ L (a² + ab + b²)).
@@ -70,7 +71,7 @@ mod tests {
     use anastomesh_skeleton::fixtures::{network, tangle};
 
     fn solved(skeleton: &Skeleton, inlets: &[(u32, f64)]) -> NetworkFlow {
-        solve(skeleton, &inlets.iter().map(|&(node, flow)| (NodeId(node), flow)).collect(), 2.0)
+        solve(skeleton, &inlets.iter().map(|&(node, flow)| (NodeId(node), flow)).collect(), 2.0).unwrap()
     }
 
     #[test]

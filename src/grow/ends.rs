@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bed::BedParams;
 use super::random::{Random, Stream};
-use super::tubes::{Tubes, meet};
+use super::tubes::{TubeTree, meet};
 use anastomesh_mesh::geometry::{Aabb, Point3, Tube, Vec3};
 use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
 
@@ -35,16 +35,16 @@ pub(super) fn join(
         adjacency,
         first,
         bed,
-        tubes: Tubes::new(network.edge_ids().map(|edge| network.tube(edge))),
+        tubes: TubeTree::new(network.edge_ids().map(|edge| network.tube(edge))),
     };
-    let wanted: Vec<Vec<Target>> = ends.par_iter().map(|&end| around.targets(end)).collect();
+    let wanted: Vec<Vec<AttachmentPoint>> = ends.par_iter().map(|&end| around.targets(end)).collect();
     drop(around);
     let mut taken = FxHashSet::default();
     let mut joined = Joined::new(REACH * bed.length + 3.0 * bed.radius);
     let mut done = Vec::new();
     for (k, (&end, wanted)) in ends.iter().zip(&wanted).enumerate() {
         let from = network.node(end).position;
-        let vessel = |target: &Target| Tube { a: from, b: target.place, ra: bed.radius, rb: bed.radius };
+        let vessel = |target: &AttachmentPoint| Tube { a: from, b: target.place, ra: bed.radius, rb: bed.radius };
         let Some(target) = wanted.iter().find(|t| !taken.contains(&t.at) && joined.clear(&vessel(t))) else { continue };
         taken.insert(target.at);
         joined.add(vessel(target));
@@ -77,7 +77,7 @@ enum At {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Target {
+struct AttachmentPoint {
     at: At,
     place: Point3,
 }
@@ -88,12 +88,12 @@ struct Surroundings<'a> {
     adjacency: Adjacency,
     first: usize,
     bed: &'a BedParams,
-    tubes: Tubes,
+    tubes: TubeTree,
 }
 
 impl Surroundings<'_> {
     /// Possible targets of an end: nodes before middles, nearer ones first.
-    fn targets(&self, end: NodeId) -> Vec<Target> {
+    fn targets(&self, end: NodeId) -> Vec<AttachmentPoint> {
         let from = self.network.node(end).position;
         let reach = REACH * self.bed.length;
         let mut found: Vec<(bool, f64, At)> = Vec::new();
@@ -111,7 +111,7 @@ impl Surroundings<'_> {
         });
         found.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         found.dedup();
-        let targets = found.into_iter().map(|(.., at)| Target { at, place: self.place(at) });
+        let targets = found.into_iter().map(|(.., at)| AttachmentPoint { at, place: self.place(at) });
         targets.filter(|target| self.fits(end, target)).collect()
     }
 
@@ -126,7 +126,7 @@ impl Surroundings<'_> {
     }
 
     /// True if a vessel from an end is clear of others and of its neighbours at both ends.
-    fn fits(&self, end: NodeId, target: &Target) -> bool {
+    fn fits(&self, end: NodeId, target: &AttachmentPoint) -> bool {
         let from = self.network.node(end).position;
         let way = (target.place - from).normalize();
         let vessel = Tube { a: from, b: target.place, ra: self.bed.radius, rb: self.bed.radius };

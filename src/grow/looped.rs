@@ -13,7 +13,7 @@ use super::net::Net;
 use super::organ::SEMI_AXES;
 use super::params::{GenerateError, GenerateParams, Organ};
 use super::random::{Random, Stream};
-use super::tubes::{APART, Tubes, meet};
+use super::tubes::{APART, TubeTree, meet};
 use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
 use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
 
@@ -77,7 +77,7 @@ fn apart(arteries: Skeleton, veins: Skeleton) -> (Skeleton, usize) {
     let mut both = arteries;
     both.nodes.extend(veins.nodes);
     both.edges.extend(veins.edges.iter().map(|e| Edge { nodes: e.nodes.map(|n| NodeId(n.0 + nodes)), ..*e }));
-    let tubes = Tubes::new(both.edge_ids().map(|edge| both.tube(edge)));
+    let tubes = TubeTree::new(both.edge_ids().map(|edge| both.tube(edge)));
     let mut goes = vec![false; both.nodes.len()];
     tubes.tree.self_pairs(|i, j| {
         let (a, b) = (tubes.list[i as usize], tubes.list[j as usize]);
@@ -110,7 +110,7 @@ fn add_bed(network: &mut Skeleton, ends: &[NodeId], bed: &BedParams, size: f64, 
         let a = network.node(end).position;
         Tube { a, b: a + Vec3::x() * (0.01 * room), ra: room, rb: room }
     });
-    let trees = Tubes::new(network.edge_ids().map(|edge| network.tube(edge)).chain(rooms));
+    let trees = TubeTree::new(network.edge_ids().map(|edge| network.tube(edge)).chain(rooms));
     let clear = |i: u64| -> Vec<[u64; 2]> {
         let here = place(i);
         let later = net.joined(i).into_iter().flatten().filter(|&j| j > i && inside(&here));

@@ -40,7 +40,7 @@ impl Tree {
 }
 
 /// Part of a tree behind one vessel.
-struct Part<'a> {
+struct Subtree<'a> {
     points: &'a mut [Point3],
     positions: &'a mut [Point3],
     parents: &'a mut [u32],
@@ -58,7 +58,7 @@ pub fn grow(inlet: Point3, points: &mut [Point3], exponent: f64, random: Random)
     let mut tree =
         Tree { positions: vec![inlet; nodes], parents: vec![0; nodes], sizes: vec![points.len() as u32; nodes] };
     branch(
-        Part {
+        Subtree {
             points,
             positions: &mut tree.positions[1..],
             parents: &mut tree.parents[1..],
@@ -74,8 +74,8 @@ pub fn grow(inlet: Point3, points: &mut [Point3], exponent: f64, random: Random)
 }
 
 /// Recursion depth is that of the tree: some tens of bifurcations.
-fn branch(part: Part, weight: f64, random: Random) {
-    let Part { points, positions, parents, sizes, first, parent, from } = part;
+fn branch(part: Subtree, weight: f64, random: Random) {
+    let Subtree { points, positions, parents, sizes, first, parent, from } = part;
     let n = points.len();
     parents[0] = parent;
     sizes[0] = n as u32;
@@ -94,7 +94,7 @@ fn branch(part: Part, weight: f64, random: Random) {
     let (far_positions, near_positions) = positions.split_at_mut(cut);
     let (far_parents, near_parents) = parents.split_at_mut(cut);
     let (far_sizes, near_sizes) = sizes.split_at_mut(cut);
-    let child = |own, points, positions, parents, sizes| Part {
+    let child = |own, points, positions, parents, sizes| Subtree {
         points,
         positions,
         parents,

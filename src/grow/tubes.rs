@@ -12,12 +12,12 @@ pub(super) fn meet(a: &Tube, b: &Tube) -> bool {
 }
 
 /// Vessels with a search tree.
-pub(super) struct Tubes {
+pub(super) struct TubeTree {
     pub list: Vec<Tube>,
     pub tree: Bvh,
 }
 
-impl Tubes {
+impl TubeTree {
     pub fn new(vessels: impl Iterator<Item = Tube>) -> Self {
         let list: Vec<Tube> = vessels.collect();
         let boxes: Vec<Aabb> = list.iter().map(around).collect();

@@ -2,7 +2,7 @@
 
 // Arc lengths of neighbouring pieces and connectors are copies of one number.
 
-use super::{ClusterEnd, ClusterId, CutId, EndKind, Partition, Piece};
+use super::{BranchPiece, ClusterEnd, ClusterId, CutId, EndKind, Partition};
 use anastomesh_mesh::geometry::DisjointSets;
 use anastomesh_mesh::geometry::{Point3, Section, Tube};
 use anastomesh_skeleton::{Branch, BranchId, NodeId, Skeleton};
@@ -116,7 +116,12 @@ fn coverage(partition: &Partition, branches: &[Branch]) -> Result<(), PartitionF
 }
 
 /// Checks that a piece's tubes form a chain from its start to its end, on the axis, with nearly its length.
-fn follows(skeleton: &Skeleton, partition: &Partition, branch: &Branch, piece: &Piece) -> Result<(), PartitionFlaw> {
+fn follows(
+    skeleton: &Skeleton,
+    partition: &Partition,
+    branch: &Branch,
+    piece: &BranchPiece,
+) -> Result<(), PartitionFlaw> {
     let cluster = &partition.clusters[piece.cluster.0 as usize];
     let flaw = |at| PartitionFlaw::Tubes { cluster: piece.cluster, branch: piece.branch, at };
     let range = piece.tubes.start as usize..piece.tubes.end as usize;

@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 
 use super::params::Overruns;
 use super::parts::{
-    Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, Piece, UncutReason,
+    BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, UncutReason,
 };
 use super::path::path;
-use super::settle::{Run, Settler};
+use super::settle::{BranchSpan, Settler};
 use super::summary::{PartitionSummary, UncutCounts};
 use anastomesh_mesh::geometry::{Section, Tube};
 use anastomesh_skeleton::course::{Course, Courses, Way};
@@ -191,7 +191,7 @@ impl Clusters {
 }
 
 /// Collects the inner nodes of a run and those at ends without a cut.
-fn collect_nodes(settler: &Settler, run: &Run, course: &Course, members: &mut Vec<(u32, NodeId)>) {
+fn collect_nodes(settler: &Settler, run: &BranchSpan, course: &Course, members: &mut Vec<(u32, NodeId)>) {
     let [lo, hi] = settler.range(run, course);
     let nodes = &course.branch.nodes;
     for (i, (&node, &s)) in nodes.iter().zip(&course.branch.arc).enumerate() {
@@ -367,7 +367,7 @@ impl Layout {
         self.cluster_with(id, |_| {})
     }
 
-    fn cluster_with(&self, id: ClusterId, mut each: impl FnMut(Piece)) -> Cluster {
+    fn cluster_with(&self, id: ClusterId, mut each: impl FnMut(BranchPiece)) -> Cluster {
         let mut cluster = Cluster { nodes: self.nodes(id).to_vec(), ..Cluster::default() };
         let mut legs: Vec<(NodeId, Leg)> = Vec::new();
         let r_min = self.r_min[id.0 as usize];
@@ -378,7 +378,7 @@ impl Layout {
             let first = cluster.tubes.len() as u32;
             cluster.tubes.extend(course.tubes(arc[0], arc[1], flat));
             let tubes = first..cluster.tubes.len() as u32;
-            each(Piece { cluster: id, branch: BranchId(piece.branch), arc, tubes });
+            each(BranchPiece { cluster: id, branch: BranchId(piece.branch), arc, tubes });
             if self.sizes.is_some() {
                 let ways = Way::BOTH.into_iter().enumerate().filter(|(end, _)| !flat[*end]);
                 legs.extend(ways.map(|(end, way)| (course.branch.ends()[end], self.leg(&course, end, way))));

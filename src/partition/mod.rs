@@ -25,7 +25,7 @@ pub use layout::Layout;
 pub use params::{PartitionError, PartitionParams};
 #[cfg(test)]
 pub(crate) use parts::PartitionWarning;
-pub use parts::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, Piece};
+pub use parts::{BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition};
 pub use summary::PartitionSummary;
 
 /// Partitions a skeleton into clusters and connectors (section 3.2.1 of the paper, generalized to graphs with loops).
@@ -63,7 +63,7 @@ fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Layout {
     let adjacency = skeleton.adjacency();
     let chains = skeleton.chains(&adjacency);
     let courses = Courses { skeleton, chains: &chains };
-    let cutter = window::Cutter::new(&adjacency, courses, params);
+    let cutter = window::CutFinder::new(&adjacency, courses, params);
     let mut slots = Vec::with_capacity(courses.len());
     let mut uncut = Vec::new();
     for branch in 0..courses.len() as u32 {

@@ -9,11 +9,11 @@ use anastomesh_skeleton::course::{Course, Courses, Way};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Obstacle {
     pub branch: u32,
-    pub kind: Kind,
+    pub kind: ObstacleKind,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kind {
+pub(super) enum ObstacleKind {
     /// Edge with this index in the branch.
     Edge(u32),
     /// Overrun at the branch's start or end.
@@ -44,17 +44,17 @@ impl Near {
         let courses: Vec<(u32, Course)> = branches.iter().map(|&branch| (branch, all.get(branch))).collect();
         let (mut obstacles, mut boxes) = (Vec::new(), Vec::new());
         for (branch, course) in &courses {
-            let mut add = |kind: Kind, tube: &Tube| {
+            let mut add = |kind: ObstacleKind, tube: &Tube| {
                 obstacles.push(Obstacle { branch: *branch, kind });
                 boxes.push(Aabb::of_points([&tube.a, &tube.b]).grown(blending * tube.max_radius()));
             };
             for (i, [ra, rb]) in course.radii.iter().enumerate() {
                 let tube = Tube { a: course.points[i], b: course.points[i + 1], ra: *ra, rb: *rb };
-                add(Kind::Edge(i as u32), &tube);
+                add(ObstacleKind::Edge(i as u32), &tube);
             }
             for (end, terminal) in Way::BOTH.into_iter().zip(terminals[*branch as usize]) {
                 if terminal {
-                    add(Kind::Overrun(end), &terminal_overrun(course, end, params));
+                    add(ObstacleKind::Overrun(end), &terminal_overrun(course, end, params));
                 }
             }
         }

@@ -25,7 +25,7 @@ pub struct Partition {
     pub cut_arcs: Vec<[f64; 2]>,
     /// Branch pieces of the clusters, by branch and arc length. Together with the cuts they cover every branch exactly
     /// once.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<BranchPiece>,
     /// Branches that lie in one cluster from end to end, with the reason.
     pub uncut: Vec<(BranchId, UncutReason)>,
     /// Possible defects of cluster meshes.
@@ -42,7 +42,7 @@ impl Partition {
 
 /// Piece of a branch in a cluster.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
+pub struct BranchPiece {
     pub cluster: ClusterId,
     pub branch: BranchId,
     /// Arc lengths of its two ends.

@@ -5,7 +5,7 @@
 //! which joins two clusters. Both changes are monotone, so the iteration terminates.
 
 use super::clearance::{Tip, tip_middle};
-use super::near::{Kind, Near, Obstacle, terminal_overrun};
+use super::near::{Near, Obstacle, ObstacleKind, terminal_overrun};
 use super::params::PartitionParams;
 use super::parts::UncutReason;
 use super::window::Slot;
@@ -17,7 +17,7 @@ use std::rc::Rc;
 
 /// Piece of a branch that lies in one cluster.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Run {
+pub(super) struct BranchSpan {
     pub branch: u32,
     /// Cuts at its start and end; `None` at the branch's own ends.
     pub slots: [Option<u32>; 2],
@@ -31,7 +31,7 @@ pub(super) struct Settler<'a> {
     pub slots: Vec<Slot>,
     /// Offsets of the slots per branch: `first_slot[branch]..first_slot[branch + 1]`.
     pub first_slot: Vec<u32>,
-    pub runs: Vec<Run>,
+    pub runs: Vec<BranchSpan>,
     /// Offsets of the runs per branch: `first_run[branch]..first_run[branch + 1]`.
     pub first_run: Vec<u32>,
     /// Run indices sorted by cluster.
@@ -119,7 +119,7 @@ impl<'a> Settler<'a> {
             self.gather();
             let mut changed: Vec<u32> = Vec::new();
             for run in 0..self.runs.len() {
-                let Run { branch, slots, root } = self.runs[run];
+                let BranchSpan { branch, slots, root } = self.runs[run];
                 if !dirty[root as usize] {
                     continue;
                 }
@@ -181,11 +181,11 @@ impl<'a> Settler<'a> {
             let mut start = None;
             for slot in slots.clone().filter(|&s| self.slots[s as usize].alive) {
                 let root = self.union.find(self.piece(branch, slot - slots.start));
-                self.runs.push(Run { branch, slots: [start, Some(slot)], root });
+                self.runs.push(BranchSpan { branch, slots: [start, Some(slot)], root });
                 start = Some(slot);
             }
             let root = self.union.find(self.piece(branch, slots.end - slots.start));
-            self.runs.push(Run { branch, slots: [start, None], root });
+            self.runs.push(BranchSpan { branch, slots: [start, None], root });
         }
         self.first_run.push(self.runs.len() as u32);
         self.r_min.fill(f64::INFINITY);
@@ -229,7 +229,7 @@ impl<'a> Settler<'a> {
     }
 
     /// Start and end of a run of a course.
-    pub fn range(&self, run: &Run, course: &Course) -> [f64; 2] {
+    pub fn range(&self, run: &BranchSpan, course: &Course) -> [f64; 2] {
         let lo = run.slots[0].map_or(0.0, |s| self.slots[s as usize].planes[1]);
         let hi = run.slots[1].map_or_else(|| course.length(), |s| self.slots[s as usize].planes[0]);
         [lo, hi]
@@ -268,7 +268,7 @@ impl<'a> Settler<'a> {
 
     /// Checks that a run ending at `s` is clear of its cluster's other vessels. The error names an obstructing branch.
     fn clear_at(&self, near: &Near, run: usize, way: Way, s: f64) -> Result<(), BranchId> {
-        let Run { branch, root, .. } = self.runs[run];
+        let BranchSpan { branch, root, .. } = self.runs[run];
         let section = near.course(branch).section(s, way);
         self.tip_clear(near, run, way, s, &section, self.overrun(section.radius, root))
     }
@@ -316,7 +316,7 @@ impl<'a> Settler<'a> {
                 reach[1] += beyond(course.radius(reach[1], Way::Onward));
             }
             let tube = match obstacle.kind {
-                Kind::Edge(i) => {
+                ObstacleKind::Edge(i) => {
                     let i = i as usize;
                     if run == own {
                         // The vessel that leads to the tip does not obstruct it, unless it returns to it.
@@ -329,7 +329,7 @@ impl<'a> Settler<'a> {
                     }
                     course.clipped(i, reach[0], reach[1])
                 }
-                Kind::Overrun(end) => {
+                ObstacleKind::Overrun(end) => {
                     let here = slots[end.end_index()].is_none() && !(run == own && end == way);
                     here.then(|| terminal_overrun(course, end, self.params))
                 }

@@ -19,7 +19,7 @@ pub(super) struct Slot {
 }
 
 /// Searches for cut positions, branch by branch.
-pub(super) struct Cutter<'a> {
+pub(super) struct CutFinder<'a> {
     courses: Courses<'a>,
     params: &'a PartitionParams,
     adjacency: &'a Adjacency,
@@ -30,7 +30,7 @@ pub(super) struct Cutter<'a> {
 /// Minimum piece length between two cuts of a branch, in radii.
 const SHORTEST_PIECE: f64 = 4.0;
 
-impl<'a> Cutter<'a> {
+impl<'a> CutFinder<'a> {
     pub fn new(adjacency: &'a Adjacency, courses: Courses<'a>, params: &'a PartitionParams) -> Self {
         let cuttability = |rules| Cuttability::new(adjacency, courses, rules);
         let eager = (!params.eager.is_empty()).then(|| cuttability(params.eager_cuts));

@@ -7,6 +7,7 @@ pub type Rgb = [u8; 3];
 
 /// Quantity shown by colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Colour {
     /// No quantity.
     Plain,

@@ -18,7 +18,7 @@ use std::io;
 
 /// Object that a cutting plane removes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cut {
+pub enum Opening {
     /// Whole tetrahedra.
     Tets(Plane),
     /// The wall, cut exactly: the inside of the other half becomes visible.
@@ -60,11 +60,11 @@ impl MeshPicture<'_> {
     ///
     /// # Errors
     /// The mesh cannot be read.
-    pub fn draw(&self, canvas: &mut Canvas, cut: Option<Cut>) -> io::Result<()> {
+    pub fn draw(&self, canvas: &mut Canvas, cut: Option<Opening>) -> io::Result<()> {
         canvas.cut = None;
         let plane = match cut {
-            Some(Cut::Tets(plane)) => plane,
-            Some(Cut::Wall(plane)) => {
+            Some(Opening::Tets(plane)) => plane,
+            Some(Opening::Wall(plane)) => {
                 canvas.cut = Some(plane);
                 return self.draw_faces(canvas, |_, _| true);
             }

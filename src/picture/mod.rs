@@ -18,7 +18,7 @@ pub use camera::{Camera, Direction};
 pub use canvas::Canvas;
 pub use colours::{Background, Colour, Legend};
 pub use image::Image;
-pub use mesh::{Cut, MeshPicture};
+pub use mesh::{MeshPicture, Opening};
 pub use network::{NetworkPicture, Shown};
 pub use outline::Outline;
 pub use plane::{Plane, PlaneWish};

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, Facet};
 use super::colours::{Colour, Legend, MARKED, Rgb, WALL_COLOURS, of_block};
 use super::outline::Outline;
-use crate::flow::{Orders, solve};
+use crate::flow::{NotConverged, Orders};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 use std::f64::consts::TAU;
@@ -29,15 +29,22 @@ pub struct NetworkPicture<'a> {
 
 impl<'a> NetworkPicture<'a> {
     /// Prepares a network. Mesh-only colours (patches, quality) fall back to plain, blocks to branches.
-    pub fn new(network: &'a Skeleton, colour: Colour, roots: &[NodeId]) -> Self {
+    pub fn by_radius(network: &'a Skeleton) -> Self {
         let radii = || network.edges.iter().map(|e| e.radii);
+        let legend = Legend::of(radii().flatten(), true);
+        let colours = radii().map(|r| r.map(|x| legend.colour(x))).collect();
+        Self { network, colours, shown: Shown { colour: Colour::Radius, legend: Some(legend) } }
+    }
+
+    /// Of a network. What concerns meshes alone (patches, quality) is drawn plain, blocks as branches.
+    ///
+    /// # Errors
+    /// When its Strahler orders cannot be found.
+    pub fn new(network: &'a Skeleton, colour: Colour, roots: &[NodeId]) -> Result<Self, NotConverged> {
         let (legend, colours) = match colour {
-            Colour::Radius => {
-                let legend = Legend::of(radii().flatten(), true);
-                (Some(legend), radii().map(|r| r.map(|x| legend.colour(x))).collect())
-            }
+            Colour::Radius => return Ok(Self::by_radius(network)),
             Colour::Order => {
-                let orders = orders(network, roots);
+                let orders = Orders::from_inlets(network, roots.iter().copied())?.strahler;
                 let legend = Legend::of(orders.iter().map(|&o| f64::from(o)), false);
                 (Some(legend), orders.iter().map(|&o| [legend.colour(f64::from(o)); 2]).collect())
             }
@@ -47,7 +54,7 @@ impl<'a> NetworkPicture<'a> {
             }
             Colour::Plain | Colour::Patch | Colour::Quality => (None, vec![[WALL_COLOURS[0]; 2]; network.edges.len()]),
         };
-        Self { network, colours, shown: Shown { colour, legend } }
+        Ok(Self { network, colours, shown: Shown { colour, legend } })
     }
 
     /// Draws some edges in the marker colour.
@@ -93,12 +100,6 @@ impl<'a> NetworkPicture<'a> {
         }
         canvas.flush();
     }
-}
-
-/// Strahler orders of the edges for the given roots.
-fn orders(network: &Skeleton, roots: &[NodeId]) -> Vec<u32> {
-    let inflow = roots.iter().map(|&node| (node, 1.0)).collect();
-    Orders::of(network, &solve(network, &inflow, 1.0).pressure).strahler
 }
 
 /// Number of sides of a cone that is visually sufficient.

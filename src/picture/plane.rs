@@ -23,12 +23,12 @@ impl Plane {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneWish {
     pub axis: Option<Vec3>,
-    pub place: Place,
+    pub place: PlanePosition,
 }
 
 /// Position of a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum PlanePosition {
     /// At the centre of the picture.
     Middle,
     /// At a fraction of the object's extent, 0 to 1.
@@ -56,10 +56,10 @@ impl std::str::FromStr for PlaneWish {
         };
         let number = |text: &str| text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or(help);
         let place = match place {
-            None => Place::Middle,
+            None => PlanePosition::Middle,
             Some(place) => match place.strip_suffix('%') {
-                Some(share) => Place::Share(number(share)? / 100.0),
-                None => Place::Coordinate(number(place)?),
+                Some(share) => PlanePosition::Share(number(share)? / 100.0),
+                None => PlanePosition::Coordinate(number(place)?),
             },
         };
         Ok(Self { axis, place })
@@ -73,16 +73,16 @@ impl PlaneWish {
         let facing = |axis: Vec3| if axis.abs().dot(&camera.towards) < 0.0 { -axis } else { axis };
         let normal = self.axis.map_or(camera.towards, facing);
         let offset = match self.place {
-            Place::Middle => camera.centre.coords.dot(&normal),
-            Place::Share(share) => {
+            PlanePosition::Middle => camera.centre.coords.dot(&normal),
+            PlanePosition::Share(share) => {
                 // The fraction is measured along the positive axis, whichever side is removed.
                 let share = if normal.sum() < 0.0 && self.axis.is_some() { 1.0 - share } else { share };
                 let [low, high] = outline.range(normal);
                 low + share * (high - low)
             }
             // Coordinates of `-x` are those of x.
-            Place::Coordinate(c) if self.axis.is_some() => c * normal.sum(),
-            Place::Coordinate(c) => c,
+            PlanePosition::Coordinate(c) if self.axis.is_some() => c * normal.sum(),
+            PlanePosition::Coordinate(c) => c,
         };
         Plane { normal, offset }
     }

@@ -3,12 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::attempts::Way;
+use super::attempts::RetryStrategy;
 use super::blocks::{Blocks, Meetings, original_nodes};
 use super::error::RunError;
 use super::estimate::cluster_cost;
 use super::report::Retry;
-use super::rounds::Run;
+use super::rounds::RunContext;
 use super::routes::Overlapping;
 use super::seen::Seen;
 use super::whole::Whole;
@@ -33,7 +33,7 @@ const ROUNDS: usize = 2;
 
 impl Apart {
     /// Decides what is done about meetings of blocks; no when nothing is left to try.
-    pub fn part(&mut self, meetings: &Meetings, blocks: &Blocks, run: &Run) -> bool {
+    pub fn part(&mut self, meetings: &Meetings, blocks: &Blocks, run: &RunContext) -> bool {
         if meetings.is_empty() {
             return false;
         }
@@ -42,7 +42,7 @@ impl Apart {
         let mut meetings: Meetings = meetings.iter().copied().filter(|pair| !overlapping.do_overlap(*pair)).collect();
         let clusters = partition.clusters_len();
         let is_cluster = |block: u32| (block as usize) < clusters;
-        let tried = self.met.len() == Way::APART.len();
+        let tried = self.met.len() == RetryStrategy::APART.len();
         // Connectors are not made finer.
         let stuck = meetings.iter().filter(|pair| tried || !is_cluster(pair[0]));
         let connectors = stuck.flatten().filter(|&&block| !is_cluster(block));
@@ -63,7 +63,7 @@ impl Apart {
     }
 }
 
-impl Run<'_> {
+impl RunContext<'_> {
     /// Makes blocks again as long as some meet and there is something to try; looks at their walls and at what is near them.
     /// `seen`: the walls as they are. Ends as well when a block fails.
     ///
@@ -72,7 +72,7 @@ impl Run<'_> {
     pub fn part(&mut self, mut blocks: Blocks, apart: &mut Apart, mut seen: Seen) -> Result<Blocks, RunError> {
         loop {
             match apart.met.last() {
-                Some(meetings) => self.set_apart(&mut blocks, meetings, Way::APART[apart.met.len() - 1])?,
+                Some(meetings) => self.set_apart(&mut blocks, meetings, RetryStrategy::APART[apart.met.len() - 1])?,
                 None => blocks = self.build(&apart.uncut, Some(blocks), &|_| Ok(()))?,
             }
             if blocks.any_failed() && !self.shop.plan.keep_going {
@@ -92,7 +92,7 @@ impl Run<'_> {
     ///
     /// # Errors
     /// When the store fails, or the run is told to stop.
-    fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: Way) -> Result<(), RunError> {
+    fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: RetryStrategy) -> Result<(), RunError> {
         let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
         let mut again: BTreeMap<u32, u32> = BTreeMap::new();
         for &[a, b] in meetings {

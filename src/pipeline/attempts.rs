@@ -21,7 +21,7 @@ pub struct Tried {
 
 /// A way of making a cluster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Way {
+pub enum RetryStrategy {
     /// As the plan has it.
     Usual,
     /// With the grid of the contour moved: another triangulation of the same wall.
@@ -41,7 +41,7 @@ pub enum Way {
     Finest,
 }
 
-impl Way {
+impl RetryStrategy {
     /// All, in the order in which they are tried.
     const ALL: [Self; 8] = [
         Self::Usual,
@@ -99,7 +99,7 @@ impl Way {
 
 /// One attempt at a block.
 #[derive(Clone, Debug)]
-struct Attempt {
+struct BlockAttempt {
     name: String,
     params: BlockParams,
 }
@@ -107,11 +107,11 @@ struct Attempt {
 /// The attempts at a cluster. `overlapping`: vessels of the network overlap in it, or come so close to each other that they
 /// may. If neither another grid nor a finer one with a narrower kernel keeps them apart they are taken as one, at once if
 /// that is what is wanted. `first`: the first of the ways that is tried.
-fn attempts(plan: &MeshPlan, overlapping: bool, first: Way) -> Vec<Attempt> {
-    let ways = || Way::ALL.into_iter().filter(move |&way| way >= first);
+fn attempts(plan: &MeshPlan, overlapping: bool, first: RetryStrategy) -> Vec<BlockAttempt> {
+    let ways = || RetryStrategy::ALL.into_iter().filter(move |&way| way >= first);
     let apart = ways().filter(|way| !overlapping || (!plan.fuse && way.may_part()));
-    let apart = apart.map(|way| Attempt { name: way.name().into(), params: way.params(plan) });
-    let fused = ways().filter(|_| overlapping).map(|way| Attempt {
+    let apart = apart.map(|way| BlockAttempt { name: way.name().into(), params: way.params(plan) });
+    let fused = ways().filter(|_| overlapping).map(|way| BlockAttempt {
         name: format!("vessels that overlap taken as one, {}", way.name()),
         params: BlockParams { allow_fused: true, ..way.params(plan) },
     });
@@ -168,15 +168,15 @@ fn worst_ratio(block: &Finished) -> f64 {
 /// is what the dump of the input reproduces.
 fn first_good(
     block: &str,
-    attempts: Vec<Attempt>,
+    attempts: Vec<BlockAttempt>,
     mut make: impl FnMut(&BlockParams) -> Result<Finished, BlockError>,
 ) -> Tried {
     let mut failures: Vec<BlockError> = Vec::new();
-    let mut best: Option<(usize, Attempt, Finished)> = None;
+    let mut best: Option<(usize, BlockAttempt, Finished)> = None;
     for (tried, attempt) in attempts.into_iter().enumerate() {
         let bar = Bar::of(&attempt.params);
         // Vessels that can be kept apart are not taken as one for the sake of a tetrahedron.
-        let will_do = |(_, best, made): &(usize, Attempt, Finished)| {
+        let will_do = |(_, best, made): &(usize, BlockAttempt, Finished)| {
             best.params.allow_fused != attempt.params.allow_fused
                 || tried > WAYS_OUT_OF_SLIM && Bar::of(&best.params).is_not_flat(made)
         };
@@ -212,7 +212,7 @@ pub fn cluster(
     cluster: &Cluster,
     plan: &MeshPlan,
     overlapping: bool,
-    first: Way,
+    first: RetryStrategy,
     original: impl Fn(NodeId) -> u32,
     watch: &Watch,
 ) -> Tried {
@@ -276,7 +276,7 @@ pub fn free_connector(id: CutId, cut: &Cut, plan: &MeshPlan) -> Tried {
 
 /// A connector, its tube divided in one way after the other.
 fn divided(id: CutId, plan: &MeshPlan, mut make: impl FnMut(&BlockParams) -> Result<Connector, BlockError>) -> Tried {
-    let way = |first_division| Attempt {
+    let way = |first_division| BlockAttempt {
         name: "other division of the tube".into(),
         params: BlockParams { first_division, ..plan.block_params() },
     };
@@ -310,7 +310,7 @@ mod tests {
         let usual = MeshPlan::default().block_params();
         let failed = || BlockError::Parameter { name: "none", value: 0.0 };
         let try_all = |results: &[Option<f64>]| {
-            let way = |first_division: usize| Attempt {
+            let way = |first_division: usize| BlockAttempt {
                 name: first_division.to_string(),
                 params: BlockParams { first_division, ..usual },
             };
@@ -353,7 +353,8 @@ mod tests {
         }
         assert!(bar.is_passed(&wedge(0.3)));
         assert!(bar.goodness(&slim[0]) > bar.goodness(&block(0.03)));
-        let way = |first_division| Attempt { name: String::new(), params: BlockParams { first_division, ..usual } };
+        let way =
+            |first_division| BlockAttempt { name: String::new(), params: BlockParams { first_division, ..usual } };
         let mut asked = 0;
         let tried = first_good("block", (0..slim.len()).map(way).collect(), |params| {
             asked += 1;
@@ -366,17 +367,18 @@ mod tests {
     #[test]
     fn vessels_that_may_overlap_are_kept_apart_if_they_can_be() {
         let fused = |plan: &MeshPlan, overlapping| -> Vec<bool> {
-            attempts(plan, overlapping, Way::Usual).iter().map(|attempt| attempt.params.allow_fused).collect()
+            attempts(plan, overlapping, RetryStrategy::Usual).iter().map(|attempt| attempt.params.allow_fused).collect()
         };
         let plan = MeshPlan::default();
-        assert_eq!(fused(&plan, false), [false; Way::ALL.len()]);
-        assert_eq!(fused(&plan, true), [[false; 5].as_slice(), &[true; Way::ALL.len()]].concat());
-        assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; Way::ALL.len()]);
-        let names: Vec<String> = attempts(&plan, true, Way::Usual).into_iter().map(|attempt| attempt.name).collect();
+        assert_eq!(fused(&plan, false), [false; RetryStrategy::ALL.len()]);
+        assert_eq!(fused(&plan, true), [[false; 5].as_slice(), &[true; RetryStrategy::ALL.len()]].concat());
+        assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; RetryStrategy::ALL.len()]);
+        let names: Vec<String> =
+            attempts(&plan, true, RetryStrategy::Usual).into_iter().map(|attempt| attempt.name).collect();
         assert_eq!(names[3], "finer voxel, narrower kernel");
         assert_eq!(names[5], "vessels that overlap taken as one, as usual");
-        assert!(Way::ALL.is_sorted());
-        for first in Way::APART {
+        assert!(RetryStrategy::ALL.is_sorted());
+        for first in RetryStrategy::APART {
             assert_eq!(attempts(&plan, false, first)[0].name, first.name());
             assert!(attempts(&plan, true, first).iter().any(|attempt| !attempt.params.allow_fused));
         }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use super::make::Made;
+use super::make::BlockResult;
 use super::report::Retry;
 use super::store::RecordId;
 use super::timing::BlockTimes;
@@ -26,9 +26,9 @@ pub struct Blocks {
     /// For each cluster, whether vessels overlap in it.
     pub tangled: Vec<bool>,
     /// By `ClusterId`; an error for a cluster that failed to the end.
-    pub clusters: Vec<Made>,
+    pub clusters: Vec<BlockResult>,
     /// By `CutId`; none beside a failed cluster.
-    pub connectors: Vec<Option<Made>>,
+    pub connectors: Vec<Option<BlockResult>>,
     /// Clusters that were made again, in another way than the usual one, because their walls met others.
     pub apart: BTreeSet<u32>,
     /// What helped blocks that failed at first.

@@ -6,7 +6,6 @@ use std::io;
 
 use crate::flow::{NetworkFlow, Orders, solve};
 use anastomesh_io::volume::{CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
-use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::quality::triangle_area_vector;
 use anastomesh_mesh::relabel::Relabelled;
 use anastomesh_mesh::source::MeshSource;
@@ -74,7 +73,7 @@ impl Caps {
     /// Of the mesh of a network. Inlets and outlets are known by the names of their patches.
     ///
     /// # Errors
-    /// When the mesh cannot be read.
+    /// When the mesh cannot be read, or the pressures in the network cannot be found.
     pub fn of(mesh: &dyn MeshSource, network: &Skeleton, fluid: Fluid) -> io::Result<Self> {
         let adjacency = network.adjacency();
         let terminals: BTreeMap<u32, NodeId> =
@@ -87,7 +86,7 @@ impl Caps {
         let usual = |cap: &Cap| flow_of_reynolds(USUAL_REYNOLDS, cap.radius, fluid.density, fluid.viscosity);
         let inlets = caps.iter().filter(|(patch, ..)| patch.is_inlet());
         let inlets = inlets.map(|(_, cap, node)| (*node, fluid.inflow.unwrap_or_else(|| usual(cap)))).collect();
-        let solved = solve(network, &inlets, fluid.viscosity);
+        let solved = solve(network, &inlets, fluid.viscosity).map_err(io::Error::other)?;
         let orders = Orders::of(network, &solved.pressure);
         let drops = drops(network, &solved, &inlets);
         let areas = areas(mesh)?;
@@ -143,13 +142,7 @@ impl Caps {
     pub fn flow(&self) -> Flow {
         let mut caps: BTreeMap<i32, CapFlow> = BTreeMap::new();
         for row in &self.rows {
-            let CapFlow { flow, resistance } = caps.entry(row.id).or_default();
-            *flow += row.flow;
-            // Side by side conductances add.
-            *resistance = match (*resistance > 0.0, row.resistance > 0.0) {
-                (true, true) => 1.0 / (1.0 / *resistance + 1.0 / row.resistance),
-                _ => resistance.max(row.resistance),
-            };
+            caps.entry(row.id).or_default().add_parallel(CapFlow { flow: row.flow, resistance: row.resistance });
         }
         Flow { density: self.fluid.density, viscosity: self.fluid.viscosity, caps }
     }
@@ -173,20 +166,16 @@ fn drops(network: &Skeleton, solved: &NetworkFlow, inlets: &BTreeMap<NodeId, f64
 
 /// The area of each patch but the wall.
 fn areas(mesh: &dyn MeshSource) -> io::Result<BTreeMap<i32, f64>> {
-    let mut caps: Vec<([u32; 3], i32)> = Vec::new();
+    let (mut faces, mut patches) = (Vec::new(), Vec::new());
     mesh.each_faces(|piece| {
-        let labelled = piece.faces.iter().copied().zip(piece.patches.iter().copied());
-        caps.extend(labelled.filter(|(_, patch)| *patch != WALL));
+        for (&face, &patch) in piece.faces.iter().zip(&*piece.patches).filter(|(_, patch)| **patch != WALL) {
+            faces.push(face);
+            patches.push(patch);
+        }
         Ok(())
     })?;
-    let mut ids: Vec<u32> = caps.iter().flat_map(|(face, _)| *face).collect();
-    ids.sort_unstable();
-    ids.dedup();
-    let points = mesh.points_of(&ids)?;
-    let at = |v: u32| ids.binary_search(&v).ok().and_then(|i| points.get(i)).copied().unwrap_or_else(Point3::origin);
     let mut areas = BTreeMap::new();
-    for (face, patch) in caps {
-        let [a, b, c] = face.map(at);
+    for ([a, b, c], patch) in mesh.corners_of(&faces)?.into_iter().zip(patches) {
         *areas.entry(patch).or_insert(0.0) += triangle_area_vector(&a, &b, &c).norm();
     }
     Ok(areas)

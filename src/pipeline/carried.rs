@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::blocks::Blocks;
-use super::make::Made;
+use super::make::BlockResult;
 use super::store::RecordId;
 use super::timing::BlockTimes;
 use crate::block::Cured;
@@ -12,8 +12,8 @@ use crate::partition::{ClusterId, CutId, Layout};
 /// Blocks by their numbers as the network is cut now; none where one has to be made.
 #[derive(Default)]
 pub(super) struct Carried {
-    pub clusters: Vec<Option<Made>>,
-    pub connectors: Vec<Option<Made>>,
+    pub clusters: Vec<Option<BlockResult>>,
+    pub connectors: Vec<Option<BlockResult>>,
     pub cured: FxHashMap<RecordId, Cured>,
     pub times: BlockTimes,
 }
@@ -33,7 +33,7 @@ impl Carried {
             let usual = tangled[i] == before.tangled[j] && !before.apart.contains(&(j as u32));
             usual.then(|| take(&mut before.clusters[j], i == j)).flatten()
         };
-        let clusters: Vec<Option<Made>> = same.clusters.into_iter().enumerate().map(cluster).collect();
+        let clusters: Vec<Option<BlockResult>> = same.clusters.into_iter().enumerate().map(cluster).collect();
         let is_kept = |cut: u32| {
             let is_kept = |side: (ClusterId, u32)| clusters[side.0.0 as usize].is_some();
             !woven || partition.sides_of_cut(CutId(cut)).into_iter().all(is_kept)
@@ -48,7 +48,7 @@ impl Carried {
 }
 
 /// What became of a block. Why it failed names it by its number, which has to be the same.
-fn take(made: &mut Made, same_number: bool) -> Option<Made> {
+fn take(made: &mut BlockResult, same_number: bool) -> Option<BlockResult> {
     match made {
         Ok(kept) => Some(Ok(*kept)),
         Err(error) => same_number.then(|| Err(error.clone())),

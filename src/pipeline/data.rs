@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use crate::block::{tet_ratio, triangle_ratio};
 use crate::fidelity::Tubes;
-use crate::flow::{Orders, solve};
+use crate::flow::{NotConverged, Orders, solve};
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::source::MeshSource;
@@ -79,9 +79,13 @@ pub struct VesselData {
 
 impl VesselData {
     /// Of the network that was meshed. Inlets are known by the names of their patches.
-    pub fn new(data: Vec<Datum>, network: &Skeleton, mesh: &dyn MeshSource) -> Self {
+    ///
+    /// # Errors
+    /// When the pressures in the network cannot be found.
+    pub fn new(data: Vec<Datum>, network: &Skeleton, mesh: &dyn MeshSource) -> Result<Self, NotConverged> {
         let columns = data.iter().map(|datum| datum.column()).collect();
-        Self { data, columns, tubes: Tubes::of(network), edges: edges(network, &inlets(network, mesh)) }
+        let edges = edges(network, &inlets(network, mesh))?;
+        Ok(Self { data, columns, tubes: Tubes::of(network), edges })
     }
 
     fn at(&self, datum: Datum, place: &Point3) -> f64 {
@@ -139,10 +143,10 @@ fn inlets(network: &Skeleton, mesh: &dyn MeshSource) -> BTreeSet<NodeId> {
     terminals.into_iter().filter(|&node| meant.contains(&network.node(node).original)).collect()
 }
 
-fn edges(network: &Skeleton, inlets: &BTreeSet<NodeId>) -> Vec<EdgeData> {
+fn edges(network: &Skeleton, inlets: &BTreeSet<NodeId>) -> Result<Vec<EdgeData>, NotConverged> {
     let adjacency = network.adjacency();
     let inflow: BTreeMap<NodeId, f64> = inlets.iter().map(|&node| (node, 1.0)).collect();
-    let pressure = solve(network, &inflow, 1.0).pressure;
+    let pressure = solve(network, &inflow, 1.0)?.pressure;
     let strahler = Orders::of(network, &pressure).strahler;
     let generations = generations(network, &adjacency, inlets);
     let mut edges = vec![EdgeData::default(); network.edges.len()];
@@ -164,7 +168,7 @@ fn edges(network: &Skeleton, inlets: &BTreeSet<NodeId>) -> Vec<EdgeData> {
             };
         }
     }
-    edges
+    Ok(edges)
 }
 
 /// How many forks lie between each edge and the nearest inlet, by forks.
@@ -213,7 +217,7 @@ mod tests {
     fn places_know_their_vessel() {
         let network = fork();
         let made = mesh_network(&network, &MeshPlan::default(), &()).expect("meshed").mesh;
-        let data = VesselData::new(Datum::ALL.to_vec(), &network, &made);
+        let data = VesselData::new(Datum::ALL.to_vec(), &network, &made).unwrap();
         let at = |place: [f64; 3]| Datum::ALL.map(|datum| data.at(datum, &Point3::from(place)));
         let [radius, distance, branch, generation, strahler, node, _] = at([0.3, 0.0, 5.0]);
         assert!((radius - 1.2).abs() < 1e-9 && (distance - 5.0).abs() < 1e-9);
@@ -231,7 +235,7 @@ mod tests {
     fn cells_have_their_shape() {
         let network = fork();
         let made = mesh_network(&network, &MeshPlan::default(), &()).expect("meshed").mesh;
-        let data = VesselData::new(vec![Datum::Ratio], &network, &made);
+        let data = VesselData::new(vec![Datum::Ratio], &network, &made).unwrap();
         let p = |x, y, z| Point3::new(x, y, z);
         let corner = [p(0.0, 0.0, 0.0), p(1.0, 0.0, 1.0), p(1.0, 1.0, 0.0), p(0.0, 1.0, 1.0)];
         assert!((data.in_tets(0, &[corner])[0] - 1.0).abs() < 1e-12);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
-use super::make::{Made, Workshop};
+use super::make::{BlockResult, Workshop};
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, RunReport, ThinBlock};
 use super::tips;
@@ -59,7 +59,7 @@ const READ: usize = 1 << 14;
 
 /// Reads what reports say of each cluster that is there, in order.
 fn each_cluster(shop: &Workshop, blocks: &Blocks, mut found: impl FnMut(usize, Option<About>)) -> io::Result<()> {
-    let about = |made: &Made| made.as_ref().ok().map(|kept| shop.about(kept)).transpose();
+    let about = |made: &BlockResult| made.as_ref().ok().map(|kept| shop.about(kept)).transpose();
     for (first, some) in (0..).step_by(READ).zip(blocks.clusters.chunks(READ)) {
         let read: Vec<Option<About>> = some.par_iter().map(about).collect::<io::Result<_>>()?;
         read.into_iter().enumerate().for_each(|(i, about)| found(first + i, about));

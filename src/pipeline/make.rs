@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
-use super::attempts::{self, Tried, Way};
+use super::attempts::{self, RetryStrategy, Tried};
 use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
 use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, StoredEnd, encode};
@@ -13,7 +13,7 @@ use anastomesh_tet::parts::Watch;
 
 /// A finished block in the store, and what it adds to the whole. There are millions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kept {
+pub struct StoredBlock {
     /// Where it is.
     pub record: RecordId,
     /// Points that are its own, those that it shares with blocks before it left out.
@@ -22,7 +22,7 @@ pub struct Kept {
 }
 
 /// A block, or why there is none: said elsewhere, as there are millions of blocks and few that fail.
-pub type Made = Result<Kept, Box<BlockError>>;
+pub type BlockResult = Result<StoredBlock, Box<BlockError>>;
 
 /// What every block of a run is made from, and the store that takes it.
 #[derive(Clone, Copy, Debug)]
@@ -42,9 +42,9 @@ impl Workshop<'_> {
         id: ClusterId,
         cluster: &Cluster,
         overlapping: bool,
-        first: Way,
+        first: RetryStrategy,
         watch: &Watch,
-    ) -> Result<Made, StoreError> {
+    ) -> Result<BlockResult, StoreError> {
         let plan = &*self.plan.of_tube(cluster.size);
         let key = cluster_key(cluster, plan, overlapping, first);
         if let Some(kept) = self.found(key)? {
@@ -58,7 +58,7 @@ impl Workshop<'_> {
     ///
     /// # Errors
     /// When the store fails; a block that fails is no error here.
-    pub fn free_connector(&self, id: CutId, cut: &Cut) -> Result<Made, StoreError> {
+    pub fn free_connector(&self, id: CutId, cut: &Cut) -> Result<BlockResult, StoreError> {
         let plan = &*self.plan.of_tube(cut.size);
         let key = connector_key(cut, plan, &[]);
         if let Some(kept) = self.found(key)? {
@@ -71,7 +71,7 @@ impl Workshop<'_> {
     ///
     /// # Errors
     /// When the store fails; a block that fails is no error here.
-    pub fn woven_connector(&self, id: CutId, cut: &Cut, ends: &[StoredEnd; 2]) -> Result<Made, StoreError> {
+    pub fn woven_connector(&self, id: CutId, cut: &Cut, ends: &[StoredEnd; 2]) -> Result<BlockResult, StoreError> {
         let key = connector_key(cut, self.plan, ends);
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
@@ -79,7 +79,7 @@ impl Workshop<'_> {
         self.keep(key, attempts::connector(id, cut, ends.each_ref().map(ConnectorEnd::from), self.plan))
     }
 
-    fn keep(&self, key: Key, Tried { result, failures, way }: Tried) -> Result<Made, StoreError> {
+    fn keep(&self, key: Key, Tried { result, failures, way }: Tried) -> Result<BlockResult, StoreError> {
         let mut finished = match result {
             Ok(finished) => finished,
             Err(error) => return Ok(Err(Box::new(error))),
@@ -91,26 +91,26 @@ impl Workshop<'_> {
         let tets = finished.mesh.tets.len() as u32;
         let bytes = encode(&finished)?;
         drop(finished);
-        Ok(Ok(Kept { record: self.store.keep(key, bytes)?, points, tets }))
+        Ok(Ok(StoredBlock { record: self.store.keep(key, bytes)?, points, tets }))
     }
 
-    fn found(&self, key: Key) -> io::Result<Option<Kept>> {
+    fn found(&self, key: Key) -> io::Result<Option<StoredBlock>> {
         self.store.find(key).map(|record| self.kept(record)).transpose()
     }
 
-    fn kept(&self, record: RecordId) -> io::Result<Kept> {
+    fn kept(&self, record: RecordId) -> io::Result<StoredBlock> {
         let sizes = Record::open(&self.store.bytes(record))?.sizes();
         if sizes.shared > sizes.points {
             return Err(io::ErrorKind::InvalidData.into());
         }
-        Ok(Kept { record, points: sizes.points - sizes.shared, tets: sizes.tets })
+        Ok(StoredBlock { record, points: sizes.points - sizes.shared, tets: sizes.tets })
     }
 
     /// What reports say of a block.
     ///
     /// # Errors
     /// When it cannot be read.
-    pub fn about(&self, kept: &Kept) -> io::Result<About> {
+    pub fn about(&self, kept: &StoredBlock) -> io::Result<About> {
         Ok(Record::open(&self.store.bytes(kept.record))?.notes()?.1)
     }
 
@@ -123,7 +123,7 @@ impl Workshop<'_> {
         partition: &Layout,
         id: CutId,
         cut: &Cut,
-        clusters: &[Made],
+        clusters: &[BlockResult],
     ) -> io::Result<Option<[StoredEnd; 2]>> {
         let mut ends = Vec::with_capacity(2);
         for (side, place) in joints_of_cut(partition, id).into_iter().enumerate() {
@@ -167,7 +167,7 @@ fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     });
 }
 
-fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: Way) -> Key {
+fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: RetryStrategy) -> Key {
     let mut key = KeyMaker::new("cluster");
     options(&mut key, plan);
     key.id(u32::from(overlapping));
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn a_cluster_is_found_only_by_all_that_it_depends_on() {
         let (cluster, plan) = (Cluster::default(), MeshPlan::default());
-        let plain = cluster_key(&cluster, &plan, true, Way::Usual);
+        let plain = cluster_key(&cluster, &plan, true, RetryStrategy::Usual);
         let others = [
             MeshPlan { rho: 4.0, ..plan.clone() },
             MeshPlan { follow: 0.5, ..plan.clone() },
@@ -238,20 +238,20 @@ mod tests {
             MeshPlan { hollow: true, ..plan.clone() },
         ];
         for other in others {
-            assert_ne!(cluster_key(&cluster, &other, true, Way::Usual), plain, "{other:?}");
+            assert_ne!(cluster_key(&cluster, &other, true, RetryStrategy::Usual), plain, "{other:?}");
         }
-        assert_ne!(cluster_key(&cluster, &plan, false, Way::Usual), plain);
-        assert_ne!(cluster_key(&cluster, &plan, true, Way::Finest), plain);
-        assert_eq!(cluster_key(&cluster, &plan, true, Way::Usual), plain);
+        assert_ne!(cluster_key(&cluster, &plan, false, RetryStrategy::Usual), plain);
+        assert_ne!(cluster_key(&cluster, &plan, true, RetryStrategy::Finest), plain);
+        assert_eq!(cluster_key(&cluster, &plan, true, RetryStrategy::Usual), plain);
         // What is asked for of forks counts where there is one, and what tubes are stretched by once it is known.
         let asked = MeshPlan { size_at: Some(SizeAt::Forks(0.5)), ..plan.clone() };
-        assert_eq!(cluster_key(&cluster, &asked, true, Way::Usual), plain);
+        assert_eq!(cluster_key(&cluster, &asked, true, RetryStrategy::Usual), plain);
         let forked = |factor| {
             let fork = FineFork { at: anastomesh_mesh::geometry::Point3::origin(), within: 1.0, factor };
-            cluster_key(&Cluster { fine: vec![fork], ..cluster.clone() }, &asked, true, Way::Usual)
+            cluster_key(&Cluster { fine: vec![fork], ..cluster.clone() }, &asked, true, RetryStrategy::Usual)
         };
         assert!(forked(0.5) != plain && forked(0.5) != forked(0.4));
-        let stretched = |size| cluster_key(&cluster, &asked.of_tube(size), true, Way::Usual);
+        let stretched = |size| cluster_key(&cluster, &asked.of_tube(size), true, RetryStrategy::Usual);
         assert!(stretched(Some(2.0)) != plain && stretched(Some(2.0)) != stretched(Some(3.0)));
         assert_eq!([None, Some(0.3), Some(1.0)].map(stretched), [plain; 3]);
         assert_eq!(stretched(Some(90.0)), stretched(Some(MOST_STRETCH)));

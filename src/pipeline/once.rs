@@ -5,7 +5,6 @@ use crate::block::{
     EndSurface, Finished, mesh_cluster_watched, mesh_connector, mesh_free_connector, shared_ends,
 };
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
-use crate::woven;
 use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::Watch;
 
@@ -19,7 +18,10 @@ pub fn cluster(
 ) -> Result<Finished, BlockError> {
     let mesh = match params.ends {
         EndStyle::Disc | EndStyle::Shared => mesh_cluster_watched(id, cluster, params, watch)?,
-        EndStyle::Open => woven::mesh_trimmed(id, cluster, params, watch)?,
+        #[cfg(feature = "woven")]
+        EndStyle::Open => crate::woven::mesh_trimmed(id, cluster, params, watch)?,
+        #[cfg(not(feature = "woven"))]
+        EndStyle::Open => return Err(BlockError::NoWovenJoints),
     };
     let name = || format!("cluster {}", id.0);
     let made = Finished::of_cluster(mesh, original);
@@ -79,6 +81,7 @@ mod tests {
     use anastomesh_skeleton::FineFork;
 
     #[test]
+    #[cfg(feature = "woven")]
     fn a_dumped_block_runs_again_to_the_same_bits() {
         let params = BlockParams { shift: [0.1, 0.2, 0.3], ..BlockParams::default() };
         let input = bifurcation(11);

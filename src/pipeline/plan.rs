@@ -97,6 +97,11 @@ impl Default for MeshPlan {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
+    /// Woven joints are an optional part of the program.
+    #[error(
+        "this program was built without woven joints: give --joint disc, or build it with the cargo feature `woven`"
+    )]
+    NoWovenJoints,
     /// ρ outside of what makes sense.
     #[error("rho = {0} is not usable: it must be a number of at least 2.5 (3 to 5 are usual; larger is finer)")]
     Rho(f64),
@@ -191,6 +196,9 @@ impl MeshPlan {
     /// # Errors
     /// When a parameter is out of its range.
     pub fn validate(&self) -> Result<(), PlanError> {
+        if self.weaves_joints() && !cfg!(feature = "woven") {
+            return Err(PlanError::NoWovenJoints);
+        }
         // Below 2.5 voxels across, a vessel is no tube any more; how fine is too fine, memory tells. NaN fails too.
         if !(2.5..f64::INFINITY).contains(&self.rho) {
             return Err(PlanError::Rho(self.rho));

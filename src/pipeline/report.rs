@@ -140,6 +140,7 @@ pub struct RunReport {
     /// The partition in figures.
     pub partition: Option<crate::partition::PartitionSummary>,
     /// The joints.
+    #[cfg(feature = "woven")]
     pub joints: Option<crate::woven::JointReport>,
     /// Blocks that needed another try.
     pub retries: Vec<Retry>,

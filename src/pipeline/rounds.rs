@@ -7,13 +7,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rustc_hash::FxHashMap;
 
-use super::attempts::Way;
+use super::attempts::RetryStrategy;
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::carried::Carried;
 use super::cures::{Cure, cure, partition_params};
 use super::error::RunError;
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
-use super::make::{Made, Workshop};
+use super::make::{BlockResult, Workshop};
 use super::plan::JointStyle;
 use super::report::Retry;
 use super::routes::{branch_pairs, tangled_clusters};
@@ -31,7 +31,7 @@ use anastomesh_tet::parts::Watch;
 const ROUNDS: usize = 6;
 
 /// What a run works with.
-pub struct Run<'a> {
+pub struct RunContext<'a> {
     /// Vessels of the network that overlap.
     pub overlaps: &'a Overlaps,
     pub shop: Workshop<'a>,
@@ -39,7 +39,7 @@ pub struct Run<'a> {
     pub clock: &'a mut Clock,
 }
 
-impl Run<'_> {
+impl RunContext<'_> {
     /// Meshes every block, changing the partition where blocks fail. `uncut`: vessels that are not cut. `before`: blocks of the
     /// network as it was cut before. `fits` is asked before the first block.
     ///
@@ -146,9 +146,9 @@ impl Run<'_> {
     fn free(
         &mut self,
         making: &Making,
-        mut clusters: Vec<Option<Made>>,
-        mut connectors: Vec<Option<Made>>,
-    ) -> Result<(Vec<Made>, Vec<Option<Made>>), RunError> {
+        mut clusters: Vec<Option<BlockResult>>,
+        mut connectors: Vec<Option<BlockResult>>,
+    ) -> Result<(Vec<BlockResult>, Vec<Option<BlockResult>>), RunError> {
         let count = clusters.len();
         let todo: Vec<u32> = missing(&clusters, 0).chain(missing(&connectors, count)).collect();
         let costs: Vec<Cost> = todo.iter().map(|&block| self.cost(making.partition, block)).collect();
@@ -164,9 +164,9 @@ impl Run<'_> {
     fn woven(
         &mut self,
         making: &Making,
-        mut clusters: Vec<Option<Made>>,
-        mut connectors: Vec<Option<Made>>,
-    ) -> Result<(Vec<Made>, Vec<Option<Made>>), RunError> {
+        mut clusters: Vec<Option<BlockResult>>,
+        mut connectors: Vec<Option<BlockResult>>,
+    ) -> Result<(Vec<BlockResult>, Vec<Option<BlockResult>>), RunError> {
         let todo: Vec<u32> = missing(&clusters, 0).collect();
         let costs: Vec<Cost> = todo.iter().map(|&block| self.cost(making.partition, block)).collect();
         let made = self.timed(Stage::Clusters, &costs, |k| making.block(todo[k]))?;
@@ -236,12 +236,12 @@ struct Making<'a> {
 
 impl Making<'_> {
     /// A cluster, or a connector between the discs that its vessel gives.
-    fn block(&self, block: u32) -> Result<Made, StoreError> {
+    fn block(&self, block: u32) -> Result<BlockResult, StoreError> {
         let (shop, partition) = (self.shop, self.partition);
         let make = || match block.checked_sub(self.tangled.len() as u32) {
             None => {
                 let (id, tangled) = (ClusterId(block), self.tangled[block as usize]);
-                shop.cluster(id, &partition.cluster(id), tangled, Way::Usual, &self.watch)
+                shop.cluster(id, &partition.cluster(id), tangled, RetryStrategy::Usual, &self.watch)
             }
             Some(cut) => shop.free_connector(CutId(cut), &partition.cut(CutId(cut))),
         };
@@ -249,7 +249,7 @@ impl Making<'_> {
     }
 
     /// A connector between the ends of its clusters; none beside one that failed.
-    fn woven(&self, id: CutId, clusters: &[Made]) -> Result<Option<Made>, StoreError> {
+    fn woven(&self, id: CutId, clusters: &[BlockResult]) -> Result<Option<BlockResult>, StoreError> {
         let cut = &self.partition.cut(id);
         let Some(ends) = self.shop.stored_ends(self.partition, id, cut, clusters)? else { return Ok(None) };
         let make = || self.shop.woven_connector(id, cut, &ends);
@@ -257,7 +257,7 @@ impl Making<'_> {
     }
 
     /// Notes what a block says of failures before it came out.
-    fn hear(&self, made: Made) -> Result<Made, StoreError> {
+    fn hear(&self, made: BlockResult) -> Result<BlockResult, StoreError> {
         if let Ok(kept) = &made
             && let Some(cured) = self.shop.about(kept)?.cured
         {
@@ -268,11 +268,11 @@ impl Making<'_> {
 }
 
 /// The numbers of blocks that have to be made; the first has the number `from`.
-fn missing(made: &[Option<Made>], from: usize) -> impl Iterator<Item = u32> {
+fn missing(made: &[Option<BlockResult>], from: usize) -> impl Iterator<Item = u32> {
     made.iter().enumerate().filter(|(_, made)| made.is_none()).map(move |(i, _)| (from + i) as u32)
 }
 
 /// Blocks of which none is missing.
-fn all(made: Vec<Option<Made>>) -> Vec<Made> {
+fn all(made: Vec<Option<BlockResult>>) -> Vec<BlockResult> {
     made.into_iter().map_while(|made| made).collect()
 }

@@ -12,7 +12,7 @@ use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{Meeting, MeshSize, RunReport};
-use super::rounds::Run;
+use super::rounds::RunContext;
 use super::seen::Seen;
 use super::store::Store;
 use super::terminals::{self, TerminalPatches};
@@ -20,6 +20,7 @@ use super::timing::Clock;
 use super::whole::Whole;
 use crate::partition::CutId;
 use crate::refine::split_shared;
+#[cfg(feature = "woven")]
 use crate::woven::Assembly;
 use anastomesh_mesh::check::parts::PartsCheck;
 use anastomesh_mesh::check::{CheckReport, Expectation, check_volume_with};
@@ -75,6 +76,7 @@ pub struct Stored<'a> {
 pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress) -> Result<Meshed, RunError> {
     let (store, network) = (Store::in_memory(), &Arc::new(network.clone()));
     let clock = &mut Clock::default();
+    #[cfg(feature = "woven")]
     if plan.smooths_joints() {
         return mesh_smoothed(&store, network, plan, progress, clock);
     }
@@ -164,6 +166,7 @@ fn mesh_timed<'a>(
 }
 
 /// The mesh in memory, its joints smoothed.
+#[cfg(feature = "woven")]
 fn mesh_smoothed(
     store: &Store,
     network: &Arc<Skeleton>,
@@ -219,8 +222,8 @@ impl<'a, 'b> Job<'a, 'b> {
         Workshop { skeleton: &self.skeleton, plan: self.plan, store: self.store }
     }
 
-    fn run<'c>(&'c self, clock: &'c mut Clock) -> Run<'c> {
-        Run { overlaps: &self.overlaps, shop: self.shop(), progress: self.progress, clock }
+    fn run<'c>(&'c self, clock: &'c mut Clock) -> RunContext<'c> {
+        RunContext { overlaps: &self.overlaps, shop: self.shop(), progress: self.progress, clock }
     }
 
     /// The whole over all blocks.

@@ -20,23 +20,23 @@ struct Gate {
 }
 
 /// A block that was let in; it leaves when this is dropped, even by a panic, so that nobody waits for it in vain.
-struct Inside<'a> {
+struct AdmittedBlock<'a> {
     gate: &'a Gate,
     bytes: u64,
 }
 
 impl Gate {
-    fn enter(&self, bytes: u64) -> Inside<'_> {
+    fn enter(&self, bytes: u64) -> AdmittedBlock<'_> {
         let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         while *used > 0 && *used + bytes > self.limit {
             used = self.left.wait(used).unwrap_or_else(PoisonError::into_inner);
         }
         *used += bytes;
-        Inside { gate: self, bytes }
+        AdmittedBlock { gate: self, bytes }
     }
 }
 
-impl Drop for Inside<'_> {
+impl Drop for AdmittedBlock<'_> {
     fn drop(&mut self) {
         *self.gate.used.lock().unwrap_or_else(PoisonError::into_inner) -= self.bytes;
         self.gate.left.notify_all();

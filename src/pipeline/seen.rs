@@ -116,7 +116,7 @@ fn changed(partition: &Layout, is_new: impl Fn(u32) -> bool) -> Vec<bool> {
 mod tests {
     use super::super::make::Workshop;
     use super::super::plan::MeshPlan;
-    use super::super::rounds::Run;
+    use super::super::rounds::RunContext;
     use super::super::store::Store;
     use super::super::terminals;
     use super::super::tests::through_the_crotch;
@@ -175,7 +175,7 @@ mod tests {
         let patches = terminals::assign(&skeleton, &[]).expect("terminals");
         let (counts, mut clock) = (Counts::default(), Clock::default());
         let shop = Workshop { skeleton: &skeleton, plan: &plan, store: &store };
-        let mut run = Run { overlaps: &overlaps, shop, progress: &counts, clock: &mut clock };
+        let mut run = RunContext { overlaps: &overlaps, shop, progress: &counts, clock: &mut clock };
         let fits = |_: &_| Ok(());
         let first = run.build(&BTreeSet::new(), None, &fits).expect("blocks");
         let blocks = first.clusters.len() + first.connectors.len();

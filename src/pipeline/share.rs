@@ -7,12 +7,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-use super::attempts::Way;
+use super::attempts::RetryStrategy;
 use super::error::RunError;
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::Workshop;
 use super::plan::MeshPlan;
-use super::rounds::Run;
+use super::rounds::RunContext;
 use super::routes::tangled_clusters;
 use super::schedule::Cost;
 use super::store::{KeyMaker, Shard, Store, fingerprint};
@@ -60,7 +60,7 @@ pub fn make_share(
     let skeleton = split_shared(&Arc::new(network)).0;
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let tasks = clock.time(progress, Stage::Prepare, 0, || Tasks::of(&shop, progress))?;
-    let mut run = Run { overlaps: &Overlaps::default(), shop, progress, clock: &mut clock };
+    let mut run = RunContext { overlaps: &Overlaps::default(), shop, progress, clock: &mut clock };
     let mut report = run.share(shard, &tasks, fits)?;
     store.mark_done(shard)?;
     report.stages = clock.stages();
@@ -90,7 +90,7 @@ impl Tasks {
         };
         let find = || {
             let overlaps = shop.skeleton.overlaps(&shop.skeleton.adjacency());
-            let mut run = Run { overlaps: &overlaps, shop: *shop, progress, clock: &mut Clock::default() };
+            let mut run = RunContext { overlaps: &overlaps, shop: *shop, progress, clock: &mut Clock::default() };
             let together = run.together();
             let partition = run.partition(&BTreeMap::new(), &together)?;
             let weights = run.costs(&partition).iter().map(|cost| 1 + cost.tets as u64).collect();
@@ -101,7 +101,7 @@ impl Tasks {
     }
 }
 
-impl Run<'_> {
+impl RunContext<'_> {
     fn share(
         &mut self,
         shard: Shard,
@@ -125,7 +125,7 @@ impl Run<'_> {
             let made = match i.checked_sub(clusters as u32) {
                 None => {
                     let (id, tangled) = (ClusterId(i), tasks.tangled[i as usize]);
-                    shop.cluster(id, &partition.cluster(id), tangled, Way::Usual, &watch)?
+                    shop.cluster(id, &partition.cluster(id), tangled, RetryStrategy::Usual, &watch)?
                 }
                 Some(cut) => shop.free_connector(CutId(cut), &partition.cut(CutId(cut)))?,
             };

@@ -31,14 +31,14 @@ pub use left::LeftWhole;
 #[derive(Debug)]
 pub struct Whole<'a> {
     store: &'a Store,
-    listener: Listener<'a>,
+    listener: CancelOnly<'a>,
     plan: Cow<'a, Numbering>,
 }
 
 /// Who says whether to stop.
-struct Listener<'a>(&'a dyn Progress);
+struct CancelOnly<'a>(&'a dyn Progress);
 
-impl std::fmt::Debug for Listener<'_> {
+impl std::fmt::Debug for CancelOnly<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str("Listener")
     }
@@ -61,7 +61,7 @@ impl<'a> Whole<'a> {
     ) -> io::Result<Self> {
         let first_patch = terminals.of.values().map(|(id, _)| *id).max().unwrap_or(WALL) + 1;
         let plan = Numbering::of(blocks, first_patch)?;
-        let mut whole = Self { store, listener: Listener(progress), plan: Cow::Owned(plan) };
+        let mut whole = Self { store, listener: CancelOnly(progress), plan: Cow::Owned(plan) };
         let (outer, caps) = whole.boundary_of_blocks()?;
         let boundary = outer + whole.open_faces()?;
         let plan = whole.plan.to_mut();
@@ -84,7 +84,7 @@ impl<'a> Whole<'a> {
     /// When there are too many vertices.
     pub fn of_walls(store: &'a Store, progress: &'a dyn Progress, blocks: &Blocks) -> io::Result<Self> {
         let plan = Cow::Owned(Numbering::of(blocks, WALL + 1)?);
-        Ok(Self { store, listener: Listener(progress), plan })
+        Ok(Self { store, listener: CancelOnly(progress), plan })
     }
 
     /// Counts boundary faces that are in no joint, and collects the caps, in order.

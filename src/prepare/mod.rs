@@ -21,7 +21,7 @@ pub use directed::directed;
 pub use islands::Island;
 pub use lumen::JoinedReport;
 pub use merge::MergeReport;
-pub use radii::{Fault, FilledRadius};
+pub use radii::{FilledRadius, RadiusDefect};
 pub use report::{PrepareReport, Size};
 pub use resample::ResampleReport;
 pub use short_tips::ShortTip;

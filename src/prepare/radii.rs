@@ -22,7 +22,7 @@ const APART: f64 = f64::MIN_POSITIVE * 1e20;
 /// Fault of a radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Fault {
+pub enum RadiusDefect {
     /// The radius is zero, negative, infinite or NaN.
     Missing,
     /// The radius is ten times that of all neighbours. Or it is below a tenth of the nearby vessel radius on both
@@ -40,7 +40,7 @@ pub struct FilledRadius {
     /// New value, in the unit of the network.
     pub filled: f64,
     /// Fault of the given value.
-    pub fault: Fault,
+    pub fault: RadiusDefect,
 }
 
 /// Replaces faulty radii and returns the affected nodes. New values interpolate between the surrounding valid radii by
@@ -52,7 +52,7 @@ pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), Skel
     check_all_but_radii(raw)?;
     let mut network = raw.clone();
     let places = Places::of(raw);
-    let faults: Vec<Option<Fault>> = places.faults(raw);
+    let faults: Vec<Option<RadiusDefect>> = places.faults(raw);
     let mut radii: Vec<Option<f64>> = vec![None; places.count];
     for (i, node) in raw.nodes.iter().enumerate() {
         if faults[i].is_none() {
@@ -150,7 +150,7 @@ impl Places {
     }
 
     /// Fault of each node's radius.
-    fn faults(&self, raw: &Skeleton) -> Vec<Option<Fault>> {
+    fn faults(&self, raw: &Skeleton) -> Vec<Option<RadiusDefect>> {
         let mut at = vec![0.0_f64; self.count];
         for (node, &place) in raw.nodes.iter().zip(&self.of_node) {
             if good(node.radius) {
@@ -170,8 +170,8 @@ impl Places {
             *radius = 0.0;
         }
         let fault = |(node, &place): (&anastomesh_skeleton::Node, &u32)| match node.radius {
-            r if !good(r) => Some(Fault::Missing),
-            _ if all[place as usize] || self.is_dip(place, &told) => Some(Fault::Absurd),
+            r if !good(r) => Some(RadiusDefect::Missing),
+            _ if all[place as usize] || self.is_dip(place, &told) => Some(RadiusDefect::Absurd),
             _ => None,
         };
         raw.nodes.iter().zip(&self.of_node).map(fault).collect()

@@ -40,7 +40,7 @@ pub(super) fn resample(
     let (mut nodes, mut edges) = (skeleton.nodes.clone(), Vec::new());
     let mut joined: FxHashSet<[NodeId; 2]> = FxHashSet::default();
     for branch in &branches.list {
-        let line = Line::new(skeleton, branch, [share * axis, share * radius]);
+        let line = SmoothedBranch::new(skeleton, branch, [share * axis, share * radius]);
         let mut stay = line.simplified([axis, radius]);
         if branch.is_closed() {
             stay = at_least(stay, branch.nodes.len(), 4);
@@ -83,14 +83,14 @@ fn at_least(stay: Vec<usize>, points: usize, count: usize) -> Vec<usize> {
 }
 
 /// Given and smoothed points of a branch.
-struct Line {
+struct SmoothedBranch {
     given: Vec<Point3>,
     given_radii: Vec<f64>,
     points: Vec<Point3>,
     radii: Vec<f64>,
 }
 
-impl Line {
+impl SmoothedBranch {
     fn new(skeleton: &Skeleton, branch: &Branch, noise: [f64; 2]) -> Self {
         let given: Vec<Point3> = branch.nodes.iter().map(|&n| skeleton.node(n).position).collect();
         let mut given_radii: Vec<f64> = branch.tubes(skeleton).map(|t| t.ra).collect();

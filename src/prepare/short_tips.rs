@@ -30,7 +30,7 @@ pub struct ShortTip {
 pub(super) fn treat(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ShortTip>), SkeletonError> {
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
-    let found: Vec<(BranchId, Found)> = (0..branches.list.len() as u32)
+    let found: Vec<(BranchId, ExtendedTip)> = (0..branches.list.len() as u32)
         .map(BranchId)
         .filter_map(|id| Some((id, find(skeleton, &adjacency, &branches, id)?)))
         .collect();
@@ -52,14 +52,14 @@ pub(super) fn treat(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ShortTip>), Sk
 }
 
 /// Short tip and its extension.
-struct Found {
+struct ExtendedTip {
     node: NodeId,
     /// Direction in which its vessel ends.
     way: Vec3,
     told: ShortTip,
 }
 
-fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: BranchId) -> Option<Found> {
+fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: BranchId) -> Option<ExtendedTip> {
     let branch = &branches.list[id.index()];
     let [a, b] = branch.ends();
     let (from, tip) = match [a, b].map(|n| adjacency.valence(n)) {
@@ -85,7 +85,7 @@ fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: Bra
     (short > 0.0).then(|| {
         let name = |n: NodeId| skeleton.node(n).original;
         let put_out = short <= FURTHEST * radius;
-        Found { node: tip, way, told: ShortTip { tip: name(tip), from: name(from), length, needed, put_out } }
+        ExtendedTip { node: tip, way, told: ShortTip { tip: name(tip), from: name(from), length, needed, put_out } }
     })
 }
 

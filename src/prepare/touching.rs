@@ -111,7 +111,7 @@ struct Work<'a> {
 }
 
 /// Remaining part of a branch, starting from its tip.
-struct Way {
+struct TipBranch {
     tip: NodeId,
     branch: BranchId,
     edges: Vec<EdgeId>,
@@ -166,7 +166,7 @@ impl<'a> Work<'a> {
     }
 
     /// Returns the path from a tip; `None` if nothing remains of its branch.
-    fn way(&self, tip: NodeId) -> Option<Way> {
+    fn way(&self, tip: NodeId) -> Option<TipBranch> {
         let (id, _) = self.branches.of_edge[self.adjacency.edges(tip).first()?.index()];
         let branch = &self.branches.list[id.index()];
         let mut edges = branch.edges.clone();
@@ -180,11 +180,11 @@ impl<'a> Work<'a> {
         edges.truncate(there);
         let length = edges.iter().map(|&e| self.given.length(e)).sum();
         let from = (self.adjacency.valence(far) > 2).then_some(far);
-        (!edges.is_empty() && near == tip).then_some(Way { tip, branch: id, edges, length, from })
+        (!edges.is_empty() && near == tip).then_some(TipBranch { tip, branch: id, edges, length, from })
     }
 
     /// Nearest vessel that leaves no space for a cap at a position, and its radius there.
-    fn in_the_way(&self, way: &Way, stand: &Stand) -> Option<(EdgeId, f64)> {
+    fn in_the_way(&self, way: &TipBranch, stand: &Stand) -> Option<(EdgeId, f64)> {
         let reach = Aabb::of_points([&stand.point]).grown(CLEAR * stand.radius);
         let mut nearest: Option<(f64, EdgeId, f64)> = None;
         self.tree.query(&reach, |id| {
@@ -206,7 +206,7 @@ impl<'a> Work<'a> {
     }
 
     /// True if a whole section of a path lies within another vessel.
-    fn is_buried(&self, way: &Way, stand: &Stand) -> bool {
+    fn is_buried(&self, way: &TipBranch, stand: &Stand) -> bool {
         let mut found = false;
         self.tree.query(&Aabb::of_points([&stand.point]), |id| {
             let edge = EdgeId(id);
@@ -219,7 +219,7 @@ impl<'a> Work<'a> {
     }
 
     /// True if an edge is near a position along the skeleton and thus no obstacle.
-    fn is_own(&self, way: &Way, stand: &Stand, edge: EdgeId, radius: f64) -> bool {
+    fn is_own(&self, way: &TipBranch, stand: &Stand, edge: EdgeId, radius: f64) -> bool {
         let near = OWN * stand.radius.max(radius);
         if self.branches.of_edge[edge.index()].0 == way.branch {
             let before: f64 = way.edges.iter().take_while(|&&e| e != edge).map(|&e| self.given.length(e)).sum();
@@ -244,7 +244,7 @@ impl<'a> Work<'a> {
     }
 
     /// Retracts a tip to the first position with space for a cap.
-    fn retract(&mut self, way: &Way, radii: f64) -> TouchedBy {
+    fn retract(&mut self, way: &TipBranch, radii: f64) -> TouchedBy {
         let last = way.edges[way.edges.len() - 1];
         let keep = LEFT * self.given.tube(last).max_radius();
         for stand in self.stands(way) {
@@ -268,7 +268,7 @@ impl<'a> Work<'a> {
     }
 
     /// Retracts a tip by `BACK` radii, and further until its disc leaves other vessels.
-    fn draw_back(&mut self, way: &Way) -> TouchedBy {
+    fn draw_back(&mut self, way: &TipBranch) -> TouchedBy {
         let stands = self.stands(way);
         let radius = stands[0].radius;
         let keep = LEFT * self.given.tube(way.edges[way.edges.len() - 1]).max_radius();
@@ -291,7 +291,7 @@ impl<'a> Work<'a> {
     }
 
     /// Edge of another vessel nearest to a tip, or the path's own last edge if none is near.
-    fn beside(&self, way: &Way) -> EdgeId {
+    fn beside(&self, way: &TipBranch) -> EdgeId {
         let last = self.given.edge(way.edges[0]);
         let (point, radius) = (self.given.node(way.tip).position, last.radii[last.end(way.tip)]);
         let mut nearest: Option<(f64, EdgeId)> = None;
@@ -308,7 +308,7 @@ impl<'a> Work<'a> {
     }
 
     /// Positions along a path, starting from its tip.
-    fn stands(&self, way: &Way) -> Vec<Stand> {
+    fn stands(&self, way: &TipBranch) -> Vec<Stand> {
         let mut stands = Vec::new();
         let (mut arc, mut node) = (0.0, way.tip);
         for (piece, &id) in way.edges.iter().enumerate() {
@@ -329,7 +329,7 @@ impl<'a> Work<'a> {
     }
 
     /// Removes the part of a path before a position and moves its tip there.
-    fn cut(&mut self, way: &Way, stand: &Stand) {
+    fn cut(&mut self, way: &TipBranch, stand: &Stand) {
         let mut node = way.tip;
         for &edge in &way.edges[..stand.piece] {
             self.gone[edge.index()] = true;

@@ -1,9 +1,9 @@
 //! The three forces of the paper (section 3.1), with corrected signs and ranges.
 
 use super::contact::Contacts;
+use super::cut_length;
 use super::frame::{Chain, Frame};
 use super::push::Push;
-use super::room;
 use anastomesh_mesh::geometry::Vec3;
 use anastomesh_skeleton::{Barrier, NARROW, NodeId};
 use rayon::prelude::*;
@@ -78,7 +78,7 @@ fn push_barrier(
 
 /// Equation (8): the ends of a vessel repel each other while it is too short for a cut.
 fn repel(frame: &Frame, chain: &Chain, rate: f64, out: &mut Vec<Push>) {
-    let Some(need) = room::need(frame, chain) else { return };
+    let Some(need) = cut_length::need(frame, chain) else { return };
     let length: f64 = chain.edges.iter().map(|&e| frame.skeleton.length(e)).sum();
     let weight = 1.5 * spline(2.0 * length / (REACH * need));
     if weight <= 0.0 {

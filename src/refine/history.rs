@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Metrics after some iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sample {
+pub struct HistorySample {
     /// Iteration number.
     pub iteration: usize,
     /// Displacement of the nodes.

@@ -3,6 +3,7 @@
 mod bend;
 mod contact;
 mod crowd;
+mod cut_length;
 mod figures;
 mod forces;
 mod frame;
@@ -11,7 +12,6 @@ mod leash;
 mod params;
 mod push;
 mod residual;
-mod room;
 mod shape;
 mod solve;
 mod split;
@@ -20,7 +20,7 @@ mod tests;
 
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
-pub use history::{Displacement, Sample};
+pub use history::{Displacement, HistorySample};
 pub use leash::FarNode;
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
 pub use residual::{ResidualReport, Treatment};
@@ -98,7 +98,7 @@ pub struct RefineReport {
     /// Metrics in which the result is worse than the input.
     pub worse: Vec<Metric>,
     /// Metrics over the iterations.
-    pub history: Vec<Sample>,
+    pub history: Vec<HistorySample>,
 }
 
 /// Refines a skeleton (section 3.1 of the paper). Nodes of more than three vessels are split, then the paper's three

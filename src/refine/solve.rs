@@ -5,11 +5,11 @@ use super::contact::Contacts;
 use super::figures::Figures;
 use super::forces::{self, Rates};
 use super::frame::Frame;
-use super::history::{Displacement, Sample};
+use super::history::{Displacement, HistorySample};
 use super::leash::Leashes;
 use super::params::{RefineError, RefineParams};
 use super::push::Push;
-use super::{room, shape};
+use super::{cut_length, shape};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
@@ -31,7 +31,7 @@ const PATIENCE: usize = 4;
 pub(super) struct Moved {
     /// Best state; `None` if every state was worse than the input in a protected metric.
     pub best: Option<State>,
-    pub history: Vec<Sample>,
+    pub history: Vec<HistorySample>,
     pub unit: f64,
 }
 
@@ -206,7 +206,8 @@ impl<'a> Solver<'a> {
         }
         let contacts = self.contacts.pushes(&self.frame, self.params.clearance);
         // If only overlapping vessels move, none is lengthened or opened for a cut.
-        let room = if self.leashes.is_some() { room::lengths(&self.frame) } else { room::pushes(&self.frame) };
+        let room =
+            if self.leashes.is_some() { cut_length::lengths(&self.frame) } else { cut_length::pushes(&self.frame) };
         add(&contacts);
         add(&room);
         for (sum, &count) in sum.iter_mut().zip(&count) {
@@ -262,9 +263,9 @@ impl<'a> Solver<'a> {
         !overlaps.pairs.is_empty()
     }
 
-    fn sample(&self, iteration: usize, asked: usize) -> Sample {
+    fn sample(&self, iteration: usize, asked: usize) -> HistorySample {
         let (skeleton, adjacency) = (&self.frame.skeleton, &self.frame.adjacency);
         let metrics = skeleton.metrics(adjacency);
-        Sample { iteration, displacement: Displacement::of(skeleton, &self.frame.origin), metrics, asked }
+        HistorySample { iteration, displacement: Displacement::of(skeleton, &self.frame.origin), metrics, asked }
     }
 }

@@ -12,7 +12,7 @@ const LISTED: usize = 10;
 
 /// Minimum, quartiles and maximum of numbers; all 0 without numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spread {
+pub struct Quartiles {
     /// Minimum.
     pub min: f64,
     /// First quartile.
@@ -25,7 +25,7 @@ pub struct Spread {
     pub max: f64,
 }
 
-impl Spread {
+impl Quartiles {
     /// Computes the quartiles of these numbers.
     pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_unstable_by(f64::total_cmp);
@@ -37,7 +37,7 @@ impl Spread {
     }
 }
 
-impl fmt::Display for Spread {
+impl fmt::Display for Quartiles {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let [a, b, c, d, e] = [self.min, self.quarter, self.median, self.three_quarters, self.max].map(digits);
         write!(f, "{a} .. {e} (quartiles {b}, {c}, {d})")
@@ -115,15 +115,15 @@ pub struct NetworkInfo {
     /// Number of nodes with 0, 1, 2, … edges.
     pub valences: Vec<usize>,
     /// Radii at the ends of the edges.
-    pub radius: Spread,
+    pub radius: Quartiles,
     /// Lengths of the edges.
-    pub edge_length: Spread,
+    pub edge_length: Quartiles,
     /// Edges shorter than their mean radius.
     pub edges_shorter_than_radius: usize,
     /// Lengths of the branches.
-    pub branch_length: Spread,
+    pub branch_length: Quartiles,
     /// Length of each branch relative to its mean radius.
-    pub branch_length_in_radii: Spread,
+    pub branch_length_in_radii: Quartiles,
     /// Total length of all edges.
     pub total_length: f64,
     /// Terminals that become inlets, as far as known to the caller.
@@ -157,7 +157,7 @@ impl NetworkInfo {
         let lengths: Vec<f64> = skeleton.edge_ids().map(|e| skeleton.length(e)).collect();
         let short = skeleton.edges.iter().zip(&lengths).filter(|(e, length)| **length < e.mean_radius()).count();
         let aabb = Aabb::of_points(skeleton.nodes.iter().map(|n| &n.position));
-        let radius = Spread::of(skeleton.edges.iter().flat_map(|e| e.radii).collect());
+        let radius = Quartiles::of(skeleton.edges.iter().flat_map(|e| e.radii).collect());
         Self {
             notes,
             cleaned,
@@ -171,11 +171,13 @@ impl NetworkInfo {
             valences,
             radius,
             edges_shorter_than_radius: short,
-            branch_length: Spread::of(branches.iter().map(anastomesh_skeleton::Branch::length).collect()),
-            branch_length_in_radii: Spread::of(branches.iter().map(|b| b.length() / b.mean_radius(skeleton)).collect()),
+            branch_length: Quartiles::of(branches.iter().map(anastomesh_skeleton::Branch::length).collect()),
+            branch_length_in_radii: Quartiles::of(
+                branches.iter().map(|b| b.length() / b.mean_radius(skeleton)).collect(),
+            ),
             inlets: Vec::new(),
             total_length: lengths.iter().sum(),
-            edge_length: Spread::of(lengths),
+            edge_length: Quartiles::of(lengths),
             bounding_box: [aabb.min.into(), aabb.max.into()],
             unit_guess: UnitGuess::of(radius.max, aabb.diagonal()),
             metrics,
@@ -327,8 +329,8 @@ mod tests {
 
     #[test]
     fn spread_of_few_and_many() {
-        assert_eq!(Spread::of(Vec::new()), Spread::default());
-        let spread = Spread::of((0..=100).rev().map(f64::from).collect());
-        assert_eq!(spread, Spread { min: 0.0, quarter: 25.0, median: 50.0, three_quarters: 75.0, max: 100.0 });
+        assert_eq!(Quartiles::of(Vec::new()), Quartiles::default());
+        let spread = Quartiles::of((0..=100).rev().map(f64::from).collect());
+        assert_eq!(spread, Quartiles { min: 0.0, quarter: 25.0, median: 50.0, three_quarters: 75.0, max: 100.0 });
     }
 }

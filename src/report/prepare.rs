@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 
 use super::rows::row;
-use crate::prepare::{Fault, PrepareReport, Size, SpurReason, TouchedBy, TouchingTip};
+use crate::prepare::{PrepareReport, RadiusDefect, Size, SpurReason, TouchedBy, TouchingTip};
 use anastomesh_mesh::units::{counted, grouped};
 
 /// Row of the table of sizes.
-type Row = (&'static str, fn(&Size) -> usize);
+type SizeRow = (&'static str, fn(&Size) -> usize);
 
 /// Maximum number of listed cases per cure.
 const LISTED: usize = 20;
@@ -19,7 +19,7 @@ pub fn text(report: &PrepareReport, all: bool) -> String {
     let mut out = Lists { text: String::new(), listed: if all { LISTED } else { SPELT_OUT } };
     let filled = report.radii.iter().map(|r| {
         let was = r.given.map_or_else(|| "no number".into(), |g| format!("{g:.4}"));
-        let why = if r.fault == Fault::Absurd { " (its neighbours' are ten times more or less)" } else { "" };
+        let why = if r.fault == RadiusDefect::Absurd { " (its neighbours' are ten times more or less)" } else { "" };
         format!("{}: {was}, now {:.4}{why}", r.node, r.filled)
     });
     out.list("radii filled from neighbours (--keep-radii)", filled);
@@ -143,7 +143,7 @@ fn merged(report: &PrepareReport, out: &mut Lists) {
 
 fn sizes(report: &PrepareReport, out: &mut String) {
     let _ = writeln!(out, "{:16}{:>10}{:>10}{:>10}", "", "given", "read", "result");
-    let rows: [Row; 6] = [
+    let rows: [SizeRow; 6] = [
         ("nodes", |s| s.nodes),
         ("edges", |s| s.edges),
         ("tips", |s| s.tips),

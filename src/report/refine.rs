@@ -7,14 +7,14 @@ use super::plot::{Panel, Series};
 #[cfg(feature = "cli")]
 use super::rows::{Ended, row};
 #[cfg(feature = "cli")]
-use crate::refine::Sample;
+use crate::refine::HistorySample;
 use crate::refine::{Figures, RefineReport, Treatment};
 use anastomesh_mesh::units::grouped;
 #[cfg(feature = "cli")]
 use anastomesh_mesh::units::{number, percent as share};
 
 /// Row of the figures table: name, and value for a state.
-type Row = (&'static str, fn(&Figures) -> String);
+type FiguresRow = (&'static str, fn(&Figures) -> String);
 
 /// Maximum number of listed pairs.
 const LISTED: usize = 50;
@@ -134,7 +134,7 @@ fn worse(report: &RefineReport) -> String {
 /// Table of figures: name, and values of the input, after splitting, after moving, and of the result.
 pub fn figures_table(report: &RefineReport) -> Vec<Vec<String>> {
     let states = [&report.given, &report.split, &report.moved, &report.result];
-    let rows: [Row; 13] = [
+    let rows: [FiguresRow; 13] = [
         ("overlapping pairs", |f| grouped(f.overlaps)),
         ("  that share a node", |f| grouped(f.beside)),
         ("unconnected pairs", |f| grouped(f.unconnected)),
@@ -149,7 +149,7 @@ pub fn figures_table(report: &RefineReport) -> Vec<Vec<String>> {
         ("equation 12 met", |f| percent(f.metrics.open_enough.percent())),
         ("inner branches cuttable", |f| percent(f.metrics.cuttable.percent())),
     ];
-    let row = |(name, value): Row| [vec![name.to_owned()], states.map(value).to_vec()].concat();
+    let row = |(name, value): FiguresRow| [vec![name.to_owned()], states.map(value).to_vec()].concat();
     rows.into_iter().map(row).collect()
 }
 
@@ -245,7 +245,7 @@ pub fn csv(report: &RefineReport) -> String {
 /// Four panels as in Fig. 11 of the paper.
 #[cfg(feature = "cli")]
 pub fn panels(report: &RefineReport) -> Vec<Panel> {
-    let line = |label: &str, value: fn(&Sample) -> f64| Series {
+    let line = |label: &str, value: fn(&HistorySample) -> f64| Series {
         label: label.into(),
         points: report.history.iter().map(|s| [s.iteration as f64, value(s)]).collect(),
     };

@@ -44,8 +44,8 @@ pub(crate) fn contour(
     max_cells: usize,
     value: impl FnMut(Node) -> f64,
 ) -> Result<(TriMesh, Vec<u32>), SurfaceError> {
-    let mut grid = Grid { tiles: Vec::new(), index: FxHashMap::default(), last: (u64::MAX, 0), value };
-    let mut dual = Dual { mesh: TriMesh::default(), midpoints: FxHashMap::default() };
+    let mut grid = SparseGrid { tiles: Vec::new(), index: FxHashMap::default(), last: (u64::MAX, 0), value };
+    let mut dual = DualMesh { mesh: TriMesh::default(), midpoints: FxHashMap::default() };
     let cells = grid.flood(seeds, max_cells, &mut dual.mesh.points)?;
     for &(cell, mask) in &cells {
         for d in 0..3 {
@@ -58,14 +58,14 @@ pub(crate) fn contour(
     Ok((dual.mesh, at_seeds))
 }
 
-struct Grid<F> {
+struct SparseGrid<F> {
     tiles: Vec<Tile>,
     index: FxHashMap<u64, u32>,
     last: (u64, u32),
     value: F,
 }
 
-impl<F: FnMut(Node) -> f64> Grid<F> {
+impl<F: FnMut(Node) -> f64> SparseGrid<F> {
     /// Tile of a node and index within it.
     #[inline]
     fn locate(&mut self, n: Node) -> (usize, usize) {
@@ -233,15 +233,15 @@ struct Around {
     vertex: u32,
 }
 
-struct Dual {
+struct DualMesh {
     mesh: TriMesh,
     /// Vertices in the middle of doubled edges, by face (cell, axis) and the inside node cut off by the segment.
     midpoints: FxHashMap<(Node, usize, Node), u32>,
 }
 
-impl Dual {
+impl DualMesh {
     /// Adds the polygon of the crossed grid edge from `n` along axis `d`; `inside` tells if `n` is inside.
-    fn crossing<F: FnMut(Node) -> f64>(&mut self, grid: &mut Grid<F>, n: Node, d: usize, inside: bool) {
+    fn crossing<F: FnMut(Node) -> f64>(&mut self, grid: &mut SparseGrid<F>, n: Node, d: usize, inside: bool) {
         let (u, v) = ((d + 1) % 3, (d + 2) % 3);
         // Counter-clockwise seen from the far end of the edge.
         let cells = [n, shifted(n, u, -1), shifted(shifted(n, u, -1), v, -1), shifted(n, v, -1)];
@@ -285,7 +285,7 @@ impl Dual {
     /// Returns the middle vertex of the segment that crosses edge (n, d) on the lower face of `cell` across `axis`.
     fn midpoint<F: FnMut(Node) -> f64>(
         &mut self,
-        grid: &mut Grid<F>,
+        grid: &mut SparseGrid<F>,
         cell: Node,
         axis: usize,
         n: Node,

@@ -27,7 +27,7 @@ const KEY_BITS: u32 = 21;
 
 /// One tube, prepared for evaluation.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct TaperedSegment {
     a: Point3,
     axis: Vec3,
     length: f64,
@@ -39,7 +39,7 @@ struct Piece {
 /// Distance form of the convolution field: below 1 inside the vessels, 1 on the wall, above 1 outside.
 #[derive(Debug)]
 pub struct Field {
-    pieces: Vec<Piece>,
+    pieces: Vec<TaperedSegment>,
     kappa: f64,
     /// Square of the tube cutoff distance, in radii.
     cutoff2: f64,
@@ -77,7 +77,7 @@ impl Field {
             }
         }
         let reach = cutoff2.sqrt();
-        let pieces: Vec<Piece> = merged(tubes).iter().filter_map(|t| Piece::new(t, reach)).collect();
+        let pieces: Vec<TaperedSegment> = merged(tubes).iter().filter_map(|t| TaperedSegment::new(t, reach)).collect();
         if pieces.is_empty() {
             return Err(SurfaceError::Empty);
         }
@@ -106,36 +106,21 @@ impl Field {
     /// Distance form at `p`.
     pub fn value(&mut self, p: &Point3) -> f64 {
         let mut sum = 0.0;
-        if let Some(locator) = &mut self.locator {
-            let (start, end) = locator.range(&self.pieces, p);
-            for &i in &locator.lists[start as usize..end as usize] {
-                sum += self.pieces[i as usize].value(p, self.kappa, self.cutoff2, self.erf);
-            }
-        } else {
-            for piece in &self.pieces {
-                sum += piece.value(p, self.kappa, self.cutoff2, self.erf);
-            }
-        }
+        let add = |piece: &TaperedSegment| sum += piece.value(p, self.kappa, self.cutoff2, self.erf);
+        each_near(&mut self.locator, &self.pieces, p, add);
         self.distance(sum)
     }
 
     /// Distance form at `p` and its gradient (zero far from all tubes and on an axis).
     pub fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
         let (mut sum, mut gradient) = (0.0, Vec3::zeros());
-        let mut add = |piece: &Piece| {
+        let add = |piece: &TaperedSegment| {
             if let Some((f, g)) = piece.value_and_gradient(p, self.kappa, self.cutoff2, self.erf) {
                 sum += f;
                 gradient += g;
             }
         };
-        if let Some(locator) = &mut self.locator {
-            let (start, end) = locator.range(&self.pieces, p);
-            for &i in &locator.lists[start as usize..end as usize] {
-                add(&self.pieces[i as usize]);
-            }
-        } else {
-            self.pieces.iter().for_each(&mut add);
-        }
+        each_near(&mut self.locator, &self.pieces, p, add);
         let g = self.distance(sum);
         if g >= self.far || g <= 1e-6 {
             return (g, Vec3::zeros());
@@ -146,19 +131,12 @@ impl Field {
     /// Mean radius of the tubes near `p`, weighted by the kernel; 0 far from all tubes.
     pub fn radius(&mut self, p: &Point3) -> f64 {
         let (mut sum, mut radii) = (0.0, 0.0);
-        let mut add = |piece: &Piece| {
+        let add = |piece: &TaperedSegment| {
             let (weight, radius) = piece.weight_and_radius(p, self.kappa, self.cutoff2);
             sum += weight;
             radii += weight * radius;
         };
-        if let Some(locator) = &mut self.locator {
-            let (start, end) = locator.range(&self.pieces, p);
-            for &i in &locator.lists[start as usize..end as usize] {
-                add(&self.pieces[i as usize]);
-            }
-        } else {
-            self.pieces.iter().for_each(&mut add);
-        }
+        each_near(&mut self.locator, &self.pieces, p, add);
         if sum > 0.0 { radii / sum } else { 0.0 }
     }
 
@@ -177,6 +155,21 @@ impl Field {
         } else {
             (-2.0 * self.kappa * self.kappa * sum.ln()).sqrt().min(self.far)
         }
+    }
+}
+
+/// Visits the pieces that count near a point, in order.
+#[inline]
+fn each_near(
+    locator: &mut Option<Locator>,
+    pieces: &[TaperedSegment],
+    p: &Point3,
+    mut visit: impl FnMut(&TaperedSegment),
+) {
+    let Some(locator) = locator else { return pieces.iter().for_each(visit) };
+    let (start, end) = locator.range(pieces, p);
+    for &i in &locator.lists[start as usize..end as usize] {
+        visit(&pieces[i as usize]);
     }
 }
 
@@ -219,7 +212,7 @@ fn is_chord(run: &[Tube]) -> bool {
     })
 }
 
-impl Piece {
+impl TaperedSegment {
     /// Returns `None` for a tube without length; `reach` is the cutoff in radii.
     fn new(t: &Tube, reach: f64) -> Option<Self> {
         let length = t.length();
@@ -289,7 +282,7 @@ impl Locator {
     /// Cells per block edge. A cell's list is selected from its block's, a block's from all pieces.
     const BLOCK: u64 = 8;
 
-    fn new(pieces: &[Piece]) -> Self {
+    fn new(pieces: &[TaperedSegment]) -> Self {
         let mut reaches: Vec<f64> = pieces.iter().map(|p| p.reach).collect();
         reaches.sort_by(f64::total_cmp);
         let mut lo = pieces[0].a;
@@ -304,7 +297,7 @@ impl Locator {
     }
 
     /// Returns the pieces that reach the cell of `p`, as a range of `lists`.
-    fn range(&mut self, pieces: &[Piece], p: &Point3) -> (u32, u32) {
+    fn range(&mut self, pieces: &[TaperedSegment], p: &Point3) -> (u32, u32) {
         let limit = ((1u64 << KEY_BITS) - 1) as f64;
         let c: [u64; 3] =
             std::array::from_fn(|i| ((p[i] - self.origin[i]) / self.size).floor().clamp(0.0, limit) as u64);
@@ -326,7 +319,7 @@ impl Locator {
     }
 
     /// Appends the pieces that reach the cube `cell` of edge `size`, selected from the range `from` or from all.
-    fn pick(&mut self, pieces: &[Piece], from: Option<(u32, u32)>, cell: [u64; 3], size: f64) -> (u32, u32) {
+    fn pick(&mut self, pieces: &[TaperedSegment], from: Option<(u32, u32)>, cell: [u64; 3], size: f64) -> (u32, u32) {
         let center = self.origin + Vec3::from_fn(|i, _| (cell[i] as f64 + 0.5) * size);
         let half = 0.5 * size * 3f64.sqrt() * (1.0 + 1e-9);
         let start = self.lists.len() as u32;

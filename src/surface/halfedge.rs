@@ -324,52 +324,12 @@ impl HalfEdges {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use anastomesh_mesh::shapes::sphere_surface;
     use proptest::prelude::*;
-
-    fn icosahedron() -> TriMesh {
-        let g = 0.5 * (1.0 + 5f64.sqrt());
-        let p = [
-            [-1.0, g, 0.0],
-            [1.0, g, 0.0],
-            [-1.0, -g, 0.0],
-            [1.0, -g, 0.0],
-            [0.0, -1.0, g],
-            [0.0, 1.0, g],
-            [0.0, -1.0, -g],
-            [0.0, 1.0, -g],
-            [g, 0.0, -1.0],
-            [g, 0.0, 1.0],
-            [-g, 0.0, -1.0],
-            [-g, 0.0, 1.0],
-        ];
-        let triangles = vec![
-            [0, 11, 5],
-            [0, 5, 1],
-            [0, 1, 7],
-            [0, 7, 10],
-            [0, 10, 11],
-            [1, 5, 9],
-            [5, 11, 4],
-            [11, 10, 2],
-            [10, 7, 6],
-            [7, 1, 8],
-            [3, 9, 4],
-            [3, 4, 2],
-            [3, 2, 6],
-            [3, 6, 8],
-            [3, 8, 9],
-            [4, 9, 5],
-            [2, 4, 11],
-            [6, 2, 10],
-            [8, 6, 7],
-            [9, 8, 1],
-        ];
-        TriMesh { points: p.map(Point3::from).to_vec(), triangles }
-    }
 
     #[test]
     fn open_or_pinched_surfaces_are_refused() {
-        let mut mesh = icosahedron();
+        let mut mesh = sphere_surface(0);
         assert!(HalfEdges::new(&mesh).is_ok());
         mesh.triangles.pop();
         assert!(HalfEdges::new(&mesh).is_err());
@@ -378,7 +338,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_sequence_of_operations_keeps_a_closed_manifold(steps in prop::collection::vec((0u8..3, any::<u32>()), 1..60)) {
-            let mut s = HalfEdges::new(&icosahedron()).unwrap();
+            let mut s = HalfEdges::new(&sphere_surface(0)).unwrap();
             for (what, pick) in steps {
                 let h = pick % s.len();
                 if !s.is_live(h) {

@@ -1,7 +1,7 @@
 //! Chunks of nearby wall pieces, so that off-screen parts are not drawn.
 
-use super::pack::{Grid, Pack};
-use super::wall::{Group, Piece, Wall};
+use super::pack::{Pack, QuantizationGrid};
+use super::wall::{BlockWall, Group, Wall};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::hilbert::hilbert_key;
 use serde::Serialize;
@@ -13,8 +13,8 @@ const STEPS: u32 = 65_535;
 
 /// Metadata of a chunk for the page.
 #[derive(Debug, Serialize)]
-struct Head {
-    grid: Grid,
+struct ChunkHeader {
+    grid: QuantizationGrid,
     pieces: usize,
     groups: usize,
 }
@@ -25,8 +25,8 @@ pub fn pack_wall(wall: Wall, pack: &mut Pack) -> serde_json::Value {
     let radii = pieces.iter().flat_map(|p| &p.groups).flat_map(|g| &g.radii).filter(|r| **r > 0.0);
     let [low, high] = radii.fold([f64::INFINITY, 0.0_f64], |[l, h], &r| [l.min(r), h.max(r)]);
     let scale = RadiusScale { low, high };
-    let all = Grid::of(pieces.iter().filter_map(|p| p.groups.first()?.points.first()), 1 << 16);
-    let place = |piece: &Piece| {
+    let all = QuantizationGrid::of(pieces.iter().filter_map(|p| p.groups.first()?.points.first()), 1 << 16);
+    let place = |piece: &BlockWall| {
         let first = piece.groups.first().and_then(|g| g.points.first()).copied().unwrap_or_else(Point3::origin);
         let cell = [0, 1, 2].map(|k| ((first[k] - all.origin[k]) / all.step).clamp(0.0, 65_535.0) as u32);
         hilbert_key(cell, 16)
@@ -63,13 +63,13 @@ impl RadiusScale {
     }
 }
 
-fn pack_chunk(number: usize, mut pieces: Vec<Piece>, scale: &RadiusScale, pack: &mut Pack) -> Head {
+fn pack_chunk(number: usize, mut pieces: Vec<BlockWall>, scale: &RadiusScale, pack: &mut Pack) -> ChunkHeader {
     // Sorted by radius, because the page draws thick pieces as faces and thin ones as lines.
     pieces.sort_by(|a, b| b.radius.total_cmp(&a.radius).then(a.block.cmp(&b.block)));
-    let groups: Vec<(&Piece, &Group)> = pieces.iter().flat_map(|p| p.groups.iter().map(move |g| (p, g))).collect();
+    let groups: Vec<(&BlockWall, &Group)> = pieces.iter().flat_map(|p| p.groups.iter().map(move |g| (p, g))).collect();
     let points = || groups.iter().flat_map(|(_, g)| &g.points);
     let ends: Vec<Point3> = pieces.iter().flat_map(|p| p.lines.iter().flatten().copied()).collect();
-    let grid = Grid::of(points().chain(&ends), STEPS);
+    let grid = QuantizationGrid::of(points().chain(&ends), STEPS);
     let mut add = |name: &str, values: &[i32], stride| pack.add(format!("{name}{number}"), values, stride);
     add("position", &grid.steps(points()), 3);
     let mut first = 0;
@@ -86,16 +86,16 @@ fn pack_chunk(number: usize, mut pieces: Vec<Piece>, scale: &RadiusScale, pack: 
     let radii: Vec<i32> = groups.iter().flat_map(|(_, g)| g.radii.iter().map(|&r| scale.step(r))).collect();
     add("radius", &radii, 1);
     add("order", &bytes(|g| &g.orders), 1);
-    let of_groups = |of: &dyn Fn(&(&Piece, &Group)) -> i32| -> Vec<i32> { groups.iter().map(of).collect() };
+    let of_groups = |of: &dyn Fn(&(&BlockWall, &Group)) -> i32| -> Vec<i32> { groups.iter().map(of).collect() };
     add("groupBlock", &of_groups(&|(p, _)| p.block), 1);
     add("groupPatch", &of_groups(&|(_, g)| g.patch), 1);
     add("groupPoints", &of_groups(&|(_, g)| g.points.len() as i32), 1);
     add("groupFaces", &of_groups(&|(_, g)| g.triangles.len() as i32), 1);
-    let of_pieces = |of: &dyn Fn(&Piece) -> i32| -> Vec<i32> { pieces.iter().map(of).collect() };
+    let of_pieces = |of: &dyn Fn(&BlockWall) -> i32| -> Vec<i32> { pieces.iter().map(of).collect() };
     add("pieceGroups", &of_pieces(&|p| p.groups.len() as i32), 1);
     // In steps of the grid; pieces without a radius are always drawn.
     add("pieceRadius", &of_pieces(&|p| (p.radius / grid.step * 16.0).min(f64::from(i32::MAX / 2)) as i32), 1);
     add("pieceLines", &of_pieces(&|p| p.lines.len() as i32), 1);
     add("line", &grid.steps(ends.iter()), 6);
-    Head { grid, pieces: pieces.len(), groups: groups.len() }
+    ChunkHeader { grid, pieces: pieces.len(), groups: groups.len() }
 }

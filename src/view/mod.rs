@@ -18,6 +18,6 @@ mod wall;
 
 pub use faults::Fault;
 pub use network::add_network;
-pub use page::Page;
+pub use page::ViewerPage;
 pub use tets::add_tets;
 pub use wall::{Wall, WallOptions};

@@ -62,13 +62,13 @@ impl Pack {
 
 /// Quantization grid for positions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Grid {
+pub struct QuantizationGrid {
     pub origin: [f64; 3],
     /// Step length.
     pub step: f64,
 }
 
-impl Grid {
+impl QuantizationGrid {
     /// Grid of some points, with this number of steps along the longest side.
     pub fn of<'a>(points: impl Iterator<Item = &'a Point3>, steps: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -123,12 +123,12 @@ mod tests {
     #[test]
     fn places_come_back_to_half_a_step() {
         let points = [Point3::new(-1.0, 2.0, 3.0), Point3::new(4.0, 2.5, 3.25)];
-        let grid = Grid::of(points.iter(), 65_535);
+        let grid = QuantizationGrid::of(points.iter(), 65_535);
         let steps = grid.steps(points.iter());
         for (k, step) in steps.iter().enumerate() {
             let back = grid.origin[k % 3] + grid.step * f64::from(*step);
             assert!((back - points[k / 3][k % 3]).abs() <= 0.5 * grid.step + 1e-12 && (0..=65_535).contains(step));
         }
-        assert_eq!(Grid::of([].iter(), 9).step, 1.0);
+        assert_eq!(QuantizationGrid::of([].iter(), 9).step, 1.0);
     }
 }

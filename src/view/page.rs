@@ -22,12 +22,12 @@ const SCRIPTS: [&str; 5] = [
 ];
 
 /// Page during assembly.
-pub struct Page {
+pub struct ViewerPage {
     pub pack: Pack,
     facts: Map<String, Value>,
 }
 
-impl Page {
+impl ViewerPage {
     /// Creates a page with this title.
     pub fn new(title: &str) -> Self {
         let mut facts = Map::new();

@@ -1,6 +1,6 @@
 //! Tetrahedra for cut views: all of a small mesh, otherwise those of selected blocks.
 
-use super::pack::{Grid, Pack};
+use super::pack::{Pack, QuantizationGrid};
 use super::wall::Wall;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::{MeshSource, TetPiece};
@@ -45,16 +45,16 @@ pub fn add_tets(mesh: &dyn MeshSource, wall: &Wall, pack: &mut Pack) -> io::Resu
             }
         }
     }
-    let grid = Grid::of(held.points.iter(), STEPS);
+    let grid = QuantizationGrid::of(held.points.iter(), STEPS);
     pack.add("tetPosition", &grid.steps(held.points.iter()), 3);
     pack.add("tet", &held.tets, 4);
     pack.add("tetBlock", &held.blocks, 1);
     Ok(serde_json::json!({ "grid": grid, "shown": held.blocks.len(), "all": count, "plane": plane }))
 }
 
-type Part<'a> = (TetPiece<'a>, Vec<[Point3; 4]>);
+type TetPart<'a> = (TetPiece<'a>, Vec<[Point3; 4]>);
 
-fn held_part(mesh: &dyn MeshSource, part: u32) -> io::Result<Part<'_>> {
+fn held_part(mesh: &dyn MeshSource, part: u32) -> io::Result<TetPart<'_>> {
     let piece = mesh.tets(part)?;
     let corners = mesh.corners_of(&piece.tets)?;
     Ok((piece, corners))
@@ -105,7 +105,7 @@ fn middle(wall: &Wall) -> (usize, f64) {
 
 /// Widest blocks whose wall crosses the plane, as many as the limit allows.
 fn crossed(wall: &Wall, (axis, at): (usize, f64)) -> FxHashSet<i32> {
-    let cuts = |piece: &&super::wall::Piece| {
+    let cuts = |piece: &&super::wall::BlockWall| {
         let mut sides = piece.groups.iter().flat_map(|g| &g.points).map(|p| p[axis] < at);
         let first = sides.next();
         first.is_some_and(|first| sides.any(|side| side != first))

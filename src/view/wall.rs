@@ -47,7 +47,7 @@ pub struct Group {
 
 /// Wall of a block.
 #[derive(Clone, Debug, Default)]
-pub struct Piece {
+pub struct BlockWall {
     pub block: i32,
     /// Mean radius of its rings; infinite without rings.
     pub radius: f64,
@@ -59,7 +59,7 @@ pub struct Piece {
 /// Wall of a mesh.
 #[derive(Debug)]
 pub struct Wall {
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<BlockWall>,
     /// True if shown at full resolution.
     pub exact: bool,
     /// Number of boundary faces of the mesh.
@@ -140,12 +140,12 @@ fn made(
     corners: &[[Point3; 3]],
     coarse: Option<Coarse>,
     options: &WallOptions,
-) -> Piece {
+) -> BlockWall {
     let mut patches: BTreeMap<i32, Vec<usize>> = BTreeMap::new();
     for &i in faces {
         patches.entry(piece.patches.get(i).copied().unwrap_or(0)).or_default().push(i);
     }
-    let mut out = Piece { block, radius: f64::INFINITY, ..Piece::default() };
+    let mut out = BlockWall { block, radius: f64::INFINITY, ..BlockWall::default() };
     let locals: Vec<Local> = patches.iter().map(|(&patch, faces)| Local::of(patch, faces, piece, corners)).collect();
     // The patch with the most faces is the wall.
     if let Some(wall) = locals.iter().max_by_key(|local| local.group.triangles.len()) {
@@ -332,7 +332,7 @@ mod tests {
         let mesh = tube();
         let piece = mesh.boundary(0).unwrap();
         let corners = (&mesh as &dyn MeshSource).corners_of(&piece.faces).unwrap();
-        let blocks: Vec<Piece> = by_block(&piece)
+        let blocks: Vec<BlockWall> = by_block(&piece)
             .into_iter()
             .map(|(block, faces)| {
                 made(
@@ -346,7 +346,7 @@ mod tests {
             })
             .collect();
         // Exact points of a group's rings: both blocks share those at the joint.
-        let rims = |piece: &Piece, patch: i32| -> BTreeSet<[u64; 3]> {
+        let rims = |piece: &BlockWall, patch: i32| -> BTreeSet<[u64; 3]> {
             let group = piece.groups.iter().find(|g| g.patch == patch).unwrap();
             let key = |&v: &u32| <[f64; 3]>::from(group.points[v as usize].coords).map(f64::to_bits);
             rings(&group.triangles).iter().flatten().map(key).collect()

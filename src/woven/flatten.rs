@@ -10,7 +10,7 @@ use anastomesh_mesh::geometry::Point3;
 
 /// Parameters of one attempt at an end surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Attempt {
+pub(super) struct FlattenAttempt {
     /// Height of the initial cut.
     pub offset: f64,
     /// Minimum cosine of triangles against the plane; 0 requires a positive projection only.
@@ -35,7 +35,7 @@ const ROUNDS: usize = 60;
 struct Flattener<'a> {
     region: &'a Region,
     points: &'a [Point3],
-    attempt: Attempt,
+    attempt: FlattenAttempt,
     removed: Vec<bool>,
     /// Exposed faces `4·tet + face`; stale if their owner was removed.
     exposed: Vec<u32>,
@@ -44,7 +44,12 @@ struct Flattener<'a> {
 }
 
 /// Creates a flat end surface.
-pub(super) fn flatten(region: &Region, points: &[Point3], seed: u32, attempt: Attempt) -> Result<Flat, FlattenFailure> {
+pub(super) fn flatten(
+    region: &Region,
+    points: &[Point3],
+    seed: u32,
+    attempt: FlattenAttempt,
+) -> Result<Flat, FlattenFailure> {
     let mut f =
         Flattener { region, points, attempt, removed: vec![false; region.tets.len()], exposed: Vec::new(), checked: 0 };
     f.cut(seed)?;

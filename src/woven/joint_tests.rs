@@ -61,18 +61,18 @@ fn tube(z0: f64) -> TriMesh {
 
 /// Two blocks in one mesh.
 #[derive(Debug, PartialEq)]
-struct Merged {
+struct JoinedBlocks {
     mesh: TetMesh,
     tet_block: Vec<i32>,
 }
 
-fn two_blocks() -> (Merged, Vec<Joint>, Vec<bool>) {
+fn two_blocks() -> (JoinedBlocks, Vec<Joint>, Vec<bool>) {
     let length = f64::from(LAYERS) * STEP;
     let [lower, upper] = [-length, 0.0].map(|z0| tetrahedralize(&tube(z0), &TetOptions::default()).expect("a tube"));
     let key = |p: &Point3| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()];
     let surface = tube(0.0).points.len();
     let below: HashMap<_, u32> = lower.points.iter().zip(0..).take(surface).map(|(p, v)| (key(p), v)).collect();
-    let mut merged = Merged { tet_block: vec![0; lower.tets.len()], mesh: lower };
+    let mut merged = JoinedBlocks { tet_block: vec![0; lower.tets.len()], mesh: lower };
     let mut joint = Joint::default();
     let mut number = Vec::with_capacity(upper.points.len());
     for (local, p) in upper.points.iter().enumerate() {
@@ -90,7 +90,7 @@ fn two_blocks() -> (Merged, Vec<Joint>, Vec<bool>) {
     (merged, vec![joint], frozen)
 }
 
-fn smooth(merged: &mut Merged, joints: &[Joint], frozen: &[bool]) -> JointReport {
+fn smooth(merged: &mut JoinedBlocks, joints: &[Joint], frozen: &[bool]) -> JointReport {
     let improve = |mesh: &mut TetMesh, fixed: usize| {
         let options = OptimizeOptions { fixed_points: fixed, keep_points: true, ..OptimizeOptions::default() };
         optimize(mesh, &options).is_ok()

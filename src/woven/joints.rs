@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::smooth::Taubin;
 pub use region::Improve;
-use region::Region;
+use region::JointRegion;
 
 /// End surface at which two blocks meet.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -90,11 +90,11 @@ pub fn smooth_joints(
     let degree = degrees(mesh);
     let whole = &*mesh;
     let blocks = &*tet_block;
-    let results: Vec<(Region, JointReport)> = owned
+    let results: Vec<(JointRegion, JointReport)> = owned
         .par_iter()
         .filter(|tets| !tets.is_empty())
         .map(|tets| {
-            let mut region = Region::new(whole, blocks, tets, &degree, frozen);
+            let mut region = JointRegion::new(whole, blocks, tets, &degree, frozen);
             let report = smooth_region(&mut region, options, improve);
             (region, report)
         })
@@ -118,7 +118,7 @@ pub fn smooth_joints(
     report
 }
 
-fn smooth_region(region: &mut Region, options: &JointOptions, improve: &Improve) -> JointReport {
+fn smooth_region(region: &mut JointRegion, options: &JointOptions, improve: &Improve) -> JointReport {
     let mut report =
         JointReport { tets: region.mesh.tets.len(), worst_before: region.worst(), ..JointReport::default() };
     for round in 0..options.rounds.max(1) {

@@ -1,6 +1,6 @@
 //! Part of a cluster's mesh around one cut, renumbered: the working set of trimming.
 
-use crate::block::Plane;
+use crate::block::CutPlane;
 use anastomesh_mesh::geometry::{Point3, Section};
 
 /// Neighbour entry for the boundary of the mesh.
@@ -41,7 +41,7 @@ pub(super) struct Reach {
 }
 
 /// Data of the whole mesh for growing regions; the maps are reset after every use.
-pub(super) struct Ground<'a> {
+pub(super) struct RegionGrowing<'a> {
     pub points: &'a [Point3],
     pub tets: &'a [[u32; 4]],
     pub neighbours: &'a [[u32; 4]],
@@ -52,7 +52,7 @@ pub(super) struct Ground<'a> {
 
 impl Region {
     /// Collects the region around a cut, from a seed tetrahedron in the tip.
-    pub(super) fn grow(ground: &mut Ground, seed: u32, section: &Section, reach: Reach) -> Self {
+    pub(super) fn grow(ground: &mut RegionGrowing, seed: u32, section: &Section, reach: Reach) -> Self {
         let mut region = Self::default();
         region.tets.push(seed);
         ground.local_tet[seed as usize] = 0;
@@ -83,7 +83,7 @@ impl Region {
         region
     }
 
-    fn renumber(&mut self, ground: &mut Ground) {
+    fn renumber(&mut self, ground: &mut RegionGrowing) {
         for &t in &self.tets {
             let corners = ground.tets[t as usize].map(|v| {
                 let local = &mut ground.local_vertex[v as usize];
@@ -108,7 +108,7 @@ impl Region {
     }
 
     fn project(&mut self, points: &[Point3], section: &Section, reach: Reach) {
-        let plane = Plane::new(section, 2.0 * reach.lateral);
+        let plane = CutPlane::new(section, 2.0 * reach.lateral);
         for &v in &self.vertices {
             let p = &points[v as usize];
             let height = section.height(p);
@@ -150,7 +150,7 @@ fn neighbour(handle: u32) -> u32 {
     if handle == u32::MAX { WALL } else { handle >> 2 }
 }
 
-fn inside(ground: &Ground, tet: u32, section: &Section, reach: Reach) -> bool {
+fn inside(ground: &RegionGrowing, tet: u32, section: &Section, reach: Reach) -> bool {
     let sum = ground.tets[tet as usize]
         .iter()
         .map(|&v| ground.points[v as usize].coords)

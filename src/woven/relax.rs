@@ -18,7 +18,7 @@ const TRIANGLE_FLOOR: f64 = 0.6;
 /// Minimum cosine between triangles of the end surface and the plane, unless they start lower.
 const COSINE_FLOOR: f64 = 0.5;
 
-pub(super) struct Relaxation<'a> {
+pub(super) struct EndRelaxation<'a> {
     pub region: &'a Region,
     pub removed: &'a [bool],
     pub section: &'a Section,
@@ -32,7 +32,7 @@ struct Worst {
     cosine: f64,
 }
 
-impl Relaxation<'_> {
+impl EndRelaxation<'_> {
     /// Moves `points` (global) of the end surface. `triangles` and `rim` use local vertices.
     pub(super) fn run(&self, points: &mut [Point3], triangles: &[[u32; 3]], rim: &[u32]) {
         let inner = inner_vertices(triangles, rim);

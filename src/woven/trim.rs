@@ -1,8 +1,8 @@
 //! Trimming (section 3.2.2 of the paper): removes the cluster beyond a cut plane and flattens the end surface.
 
-use super::flatten::{Attempt, Flat, flatten};
-use super::region::{Ground, Reach, Region, WALL};
-use super::relax::Relaxation;
+use super::flatten::{Flat, FlattenAttempt, flatten};
+use super::region::{Reach, Region, RegionGrowing, WALL};
+use super::relax::EndRelaxation;
 use crate::block::{CutEnd, EndSurface, FlattenFailure, cross, triangle_ratio};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
@@ -55,7 +55,7 @@ pub fn trim(
         let seed = seeds[i].filter(|&t| alive[t as usize]).ok_or((i, FlattenFailure::NothingBeyond))?;
         let (r, h) = (end.section.radius, options.edge);
         let reach = Reach { lateral: 2.0 * r + 4.0 * h, depth: (options.depth + 0.5) * r + 4.0 * h };
-        let mut ground = Ground {
+        let mut ground = RegionGrowing {
             points: &points,
             tets: &mesh.tets,
             neighbours,
@@ -125,7 +125,7 @@ fn best_attempt(region: &Region, points: &[Point3], options: &TrimOptions, r: f6
     let mut failure = FlattenFailure::NothingBeyond;
     for min_cosine in [0.4, 0.2, 0.0] {
         for offset in [-0.4, 0.0, -0.8, 0.4, -1.2] {
-            match flatten(region, points, 0, Attempt { offset: offset * h, min_cosine, depth }) {
+            match flatten(region, points, 0, FlattenAttempt { offset: offset * h, min_cosine, depth }) {
                 Ok(flat) => {
                     let score = score(region, points, &flat, h);
                     if best.as_ref().is_none_or(|b| score > b.0) {
@@ -171,7 +171,7 @@ fn relax(region: &Region, flat: &Flat, points: &mut [Point3], frozen: &[u32], en
     moved.dedup();
     let before: Vec<Point3> = moved.iter().map(|&v| points[v as usize]).collect();
     let is_frozen = |v: u32| frozen.binary_search(&region.vertices[v as usize]).is_ok();
-    let relaxation = Relaxation { region, removed: &flat.removed, section: &end.section, frozen: &is_frozen };
+    let relaxation = EndRelaxation { region, removed: &flat.removed, section: &end.section, frozen: &is_frozen };
     relaxation.run(points, &flat.triangles, &flat.rim);
     if !all_positive(region, flat, points) || global_surface(region, flat, end, |v| v).check(points).is_err() {
         for (&v, p) in moved.iter().zip(before) {

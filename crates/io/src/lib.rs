@@ -19,12 +19,14 @@ mod file;
 pub mod network;
 pub mod npy;
 mod patches;
+mod scalar;
 pub mod surface;
 #[doc(hidden)]
 pub mod tetgen;
 mod text;
 pub mod volume;
 mod vtk_xml;
+mod xml;
 
 pub use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 pub use file::{ensure_text_writable, write_bytes, write_text};

@@ -156,12 +156,12 @@ fn match_sides<const SIDES: usize>(cells: usize, vertices: usize, key: impl Fn(u
 
 /// Sides met so far with a common smallest vertex, chained by their middle vertex, which few share.
 struct Bucket {
-    sides: Vec<Side>,
+    sides: Vec<HalfFace>,
     /// Newest side with each vertex as middle vertex.
     newest: Vec<u32>,
 }
 
-struct Side {
+struct HalfFace {
     middle: u32,
     last: u32,
     handle: u32,
@@ -198,7 +198,7 @@ impl Bucket {
             _ => matching.crowded.push(handle),
         }
         self.newest[middle as usize] = self.sides.len() as u32;
-        self.sides.push(Side { middle, last, handle, older });
+        self.sides.push(HalfFace { middle, last, handle, older });
     }
 
     fn clear(&mut self) {

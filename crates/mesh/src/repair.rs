@@ -196,7 +196,7 @@ fn longest_edge(t: [u32; 3], points: &[Point3]) -> usize {
 /// it if the component lies inside an odd number of others.
 fn orient(r: &mut Repaired) {
     let before = r.surface.triangles.clone();
-    let parts = Parts::new(&mut r.surface, &mut r.report);
+    let parts = SurfaceComponents::new(&mut r.surface, &mut r.report);
     let depths = parts.depths(&r.surface);
     let volumes = parts.volumes(&r.surface);
     let wrong = |part: u32| {
@@ -219,14 +219,14 @@ fn turned_over(t: &[u32; 3], u: &[u32; 3]) -> bool {
 }
 
 /// Components of a surface connected by edges of two triangles.
-struct Parts {
+struct SurfaceComponents {
     /// Component of each triangle.
     of: Vec<u32>,
     /// True if each of its edges has two triangles with consistent orientation.
     closed: Vec<bool>,
 }
 
-impl Parts {
+impl SurfaceComponents {
     /// Finds the components and orients their triangles like the first one of each.
     fn new(surface: &mut TriMesh, report: &mut RepairReport) -> Self {
         let edges = tri_adjacency(&surface.triangles, surface.points.len());

@@ -6,7 +6,7 @@ use super::input;
 use super::lattice;
 use super::options::{Interior, Refinement};
 use super::progress::Stage;
-use super::recover::exact::{Missing, Way, recover_exact};
+use super::recover::exact::{Missing, RecoveryStrategy, recover_exact};
 use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
 use super::request::Request;
 use super::{contacts, delaunay, sized};
@@ -62,24 +62,24 @@ fn exactly(
 ) -> Result<(Complex, RecoverySummary), TetError> {
     let flat = flat_height(&r.surface.points);
     let single = flat_height_in_single(&r.surface.points);
-    let go_on = |ways: &[Way]| go_on(r, complex, points.len(), missing, (ways, flat));
-    let anew_in = |flat, ways: &[Way]| anew(r, points, flat, ways);
-    let anew = |flat| anew_in(flat, &Way::TURNED);
+    let go_on = |ways: &[RecoveryStrategy]| go_on(r, complex, points.len(), missing, (ways, flat));
+    let anew_in = |flat, ways: &[RecoveryStrategy]| anew(r, points, flat, ways);
+    let anew = |flat| anew_in(flat, &RecoveryStrategy::TURNED);
     let rounded = single.filter(|&coarse| lies_turned(r.surface, missing.edges, coarse));
     let planes = lies_in_planes(r.surface, missing.edges, flat);
     let turned = planes || lies_turned(r.surface, missing.edges, flat) || has_flat(complex, flat, missing.edges.len());
     let first = match rounded {
         Some(coarse) => anew(coarse),
         None if turned => anew(flat),
-        None => go_on(&Way::FIRST),
+        None => go_on(&RecoveryStrategy::FIRST),
     };
     let second = again(first, || match single.filter(|_| rounded.is_none()) {
         Some(coarse) => anew(coarse),
-        None if turned || rounded.is_some() => go_on(&Way::FIRST),
+        None if turned || rounded.is_some() => go_on(&RecoveryStrategy::FIRST),
         None => anew(flat),
     });
-    let third = again(second, || go_on(&Way::OTHERS));
-    again(third, || anew_in(rounded.unwrap_or(flat), &Way::LAST))
+    let third = again(second, || go_on(&RecoveryStrategy::OTHERS));
+    again(third, || anew_in(rounded.unwrap_or(flat), &RecoveryStrategy::LAST))
 }
 
 /// True if flips have left more flat tetrahedra than edges, a sign of flat surface parts.
@@ -99,7 +99,7 @@ fn go_on(
     complex: &Complex,
     points: usize,
     missing: Missing,
-    ways: (&[Way], f64),
+    ways: (&[RecoveryStrategy], f64),
 ) -> Result<(Complex, RecoverySummary), TetError> {
     let before = complex.points.len() - points;
     let (complex, exact) = recover_exact(complex, r.surface, r.edges, missing, ways, r.watch)?;
@@ -108,7 +108,12 @@ fn go_on(
 }
 
 /// Restarts with flips that make nothing thinner than `flat`, then continues with the given strategies.
-fn anew(r: &Request, points: &[Point3], flat: f64, ways: &[Way]) -> Result<(Complex, RecoverySummary), TetError> {
+fn anew(
+    r: &Request,
+    points: &[Point3],
+    flat: f64,
+    ways: &[RecoveryStrategy],
+) -> Result<(Complex, RecoverySummary), TetError> {
     let mut complex = delaunay::delaunay_watched(points, r.watch)?;
     match recover::recover(&mut complex, r.surface, r.edges, Rule::Thick(flat), r.watch) {
         Ok(summary) => Ok((complex, summary)),

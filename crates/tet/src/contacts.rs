@@ -88,8 +88,10 @@ pub(super) fn no_points_in_triangles(surface: &TriMesh) -> Result<(), TetError> 
         });
         if let Some((triangle, place)) = met {
             return Err(match place {
-                Place::Inside => TetError::Stuck { part: Obstacle::Triangle(triangle), reason: Stuck::Intersection },
-                Place::Edge(k) => {
+                TrianglePlace::Inside => {
+                    TetError::Stuck { part: Obstacle::Triangle(triangle), reason: Stuck::Intersection }
+                }
+                TrianglePlace::Edge(k) => {
                     let edge = [triangle[k], triangle[(k + 1) % 3]];
                     TetError::EdgeMeets { edge, obstacle: Obstacle::Point(v) }
                 }
@@ -110,14 +112,14 @@ fn boxes_of(surface: &TriMesh) -> Vec<Aabb> {
 
 /// Position of a point in a triangle.
 #[derive(Clone, Copy)]
-enum Place {
+enum TrianglePlace {
     Inside,
     /// On the edge from this vertex to the next.
     Edge(usize),
 }
 
 /// Exact position of a point in a triangle with area; `None` if it is outside.
-fn place_in([a, b, c]: [&Point3; 3], p: &Point3) -> Option<Place> {
+fn place_in([a, b, c]: [&Point3; 3], p: &Point3) -> Option<TrianglePlace> {
     if orient3d(a, b, c, p) != 0.0 {
         return None;
     }
@@ -127,5 +129,5 @@ fn place_in([a, b, c]: [&Point3; 3], p: &Point3) -> Option<Place> {
     let turn = orient2d(a, b, c).signum();
     let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| turn * orient2d(from, to, p));
     let on_edge = sides.iter().position(|&side| side == 0.0);
-    sides.iter().all(|&side| side >= 0.0).then(|| on_edge.map_or(Place::Inside, Place::Edge))
+    sides.iter().all(|&side| side >= 0.0).then(|| on_edge.map_or(TrianglePlace::Inside, TrianglePlace::Edge))
 }

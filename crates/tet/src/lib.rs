@@ -47,6 +47,7 @@ mod certify_hull;
 pub(crate) mod complex;
 mod conform;
 mod contacts;
+mod corner_tets;
 pub(crate) mod delaunay;
 pub(crate) mod error;
 mod fill;
@@ -86,6 +87,7 @@ use progress::Watch;
 #[doc(hidden)]
 pub mod parts {
     pub use crate::complex::Complex;
+    pub use crate::corner_tets::split_corner_tets;
     pub use crate::delaunay::delaunay;
     pub use crate::error::Stuck;
     pub use crate::layers::{Directions, Inset, Numbers, Places, inset, rims, toward};

@@ -64,7 +64,7 @@ fn torus(n: u32, m: u32) -> TriMesh {
     s
 }
 
-fn cube(n: u32) -> TriMesh {
+pub(super) fn cube(n: u32) -> TriMesh {
     // Faces of an n-grid; all diagonals have one direction, so neither Delaunay tie is favoured.
     let mut s = TriMesh::default();
     let mut id = std::collections::BTreeMap::new();

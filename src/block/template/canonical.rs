@@ -2,7 +2,6 @@
 //! inner points in rings like those of the wall, and is then optimized.
 
 use crate::block::connector_surface::{ConnectorSurface, Division, connector_surface};
-use crate::block::corners::part_corners;
 use crate::block::free_ends::FreeEnds;
 use crate::block::layered::{Walled, discs_first, renumbered};
 use crate::block::params::BlockParams;
@@ -11,7 +10,7 @@ use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_mesh::quality::radius_ratio;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_skeleton::BranchId;
-use anastomesh_tet::parts::Inset;
+use anastomesh_tet::parts::{Inset, split_corner_tets};
 use anastomesh_tet::{
     Effort,
     parts::{OptimizeOptions, optimize},
@@ -74,11 +73,11 @@ pub struct Template {
 
 /// Cache key: corner count, length exponent, cap flags, layers (count, bits of growth and thickness), bits of the core
 /// factor.
-type Key = (u32, i32, [bool; 2], Option<(u32, [u64; 2])>, u64);
+type TemplateKey = (u32, i32, [bool; 2], Option<(u32, [u64; 2])>, u64);
 /// Cached template; `None` if it cannot be made.
-type Kept = Arc<OnceLock<Option<Template>>>;
+type CacheEntry = Arc<OnceLock<Option<Template>>>;
 
-static TEMPLATES: LazyLock<RwLock<FxHashMap<Key, Kept>>> = LazyLock::new(RwLock::default);
+static TEMPLATES: LazyLock<RwLock<FxHashMap<TemplateKey, CacheEntry>>> = LazyLock::new(RwLock::default);
 
 /// Applies `then` to the template nearest to `length` radii for discs with this corner count. `caps` marks ends on the
 /// boundary of the whole mesh. Depends on ρ, core and layers of the parameters.
@@ -95,7 +94,7 @@ pub fn with<R>(
     kept.get_or_init(|| Template::best(params, STEP.powi(power), caps)).as_ref().map(then)
 }
 
-fn slot(key: Key) -> Kept {
+fn slot(key: TemplateKey) -> CacheEntry {
     // A panicked thread leaves only complete entries.
     if let Some(kept) = TEMPLATES.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
         return Arc::clone(kept);
@@ -114,13 +113,13 @@ impl Template {
         let tube = connector_surface(&cut.path, ends.both(), DIVISION).ok()?;
         let rings = Rings { corners, length, rows: tube.rings + 1, radius: 1.0, core: params.core };
         let inside = match &params.layers {
-            None => Inside::plain(&tube, |surface| core(surface, &rings), caps),
+            None => TubeInterior::plain(&tube, |surface| core(surface, &rings), caps),
             Some(layers) => {
                 let rings = Rings { radius: 1.0 - layers.thickness, ..rings };
-                Inside::layered(&tube, &cut.path, layers, |surface| core(surface, &rings))
+                TubeInterior::layered(&tube, &cut.path, layers, |surface| core(surface, &rings))
             }
         };
-        let Inside { mesh, disc, ends, wall, layers } = inside.ok()??;
+        let TubeInterior { mesh, disc, ends, wall, layers } = inside.ok()??;
         let TetMesh { mut points, tets } = mesh;
         let least = radius_ratios(&points, &tets[..layers]).fold(1.0, f64::min);
         for point in &mut points {
@@ -131,7 +130,7 @@ impl Template {
 }
 
 /// Filled straight tube with template numbering.
-struct Inside {
+struct TubeInterior {
     mesh: TetMesh,
     disc: u32,
     ends: [Vec<[u32; 3]>; 2],
@@ -139,7 +138,7 @@ struct Inside {
     layers: usize,
 }
 
-impl Inside {
+impl TubeInterior {
     fn plain(
         tube: &ConnectorSurface,
         core: impl Fn(&TriMesh) -> Result<TetMesh, TetError>,
@@ -148,7 +147,7 @@ impl Inside {
         let mut mesh = core(&tube.surface)?;
         if caps != [false; 2] {
             let of_disc = tube.end_triangles as usize / 2;
-            part_corners(&mut mesh, &tube.surface, |i| caps.get(i / of_disc).copied().unwrap_or(true));
+            split_corner_tets(&mut mesh, &tube.surface, |i| caps.get(i / of_disc).copied().unwrap_or(true));
         }
         let (ends, wall) = faces(tube);
         Ok(Some(Self { mesh, disc: tube.shared.len() as u32 / 2, ends, wall, layers: 0 }))

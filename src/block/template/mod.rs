@@ -77,7 +77,8 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: 
         return None;
     }
     let image = |template: &Template| {
-        let image = Image { template, path: &path, radii: &radii, discs, twist, stretch, pieces: pieces as u32 };
+        let image =
+            TemplateImage { template, path: &path, radii: &radii, discs, twist, stretch, pieces: pieces as u32 };
         image.tube()
     };
     let of_core = |core: f64| {
@@ -89,7 +90,7 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: 
 }
 
 /// Template and the vessel that is its image.
-struct Image<'a> {
+struct TemplateImage<'a> {
     template: &'a Template,
     path: &'a AxisPath,
     discs: &'a [SharedDisc; 2],
@@ -100,7 +101,7 @@ struct Image<'a> {
     pieces: u32,
 }
 
-impl Image<'_> {
+impl TemplateImage<'_> {
     fn tube(&self) -> Option<FilledTube> {
         let Template { disc, tets, wall, ends, rings, .. } = self.template;
         let numbers = |list: &[[u32; 3]], piece: u32| -> Vec<[u32; 3]> {

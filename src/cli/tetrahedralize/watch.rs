@@ -15,11 +15,11 @@ use anastomesh_mesh::progress::{Progress, Stage};
 pub struct Watch {
     shown: bool,
     lines: Option<Lines>,
-    state: Mutex<State>,
+    state: Mutex<WatchState>,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct WatchState {
     spent: Vec<StageTime>,
     current: Option<(&'static str, Instant)>,
     bar: Option<ProgressBar>,
@@ -72,7 +72,7 @@ impl Watch {
     }
 }
 
-impl State {
+impl WatchState {
     fn close(&mut self) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::StoreError;
 use super::shelf::Shelf;
-use super::{Place, RecordId, Store, once};
+use super::{Backend, RecordId, Store, once};
 
 /// Files, and the place of each record: its file, where it begins and where it ends.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -52,7 +52,7 @@ impl Extents {
 impl Store {
     /// Where records lie; none where they are in no work directory.
     pub(crate) fn extents(&self, records: impl Iterator<Item = RecordId>) -> Option<Extents> {
-        let Place::Folder(_, others, own) = &self.place else { return None };
+        let Backend::Folder(_, others, own) = &self.place else { return None };
         let own_path = PathBuf::from(own.place());
         let mut numbers: FxHashMap<PathBuf, u32> = FxHashMap::default();
         let mut out = Extents::default();
@@ -73,7 +73,7 @@ impl Store {
 
     /// Records in the files of a folder, to be read only; none where there can be no such files.
     pub(crate) fn of_extents(folder: &Path, extents: &Extents) -> Option<Self> {
-        Some(Self { place: Place::Shelf(extents.shelf(folder)?), known: Mutex::default() })
+        Some(Self { place: Backend::Shelf(extents.shelf(folder)?), known: Mutex::default() })
     }
 
     /// Leaves something in a work directory, in the place of what was left there before.
@@ -81,7 +81,7 @@ impl Store {
     /// # Errors
     /// When it cannot be written.
     pub(crate) fn leave<T: Serialize>(&self, what: &str, value: &T) -> Result<(), StoreError> {
-        let Place::Folder(folder, ..) = &self.place else { return Ok(()) };
+        let Backend::Folder(folder, ..) = &self.place else { return Ok(()) };
         let path = folder.join(format!("anastomesh.{what}"));
         once::write(&path, value).map_err(|source| StoreError::Write { place: path.display().to_string(), source })
     }

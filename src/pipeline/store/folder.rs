@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::error::StoreError;
 use super::key::Key;
-use super::locks::{Hold, try_lock, wait_for};
+use super::locks::{LockMode, try_lock, wait_for};
 use super::log::{LogFile, scan_path};
 use super::manifest::{Begun, MANIFEST, Manifest};
 use super::shard::Shard;
@@ -51,8 +51,8 @@ pub(super) fn open(folder: &Path, manifest: &Manifest, role: Role) -> Result<Ope
     let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
     fs::create_dir_all(folder).map_err(failed)?;
     let hold = match role {
-        Role::Alone { .. } => Hold::Alone,
-        Role::Shard(_) => Hold::Shared,
+        Role::Alone { .. } => LockMode::Alone,
+        Role::Shard(_) => LockMode::Shared,
     };
     let lock = try_lock(folder, LOCK, hold)?.ok_or_else(|| StoreError::Locked { path: folder.to_path_buf() })?;
     let begin_lock = wait_for(folder, BEGIN, &())?;
@@ -85,7 +85,7 @@ fn alone(folder: &Path, lock: File, make_missing: bool) -> Result<Opened, StoreE
 fn shard_of(folder: &Path, lock: File, shard: Shard) -> Result<Opened, StoreError> {
     let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
     let busy = || StoreError::ShardLocked { path: folder.to_path_buf(), shard };
-    let own_lock = try_lock(folder, &shard.lock(), Hold::Alone)?.ok_or_else(busy)?;
+    let own_lock = try_lock(folder, &shard.lock(), LockMode::Alone)?.ok_or_else(busy)?;
     shards::unmark(folder, shard).map_err(failed)?;
     let path = folder.join(BLOCKS);
     let (mut keys, extents): (Vec<Key>, Vec<_>) = scan_path(&path).map_err(failed)?.records.into_iter().unzip();

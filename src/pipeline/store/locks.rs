@@ -13,7 +13,7 @@ const AGAIN: Duration = Duration::from_millis(20);
 
 /// How a lock is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Hold {
+pub(super) enum LockMode {
     /// By one run alone.
     Alone,
     /// By any number of runs, none of which holds it alone.
@@ -24,14 +24,14 @@ pub(super) enum Hold {
 ///
 /// # Errors
 /// When the folder cannot be used, or its file system has no locks.
-pub(super) fn try_lock(folder: &Path, name: &str, hold: Hold) -> Result<Option<File>, StoreError> {
+pub(super) fn try_lock(folder: &Path, name: &str, hold: LockMode) -> Result<Option<File>, StoreError> {
     let path = folder.join(name);
     let open = || File::options().write(true).create(true).truncate(false).open(&path);
     let unusable = |source| StoreError::Folder { path: folder.to_path_buf(), source };
     let file = open().map_err(unusable)?;
     let taken = match hold {
-        Hold::Alone => file.try_lock(),
-        Hold::Shared => file.try_lock_shared(),
+        LockMode::Alone => file.try_lock(),
+        LockMode::Shared => file.try_lock_shared(),
     };
     if !is_taken(folder, taken)? {
         return Ok(None);
@@ -50,7 +50,7 @@ pub(super) fn try_lock(folder: &Path, name: &str, hold: Hold) -> Result<Option<F
 /// As [`try_lock`]; and when the run is told to stop.
 pub(super) fn wait_for(folder: &Path, name: &str, progress: &dyn Progress) -> Result<File, StoreError> {
     loop {
-        if let Some(lock) = try_lock(folder, name, Hold::Alone)? {
+        if let Some(lock) = try_lock(folder, name, LockMode::Alone)? {
             return Ok(lock);
         }
         if progress.is_cancelled() {
@@ -79,11 +79,11 @@ mod tests {
     fn a_lock_keeps_others_out_until_it_is_dropped() {
         let folder = tempfile::tempdir().expect("a folder");
         let take = |hold| try_lock(folder.path(), "lock", hold).expect("locks");
-        let shared = [take(Hold::Shared), take(Hold::Shared)];
-        assert!(shared.iter().all(Option::is_some) && take(Hold::Alone).is_none());
+        let shared = [take(LockMode::Shared), take(LockMode::Shared)];
+        assert!(shared.iter().all(Option::is_some) && take(LockMode::Alone).is_none());
         drop(shared);
-        let alone = take(Hold::Alone);
-        assert!(alone.is_some() && take(Hold::Shared).is_none());
+        let alone = take(LockMode::Alone);
+        assert!(alone.is_some() && take(LockMode::Shared).is_none());
         drop(alone);
         assert!(wait_for(folder.path(), "lock", &()).is_ok());
     }

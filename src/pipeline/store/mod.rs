@@ -60,12 +60,12 @@ impl RecordId {
 /// Keeps finished blocks, in memory or in a file.
 #[derive(Debug)]
 pub struct Store {
-    place: Place,
+    place: Backend,
     known: Mutex<FxHashMap<ShortKey, RecordId>>,
 }
 
 #[derive(Debug)]
-enum Place {
+enum Backend {
     Memory(RwLock<Vec<Arc<[u8]>>>),
     File(LogFile),
     /// A work directory: its path, what others have written there, and the file that this run writes to.
@@ -78,7 +78,7 @@ enum Place {
 impl Store {
     /// In memory.
     pub fn in_memory() -> Self {
-        Self { place: Place::Memory(RwLock::default()), known: Mutex::default() }
+        Self { place: Backend::Memory(RwLock::default()), known: Mutex::default() }
     }
 
     /// In a file of `folder` that has no name and is gone when the store is dropped, however the program ends.
@@ -88,7 +88,7 @@ impl Store {
     pub fn in_passing(folder: &Path) -> Result<Self, StoreError> {
         let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
         let log = LogFile::in_passing(folder).map_err(failed)?;
-        Ok(Self { place: Place::File(log), known: Mutex::default() })
+        Ok(Self { place: Backend::File(log), known: Mutex::default() })
     }
 
     /// In a work directory, with the blocks that are there. `restart` throws away those of another network, other options
@@ -107,7 +107,7 @@ impl Store {
     pub fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
         let folder::Opened { own, others, keys } = folder::open(folder, manifest, role)?;
         let known = keys.into_iter().zip(0..).map(|(key, i)| (key.short(), RecordId(i))).collect();
-        Ok(Self { place: Place::Folder(folder.to_path_buf(), others, own), known: Mutex::new(known) })
+        Ok(Self { place: Backend::Folder(folder.to_path_buf(), others, own), known: Mutex::new(known) })
     }
 
     /// Something that is the same for all runs in a work directory: what one of them has made, or what `make` gives, which
@@ -122,8 +122,8 @@ impl Store {
         make: impl FnOnce() -> Result<T, E>,
     ) -> Result<T, E> {
         match &self.place {
-            Place::Folder(folder, ..) => once::once(folder, (what, key()), progress, make),
-            Place::Memory(_) | Place::File(_) | Place::Shelf(_) => make(),
+            Backend::Folder(folder, ..) => once::once(folder, (what, key()), progress, make),
+            Backend::Memory(_) | Backend::File(_) | Backend::Shelf(_) => make(),
         }
     }
 
@@ -132,7 +132,7 @@ impl Store {
     /// # Errors
     /// When that cannot be written.
     pub(crate) fn mark_done(&self, shard: Shard) -> Result<(), StoreError> {
-        let Place::Folder(folder, _, own) = &self.place else { return Ok(()) };
+        let Backend::Folder(folder, _, own) = &self.place else { return Ok(()) };
         let write = || {
             own.sync()?;
             shards::mark(folder, shard, own.length())
@@ -156,14 +156,14 @@ impl Store {
             return self.find(key).ok_or_else(|| io::Error::from(io::ErrorKind::NotFound).into());
         };
         let id = match &self.place {
-            Place::Memory(records) => {
+            Backend::Memory(records) => {
                 let mut records = records.write().unwrap_or_else(PoisonError::into_inner);
                 records.push(bytes.into());
                 records.len() - 1
             }
-            Place::File(log) => append(log, key, &bytes)?,
-            Place::Folder(_, others, own) => others.len() + append(own, key, &bytes)?,
-            Place::Shelf(_) => return Err(io::Error::from(io::ErrorKind::PermissionDenied).into()),
+            Backend::File(log) => append(log, key, &bytes)?,
+            Backend::Folder(_, others, own) => others.len() + append(own, key, &bytes)?,
+            Backend::Shelf(_) => return Err(io::Error::from(io::ErrorKind::PermissionDenied).into()),
         };
         Ok(*slot.insert(RecordId(id as u32)))
     }
@@ -171,19 +171,19 @@ impl Store {
     /// How many records this run, and those before it in its place, have kept.
     pub(crate) fn own_records(&self) -> usize {
         match &self.place {
-            Place::Memory(records) => records.read().unwrap_or_else(PoisonError::into_inner).len(),
-            Place::File(log) | Place::Folder(_, _, log) => log.len(),
-            Place::Shelf(_) => 0,
+            Backend::Memory(records) => records.read().unwrap_or_else(PoisonError::into_inner).len(),
+            Backend::File(log) | Backend::Folder(_, _, log) => log.len(),
+            Backend::Shelf(_) => 0,
         }
     }
 
     /// Bytes that the records take on a disk.
     pub fn bytes_on_disk(&self) -> u64 {
         match &self.place {
-            Place::Memory(_) => 0,
-            Place::File(log) => log.length(),
-            Place::Folder(_, others, own) => others.bytes() + own.length(),
-            Place::Shelf(others) => others.bytes(),
+            Backend::Memory(_) => 0,
+            Backend::File(log) => log.length(),
+            Backend::Folder(_, others, own) => others.bytes() + own.length(),
+            Backend::Shelf(others) => others.bytes(),
         }
     }
 
@@ -208,33 +208,33 @@ impl Bytes for StoredBytes<'_> {
     fn count(&self) -> io::Result<u64> {
         let id = self.id.0 as usize;
         let count = match &self.store.place {
-            Place::Memory(records) => {
+            Backend::Memory(records) => {
                 let records = records.read().unwrap_or_else(PoisonError::into_inner);
                 records.get(id).map(|record| record.len() as u64)
             }
-            Place::File(log) => log.bytes_of(id),
-            Place::Folder(_, others, own) => match id.checked_sub(others.len()) {
+            Backend::File(log) => log.bytes_of(id),
+            Backend::Folder(_, others, own) => match id.checked_sub(others.len()) {
                 None => others.bytes_of(id),
                 Some(record) => own.bytes_of(record),
             },
-            Place::Shelf(others) => others.bytes_of(id),
+            Backend::Shelf(others) => others.bytes_of(id),
         };
         count.ok_or_else(|| io::ErrorKind::NotFound.into())
     }
 
     fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>> {
         match &self.store.place {
-            Place::Memory(records) => {
+            Backend::Memory(records) => {
                 let records = records.read().unwrap_or_else(PoisonError::into_inner);
                 let record: &[u8] = records.get(self.id.0 as usize).ok_or(io::ErrorKind::NotFound)?;
                 Bytes::get(record, range)
             }
-            Place::File(log) => log.read(self.id.0 as usize, range),
-            Place::Folder(_, others, own) => match (self.id.0 as usize).checked_sub(others.len()) {
+            Backend::File(log) => log.read(self.id.0 as usize, range),
+            Backend::Folder(_, others, own) => match (self.id.0 as usize).checked_sub(others.len()) {
                 None => others.read(self.id.0 as usize, range),
                 Some(record) => own.read(record, range),
             },
-            Place::Shelf(others) => others.read(self.id.0 as usize, range),
+            Backend::Shelf(others) => others.read(self.id.0 as usize, range),
         }
     }
 }

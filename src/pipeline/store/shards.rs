@@ -18,7 +18,7 @@ const SHARDS: &str = "anastomesh.shards";
 
 /// What a shard leaves when all of its blocks have been made, or have failed.
 #[derive(Debug, Serialize, Deserialize)]
-struct Mark {
+struct ShardRecord {
     /// Bytes of its records.
     bytes: u64,
 }
@@ -56,7 +56,7 @@ pub(super) fn unmark(folder: &Path, shard: Shard) -> io::Result<()> {
 
 /// Marks a shard as done, with so many bytes of records.
 pub(super) fn mark(folder: &Path, shard: Shard, bytes: u64) -> io::Result<()> {
-    write_whole(&folder.join(shard.mark()), &serde_json::to_vec(&Mark { bytes })?)
+    write_whole(&folder.join(shard.mark()), &serde_json::to_vec(&ShardRecord { bytes })?)
 }
 
 /// The records of all shards of a folder, none if there were no shards, and their keys. With `make_missing` what is not
@@ -70,7 +70,7 @@ pub(super) fn read_all(folder: &Path, make_missing: bool) -> Result<(Shelf, Vec<
     let of = read_json::<u32>(&folder.join(SHARDS)).map_err(failed)?.unwrap_or(0).min(MOST);
     for shard in Shard::all(of) {
         let path = folder.join(shard.records());
-        let mark = read_json::<Mark>(&folder.join(shard.mark())).map_err(failed)?;
+        let mark = read_json::<ShardRecord>(&folder.join(shard.mark())).map_err(failed)?;
         if mark.is_none() {
             missing.push(shard);
             if !make_missing {
@@ -78,7 +78,7 @@ pub(super) fn read_all(folder: &Path, make_missing: bool) -> Result<(Shelf, Vec<
             }
         }
         let Scanned { records, end, length } = scan_path(&path).map_err(failed)?;
-        if let Some(Mark { bytes }) = mark.filter(|mark| !make_missing && (mark.bytes != end || end < length)) {
+        if let Some(ShardRecord { bytes }) = mark.filter(|mark| !make_missing && (mark.bytes != end || end < length)) {
             return Err(StoreError::Damaged { path, shard, end, bytes: bytes.max(length) });
         }
         let (found, extents): (Vec<Key>, Vec<_>) = records.into_iter().unzip();

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 use super::numbering::Numbering;
-use super::{Listener, Whole};
+use super::{CancelOnly, Whole};
 use crate::pipeline::store::{Extents, MANIFEST, Store, StoreError};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::Progress;
@@ -83,7 +83,7 @@ impl LeftWhole {
 
     /// The mesh, to be read in passes that end when they are told to.
     pub fn whole<'a>(&'a self, progress: &'a dyn Progress) -> Whole<'a> {
-        Whole { store: &self.store, listener: Listener(progress), plan: Cow::Borrowed(&self.plan) }
+        Whole { store: &self.store, listener: CancelOnly(progress), plan: Cow::Borrowed(&self.plan) }
     }
 }
 

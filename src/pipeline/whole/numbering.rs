@@ -5,7 +5,7 @@ use std::io;
 
 use crate::partition::CutId;
 use crate::pipeline::blocks::Blocks;
-use crate::pipeline::make::{JointPlace, Kept, joints_of_cut};
+use crate::pipeline::make::{JointPlace, StoredBlock, joints_of_cut};
 use crate::pipeline::store::RecordId;
 use anastomesh_mesh::source::SourceCounts;
 use anastomesh_mesh::{Patch, WALL};
@@ -94,7 +94,7 @@ impl Numbering {
         Ok(all)
     }
 
-    fn add(&mut self, kept: Kept, block: i32) -> io::Result<u32> {
+    fn add(&mut self, kept: StoredBlock, block: i32) -> io::Result<u32> {
         let SourceCounts { points, tets, .. } = &mut self.counts;
         let (first, first_tet) = (*points, *tets as u64);
         *points += kept.points as usize;

@@ -8,7 +8,7 @@ use anastomesh_skeleton::{Branch, EdgeId, NodeId, Skeleton};
 const TURNS_BACK: f64 = 0.5;
 
 /// Line with properties of its nodes.
-pub(super) struct Line {
+pub(super) struct SampledLine {
     pub nodes: Vec<NodeId>,
     pub edges: Vec<EdgeId>,
     /// Arc length from the start.
@@ -18,7 +18,7 @@ pub(super) struct Line {
     pub tangents: Vec<Vec3>,
 }
 
-impl Line {
+impl SampledLine {
     pub(super) fn length(&self) -> f64 {
         self.arc[self.arc.len() - 1]
     }
@@ -29,7 +29,7 @@ impl Line {
 }
 
 /// Splits a branch into lines.
-pub(super) fn lines_of(skeleton: &Skeleton, branch: &Branch) -> Vec<Line> {
+pub(super) fn lines_of(skeleton: &Skeleton, branch: &Branch) -> Vec<SampledLine> {
     let radii = node_radii(skeleton, branch);
     let points: Vec<Point3> = branch.nodes.iter().map(|&n| skeleton.node(n).position).collect();
     let mut breaks = vec![0];
@@ -40,7 +40,13 @@ pub(super) fn lines_of(skeleton: &Skeleton, branch: &Branch) -> Vec<Line> {
         let arc: Vec<f64> = branch.arc[from..=to].iter().map(|s| s - branch.arc[from]).collect();
         let radii = radii[from..=to].to_vec();
         let tangents = tangents(&points[from..=to], &arc, &radii);
-        Line { nodes: branch.nodes[from..=to].to_vec(), edges: branch.edges[from..to].to_vec(), arc, radii, tangents }
+        SampledLine {
+            nodes: branch.nodes[from..=to].to_vec(),
+            edges: branch.edges[from..to].to_vec(),
+            arc,
+            radii,
+            tangents,
+        }
     };
     breaks.windows(2).map(piece).collect()
 }

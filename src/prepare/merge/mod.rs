@@ -12,9 +12,9 @@ mod runs;
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_skeleton::{Edge, EdgeId, LineGroup, Node, NodeId, Skeleton, SkeletonError, clean};
-use line::{Line, lines_of};
+use line::{SampledLine, lines_of};
 use rayon::prelude::*;
-use runs::{Course, Foot, Kept, Run, runs};
+use runs::{Course, DoubledStretch, Foot, KeptLines, runs};
 use serde::Serialize;
 
 /// Nodes closer to an edge's end than this fraction of a radius are moved to that end.
@@ -67,19 +67,19 @@ pub(super) fn merge(
     let skeleton = &skeleton;
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
-    let parts: Vec<Vec<Line>> = branches.list.par_iter().map(|b| lines_of(skeleton, b)).collect();
-    let mut lines: Vec<Line> = parts.into_iter().flatten().collect();
+    let parts: Vec<Vec<SampledLine>> = branches.list.par_iter().map(|b| lines_of(skeleton, b)).collect();
+    let mut lines: Vec<SampledLine> = parts.into_iter().flatten().collect();
     // Stable sort: of equal lines the earlier comes first.
     lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
     let mut report = MergeReport { lines: lines.len(), met, ..MergeReport::default() };
-    let mut kept = Kept::new(skeleton, LineGroup::of_edges(skeleton, groups));
+    let mut kept = KeptLines::new(skeleton, LineGroup::of_edges(skeleton, groups));
     let mut changes = Changes::new(skeleton);
     for line in &lines {
         let feet = kept.feet(line);
         let along = kept.along(line);
         let points: Vec<Point3> = line.nodes.iter().map(|&n| skeleton.node(n).position).collect();
         let open = [0, line.last()].map(|i| adjacency.valence(line.nodes[i]) == 1);
-        let found: Vec<Run> = runs(&Course { line, feet: &feet, along: &along, points: &points }, open);
+        let found: Vec<DoubledStretch> = runs(&Course { line, feet: &feet, along: &along, points: &points }, open);
         for run in &found {
             changes.apply(line, &feet, open, run);
             for at in [run.first, run.last] {
@@ -99,7 +99,7 @@ pub(super) fn merge(
 }
 
 /// Converts a run to its report entry.
-fn told(skeleton: &Skeleton, line: &Line, feet: &[Option<Foot>], run: &Run) -> Merged {
+fn told(skeleton: &Skeleton, line: &SampledLine, feet: &[Option<Foot>], run: &DoubledStretch) -> Merged {
     let name = |i: usize| skeleton.node(line.nodes[i]).original;
     let within = || (run.first..=run.last).filter_map(|i| feet[i].map(|f| (i, f)));
     let beside = within().next().map_or([line.nodes[run.first]; 2], |(_, f)| skeleton.edge(f.edge).nodes);
@@ -137,7 +137,7 @@ impl<'a> Changes<'a> {
     }
 
     /// Removes a run and joins the ends of its line to the other line, except tips, which are removed with it.
-    fn apply(&mut self, line: &Line, feet: &[Option<Foot>], open: [bool; 2], run: &Run) {
+    fn apply(&mut self, line: &SampledLine, feet: &[Option<Foot>], open: [bool; 2], run: &DoubledStretch) {
         let tips = [open[0] && run.first == 0, open[1] && run.last == line.last()];
         for (at, tip) in [run.first, run.last].into_iter().zip(tips) {
             if let (Some(foot), false) = (feet[at], tip) {

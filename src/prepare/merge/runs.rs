@@ -1,6 +1,6 @@
 //! Runs: parts of a line that coincide with kept lines and are removed.
 
-use super::line::Line;
+use super::line::SampledLine;
 use anastomesh_mesh::geometry::{Aabb, Bvh, DisjointSets, Point3, Vec3, point_segment};
 use anastomesh_skeleton::{EdgeId, Kinship, LineGroup, NodeId, Skeleton};
 
@@ -34,7 +34,7 @@ pub(super) struct Foot {
 
 /// Removed part of a line, by its first and last node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run {
+pub(super) struct DoubledStretch {
     pub first: usize,
     pub last: usize,
     /// Nodes at which the line leaves the tube, for ends of the run inside the line.
@@ -42,7 +42,7 @@ pub(super) struct Run {
 }
 
 /// Search structure for kept lines.
-pub(super) struct Kept<'a> {
+pub(super) struct KeptLines<'a> {
     skeleton: &'a Skeleton,
     tree: Bvh,
     tangents: Vec<Vec3>,
@@ -55,7 +55,7 @@ pub(super) struct Kept<'a> {
     looks: usize,
 }
 
-impl<'a> Kept<'a> {
+impl<'a> KeptLines<'a> {
     pub(super) fn new(skeleton: &'a Skeleton, groups: Vec<Option<LineGroup>>) -> Self {
         let boxes = skeleton.edge_ids().map(|e| {
             let tube = skeleton.tube(e);
@@ -80,7 +80,7 @@ impl<'a> Kept<'a> {
     }
 
     /// Keeps a line except for its runs.
-    pub(super) fn keep(&mut self, line: &Line, runs: &[Run]) {
+    pub(super) fn keep(&mut self, line: &SampledLine, runs: &[DoubledStretch]) {
         let gone = |piece: usize| runs.iter().any(|r| r.first <= piece && piece < r.last);
         for (piece, &edge) in line.edges.iter().enumerate().filter(|(piece, _)| !gone(*piece)) {
             let ends = [piece == 0 || gone(piece - 1), piece + 1 == line.edges.len() || gone(piece + 1)];
@@ -133,7 +133,7 @@ impl<'a> Kept<'a> {
 
     /// For each edge of a line: true if the points between its nodes also have feet. The nodes alone do not suffice for
     /// a short vessel between two others.
-    pub(super) fn along(&mut self, line: &Line) -> Vec<bool> {
+    pub(super) fn along(&mut self, line: &SampledLine) -> Vec<bool> {
         let mut along = Vec::with_capacity(line.edges.len());
         for piece in 0..line.edges.len() {
             let [a, b] = [piece, piece + 1].map(|i| self.skeleton.node(line.nodes[i]).position);
@@ -150,7 +150,7 @@ impl<'a> Kept<'a> {
     }
 
     /// Returns the feet of all nodes of a line.
-    pub(super) fn feet(&mut self, line: &Line) -> Vec<Option<Foot>> {
+    pub(super) fn feet(&mut self, line: &SampledLine) -> Vec<Option<Foot>> {
         let feet = (0..line.nodes.len()).map(|i| {
             let point = self.skeleton.node(line.nodes[i]).position;
             self.foot(&point, line.radii[i], &line.tangents[i], line.edges[i.min(line.edges.len() - 1)])
@@ -161,7 +161,7 @@ impl<'a> Kept<'a> {
 
 /// Line and its relation to kept lines.
 pub(super) struct Course<'a> {
-    pub line: &'a Line,
+    pub line: &'a SampledLine,
     /// Foot of each node.
     pub feet: &'a [Option<Foot>],
     /// For each edge: true if it coincides with kept lines between its nodes.
@@ -171,7 +171,7 @@ pub(super) struct Course<'a> {
 }
 
 /// Returns the parts of a line to remove. `open` marks the ends that are tips.
-pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<Run> {
+pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<DoubledStretch> {
     let Course { line, feet, along, .. } = course;
     let inside = |i: usize| feet[i].is_some_and(|f| !f.at_end);
     let mut together: Vec<[usize; 2]> = Vec::new();
@@ -189,7 +189,7 @@ pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<Run> {
 }
 
 /// Extends a run that comes within a radius of a tip to that tip: lines of one vessel end at different places.
-fn to_tips(line: &Line, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [usize; 2] {
+fn to_tips(line: &SampledLine, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [usize; 2] {
     if first == last {
         return [first, last];
     }
@@ -204,7 +204,7 @@ fn to_tips(line: &Line, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [
 
 impl Course<'_> {
     /// Returns the removed part of a run, up to the points of separation.
-    fn run(&self, [first, last]: [usize; 2], open: [bool; 2]) -> Option<Run> {
+    fn run(&self, [first, last]: [usize; 2], open: [bool; 2]) -> Option<DoubledStretch> {
         let line = self.line;
         let radius = line.radii[first].max(line.radii[last]);
         let [from, to] =
@@ -213,7 +213,11 @@ impl Course<'_> {
         if to <= from || line.arc[to] - line.arc[from] < SHORTEST * radius && !whole {
             return None;
         }
-        Some(Run { first: from, last: to, parts: [(from > 0).then_some(first), (to < line.last()).then_some(last)] })
+        Some(DoubledStretch {
+            first: from,
+            last: to,
+            parts: [(from > 0).then_some(first), (to < line.last()).then_some(last)],
+        })
     }
 
     /// End of a run on one side: the point of separation, or the line's end if `at_end` is set.

@@ -1,6 +1,8 @@
 //! Pictures for a page, with a transparent background for light and dark themes.
 
-use crate::picture::{Background, Camera, Canvas, Colour, Cut, Direction, Image, MeshPicture, NetworkPicture, Plane};
+use crate::picture::{
+    Background, Camera, Canvas, Colour, Direction, Image, MeshPicture, NetworkPicture, Opening, Plane,
+};
 use anastomesh_mesh::check::{CheckReport, Offender, OffenderKind};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;
@@ -41,7 +43,7 @@ pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> 
     let close = Camera::new(Direction::Broadside, &outline, size, zoom.max(CLOSER), Some(place));
     let cut = Plane { normal: close.towards, offset: place.coords.dot(&close.towards) - 0.15 * extent };
     pictures.push((
-        draw(mesh, close, Colour::Quality, Some(Cut::Tets(cut)))?,
+        draw(mesh, close, Colour::Quality, Some(Opening::Tets(cut)))?,
         "Some of its tetrahedra by their radius ratio, from red (0) to blue (1).".to_owned(),
     ));
     Ok(pictures)
@@ -49,7 +51,7 @@ pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> 
 
 /// Picture of a network with some edges highlighted.
 pub fn network_picture(network: &Skeleton, marked: &[EdgeId], caption: &str) -> (Image, String) {
-    let mut picture = NetworkPicture::new(network, Colour::Radius, &[]);
+    let mut picture = NetworkPicture::by_radius(network);
     picture.mark(marked);
     let camera = Camera::new(Direction::Broadside, &picture.outline(), SIZE.map(|n| n * SAMPLES), 1.0, None);
     let mut canvas = Canvas::new(camera, SAMPLES);
@@ -86,9 +88,9 @@ pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(
         camera.scale = (camera.size[1] as f64 / (2.0 * extent)).max(camera.scale);
         let at = place.coords.dot(&camera.towards);
         let cut = match offender.kind {
-            OffenderKind::Tet | OffenderKind::TetPair => Cut::Tets(Plane { normal: camera.towards, offset: at }),
+            OffenderKind::Tet | OffenderKind::TetPair => Opening::Tets(Plane { normal: camera.towards, offset: at }),
             // Everything in front of it is clipped.
-            _ => Cut::Wall(Plane { normal: camera.towards, offset: at + 0.4 * extent }),
+            _ => Opening::Wall(Plane { normal: camera.towards, offset: at + 0.4 * extent }),
         };
         let image = draw(mesh, camera, Colour::Patch, Some(cut))?;
         let [x, y, z]: [f64; 3] = place.into();
@@ -97,7 +99,7 @@ pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(
     Ok(pictures)
 }
 
-fn draw(mesh: &dyn MeshSource, camera: Camera, colour: Colour, cut: Option<Cut>) -> io::Result<Image> {
+fn draw(mesh: &dyn MeshSource, camera: Camera, colour: Colour, cut: Option<Opening>) -> io::Result<Image> {
     let mut canvas = Canvas::new(camera, SAMPLES);
     MeshPicture { mesh, colour, values: None }.draw(&mut canvas, cut)?;
     Ok(canvas.finish(Background::None))

@@ -26,7 +26,7 @@ const SLIMMEST: f64 = 0.906;
 const SLIMMEST_AT_LAST: f64 = 0.9396;
 
 /// Saved state for a rollback.
-struct Before {
+struct SavedVertices {
     surface: HalfEdges,
     sizes: Vec<f64>,
     normals: Vec<Vec3>,
@@ -58,7 +58,7 @@ impl<L: Level> Relaxation<'_, L> {
     }
 
     /// Splits the edges of webs; returns true if any existed.
-    fn split_webs(&mut self, before: &mut Option<Before>) -> bool {
+    fn split_webs(&mut self, before: &mut Option<SavedVertices>) -> bool {
         let mut any = false;
         for i in 0..self.half_count() {
             let h = self.half(i);
@@ -76,11 +76,11 @@ impl<L: Level> Relaxation<'_, L> {
         any
     }
 
-    fn before(&self) -> Before {
-        Before { surface: self.surface.clone(), sizes: self.sizes.clone(), normals: self.normals.clone() }
+    fn before(&self) -> SavedVertices {
+        SavedVertices { surface: self.surface.clone(), sizes: self.sizes.clone(), normals: self.normals.clone() }
     }
 
-    fn go_back(&mut self, before: Before) {
+    fn go_back(&mut self, before: SavedVertices) {
         *self.surface = before.surface;
         self.sizes = before.sizes;
         self.normals = before.normals;

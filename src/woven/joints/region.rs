@@ -14,7 +14,7 @@ use anastomesh_mesh::quality::radius_ratio;
 pub type Improve<'a> = dyn Fn(&mut TetMesh, usize) -> bool + Sync + 'a;
 
 /// Part of a mesh with its own numbering: points that the optimization must not move, then inner points.
-pub(super) struct Region {
+pub(super) struct JointRegion {
     pub mesh: TetMesh,
     /// Number of leading points that are not inner points.
     pub fixed: usize,
@@ -29,7 +29,7 @@ pub(super) struct Region {
     slots: Vec<u32>,
 }
 
-impl Region {
+impl JointRegion {
     /// Extracts the tetrahedra `tets`. `degree` counts the tetrahedra around each vertex of the whole mesh: vertices
     /// with tetrahedra outside the region are shared and fixed.
     pub fn new(whole: &TetMesh, tet_block: &[i32], tets: &[u32], degree: &[u32], frozen: &[bool]) -> Self {

@@ -1,7 +1,7 @@
 //! Moves of wall vertices: Taubin smoothing, and a search along the wall that improves the worst tetrahedron. Exact
 //! predicates guard each move.
 
-use super::region::Region;
+use super::region::JointRegion;
 use anastomesh_mesh::adjacency::Incidence;
 use anastomesh_mesh::geometry::{Point3, Vec3, predicates::orient3d};
 use anastomesh_mesh::quality::{radius_ratio, triangle_area_vector};
@@ -24,7 +24,7 @@ pub(super) struct Walls {
 
 /// Neighbourhood of one wall vertex.
 struct Fan<'a> {
-    region: &'a Region,
+    region: &'a JointRegion,
     vertex: u32,
     tets: &'a [u32],
     faces: &'a [u32],
@@ -35,7 +35,7 @@ struct Fan<'a> {
 }
 
 impl Walls {
-    pub fn new(region: &Region) -> Self {
+    pub fn new(region: &JointRegion) -> Self {
         let points = region.mesh.points.len();
         Self {
             tets: Incidence::of_cells(&region.mesh.tets, points),
@@ -46,7 +46,7 @@ impl Walls {
     }
 
     /// Taubin smoothing of all movable wall vertices; each moves as far as the guards permit.
-    pub fn taubin(&mut self, region: &mut Region, taubin: &Taubin, good: f64) -> usize {
+    pub fn taubin(&mut self, region: &mut JointRegion, taubin: &Taubin, good: f64) -> usize {
         let good = good.max(region.worst());
         let mut goals = region.mesh.points.clone();
         taubin.smooth_points(&mut goals, &self.neighbors, &self.movable);
@@ -73,7 +73,7 @@ impl Walls {
     }
 
     /// Improves tetrahedra with a radius ratio less than `below` by moving wall vertices along the wall, in order.
-    pub fn lift(&mut self, region: &mut Region, below: f64) -> usize {
+    pub fn lift(&mut self, region: &mut JointRegion, below: f64) -> usize {
         let mut moves = 0;
         for &v in &self.movable {
             let Some(fan) = self.fan(region, v) else { continue };
@@ -91,7 +91,7 @@ impl Walls {
         moves
     }
 
-    fn fan<'a>(&'a self, region: &'a Region, vertex: u32) -> Option<Fan<'a>> {
+    fn fan<'a>(&'a self, region: &'a JointRegion, vertex: u32) -> Option<Fan<'a>> {
         let faces = self.faces.get(vertex);
         let at = |v: u32| &region.mesh.points[v as usize];
         let area = |&f: &u32| {

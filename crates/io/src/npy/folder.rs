@@ -1,6 +1,6 @@
 //! Arrays of a folder, by name.
 
-use super::array::Array;
+use super::array::NpyArray;
 use super::error::{NpyError, NpyFault};
 use crate::file::FileError;
 use anastomesh_mesh::geometry::Point3;
@@ -85,9 +85,9 @@ impl Arrays {
         Ok(self.array(name)?.columns())
     }
 
-    fn array(&self, name: &str) -> Result<Array<'_>, NpyError> {
+    fn array(&self, name: &str) -> Result<NpyArray<'_>, NpyError> {
         let bytes = self.files.get(&file(name)).ok_or_else(|| NpyFault::Missing.of(file(name)))?;
-        Array::read(bytes).map_err(|fault| fault.of(file(name)))
+        NpyArray::read(bytes).map_err(|fault| fault.of(file(name)))
     }
 
     /// Reads an array of floats.

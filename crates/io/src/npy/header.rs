@@ -32,7 +32,7 @@ impl Header {
     }
 
     fn parse(text: &str) -> Result<Self, &'static str> {
-        let mut words = Words(text);
+        let mut words = HeaderText(text);
         words.expect('{', "it is no dictionary")?;
         let (mut descr, mut fortran, mut shape) = (None, None, None);
         while !words.skip('}') {
@@ -60,9 +60,9 @@ impl Header {
 }
 
 /// Remaining text.
-struct Words<'a>(&'a str);
+struct HeaderText<'a>(&'a str);
 
-impl<'a> Words<'a> {
+impl<'a> HeaderText<'a> {
     fn skip(&mut self, mark: char) -> bool {
         let rest = self.0.trim_start().strip_prefix(mark);
         self.0 = rest.unwrap_or(self.0);

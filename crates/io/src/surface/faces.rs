@@ -83,7 +83,7 @@ impl Faces {
             content.mesh.triangles = self.triangles;
             return Ok(content);
         }
-        let mut pieces = Pieces { content, face: 0 };
+        let mut pieces = FacePieces { content, face: 0 };
         pieces.content.mesh.triangles.reserve(self.triangles.len() + 2 * self.polygons.len());
         let mut taken = 0;
         for Polygon { before, face, corners, place } in self.polygons {
@@ -102,12 +102,12 @@ impl Faces {
 }
 
 /// Triangles with their original faces.
-struct Pieces {
+struct FacePieces {
     content: SurfaceContent,
     face: u32,
 }
 
-impl Pieces {
+impl FacePieces {
     fn add_face(&mut self, triangles: &[[u32; 3]]) {
         self.content.mesh.triangles.extend_from_slice(triangles);
         self.content.face_of.resize(self.content.mesh.triangles.len(), self.face);

@@ -162,7 +162,7 @@ impl<'a> MeshFamily<'a> {
         ensure_sound(base, self.boundary.map_or(&[], |(faces, _)| faces), points)?;
         ensure_sound(base, self.segments, points)?;
         let (faces, markers) = self.listed();
-        let boundary = Boundary { faces: &faces, markers: &markers };
+        let boundary = MarkedFaces { faces: &faces, markers: &markers };
         let nodes = |out: &mut dyn Write| self.write_nodes(out, boundary);
         let face_list = |out: &mut dyn Write| self.write_faces(out, boundary);
         let edges = |out: &mut dyn Write| self.write_edges(out, boundary);
@@ -203,7 +203,7 @@ impl<'a> MeshFamily<'a> {
         })
     }
 
-    fn write_nodes(&self, out: &mut dyn Write, boundary: Boundary) -> io::Result<()> {
+    fn write_nodes(&self, out: &mut dyn Write, boundary: MarkedFaces) -> io::Result<()> {
         let points = &self.mesh.points;
         let markers: Cow<[i32]> = match self.point_markers {
             Some(markers) => markers.into(),
@@ -235,7 +235,7 @@ impl<'a> MeshFamily<'a> {
         Ok(())
     }
 
-    fn write_faces(&self, out: &mut dyn Write, boundary: Boundary) -> io::Result<()> {
+    fn write_faces(&self, out: &mut dyn Write, boundary: MarkedFaces) -> io::Result<()> {
         if self.faces == Extent::Boundary {
             return self.write_face_list(out, boundary.faces, |i, _| boundary.marker(i));
         }
@@ -262,7 +262,7 @@ impl<'a> MeshFamily<'a> {
         Ok(())
     }
 
-    fn write_edges(&self, out: &mut dyn Write, boundary: Boundary) -> io::Result<()> {
+    fn write_edges(&self, out: &mut dyn Write, boundary: MarkedFaces) -> io::Result<()> {
         let mut edges = boundary.edges(self.segments);
         if self.edges == Extent::All {
             edges = with_inner_edges(self.mesh, &edges);
@@ -293,12 +293,12 @@ impl<'a> MeshFamily<'a> {
 
 /// Faces with markers.
 #[derive(Clone, Copy)]
-struct Boundary<'a> {
+struct MarkedFaces<'a> {
     faces: &'a [[u32; 3]],
     markers: &'a [i32],
 }
 
-impl Boundary<'_> {
+impl MarkedFaces<'_> {
     fn marker(&self, face: usize) -> i32 {
         self.markers.get(face).copied().unwrap_or(0)
     }

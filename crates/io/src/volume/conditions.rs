@@ -24,6 +24,17 @@ pub struct CapFlow {
     pub resistance: f64,
 }
 
+impl CapFlow {
+    /// Adds a cap of the same patch: flows add, and so do conductances in parallel.
+    pub fn add_parallel(&mut self, other: Self) {
+        self.flow += other.flow;
+        self.resistance = match (self.resistance > 0.0, other.resistance > 0.0) {
+            (true, true) => 1.0 / (1.0 / self.resistance + 1.0 / other.resistance),
+            _ => self.resistance.max(other.resistance),
+        };
+    }
+}
+
 /// Density of blood, kg/m³.
 pub const BLOOD_DENSITY: f64 = 1060.0;
 /// Dynamic viscosity of blood, Pa·s.

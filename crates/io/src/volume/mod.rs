@@ -8,6 +8,8 @@ mod error;
 #[doc(hidden)]
 pub mod fixtures;
 mod format;
+#[cfg(test)]
+mod in_pieces;
 mod medit;
 mod msh;
 mod npy;

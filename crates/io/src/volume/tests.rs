@@ -1,10 +1,12 @@
 //! Tests of round trips in every format, of independence from the parts of the source, and of full disks.
 
 use super::content::MeshNotes;
-use super::fixtures::{Cut, labelled_tube};
+use super::fixtures::labelled_tube;
 use super::format::MeshFormat;
+use super::in_pieces::InPieces;
 use super::options::WriteOptions;
 use super::read::read_mesh;
+use super::vtu::Recounted;
 use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_with};
 use crate::file::FileError;
 use anastomesh_mesh::geometry::Point3;
@@ -33,7 +35,7 @@ fn tube(layers: u32) -> (VolumeMesh, MeshNotes) {
 }
 
 fn same_bytes(volume: &VolumeMesh, notes: &MeshNotes, sizes: &[usize]) {
-    let cut = Cut { volume, sizes };
+    let cut = InPieces { volume, sizes };
     assert_eq!(&gather(&cut).unwrap().mesh, &volume.mesh);
     for format in STREAMED {
         assert!(bytes_of(format, &cut, notes) == bytes_of(format, volume, notes), "{format:?} {sizes:?}");
@@ -62,7 +64,7 @@ fn pieces_make_no_difference_to_the_family_of_files() {
     let folder = tempfile::tempdir().unwrap();
     let (volume, notes) = tube(9);
     write_mesh(&folder.path().join("whole.ele"), &volume, &notes).unwrap();
-    write_mesh(&folder.path().join("cut.ele"), &Cut { volume: &volume, sizes: &[1, 7, 30] }, &notes).unwrap();
+    write_mesh(&folder.path().join("cut.ele"), &InPieces { volume: &volume, sizes: &[1, 7, 30] }, &notes).unwrap();
     for kind in ["node", "ele", "face", "edge", "neigh"] {
         let read = |name: &str| std::fs::read(folder.path().join(name).with_extension(kind)).unwrap();
         assert!(read("cut") == read("whole"), "{kind}");
@@ -79,36 +81,13 @@ proptest! {
     }
 }
 
-/// Source with a wrong number of points.
-struct Liar<'a>(Cut<'a>, usize);
-
-impl MeshSource for Liar<'_> {
-    fn counts(&self) -> SourceCounts {
-        let counts = self.0.counts();
-        SourceCounts { points: counts.points + self.1 - 1, ..counts }
-    }
-    fn patches(&self) -> &[Patch] {
-        self.0.patches()
-    }
-    fn parts(&self) -> u32 {
-        self.0.parts()
-    }
-    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        self.0.points(part)
-    }
-    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        self.0.tets(part)
-    }
-    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
-        self.0.boundary(part)
-    }
-}
-
 #[test]
 fn a_source_that_lies_is_found_out() {
     let (volume, notes) = tube(4);
     for error in [0, 2] {
-        let liar = Liar(Cut { volume: &volume, sizes: &[5] }, error);
+        let cut = InPieces { volume: &volume, sizes: &[5] };
+        let counts = SourceCounts { points: cut.counts().points + error - 1, ..cut.counts() };
+        let liar = Recounted { mesh: &cut, counts };
         for format in STREAMED {
             let result = write_mesh_to(&mut Vec::new(), format, &liar, &notes);
             assert_eq!(result.unwrap_err().kind(), io::ErrorKind::InvalidData, "{format:?}");

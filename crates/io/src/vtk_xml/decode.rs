@@ -3,6 +3,7 @@
 use super::array::{DataArray, Values};
 use super::document::{Appended, ElementId, Layout, VtkXml};
 use super::error::VtkError;
+use crate::scalar::Scalar;
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::borrow::Cow;
@@ -14,41 +15,21 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// Value type.
-#[derive(Clone, Copy)]
-enum Kind {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
-}
-
-impl Kind {
-    fn of(name: &str) -> Option<Self> {
-        Some(match name {
-            "Int8" => Self::I8,
-            "UInt8" | "String" => Self::U8,
-            "Int16" => Self::I16,
-            "UInt16" => Self::U16,
-            "Int32" => Self::I32,
-            "UInt32" => Self::U32,
-            "Int64" => Self::I64,
-            "UInt64" => Self::U64,
-            "Float32" => Self::F32,
-            "Float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    fn is_float(self) -> bool {
-        matches!(self, Self::F32 | Self::F64)
-    }
+/// Returns the number type of a name in VTK's XML formats.
+fn scalar_of(name: &str) -> Option<Scalar> {
+    Some(match name {
+        "Int8" => Scalar::I8,
+        "UInt8" | "String" => Scalar::U8,
+        "Int16" => Scalar::I16,
+        "UInt16" => Scalar::U16,
+        "Int32" => Scalar::I32,
+        "UInt32" => Scalar::U32,
+        "Int64" => Scalar::I64,
+        "UInt64" => Scalar::U64,
+        "Float32" => Scalar::F32,
+        "Float64" => Scalar::F64,
+        _ => return None,
+    })
 }
 
 impl VtkXml<'_> {
@@ -60,7 +41,7 @@ impl VtkXml<'_> {
         let attribute = |name| self.attribute(element, name).unwrap_or_default();
         let name = attribute("Name");
         let array = || name.to_owned();
-        let kind = Kind::of(attribute("type"))
+        let kind = scalar_of(attribute("type"))
             .ok_or_else(|| VtkError::UnknownType { array: array(), kind: attribute("type").to_owned() })?;
         let (text, layout) = (self.text(element), self.layout());
         let values = match attribute("format") {
@@ -85,7 +66,7 @@ fn appended_source<'a>(document: &'a VtkXml<'a>, element: ElementId, array: &'a 
     Ok(Source { array, layout: document.layout(), bytes, base64 })
 }
 
-fn parse_ascii(array: &str, kind: Kind, text: &str) -> Result<Values, VtkError> {
+fn parse_ascii(array: &str, kind: Scalar, text: &str) -> Result<Values, VtkError> {
     let bad = |index: usize, word: &str| VtkError::BadNumber {
         array: array.to_owned(),
         index,
@@ -102,37 +83,18 @@ fn parse_ascii(array: &str, kind: Kind, text: &str) -> Result<Values, VtkError> 
 }
 
 /// Converts bytes to values of one type.
-fn values_of(array: &str, kind: Kind, layout: Layout, bytes: &[u8]) -> Result<Values, VtkError> {
-    macro_rules! numbers {
-        ($number:ty, $wide:ty) => {{
-            const SIZE: usize = size_of::<$number>();
-            let (words, rest) = bytes.as_chunks::<SIZE>();
-            if !rest.is_empty() {
-                return Err(VtkError::Ragged { array: array.to_owned(), size: SIZE });
-            }
-            let big = layout.big_endian;
-            let number = |w: &[u8; SIZE]| if big { <$number>::from_be_bytes(*w) } else { <$number>::from_le_bytes(*w) };
-            words.iter().map(|w| <$wide>::from(number(w))).collect()
-        }};
+fn values_of(array: &str, kind: Scalar, layout: Layout, bytes: &[u8]) -> Result<Values, VtkError> {
+    if !bytes.len().is_multiple_of(kind.size()) {
+        return Err(VtkError::Ragged { array: array.to_owned(), size: kind.size() });
     }
-    Ok(match kind {
-        Kind::I8 => Values::Int(numbers!(i8, i64)),
-        Kind::U8 => Values::Int(numbers!(u8, i64)),
-        Kind::I16 => Values::Int(numbers!(i16, i64)),
-        Kind::U16 => Values::Int(numbers!(u16, i64)),
-        Kind::I32 => Values::Int(numbers!(i32, i64)),
-        Kind::U32 => Values::Int(numbers!(u32, i64)),
-        Kind::I64 => Values::Int(numbers!(i64, i64)),
-        Kind::U64 => {
-            let wide: Vec<i64> = numbers!(i64, i64);
-            if let Some(index) = wide.iter().position(|&x| x < 0) {
-                return Err(VtkError::TooLarge { array: array.to_owned(), index });
-            }
-            Values::Int(wide)
-        }
-        Kind::F32 => Values::Float(numbers!(f32, f64)),
-        Kind::F64 => Values::Float(numbers!(f64, f64)),
-    })
+    if kind.is_float() {
+        return Ok(Values::Float(kind.floats(bytes, layout.big_endian)));
+    }
+    let integers = kind.integers(bytes, layout.big_endian);
+    match integers.iter().position(|&x| x == i64::MAX) {
+        Some(index) => Err(VtkError::TooLarge { array: array.to_owned(), index }),
+        None => Ok(Values::Int(integers)),
+    }
 }
 
 /// Bytes that start with an array: a header of lengths, then the data.

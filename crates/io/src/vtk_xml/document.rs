@@ -3,6 +3,7 @@
 //! Binary data after `<AppendedData encoding="raw">` is not XML and is separated before parsing.
 
 use super::error::VtkError;
+use crate::xml;
 use quick_xml::events::{BytesStart, Event};
 use std::borrow::Cow;
 
@@ -14,7 +15,7 @@ const DEEPEST: usize = 64;
 pub struct ElementId(usize);
 
 #[derive(Debug, Default)]
-struct Element<'a> {
+struct XmlElement<'a> {
     name: String,
     attributes: Vec<(String, String)>,
     text: Cow<'a, str>,
@@ -42,7 +43,7 @@ pub(super) struct Appended<'a> {
 /// A parsed VTK XML file that borrows the file's bytes.
 #[derive(Debug)]
 pub struct VtkXml<'a> {
-    elements: Vec<Element<'a>>,
+    elements: Vec<XmlElement<'a>>,
     layout: Layout,
     appended: Option<Appended<'a>>,
 }
@@ -57,7 +58,7 @@ impl<'a> VtkXml<'a> {
     /// The bytes are not such a file, or are truncated.
     pub fn parse(bytes: &'a [u8], file_type: &'static str) -> Result<Self, VtkError> {
         let (head, tail) = split_appended(bytes);
-        let head = std::str::from_utf8(head).map_err(|e| VtkError::NotText { byte: e.valid_up_to() })?;
+        let head = xml::text(head, "VTK file (.vtp, .vtu)")?;
         let elements = parse_elements(head, tail.is_some())?;
         let mut document =
             Self { elements, layout: Layout { big_endian: false, wide_header: false, zlib: false }, appended: None };
@@ -197,13 +198,12 @@ fn parse_appended(tail: &[u8], at: usize) -> Result<Appended<'_>, VtkError> {
 }
 
 /// Builds the tree. With `open_end`, the text ends inside elements because the rest was separated.
-fn parse_elements(text: &str, open_end: bool) -> Result<Vec<Element<'_>>, VtkError> {
+fn parse_elements(text: &str, open_end: bool) -> Result<Vec<XmlElement<'_>>, VtkError> {
     let mut reader = quick_xml::Reader::from_str(text);
-    let mut elements: Vec<Element> = Vec::new();
+    let mut elements: Vec<XmlElement> = Vec::new();
     let mut open: Vec<ElementId> = Vec::new();
     loop {
-        let event = reader.read_event().map_err(|source| VtkError::Xml { byte: reader.error_position(), source })?;
-        match event {
+        match xml::next_event(&mut reader)? {
             Event::Start(tag) => {
                 let id = add_element(&mut elements, &open, reader.buffer_position(), &tag)?;
                 open.push(id);
@@ -235,7 +235,7 @@ fn append_text<'a>(text: &mut Cow<'a, str>, more: Cow<'a, str>) {
 }
 
 fn add_element(
-    elements: &mut Vec<Element>,
+    elements: &mut Vec<XmlElement>,
     open: &[ElementId],
     byte: u64,
     tag: &BytesStart,
@@ -244,11 +244,10 @@ fn add_element(
     if open.len() >= DEEPEST {
         return Err(VtkError::TooDeep);
     }
-    let mut element = Element { name: tag.name().into_inner().to_owned(), ..Element::default() };
-    for attribute in tag.attributes().with_checks(false) {
-        let attribute = attribute.map_err(|_| VtkError::BadAttribute { byte })?;
-        let value = quick_xml::escape::unescape(&attribute.value).map_err(|_| VtkError::BadAttribute { byte })?;
-        element.attributes.push((attribute.key.into_inner().to_owned(), value.into_owned()));
+    let mut element = XmlElement { name: tag.name().into_inner().to_owned(), ..XmlElement::default() };
+    for attribute in xml::attributes(tag, byte) {
+        let (name, value) = attribute?;
+        element.attributes.push((name.into_owned(), value.into_owned()));
     }
     elements.push(element);
     if let Some(parent) = open.last() {

@@ -1,5 +1,7 @@
 //! Errors of VTK XML files.
 
+use crate::xml::XmlFault;
+
 /// Errors of a VTK XML file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -7,26 +9,9 @@ pub enum VtkError {
     /// The file has no element.
     #[error("there is no XML element in the file; is it a VTK file (.vtp, .vtu)?")]
     Empty,
-    /// The XML part is not UTF-8 text.
-    #[error("no XML: byte {byte} is not text; is it a VTK file (.vtp, .vtu)?")]
-    NotText {
-        /// Byte offset.
-        byte: usize,
-    },
-    /// The XML parser failed.
-    #[error("no well-formed XML at byte {byte}: {source}; correct the file, or copy it again if it was cut short")]
-    Xml {
-        /// Byte offset.
-        byte: u64,
-        /// Error of the parser.
-        source: quick_xml::Error,
-    },
-    /// The attributes of a tag are malformed.
-    #[error("the attributes of the tag before byte {byte} cannot be read: write them as name=\"value\"")]
-    BadAttribute {
-        /// Byte offset.
-        byte: u64,
-    },
+    /// The file is no XML.
+    #[error(transparent)]
+    Xml(#[from] XmlFault),
     /// The nesting depth exceeds the limit.
     #[error("elements are nested deeper than any VTK file has them: save the file again")]
     TooDeep,

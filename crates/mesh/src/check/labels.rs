@@ -64,6 +64,19 @@ fn by_vertices(triangles: &[[u32; 3]]) -> Vec<([u32; 3], u32)> {
     keys
 }
 
+/// All lines about labels.
+pub(super) const LABEL_LINES: [Line; 9] = [
+    Line::LabelsMatchBoundary,
+    Line::WallOrCap,
+    Line::OwnPatch,
+    Line::CapPerTerminal,
+    Line::CapDisc,
+    Line::CapFlat,
+    Line::CapCentred,
+    Line::CapArea,
+    Line::CapNormal,
+];
+
 /// Conditions on patches and caps; the labelled triangles must refer to existing points.
 pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) -> Vec<LineResult> {
     if let Some(lines) = lines_without_caps(&volume.patches, expectation) {
@@ -84,7 +97,8 @@ pub(super) fn lines_without_caps(patches: &[Patch], expectation: Option<&Expecta
         return None;
     }
     let mut lines = vec![own_patch(patches)];
-    lines.extend(CAP_LINES.map(|line| LineResult::skipped(line, Skipped::NoCaps)));
+    let of_caps = LABEL_LINES.into_iter().filter(|line| !matches!(line, Line::LabelsMatchBoundary | Line::OwnPatch));
+    lines.extend(of_caps.map(|line| LineResult::skipped(line, Skipped::NoCaps)));
     if let Some(expected) = expectation {
         lines[2] = cap_per_terminal(patches, expected);
     }
@@ -97,16 +111,6 @@ pub(super) fn terminals_with_caps(patches: &[Patch], expectation: Option<&Expect
         None => LineResult::skipped(Line::CapPerTerminal, Skipped::NoExpectation),
     }
 }
-
-const CAP_LINES: [Line; 7] = [
-    Line::WallOrCap,
-    Line::CapPerTerminal,
-    Line::CapDisc,
-    Line::CapFlat,
-    Line::CapCentred,
-    Line::CapArea,
-    Line::CapNormal,
-];
 
 fn wall_or_cap(volume: &VolumeMesh) -> LineResult {
     let mut caps: Vec<i32> = volume.patches.iter().filter(|p| p.cap.is_some()).map(|p| p.id).collect();

@@ -76,18 +76,6 @@ pub fn check_tets(mesh: &TetMesh, expectation: Option<&Expectation>) -> CheckRep
     Check { mesh, volume: None, expectation }.run(None)
 }
 
-const LABEL_LINES: [Line; 9] = [
-    Line::LabelsMatchBoundary,
-    Line::WallOrCap,
-    Line::OwnPatch,
-    Line::CapPerTerminal,
-    Line::CapDisc,
-    Line::CapFlat,
-    Line::CapCentred,
-    Line::CapArea,
-    Line::CapNormal,
-];
-
 struct Check<'a> {
     mesh: &'a TetMesh,
     volume: Option<&'a VolumeMesh>,
@@ -150,14 +138,14 @@ impl Check<'_> {
 
     fn labels(&self, faces: &[[u32; 3]]) -> Vec<LineResult> {
         let Some(volume) = self.volume else {
-            return LABEL_LINES.map(|line| LineResult::skipped(line, Skipped::NoLabels)).into();
+            return labels::LABEL_LINES.map(|line| LineResult::skipped(line, Skipped::NoLabels)).into();
         };
         let mut lines = vec![labels::labels_match(volume, faces)];
         if volume.boundary.as_flattened().iter().all(|&v| (v as usize) < volume.mesh.points.len()) {
             lines.extend(labels::cap_lines(volume, self.expectation));
         } else {
             let why = Skipped::Because(Line::LabelsMatchBoundary);
-            lines.extend(LABEL_LINES[1..].iter().map(|&line| LineResult::skipped(line, why)));
+            lines.extend(labels::LABEL_LINES[1..].iter().map(|&line| LineResult::skipped(line, why)));
         }
         lines
     }

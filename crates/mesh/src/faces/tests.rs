@@ -7,9 +7,9 @@ use crate::{Patch, VolumeMesh};
 use std::borrow::Cow;
 
 /// A cube whose lower side is patch 3, in unrelated parts of a given number of tetrahedra and labelled faces.
-struct Cut(VolumeMesh, usize);
+struct SplitCube(VolumeMesh, usize);
 
-impl Cut {
+impl SplitCube {
     fn new(size: usize) -> Self {
         let mesh = cube_lattice(3);
         let boundary = boundary_faces(&mesh);
@@ -23,7 +23,7 @@ impl Cut {
     }
 }
 
-impl MeshSource for Cut {
+impl MeshSource for SplitCube {
     fn counts(&self) -> SourceCounts {
         self.0.counts()
     }
@@ -45,7 +45,7 @@ impl MeshSource for Cut {
     }
 }
 
-fn all(cut: &Cut) -> PartFaces {
+fn all(cut: &SplitCube) -> PartFaces {
     let mut all = PartFaces::default();
     let gather = |part: &PartFaces| {
         all.inner.extend_from_slice(&part.inner);
@@ -59,7 +59,7 @@ fn all(cut: &Cut) -> PartFaces {
 
 #[test]
 fn every_face_is_there_once_in_the_order_of_its_tetrahedra() {
-    let cut = Cut::new(1000);
+    let cut = SplitCube::new(1000);
     let PartFaces { inner, outer } = all(&cut);
     assert_eq!(2 * inner.len() + outer.len(), 4 * cut.0.mesh.tets.len());
     assert!(inner.is_sorted() && inner.iter().all(|face| face.tets[0] < face.tets[1]));
@@ -74,20 +74,20 @@ fn every_face_is_there_once_in_the_order_of_its_tetrahedra() {
 
 #[test]
 fn parts_make_no_difference() {
-    let whole = all(&Cut::new(1000));
+    let whole = all(&SplitCube::new(1000));
     for size in [1, 5, 40, 161] {
-        assert_eq!(all(&Cut::new(size)), whole, "{size}");
+        assert_eq!(all(&SplitCube::new(size)), whole, "{size}");
     }
 }
 
 #[test]
 fn a_face_without_patch_or_with_three_tetrahedra_is_named() {
     for size in [1000, 20] {
-        let mut cut = Cut::new(size);
+        let mut cut = SplitCube::new(size);
         let [a, b, c] = face_key(cut.0.boundary.pop().unwrap());
         let error = Faces::of(&cut).err().unwrap();
         assert!(error.to_string().contains(&format!("points {a}, {b} and {c}")), "{error}");
-        let mut cut = Cut::new(size);
+        let mut cut = SplitCube::new(size);
         cut.0.mesh.tets.push(cut.0.mesh.tets[0]);
         assert_eq!(Faces::of(&cut).err().unwrap().kind(), io::ErrorKind::InvalidData);
     }

@@ -7,6 +7,8 @@ mod convex;
 mod disjoint_sets;
 mod distance;
 mod dyadic;
+#[cfg(test)]
+mod exact_oracle;
 mod fans;
 pub mod hilbert;
 pub mod implicit;

@@ -110,35 +110,11 @@ pub fn collinear(a: &Point3, b: &Point3, c: &Point3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::exact_oracle::{det, exact, point, sign};
     use num_rational::BigRational;
     use proptest::prelude::*;
 
     type Row = Vec<BigRational>;
-
-    fn exact(x: f64) -> BigRational {
-        BigRational::from_float(x).expect("finite")
-    }
-
-    fn det(m: &[Row]) -> BigRational {
-        if m.len() == 1 {
-            return m[0][0].clone();
-        }
-        let mut sum = exact(0.0);
-        for (k, head) in m[0].iter().enumerate() {
-            let minor: Vec<Row> = m[1..]
-                .iter()
-                .map(|r| r.iter().enumerate().filter(|&(j, _)| j != k).map(|(_, x)| x.clone()).collect())
-                .collect();
-            let term = head * det(&minor);
-            sum = if k % 2 == 0 { sum + term } else { sum - term };
-        }
-        sum
-    }
-
-    fn sign(x: &BigRational) -> i32 {
-        let zero = exact(0.0);
-        i32::from(*x > zero) - i32::from(*x < zero)
-    }
 
     fn sign_f(x: f64) -> i32 {
         i32::from(x > 0.0) - i32::from(x < 0.0)
@@ -161,19 +137,8 @@ mod tests {
         -sign(&det(&rows))
     }
 
-    /// Coordinates on a coarse grid, a few ulps off it, or anywhere: degenerate, nearly so, or neither.
-    fn coordinate() -> impl Strategy<Value = f64> {
-        prop_oneof![
-            (-4i32..4).prop_map(f64::from),
-            (-4i32..4, -3i64..3).prop_map(|(g, ulps)| f64::from(g) + ulps as f64 * f64::EPSILON * 4.0),
-            (-3i32..3).prop_map(|g| f64::from(g) * 0.1),
-            -1.0..1.0f64,
-        ]
-    }
-
     fn points(n: usize, scale: f64) -> impl Strategy<Value = Vec<Point3>> {
-        prop::collection::vec((coordinate(), coordinate(), coordinate()), n)
-            .prop_map(move |v| v.iter().map(|&(x, y, z)| Point3::new(x * scale, y * scale, z * scale)).collect())
+        prop::collection::vec(point(scale), n)
     }
 
     proptest! {

@@ -19,7 +19,7 @@ const MARKS: u32 = INSIDE | OUTSIDE;
 
 /// A face of the cavity's boundary: the half-face outside, and its vertices counter-clockwise seen from inside.
 #[derive(Clone, Copy, Debug)]
-struct Wall {
+struct CavityFace {
     outer: u32,
     face: [u32; 3],
 }
@@ -33,7 +33,7 @@ pub(super) struct Inserter {
     ghost: u32,
     now: u32,
     cavity: Vec<u32>,
-    walls: Vec<Wall>,
+    walls: Vec<CavityFace>,
     created: Vec<u32>,
     table: Box<[u32; TABLE * TABLE]>,
     pairs: FxHashMap<(u32, u32), u32>,
@@ -211,7 +211,7 @@ impl Inserter {
                         continue;
                     }
                 }
-                self.walls.push(Wall { outer, face: BACK[i].map(|k| cell.verts[k]) });
+                self.walls.push(CavityFace { outer, face: BACK[i].map(|k| cell.verts[k]) });
             }
         }
     }
@@ -369,7 +369,7 @@ fn turn_of(face: &[u32; 3], ghost: u32) -> [u32; 4] {
 
 /// Tetrahedron on a cavity face.
 #[inline]
-fn placed(w: &Wall, v: u32, mates: [u32; 3], turn: [u32; 4]) -> Cell {
+fn placed(w: &CavityFace, v: u32, mates: [u32; 3], turn: [u32; 4]) -> Cell {
     let [a, b, c] = w.face;
     let plain = Cell { verts: [a, b, c, v], mates: [mates[0], mates[1], mates[2], w.outer] };
     if turn[3] == 3 {

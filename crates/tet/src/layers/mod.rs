@@ -10,8 +10,8 @@
 //! surface intersects itself, positions move back towards the wall (`inset`). At offset zero there is no layer.
 
 mod direction;
+mod half_width;
 mod inset;
-mod room;
 mod stack;
 #[cfg(test)]
 mod tests;

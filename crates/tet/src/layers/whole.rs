@@ -1,8 +1,8 @@
 //! Layers along all of a closed surface.
 
 use super::direction::Directions;
+use super::half_width::half_widths;
 use super::inset::{Inset, Places, inset, lower};
-use super::room::half_widths;
 use crate::certify::{Place, certify_facets};
 use crate::error::TetError;
 use crate::fill::fill;

@@ -1,7 +1,7 @@
 //! Repairs of tetrahedra that neither smoothing nor flips improve: a new vertex in a cavity around them, or the
 //! contraction of an edge to remove an inner vertex.
 
-use super::improver::Cavity;
+use super::improver::CavityBuffers;
 use super::{Effort, Improver};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::{TET_EDGES, radius_ratio};
@@ -193,7 +193,7 @@ impl Improver<'_> {
 
     /// Replaces the two vertices of `t` off a boundary edge by one, if both may go. Of the tetrahedra around the edge,
     /// those on the boundary remain.
-    pub(super) fn insert_for_both(&mut self, k: &mut Cavity, ends: impl Iterator<Item = u32>, t: u32) -> bool {
+    pub(super) fn insert_for_both(&mut self, k: &mut CavityBuffers, ends: impl Iterator<Item = u32>, t: u32) -> bool {
         let mut pair = [0; 2];
         for (slot, w) in pair.iter_mut().zip(ends) {
             *slot = w;
@@ -255,7 +255,7 @@ impl Improver<'_> {
 
     /// Grows the cavity `k.tets` around a new vertex near `p` while that helps, and positions the vertex. Makes the
     /// exchange if the worst radius ratio rises.
-    fn insert_in_cavity(&mut self, k: &mut Cavity, mut p: Point3, t: u32) -> bool {
+    fn insert_in_cavity(&mut self, k: &mut CavityBuffers, mut p: Point3, t: u32) -> bool {
         let floor = self.quality[t as usize] * GAIN;
         if !self.outline(k) {
             return false;
@@ -286,7 +286,7 @@ impl Improver<'_> {
     }
 
     /// Collects the outer faces of the cavity. Returns false if it has too many tetrahedra or a frozen face inside.
-    fn outline(&self, k: &mut Cavity) -> bool {
+    fn outline(&self, k: &mut CavityBuffers) -> bool {
         k.faces.clear();
         k.halves.clear();
         for &t in &k.tets {
@@ -303,7 +303,7 @@ impl Improver<'_> {
     }
 
     /// Adds the tetrahedron behind the worst face, if the vertex sees its other faces better.
-    fn grow(&self, k: &mut Cavity, p: &Point3, worst: f64) -> bool {
+    fn grow(&self, k: &mut CavityBuffers, p: &Point3, worst: f64) -> bool {
         let ratio = |f: &[u32; 3]| {
             let [a, b, c] = f.map(|w| &self.c.points[w as usize]);
             radius_ratio(p, a, b, c) / self.allowance.of_face(*f)
@@ -332,7 +332,7 @@ impl Improver<'_> {
     }
 
     /// True if every vertex inside the cavity may be removed.
-    fn keeps_all(&self, k: &Cavity) -> bool {
+    fn keeps_all(&self, k: &CavityBuffers) -> bool {
         let on_outline = |v: u32| k.faces.iter().any(|f| f.contains(&v));
         k.tets
             .iter()
@@ -341,7 +341,7 @@ impl Improver<'_> {
     }
 
     /// Exchanges `k.tets` for `k.new`.
-    fn exchange(&mut self, k: &mut Cavity) -> bool {
+    fn exchange(&mut self, k: &mut CavityBuffers) -> bool {
         let done = self.c.replace(&k.tets, &k.new, &mut k.created);
         if done {
             self.remeasure(&k.created);

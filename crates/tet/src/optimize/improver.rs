@@ -19,7 +19,7 @@ pub(super) const STALE: f64 = f64::NAN;
 
 /// Buffers of the cavity operations.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Cavity {
+pub(super) struct CavityBuffers {
     pub tets: Vec<u32>,
     /// Faces of the cavity, oriented inwards: (new vertex, face) is positive.
     pub faces: Vec<[u32; 3]>,
@@ -54,7 +54,7 @@ pub struct Improver<'a> {
     pub(super) flipper: Flipper,
     pub(super) star: Star,
     pub(super) energy: StarEnergy,
-    pub(super) cavity: Cavity,
+    pub(super) cavity: CavityBuffers,
     pub(super) reconnection: Reconnection,
     /// Number of failed attempts.
     pub(super) epoch: u32,
@@ -82,7 +82,7 @@ impl<'a> Improver<'a> {
             flipper: Flipper::default(),
             star: Star::default(),
             energy: StarEnergy::default(),
-            cavity: Cavity::default(),
+            cavity: CavityBuffers::default(),
             reconnection: Reconnection::default(),
             epoch: 0,
             changed: Vec::new(),

@@ -69,7 +69,7 @@ impl FrontFace {
 
 /// Environment of the search.
 #[derive(Clone, Copy)]
-pub(super) struct Room<'a> {
+pub(super) struct SearchScope<'a> {
     pub c: &'a Complex,
     pub allowance: &'a Allowance,
 }
@@ -117,7 +117,7 @@ impl Reconnection {
     /// `nodes` steps. No new tetrahedron has a radius ratio below `least`.
     pub(super) fn find(
         &mut self,
-        room: Room,
+        room: SearchScope,
         [t, size, nodes]: [usize; 3],
         least: f64,
         strain_of: impl Fn(&[u32]) -> f64,
@@ -217,7 +217,7 @@ impl Reconnection {
 
     /// Table index of the tetrahedron of four local vertices, and true if its orientation is reversed there. `None` if
     /// a vertex occurs twice. Computes its volume.
-    fn entry(&mut self, room: Room, v: [u8; 4]) -> Option<(usize, bool)> {
+    fn entry(&mut self, room: SearchScope, v: [u8; 4]) -> Option<(usize, bool)> {
         let (sorted, odd) = sort4(v);
         let [i, j, k, l] = sorted.map(usize::from);
         if i == j || j == k || k == l {
@@ -232,7 +232,7 @@ impl Reconnection {
     }
 
     /// True if the tetrahedron of four local vertices is positive.
-    fn is_positive(&mut self, room: Room, v: [u8; 4]) -> bool {
+    fn is_positive(&mut self, room: SearchScope, v: [u8; 4]) -> bool {
         self.entry(room, v).is_some_and(|(at, odd)| {
             let volume = self.table[at].volume;
             if odd { volume < 0.0 } else { volume > 0.0 }
@@ -240,7 +240,7 @@ impl Reconnection {
     }
 
     /// Table entry of four local vertices, if positive. Ratio and strain are computed lazily.
-    fn tet(&mut self, room: Room, v: [u8; 4]) -> Option<Entry> {
+    fn tet(&mut self, room: SearchScope, v: [u8; 4]) -> Option<Entry> {
         if !self.is_positive(room, v) {
             return None;
         }
@@ -262,7 +262,7 @@ impl Reconnection {
         Some(Entry { volume: if odd { -entry.volume } else { entry.volume }, ..entry })
     }
 
-    fn search(&mut self, room: Room) {
+    fn search(&mut self, room: SearchScope) {
         self.table.clear();
         self.table.resize(choose(self.vertices.len(), 4), NO_ENTRY);
         self.faces.clear();
@@ -290,7 +290,7 @@ impl Reconnection {
     }
 
     /// Front face of three local vertices.
-    fn front_face(&mut self, room: Room, f: [u8; 3]) -> FrontFace {
+    fn front_face(&mut self, room: SearchScope, f: [u8; 3]) -> FrontFace {
         let place = face_index(f);
         let at = usize::from(place);
         if self.faces[at].mates == UNKNOWN {
@@ -346,7 +346,7 @@ impl Reconnection {
     }
 
     /// Closes the front with tetrahedra above the floor. Volume and number of steps bound the depth.
-    fn branch(&mut self, room: Room, sum: f64, volume: f64) {
+    fn branch(&mut self, room: SearchScope, sum: f64, volume: f64) {
         if self.front.is_empty() {
             if sum < self.limit && volume.abs() <= self.slack * 1e3 {
                 self.limit = sum;
@@ -397,7 +397,7 @@ impl Reconnection {
     }
 
     /// Adds tetrahedron (v, face `at`), continues the search, and removes it again.
-    fn take(&mut self, room: Room, at: usize, v: u8, sum: f64, volume: f64) {
+    fn take(&mut self, room: SearchScope, at: usize, v: u8, sum: f64, volume: f64) {
         let [a, b, d] = self.front[at].v;
         if self.encloses(room, [v, a, b, d]) {
             return;
@@ -448,7 +448,7 @@ impl Reconnection {
     }
 
     /// True if another vertex of the front lies strictly inside.
-    fn encloses(&mut self, room: Room, v: [u8; 4]) -> bool {
+    fn encloses(&mut self, room: SearchScope, v: [u8; 4]) -> bool {
         let Some((at, _)) = self.entry(room, v) else { return true };
         if self.table[at].enclosed == UNKNOWN {
             let [v, a, b, d] = v;

@@ -1,7 +1,7 @@
 //! Reconnection of small cavities within the improver.
 
 use super::Improver;
-use super::reconnect::{Reconnection, Room};
+use super::reconnect::{Reconnection, SearchScope};
 
 impl Improver<'_> {
     /// Reconnects a cavity of up to `size` tetrahedra around `t`. Returns false if nothing better was found within
@@ -14,7 +14,7 @@ impl Improver<'_> {
     }
 
     fn reconnect_with(&mut self, r: &mut Reconnection, t: u32, size: usize, nodes: usize) -> bool {
-        let room = Room { c: &self.c, allowance: &self.allowance };
+        let room = SearchScope { c: &self.c, allowance: &self.allowance };
         let found = r.find(room, [t as usize, size, nodes], self.report.worst_before, |tets| self.strain_of(tets));
         if !found {
             return false;

@@ -193,7 +193,7 @@ fn one_vertex_takes_the_place_of_two_under_a_short_edge() {
     let c = Complex::from_mesh(mesh.points.clone(), &mesh.tets).unwrap();
     let mut improver = Improver::new(c, &OptimizeOptions { fixed_points: 8, ..OptimizeOptions::full() });
     improver.allowance = allowance::Allowance::of(&improver.c);
-    assert!(improver.insert_for_both(&mut improver::Cavity::default(), [8, 9].into_iter(), 1));
+    assert!(improver.insert_for_both(&mut improver::CavityBuffers::default(), [8, 9].into_iter(), 1));
     let (c, _) = improver.finish();
     c.sanity_check().unwrap();
     let after = c.into_mesh();

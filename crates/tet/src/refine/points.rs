@@ -15,7 +15,7 @@ const MAX_POINTS: usize = 50_000_000;
 
 /// Lattice position in half sides of the finest cubes, packed, with the level of the finest cube there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Site {
+struct LatticeSite {
     key: u64,
     /// Number of levels between the tree's finest and the finest cube here. Small values sort first.
     coarseness: u8,
@@ -29,7 +29,7 @@ pub fn graded_points(surface: &TriMesh, sizes: &[f64], tree: &SizeTree, clearanc
     let boxes: Vec<Aabb> =
         surface.triangles.iter().map(|t| Aabb::of_points(t.map(|v| &surface.points[v as usize]))).collect();
     let bvh = Bvh::new(&boxes);
-    let wall = Wall { surface, sizes, bvh: &bvh, clearance };
+    let wall = SurfaceTree { surface, sizes, bvh: &bvh, clearance };
     let sites = sites(surface, tree, &boxes, &wall);
     let finest = tree.levels();
     let mut points = Vec::new();
@@ -57,7 +57,7 @@ fn place(tree: &SizeTree, key: u64, side: f64) -> Point3 {
 }
 
 /// Sorted corners and centres of all leaves in or near the surface, repeated where several leaves meet.
-fn sites(surface: &TriMesh, tree: &SizeTree, boxes: &[Aabb], wall: &Wall) -> Vec<Site> {
+fn sites(surface: &TriMesh, tree: &SizeTree, boxes: &[Aabb], wall: &SurfaceTree) -> Vec<LatticeSite> {
     let mut touched: FxHashSet<[i32; 3]> = FxHashSet::default();
     for aabb in boxes {
         let (low, high) = (tree.cube_at(&aabb.min, 0), tree.cube_at(&aabb.max, 0));
@@ -93,7 +93,7 @@ fn sites(surface: &TriMesh, tree: &SizeTree, boxes: &[Aabb], wall: &Wall) -> Vec
     sites
 }
 
-fn push_leaf(tree: &SizeTree, level: usize, cube: [i32; 3], unknown: u8, sites: &mut Vec<Site>) {
+fn push_leaf(tree: &SizeTree, level: usize, cube: [i32; 3], unknown: u8, sites: &mut Vec<LatticeSite>) {
     let coarseness = (tree.levels() - level) as u8;
     // Width of a cube at this level, in half sides of the finest cubes.
     let width = 2_i64 << coarseness;
@@ -101,7 +101,7 @@ fn push_leaf(tree: &SizeTree, level: usize, cube: [i32; 3], unknown: u8, sites: 
         let at: [i64; 3] = std::array::from_fn(|i| i64::from(cube[i]) * width + offset[i]);
         if at.iter().all(|x| (0..1 << 21).contains(x)) {
             let key = at[0] as u64 | (at[1] as u64) << 21 | (at[2] as u64) << 42;
-            sites.push(Site { key, coarseness, unknown });
+            sites.push(LatticeSite { key, coarseness, unknown });
         }
     };
     push([width / 2; 3]);
@@ -111,7 +111,7 @@ fn push_leaf(tree: &SizeTree, level: usize, cube: [i32; 3], unknown: u8, sites: 
 }
 
 /// Coarsest cubes inside that no triangle touches.
-fn inner_cubes(surface: &TriMesh, tree: &SizeTree, wall: &Wall, touched: &FxHashSet<[i32; 3]>) -> Vec<[i32; 3]> {
+fn inner_cubes(surface: &TriMesh, tree: &SizeTree, wall: &SurfaceTree, touched: &FxHashSet<[i32; 3]>) -> Vec<[i32; 3]> {
     let high = surface.points.iter().fold(tree.origin, |m, p| m.sup(p));
     let last = tree.cube_at(&high, 0);
     let mut seen: FxHashSet<[i32; 3]> = FxHashSet::default();
@@ -153,14 +153,14 @@ fn inner_cubes(surface: &TriMesh, tree: &SizeTree, wall: &Wall, touched: &FxHash
 }
 
 /// The surface with a bounding volume hierarchy.
-struct Wall<'a> {
+struct SurfaceTree<'a> {
     surface: &'a TriMesh,
     sizes: &'a [f64],
     bvh: &'a Bvh,
     clearance: f64,
 }
 
-impl Wall<'_> {
+impl SurfaceTree<'_> {
     /// True if a point lies inside: a vertical ray meets an odd number of triangles. A ray that grazes an edge may give
     /// a wrong result; carving drops such points.
     fn holds(&self, p: &Point3) -> bool {

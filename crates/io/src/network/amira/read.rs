@@ -1,14 +1,14 @@
 //! Reader that converts edges and their points to polylines.
 
 use super::error::AmiraError;
-use super::sections::{Array, Of, Sections};
+use super::sections::{AmiraArray, AmiraSections, Of};
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::polylines::{Polylines, Radii};
 use crate::network::radii::Choice;
 use anastomesh_mesh::geometry::Point3;
 
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, AmiraError> {
-    let sections = Sections::of(bytes)?;
+    let sections = AmiraSections::of(bytes)?;
     if sections.count(Of::Edges) == 0 {
         return Err(AmiraError::Missing { what: "EDGE" });
     }
@@ -39,13 +39,13 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
 }
 
 /// Checks that an array has all its values.
-fn full(sections: &Sections, array: &Array, found: usize) -> Result<(), AmiraError> {
+fn full(sections: &AmiraSections, array: &AmiraArray, found: usize) -> Result<(), AmiraError> {
     if found == sections.count(array.of) { Ok(()) } else { Err(AmiraError::Missing { what: "the data of the radius" }) }
 }
 
 /// Edges as polylines, with the radii along them. Vertices are the first points. Edge points follow, except the ends of
 /// each edge, which coincide with its vertices.
-fn polylines(sections: &Sections, along: Option<&[f64]>) -> Result<(Polylines, Option<Vec<f64>>), AmiraError> {
+fn polylines(sections: &AmiraSections, along: Option<&[f64]>) -> Result<(Polylines, Option<Vec<f64>>), AmiraError> {
     let places = |values: &[f64]| -> Vec<Point3> { values.as_chunks::<3>().0.iter().map(|&p| p.into()).collect() };
     let mut points = places(sections.find(Of::Vertices, "VertexCoordinates", 3)?);
     let course = places(sections.find(Of::Points, "EdgePointCoordinates", 3)?);

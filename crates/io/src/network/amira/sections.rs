@@ -12,7 +12,7 @@ pub(super) enum Of {
 }
 
 /// Array with its values.
-pub(super) struct Array {
+pub(super) struct AmiraArray {
     pub of: Of,
     pub name: String,
     /// Values per element.
@@ -22,15 +22,15 @@ pub(super) struct Array {
 
 /// Arrays of a file.
 #[derive(Default)]
-pub(super) struct Sections {
+pub(super) struct AmiraSections {
     /// Number of vertices, edges and points.
     counts: [usize; 3],
-    pub arrays: Vec<Array>,
+    pub arrays: Vec<AmiraArray>,
     /// Data mark of each array.
     marks: Vec<Vec<u8>>,
 }
 
-impl Sections {
+impl AmiraSections {
     pub(super) fn of(bytes: &[u8]) -> Result<Self, AmiraError> {
         let first = bytes.split(|&b| b == b'\n').next().unwrap_or_default();
         if !first.starts_with(b"# AmiraMesh") && !first.starts_with(b"# Avizo") {
@@ -94,7 +94,7 @@ impl Sections {
             Some(at) => std::str::from_utf8(&kind[at + 1..]).ok().and_then(|k| k.trim_end_matches(']').parse().ok()),
         };
         let components = components.ok_or(AmiraError::BadDeclaration { line })?;
-        self.arrays.push(Array { of, name: shown(name), components, values: Vec::new() });
+        self.arrays.push(AmiraArray { of, name: shown(name), components, values: Vec::new() });
         self.marks.push(mark.to_owned());
         Ok(())
     }

@@ -4,12 +4,13 @@ use super::error::GraphXmlError;
 use crate::network::columns::Value;
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::graph::{Graph, GraphPlace};
+use crate::xml;
 use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
 /// Owner of the nested elements.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Owner {
+enum ElementOwner {
     Node(u32),
     Edge(u32),
 }
@@ -20,7 +21,7 @@ struct Reading {
     graph: Graph,
     /// Names of the open elements.
     open: Vec<String>,
-    owner: Option<(usize, Owner)>,
+    owner: Option<(usize, ElementOwner)>,
     /// Open attribute: depth, name and text.
     value: Option<(usize, String, String)>,
     /// Names of GraphML keys.
@@ -29,12 +30,11 @@ struct Reading {
 
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, GraphXmlError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let text = std::str::from_utf8(bytes).map_err(|e| GraphXmlError::NotText { byte: e.valid_up_to() })?;
+    let text = xml::text(bytes, "graph (.graphml, .gxl)")?;
     let mut reader = quick_xml::Reader::from_str(text);
     let mut reading = Reading::default();
     loop {
-        let event =
-            reader.read_event().map_err(|source| GraphXmlError::Xml { byte: reader.error_position(), source })?;
+        let event = xml::next_event(&mut reader)?;
         let byte = reader.buffer_position() as usize;
         match event {
             Event::Start(tag) => reading.start(&tag, byte)?,
@@ -70,12 +70,12 @@ impl Reading {
             }
             "node" => {
                 let row = self.graph.node(&needed(tag, byte, "node", "id")?, place)?;
-                self.owner = Some((self.open.len(), Owner::Node(row)));
+                self.owner = Some((self.open.len(), ElementOwner::Node(row)));
             }
             "edge" => {
                 let [from, to] = [["source", "from"], ["target", "to"]].map(|names| either(tag, byte, names));
                 let row = self.graph.edge([&from?, &to?], place)?;
-                self.owner = Some((self.open.len(), Owner::Edge(row)));
+                self.owner = Some((self.open.len(), ElementOwner::Edge(row)));
             }
             "data" => {
                 let key = needed(tag, byte, "data", "key")?;
@@ -104,8 +104,8 @@ impl Reading {
             && let Some((_, owner)) = self.owner
         {
             match owner {
-                Owner::Node(row) => self.graph.nodes.set(row, &name, Value::of(&text)),
-                Owner::Edge(row) => self.graph.edges.set(row, &name, Value::of(&text)),
+                ElementOwner::Node(row) => self.graph.nodes.set(row, &name, Value::of(&text)),
+                ElementOwner::Edge(row) => self.graph.edges.set(row, &name, Value::of(&text)),
             }
         }
         self.owner.take_if(|(at, _)| *at == depth);
@@ -114,11 +114,9 @@ impl Reading {
 
 /// Trimmed attribute of a tag, if present.
 fn attribute(tag: &BytesStart, byte: usize, name: &str) -> Result<Option<String>, GraphXmlError> {
-    for attribute in tag.attributes().with_checks(false) {
-        let attribute = attribute.map_err(|_| GraphXmlError::BadAttribute { byte })?;
-        if attribute.key.into_inner() == name {
-            let value = quick_xml::escape::unescape(&attribute.value);
-            let value = value.map_err(|_| GraphXmlError::BadAttribute { byte })?;
+    for attribute in xml::attributes(tag, byte as u64) {
+        let (key, value) = attribute?;
+        if key == name {
             return Ok(Some(value.trim().to_owned()));
         }
     }

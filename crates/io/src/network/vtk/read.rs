@@ -1,6 +1,6 @@
 //! Extraction of lines and radii from the sections of a legacy file.
 
-use super::array::Array;
+use super::array::LegacyArray;
 use super::error::VtkLegacyError;
 use super::sections::{CellList, LISTS, Sections};
 use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions};
@@ -20,7 +20,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
         return Err(VtkLegacyError::NoLines { others: cells.count });
     }
     let (count, all) = (points.len(), cells.count);
-    let names = |arrays: &[Array]| -> Vec<String> { arrays.iter().map(|a| a.name.clone()).collect() };
+    let names = |arrays: &[LegacyArray]| -> Vec<String> { arrays.iter().map(|a| a.name.clone()).collect() };
     let choice = Choice::of(&names(&sections.point_data), &names(&sections.cell_data), options)?;
     let values = node_array(&names(&sections.point_data), options)?;
     let nodes = radii(&choice, &sections.point_data, choice.points.as_deref(), count)?;
@@ -54,7 +54,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
 /// Values of the chosen array, one per point or cell; `None` if no array was chosen.
 fn radii(
     choice: &Choice,
-    arrays: &[Array],
+    arrays: &[LegacyArray],
     name: Option<&str>,
     expected: usize,
 ) -> Result<Option<Vec<f64>>, VtkLegacyError> {
@@ -63,7 +63,7 @@ fn radii(
 }
 
 /// Values of an array with the expected length.
-fn numbers(array: &Array, expected: usize) -> Result<Vec<f64>, VtkLegacyError> {
+fn numbers(array: &LegacyArray, expected: usize) -> Result<Vec<f64>, VtkLegacyError> {
     if array.count != expected {
         return Err(VtkLegacyError::WrongLength { array: array.name.clone(), expected, found: array.count });
     }
@@ -71,8 +71,8 @@ fn numbers(array: &Array, expected: usize) -> Result<Vec<f64>, VtkLegacyError> {
 }
 
 /// Group and blanking of each cell; `None` unless the file has both as integers.
-fn groups(arrays: &[Array], expected: usize) -> Result<Option<Vec<[i64; 2]>>, VtkLegacyError> {
-    let find = |name| arrays.iter().find(|a: &&Array| a.name == name);
+fn groups(arrays: &[LegacyArray], expected: usize) -> Result<Option<Vec<[i64; 2]>>, VtkLegacyError> {
+    let find = |name| arrays.iter().find(|a: &&LegacyArray| a.name == name);
     let [Some(groups), Some(blanked)] = GROUPS.map(find) else { return Ok(None) };
     for array in [groups, blanked] {
         if array.count != expected {
@@ -97,7 +97,7 @@ struct Lines {
 impl Lines {
     fn of(sections: &Sections) -> Result<Self, VtkLegacyError> {
         let mut lines = Self::default();
-        let types = sections.types.as_ref().map(Array::integers).transpose()?;
+        let types = sections.types.as_ref().map(LegacyArray::integers).transpose()?;
         for keyword in LISTS.into_iter().filter(|&k| (k == "CELLS") == sections.grid) {
             for list in sections.lists.iter().filter(|list| list.keyword == keyword) {
                 let taken = |cell: usize| match keyword {
@@ -113,7 +113,7 @@ impl Lines {
     /// Adds the line cells of a list.
     fn add(&mut self, list: &CellList, taken: impl Fn(usize) -> bool) -> Result<(), VtkLegacyError> {
         let points = list.points.integers()?;
-        let offsets = list.offsets.as_ref().map(Array::integers).transpose()?;
+        let offsets = list.offsets.as_ref().map(LegacyArray::integers).transpose()?;
         let mut at = 0;
         let mut cell = 0;
         while cell < list.count {

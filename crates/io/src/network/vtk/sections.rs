@@ -1,6 +1,6 @@
 //! Sections of a legacy file, parsed keyword by keyword.
 
-use super::array::Array;
+use super::array::LegacyArray;
 use super::cursor::Cursor;
 use super::error::VtkLegacyError;
 use crate::text::Place;
@@ -14,8 +14,8 @@ pub(super) struct CellList<'a> {
     pub place: Place,
     /// Offsets of the cells in `points`, plus the total (since version 5). Without offsets, each cell in `points` is a
     /// count followed by its points.
-    pub offsets: Option<Array<'a>>,
-    pub points: Array<'a>,
+    pub offsets: Option<LegacyArray<'a>>,
+    pub points: LegacyArray<'a>,
     /// Number of cells.
     pub count: usize,
 }
@@ -23,13 +23,13 @@ pub(super) struct CellList<'a> {
 /// Sections of a file.
 #[derive(Default)]
 pub(super) struct Sections<'a> {
-    pub points: Option<Array<'a>>,
+    pub points: Option<LegacyArray<'a>>,
     /// Cell lists in file order.
     pub lists: Vec<CellList<'a>>,
     /// Cell types of an unstructured grid.
-    pub types: Option<Array<'a>>,
-    pub point_data: Vec<Array<'a>>,
-    pub cell_data: Vec<Array<'a>>,
+    pub types: Option<LegacyArray<'a>>,
+    pub point_data: Vec<LegacyArray<'a>>,
+    pub cell_data: Vec<LegacyArray<'a>>,
     /// True for an unstructured grid.
     pub grid: bool,
 }
@@ -64,13 +64,13 @@ impl<'a> Sections<'a> {
         let mut sections = Self::default();
         let (mut owner, mut count) = (Owner::Dataset, 0);
         while let Some((place, words)) = cursor.keywords() {
-            let head = Head { place, words };
+            let head = SectionHeader { place, words };
             match head.words[0].to_ascii_uppercase().as_str() {
                 "DATASET" => sections.grid = head.is_grid()?,
                 "POINTS" => sections.points = Some(head.points(&mut cursor)?),
                 "CELL_TYPES" => {
                     let number = head.count(1, "a number of cells")?;
-                    sections.types = Some(Array::take(&mut cursor, "CELL_TYPES", "int", Some(number))?);
+                    sections.types = Some(LegacyArray::take(&mut cursor, "CELL_TYPES", "int", Some(number))?);
                 }
                 "METADATA" => cursor.skip_block(),
                 "POINT_DATA" => (owner, count) = (Owner::Points, head.count(1, "a number of points")?),
@@ -85,7 +85,7 @@ impl<'a> Sections<'a> {
     }
 
     /// Stores arrays of points and cells.
-    fn keep(&mut self, owner: Owner, arrays: Vec<Array<'a>>) {
+    fn keep(&mut self, owner: Owner, arrays: Vec<LegacyArray<'a>>) {
         match owner {
             Owner::Points => self.point_data.extend(arrays),
             Owner::Cells => self.cell_data.extend(arrays),
@@ -95,12 +95,12 @@ impl<'a> Sections<'a> {
 }
 
 /// First line of a section.
-struct Head {
+struct SectionHeader {
     place: Place,
     words: Vec<String>,
 }
 
-impl Head {
+impl SectionHeader {
     /// Parses the word at a position of the line as a count.
     fn count(&self, at: usize, needed: &'static str) -> Result<usize, VtkLegacyError> {
         let count = self.words.get(at).and_then(|w| w.parse().ok());
@@ -119,9 +119,9 @@ impl Head {
         }
     }
 
-    fn points<'a>(&self, cursor: &mut Cursor<'a>) -> Result<Array<'a>, VtkLegacyError> {
+    fn points<'a>(&self, cursor: &mut Cursor<'a>) -> Result<LegacyArray<'a>, VtkLegacyError> {
         let count = self.count(1, "a number of points")?;
-        Array::take(cursor, "POINTS", self.word(2, "a type of values")?, count.checked_mul(3))
+        LegacyArray::take(cursor, "POINTS", self.word(2, "a type of values")?, count.checked_mul(3))
     }
 
     /// Parses a cell list with its two counts: offsets and points since version 5, or cells and integers before.
@@ -130,16 +130,16 @@ impl Head {
         let second = self.count(2, "the number of cells and the size of the list")?;
         let place = self.place;
         if !cursor.next_is(b"OFFSETS") {
-            let points = Array::take(cursor, keyword, "int", Some(second))?;
+            let points = LegacyArray::take(cursor, keyword, "int", Some(second))?;
             return Ok(CellList { keyword, place, offsets: None, points, count: first });
         }
         let mut part = |name: &str, count: usize| {
             let (place, words) = cursor.keywords().ok_or(VtkLegacyError::MissingSection { section: "CONNECTIVITY" })?;
-            let head = Head { place, words };
+            let head = SectionHeader { place, words };
             if !head.words[0].eq_ignore_ascii_case(name) {
                 return Err(VtkLegacyError::UnknownKeyword { place, found: shown(head.words[0].as_bytes()) });
             }
-            Array::take(cursor, name, head.word(1, "a type of values")?, Some(count))
+            LegacyArray::take(cursor, name, head.word(1, "a type of values")?, Some(count))
         };
         let offsets = part("OFFSETS", first)?;
         let points = part("CONNECTIVITY", second)?;
@@ -152,14 +152,14 @@ impl Head {
         cursor: &mut Cursor<'a>,
         keyword: &str,
         count: usize,
-    ) -> Result<Vec<Array<'a>>, VtkLegacyError> {
+    ) -> Result<Vec<LegacyArray<'a>>, VtkLegacyError> {
         const NAME_AND_TYPE: &str = "a name and a type of values";
         let (width, kind) = match keyword {
             "FIELD" => return self.field(cursor),
             "LOOKUP_TABLE" => {
                 let entries = self.count(2, "a name and a number of entries")?;
                 let kind = if cursor.binary { "unsigned_char" } else { "float" };
-                Array::take(cursor, keyword, kind, entries.checked_mul(4))?;
+                LegacyArray::take(cursor, keyword, kind, entries.checked_mul(4))?;
                 return Ok(Vec::new());
             }
             "SCALARS" => (self.words.get(3).map_or(Some(1), |w| w.parse().ok()), self.word(2, NAME_AND_TYPE)?),
@@ -183,11 +183,11 @@ impl Head {
             cursor.keywords();
         }
         let name = plain_name(self.word(1, NAME_AND_TYPE)?);
-        Ok(vec![Array::take(cursor, &name, kind, width.and_then(|width| count.checked_mul(width)))?])
+        Ok(vec![LegacyArray::take(cursor, &name, kind, width.and_then(|width| count.checked_mul(width)))?])
     }
 
     /// Parses field arrays, which have individual lengths.
-    fn field<'a>(&self, cursor: &mut Cursor<'a>) -> Result<Vec<Array<'a>>, VtkLegacyError> {
+    fn field<'a>(&self, cursor: &mut Cursor<'a>) -> Result<Vec<LegacyArray<'a>>, VtkLegacyError> {
         const NEEDED: &str = "a name, a number of components, a number of tuples and a type of values";
         let number = self.count(2, "a name and a number of arrays")?;
         let mut arrays = Vec::new();
@@ -199,16 +199,16 @@ impl Head {
             }
             let missing = || VtkLegacyError::CutShort { place: self.place, array: "FIELD".into(), count: number };
             let (place, words) = cursor.keywords().ok_or_else(missing)?;
-            let head = Head { place, words };
+            let head = SectionHeader { place, words };
             let (width, tuples) = (head.count(1, NEEDED)?, head.count(2, NEEDED)?);
             let (name, kind) = (plain_name(&head.words[0]), head.word(3, NEEDED)?);
             let count = width.checked_mul(tuples);
             if kind.eq_ignore_ascii_case("string") {
                 skip_strings(cursor, &name, count)?;
                 // Cannot be a radius: becomes an array without values.
-                arrays.push(Array::take(cursor, &name, "bit", Some(0))?);
+                arrays.push(LegacyArray::take(cursor, &name, "bit", Some(0))?);
             } else {
-                arrays.push(Array::take(cursor, &name, kind, count)?);
+                arrays.push(LegacyArray::take(cursor, &name, kind, count)?);
             }
         }
         Ok(arrays)

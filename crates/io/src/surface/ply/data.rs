@@ -1,6 +1,7 @@
 //! Data part of a PLY file.
 
-use super::head::{Element, Encoding, Head, Scalar};
+use super::head::{Encoding, PlyElement, PlyHeader};
+use crate::scalar::Scalar;
 use crate::surface::error::SurfaceFault;
 use crate::text::Place;
 use crate::text::{TextFault, Words};
@@ -13,7 +14,7 @@ pub(super) enum Data<'a> {
 
 impl<'a> Data<'a> {
     /// Starts after the header.
-    pub(super) fn new(bytes: &'a [u8], head: &Head) -> Self {
+    pub(super) fn new(bytes: &'a [u8], head: &PlyHeader) -> Self {
         if head.encoding == Encoding::Text {
             Self::Text(Words::from_line(&bytes[head.end..], head.line))
         } else {
@@ -30,7 +31,7 @@ impl<'a> Data<'a> {
     }
 
     /// Rejects an element that exceeds the rest of the file.
-    pub(super) fn ensure_room(&self, element: &Element) -> Result<(), SurfaceFault> {
+    pub(super) fn ensure_room(&self, element: &PlyElement) -> Result<(), SurfaceFault> {
         let (encoding, rest) = match self {
             Self::Text(words) => (Encoding::Text, words.rest() as u64 + 1),
             Self::Binary { bytes, at, .. } => (Encoding::Little, (bytes.len() - at) as u64),
@@ -64,7 +65,7 @@ impl<'a> Data<'a> {
                     return Err(SurfaceFault::Length { announced: end as u64, found: bytes.len() as u64 });
                 };
                 *at = end;
-                Ok(decode(taken, kind, *big))
+                Ok(kind.float(taken, *big))
             }
         }
     }
@@ -130,24 +131,5 @@ impl<'a> Data<'a> {
                 Err(SurfaceFault::Length { announced: *at as u64, found: bytes.len() as u64 })
             }
         }
-    }
-}
-
-/// Decodes a binary number; zero if there are too few bytes, which the caller excludes.
-fn decode(taken: &[u8], kind: Scalar, big: bool) -> f64 {
-    let mut low = [0_u8; 8];
-    for (i, slot) in low[..taken.len()].iter_mut().enumerate() {
-        *slot = if big { taken[taken.len() - 1 - i] } else { taken[i] };
-    }
-    let bits = u64::from_le_bytes(low);
-    match kind {
-        Scalar::I8 => f64::from(bits as i8),
-        Scalar::U8 => f64::from(bits as u8),
-        Scalar::I16 => f64::from(bits as i16),
-        Scalar::U16 => f64::from(bits as u16),
-        Scalar::I32 => f64::from(bits as i32),
-        Scalar::U32 => f64::from(bits as u32),
-        Scalar::F32 => f64::from(f32::from_bits(bits as u32)),
-        Scalar::F64 => f64::from_bits(bits),
     }
 }

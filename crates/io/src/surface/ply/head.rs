@@ -1,5 +1,6 @@
 //! Header of a PLY file: encoding, elements and properties.
 
+use crate::scalar::Scalar;
 use crate::surface::error::SurfaceFault;
 use crate::text::Place;
 use crate::text::{TextFault, Words};
@@ -12,47 +13,19 @@ pub(super) enum Encoding {
     Big,
 }
 
-/// Number type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
-
-impl Scalar {
-    fn of(word: &[u8]) -> Option<Self> {
-        Some(match word {
-            b"char" | b"int8" => Self::I8,
-            b"uchar" | b"uint8" => Self::U8,
-            b"short" | b"int16" => Self::I16,
-            b"ushort" | b"uint16" => Self::U16,
-            b"int" | b"int32" => Self::I32,
-            b"uint" | b"uint32" => Self::U32,
-            b"float" | b"float32" => Self::F32,
-            b"double" | b"float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    /// Size of a number, in bytes.
-    pub(super) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-
-    fn is_integer(self) -> bool {
-        !matches!(self, Self::F32 | Self::F64)
-    }
+/// Returns the number type of a name in a PLY header.
+fn scalar_of(word: &[u8]) -> Option<Scalar> {
+    Some(match word {
+        b"char" | b"int8" => Scalar::I8,
+        b"uchar" | b"uint8" => Scalar::U8,
+        b"short" | b"int16" => Scalar::I16,
+        b"ushort" | b"uint16" => Scalar::U16,
+        b"int" | b"int32" => Scalar::I32,
+        b"uint" | b"uint32" => Scalar::U32,
+        b"float" | b"float32" => Scalar::F32,
+        b"double" | b"float64" => Scalar::F64,
+        _ => return None,
+    })
 }
 
 /// Property of an element.
@@ -67,14 +40,14 @@ pub(super) struct Property {
 
 /// Declared element.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Element {
+pub(super) struct PlyElement {
     pub(super) name: Vec<u8>,
     /// Number of items announced by the file.
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
 }
 
-impl Element {
+impl PlyElement {
     /// Minimum size of an item, in bytes.
     pub(super) fn least(&self, encoding: Encoding) -> usize {
         // A number in text takes at least a digit and a space.
@@ -90,9 +63,9 @@ impl Element {
 
 /// Parsed header.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Head {
+pub(super) struct PlyHeader {
     pub(super) encoding: Encoding,
-    pub(super) elements: Vec<Element>,
+    pub(super) elements: Vec<PlyElement>,
     /// Byte offset of the data.
     pub(super) end: usize,
     /// Line number of the data.
@@ -100,8 +73,8 @@ pub(super) struct Head {
 }
 
 /// Parses the header.
-pub(super) fn parse(bytes: &[u8]) -> Result<Head, SurfaceFault> {
-    let mut head = Head { encoding: Encoding::Text, elements: Vec::new(), end: 0, line: 1 };
+pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, SurfaceFault> {
+    let mut head = PlyHeader { encoding: Encoding::Text, elements: Vec::new(), end: 0, line: 1 };
     let mut encoded = false;
     while let Some(length) = bytes[head.end..].iter().position(|&b| b == b'\n') {
         let line = &bytes[head.end..head.end + length];
@@ -126,7 +99,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Head, SurfaceFault> {
                     what: "the element's count",
                     value: count,
                 })?;
-                head.elements.push(Element { name, count, properties: Vec::new() });
+                head.elements.push(PlyElement { name, count, properties: Vec::new() });
             }
             b"property" => {
                 let property = property(&mut words, place)?;
@@ -162,7 +135,7 @@ fn encoding(word: &[u8], place: Place) -> Result<Encoding, SurfaceFault> {
 
 fn property(words: &mut Words, place: Place) -> Result<Property, SurfaceFault> {
     let scalar =
-        |word: &[u8]| Scalar::of(word).ok_or_else(|| SurfaceFault::unexpected(word, "a type of numbers", place));
+        |word: &[u8]| scalar_of(word).ok_or_else(|| SurfaceFault::unexpected(word, "a type of numbers", place));
     let kind = words.need_here("the property's type")?;
     if kind != b"list" {
         let value = scalar(kind)?;
@@ -170,7 +143,7 @@ fn property(words: &mut Words, place: Place) -> Result<Property, SurfaceFault> {
     }
     let counted = words.need_here("the type of the list's count")?;
     let count = scalar(counted)?;
-    if !count.is_integer() {
+    if count.is_float() {
         return Err(SurfaceFault::unexpected(counted, "a type of integers", place));
     }
     let value = scalar(words.need_here("the type of the list's values")?)?;

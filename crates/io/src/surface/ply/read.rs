@@ -1,7 +1,7 @@
 //! Reader of vertices and faces; other elements are skipped.
 
 use super::data::Data;
-use super::head::{Element, parse};
+use super::head::{PlyElement, parse};
 use crate::surface::content::SurfaceContent;
 use crate::surface::error::SurfaceFault;
 use crate::surface::faces::Faces;
@@ -35,7 +35,7 @@ pub(in crate::surface) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFa
     list.unwrap_or_else(|| Faces::new(points, 0, 0)).into_surface(positions)
 }
 
-fn skip_items(data: &mut Data, element: &Element) -> Result<(), SurfaceFault> {
+fn skip_items(data: &mut Data, element: &PlyElement) -> Result<(), SurfaceFault> {
     // Items without properties occupy no bytes, whatever their count.
     let count = if element.properties.is_empty() { 0 } else { element.count };
     for _ in 0..count {
@@ -46,7 +46,7 @@ fn skip_items(data: &mut Data, element: &Element) -> Result<(), SurfaceFault> {
     Ok(())
 }
 
-fn skip_property(data: &mut Data, element: &Element, index: usize) -> Result<(), SurfaceFault> {
+fn skip_property(data: &mut Data, element: &PlyElement, index: usize) -> Result<(), SurfaceFault> {
     let property = &element.properties[index];
     let count = match property.count {
         Some(kind) => data.list_count(kind)? as u64,
@@ -55,7 +55,7 @@ fn skip_property(data: &mut Data, element: &Element, index: usize) -> Result<(),
     data.skip(property.value, count)
 }
 
-fn read_vertices(data: &mut Data, element: &Element, points: &mut Vec<Point3>) -> Result<(), SurfaceFault> {
+fn read_vertices(data: &mut Data, element: &PlyElement, points: &mut Vec<Point3>) -> Result<(), SurfaceFault> {
     let mut columns = [0; 3];
     for (column, name) in columns.iter_mut().zip([b"x", b"y", b"z"]) {
         let found = element.property(&[name]).filter(|&i| element.properties[i].count.is_none());
@@ -75,7 +75,7 @@ fn read_vertices(data: &mut Data, element: &Element, points: &mut Vec<Point3>) -
     Ok(())
 }
 
-fn read_faces(data: &mut Data, element: &Element, points: usize) -> Result<Faces, SurfaceFault> {
+fn read_faces(data: &mut Data, element: &PlyElement, points: usize) -> Result<Faces, SurfaceFault> {
     const MISSING: SurfaceFault = SurfaceFault::Missing { what: "the list vertex_indices of the faces" };
     let list = element.property(&[b"vertex_indices", b"vertex_index"]).ok_or(MISSING)?;
     let counted = element.properties[list].count.ok_or(MISSING)?;

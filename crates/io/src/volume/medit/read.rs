@@ -39,13 +39,13 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<VolumeMesh, MeditFault> {
 }
 
 /// Cells with their references, as numbered in the file.
-type Cells<const N: usize> = Option<Vec<([i64; N], i32)>>;
+type LabelledCells<const N: usize> = Option<Vec<([i64; N], i32)>>;
 
 #[derive(Default)]
 struct Lists {
     vertices: Option<TetMesh>,
-    triangles: Cells<3>,
-    tets: Cells<4>,
+    triangles: LabelledCells<3>,
+    tets: LabelledCells<4>,
 }
 
 impl Lists {
@@ -80,7 +80,11 @@ impl Lists {
     }
 }
 
-fn read_cells<const N: usize>(words: &mut Words, kind: &'static str, cells: &mut Cells<N>) -> Result<(), MeditFault> {
+fn read_cells<const N: usize>(
+    words: &mut Words,
+    kind: &'static str,
+    cells: &mut LabelledCells<N>,
+) -> Result<(), MeditFault> {
     if cells.is_some() {
         return Err(MeditFault::Repeated { line: words.line(), kind });
     }

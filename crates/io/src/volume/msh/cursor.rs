@@ -12,13 +12,13 @@ pub(super) enum Version {
 }
 
 /// Position in the file.
-pub(super) struct Cursor<'a> {
+pub(super) struct MshCursor<'a> {
     bytes: &'a [u8],
     at: usize,
     binary: bool,
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> MshCursor<'a> {
     /// Starts at the beginning of a file.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, binary: false }

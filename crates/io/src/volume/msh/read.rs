@@ -1,6 +1,6 @@
 //! Reader of Gmsh's MSH format: 4.1 (text or binary) and 2.2 (text).
 
-use super::cursor::{Cursor, Version};
+use super::cursor::{MshCursor, Version};
 use super::error::MshFault;
 use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION};
 use crate::patches::{distinct, usual_name};
@@ -15,8 +15,8 @@ use rustc_hash::FxHashMap;
 /// # Errors
 /// The file is invalid or incomplete, or has other elements.
 pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
-    let mut cursor = Cursor::new(bytes);
-    let mut parts = Parts::default();
+    let mut cursor = MshCursor::new(bytes);
+    let mut parts = MshSections::default();
     if cursor.next_section()? != Some("MeshFormat") {
         return Err(MshFault::Missing { what: "$MeshFormat" });
     }
@@ -46,7 +46,7 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
 
 /// Contents of the sections.
 #[derive(Default)]
-struct Parts {
+struct MshSections {
     /// Names of the physical groups of surfaces.
     names: Vec<(i32, String)>,
     /// First physical group of each surface.
@@ -59,8 +59,8 @@ struct Parts {
     extra: Extra,
 }
 
-impl Parts {
-    fn read_names(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+impl MshSections {
+    fn read_names(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         // Text even in binary files.
         let count: u64 = cursor.line()?.parse().map_err(|_| cursor.bad())?;
         for _ in 0..count {
@@ -76,7 +76,7 @@ impl Parts {
         Ok(())
     }
 
-    fn read_entities(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_entities(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         let counts: [u64; 4] = cursor.sizes()?;
         for (dimension, count) in counts.into_iter().enumerate() {
             for _ in 0..count {
@@ -100,7 +100,7 @@ impl Parts {
         Ok(())
     }
 
-    fn read_nodes(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_nodes(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         let [blocks, ..]: [u64; 4] = cursor.sizes()?;
         for _ in 0..blocks {
             let (dimension, _tag, parametric) = (cursor.int()?, cursor.int()?, cursor.int()?);
@@ -117,7 +117,7 @@ impl Parts {
         Ok(())
     }
 
-    fn read_elements(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_elements(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         let [blocks, ..]: [u64; 4] = cursor.sizes()?;
         for _ in 0..blocks {
             let (_dimension, entity, kind) = (cursor.int()?, cursor.int()?, cursor.int()?);
@@ -125,24 +125,14 @@ impl Parts {
             let group = groups.get(&entity).copied().unwrap_or(0);
             for _ in 0..cursor.size()? {
                 let tag = cursor.size()?;
-                match kind {
-                    MSH_TRIANGLE => self.triangles.push((tag, cursor.sizes()?, group)),
-                    MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
-                    // Lines and points bound no volume.
-                    1 => drop(cursor.sizes::<2>()?),
-                    15 => drop(cursor.size()?),
-                    _ => {
-                        let cell = self.tets.len() + self.triangles.len();
-                        return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
-                    }
-                }
+                self.read_corners(cursor, tag, kind, group)?;
             }
         }
         Ok(())
     }
 
     /// Reads nodes of version 2: a tag and a position each.
-    fn read_node_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_node_list(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         for _ in 0..cursor.size()? {
             let tag = cursor.size()?;
             self.nodes.push((tag, Point3::new(cursor.float()?, cursor.float()?, cursor.float()?)));
@@ -151,7 +141,7 @@ impl Parts {
     }
 
     /// Reads elements of version 2: tag, type, count of further tags (first the physical group), these tags, corners.
-    fn read_element_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_element_list(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         for _ in 0..cursor.size()? {
             let (tag, kind, tags) = (cursor.size()?, cursor.int()?, cursor.size()?);
             let mut group = 0;
@@ -159,25 +149,32 @@ impl Parts {
                 let value = cursor.int()?;
                 group = if i == 0 { value } else { group };
             }
-            match kind {
-                MSH_TRIANGLE => {
-                    // In version 4.1 the entities have this information.
-                    self.group_of_surface.insert(group, group);
-                    self.triangles.push((tag, cursor.sizes()?, group));
-                }
-                MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
-                1 => drop(cursor.sizes::<2>()?),
-                15 => drop(cursor.size()?),
-                _ => {
-                    let cell = self.tets.len() + self.triangles.len();
-                    return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
-                }
+            if kind == MSH_TRIANGLE {
+                // What a reader of version 4.1 knows from the entities.
+                self.group_of_surface.insert(group, group);
+            }
+            self.read_corners(cursor, tag, kind, group)?;
+        }
+        Ok(())
+    }
+
+    /// Reads the vertices of an element of a type.
+    fn read_corners(&mut self, cursor: &mut MshCursor, tag: u64, kind: i32, group: i32) -> Result<(), MshFault> {
+        match kind {
+            MSH_TRIANGLE => self.triangles.push((tag, cursor.sizes()?, group)),
+            MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
+            // Lines and points bound no volume.
+            1 => drop(cursor.sizes::<2>()?),
+            15 => drop(cursor.size()?),
+            _ => {
+                let cell = self.tets.len() + self.triangles.len();
+                return Err(MshFault::UnsupportedCell { kind: kind.into(), cell });
             }
         }
         Ok(())
     }
 
-    fn read_extra(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
+    fn read_extra(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
         let line = cursor.line()?;
         self.extra = serde_json::from_str(line).map_err(|_| cursor.bad())?;
         Ok(())

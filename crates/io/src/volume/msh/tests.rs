@@ -5,17 +5,18 @@ use super::read::read;
 use super::write::write;
 use super::write_2::write as write_2;
 use crate::volume::content::{MeshFile, MeshNotes};
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::fixtures::labelled_tube;
+use crate::volume::in_pieces::InPieces;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;
 use std::io;
 
-type Writer = fn(&mut Vec<u8>, &dyn MeshSource, &MeshNotes) -> io::Result<()>;
+type WriteFn = fn(&mut Vec<u8>, &dyn MeshSource, &MeshNotes) -> io::Result<()>;
 
 /// Both versions.
-const WRITERS: [Writer; 2] =
+const WRITERS: [WriteFn; 2] =
     [|out, mesh, notes| write(out, mesh, notes, None), |out, mesh, notes| write_2(out, mesh, notes, None)];
 
 #[test]
@@ -73,9 +74,9 @@ fn regions_become_volumes() {
 }
 
 /// Height of each point.
-struct Heights;
+struct PointHeights;
 
-impl Beside for Heights {
+impl Beside for PointHeights {
     fn columns(&self) -> &[Column] {
         const COLUMNS: [Column; 2] = [
             Column { name: "height", at_points: true, is_integer: false },
@@ -146,8 +147,8 @@ fn values_stand_beside_nodes_and_elements() {
             }
             bytes
         };
-        let bytes = bytes_of(&volume, Some(&Heights));
-        assert!(bytes == bytes_of(&Cut { volume: &volume, sizes: &[7] }, Some(&Heights)));
+        let bytes = bytes_of(&volume, Some(&PointHeights));
+        assert!(bytes == bytes_of(&InPieces { volume: &volume, sizes: &[7] }, Some(&PointHeights)));
         let file = read(&bytes).unwrap();
         let heights = rows(&bytes, "NodeData", "height", binary);
         let points = &file.volume.mesh.points;

@@ -7,7 +7,7 @@ use anastomesh_mesh::source::MeshSource;
 use std::io::{self, Write};
 
 /// Section under construction: tags with their values.
-struct Rows<'a, W> {
+struct ValueRows<'a, W> {
     out: &'a mut W,
     /// True for binary rows; the section header is always text.
     binary: bool,
@@ -15,7 +15,7 @@ struct Rows<'a, W> {
     tag: i32,
 }
 
-impl<'a, W: Write> Rows<'a, W> {
+impl<'a, W: Write> ValueRows<'a, W> {
     /// Starts the section of a column with this number of rows.
     fn begin(out: &'a mut W, binary: bool, column: &Column, rows: usize) -> io::Result<Self> {
         let section = if column.at_points { "NodeData" } else { "ElementData" };
@@ -55,7 +55,7 @@ pub(super) fn write_values_2(out: &mut impl Write, mesh: &dyn MeshSource, values
     let counts = mesh.counts();
     for (column, named) in values.columns().iter().enumerate() {
         let count = if named.at_points { counts.points } else { counts.boundary + counts.tets };
-        let mut rows = Rows::begin(out, false, named, count)?;
+        let mut rows = ValueRows::begin(out, false, named, count)?;
         if named.at_points {
             mesh.each_points(|points| rows.add(&values.at_points(column, points)))?;
         } else {
@@ -83,7 +83,7 @@ pub(super) fn write_values(
     let faces: usize = surfaces.list.iter().map(|surface| surface.faces).sum();
     for (column, named) in values.columns().iter().enumerate() {
         let count = if named.at_points { counts.points } else { faces + counts.tets };
-        let mut rows = Rows::begin(out, true, named, count)?;
+        let mut rows = ValueRows::begin(out, true, named, count)?;
         if named.at_points {
             let mut add = |points: &[Point3]| rows.add(&values.at_points(column, points));
             each_chosen(mesh, |v| surfaces.first.has(v), &mut add)?;

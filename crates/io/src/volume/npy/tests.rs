@@ -2,7 +2,8 @@
 
 use super::{read, write};
 use crate::volume::content::{MeshFile, MeshNotes};
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::fixtures::labelled_tube;
+use crate::volume::in_pieces::InPieces;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::source::MeshSource;
 use std::fs;
@@ -19,7 +20,7 @@ fn a_mesh_comes_back_whatever_pieces_it_is_written_in() {
     let folder = tempfile::tempdir().unwrap();
     let (volume, notes) = labelled_tube(9);
     for sizes in [&[1000][..], &[1, 7, 30]] {
-        let path = written(folder.path(), &Cut { volume: &volume, sizes }, &notes);
+        let path = written(folder.path(), &InPieces { volume: &volume, sizes }, &notes);
         let back = read(&path).unwrap();
         assert_eq!(back, MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() });
     }

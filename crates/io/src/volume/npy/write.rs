@@ -39,7 +39,7 @@ pub(in crate::volume) fn write(
     progress: &dyn Progress,
 ) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
-    let writer = Writer { folder: &folder, progress };
+    let writer = ArrayFolder { folder: &folder, progress };
     let counts = mesh.counts();
     writer.array::<f64>(POINTS, counts.points, 3, |out| {
         mesh.each_points(|points| points.iter().try_for_each(|p| p.iter().try_for_each(|x| x.put(out))))
@@ -59,7 +59,7 @@ pub(in crate::volume) fn write(
 }
 
 /// Writer of arrays in a folder.
-struct Writer<'a> {
+struct ArrayFolder<'a> {
     folder: &'a AtomicFolder,
     progress: &'a dyn Progress,
 }
@@ -67,7 +67,7 @@ struct Writer<'a> {
 /// Output stream of an array.
 type Out<'a> = Asked<'a, BufWriter<File>>;
 
-impl Writer<'_> {
+impl ArrayFolder<'_> {
     fn array<T: Item>(
         &self,
         name: &str,

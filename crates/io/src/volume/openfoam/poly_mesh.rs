@@ -38,7 +38,7 @@ pub(super) fn write(
     let counts = mesh.counts();
     let note =
         format!("nPoints:{}  nCells:{}  nFaces:{faces}  nInternalFaces:{}", counts.points, counts.tets, boundary.inner);
-    let mut lists = Lists {
+    let mut lists = FaceLists {
         corners: corner_list(folder, &note, faces, progress)?,
         owner: label_list(folder, OWNER, &note, faces)?,
         neighbour: label_list(folder, NEIGHBOUR, &note, boundary.inner)?,
@@ -61,7 +61,7 @@ pub(super) fn write(
         }
         Ok(())
     })?;
-    [lists.corners, lists.owner, lists.neighbour].into_iter().try_for_each(List::finish)
+    [lists.corners, lists.owner, lists.neighbour].into_iter().try_for_each(LabelList::finish)
 }
 
 fn write_points(folder: &AtomicFolder, mesh: &dyn MeshSource, progress: &dyn Progress) -> io::Result<()> {
@@ -77,13 +77,13 @@ fn write_points(folder: &AtomicFolder, mesh: &dyn MeshSource, progress: &dyn Pro
 }
 
 /// Lists that are written in parallel.
-struct Lists {
-    corners: List,
-    owner: List,
-    neighbour: List,
+struct FaceLists {
+    corners: LabelList,
+    owner: LabelList,
+    neighbour: LabelList,
 }
 
-impl Lists {
+impl FaceLists {
     /// Writes faces of one patch, starting at a given position.
     fn put_outer(&mut self, place: u64, faces: &[OuterFace]) -> io::Result<()> {
         let corners: Vec<[u32; 3]> = faces.iter().map(|face| face.vertices).collect();
@@ -93,7 +93,7 @@ impl Lists {
 }
 
 /// Label list in a file with random access, with a fixed number of labels per face.
-struct List {
+struct LabelList {
     file: AtomicFile,
     /// Offset of the first label.
     start: u64,
@@ -105,7 +105,7 @@ struct List {
     at: u64,
 }
 
-impl List {
+impl LabelList {
     fn begin(mut file: AtomicFile, width: u64, faces: u64) -> io::Result<Self> {
         write!(file, "{}\n(", width * faces)?;
         let start = file.stream_position()?;
@@ -130,14 +130,14 @@ impl List {
     }
 }
 
-fn label_list(folder: &AtomicFolder, path: &str, note: &str, faces: u64) -> io::Result<List> {
+fn label_list(folder: &AtomicFolder, path: &str, note: &str, faces: u64) -> io::Result<LabelList> {
     let mut file = folder.file(path)?;
     file.write_all(head::binary("labelList", path, note).as_bytes())?;
-    List::begin(file, 1, faces)
+    LabelList::begin(file, 1, faces)
 }
 
 /// Corners of all faces, after the list of each face's offset.
-fn corner_list(folder: &AtomicFolder, note: &str, faces: u64, progress: &dyn Progress) -> io::Result<List> {
+fn corner_list(folder: &AtomicFolder, note: &str, faces: u64, progress: &dyn Progress) -> io::Result<LabelList> {
     /// Number of labels per write.
     const AT_A_TIME: u32 = 1 << 16;
     let mut file = folder.file(FACES)?;
@@ -149,5 +149,5 @@ fn corner_list(folder: &AtomicFolder, note: &str, faces: u64, progress: &dyn Pro
         out.write_all(&some.flat_map(|face| (3 * face).to_le_bytes()).collect::<Vec<u8>>())?;
     }
     out.write_all(b")\n")?;
-    List::begin(file, 3, faces)
+    LabelList::begin(file, 3, faces)
 }

@@ -1,5 +1,6 @@
 use super::*;
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::fixtures::labelled_tube;
+use crate::volume::in_pieces::InPieces;
 use crate::volume::write_mesh;
 use anastomesh_mesh::{TET_FACES, VolumeMesh, face_key};
 use std::fs;
@@ -79,7 +80,7 @@ fn pieces_make_no_difference() {
     let (volume, notes) = labelled_tube(9);
     let whole = written(&volume, &notes);
     for sizes in [vec![1], vec![7, 30], vec![1000]] {
-        let cut = written(&Cut { volume: &volume, sizes: &sizes }, &notes);
+        let cut = written(&InPieces { volume: &volume, sizes: &sizes }, &notes);
         for name in poly_mesh::FILES.into_iter().chain(TEXTS.map(|(name, _)| name)) {
             let read = |folder: &tempfile::TempDir| fs::read(folder.path().join("a.foam").join(name)).unwrap();
             assert!(read(&cut) == read(&whole), "{name} {sizes:?}");

@@ -23,7 +23,7 @@ impl<'a> Reordered<'a> {
     /// # Errors
     /// The mesh source fails.
     pub(super) fn along_the_tree(mesh: &'a dyn MeshSource) -> io::Result<Self> {
-        let parts = Parts::of(mesh)?;
+        let parts = PartGraph::of(mesh)?;
         let order = parts.map_or_else(|| (0..mesh.parts()).collect(), |parts| parts.in_preorder());
         Ok(Self { mesh, order })
     }
@@ -98,12 +98,12 @@ impl Joined {
 }
 
 /// Graph of parts, connected if they share points.
-struct Parts {
+struct PartGraph {
     neighbors: Vec<Vec<u32>>,
     tets: Vec<u64>,
 }
 
-impl Parts {
+impl PartGraph {
     /// Returns `None` if a part has several blocks, or a block several parts.
     fn of(mesh: &dyn MeshSource) -> io::Result<Option<Self>> {
         let mut starts = vec![0_u32];
@@ -195,8 +195,8 @@ mod tests {
     use super::*;
 
     /// Graph with these joints; all parts have equal size.
-    fn graph(count: usize, joints: &[[u32; 2]]) -> Parts {
-        let mut parts = Parts { neighbors: vec![Vec::new(); count], tets: vec![1; count] };
+    fn graph(count: usize, joints: &[[u32; 2]]) -> PartGraph {
+        let mut parts = PartGraph { neighbors: vec![Vec::new(); count], tets: vec![1; count] };
         for &[a, b] in joints {
             parts.neighbors[a as usize].push(b);
             parts.neighbors[b as usize].push(a);

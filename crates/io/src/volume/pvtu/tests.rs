@@ -3,7 +3,8 @@
 use super::error::PvtuFault;
 use super::write::{Pieces, write};
 use crate::volume::error::MeshFault;
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::fixtures::labelled_tube;
+use crate::volume::in_pieces::InPieces;
 use crate::volume::{MeshFileError, MeshNotes, ensure_writable, read_mesh, write_mesh};
 use anastomesh_mesh::VolumeMesh;
 use std::fs;
@@ -89,7 +90,7 @@ fn neither_memory_nor_the_pieces_that_are_read_make_a_difference() {
         let path = folder.path().join("tube.pvtu");
         let pieces = Pieces { tets: 400, memory, ..Pieces::default() };
         match sizes {
-            Some(sizes) => write(&path, &Cut { volume: &volume, sizes }, &notes, pieces, &()).unwrap(),
+            Some(sizes) => write(&path, &InPieces { volume: &volume, sizes }, &notes, pieces, &()).unwrap(),
             None => write(&path, &volume, &notes, pieces, &()).unwrap(),
         }
         let named = files(folder.path()).into_iter();

@@ -56,7 +56,7 @@ pub(in crate::volume) fn write(
     let plan = Plan::of(mesh, pieces.tets)?;
     let room = pieces.memory / bytes_of_piece(mesh, pieces.tets).max(1);
     let points = mesh.counts().points;
-    Writer {
+    PieceWriter {
         mesh,
         notes,
         plan: &plan,
@@ -113,7 +113,7 @@ fn announced(columns: &[Column], at_points: bool) -> String {
 }
 
 /// Writer of pieces, with one batch per pass over points and boundary.
-struct Writer<'a> {
+struct PieceWriter<'a> {
     mesh: &'a dyn MeshSource,
     notes: &'a MeshNotes,
     plan: &'a Plan,
@@ -131,7 +131,7 @@ struct Writer<'a> {
 
 /// Piece: a separate mesh, first with global, then with local numbers.
 #[derive(Default)]
-struct Piece {
+struct MeshPiece {
     volume: VolumeMesh,
     /// Global point numbers, ascending.
     ids: Vec<u32>,
@@ -142,10 +142,10 @@ struct Piece {
 struct Batch {
     /// Number of the first piece.
     first: usize,
-    pieces: Vec<Piece>,
+    pieces: Vec<MeshPiece>,
 }
 
-impl Writer<'_> {
+impl PieceWriter<'_> {
     fn write(mut self) -> io::Result<()> {
         let mut batch = Batch { first: 0, pieces: vec![self.piece_of(0)] };
         let (mut at, mesh) = (0, self.mesh);
@@ -181,10 +181,10 @@ impl Writer<'_> {
     }
 
     /// Creates an empty piece.
-    fn piece_of(&self, number: usize) -> Piece {
+    fn piece_of(&self, number: usize) -> MeshPiece {
         let before = number.checked_sub(1).and_then(|n| self.plan.ends.get(n)).copied().unwrap_or(0);
         let tets = self.plan.ends.get(number).map_or(0, |end| end - before);
-        let mut piece = Piece::default();
+        let mut piece = MeshPiece::default();
         piece.volume.mesh.tets.reserve_exact(tets);
         piece.volume.tet_block.reserve_exact(tets);
         piece
@@ -221,7 +221,7 @@ impl Writer<'_> {
     }
 
     /// Assigns local numbers to the points of a piece. Unused points go to the last piece.
-    fn number(&mut self, piece: &mut Piece, last: bool) -> io::Result<()> {
+    fn number(&mut self, piece: &mut MeshPiece, last: bool) -> io::Result<()> {
         let (tets, faces) = (&mut piece.volume.mesh.tets, &mut piece.volume.boundary);
         self.piece.clear();
         for &v in tets.as_flattened().iter().chain(faces.as_flattened()) {
@@ -260,7 +260,7 @@ impl Writer<'_> {
         })
     }
 
-    fn write_piece(&self, number: usize, mut piece: Piece) -> io::Result<()> {
+    fn write_piece(&self, number: usize, mut piece: MeshPiece) -> io::Result<()> {
         let notes = (number == 0).then_some(self.notes);
         if notes.is_some() {
             piece.volume.patches = self.mesh.patches().to_vec();

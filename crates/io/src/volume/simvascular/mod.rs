@@ -10,8 +10,8 @@ mod tests;
 
 use super::conditions::plain;
 use super::content::MeshNotes;
-use super::vtu::arrays::{Array, INT32, Place, Width, cell_arrays, points_array};
-use super::vtu::{TetsAlone, file::File};
+use super::vtu::arrays::{ArrayLocation, ArrayWriter, INT32, Width, cell_arrays, points_array};
+use super::vtu::{Recounted, file::File};
 use crate::file::{Asked, AtomicFile, AtomicFolder};
 use crate::patches::usual_name;
 use crate::vtk_xml::Blocks;
@@ -60,14 +60,14 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
     folder.commit()
 }
 
-type Out<'a> = Asked<'a, &'a mut AtomicFile>;
+type SheetOutput<'a> = Asked<'a, &'a mut AtomicFile>;
 
 /// Writes a file of the folder.
 fn put(
     folder: &AtomicFolder,
     name: &str,
     progress: &dyn Progress,
-    write: &dyn Fn(&mut Out) -> io::Result<()>,
+    write: &dyn Fn(&mut SheetOutput) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut file = folder.file(name)?;
     write(&mut Asked { out: &mut file, progress })?;
@@ -115,17 +115,17 @@ fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
 
 /// Writes tetrahedra only, as the solver accepts no other cells.
 fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource) -> io::Result<()> {
-    let mesh: &dyn MeshSource = &TetsAlone(mesh);
+    let mesh: &dyn MeshSource = &Recounted::without_boundary(mesh);
     let counts = mesh.counts();
     let (points, tets) = (counts.points, counts.tets);
     let mut arrays = vec![points_array(points, false, |each| mesh.each_points(each))];
     arrays.extend(cell_arrays(mesh, Width::Int32));
     let from_one = |place, name, count| {
-        Array::new(place, name, INT32, count, move |out| out.push(count, |i| (i as u32 + 1).to_le_bytes()))
+        ArrayWriter::new(place, name, INT32, count, move |out| out.push(count, |i| (i as u32 + 1).to_le_bytes()))
     };
-    arrays.push(from_one(Place::PointData, "GlobalNodeID", points));
-    arrays.push(from_one(Place::CellData, "GlobalElementID", tets));
-    arrays.push(Array::new(Place::CellData, "ModelRegionID", INT32, tets, move |out| {
+    arrays.push(from_one(ArrayLocation::PointData, "GlobalNodeID", points));
+    arrays.push(from_one(ArrayLocation::CellData, "GlobalElementID", tets));
+    arrays.push(ArrayWriter::new(ArrayLocation::CellData, "ModelRegionID", INT32, tets, move |out| {
         out.push(tets, |_| 1_u32.to_le_bytes())
     }));
     let counts = format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{tets}\"");
@@ -135,23 +135,23 @@ fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource) -> io::Resul
 /// Writes a surface with the mesh numbers of its points and adjacent tetrahedra.
 fn write_sheet(out: &mut (impl Write + Seek), sheet: &dyn Sheet) -> io::Result<()> {
     let (points, faces) = sheet.counts();
-    let corners = Array::new(Place::Polys, "connectivity", INT32, 3 * faces, |out| {
+    let corners = ArrayWriter::new(ArrayLocation::Polys, "connectivity", INT32, 3 * faces, |out| {
         sheet.each_faces(&mut |some| out.push(some.len(), |i| corners_of(sheet, &some[i])))
     });
     let offsets = move |out: &mut Blocks| out.push(faces, |face| (3 * (face as u32 + 1)).to_le_bytes());
     let label = |name, of: fn(&OuterFace) -> u32| {
-        Array::new(Place::CellData, name, INT32, faces, move |out| {
+        ArrayWriter::new(ArrayLocation::CellData, name, INT32, faces, move |out| {
             sheet.each_faces(&mut |some| out.push(some.len(), |i| of(&some[i]).to_le_bytes()))
         })
     };
-    let nodes = Array::new(Place::PointData, "GlobalNodeID", INT32, points, |out| {
+    let nodes = ArrayWriter::new(ArrayLocation::PointData, "GlobalNodeID", INT32, points, |out| {
         sheet.each_ids(&mut |ids| out.push(ids.len(), |i| (ids[i] + 1).to_le_bytes()))
     });
     let arrays = vec![
         nodes,
         points_array(points, false, |mut each| sheet.each_points(&mut each)),
-        Array { shrinks: false, ..corners },
-        Array::new(Place::Polys, "offsets", INT32, faces, offsets),
+        ArrayWriter { shrinks: false, ..corners },
+        ArrayWriter::new(ArrayLocation::Polys, "offsets", INT32, faces, offsets),
         label("GlobalElementID", |face| face.tet + 1),
         label("ModelRegionID", |_| 1),
         label("ModelFaceID", |face| face.patch as u32),

@@ -1,5 +1,6 @@
 use super::*;
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::fixtures::labelled_tube;
+use crate::volume::in_pieces::InPieces;
 use crate::volume::{read_mesh, write_mesh};
 use std::fs;
 
@@ -24,7 +25,7 @@ fn pieces_make_no_difference_and_tetrahedra_are_alone() {
     let names: Vec<&str> = whole.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, [EXTERIOR, MESH, "outlet_0.vtp", SOLVER, "wall.vtp", WALLS]);
     for sizes in [vec![1], vec![7, 30]] {
-        write_mesh(&path("cut.svmesh"), &Cut { volume: &volume, sizes: &sizes }, &notes).unwrap();
+        write_mesh(&path("cut.svmesh"), &InPieces { volume: &volume, sizes: &sizes }, &notes).unwrap();
         assert!(files(&path("cut.svmesh")) == whole, "{sizes:?}");
     }
     let read = read_mesh(&path("whole.svmesh").join(MESH)).unwrap();

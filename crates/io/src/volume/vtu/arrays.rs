@@ -12,7 +12,7 @@ use std::io;
 
 /// Section of an array in the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(in crate::volume) enum Place {
+pub(in crate::volume) enum ArrayLocation {
     Field,
     PointData,
     Points,
@@ -34,8 +34,8 @@ const FLOAT64: Kind = ("Float64", 8);
 pub(in crate::volume) type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
 
 /// Array of the file: name, type and source of its values.
-pub(in crate::volume) struct Array<'a> {
-    pub place: Place,
+pub(in crate::volume) struct ArrayWriter<'a> {
+    pub place: ArrayLocation,
     pub name: &'static str,
     pub kind: &'static str,
     /// Bytes per value.
@@ -47,9 +47,9 @@ pub(in crate::volume) struct Array<'a> {
     pub shrinks: bool,
 }
 
-impl<'a> Array<'a> {
+impl<'a> ArrayWriter<'a> {
     pub(in crate::volume) fn new(
-        place: Place,
+        place: ArrayLocation,
         name: &'static str,
         (kind, width): Kind,
         values: usize,
@@ -60,7 +60,7 @@ impl<'a> Array<'a> {
 }
 
 /// Points, cells and labels of a mesh.
-pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool) -> Vec<Array<'_>> {
+pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool) -> Vec<ArrayWriter<'_>> {
     let mut all = vec![points_array(mesh.counts().points, float32, |each| mesh.each_points(each))];
     all.extend(cell_arrays(mesh, Width::of(mesh.counts())));
     all.extend([patch_array(mesh), block_array(mesh)]);
@@ -86,7 +86,7 @@ fn patch_names(patches: &[Patch]) -> Vec<String> {
 }
 
 /// Field data of a mesh.
-pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<Array<'a>> {
+pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<ArrayWriter<'a>> {
     let caps: Vec<_> = patches.iter().filter_map(|p| p.cap.map(|cap| (p.id, cap))).collect();
     let mut arrays = vec![strings(field::PATCH_NAMES, &patch_names(patches))];
     if !caps.is_empty() {
@@ -113,30 +113,30 @@ pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<Array<'
 
 /// Texts as bytes with terminating zeros, like VTK's string arrays. Real string arrays make some readers (meshio)
 /// reject the file, bytes do not.
-fn strings<'a>(name: &'static str, texts: &[String]) -> Array<'a> {
+fn strings<'a>(name: &'static str, texts: &[String]) -> ArrayWriter<'a> {
     let mut bytes = Vec::new();
     for text in texts {
         bytes.extend(text.bytes().filter(|&b| b != 0));
         bytes.push(0);
     }
-    Array::new(Place::Field, name, UINT8, bytes.len(), move |out| out.push(bytes.len(), |i| [bytes[i]]))
+    ArrayWriter::new(ArrayLocation::Field, name, UINT8, bytes.len(), move |out| out.push(bytes.len(), |i| [bytes[i]]))
 }
 
-fn ints<'a>(name: &'static str, values: Vec<i64>) -> Array<'a> {
+fn ints<'a>(name: &'static str, values: Vec<i64>) -> ArrayWriter<'a> {
     let count = values.len();
-    Array::new(Place::Field, name, INT64, count, move |out| out.push(count, |i| values[i].to_le_bytes()))
+    ArrayWriter::new(ArrayLocation::Field, name, INT64, count, move |out| out.push(count, |i| values[i].to_le_bytes()))
 }
 
-fn floats<'a>(name: &'static str, components: usize, values: Vec<f64>) -> Array<'a> {
+fn floats<'a>(name: &'static str, components: usize, values: Vec<f64>) -> ArrayWriter<'a> {
     let count = values.len();
     let fill = move |out: &mut Blocks| out.push(count, |i| values[i].to_le_bytes());
-    Array { components, ..Array::new(Place::Field, name, FLOAT64, count, fill) }
+    ArrayWriter { components, ..ArrayWriter::new(ArrayLocation::Field, name, FLOAT64, count, fill) }
 }
 
 /// Number in the whole mesh of each point of a piece.
-pub(super) fn of_ids(ids: &[u32]) -> Array<'_> {
+pub(super) fn of_ids(ids: &[u32]) -> ArrayWriter<'_> {
     let fill = |out: &mut Blocks| out.push(ids.len(), |i| u64::from(ids[i]).to_le_bytes());
-    Array::new(Place::PointData, GLOBAL_IDS, INT64, ids.len(), fill)
+    ArrayWriter::new(ArrayLocation::PointData, GLOBAL_IDS, INT64, ids.len(), fill)
 }
 
 /// Callback for points in batches.
@@ -147,7 +147,7 @@ pub(in crate::volume) fn points_array<'a>(
     count: usize,
     float32: bool,
     pass: impl Fn(&mut EachPoints) -> io::Result<()> + 'a,
-) -> Array<'a> {
+) -> ArrayWriter<'a> {
     let kind = if float32 { FLOAT32 } else { FLOAT64 };
     let fill = move |out: &mut Blocks| {
         pass(&mut |points| {
@@ -158,8 +158,8 @@ pub(in crate::volume) fn points_array<'a>(
             }
         })
     };
-    let array = Array::new(Place::Points, "Points", kind, 3 * count, fill);
-    Array { components: 3, shrinks: false, ..array }
+    let array = ArrayWriter::new(ArrayLocation::Points, "Points", kind, 3 * count, fill);
+    ArrayWriter { components: 3, shrinks: false, ..array }
 }
 
 fn point_bytes<const W: usize, const N: usize>(p: &Point3, word: impl Fn(f64) -> [u8; W]) -> [u8; N] {
@@ -198,7 +198,7 @@ impl Width {
     }
 }
 
-pub(in crate::volume) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Array<'_>; 3] {
+pub(in crate::volume) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [ArrayWriter<'_>; 3] {
     let SourceCounts { tets, boundary, .. } = mesh.counts();
     let corners = move |out: &mut Blocks| {
         let mut push = |ids: &[u32]| width.push(out, ids.len(), |i| u64::from(ids[i]));
@@ -213,17 +213,18 @@ pub(in crate::volume) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Ar
         out.push(tets, |_| [VTK_TETRA])?;
         out.push(boundary, |_| [VTK_TRIANGLE])
     };
-    let corners = Array::new(Place::Cells, "connectivity", width.kind(), 4 * tets + 3 * boundary, corners);
+    let corners =
+        ArrayWriter::new(ArrayLocation::Cells, "connectivity", width.kind(), 4 * tets + 3 * boundary, corners);
     [
         // Half of a wide number is zeros.
-        Array { shrinks: width == Width::Int64, ..corners },
-        Array::new(Place::Cells, "offsets", width.kind(), tets + boundary, offsets),
-        Array::new(Place::Cells, "types", UINT8, tets + boundary, types),
+        ArrayWriter { shrinks: width == Width::Int64, ..corners },
+        ArrayWriter::new(ArrayLocation::Cells, "offsets", width.kind(), tets + boundary, offsets),
+        ArrayWriter::new(ArrayLocation::Cells, "types", UINT8, tets + boundary, types),
     ]
 }
 
 /// Points, triangles and labels of a boundary.
-pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec<Array<'a>> {
+pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec<ArrayWriter<'a>> {
     let counts = surface.counts();
     let (width, faces) = (Width::of(counts), counts.boundary);
     let corners = move |out: &mut Blocks| {
@@ -235,18 +236,18 @@ pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec
     let offsets = move |out: &mut Blocks| width.push(out, faces, |face| 3 * (face as u64 + 1));
     let patch = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.patches));
     let block = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.blocks));
-    let corners = Array::new(Place::Polys, "connectivity", width.kind(), 3 * faces, corners);
+    let corners = ArrayWriter::new(ArrayLocation::Polys, "connectivity", width.kind(), 3 * faces, corners);
     vec![
         points_array(counts.points, float32, |each| surface.each_points(each)),
-        Array { shrinks: width == Width::Int64, ..corners },
-        Array::new(Place::Polys, "offsets", width.kind(), faces, offsets),
-        Array::new(Place::CellData, "patch", INT32, faces, patch),
-        Array::new(Place::CellData, "block", INT32, faces, block),
+        ArrayWriter { shrinks: width == Width::Int64, ..corners },
+        ArrayWriter::new(ArrayLocation::Polys, "offsets", width.kind(), faces, offsets),
+        ArrayWriter::new(ArrayLocation::CellData, "patch", INT32, faces, patch),
+        ArrayWriter::new(ArrayLocation::CellData, "block", INT32, faces, block),
     ]
 }
 
 /// Additional values at points and in cells. Cell values derive from the corners.
-pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) -> Vec<Array<'a>> {
+pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) -> Vec<ArrayWriter<'a>> {
     let SourceCounts { points, tets, boundary } = mesh.counts();
     let array = |(column, named): (usize, &Column)| {
         let Column { name, at_points, is_integer } = *named;
@@ -259,11 +260,11 @@ pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) ->
             }
         };
         if at_points {
-            return Array::new(Place::PointData, name, kind, points, move |out| {
+            return ArrayWriter::new(ArrayLocation::PointData, name, kind, points, move |out| {
                 mesh.each_points(|some| push(out, values.at_points(column, some)))
             });
         }
-        Array::new(Place::CellData, name, kind, tets + boundary, move |out| {
+        ArrayWriter::new(ArrayLocation::CellData, name, kind, tets + boundary, move |out| {
             mesh.each_tet_corners(|some| push(out, values.in_tets(column, some)))?;
             mesh.each_face_corners(|some| push(out, values.in_faces(column, some)))
         })
@@ -272,17 +273,17 @@ pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) ->
 }
 
 /// Patches of the boundary faces; tetrahedra have 0.
-fn patch_array(mesh: &dyn MeshSource) -> Array<'_> {
+fn patch_array(mesh: &dyn MeshSource) -> ArrayWriter<'_> {
     let SourceCounts { tets, boundary, .. } = mesh.counts();
-    Array::new(Place::CellData, "patch", INT32, tets + boundary, move |out| {
+    ArrayWriter::new(ArrayLocation::CellData, "patch", INT32, tets + boundary, move |out| {
         out.push(tets, |_| [0; 4])?;
         mesh.each_face_labels(|piece| push_known(out, &piece.patches, piece.count))
     })
 }
 
-fn block_array(mesh: &dyn MeshSource) -> Array<'_> {
+fn block_array(mesh: &dyn MeshSource) -> ArrayWriter<'_> {
     let SourceCounts { tets, boundary, .. } = mesh.counts();
-    Array::new(Place::CellData, "block", INT32, tets + boundary, |out| {
+    ArrayWriter::new(ArrayLocation::CellData, "block", INT32, tets + boundary, |out| {
         mesh.each_tet_labels(|piece| push_known(out, &piece.blocks, piece.count))?;
         mesh.each_face_labels(|piece| push_known(out, &piece.blocks, piece.count))
     })

@@ -1,6 +1,6 @@
 //! VTK file: XML with the array offsets, followed by the arrays.
 
-use super::arrays::{Array, Place};
+use super::arrays::{ArrayLocation, ArrayWriter};
 use super::names::GLOBAL_IDS;
 use crate::vtk_xml::{Packing, write_blocks, write_spaces};
 use flate2::Compression;
@@ -13,18 +13,18 @@ pub(in crate::volume) struct File<'a> {
     pub kind: &'static str,
     /// Number of points and cells, as attributes of the piece.
     pub counts: String,
-    pub arrays: Vec<Array<'a>>,
+    pub arrays: Vec<ArrayWriter<'a>>,
     /// True for uncompressed arrays.
     pub raw: bool,
 }
 
 /// Sections of a piece in file order.
-const SECTIONS: [(Place, &str); 5] = [
-    (Place::PointData, "PointData"),
-    (Place::Points, "Points"),
-    (Place::Cells, "Cells"),
-    (Place::Polys, "Polys"),
-    (Place::CellData, "CellData"),
+const SECTIONS: [(ArrayLocation, &str); 5] = [
+    (ArrayLocation::PointData, "PointData"),
+    (ArrayLocation::Points, "Points"),
+    (ArrayLocation::Cells, "Cells"),
+    (ArrayLocation::Polys, "Polys"),
+    (ArrayLocation::CellData, "CellData"),
 ];
 
 /// Array that viewers show first, if present.
@@ -55,7 +55,7 @@ impl File<'_> {
         Ok(())
     }
 
-    fn packing(&self, array: &Array) -> Packing {
+    fn packing(&self, array: &ArrayWriter) -> Packing {
         if self.raw {
             return Packing::Raw;
         }
@@ -69,7 +69,7 @@ impl File<'_> {
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" \
              header_type=\"UInt64\"{compressor}>\n<{kind}>\n"
         );
-        self.section(&mut text, (Place::Field, "FieldData"), offsets);
+        self.section(&mut text, (ArrayLocation::Field, "FieldData"), offsets);
         // Writing to a string cannot fail.
         let _ = writeln!(text, "<Piece {}>", self.counts);
         for section in SECTIONS {
@@ -79,7 +79,7 @@ impl File<'_> {
         text
     }
 
-    fn section(&self, text: &mut String, (place, tag): (Place, &str), offsets: &[u64]) {
+    fn section(&self, text: &mut String, (place, tag): (ArrayLocation, &str), offsets: &[u64]) {
         let arrays: Vec<_> = self.arrays.iter().zip(offsets).filter(|(array, _)| array.place == place).collect();
         if arrays.is_empty() {
             return;
@@ -97,11 +97,11 @@ impl File<'_> {
 }
 
 /// XML attributes of an array, except its offset.
-fn attributes_of(array: &Array) -> String {
-    let Array { name, kind, components, .. } = array;
+fn attributes_of(array: &ArrayWriter) -> String {
+    let ArrayWriter { name, kind, components, .. } = array;
     // Field arrays need their length; for others it follows from the piece.
     let tuples = match array.place {
-        Place::Field => format!(" NumberOfTuples=\"{}\"", array.values / components),
+        ArrayLocation::Field => format!(" NumberOfTuples=\"{}\"", array.values / components),
         _ => String::new(),
     };
     // VTK accepts global ids only in arrays of its id type.

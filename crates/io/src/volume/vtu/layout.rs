@@ -19,7 +19,7 @@ pub(super) struct Counts {
 
 /// Cells of one block of the mesh.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
+pub(super) struct BlockPiece {
     pub block: i32,
     pub tets: Range<u64>,
     pub faces: Range<u64>,
@@ -45,7 +45,7 @@ fn layout(what: &'static str) -> VtuPiecesError {
 }
 
 /// Header of a file, before the arrays of the mesh.
-pub(super) struct Head {
+pub(super) struct VtuHeader {
     pub counts: Counts,
     pub wide: bool,
     /// True if the arrays are compressed.
@@ -62,7 +62,7 @@ pub(super) struct Head {
     pub notes: MeshNotes,
 }
 
-impl Head {
+impl VtuHeader {
     /// Reads the header and the field arrays, which precede the points.
     pub(super) fn read(file: &BlockFile, memory: usize) -> Result<Self, VtuPiecesError> {
         let bytes = text_of(file)?;
@@ -209,9 +209,9 @@ pub(super) fn runs(file: &BlockFile, block: &PackedArray) -> io::Result<Vec<(i32
 }
 
 /// Cells of each block, which must be contiguous among tetrahedra and among faces.
-pub(super) fn pieces(runs: &[(i32, u64)], counts: Counts) -> Result<Vec<Piece>, VtuPiecesError> {
+pub(super) fn pieces(runs: &[(i32, u64)], counts: Counts) -> Result<Vec<BlockPiece>, VtuPiecesError> {
     let scattered = || layout("the cells of a block do not stand together");
-    let mut pieces: Vec<Piece> = Vec::new();
+    let mut pieces: Vec<BlockPiece> = Vec::new();
     let mut place: FxHashMap<i32, usize> = FxHashMap::default();
     let mut start = 0;
     for &(block, count) in runs {
@@ -221,7 +221,7 @@ pub(super) fn pieces(runs: &[(i32, u64)], counts: Counts) -> Result<Vec<Piece>, 
             if place.insert(block, pieces.len()).is_some() {
                 return Err(scattered());
             }
-            pieces.push(Piece { block, tets: here, faces: tets..tets });
+            pieces.push(BlockPiece { block, tets: here, faces: tets..tets });
         }
         if end > tets {
             let here = start.max(tets)..end;

@@ -23,4 +23,4 @@ pub(super) use names::GLOBAL_IDS;
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
 pub use write::write_boundary;
-pub(super) use write::{Grid, TetsAlone, write};
+pub(super) use write::{Grid, Recounted, write};

@@ -1,6 +1,6 @@
 //! Blockwise reader of large VTU files written by this program, which store tetrahedra and faces block by block.
 
-use super::layout::{Counts, Head, Piece, VtuPiecesError, check_offsets, count_tets, pieces, runs};
+use super::layout::{BlockPiece, Counts, VtuHeader, VtuPiecesError, check_offsets, count_tets, pieces, runs};
 use crate::volume::content::MeshNotes;
 use crate::vtk_xml::{BlockFile, PackedArray};
 use anastomesh_mesh::Patch;
@@ -26,7 +26,7 @@ pub struct VtuPieces {
     /// True if coordinates have 8 bytes.
     double: bool,
     counts: Counts,
-    pieces: Vec<Piece>,
+    pieces: Vec<BlockPiece>,
     patches: Vec<Patch>,
     notes: MeshNotes,
 }
@@ -39,7 +39,7 @@ impl VtuPieces {
     /// the operating system, or `InvalidData` if an array cannot be decompressed.
     pub fn open(path: &Path, memory: usize) -> Result<Self, VtuPiecesError> {
         let file = BlockFile::open(path, memory)?;
-        let head = Head::read(&file, memory)?;
+        let head = VtuHeader::read(&file, memory)?;
         let counts = head.counts;
         let array = |offset, values, width| file.array(offset, values, width, head.zlib);
         let index = if head.wide { 8 } else { 4 };
@@ -118,13 +118,13 @@ impl MeshSource for VtuPieces {
     }
 
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        let Piece { block, tets, .. } = &self.pieces[part as usize];
+        let BlockPiece { block, tets, .. } = &self.pieces[part as usize];
         let tets = self.corners(4 * tets.start..4 * tets.end)?;
         Ok(TetPiece { blocks: vec![*block; tets.len()].into(), tets: tets.into() })
     }
 
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
-        let Piece { block, faces, .. } = &self.pieces[part as usize];
+        let BlockPiece { block, faces, .. } = &self.pieces[part as usize];
         let at = |cell: u64| 4 * self.counts.tets + 3 * (cell - self.counts.tets);
         let patches = self.file.values(&self.patch, faces.clone())?;
         let patches: Vec<i32> = patches.as_chunks().0.iter().map(|w| i32::from_le_bytes(*w)).collect();

@@ -82,7 +82,7 @@ impl GridReader {
         let first_point = points.len();
         read_points(xml, piece, points)?;
         self.global_ids.extend(global_ids(xml, piece, points.len() - first_point)?);
-        let cells = Cells::read(xml, piece)?;
+        let cells = CellArrays::read(xml, piece)?;
         let count = cells.types.len();
         let data = xml.child(piece, "CellData");
         let labels = match data {
@@ -95,7 +95,7 @@ impl GridReader {
     }
 
     /// Adds the cells of a piece whose points start at `first_point`.
-    fn add_cells(&mut self, cells: &Cells, first_point: i64, data: &CellData) -> Result<(), VtuFault> {
+    fn add_cells(&mut self, cells: &CellArrays, first_point: i64, data: &CellData) -> Result<(), VtuFault> {
         let volume = &mut self.volume;
         let at = |values: &Option<Vec<i64>>, cell: usize| values.as_ref().map_or(0, |v| v[cell] as i32);
         let id = |v: i64| u32::try_from(v + first_point).unwrap_or(u32::MAX);
@@ -172,13 +172,13 @@ struct CellData {
     ghosts: Option<Vec<i64>>,
 }
 
-struct Cells {
+struct CellArrays {
     connectivity: Vec<i64>,
     offsets: Vec<i64>,
     types: Vec<i64>,
 }
 
-impl Cells {
+impl CellArrays {
     fn read(xml: &VtkXml, piece: ElementId) -> Result<Self, VtuFault> {
         let count = xml.count(piece, "NumberOfCells")?;
         let Some(cells) = xml.child(piece, "Cells") else {

@@ -43,7 +43,7 @@ pub(in crate::volume) struct Grid<'a> {
 impl Grid<'_> {
     /// Writes the file.
     pub(in crate::volume) fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
-        let alone = TetsAlone(self.mesh);
+        let alone = Recounted::without_boundary(self.mesh);
         let mesh: &dyn MeshSource = if self.options.tets_alone { &alone } else { self.mesh };
         let mut all = self.notes.map_or_else(Vec::new, |notes| arrays::of_fields(mesh.patches(), notes));
         all.extend(self.global_ids.map(arrays::of_ids));
@@ -72,31 +72,41 @@ pub fn write_boundary(
     File { kind: "PolyData", counts, arrays: all, raw: options.raw }.write(out)
 }
 
-/// Mesh without its boundary.
-pub(in crate::volume) struct TetsAlone<'a>(pub &'a dyn MeshSource);
+/// A mesh that announces other numbers; without a boundary where it announces no face.
+pub(in crate::volume) struct Recounted<'a> {
+    pub mesh: &'a dyn MeshSource,
+    pub counts: SourceCounts,
+}
 
-impl MeshSource for TetsAlone<'_> {
+impl<'a> Recounted<'a> {
+    /// Takes the boundary off a mesh.
+    pub(in crate::volume) fn without_boundary(mesh: &'a dyn MeshSource) -> Self {
+        Self { mesh, counts: SourceCounts { boundary: 0, ..mesh.counts() } }
+    }
+}
+
+impl MeshSource for Recounted<'_> {
     fn counts(&self) -> SourceCounts {
-        SourceCounts { boundary: 0, ..self.0.counts() }
+        self.counts
     }
 
     fn patches(&self) -> &[Patch] {
-        self.0.patches()
+        self.mesh.patches()
     }
 
     fn parts(&self) -> u32 {
-        self.0.parts()
+        self.mesh.parts()
     }
 
     fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        self.0.points(part)
+        self.mesh.points(part)
     }
 
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        self.0.tets(part)
+        self.mesh.tets(part)
     }
 
-    fn boundary(&self, _: u32) -> io::Result<FacePiece<'_>> {
-        Ok(FacePiece::default())
+    fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
+        if self.counts.boundary == 0 { Ok(FacePiece::default()) } else { self.mesh.boundary(part) }
     }
 }

@@ -66,7 +66,7 @@ pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io
     let mut keep = Vec::with_capacity(joined.pairs.len());
     for some in joined.pairs.chunks(COMPARED) {
         let compare = |pair: &[(u32, u32); 2]| compare(parts, held, &pair.map(|joint| held.joint_place(joint)));
-        for differences in some.par_iter().map(compare).collect::<io::Result<Vec<Differences>>>()? {
+        for differences in some.par_iter().map(compare).collect::<io::Result<Vec<JointDifferences>>>()? {
             keep.push(!differences.all);
             if differences.all {
                 joined.broken = Some(Line::LabelsMatchBoundary);
@@ -98,7 +98,7 @@ fn face_of(joint: &FacesApart, face: [u32; 3]) -> Offender {
 }
 
 #[derive(Default)]
-struct Differences {
+struct JointDifferences {
     found: Vec<(Line, Offender)>,
     /// True if no face is common.
     all: bool,
@@ -117,8 +117,8 @@ fn read(parts: &dyn Parts, held: &Held, (part, joint): (u32, u32)) -> io::Result
     }
 }
 
-fn compare(parts: &dyn Parts, held: &Held, pair: &[(u32, u32); 2]) -> io::Result<Differences> {
-    let mut differences = Differences::default();
+fn compare(parts: &dyn Parts, held: &Held, pair: &[(u32, u32); 2]) -> io::Result<JointDifferences> {
+    let mut differences = JointDifferences::default();
     if let (Some(a), Some(b)) = (read(parts, held, pair[0])?, read(parts, held, pair[1])?) {
         compare_faces(&a, &b, &mut differences);
         compare_points(&a, &b, &mut differences);
@@ -136,7 +136,7 @@ fn by_ids(joint: &FacesApart) -> Vec<([u32; 3], [u32; 3], [u32; 3])> {
     faces
 }
 
-fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut Differences) {
+fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut JointDifferences) {
     let (first, second) = (by_ids(a), by_ids(b));
     let (mut i, mut j, mut same) = (0, 0, 0);
     while i < first.len() || j < second.len() {
@@ -162,7 +162,7 @@ fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut Differences) 
 }
 
 /// Compares points: common ids need equal points, and stand for one point each.
-fn compare_points(a: &FacesApart, b: &FacesApart, differences: &mut Differences) {
+fn compare_points(a: &FacesApart, b: &FacesApart, differences: &mut JointDifferences) {
     let by_id = |joint: &FacesApart| {
         let mut ids: Vec<(u32, Point3)> = joint.vertices.iter().copied().zip(joint.points.iter().copied()).collect();
         ids.sort_by_key(|entry| entry.0);

@@ -63,7 +63,7 @@ pub fn check_pieces(
     let known: Vec<Known> =
         (0..pieces.parts()).into_par_iter().map(|i| Known::new(pieces, &caps, i)).collect::<Result<_, _>>()?;
     let joined = join(&known)?;
-    let cut = Cut { pieces, known, joined };
+    let cut = SplitMesh { pieces, known, joined };
     if cut.points() != pieces.counts().points as u64 {
         return Err(Unfit::Shared.into());
     }
@@ -71,7 +71,7 @@ pub fn check_pieces(
 }
 
 /// The pieces as parts.
-struct Cut<'a> {
+struct SplitMesh<'a> {
     pieces: &'a dyn MeshSource,
     known: Vec<Known>,
     joined: Vec<[(u32, u32); 2]>,
@@ -261,7 +261,7 @@ fn join(known: &[Known]) -> Result<Vec<[(u32, u32); 2]>, Unfit> {
     Ok(joined)
 }
 
-impl Cut<'_> {
+impl SplitMesh<'_> {
     /// Number of points of the whole if pieces share only those of joints.
     fn points(&self) -> u64 {
         let all: u64 = self.known.iter().map(|known| u64::from(known.points)).sum();
@@ -274,7 +274,7 @@ impl Cut<'_> {
     }
 }
 
-impl Parts for Cut<'_> {
+impl Parts for SplitMesh<'_> {
     fn count(&self) -> usize {
         self.known.len()
     }

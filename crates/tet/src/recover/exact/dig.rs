@@ -49,7 +49,7 @@ pub(super) struct Dig<'a> {
 
 /// Interval of weights from which all faces are visible from inside, and the half-faces of the cavity that limit it.
 #[derive(Clone, Copy)]
-struct View {
+struct VisibleFaces {
     low: (u128, u32),
     high: (u128, u32),
     /// A face that is visible from nowhere on the segment.
@@ -83,7 +83,7 @@ impl Sight {
     }
 }
 
-impl View {
+impl VisibleFaces {
     fn of(walls: impl Iterator<Item = (u32, Sight)>) -> Self {
         let mut view = Self { low: (0, u32::MAX), high: (OnTriangle::ONE, u32::MAX), blind: None };
         for (half, sight) in walls {
@@ -112,7 +112,7 @@ impl View {
 
 /// Weight on a segment from which all faces of a cavity are visible.
 pub(super) fn middle(s: &Space, ends: [u32; 2], cavity: &[u32]) -> Option<u128> {
-    let view = View::of(s.outer(cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
+    let view = VisibleFaces::of(s.outer(cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
     (view.width() > 0).then(|| view.middle())
 }
 
@@ -216,7 +216,7 @@ impl<'a> Dig<'a> {
     /// Cavity with all faces visible from a position on the segment, however close they are.
     fn seen(&mut self, first: Vec<u32>) -> Option<Dug> {
         let mut tets = first;
-        let mut best: Option<(Vec<u32>, View)> = None;
+        let mut best: Option<(Vec<u32>, VisibleFaces)> = None;
         for step in 0..STEPS {
             let walls = self.s.outer(&tets);
             let view = self.view(&walls);
@@ -239,9 +239,11 @@ impl<'a> Dig<'a> {
         best.map(|(tets, view)| Dug::Place(tets, view.middle()))
     }
 
-    fn view(&mut self, walls: &[u32]) -> View {
+    fn view(&mut self, walls: &[u32]) -> VisibleFaces {
         let (s, ends, known) = (self.s, self.ends, &mut self.known);
-        View::of(walls.iter().map(|&half| (half, *known.entry(half).or_insert_with(|| Sight::of(s, ends, half)))))
+        VisibleFaces::of(
+            walls.iter().map(|&half| (half, *known.entry(half).or_insert_with(|| Sight::of(s, ends, half)))),
+        )
     }
 
     /// True if the start vertex sees all faces and one of them has the end.
@@ -255,7 +257,7 @@ impl<'a> Dig<'a> {
     }
 
     /// Adds the tetrahedron behind one of the faces that limit the view, whichever gains more.
-    fn widen(&mut self, tets: &mut Vec<u32>, view: &View) -> bool {
+    fn widen(&mut self, tets: &mut Vec<u32>, view: &VisibleFaces) -> bool {
         let mut best: Option<(i128, u32)> = None;
         let bounds = if let Some(half) = view.blind { vec![half] } else { vec![view.low.1, view.high.1] };
         for half in bounds {

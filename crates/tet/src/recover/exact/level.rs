@@ -4,10 +4,10 @@
 //! plane, is joined to an apex that sees all of it. The apex is a corner, a vertex far above the plane with the
 //! tetrahedra between removed, or a new vertex. Points of the plane leave no clearance for vertices between them.
 
+use super::kernel::{Apex, Kernel, LEVELS};
 use super::parts::{Missing, sides, sorted};
 use super::plane::{Patch, Plane};
 use super::push::Push;
-use super::room::{Apex, LEVELS, Room};
 use super::sectors::{Sector, refill};
 use super::space::Space;
 use super::wider::Wider;
@@ -399,10 +399,10 @@ impl<'a> Level<'a> {
     /// Enlarges the sector if neither exists.
     pub(super) fn apex(&self, wider: &mut Wider, sector: Sector) -> Option<(Sector, Apex)> {
         let origin = wider.origin;
-        let least = self.least(&Room::new(self.s, origin, &sector.faces));
+        let least = self.least(&Kernel::new(self.s, origin, &sector.faces));
         let direct = |levels: &[f64]| {
-            let room = Room::new(self.s, origin, &sector.faces);
-            levels.iter().find_map(|level| room.apex(self.s, level.max(least)).ok())
+            let kernel = Kernel::new(self.s, origin, &sector.faces);
+            levels.iter().find_map(|level| kernel.apex(self.s, level.max(least)).ok())
         };
         let (ample, scant) = LEVELS.split_at(AMPLE);
         if let Some(found) = self.corner(wider, &sector, ample, least) {
@@ -423,8 +423,8 @@ impl<'a> Level<'a> {
     /// Finds a corner that sees all faces of a sector, or a high corner with the tetrahedra in its view removed. As
     /// long as few high vertices see the whole plane, later exchanges have clearance; each new vertex would be lower.
     fn corner(&self, wider: &mut Wider, sector: &Sector, ample: &[f64], least: f64) -> Option<(Sector, Apex)> {
-        let room = Room::new(self.s, wider.origin, &sector.faces);
-        if let Some(w) = ample.iter().find_map(|level| room.neighbor(self.s, level.max(least)).ok()) {
+        let kernel = Kernel::new(self.s, wider.origin, &sector.faces);
+        if let Some(w) = ample.iter().find_map(|level| kernel.neighbor(self.s, level.max(least)).ok()) {
             return Some((sector.clone(), Apex::Vertex(w)));
         }
         let [a, b, c] = sector.faces.last()?.map(|v| self.s.point(v).coords);
@@ -449,8 +449,8 @@ impl<'a> Level<'a> {
         let mut apex = apex;
         if let (Apex::Point(_), Some(&face)) = (apex, sector.faces.last()) {
             let [a, b, c] = face.map(|v| self.s.point(v).coords);
-            let room = Room::new(self.s, origin, &sector.faces);
-            if let Some(p) = room.tallest(self.s, &unit_normal(a, b, c), least) {
+            let kernel = Kernel::new(self.s, origin, &sector.faces);
+            if let Some(p) = kernel.tallest(self.s, &unit_normal(a, b, c), least) {
                 apex = Apex::Point(p);
             }
         }
@@ -458,8 +458,8 @@ impl<'a> Level<'a> {
     }
 
     /// Minimum clearance relative to the size.
-    fn least(&self, room: &Room) -> f64 {
-        self.clearance / room.size
+    fn least(&self, kernel: &Kernel) -> f64 {
+        self.clearance / kernel.size
     }
 }
 

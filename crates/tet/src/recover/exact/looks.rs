@@ -3,7 +3,7 @@
 
 /// Search methods for the position of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum PlacementMethod {
     /// Existing neighbors only.
     Corners,
     /// Neighbors, then points in the star.
@@ -49,7 +49,7 @@ impl Looks {
     }
 
     /// True if a position with clearance of at least `least` may exist.
-    pub(super) fn worth(&mut self, v: u32, least: f64, way: Way) -> bool {
+    pub(super) fn worth(&mut self, v: u32, least: f64, way: PlacementMethod) -> bool {
         let since = self.since;
         let known = self.of(v);
         let (when, room) = known.places[way as usize];
@@ -57,7 +57,7 @@ impl Looks {
     }
 
     /// Records that no position has more clearance than `room`.
-    pub(super) fn found(&mut self, v: u32, room: f64, way: Way) {
+    pub(super) fn found(&mut self, v: u32, room: f64, way: PlacementMethod) {
         let now = self.now + 1;
         self.of(v).places[way as usize] = (now, room);
     }

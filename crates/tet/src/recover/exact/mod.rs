@@ -12,6 +12,7 @@ mod course;
 mod dig;
 mod facets;
 mod helpers;
+mod kernel;
 mod level;
 mod looks;
 mod one;
@@ -21,7 +22,6 @@ mod plane;
 mod polygon;
 mod push;
 mod queue;
-mod room;
 mod sectors;
 mod segments;
 mod space;
@@ -40,7 +40,7 @@ use push::Push;
 use queue::{Failed, Queue};
 use segments::Segments;
 use space::Space;
-pub(crate) use ways::Way;
+pub(crate) use ways::RecoveryStrategy;
 
 /// Recovers the missing parts in a complex that has the rest of the surface with its triangles frozen. The ways are
 /// tried in order until one succeeds. The surface must not intersect itself; its triangles may share whole edges and
@@ -54,7 +54,7 @@ pub(crate) fn recover_exact(
     surface: &TriMesh,
     edges: &SurfaceEdges,
     missing: Missing,
-    (ways, flat): (&[Way], f64),
+    (ways, flat): (&[RecoveryStrategy], f64),
     watch: &Watch,
 ) -> Result<(Complex, ExactSummary), TetError> {
     let segments = Segments::new(edges, surface.points.len());

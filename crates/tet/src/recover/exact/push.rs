@@ -4,9 +4,9 @@
 
 use super::dig;
 use super::facets::Cover;
-use super::looks::{Looks, Way};
+use super::kernel::{Apex, Kernel, LEVELS};
+use super::looks::{Looks, PlacementMethod};
 use super::parts::sides;
-use super::room::{Apex, LEVELS, Room};
 use super::sectors::{Fan, Sector, refill, sectors};
 use super::segments::Segments;
 use super::space::Space;
@@ -183,11 +183,11 @@ impl<'a> Push<'a> {
         while level < LEVELS.len() && !left.is_empty() {
             let before = left.len();
             // Vertices that merge with a neighbor leave clearance for the others, so they come first.
-            self.pass(left, level, Way::Corners)?;
+            self.pass(left, level, PlacementMethod::Corners)?;
             let slow = |left: &[(Host, u32)]| (before - left.len()) * SLOW < before;
             if slow(left) {
                 self.relax(LEVELS[level]);
-                self.pass(left, level, Way::Points)?;
+                self.pass(left, level, PlacementMethod::Points)?;
             }
             level = if slow(left) { level + 1 } else { level };
         }
@@ -203,7 +203,7 @@ impl<'a> Push<'a> {
         }
         while level < LEVELS.len() && !left.is_empty() {
             let before = left.len();
-            self.pass(left, level, Way::Wider)?;
+            self.pass(left, level, PlacementMethod::Wider)?;
             if left.len() == before {
                 level += 1;
             } else {
@@ -228,7 +228,7 @@ impl<'a> Push<'a> {
         moved
     }
 
-    fn pass(&mut self, left: &mut Vec<(Host, u32)>, level: usize, way: Way) -> Result<(), TetError> {
+    fn pass(&mut self, left: &mut Vec<(Host, u32)>, level: usize, way: PlacementMethod) -> Result<(), TetError> {
         let mut again = Vec::with_capacity(left.len());
         for &(host, v) in left.iter() {
             let least = LEVELS[level];
@@ -259,8 +259,8 @@ impl<'a> Push<'a> {
                     faces.push([a, c, b]);
                 }
             }
-            let room = Room::new(&self.s, *self.s.point(v), &faces);
-            if let Ok(w) = room.neighbor(&self.s, least) {
+            let kernel = Kernel::new(&self.s, *self.s.point(v), &faces);
+            if let Ok(w) = kernel.neighbor(&self.s, least) {
                 let others = faces.iter().filter(|f| !f.contains(&w));
                 let new: Vec<[u32; 4]> = others.map(|&[a, b, c]| [a, b, c, w]).collect();
                 if self.s.c.replace(&star, &new, &mut Vec::new()) {
@@ -268,8 +268,8 @@ impl<'a> Push<'a> {
                     return false;
                 }
             }
-            let here = room.depth(&Vec3::zeros()) / room.size;
-            if let Ok(p) = room.place(&self.s, 1.2 * here) {
+            let here = kernel.depth(&Vec3::zeros()) / kernel.size;
+            if let Ok(p) = kernel.place(&self.s, 1.2 * here) {
                 self.s.c.points[v as usize] = p;
                 self.looks.change(faces.iter().flatten().copied());
             }
@@ -287,7 +287,7 @@ impl<'a> Push<'a> {
         TetError::Stuck { part, reason }
     }
 
-    fn push(&mut self, host: Host, v: u32, least: f64, way: Way) -> Result<Pushed, TetError> {
+    fn push(&mut self, host: Host, v: u32, least: f64, way: PlacementMethod) -> Result<Pushed, TetError> {
         let star = self.s.star(v);
         let Some(fans) = self.fans(host, v)? else { return Err(self.stuck(host, Stuck::Intersection)) };
         if fans.len() < 2 && matches!(host, Host::Segment(_)) {
@@ -300,11 +300,11 @@ impl<'a> Push<'a> {
         let mut wider = Wider::new(&self.s, &stays, Some(v), *self.s.point(v), star);
         let mut filled = Vec::with_capacity(sectors.len());
         for mut sector in sectors {
-            let room = Room::new(&self.s, *self.s.point(v), &sector.faces);
+            let kernel = Kernel::new(&self.s, *self.s.point(v), &sector.faces);
             let apex = match way {
-                Way::Corners => room.neighbor(&self.s, least).map(Apex::Vertex),
-                Way::Points => room.apex(&self.s, least),
-                Way::Wider => wider.apex(&mut sector, least, STEPS).ok_or(least.next_down()),
+                PlacementMethod::Corners => kernel.neighbor(&self.s, least).map(Apex::Vertex),
+                PlacementMethod::Points => kernel.apex(&self.s, least),
+                PlacementMethod::Wider => wider.apex(&mut sector, least, STEPS).ok_or(least.next_down()),
             };
             match apex {
                 Ok(apex) => filled.push((sector, apex)),

@@ -5,7 +5,7 @@ use super::level::level_out;
 use super::one::{ExactSummary, about_input, recover_part};
 use super::parts::{Missing, Part, parts};
 use super::push::Push;
-use super::ways::Way;
+use super::ways::RecoveryStrategy;
 use crate::error::{Stuck, TetError};
 use crate::input::SurfaceEdges;
 use crate::progress::Watch;
@@ -39,7 +39,7 @@ pub(super) struct Queue<'a, 'b> {
     summary: ExactSummary,
     surface: &'b TriMesh,
     edges: &'b SurfaceEdges,
-    way: Way,
+    way: RecoveryStrategy,
     /// Maximum implicit vertices.
     budget: usize,
     watch: &'b Watch<'b>,
@@ -57,7 +57,7 @@ impl<'a, 'b> Queue<'a, 'b> {
     pub(super) fn new(
         push: Push<'a>,
         (surface, edges): (&'b TriMesh, &'b SurfaceEdges),
-        (way, budget): (Way, usize),
+        (way, budget): (RecoveryStrategy, usize),
         watch: &'b Watch<'b>,
     ) -> Self {
         Self { push, summary: ExactSummary::default(), surface, edges, way, budget, watch }

@@ -1,7 +1,7 @@
 //! Sectors of the star of a surface vertex, separated by its facets, and these facets without the vertex.
 
+use super::kernel::Apex;
 use super::polygon::{point_above, triangulate};
-use super::room::Apex;
 use super::space::Space;
 use crate::complex::face_key;
 use crate::error::TetError;

@@ -33,7 +33,7 @@ pub(super) struct Segments<'a> {
 }
 
 /// First crossing of a segment after its start.
-enum Crossing {
+enum FirstCrossing {
     Exists,
     Face(u32),
     Edge(u32, [u32; 2]),
@@ -130,17 +130,17 @@ impl<'a> Segments<'a> {
     fn step(&self, s: &mut Space, at: u32, ends: [u32; 2]) -> Result<Option<u32>, TetError> {
         let meets = |obstacle| TetError::EdgeMeets { edge: ends, obstacle };
         let first = match first_crossing(s, at, ends) {
-            Crossing::Exists => return Ok(None),
-            Crossing::Vertex(v) if (v as usize) < self.points => return Err(meets(Obstacle::Point(v))),
-            Crossing::Vertex(v) => return Ok(Some(v)),
-            Crossing::Nothing => return Err(stuck(ends, Stuck::Intersection)),
-            Crossing::Face(half) if s.c.is_frozen(half) => return Err(meets(Obstacle::Triangle(s.c.face(half)))),
-            Crossing::Face(half) => {
+            FirstCrossing::Exists => return Ok(None),
+            FirstCrossing::Vertex(v) if (v as usize) < self.points => return Err(meets(Obstacle::Point(v))),
+            FirstCrossing::Vertex(v) => return Ok(Some(v)),
+            FirstCrossing::Nothing => return Err(stuck(ends, Stuck::Intersection)),
+            FirstCrossing::Face(half) if s.c.is_frozen(half) => return Err(meets(Obstacle::Triangle(s.c.face(half)))),
+            FirstCrossing::Face(half) => {
                 let grazed = self.grazed(s, half, ends).filter(|_| self.deep).map(|edge| ring(s, half >> 2, edge));
                 let pair = vec![half >> 2, s.c.mate(half) >> 2];
                 grazed.into_iter().chain([pair]).collect()
             }
-            Crossing::Edge(t, [p, q]) => {
+            FirstCrossing::Edge(t, [p, q]) => {
                 if let Some(other) = self.of_piece(p, q) {
                     return Err(meets(Obstacle::Edge(other)));
                 }
@@ -181,10 +181,10 @@ pub(super) fn stuck(edge: [u32; 2], reason: Stuck) -> TetError {
 }
 
 /// First crossing of the segment `p, q` beyond its vertex `a`.
-fn first_crossing(s: &mut Space, a: u32, [p, q]: [u32; 2]) -> Crossing {
+fn first_crossing(s: &mut Space, a: u32, [p, q]: [u32; 2]) -> FirstCrossing {
     let tets = s.star(a);
     if tets.iter().any(|&t| s.c.slot_of(t, q).is_some()) {
-        return Crossing::Exists;
+        return FirstCrossing::Exists;
     }
     for &t in &tets {
         let Some(i) = s.c.slot_of(t, a) else { continue };
@@ -204,16 +204,16 @@ fn first_crossing(s: &mut Space, a: u32, [p, q]: [u32; 2]) -> Crossing {
         // The opposite cone has all signs reversed, so the direction matters only if two signs are zero.
         let zeros: Vec<usize> = (0..3).filter(|&k| sides[k] == 0).collect();
         match zeros[..] {
-            [] => return Crossing::Face(half),
-            [k] => return Crossing::Edge(t, [f[(k + 1) % 3], f[(k + 2) % 3]]),
+            [] => return FirstCrossing::Face(half),
+            [k] => return FirstCrossing::Edge(t, [f[(k + 1) % 3], f[(k + 2) % 3]]),
             [k, l] => {
                 let v = f[3 - k - l];
                 if s.compare(v, a) == s.compare(q, a) {
-                    return Crossing::Vertex(v);
+                    return FirstCrossing::Vertex(v);
                 }
             }
             _ => {}
         }
     }
-    Crossing::Nothing
+    FirstCrossing::Nothing
 }

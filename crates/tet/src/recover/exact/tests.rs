@@ -19,8 +19,14 @@ fn fills(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<Ex
     let mut c = delaunay(&points)?;
     let (lost_edges, lost_triangles) = survey(&mut c, surface, &edges);
     let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
-    let (c, summary) =
-        recover_exact(&c, surface, &edges, missing, (&Way::OTHERS, flat_height(&surface.points)), &Watch::NOBODY)?;
+    let (c, summary) = recover_exact(
+        &c,
+        surface,
+        &edges,
+        missing,
+        (&RecoveryStrategy::OTHERS, flat_height(&surface.points)),
+        &Watch::NOBODY,
+    )?;
     c.sanity_check()?;
     let mut c = c;
     assert_eq!(survey(&mut c, surface, &edges), (Vec::new(), Vec::new()));

@@ -14,7 +14,7 @@ const WORTHWHILE: f64 = 0.2;
 
 /// A recovery strategy.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
+pub(crate) struct RecoveryStrategy {
     /// If set, edges in facet planes are recovered first; the strategy stops if more than this fraction remains.
     pub level: Option<f64>,
     /// True if new vertices must lie well off the faces of their cavity, rather than merely see them.
@@ -25,7 +25,7 @@ pub(crate) struct Way {
     vertices: (usize, usize),
 }
 
-impl Way {
+impl RecoveryStrategy {
     /// Fastest strategy, with a small vertex budget.
     pub(crate) const FIRST: [Self; 1] = [Self { vertices: VERTICES_FIRST, ..Self::seen(0) }];
 

@@ -1,8 +1,8 @@
 //! Cavities wider than a sector of a star. If a sector has too little clearance, the tetrahedra behind its limiting or
 //! hidden faces are added.
 
+use super::kernel::{Apex, Kernel};
 use super::parts::{sides, sorted};
-use super::room::{Apex, Room};
 use super::sectors::Sector;
 use super::space::Space;
 use anastomesh_mesh::geometry::{Point3, unit_normal};
@@ -34,7 +34,7 @@ impl<'a> Wider<'a> {
     /// Finds an apex with clearance of at least `least` times the size. Adds at most `steps` tetrahedra to the sector.
     pub(super) fn apex(&mut self, sector: &mut Sector, least: f64, steps: usize) -> Option<Apex> {
         for _ in 0..steps {
-            if let Ok(apex) = Room::new(self.s, self.origin, &sector.faces).apex(self.s, least) {
+            if let Ok(apex) = Kernel::new(self.s, self.origin, &sector.faces).apex(self.s, least) {
                 return Some(apex);
             }
             if !self.step(sector) {
@@ -123,13 +123,13 @@ impl<'a> Wider<'a> {
 
     /// Adds the tetrahedron behind the limiting face that gains most clearance. Returns false if there is none.
     fn step(&mut self, sector: &mut Sector) -> bool {
-        let Some((walls, _)) = Room::new(self.s, self.origin, &sector.faces).bounds() else { return false };
+        let Some((walls, _)) = Kernel::new(self.s, self.origin, &sector.faces).bounds() else { return false };
         let mut best: Option<(f64, u32, Sector)> = None;
         for wall in walls {
             let Some(half) = sector.halves.get(wall) else { continue };
             let next = self.s.c.mate(*half) >> 2;
             let Some(wider) = self.add(sector, next) else { continue };
-            let Some((_, depth)) = Room::new(self.s, self.origin, &wider.faces).bounds() else { continue };
+            let Some((_, depth)) = Kernel::new(self.s, self.origin, &wider.faces).bounds() else { continue };
             if best.as_ref().is_none_or(|b| depth > b.0) {
                 best = Some((depth, next, wider));
             }

@@ -72,7 +72,7 @@ fn faults_inside_a_part_are_named_in_numbers_of_the_whole() {
     );
     let (_, lines) = planted(&bar(), |c| c.pieces[4].mesh.tets[3][1] = 1_000_000);
     assert_eq!(lines, [Line::IndicesInRange]);
-    assert_eq!(Cut::default().failing(), [Line::NotEmpty]);
+    assert_eq!(MemoryParts::default().failing(), [Line::NotEmpty]);
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn faults_of_ids() {
 }
 
 /// Adds an unconnected part, and expects one more component.
-fn with_part(cut: &Cut, mesh: TetMesh) -> (Cut, Vec<Line>) {
+fn with_part(cut: &MemoryParts, mesh: TetMesh) -> (MemoryParts, Vec<Line>) {
     planted(cut, |c| {
         let first = c.pieces.iter().flat_map(|p| &p.vertices).max().unwrap() + 1;
         let tets = c.pieces.iter().flat_map(|p| &p.tets).max().unwrap() + 1;

@@ -27,7 +27,7 @@ struct Piece {
 
 /// Parts in memory.
 #[derive(Clone, Debug, Default)]
-struct Cut {
+struct MemoryParts {
     pieces: Vec<Piece>,
     joined: Vec<[(u32, u32); 2]>,
     patches: Vec<Patch>,
@@ -54,7 +54,7 @@ impl Piece {
     }
 }
 
-impl Parts for Cut {
+impl Parts for MemoryParts {
     fn count(&self) -> usize {
         self.pieces.len()
     }
@@ -94,7 +94,7 @@ impl Parts for Cut {
     }
 }
 
-impl Cut {
+impl MemoryParts {
     /// Cuts a mesh. Faces between two parts that are connected by vertices form a joint.
     fn new(mesh: &TetMesh, part_of: impl Fn(Vec3) -> u32, caps: &[Patch], loops: Vec<u32>) -> Self {
         let middle = |t: &[u32; 4]| t.iter().fold(Vec3::zeros(), |s, &v| s + mesh.points[v as usize].coords) / 4.0;
@@ -221,7 +221,7 @@ impl Cut {
 }
 
 /// Certifies again after a change, and returns the failing conditions.
-fn planted(cut: &Cut, change: impl FnOnce(&mut Cut)) -> (Cut, Vec<Line>) {
+fn planted(cut: &MemoryParts, change: impl FnOnce(&mut MemoryParts)) -> (MemoryParts, Vec<Line>) {
     let mut cut = cut.clone();
     change(&mut cut);
     cut.certify();
@@ -244,7 +244,7 @@ fn is_unknown(line: &LineResult) -> bool {
 }
 
 /// Asserts equality except roundoff.
-fn assert_same(cut: &Cut) {
+fn assert_same(cut: &MemoryParts) {
     let (parts, whole) = (cut.check(), cut.whole());
     assert_eq!(parts.verdict, whole.verdict, "{:?}", parts.failed().collect::<Vec<_>>());
     for (p, w) in parts.lines.iter().zip(&whole.lines) {
@@ -272,7 +272,7 @@ fn assert_same(cut: &Cut) {
 const LENGTH: f64 = 5.0;
 
 /// A vessel along z with a cap at either end, in slices of two layers.
-fn bar() -> Cut {
+fn bar() -> MemoryParts {
     let mut mesh = tube_lattice(3, 20, LENGTH / 20.0);
     let surface = boundary_faces(&mesh);
     let mut inner = vec![true; mesh.points.len()];
@@ -285,7 +285,7 @@ fn bar() -> Cut {
     let wall = Patch { id: WALL, name: "wall".into(), cap: None };
     let caps = [wall, cap(2, "inlet", 7, 0.0, -Vec3::z()), cap(3, "outlet_0", 3, LENGTH, Vec3::z())];
     let layers = |c: Vec3| (c.z / LENGTH * 20.0) as u32 / 2;
-    let mut cut = Cut::new(&mesh, layers, &caps, vec![0]);
+    let mut cut = MemoryParts::new(&mesh, layers, &caps, vec![0]);
     // A polygon of 18 corners is no disc.
     cut.patches.iter_mut().filter_map(|p| p.cap.as_mut()).for_each(|cap| cap.radius = 0.99);
     cut.pieces.iter_mut().flat_map(|p| &mut p.caps).for_each(|(cap, _)| cap.radius = 0.99);
@@ -294,7 +294,7 @@ fn bar() -> Cut {
 }
 
 /// Cells of a lattice, each in a part.
-fn voxels(n: u32, loops: Vec<u32>, part_of: impl Fn([u32; 3]) -> Option<u32>) -> Cut {
+fn voxels(n: u32, loops: Vec<u32>, part_of: impl Fn([u32; 3]) -> Option<u32>) -> MemoryParts {
     let mut mesh = cube_lattice(n);
     let cell = |c: Vec3| [c.x, c.y, c.z].map(|x| (x * f64::from(n)) as u32);
     let middle = |t: &[u32; 4]| t.iter().fold(Vec3::zeros(), |s, &v| s + mesh.points[v as usize].coords) / 4.0;
@@ -305,11 +305,11 @@ fn voxels(n: u32, loops: Vec<u32>, part_of: impl Fn([u32; 3]) -> Option<u32>) ->
     mesh.tets = tets.iter().map(|t| t.map(|v| used.binary_search(&v).unwrap() as u32)).collect();
     mesh.points = used.iter().map(|&v| mesh.points[v as usize]).collect();
     let wall = Patch { id: WALL, name: "wall".into(), cap: None };
-    Cut::new(&mesh, |c| part_of(cell(c)).unwrap(), &[wall], loops)
+    MemoryParts::new(&mesh, |c| part_of(cell(c)).unwrap(), &[wall], loops)
 }
 
 /// A block with six arms of two cells each.
-fn star() -> Cut {
+fn star() -> MemoryParts {
     voxels(7, vec![0], |c| {
         let inner = |x: u32| (2..5).contains(&x);
         if c.iter().all(|&x| inner(x)) {
@@ -322,7 +322,7 @@ fn star() -> Cut {
 }
 
 /// A square frame in the given number of parts.
-fn ring(parts: u32) -> Cut {
+fn ring(parts: u32) -> MemoryParts {
     voxels(5, vec![1], |[x, y, z]| {
         let on = z == 2 && (x == 0 || x == 4 || y == 0 || y == 4);
         let part = match (x, y) {

@@ -15,7 +15,7 @@ struct Stack {
 }
 
 impl Stack {
-    fn of(cut: &Cut) -> Self {
+    fn of(cut: &MemoryParts) -> Self {
         let merged = cut.merged();
         let (mut tets, mut sizes) = (Vec::new(), Vec::new());
         for (part, piece) in (0..).zip(&cut.pieces) {

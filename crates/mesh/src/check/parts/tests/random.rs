@@ -4,7 +4,7 @@ use super::*;
 use proptest::prelude::*;
 
 /// Parts of a bar of random length, cut at random layers.
-fn any_cut() -> impl Strategy<Value = Cut> {
+fn any_cut() -> impl Strategy<Value = MemoryParts> {
     (2_u32..4, 4_u32..12, prop::collection::vec(any::<bool>(), 12), 0..1000_u64).prop_map(
         |(rings, layers, cuts, seed)| {
             let mut mesh = tube_lattice(rings, layers, 0.4);
@@ -17,7 +17,7 @@ fn any_cut() -> impl Strategy<Value = Cut> {
                 .map(|layer| cuts[1..=layer].iter().map(|&cut| u32::from(cut)).sum())
                 .flat_map(|part| std::iter::repeat_n(part, per_layer))
                 .collect();
-            Cut::with_parts(&mesh, &parts, &[], vec![0])
+            MemoryParts::with_parts(&mesh, &parts, &[], vec![0])
         },
     )
 }
@@ -43,7 +43,7 @@ fn any_harm() -> impl Strategy<Value = Harm> {
 }
 
 /// Damages a tetrahedron without a vertex in a joint. Returns false if nothing was done.
-fn harm(cut: &mut Cut, harm: Harm, part: usize, at: usize) -> bool {
+fn harm(cut: &mut MemoryParts, harm: Harm, part: usize, at: usize) -> bool {
     let next = cut.pieces.iter().flat_map(|p| &p.tets).max().unwrap() + 1;
     let part = part % cut.pieces.len();
     let piece = &mut cut.pieces[part];

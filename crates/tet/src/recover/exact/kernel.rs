@@ -27,7 +27,7 @@ pub(super) enum Apex {
 }
 
 /// Room for a vertex that has to see all given faces counter-clockwise, in coordinates relative to a nearby origin.
-pub(super) struct Room<'a> {
+pub(super) struct Kernel<'a> {
     origin: Point3,
     faces: &'a [[u32; 3]],
     /// Inward unit normal and height of the origin, per face.
@@ -36,7 +36,7 @@ pub(super) struct Room<'a> {
     pub size: f64,
 }
 
-impl<'a> Room<'a> {
+impl<'a> Kernel<'a> {
     pub(super) fn new(s: &Space, origin: Point3, faces: &'a [[u32; 3]]) -> Self {
         let mut planes = Vec::with_capacity(faces.len());
         let mut size = 0.0_f64;
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn random_rooms_hold_their_deepest_point() {
+    fn random_kernels_hold_their_deepest_point() {
         for seed in 0..200 {
             let coin = |k: u64| (hash(seed * 1000 + k) >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
             let planes: Vec<(Vec3, f64)> = (0..60)

@@ -1,7 +1,8 @@
-//! Tetrahedra with two faces on the boundary, as they are in the corner between wall and cap. All four vertices of such a one
-//! are on the boundary: linear elements have nothing to solve for in it, and solvers by volumes find its matrix of faces all
-//! but singular. One of its faces inside gives way to an edge, or its edge inside is split, whichever leaves the better
-//! tetrahedra.
+//! Splitting of corner tetrahedra: those with two faces on the boundary, as they are where a wall meets a cap.
+//!
+//! All four vertices of a corner tetrahedron are on the boundary. Linear finite elements have no unknown inside it, and
+//! finite volume solvers find its face matrix nearly singular. Either a flip replaces one of its inner faces by an edge, or
+//! its inner edge is split, whichever leaves the better tetrahedra.
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
@@ -10,39 +11,39 @@ use anastomesh_mesh::{TetMesh, TriMesh, face_key};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
-/// Rounds at most: what is near each other is changed one after the other.
+/// Maximum number of rounds. Changes that touch each other take place in different rounds.
 const ROUNDS: usize = 8;
-/// What tetrahedra with a new vertex are worth beside those without: they are smaller than what is around them.
-const NEW: f64 = 0.85;
-/// A corner stays where it would give way to a flatter tetrahedron than this, by its radius ratio.
-const LEAST: f64 = 0.15;
-/// Sweeps in which vertices next to what was changed are moved,
+/// Factor on the radius ratio of tetrahedra with a new vertex: they are smaller than their neighbours.
+const NEW_VERTEX_FACTOR: f64 = 0.85;
+/// Smallest radius ratio that a change may leave; otherwise the corner stays.
+const MIN_RATIO: f64 = 0.15;
+/// Smoothing sweeps over the inner vertices next to changes.
 const SWEEPS: usize = 2;
-/// and how far, as shares of the way to the middle of their neighbours.
+/// Lengths of smoothing steps to try, as shares of the distance to the centre of the neighbours.
 const STEPS: [f64; 3] = [0.2, 0.5, 1.0];
-/// How far a new vertex is drawn from its edge towards the middle of what is around it, one after the other.
-const DRAWN: [f64; 4] = [0.0, 0.15, 0.3, 0.5];
+/// Positions to try for a new vertex, as shares of the distance from the edge's midpoint to the centre of its link.
+const LINK_SHARES: [f64; 4] = [0.0, 0.15, 0.3, 0.5];
 
-/// Changes the tetrahedra inside a filled surface until none has two faces on the boundary, or all but; `outer` says of each triangle
-/// whether it is on the boundary of the whole. The surface stays as it is, and its vertices keep their numbers.
-pub(super) fn part_corners(mesh: &mut TetMesh, surface: &TriMesh, outer: impl Fn(usize) -> bool) {
+/// Changes the tetrahedra of a filled surface until none, or few, have two boundary faces. `outer` tells of each triangle
+/// whether it belongs to the boundary of the final mesh. The surface and the numbers of its vertices stay as they are.
+pub fn split_corner_tets(mesh: &mut TetMesh, surface: &TriMesh, outer: impl Fn(usize) -> bool) {
     let outer = surface.triangles.iter().enumerate().filter(|(i, _)| outer(*i));
     let faces: FxHashSet<[u32; 3]> = outer.map(|(_, &triangle)| face_key(triangle)).collect();
     let inner = surface.points.len() as u32;
-    let of = |mesh: &TetMesh, tet: usize| Corner::of(&faces, inner, mesh.tets[tet], tet);
+    let of = |mesh: &TetMesh, tet: usize| CornerTet::of(&faces, inner, mesh.tets[tet], tet);
     let mut changed: Vec<u32> = Vec::new();
     for _ in 0..ROUNDS {
-        let corners: Vec<Corner> = (0..mesh.tets.len()).filter_map(|tet| of(mesh, tet)).collect();
+        let corners: Vec<CornerTet> = (0..mesh.tets.len()).filter_map(|tet| of(mesh, tet)).collect();
         changed.extend(corners.iter().flat_map(|corner| mesh.tets[corner.tet]));
-        if corners.is_empty() || !part(mesh, &corners) {
+        if corners.is_empty() || !split_disjoint(mesh, &corners) {
             break;
         }
     }
-    relax(mesh, inner, &changed);
+    smooth(mesh, inner, &changed);
 }
 
-/// Moves the vertices inside that are next to some others until no tetrahedron of theirs gains by it.
-fn relax(mesh: &mut TetMesh, inner: u32, beside: &[u32]) {
+/// Smooths the inner vertices of all tetrahedra at some vertices.
+fn smooth(mesh: &mut TetMesh, inner: u32, beside: &[u32]) {
     let is_beside = marked(mesh, beside.iter().copied());
     let mut stars: BTreeMap<u32, Vec<[u32; 4]>> = BTreeMap::new();
     for tet in mesh.tets.iter().filter(|tet| tet.iter().any(|&v| is_beside[v as usize])) {
@@ -63,7 +64,7 @@ fn relax(mesh: &mut TetMesh, inner: u32, beside: &[u32]) {
     }
 }
 
-/// Moves a vertex towards the middle of its neighbours as far as the worst of its tetrahedra gains by it.
+/// Moves a vertex towards the centre of its neighbours where that raises the worst radius ratio around it.
 fn improve(mesh: &mut TetMesh, vertex: u32, star: &[[u32; 4]]) {
     let given = mesh.points[vertex as usize];
     let others = star.iter().flatten().filter(|&&v| v != vertex).map(|&v| mesh.points[v as usize].coords);
@@ -80,8 +81,8 @@ fn improve(mesh: &mut TetMesh, vertex: u32, star: &[[u32; 4]]) {
     mesh.points[vertex as usize] = best.1;
 }
 
-/// A tetrahedron with two faces on the boundary.
-struct Corner {
+/// A tetrahedron with two boundary faces.
+struct CornerTet {
     tet: usize,
     /// The edge that these two faces share: its other faces lack one vertex of it each.
     outside: [u32; 2],
@@ -89,7 +90,7 @@ struct Corner {
     inside: [u32; 2],
 }
 
-impl Corner {
+impl CornerTet {
     fn of(faces: &FxHashSet<[u32; 3]>, inner: u32, vertices: [u32; 4], tet: usize) -> Option<Self> {
         if vertices.iter().any(|&v| v >= inner) {
             return None;
@@ -103,20 +104,21 @@ impl Corner {
     }
 }
 
-/// Changes what does not touch what is changed already; whether anything was.
-fn part(mesh: &mut TetMesh, corners: &[Corner]) -> bool {
-    let places = Places::of(mesh, corners);
+/// Applies changes to disjoint sets of tetrahedra; returns whether there were any.
+fn split_disjoint(mesh: &mut TetMesh, corners: &[CornerTet]) -> bool {
+    let incidence = CornerIncidence::of(mesh, corners);
     let mut touched = FxHashSet::default();
     let mut done = false;
     for corner in corners {
         if touched.contains(&corner.tet) {
             continue;
         }
-        let mut ways: Vec<Change> = corner.outside.iter().filter_map(|&v| places.flip(mesh, corner, v)).collect();
-        ways.extend(places.split(mesh, corner.inside));
-        let worth = |way: &Change| way.worst * if way.vertex.is_some() { NEW } else { 1.0 };
+        let mut ways: Vec<LocalChange> =
+            corner.outside.iter().filter_map(|&v| incidence.flip(mesh, corner, v)).collect();
+        ways.extend(incidence.split(mesh, corner.inside));
+        let worth = |way: &LocalChange| way.worst * if way.vertex.is_some() { NEW_VERTEX_FACTOR } else { 1.0 };
         let best = ways.into_iter().reduce(|best, way| if worth(&way) > worth(&best) { way } else { best });
-        let Some(change) = best.or_else(|| split_tet(mesh, corner.tet)).filter(|way| way.worst > LEAST) else {
+        let Some(change) = best.or_else(|| split_tet(mesh, corner.tet)).filter(|way| way.worst > MIN_RATIO) else {
             continue;
         };
         if change.old.iter().any(|tet| touched.contains(tet)) {
@@ -129,26 +131,26 @@ fn part(mesh: &mut TetMesh, corners: &[Corner]) -> bool {
     done
 }
 
-/// Tetrahedra that take the place of others.
-struct Change {
+/// New tetrahedra for the region of old ones.
+struct LocalChange {
     old: Vec<usize>,
     new: Vec<[u32; 4]>,
-    /// Where the next vertex is, which they have.
+    /// Position of their new vertex, if they have one.
     vertex: Option<Point3>,
     /// The smallest radius ratio among the new ones.
     worst: f64,
 }
 
-impl Change {
-    /// With the best of some places for a vertex; none when a tetrahedron is not positive at any.
-    fn with_vertex(mesh: &TetMesh, old: Vec<usize>, new: Vec<[u32; 4]>, places: &[Point3]) -> Option<Self> {
+impl LocalChange {
+    /// Chooses the best of some positions for the new vertex; none when no position makes all tetrahedra positive.
+    fn with_vertex(mesh: &TetMesh, old: Vec<usize>, new: Vec<[u32; 4]>, positions: &[Point3]) -> Option<Self> {
         let mut best = None;
-        for &place in places {
+        for &position in positions {
             let above = best.map_or(0.0, |(worst, _)| worst);
-            best = worst(mesh, &new, Some(place), above).map(|worst| (worst, place)).or(best);
+            best = worst(mesh, &new, Some(position), above).map(|worst| (worst, position)).or(best);
         }
-        let (worst, place) = best?;
-        Some(Self { old, new, vertex: Some(place), worst })
+        let (worst, position) = best?;
+        Some(Self { old, new, vertex: Some(position), worst })
     }
 
     fn apply(self, mesh: &mut TetMesh) {
@@ -161,48 +163,48 @@ impl Change {
     }
 }
 
-/// Which tetrahedra are beside the corners.
-struct Places {
+/// The tetrahedra at the inner edges and inner faces of corner tetrahedra.
+struct CornerIncidence {
     around: FxHashMap<[u32; 2], Vec<usize>>,
     beside: FxHashMap<[u32; 3], Vec<usize>>,
 }
 
-impl Places {
-    fn of(mesh: &TetMesh, corners: &[Corner]) -> Self {
+impl CornerIncidence {
+    fn of(mesh: &TetMesh, corners: &[CornerTet]) -> Self {
         let inside = corners.iter().map(|corner| (corner.inside, Vec::new()));
         let faces = corners.iter().flat_map(|c| c.outside.map(|v| (face_without(mesh.tets[c.tet], v), Vec::new())));
-        let mut places = Self { around: inside.collect(), beside: faces.collect() };
+        let mut incidence = Self { around: inside.collect(), beside: faces.collect() };
         // Most tetrahedra have nothing to do with corners.
         let of_corner = marked(mesh, corners.iter().flat_map(|c| mesh.tets[c.tet]));
         let is_near = |tet: &[u32; 4]| tet.iter().filter(|&&v| of_corner[v as usize]).count() > 1;
         for (i, tet) in mesh.tets.iter().enumerate().filter(|(_, tet)| is_near(tet)) {
             for edge in edges(*tet) {
-                if let Some(ring) = places.around.get_mut(&edge) {
+                if let Some(ring) = incidence.around.get_mut(&edge) {
                     ring.push(i);
                 }
             }
             for &v in tet {
-                if let Some(both) = places.beside.get_mut(&face_without(*tet, v)) {
+                if let Some(both) = incidence.beside.get_mut(&face_without(*tet, v)) {
                     both.push(i);
                 }
             }
         }
-        places
+        incidence
     }
 
-    /// The face of a corner that lacks a vertex gives way to the edge from this vertex to the one behind the face.
-    fn flip(&self, mesh: &TetMesh, corner: &Corner, vertex: u32) -> Option<Change> {
+    /// Replaces the corner's face opposite a vertex by the edge from this vertex to the one behind the face (2-3 flip).
+    fn flip(&self, mesh: &TetMesh, corner: &CornerTet, vertex: u32) -> Option<LocalChange> {
         let tet = mesh.tets[corner.tet];
         let face = face_without(tet, vertex);
         let behind = *self.beside.get(&face)?.iter().find(|&&t| t != corner.tet)?;
         let apex = *mesh.tets[behind].iter().find(|v| !face.contains(v))?;
         let new: Vec<[u32; 4]> = face.iter().map(|&lost| tet.map(|v| if v == lost { apex } else { v })).collect();
         let worst = worst(mesh, &new, None, 0.0)?;
-        Some(Change { old: vec![corner.tet, behind], new, vertex: None, worst })
+        Some(LocalChange { old: vec![corner.tet, behind], new, vertex: None, worst })
     }
 
-    /// An edge is split, and the tetrahedra around it in two each; none when the edge is on the surface.
-    fn split(&self, mesh: &TetMesh, edge: [u32; 2]) -> Option<Change> {
+    /// Splits an edge and each tetrahedron around it in two; none when the edge is on the surface.
+    fn split(&self, mesh: &TetMesh, edge: [u32; 2]) -> Option<LocalChange> {
         let ring = self.around.get(&edge)?;
         let mut link: Vec<u32> = ring.iter().flat_map(|&t| mesh.tets[t]).filter(|v| !edge.contains(v)).collect();
         link.sort_unstable();
@@ -212,20 +214,20 @@ impl Places {
         let at = |v: u32| mesh.points[v as usize].coords;
         let middle = 0.5 * (at(edge[0]) + at(edge[1]));
         let around = link.iter().fold(middle * 0.0, |sum, &v| sum + at(v)) / link.len() as f64;
-        let places = DRAWN.map(|share| Point3::from(middle + (around - middle) * share));
+        let positions = LINK_SHARES.map(|share| Point3::from(middle + (around - middle) * share));
         let next = mesh.points.len() as u32;
         let half = |lost: u32| ring.iter().map(move |&t| mesh.tets[t].map(|v| if v == lost { next } else { v }));
-        Change::with_vertex(mesh, ring.clone(), half(edge[0]).chain(half(edge[1])).collect(), &places)
+        LocalChange::with_vertex(mesh, ring.clone(), half(edge[0]).chain(half(edge[1])).collect(), &positions)
     }
 }
 
-/// A tetrahedron is split into four by a vertex in its middle.
-fn split_tet(mesh: &TetMesh, tet: usize) -> Option<Change> {
+/// Splits a tetrahedron into four at its centroid.
+fn split_tet(mesh: &TetMesh, tet: usize) -> Option<LocalChange> {
     let vertices = mesh.tets[tet];
     let next = mesh.points.len() as u32;
     let sum = vertices.iter().fold(nalgebra::Vector3::zeros(), |sum, &v| sum + mesh.points[v as usize].coords);
     let quarters = vertices.iter().map(|&lost| vertices.map(|v| if v == lost { next } else { v })).collect();
-    Change::with_vertex(mesh, vec![tet], quarters, &[Point3::from(sum / 4.0)])
+    LocalChange::with_vertex(mesh, vec![tet], quarters, &[Point3::from(sum / 4.0)])
 }
 
 /// The smallest radius ratio of tetrahedra, with the next vertex where it is said to be; none when it is not above a bound, or
@@ -242,7 +244,7 @@ fn worst(mesh: &TetMesh, tets: &[[u32; 4]], next: Option<Point3>, above: f64) ->
     tets.iter().map(corners).all(|[a, b, c, d]| orient3d(&a, &b, &c, &d) > 0.0).then_some(worst)
 }
 
-/// For each point of a mesh whether it is one of some vertices.
+/// Returns one flag per point of the mesh, true for the given vertices.
 fn marked(mesh: &TetMesh, vertices: impl Iterator<Item = u32>) -> Vec<bool> {
     let mut marks = vec![false; mesh.points.len()];
     for v in vertices {
@@ -251,7 +253,7 @@ fn marked(mesh: &TetMesh, vertices: impl Iterator<Item = u32>) -> Vec<bool> {
     marks
 }
 
-/// The face of a tetrahedron that lacks a vertex.
+/// Returns the face opposite a vertex of a tetrahedron.
 fn face_without(tet: [u32; 4], vertex: u32) -> [u32; 3] {
     let k = tet.iter().position(|&v| v == vertex).unwrap_or(0);
     face_key([1, 2, 3].map(|j| tet[(k + j) % 4]))
@@ -263,4 +265,39 @@ fn edge_key([a, b]: [u32; 2]) -> [u32; 2] {
 
 fn edges([a, b, c, d]: [u32; 4]) -> [[u32; 2]; 6] {
     [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]].map(edge_key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::cube;
+    use crate::{certify, tetrahedralize};
+
+    fn corner_count(mesh: &TetMesh, surface: &TriMesh, outer: impl Fn(usize) -> bool) -> usize {
+        let outer = surface.triangles.iter().enumerate().filter(|(i, _)| outer(*i));
+        let faces: FxHashSet<[u32; 3]> = outer.map(|(_, &triangle)| face_key(triangle)).collect();
+        let boundary_faces = |tet: &[u32; 4]| tet.iter().filter(|&&v| faces.contains(&face_without(*tet, v))).count();
+        mesh.tets.iter().filter(|tet| boundary_faces(tet) > 1).count()
+    }
+
+    #[test]
+    fn a_filled_cube_loses_its_corner_tetrahedra_and_stays_certified() {
+        let surface = cube(4);
+        let mut mesh = tetrahedralize(&surface, &crate::TetOptions::default()).unwrap();
+        let before = corner_count(&mesh, &surface, |_| true);
+        split_corner_tets(&mut mesh, &surface, |_| true);
+        let after = corner_count(&mesh, &surface, |_| true);
+        assert!(before > 0 && after < before, "{before} before, {after} after");
+        assert_eq!(mesh.points[..surface.points.len()], surface.points);
+        certify(&mesh, &surface).unwrap();
+    }
+
+    #[test]
+    fn triangles_that_are_not_on_the_boundary_of_the_whole_make_no_corner() {
+        let surface = cube(4);
+        let given = tetrahedralize(&surface, &crate::TetOptions::default()).unwrap();
+        let mut mesh = given.clone();
+        split_corner_tets(&mut mesh, &surface, |_| false);
+        assert_eq!((mesh.points, mesh.tets), (given.points, given.tets));
+    }
 }
