@@ -8,7 +8,8 @@
 //! ANASTOMESH_STYLE_LOWER=1 cargo test --test style                  # lowers the budget to the present numbers
 //! ```
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -156,9 +157,9 @@ fn literal(source: &str, at: usize) -> (usize, Option<(PieceKind, String)>) {
             return (all, Some((PieceKind::Literal, body[..length].to_owned())));
         }
     }
-    if rest.starts_with('"') {
-        let end = closing(&rest[1..], '"').unwrap_or(rest.len() - 1);
-        return ((end + 2).min(rest.len()), Some((PieceKind::Literal, unescaped(&rest[1..=end]))));
+    if let Some(body) = rest.strip_prefix('"') {
+        let end = closing(body, '"').unwrap_or(body.len());
+        return ((end + 2).min(rest.len()), Some((PieceKind::Literal, unescaped(&body[..end]))));
     }
     if let Some(body) = rest.strip_prefix('\'') {
         // A lifetime has no closing quote after one character.
@@ -350,7 +351,7 @@ fn in_paragraphs(paragraphs: &[Paragraph], out: &mut Vec<Violation>) {
 fn bad_opening(text: &str) -> Option<&'static str> {
     let opens =
         |opening: &&str| text.strip_prefix(*opening).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric));
-    OPENINGS.into_iter().find(|opening| opens(&opening))
+    OPENINGS.into_iter().find(opens)
 }
 
 /// Violations in a Rust source, and the number of its doc comments.
@@ -371,7 +372,9 @@ fn in_source(source: &str, messages: bool) -> (Vec<Violation>, usize) {
         }
         let paragraphs = paragraphs(block.iter().map(|piece| (piece.line, &*piece.text)));
         if first.kind == PieceKind::Comment {
-            paragraphs.iter().for_each(|p| in_text(p.line, &plain(&p.text), &mut out));
+            for p in &paragraphs {
+                in_text(p.line, &plain(&p.text), &mut out);
+            }
             continue;
         }
         docs += 1;
@@ -387,7 +390,9 @@ fn in_markdown(text: &str) -> Vec<Violation> {
     let mut out = Vec::new();
     let paragraphs = paragraphs(text.lines().enumerate().map(|(i, line)| (i + 1, line)));
     in_paragraphs(&paragraphs, &mut out);
-    paragraphs.iter().for_each(|p| in_plurals(p.line, &plain(&p.text), &mut out));
+    for p in &paragraphs {
+        in_plurals(p.line, &plain(&p.text), &mut out);
+    }
     out
 }
 
@@ -457,10 +462,10 @@ fn budget_text(counts: &Counts) -> String {
     let mut text =
         String::from("# Remaining violations of docs/style.md in each folder (tests/style.rs). Numbers only fall.\n");
     for folder in folders(counts) {
-        text += &format!("\n[\"{folder}\"]\n");
+        let _ = writeln!(text, "\n[\"{folder}\"]");
         for (kind, name) in KINDS {
             if let Some(&count) = counts.get(&(folder.clone(), kind)).filter(|count| **count > 0) {
-                text += &format!("{name} = {count}\n");
+                let _ = writeln!(text, "{name} = {count}");
             }
         }
     }
@@ -530,7 +535,7 @@ fn the_style_budget_holds() {
     let budget = read_budget(&fs::read_to_string(&path).unwrap_or_default());
     let lower = asked("ANASTOMESH_STYLE_LOWER");
     let (mut wrong, mut lowered) = (Vec::new(), Counts::new());
-    let keys: std::collections::BTreeSet<&(String, Kind)> = counts.keys().chain(budget.keys()).collect();
+    let keys: BTreeSet<&(String, Kind)> = counts.keys().chain(budget.keys()).collect();
     for key @ (folder, kind) in keys {
         let [found, allowed] = [&counts, &budget].map(|numbers| numbers.get(key).copied().unwrap_or(0));
         lowered.insert(key.clone(), found.min(allowed));
