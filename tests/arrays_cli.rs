@@ -1,4 +1,4 @@
-//! Arrays of `NumPy` in and out of the program, and progress as lines: what programs that start this one live on.
+//! Command line tests of `NumPy` arrays and of progress lines: the interface for other programs.
 
 mod common;
 
@@ -11,7 +11,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// Writes an array as `NumPy` does.
+/// Writes an array in `NumPy` format.
 fn save(folder: &Path, name: &str, descr: &str, shape: &str, items: &[u8]) {
     fs::create_dir_all(folder).expect("a folder");
     let head = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}\n");
@@ -28,7 +28,7 @@ fn ints(values: &[i32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// The unit cube.
+/// Unit cube.
 fn cube(folder: &Path) -> PathBuf {
     let path = folder.join("cube.npyd");
     let points: Vec<f64> = (0..24).map(|i| f64::from((i / 3) >> (i % 3) & 1)).collect();
@@ -56,7 +56,7 @@ fn a_mesh_as_arrays_is_the_mesh() {
         assert_code(&run("convert", &[&at(from), Path::new("-o"), &at(to)], &["-q"]), FINE);
     }
     assert!(fs::read(at("a.vtu")).expect("a file") == fs::read(at("b.vtu")).expect("a file"));
-    // Replaced where it is a mesh alone, not where it holds anything else.
+    // A folder with a mesh only is replaced, one with other files is not.
     assert_code(&mesh(&fixture("tree_30.vtp"), &at("a.npyd"), &["-q", "--data", "radius,branch"]), FINE);
     assert!(at("a.npyd/point_radius.npy").exists() && at("a.npyd/tet_branch.npy").exists());
     fs::write(at("a.npyd/results.npy"), "").expect("a file");
@@ -94,7 +94,7 @@ fn a_complex_as_arrays_has_markers_and_bounded_regions() {
     markers.dedup();
     assert_eq!(markers, [5, 6, 7, 8, 9, 10]);
     assert!(file.volume.tet_block.iter().all(|&region| region == 3));
-    // What of the input is no part of a mesh is not replaced, nor is the rest of it.
+    // Input arrays that do not belong to a mesh prevent replacement of the folder.
     assert_says(&fill(&input, &input, &[]), BAD_INPUT, &["also holds"]);
     for name in ["markers.npy", "regions.npy"] {
         fs::remove_file(input.join(name)).expect("a file");

@@ -1,4 +1,4 @@
-//! `check` as it is run: what is no mesh, and meshes that are not sound.
+//! Command line tests of `check`: files that are not meshes, and invalid meshes.
 
 mod common;
 
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// The fixture's mesh, made once per test.
+/// Mesh of the fixture, created once per test.
 fn tree_mesh(folder: &TempDir, name: &str) -> PathBuf {
     let out = folder.path().join(name);
     assert_code(&mesh(&fixture("tree_30.vtp"), &out, &["-q", "--rho", "2.5"]), FINE);
@@ -45,7 +45,7 @@ fn check_refuses_what_is_no_mesh() {
     let path = folder.path().join("mesh.stl");
     fs::write(&path, "solid\n").expect("a file");
     refused(&path, &["extension", ".vtu, .pvtu, .msh"]);
-    // A network is no mesh.
+    // A network is not a mesh.
     let network = folder.path().join("network.vtu");
     fs::copy(fixture("tree_30.vtp"), &network).expect("a copy");
     refused(&network, &["PolyData", "UnstructuredGrid"]);

@@ -1,4 +1,4 @@
-//! `convert` as it is run: what is read comes out in another format as it went in.
+//! Command line tests of `convert`: contents are preserved in other formats.
 
 mod common;
 
@@ -29,7 +29,7 @@ fn meshes_become_each_other() {
         assert_eq!(file.volume.boundary.len(), expected.volume.boundary.len(), "{name}");
     }
     assert!(fs::read(at("a.vtu")).expect("a file") == fs::read(at("tree.vtu")).expect("a file"));
-    // Block by block the same comes out.
+    // Blockwise conversion gives equal results.
     let pieces = convert(&at("tree.vtu"), &at("pieces.vtu"), &["--memory", "1MiB"]);
     assert_code(&pieces, FINE);
     assert!(!stderr(&pieces).contains("held as a whole"), "{}", stderr(&pieces));
@@ -50,7 +50,7 @@ fn a_mesh_has_a_boundary() {
     assert_code(&convert(&at("tree.vtu"), &at("wall.ply"), &["-q", "--no-caps"]), FINE);
     let wall = read_surface(&at("wall.ply")).expect("a surface");
     assert_eq!(wall.triangles.len(), volume.boundary_patch.iter().filter(|&&p| p == 1).count());
-    // Without labels the faces of one tetrahedron alone are the boundary.
+    // Without labels the boundary consists of faces with a single tetrahedron.
     assert_code(&mesh(&fixture("tree_30.swc"), &at("alone.vtu"), &["-q", "--cells", "tets"]), FINE);
     assert_code(&convert(&at("alone.vtu"), &at("alone.off"), &["-q"]), FINE);
     assert_eq!(read_surface(&at("alone.off")).expect("a surface").triangles.len(), volume.boundary.len());

@@ -1,6 +1,6 @@
-//! Files of every format that is read, damaged in a hundred ways at each place: a network, a mesh, a surface, or an error, soon,
-//! and never a panic. Every number and word is replaced by others, every range of bytes cut out, words of bytes overwritten;
-//! then, for as many seconds as `ANASTOMESH_DAMAGE_SECONDS` says, several of these at once.
+//! Damages files of every readable format: readers return a result or an error in time, without panics. Every number
+//! and word is replaced, every byte range removed, and byte words are overwritten. Random combinations follow for
+//! `ANASTOMESH_DAMAGE_SECONDS` seconds.
 
 mod common;
 
@@ -15,16 +15,16 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Longest of the files that are damaged at every place; of longer ones the head and the end are.
+/// Maximum length of files that are damaged everywhere; longer ones are damaged at their start and end.
 const WHOLE: usize = 1500;
 
-/// No file of this length takes a reader as long.
+/// Time limit for reading a file of this length.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What reads a file.
+/// Reader of a file.
 type Reader = Box<dyn Fn(&[u8])>;
 
-/// A sound file, and what reads it.
+/// Valid file and its reader.
 struct Sample {
     name: String,
     bytes: Vec<u8>,
@@ -56,7 +56,7 @@ impl Sample {
         Some(Self { name: path.display().to_string(), bytes, read })
     }
 
-    /// Reads one file of a folder of arrays, among the others, as everything that they may be.
+    /// Reads one file of an array folder, together with the others, as every possible kind of data.
     fn of_arrays(path: &Path) -> Reader {
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let beside = path.parent().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
@@ -76,7 +76,7 @@ impl Sample {
         })
     }
 
-    /// Tells of the damage when reading panics, or takes long.
+    /// Reports the damage if reading panics or takes too long.
     fn survives(&self, bytes: &[u8], damage: &dyn Fn() -> String) -> Result<(), String> {
         let start = Instant::now();
         let outcome = catch_unwind(AssertUnwindSafe(|| (self.read)(bytes)));
@@ -89,14 +89,14 @@ impl Sample {
         Err(format!("{}: {} ({taken:.1?}); the last such file is {}", self.name, damage(), kept.display()))
     }
 
-    /// Where damage is done.
+    /// Positions to damage.
     fn places(&self) -> Vec<usize> {
         let count = self.bytes.len();
         (0..count).filter(|&at| count <= WHOLE || at < WHOLE * 2 / 3 || at + WHOLE / 3 >= count).collect()
     }
 }
 
-/// Files of the repository, and binary ones that are written here.
+/// Files of the repository, and binary ones created here.
 fn samples(folder: &Path) -> Vec<Sample> {
     let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Point3::from);
     let mesh = TetMesh { points: points.to_vec(), tets: vec![[0, 1, 2, 3]] };
@@ -115,13 +115,13 @@ fn samples(folder: &Path) -> Vec<Sample> {
     let mut paths: Vec<PathBuf> = files.map(|entry| entry.path()).collect();
     paths.sort();
     let all: Vec<Sample> = paths.iter().filter_map(|path| Sample::of(path)).collect();
-    // The seeds are no part of the package.
+    // The seeds are not part of the package.
     let expected = if fixture("../fuzz/seeds").is_dir() { 40 } else { 10 };
     assert!(all.len() >= expected, "{}", all.len());
     all
 }
 
-/// What numbers and words become.
+/// Replacements of numbers and words.
 const WORDS: [&str; 14] = [
     "",
     "0",
@@ -139,11 +139,11 @@ const WORDS: [&str; 14] = [
     "\"",
 ];
 
-/// What 1, 2, 4 and 8 bytes become.
+/// Replacements of 1, 2, 4 and 8 bytes.
 const BYTES: [[u8; 8]; 4] =
     [[0; 8], [0xff; 8], [0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff, 0x7f], [0, 0, 0, 0x80, 0, 0, 0, 0x80]];
 
-/// The words of a file and the gaps between them: runs of letters, digits and signs.
+/// Words of a file and the gaps between them: runs of letters, digits and signs.
 fn words(bytes: &[u8]) -> Vec<(usize, usize)> {
     let of_word = |b: u8| b.is_ascii_alphanumeric() || b"+-._".contains(&b);
     let mut start = 0;
@@ -206,11 +206,11 @@ fn damage_upon_damage_is_survived() {
     eprintln!("{files} files");
 }
 
-/// Numbers that look like chance (`SplitMix64`).
+/// Pseudo-random numbers (`SplitMix64`).
 struct Random(u64);
 
 impl Random {
-    /// A number below another.
+    /// Random number below `end`.
     fn below(&mut self, end: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -220,7 +220,7 @@ impl Random {
     }
 }
 
-/// One to five faults.
+/// Applies one to five faults.
 fn damaged(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for _ in 0..=random.below(5) {
@@ -230,7 +230,7 @@ fn damaged(bytes: &[u8], random: &mut Random) -> Vec<u8> {
         let instead: Vec<u8> = match random.below(4) {
             0 => Vec::new(),
             1 => (at..end).map(|_| random.below(256) as u8).collect(),
-            // Bytes of the same file, from elsewhere.
+            // Bytes from elsewhere in the file.
             2 => bytes[random.below(at + 1)..].iter().take(end - at).copied().collect(),
             _ if words.is_empty() => b"0".to_vec(),
             _ => {

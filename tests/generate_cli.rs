@@ -1,4 +1,4 @@
-//! `generate` as it is run, and what the other verbs make of its networks.
+//! Command line tests of `generate`, and of other commands on its networks.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Subtrees of a real kidney, which are not in the repository: skipped where the shared data is absent.
+//! Tests on subtrees of a real kidney, which are not in the repository: skipped without the shared data.
 
 mod common;
 
@@ -8,7 +8,7 @@ use anastomesh::network::{Edge, JointStyle, MeshPlan, Meshed, RunReport, Skeleto
 use anastomesh::testing::{Tube, point_tube};
 use common::{mesh, mesh_by, network, shared};
 
-/// Triangles of the wall of `subtree_289_clear` that another implementation of the method makes at ρ = 3.
+/// Wall triangles of `subtree_289_clear` at ρ = 3 from another implementation of the method.
 const WALL_OF_BASELINE: usize = 227_134;
 
 fn kidney(name: &str, rho: f64) -> Option<Meshed> {
@@ -20,7 +20,7 @@ fn kidney(name: &str, rho: f64) -> Option<Meshed> {
 
 fn assert_few_retries(report: &RunReport) {
     let blocks = report.blocks.clusters + report.blocks.connectors;
-    // Vessels that overlap are kept apart where that can be: trying it is not a failure.
+    // Attempts to keep overlapping vessels apart do not count as failures.
     let retries: Vec<_> = report.retries.iter().filter(|retry| !retry.remedy.contains("taken as one")).collect();
     assert!(retries.len() * 100 <= blocks, "{blocks} blocks\n{retries:#?}");
 }
@@ -67,7 +67,7 @@ fn subtree_289_clear_is_valid() {
     assert!(quality.dihedral_min >= 8.0, "smallest dihedral {}°", quality.dihedral_min);
     let report = &meshed.report;
     assert!(report.blocks.clusters >= 120, "{} clusters", report.blocks.clusters);
-    // Edges in proportion to the radius, and rings of tubes a little further from each other than theirs.
+    // Edge length is proportional to the radius, and tube rings are slightly further apart.
     assert!(report.mesh.wall_triangles * 100 >= WALL_OF_BASELINE * 55, "{} triangles", report.mesh.wall_triangles);
 }
 
@@ -76,7 +76,7 @@ fn subtree_289_clear_is_as_fine_everywhere_on_request() {
     let Some(shared) = shared() else { return };
     let mut plan = MeshPlan::default();
     plan.follow = 0.0;
-    // A disc that the vessel alone gives cannot be as fine as a cluster that it does not know.
+    // A disc derived from the vessel alone cannot be as fine as an unknown cluster.
     plan.joint = JointStyle::Woven;
     let meshed = mesh_by(&network(&shared.join("data/kidney/subtree_289_clear.vtp")), &plan);
     assert_clear(&meshed);
@@ -84,8 +84,7 @@ fn subtree_289_clear_is_as_fine_everywhere_on_request() {
     assert!(walls * 10 >= WALL_OF_BASELINE * 8, "{walls} triangles");
 }
 
-/// Vessels overlap in this one: the mesh cannot be valid. But each fault is one that these vessels explain, and nothing else
-/// is wrong.
+/// The network has overlapping vessels, so the mesh cannot be valid. Every fault must be explained by them.
 #[test]
 fn subtree_989_is_sound_but_for_its_overlaps() {
     let Some(Meshed { report, check, .. }) = kidney("subtree_989.vtp", 3.0) else { return };
@@ -98,16 +97,16 @@ fn subtree_989_is_sound_but_for_its_overlaps() {
         check.lines.iter().filter(|l| matches!(l.outcome, Outcome::NotChecked(_))).map(|l| l.line).collect();
     assert_eq!(unchecked, [Line::NoDuplicatePoints], "points of walls that meet are looked for where they meet");
     let line = |line: Line| check.line(line).expect("a line of the check");
-    // Terminals without a cap are those whose tips lie in another vessel.
+    // Terminals without a cap are those with tips inside another vessel.
     let mut uncapped: Vec<i64> = report.fused.iter().flat_map(|f| &f.uncapped).map(|&node| i64::from(node)).collect();
     uncapped.sort_unstable();
     let missing: Vec<i64> = line(Line::CapPerTerminal).offenders.iter().flat_map(|o| o.ids.iter().copied()).collect();
     assert_eq!((missing.len() as u64, &missing), (line(Line::CapPerTerminal).count, &uncapped));
-    // Handles are those of vessels that fused.
+    // Handles come from fused vessels.
     let handles: i64 = report.fused.iter().map(|f| f.handles - f.loops).sum();
     let found: u32 = line(Line::Loops).found.iter().flatten().sum();
     assert_eq!(i64::from(found), handles, "a tree has no loops of its own");
-    // Walls meet where vessels overlap.
+    // Walls intersect where vessels overlap.
     let network = network(&shared().expect("the network was there").join("data/kidney/subtree_989.vtp"));
     let overlapping: Vec<Tube> = report.unconnected.iter().flatten().map(|edge| tube(&network, *edge)).collect();
     for offender in &line(Line::NoSelfIntersection).offenders {
@@ -119,7 +118,7 @@ fn subtree_989_is_sound_but_for_its_overlaps() {
     assert_quality(&check);
 }
 
-/// The vessel between two nodes of the file.
+/// Vessel between two nodes of the file.
 fn tube(network: &Skeleton, nodes: [u32; 2]) -> Tube {
     let is_it = |edge: &Edge| {
         let original = edge.nodes.map(|n| network.node(n).original);

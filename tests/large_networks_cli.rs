@@ -1,4 +1,4 @@
-//! Networks larger than memory: blocks on disk, runs that are stopped and go on, and what is refused beforehand.
+//! Tests of networks larger than memory: blocks on disk, interrupted and continued runs, and early rejections.
 
 mod common;
 
@@ -19,12 +19,12 @@ fn run(network: &Path, out: &Path, options: &[&str]) -> Output {
     command(network, out, options).output().expect("the program runs")
 }
 
-/// The fixture, or a larger network where it is there.
+/// The fixture, or a larger network if available.
 fn network() -> PathBuf {
     shared().map_or_else(|| fixture("tree_30.vtp"), |shared| shared.join("data/kidney/subtree_289_clear.vtp"))
 }
 
-/// Bytes that a file has now.
+/// Current size of a file in bytes.
 fn length(path: &Path) -> u64 {
     fs::metadata(path).map_or(0, |m| m.len())
 }
@@ -46,7 +46,7 @@ fn bytes_do_not_depend_on_memory_threads_or_where_blocks_are() {
     assert_eq!(names, ["a.vtu", "a_patches.csv", "b.vtu", "b_patches.csv", "work"]);
 }
 
-/// Kills a run once its blocks have grown to `bytes`; false if it ended before.
+/// Kills a run once its blocks have grown to `bytes`; returns false if it ended before.
 fn kill_at(mut child: Child, blocks: &Path, bytes: u64) -> bool {
     loop {
         if child.try_wait().expect("a child").is_some() {
@@ -61,8 +61,8 @@ fn kill_at(mut child: Child, blocks: &Path, bytes: u64) -> bool {
     }
 }
 
-/// Kills so many runs at moments spread over the making of their blocks, then lets one come to its end: it has the bytes of a run
-/// that nobody disturbed. How many were hit.
+/// Kills `runs` runs at different progress, then completes one and compares its bytes with an undisturbed run. Returns
+/// the number of killed runs.
 fn killed(network: &Path, options: &[&str], runs: u64) -> u32 {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
@@ -74,7 +74,7 @@ fn killed(network: &Path, options: &[&str], runs: u64) -> u32 {
     let mut killed = 0;
     for step in 0..runs {
         let child = command(network, &path("b.vtu"), options).stderr(Stdio::null()).spawn().expect("the program runs");
-        // Now and then before the first block, while it is checked, or while it is written.
+        // Sometimes before the first block, during the check, or during output.
         killed += u32::from(kill_at(child, &blocks, all * step * 10 / (9 * runs)));
         assert!(!path("b.vtu").exists() || fs::read(path("b.vtu")).expect("a mesh") == whole, "{options:?}");
     }
@@ -158,7 +158,7 @@ fn what_cannot_fit_is_refused_with_an_estimate_and_touches_nothing() {
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
 }
 
-/// A device on which every write fails as on a full disk.
+/// A device on which every write fails like on a full disk.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_an_error_that_says_so() {
@@ -169,7 +169,7 @@ fn a_full_disk_is_an_error_that_says_so() {
     fs::create_dir(&work).expect("a folder");
     std::os::unix::fs::symlink("/dev/full", work.join("anastomesh.blocks")).expect("a link");
     fs::write(folder.path().join("a.vtu"), "an earlier mesh").expect("written");
-    // What is found there without a manifest is removed, so the manifest has to be there first.
+    // Files without a manifest are removed, so the manifest must exist first.
     let first = folder.path().join("first");
     assert_code(&run(&tree, &folder.path().join("b.vtu"), &["--work-dir", first.to_str().expect("text")]), FINE);
     fs::copy(first.join("anastomesh.json"), work.join("anastomesh.json")).expect("copied");
@@ -178,7 +178,7 @@ fn a_full_disk_is_an_error_that_says_so() {
     assert_eq!(fs::read(folder.path().join("a.vtu")).expect("there"), b"an earlier mesh");
 }
 
-/// The report of the verb check, without its figures of quality (percentiles of blocks are known to a bin).
+/// Report of `check`, without quality figures (blockwise percentiles have bin precision).
 fn checked(mesh: &Path, options: &[&str]) -> (i32, serde_json::Value) {
     let output = program().arg("check").arg(mesh).arg("--json").args(options).output().expect("the program runs");
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
@@ -198,9 +198,9 @@ fn a_file_is_checked_block_by_block_as_in_memory() {
     assert_eq!(checked(&mesh, &["--memory", "1MiB"]), (code, whole));
 }
 
-/// Twelve vessels of a grown kidney (250,000 terminals, seed 0), refined: the web in the crotch of a thick fork meets a thin
-/// vessel that runs through it (2.2 times as wide here), though it overlaps neither branch. No block knows of the vessels of
-/// another one, so this is seen in the whole, and the fork is made again, finer.
+/// Twelve refined vessels of a grown kidney (250,000 terminals, seed 0). The web in the crotch of a thick bifurcation
+/// intersects a thin vessel (here 2.2 times as wide) that overlaps neither branch. Blocks do not know other blocks'
+/// vessels. The whole-mesh check finds it, and the bifurcation is remeshed finer.
 #[test]
 fn a_thin_vessel_runs_through_the_crotch_of_a_thick_fork() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -213,7 +213,7 @@ fn a_thin_vessel_runs_through_the_crotch_of_a_thick_fork() {
     let reasons: Vec<_> = retries.iter().filter_map(|retry| retry["reason"].as_str()).collect();
     assert!(matches!(reasons[..], [reason] if reason.starts_with("its wall meets that of")), "{retries:#?}");
     let expected = fs::read(path("a.vtu")).expect("a mesh");
-    // A run that finds its blocks done finds those that were made again, too.
+    // A run with finished blocks also finds the remeshed ones.
     for options in [["--work-dir", &work, "-j", "1"], ["--work-dir", &work, "-j", "3"]] {
         assert_code(&run(&fixture("crotch.vtp"), &path("b.vtu"), &options), FINE);
         assert!(fs::read(path("b.vtu")).expect("a mesh") == expected, "{options:?}");

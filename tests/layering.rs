@@ -1,5 +1,5 @@
-//! A module imports only from lower layers (ARCHITECTURE.md), and no file imports from one that imports from it. Between
-//! crates Cargo enforces the direction of dependencies.
+//! Modules import only from lower layers (ARCHITECTURE.md), and files have no import cycles. Between crates, Cargo
+//! enforces the direction of dependencies.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -41,8 +41,8 @@ fn rust_files(dir: &Path, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// Modules that a piece of source names: `crate::module` and, in the binary, `anastomesh::module`; also the first names
-/// of a group `crate::{a::X, b::Y}`.
+/// Modules named in source text: `crate::module` and, in the binary, `anastomesh::module`; also the first names of a
+/// group `crate::{a::X, b::Y}`.
 fn modules_named(source: &str) -> Vec<String> {
     let code: String = source.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
     let mut modules = Vec::new();
@@ -82,7 +82,7 @@ fn group_heads(group: &str) -> Vec<String> {
     heads
 }
 
-/// Sources of a package by their paths below its source folder.
+/// Sources of a package, by path below its source folder.
 fn sources(package: &str) -> BTreeMap<String, String> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join(package);
     let mut files = Vec::new();
@@ -116,7 +116,7 @@ fn modules_import_downwards_only() {
     assert!(wrong.is_empty(), "imports that do not run downwards:\n{}", wrong.join("\n"));
 }
 
-/// Joints between discs must not come through the paper's own way.
+/// Disc joints must not depend on woven joints.
 #[test]
 fn only_the_pipeline_imports_woven() {
     for (inside, source) in sources("src") {
@@ -140,9 +140,8 @@ fn no_file_imports_from_one_that_imports_from_it() {
     assert!(found.is_empty(), "files that import from each other:\n{}", found.join("\n"));
 }
 
-/// Files that import from each other, directly or through others. A file imports from that which defines what it names,
-/// whatever re-exports stand between; a module that only declares and re-exports others imports from none of them. Test
-/// modules are not looked at.
+/// Files that import from each other, directly or indirectly. A file imports from the definition of a name, through all
+/// re-exports. A module that only declares and re-exports imports nothing. Test modules are ignored.
 fn circles(sources: &BTreeMap<String, String>) -> Vec<Vec<String>> {
     let mut crate_of = Crate::default();
     crate_of.add_file(sources, "lib.rs", &[]);
@@ -157,7 +156,7 @@ fn circles(sources: &BTreeMap<String, String>) -> Vec<Vec<String>> {
     circles.into_iter().collect()
 }
 
-/// All files that a file imports from, directly or through others.
+/// All files from which a file imports, directly or indirectly.
 fn reached<'a>(imports: &'a BTreeMap<String, BTreeSet<String>>, file: &str) -> BTreeSet<&'a str> {
     let mut reached = BTreeSet::new();
     let mut open: Vec<&str> = vec![file];
@@ -171,36 +170,36 @@ fn reached<'a>(imports: &'a BTreeMap<String, BTreeSet<String>>, file: &str) -> B
     reached
 }
 
-/// A path of names.
+/// Path of names.
 type Names = Vec<String>;
 
-/// One name that a `use` brings in.
+/// Name imported by a `use`.
 #[derive(Debug)]
 struct Use {
     path: Names,
-    /// What it is called here; `*` for everything.
+    /// Local name; `*` for a glob import.
     name: String,
-    /// Whether it is passed on.
+    /// True for a re-export.
     public: bool,
 }
 
-/// What a module says.
+/// Contents of a module.
 #[derive(Debug, Default)]
 struct Module {
     file: String,
-    /// What it defines itself.
+    /// Names that it defines.
     defines: BTreeSet<String>,
     uses: Vec<Use>,
     /// Paths in its code, and single names.
     named: Vec<Names>,
 }
 
-/// All modules by their paths.
+/// All modules by path.
 #[derive(Debug, Default)]
 struct Crate(BTreeMap<Names, Module>);
 
 impl Crate {
-    /// Reads a file and those of the modules that it declares; modules of tests are not reached.
+    /// Reads a file and the modules that it declares; test modules are ignored.
     fn add_file(&mut self, sources: &BTreeMap<String, String>, file: &str, path: &[String]) {
         let tokens = without_tests(&tokens(&sources[file]));
         let mut declared = Vec::new();
@@ -217,7 +216,7 @@ impl Crate {
         }
     }
 
-    /// Reads what a module says, and the modules in it.
+    /// Reads the contents of a module and its inner modules.
     fn add_module(&mut self, tokens: &[String], file: &str, path: &[String], declared: &mut Names) {
         let mut module = Module { file: file.into(), ..Module::default() };
         let (mut at, mut depth, mut public) = (0, 0, false);
@@ -252,7 +251,7 @@ impl Crate {
                 }
                 _ => {}
             }
-            // `pub`, or the end of `pub(…)`: what follows is passed on.
+            // `pub`, or the end of `pub(…)`: the next item is public.
             public =
                 token == "pub" || (public && matches!(token.as_str(), "(" | "crate" | "super" | "in" | "::" | ")"));
             at += 1;
@@ -260,7 +259,7 @@ impl Crate {
         self.0.insert(path.to_vec(), module);
     }
 
-    /// From which files each file imports.
+    /// Imports of each file, as files.
     fn imports(&self) -> BTreeMap<String, BTreeSet<String>> {
         let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for (path, module) in &self.0 {
@@ -274,7 +273,7 @@ impl Crate {
         imports
     }
 
-    /// The file that defines what a path names in a module; none for modules themselves and what is of other crates.
+    /// File that defines the target of a path in a module; `None` for modules and for items of other crates.
     fn place(&self, module: &[String], names: &[String], depth: usize) -> Option<String> {
         let (mut at, mut rest) = self.begin(module, names)?;
         while let [next, more @ ..] = rest
@@ -287,7 +286,7 @@ impl Crate {
         if here.defines.contains(name) || name == "*" {
             return Some(here.file.clone());
         }
-        // Names that lead back to themselves lead nowhere.
+        // Cyclic names resolve to nothing.
         let further = |u: &Use, rest: &[String]| {
             let path = [u.path.strip_suffix(&["*".to_owned()]).unwrap_or(&u.path), rest].concat();
             (depth < 20).then(|| self.place(&at, &path, depth + 1))?
@@ -298,7 +297,7 @@ impl Crate {
         }
     }
 
-    /// The module where a path begins, and the names behind.
+    /// Start module of a path, and the remaining names.
     fn begin<'a>(&self, module: &[String], names: &'a [String]) -> Option<(Names, &'a [String])> {
         let (first, rest) = names.split_first()?;
         match first.as_str() {
@@ -320,7 +319,7 @@ impl Crate {
     }
 }
 
-/// The names of a tree of imports.
+/// Adds the names of an import tree.
 fn add_uses(tokens: &[String], before: &[String], public: bool, uses: &mut Vec<Use>) {
     let mut path = before.to_vec();
     let mut at = 0;
@@ -341,7 +340,7 @@ fn add_uses(tokens: &[String], before: &[String], public: bool, uses: &mut Vec<U
         }
         at += 1;
     }
-    // `self` at the end of a group stands for the module of the group.
+    // `self` at the end of a group is the module of the group.
     if path.last().is_some_and(|last| last == "self") && path.len() > 1 {
         path.pop();
     }
@@ -367,12 +366,12 @@ fn is_name(token: &str) -> bool {
     token.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// Where a token is next; the end when it is nowhere.
+/// Position of the next such token, or the end.
 fn position(tokens: &[String], wanted: &str) -> usize {
     tokens.iter().position(|token| token == wanted).unwrap_or(tokens.len())
 }
 
-/// Where the group ends that begins here.
+/// End of the group that starts here.
 fn group_end(tokens: &[String], start: usize) -> usize {
     let mut depth = 0;
     for (i, token) in tokens.iter().enumerate().skip(start) {
@@ -385,7 +384,7 @@ fn group_end(tokens: &[String], start: usize) -> usize {
     tokens.len()
 }
 
-/// Leaves out every item behind `#[cfg(test)]`, and all attributes.
+/// Removes attributes, and every item with `#[cfg(test)]`.
 fn without_tests(tokens: &[String]) -> Vec<String> {
     let (mut kept, mut at, mut test) = (Vec::new(), 0, false);
     while let Some(token) = tokens.get(at) {
@@ -409,7 +408,7 @@ fn without_tests(tokens: &[String]) -> Vec<String> {
     kept
 }
 
-/// Names, `::` and single signs; comments are left out, and what is in quotes.
+/// Tokens: names, `::` and single characters; comments and quoted text are skipped.
 fn tokens(source: &str) -> Names {
     let mut tokens = Names::new();
     let mut rest = source;
@@ -436,7 +435,7 @@ fn tokens(source: &str) -> Names {
     tokens
 }
 
-/// How long the text or character in quotes is that begins here; none when there is none.
+/// Length of the quoted text or character that starts here; `None` if there is none.
 fn quoted(rest: &str) -> Option<usize> {
     let raw = rest.strip_prefix('b').unwrap_or(rest);
     if let Some(hashes) = raw.strip_prefix('r') {
@@ -470,14 +469,14 @@ fn circles_of(files: &[(&str, &str)]) -> Vec<Vec<String>> {
 #[test]
 fn circles_are_found_through_groups_and_re_exports() {
     let lib = ("lib.rs", "pub mod a;\npub mod b;");
-    // Through a group with a new name, and through a path in the code.
+    // Through a renamed group import, and through a path in the code.
     let a = ("a.rs", "use crate::{b::{self as other, Y as Z}};\npub struct X;\nfn f(_: Z, _: other::Y) {}");
     let b = ("b.rs", "pub struct Y;\nfn g(_: super::a::X) {}");
     assert_eq!(circles_of(&[lib, a, b]), [["a.rs", "b.rs"]]);
     assert!(
         circles_of(&[lib, a, ("b.rs", "pub struct Y; // super::a::X\nconst S: &str = \"crate::a::X\";")]).is_empty()
     );
-    // A module that is imported, but of which nothing is named.
+    // A module import without use of its names.
     assert!(circles_of(&[lib, ("a.rs", "use crate::b;\npub struct X;"), b]).is_empty());
     // A function called through its module.
     let called = ("a.rs", "use crate::b;\npub struct X;\nfn f() { let _ = 'b'; b::g('\\''); }");
@@ -491,9 +490,9 @@ fn a_module_that_only_declares_is_in_no_circle() {
     let a = ("part/a.rs", "use super::B;\npub struct A;");
     let b = ("part/b.rs", "pub struct B;");
     assert!(circles_of(&[lib, only, a, b]).is_empty());
-    // Siblings that name each other through it.
+    // Siblings that import each other through it.
     assert_eq!(circles_of(&[lib, only, a, ("part/b.rs", "pub struct B(super::A);")]), [["part/a.rs", "part/b.rs"]]);
-    // It defines something, and uses what it passes on.
+    // It defines an item, and uses its re-exports.
     let more = ("part/mod.rs", "mod a;\npub use a::A;\npub struct Own(A);");
     let child = ("part/a.rs", "pub struct A;\nimpl A { fn own(&self) -> Option<super::Own> { None } }");
     assert_eq!(circles_of(&[lib, more, child]), [["part/a.rs", "part/mod.rs"]]);
@@ -505,7 +504,7 @@ fn tests_are_in_no_circle() {
     let a = ("a.rs", "use crate::b::B;\npub struct A<'a>(&'a B);\n#[cfg(test)]\n#[path = \"a_tests.rs\"]\nmod tests;");
     let b = ("b.rs", "pub struct B;\n#[cfg(test)]\nuse crate::a::{A};\n#[cfg(test)]\nmod tests { use crate::a::A; }");
     assert!(circles_of(&[lib, a, b, ("a_tests.rs", "use super::A;")]).is_empty());
-    // A module within a file is of this file.
+    // An inline module belongs to its file.
     let inner = ("b.rs", "pub struct B;\nmod inner { use super::super::a::A; }");
     assert_eq!(circles_of(&[lib, a, inner]), [["a.rs", "b.rs"]]);
 }

@@ -1,10 +1,10 @@
-//! `completions` and `man` as they are run: each verb and option that `--help` has is in them.
+//! Command line tests of `completions` and `man`: they contain every command and option of `--help`.
 
 mod common;
 
 use common::program::*;
 
-/// The verbs that the program lists.
+/// Commands listed by the program.
 fn verbs() -> Vec<String> {
     let help = stdout(&run("--help", &[], &[]));
     let list = help.split("Commands:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("a list");
@@ -12,7 +12,7 @@ fn verbs() -> Vec<String> {
     names.filter_map(|line| line.split_whitespace().next()).filter(|&verb| verb != "help").map(str::to_owned).collect()
 }
 
-/// The long options that a verb lists.
+/// Long options listed by a command.
 fn options(verb: &str) -> Vec<String> {
     let help = stdout(&run(verb, &[], &["--help"]));
     let words = help.lines().filter(|line| line.trim_start().starts_with('-')).flat_map(|line| line.split([' ', ',']));

@@ -1,4 +1,4 @@
-//! `mesh` and `info` as they are run, and what is common to all verbs: exit codes, messages, files.
+//! Command line tests of `mesh` and `info`, and of exit codes, messages and files of all commands.
 
 mod common;
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-// ---- What works -----------------------------------------------------------------------------------------------------
+// ---- Successful runs ------------------------------------------------------------------------------------------------
 
 #[test]
 fn the_fixture_becomes_a_valid_mesh_in_both_formats() {
@@ -110,8 +110,8 @@ fn reports_are_json_on_request() {
     assert_eq!(checked["verdict"], "valid");
     assert_eq!(checked["lines"].as_array().map(Vec::len), Some(anastomesh::check::Line::ALL.len()));
     assert_eq!(checked["counts"]["tets"], run_report["mesh"]["tets"]);
-    // What was checked block by block is what is in the file; sums of floats depend on their order, and blocks keep a
-    // histogram from which the percentile is read.
+    // The blockwise check equals a check of the file. Float sums depend on their order, and blocks read the percentile
+    // from a histogram.
     let (mut whole, mut by_blocks) = (checked, made["check"].clone());
     for (path, tolerance) in [("/counts/volume", 1e-9), ("/quality/mean", 1e-9), ("/quality/percentile_1", 2e-3)] {
         let take = |report: &mut Value| report.pointer_mut(path).map(Value::take).and_then(|v| v.as_f64());
@@ -133,7 +133,7 @@ fn a_root_becomes_the_inlet() {
     assert_eq!((inlet.id, inlet.cap.map(|c| c.node)), (2, Some(before_last)));
 }
 
-/// Meshes a network with 1, 2 and 7 threads; what the last run said.
+/// Meshes a network with 1, 2 and 7 threads and compares the bytes; returns the last run's messages.
 fn assert_same_bytes(network: &Path, folder: &Path, expected: i32) -> String {
     let runs = ["1", "2", "7"].map(|threads| {
         let out = folder.join(format!("{threads}.vtu"));
@@ -154,7 +154,7 @@ fn bytes_do_not_depend_on_the_number_of_threads() {
     assert_same_bytes(&shared.join("data/kidney/subtree_59.vtp"), folder.path(), FINE);
 }
 
-/// Vessels overlap in it: the mesh is written all the same, and the program says where it is not valid.
+/// Overlapping vessels: the mesh is written, with a report of invalid places.
 #[test]
 fn overlapping_vessels_are_meshed_and_named() {
     let Some(shared) = shared() else { return };
@@ -170,12 +170,12 @@ fn overlapping_vessels_are_meshed_and_named() {
 
 // ---- Bad input ------------------------------------------------------------------------------------------------------
 
-/// All verbs refuse the network, and what lies at the output path stays as it is.
+/// All commands reject the network, and an existing output file is unchanged.
 #[track_caller]
 fn assert_refused(network: &Path, needles: &[&str]) {
     let folder = folder();
     let out = folder.path().join("out.vtu");
-    // Radii that cannot be used would be filled.
+    // Unusable radii would otherwise be replaced.
     let refused = mesh(network, &out, &["--json", "--keep-radii"]);
     assert_code(&refused, BAD_INPUT);
     assert_message(&refused, network, needles);
@@ -267,7 +267,7 @@ fn networks_without_a_vessel() {
     refuse("one.vtp", vtp("0 0 0", "1", "", ""), &["no lines"]);
 }
 
-/// A VTP file of one piece; offsets and connectivity may be empty.
+/// Single-piece VTP file; offsets and connectivity may be empty.
 fn vtp(points: &str, radii: &str, connectivity: &str, offsets: &str) -> String {
     let count = |text: &str| text.split_whitespace().count();
     format!(
@@ -316,7 +316,7 @@ fn numbers_that_cannot_be_used_in_vtp() {
 fn an_output_that_cannot_be_written_is_refused_first() {
     let folder = folder();
     let missing = folder.path().join("missing");
-    // The network does not exist either: the output is looked at before anything is read.
+    // The network does not exist either: the output is checked before anything is read.
     let network = folder.path().join("missing.vtp");
     let out = missing.join("out.vtu");
     let refused = mesh(&network, &out, &[]);
@@ -451,7 +451,7 @@ fn the_root_of_an_swc_file_is_the_inlet() {
     assert_eq!(inlet.cap.map(|c| c.node), Some(0));
 }
 
-// ---- How VTK's files are written ------------------------------------------------------------------------------------
+// ---- Encodings of VTK files -----------------------------------------------------------------------------------------
 
 #[test]
 fn a_grid_of_tetrahedra_alone_has_its_boundary_beside_it() {

@@ -1,12 +1,12 @@
-//! Every message that the sources hold, by module: whoever adds one or changes one sees it beside the others, and reads whether it
-//! says what, where, why and what to do. What the program makes of them is in `messages_cli`.
+//! Snapshots of all messages in the sources, by module. New and changed messages thus appear beside the others for
+//! review: what, where, why, and what to do. `messages_cli` tests them in context.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a message stands in.
+/// Calls that contain messages.
 const CALLS: [&str; 9] = [
     "#[error(",
     "Failure::input(",
@@ -19,7 +19,7 @@ const CALLS: [&str; 9] = [
     ".note(",
 ];
 
-/// The sources of a folder, in order.
+/// Sources of a folder, in order.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -34,7 +34,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The texts of a source up to where a parenthesis that is open closes, and what comes behind it.
+/// Texts of a source up to the closing parenthesis, and the rest of the source.
 fn texts(source: &str) -> (Vec<String>, &str) {
     let (mut depth, mut found, mut at) = (1, Vec::new(), 0);
     let bytes = source.as_bytes();
@@ -55,7 +55,7 @@ fn texts(source: &str) -> (Vec<String>, &str) {
     (found, &source[at..])
 }
 
-/// Where a text ends that has begun.
+/// End of a text that has started.
 fn text_end(bytes: &[u8], mut at: usize) -> usize {
     while bytes[at] != b'"' {
         at += if bytes[at] == b'\\' { 2 } else { 1 };
@@ -63,7 +63,7 @@ fn text_end(bytes: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// A text as it is written, without what breaks lines of the source.
+/// Text without line continuations of the source.
 fn unescaped(text: &str) -> String {
     let mut parts = text.split("\\\n");
     let mut out = parts.next().unwrap_or_default().to_owned();
@@ -71,7 +71,7 @@ fn unescaped(text: &str) -> String {
     out.replace("\\\"", "\"")
 }
 
-/// The messages of a source, but those of its tests.
+/// Messages of a source, except those of its tests.
 fn messages(source: &str) -> Vec<String> {
     let source = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let mut found = Vec::new();
@@ -84,13 +84,13 @@ fn messages(source: &str) -> Vec<String> {
         if is_comment || (!starts && !call.starts_with('.')) {
             continue;
         }
-        // One word is a name or a separator.
+        // Single words are names or separators.
         found.extend(texts(&rest[call.len()..]).0.into_iter().filter(|text| text.contains(' ')));
     }
     found
 }
 
-/// Snapshot that holds the messages of a source: its package and folder, of readers and writers the format's family.
+/// Snapshot of a source: its package and folder; for readers and writers, the format family.
 fn group(package: &str, inside: &Path) -> String {
     let first =
         inside.iter().next().filter(|_| inside.iter().count() > 1).map(|part| part.to_string_lossy().into_owned());
@@ -113,7 +113,7 @@ fn each_is_written_down() {
             let inside = path.strip_prefix(root.join(package)).expect("a source of ours");
             let Some(_) = found.first() else { continue };
             let out = groups.entry(group(package, inside)).or_default();
-            let _ = writeln!(out, "{}", inside.display());
+            let _ = writeln!(out, "{}", inside.to_string_lossy().replace('\\', "/"));
             for message in found {
                 count += 1;
                 let _ = writeln!(out, "    {}", message.replace('\n', "\n    "));

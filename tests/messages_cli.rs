@@ -1,5 +1,5 @@
-//! What the program says when something is wrong, as a person reads it: what was typed, the message, the exit code. Messages of
-//! readers are in `messages_of_files`, all that the sources hold in `messages`.
+//! Messages of the program for users: command, message, exit code. `messages_of_files` tests those of readers,
+//! `messages` those in the sources.
 
 mod common;
 
@@ -10,14 +10,14 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// A fork whose vessels are wide apart.
+/// A bifurcation with a wide angle.
 const FORK: &str = "1 0 0 0 0 1 -1\n2 0 0 0 9 1 1\n3 0 0 6 16 0.8 2\n4 0 0 -6 16 0.8 2\n";
-/// The same with a number for each node, of which one is none that edges can have.
+/// This network with a number for each node, one of them invalid for edges.
 const SIZED: &str = "id,x,y,z,radius,Size\na,0,0,0,1,2\nb,0,0,9,1,0.5\nc,0,6,16,0.8,-2\nd,0,-6,16,0.8,2\n\nsource,target\na,b\nb,c\nb,d\n";
-/// Two vessels that cross.
+/// Two crossing vessels.
 const CROSSED: &str = "1 0 0 0 0 1 -1\n2 0 0 0 20 1 1\n3 0 -10 0 10 1 -1\n4 0 10 0.5 10 1 3\n";
 
-/// What was typed and what was said.
+/// Record of commands and their messages.
 struct Record {
     folder: TempDir,
     text: String,
@@ -33,7 +33,7 @@ impl Record {
         self
     }
 
-    /// Runs a line of words in the folder, and writes down what came of it.
+    /// Runs a command line in the folder and records its output.
     fn run(&mut self, line: &str) {
         let mut command = program();
         command.current_dir(self.folder.path()).args(line.split(' ')).env("NO_COLOR", "1");
@@ -44,7 +44,7 @@ impl Record {
         let _ = writeln!(self.text, "$ anastomesh {line}\n{}[{code}]\n", Self::stable(&said));
     }
 
-    /// Without what differs from machine to machine, or whenever blocks are made in another way: times, sizes, places.
+    /// Removes parts that vary between machines or implementations: times, sizes, positions.
     fn stable(said: &str) -> String {
         let numbered = ["mesh ", "shape ", "vessels ", "surface ", "file ", "FAIL ", "         ", "  layers "];
         let line = |line: &str| {
@@ -55,7 +55,7 @@ impl Record {
     }
 }
 
-/// Each number is a #.
+/// Replaces each number by #.
 fn without_numbers(line: &str) -> String {
     let is_number = |c: char| c.is_ascii_digit() || ".,".contains(c);
     let mut out = String::new();
@@ -275,7 +275,7 @@ fn surfaces_that_cannot_be_filled() {
     insta::assert_snapshot!(record.text);
 }
 
-/// Each line that any verb says is an object when programs listen, whatever is wrong; what `--json` prints stays as it is.
+/// In program mode every line of any command is a JSON object, for all errors; `--json` output is unchanged.
 #[test]
 fn all_of_it_is_objects_for_programs() {
     let folder = folder();

@@ -1,5 +1,5 @@
-//! What readers say of files that are damaged: each number and word of small files of every format replaced by others, each file cut
-//! short, and every message that comes of it written down once, by formats.
+//! Snapshots of reader messages for damaged files: every number and word of small files is replaced, and files are
+//! truncated. Each distinct message is recorded once per format.
 
 mod common;
 
@@ -11,13 +11,13 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What numbers and words become.
+/// Replacements of numbers and words.
 const WORDS: [&str; 8] = ["", "0", "-1", "99999999999", "1e308", "nan", "x", "\""];
 
-/// Of longer files the head alone is damaged.
+/// Length of the damaged head of longer files.
 const HEAD: usize = 1500;
 
-/// What a reader says of bytes; none when it takes them, or is no reader of such files.
+/// Message of a reader; `None` if it accepts the bytes or does not read such files.
 fn said(path: &Path, bytes: &[u8]) -> Option<String> {
     if let Ok(format) = NetworkFormat::of(path) {
         return match read_network_from(bytes, format, &NetworkOptions::default()) {
@@ -32,7 +32,7 @@ fn said(path: &Path, bytes: &[u8]) -> Option<String> {
     read_mesh_from(bytes, format).err().map(|e| e.to_string())
 }
 
-/// The words of a file: runs of letters, digits and signs.
+/// Words of a file: runs of letters, digits and signs.
 fn words(bytes: &[u8]) -> Vec<(usize, usize)> {
     let of_word = |b: u8| b.is_ascii_alphanumeric() || b"+-._".contains(&b);
     let mut start = 0;
@@ -43,13 +43,13 @@ fn words(bytes: &[u8]) -> Vec<(usize, usize)> {
     runs.filter(|run| run.2).map(|run| (run.0, run.1)).collect()
 }
 
-/// A message without numbers and quoted words: two that differ in these only are one.
+/// Message without numbers and quoted words, to identify equal messages.
 fn shape(message: &str) -> String {
     let unquoted: String = message.split('\'').step_by(2).collect::<Vec<_>>().join("'");
     unquoted.chars().filter(|c| !c.is_ascii_digit() && !"-.e+".contains(*c)).collect()
 }
 
-/// Damages a file in every way, and adds what is said.
+/// Damages a file in every way, and collects the messages.
 fn damage(path: &Path, bytes: &[u8], found: &mut BTreeMap<String, String>) {
     let mut read = |bytes: &[u8]| {
         if let Some(message) = said(path, bytes) {

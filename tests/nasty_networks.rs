@@ -1,5 +1,5 @@
-//! Networks that nobody draws on purpose: each ends valid or with an error that says why, and soon. `NASTY_CASES=20` runs so
-//! many of each kind instead of one; what became of them is printed by kind.
+//! Pathological networks: each run ends in time, with a valid mesh or an informative error. `NASTY_CASES=20` runs that
+//! number of each kind instead of one; results are printed by kind.
 
 use anastomesh::Point3;
 use anastomesh::network::{
@@ -8,7 +8,7 @@ use anastomesh::network::{
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// xorshift: the same on every machine.
+/// Platform-independent xorshift generator.
 struct Random(u64);
 
 impl Random {
@@ -49,7 +49,7 @@ impl Builder {
         self.0.edges.push(Edge { nodes: [NodeId(a), NodeId(b)], radii });
     }
 
-    /// A polyline along a curve.
+    /// Polyline along a curve.
     fn line(&mut self, count: u32, radius: f64, place: impl Fn(f64) -> [f64; 3]) -> Vec<u32> {
         let ids: Vec<u32> = (0..=count).map(|i| self.node(place(f64::from(i) / f64::from(count)), radius)).collect();
         ids.windows(2).for_each(|pair| self.edge(pair[0], pair[1]));
@@ -63,7 +63,7 @@ fn along(from: [f64; 3], way: [f64; 3], length: f64) -> [f64; 3] {
 
 type Make = fn(&mut Random) -> Skeleton;
 
-/// The kinds, each with a generator.
+/// Kinds of networks with their generators.
 const KINDS: [(&str, Make); 19] = [
     ("star of up to 30 vessels", |r| {
         let mut b = Builder::default();
@@ -247,7 +247,7 @@ const KINDS: [(&str, Make); 19] = [
     }),
 ];
 
-/// How a network ended.
+/// Outcome of a network.
 fn end(given: &Skeleton) -> Result<&'static str, String> {
     let prepared = match prepare(given, &PrepareParams::default()) {
         Ok(prepared) => prepared,
@@ -259,7 +259,7 @@ fn end(given: &Skeleton) -> Result<&'static str, String> {
     };
     match mesh_network(&refined.skeleton, &MeshPlan::default(), &()) {
         Ok(made) if made.check.is_valid() => {
-            // Judged once more, as one mesh of which nothing is known.
+            // Checked again as one mesh, without prior knowledge.
             let again = anastomesh::check::check_volume(&made.mesh, Some(&made.expectation));
             if again.is_valid() { Ok("valid") } else { Err(format!("called valid: {again}")) }
         }

@@ -1,4 +1,4 @@
-//! Real networks made by others, which are not in the repository: skipped where the shared data is absent.
+//! Tests on real networks of other origin, which are not in the repository: skipped without the shared data.
 
 mod common;
 
@@ -37,8 +37,8 @@ fn every_network_is_read_cleaned_and_split() {
     assert_eq!(count, 18);
 }
 
-/// The counts in the data's own README (edges that share no node) were made from the closest points of the axes; ours
-/// take the taper into account and are equal or a little higher.
+/// The data's README counts edge pairs without common nodes by the closest points of the axes. Our counts include the
+/// taper and are equal or slightly higher.
 #[test]
 fn overlaps_are_those_that_are_known() {
     let Some(data) = common::shared().map(|shared| shared.join("data")) else { return };
@@ -51,7 +51,7 @@ fn overlaps_are_those_that_are_known() {
     assert_eq!(counts(&info("kidney/subtree_989.vtp", None)).0, 34);
     assert_eq!(counts(&info("kidney/tree_refined.vtp", None)).0, 1948);
     assert_eq!(counts(&info("skeletons/vascularmd_ICA.swc", None)), (85, 26));
-    // Traced on a grid: some hundred pairs touch to the last bit, one of them at an inner point of its taper.
+    // Traced on a grid: some hundred pairs touch exactly, one of them at an inner point of its taper.
     let brava = counts(&info("skeletons/brava_BG001.swc", None));
     assert!((408..=411).contains(&brava.0) && brava.1 == 71, "{brava:?}");
     assert_eq!(counts(&info("skeletons/opencco_tree3D_synth.vtp", Some("Radius"))), (170, 4));
@@ -61,8 +61,8 @@ fn overlaps_are_those_that_are_known() {
     assert_eq!(crossings.count(), 22);
 }
 
-/// File, then nodes, edges, components and loops after cleaning. Counted with VTK, XML and CSV readers of Python and merged
-/// there (benches/README.md), so that nothing of ours made them.
+/// File, then nodes, edges, components and loops after cleaning. Counted independently, with Python readers of VTK, XML
+/// and CSV (benches/README.md).
 const COUNTS: [(&str, [usize; 4]); 8] = [
     ("skeletons/hipct_test.am", [19778, 19777, 1, 0]),
     ("skeletons/brain_arteries_metres.vtk", [12709, 12708, 1, 0]),
@@ -82,7 +82,7 @@ fn networks_of_other_formats_have_their_counts() {
         let info = NetworkInfo::new(&skeleton, cleaned, Vec::new());
         assert_eq!([info.nodes, info.edges, info.components, info.loops], counts, "{file}");
     }
-    // Either table finds the other.
+    // Each table finds the other.
     let tables = ["vertices", "edges"].map(|t| read(&data.join(format!("skeletons/vesselvio_{t}.csv")), None).0);
     assert_eq!(tables[0], tables[1]);
 }

@@ -1,4 +1,4 @@
-//! The one-dimensional flow of whole organs: what goes in comes out, and at every node as much leaves as comes.
+//! One-dimensional flow of whole organs: total inflow equals outflow, and every node is balanced.
 
 mod common;
 
@@ -7,7 +7,7 @@ use anastomesh::testing::network_flow;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// Flow per pressure of each edge, for a viscosity of 1.
+/// Conductance of each edge, for a viscosity of 1.
 fn conductances(skeleton: &Skeleton) -> Vec<f64> {
     let of = |edge: &anastomesh::network::Edge| {
         let [a, b] = edge.radii;
@@ -28,7 +28,7 @@ fn balanced(name: &str, outlets: usize) {
     assert_eq!(out.len(), outlets);
     assert!((out.iter().sum::<f64>() - 1.0).abs() < 1e-10, "{}", out.iter().sum::<f64>());
     assert!(out.iter().all(|&flow| flow >= 0.0));
-    // Flows as differences of pressures: what rounding leaves of them is small beside what flows through the node.
+    // Flows are pressure differences: their rounding errors are small relative to the flow through the node.
     let mut balance = vec![[0.0_f64; 2]; skeleton.nodes.len()];
     for (edge, g) in skeleton.edges.iter().zip(conductances(&skeleton)) {
         let [p, q] = edge.nodes.map(|node| flow.pressure[node.0 as usize]);

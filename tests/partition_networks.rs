@@ -1,4 +1,4 @@
-//! Partitions of real networks. The data is not in the repository; without it these tests say so and pass.
+//! Partitions of real networks. The data is not in the repository; without it these tests print a note and pass.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! Measured networks made one graph: each cure on networks written by hand, and the merge on centrelines made by others,
-//! which are not in the repository (skipped where the shared data is absent).
+//! Tests of preparation: each cure on hand-written networks, and the merge on centrelines of other origin. The latter
+//! are not in the repository and are skipped without the shared data.
 
 mod common;
 
@@ -10,7 +10,7 @@ use anastomesh::testing::{Aabb, Bvh, Fault, SpurReason, TouchedBy, Tube, point_s
 use proptest::prelude::*;
 use std::path::Path;
 
-/// Lines, each with nodes of its own, of one radius.
+/// Lines with separate nodes and one radius.
 fn lines(lines: &[Vec<[f64; 3]>], radius: f64) -> Skeleton {
     let mut s = Skeleton::default();
     for line in lines {
@@ -51,7 +51,7 @@ fn lines_from_one_inlet_become_one_graph() {
     assert_eq!((size.tips, size.branch_points, size.components, size.loops), (3, 1, 1, 0));
     let adjacency = made.skeleton.adjacency();
     let fork = made.skeleton.node_ids().find(|&n| adjacency.valence(n) == 3).unwrap();
-    // A tenth of a radius apart at 21.6; one sphere upstream of it the tube is left at 25.
+    // The distance is a tenth of a radius at 21.6; the line leaves the tube at 25, one sphere further.
     let x = made.skeleton.node(fork).position.x;
     assert!((21.0..=21.6).contains(&x), "{x}");
     let parting = made.report.merge.merged.iter().flat_map(|m| &m.partings).next().unwrap();
@@ -70,7 +70,7 @@ fn a_vessel_drawn_twice_is_there_once_and_the_rest_of_the_longer_stays() {
 
 #[test]
 fn a_straight_vessel_of_three_pieces_and_a_fork_stay() {
-    // The middle piece ends on two others that have its direction.
+    // The middle piece ends on two others of equal direction.
     let mut s = lines(&[vec![[0.0; 3], [10.0, 0.0, 0.0], [22.0, 0.0, 0.0], [40.0, 0.0, 0.0]]], 1.0);
     for (at, to) in [(1, [10.0, 15.0, 0.0]), (2, [30.0, 9.0, 0.0])] {
         let id = s.nodes.len() as u32;
@@ -118,7 +118,7 @@ fn radii_are_filled_between_good_ones() {
     assert!(prepare(&s, &PrepareParams::default()).is_err());
 }
 
-/// Files that give vessels their radii mean them: the branch point, as wide as its widest, is no neighbour of a twig's tip.
+/// Radii of vessels in a file are kept: a wide branch point is not a neighbour of a twig's tip.
 #[test]
 fn a_twig_keeps_the_radius_of_its_vessel() {
     let points: Vec<[f64; 3]> = vec![[-9.0, 0.0, 0.0], [0.0; 3], [9.0, 0.0, 0.0], [0.0, 2.5, 0.0]];
@@ -134,7 +134,7 @@ fn a_twig_keeps_the_radius_of_its_vessel() {
 #[test]
 fn spurs_go_and_side_branches_stay() {
     let mut s = lines(&[(0..=8).map(|i| [5.0 * f64::from(i), 0.0, 0.0]).collect()], 2.0);
-    // No longer than the radius; with its tip inside; a vessel.
+    // A branch within the radius, one with its tip inside, and a vessel.
     for (at, to) in [(2, [10.0, 1.5, 0.0]), (4, [23.0, 1.0, 0.0]), (6, [30.0, 9.0, 0.0])] {
         let id = s.nodes.len() as u32;
         s.nodes.push(Node { position: to.into(), radius: 0.5, original: id });
@@ -159,7 +159,7 @@ fn branch_points_in_one_lumen_are_joined_and_loops_in_it_closed() {
     assert_eq!((made.report.result.tips, made.report.result.branch_points, made.report.result.loops), (4, 1, 0));
 }
 
-/// A vessel along x with a side branch that comes back to it; another component ends on its flank.
+/// A vessel along x with a side branch that returns to it; another component ends on its side.
 fn touched() -> Skeleton {
     let along = |from: [f64; 3], to: [f64; 3]| -> Vec<[f64; 3]> {
         let at = |i: i32| [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * f64::from(i) / 20.0);
@@ -188,7 +188,7 @@ fn tips_on_other_vessels_are_drawn_back_or_joined() {
     let made = done(&s, &only(|p| p.touching = Touching::Retract));
     let [tip] = made.report.touching[..] else { panic!("{:?}", made.report.touching) };
     let TouchedBy::Retracted { by } = tip.done else { panic!("{tip:?}") };
-    // Room for the cap: 1.15 times the sum of the radii.
+    // Distance for the cap: 1.15 times the sum of the radii.
     assert_eq!(tip.tip, 41);
     assert!((1.95..2.3).contains(&by), "{by}");
     assert_eq!((made.report.result.tips, made.report.result.components), (6, 3));
@@ -196,7 +196,7 @@ fn tips_on_other_vessels_are_drawn_back_or_joined() {
     assert_eq!((joined.report.result.tips, joined.report.result.components), (5, 2));
     assert_eq!(joined.report.touching[0].done, TouchedBy::Joined);
     assert_eq!(done(&s, &PrepareParams::as_is()).report.touching, []);
-    // A second time there is nothing to do.
+    // A second run changes nothing.
     let again = done(&made.skeleton, &only(|p| p.touching = Touching::Retract));
     assert_eq!(again.report.touching, []);
 }
@@ -236,7 +236,7 @@ fn grown_networks_are_left_alone() {
 
 #[test]
 fn a_straight_vessel_beside_a_bow_is_no_loop_within_a_lumen() {
-    // Their ends are shared, and lie within either.
+    // Both share their ends and lie within each other.
     let mut s = lines(&[(0..=20).map(|i| [f64::from(i), 0.1 * f64::from(i * (20 - i)), 0.0]).collect()], 1.0);
     s.edges.push(Edge { nodes: [NodeId(0), NodeId(20)], radii: [1.0; 2] });
     s.nodes.extend([([-9.0, 0.0, 0.0], 21), ([29.0, 0.0, 0.0], 22)].map(|(p, id)| Node {
@@ -311,13 +311,13 @@ fn rings_and_vessels_beside_each_other_survive_resampling() {
     assert_eq!(made.report.result.loops, 1);
 }
 
-/// The straight piece of vessel that an edge stands for.
+/// Straight vessel piece of an edge.
 fn tube(network: &Skeleton, edge: &Edge) -> Tube {
     let [a, b] = edge.nodes.map(|n| network.nodes[n.0 as usize].position);
     Tube { a, b, ra: edge.radii[0], rb: edge.radii[1] }
 }
 
-/// The largest distance of a node or the middle of an edge of `of` from the lines of `from`, in radii.
+/// Maximum distance of nodes and edge midpoints of `of` from the lines of `from`, in radii.
 fn furthest(from: &Skeleton, of: &Skeleton) -> f64 {
     let given: Vec<Tube> = from.edges.iter().map(|e| tube(from, e)).collect();
     let boxes: Vec<Aabb> = given.iter().map(|t| Aabb::of_points([&t.a, &t.b])).collect();

@@ -1,4 +1,4 @@
-//! `refine`, `dual` and `mesh --refine` as they are run: files, reports, exit codes.
+//! Command line tests of `refine`, `dual` and `mesh --refine`: files, reports, exit codes.
 
 mod common;
 
@@ -20,7 +20,7 @@ fn run(arguments: &[&str], paths: &[(&str, &Path)]) -> Output {
     command.output().expect("the program runs")
 }
 
-/// Two forks whose trunks cross at a point, each between terminals of its own.
+/// Two bifurcations whose trunks cross at a point, each with its own terminals.
 const CROSSING: &str = "1 0 -20 0 0 1 -1\n2 0 20 0 0 1 1\n3 0 30 10 0 1 2\n4 0 30 -10 0 1 2\n\
                         5 0 0 -20 0 1 -1\n6 0 0 20 0 1 5\n7 0 10 30 5 1 6\n8 0 -10 30 5 1 6\n";
 
@@ -43,7 +43,7 @@ fn a_network_that_overlaps_is_refined_and_has_a_valid_mesh() {
     let columns: Vec<usize> = table.lines().map(|l| l.split(',').count()).collect();
     assert!(columns.len() > 1 && columns.iter().all(|&c| c == columns[0]), "{table}");
     assert!(std::fs::read_to_string(at("plot.svg")).unwrap().ends_with("</svg>\n"));
-    // What was written is read again, with its radii and without overlaps.
+    // The output is read back, with its radii and without overlaps.
     let info = json(&run(&["info", "--json"], &[("", &at("out.vtp"))]));
     assert_eq!(info["overlaps"]["pairs"].as_array().map(Vec::len), Some(0));
     assert_eq!((info["radius"]["min"].as_f64(), info["radius"]["max"].as_f64()), (Some(1.0), Some(1.0)));

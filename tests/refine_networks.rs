@@ -1,5 +1,5 @@
-//! Refinement of real networks, against the figures that it is to reach. The data is not in the repository; without it
-//! these tests say so and pass.
+//! Refinement of real networks against target figures. The data is not in the repository; without it these tests print
+//! a note and pass.
 
 mod common;
 
@@ -10,7 +10,7 @@ use anastomesh::testing::dual;
 fn refined(skeleton: &Skeleton, params: &RefineParams) -> Refined {
     let refined = refine(skeleton, params, &()).expect("a cleaned network can be refined");
     assert_eq!(refined.skeleton.check(), Ok(()));
-    // Terminals stay where they are, but for those that leave no room for two caps.
+    // Terminals are fixed, except those without space for two caps.
     let adjacency = refined.skeleton.adjacency();
     for n in adjacency.terminals() {
         let is_crowded =
@@ -28,7 +28,7 @@ fn the_fixture_can_be_cut_afterwards() {
     assert_eq!((report.result.overlaps, report.result.metrics.cuttable.percent()), (0, 100.0));
 }
 
-/// 48,108 nodes of valence up to 5; two terminals lie 0.1 radii apart.
+/// 48,108 nodes of valence up to 5; two terminals are 0.1 radii apart.
 #[test]
 fn the_kidney_tree() {
     let Some(shared) = common::shared() else { return };
@@ -48,7 +48,7 @@ fn the_kidney_tree() {
     assert!(report.worse.is_empty(), "{:?}", report.worse);
 }
 
-/// Part of the tree with a second one grown beside it: every shared terminal is a fold at first.
+/// Part of the tree with a second tree grown beside it: every shared terminal starts as a fold.
 #[test]
 fn two_trees_that_share_their_terminals() {
     let Some(shared) = common::shared() else { return };
@@ -86,7 +86,7 @@ fn the_unit_of_length_makes_no_difference() {
     }
 }
 
-/// What overlaps or cannot be cut as it is has a valid mesh when it was refined: loops, repeated edges, a plane.
+/// Networks with overlaps or uncuttable vessels have valid meshes after refinement: loops, duplicate edges, a plane.
 #[test]
 fn refined_networks_have_valid_meshes() {
     let Some(shared) = common::shared() else { return };

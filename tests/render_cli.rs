@@ -1,4 +1,4 @@
-//! `render` as it is run: pictures of networks, meshes and surfaces.
+//! Command line tests of `render`: pictures of networks, meshes and surfaces.
 
 mod common;
 
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// A picture as it is read back: its width, and its pixels.
+/// Width and pixels of a picture file.
 fn picture(path: &Path) -> (usize, Vec<[u8; 3]>) {
     let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).expect("a picture")));
     let mut reader = decoder.read_info().expect("a PNG");
@@ -23,7 +23,7 @@ fn render(input: &Path, out: &Path, options: &[&str]) -> std::process::Output {
     run("render", &[input, Path::new("--output"), out], &[small, options].concat())
 }
 
-/// How many pixels are near a colour.
+/// Number of pixels with nearly this colour.
 fn near(pixels: &[[u8; 3]], colour: [u8; 3]) -> usize {
     let off = |p: &&[u8; 3]| p.iter().zip(colour).all(|(a, b)| a.abs_diff(b) < 40);
     pixels.iter().filter(off).count()
@@ -46,7 +46,7 @@ fn a_network_its_mesh_and_their_insides_are_drawn() {
     };
     let wall = drawn(&tree, &[]);
     assert!(wall[0] == [255; 3] && near(&wall, [190, 110, 100]) > 500);
-    // The cut shows tetrahedra, of which the wall alone has none.
+    // The cut shows tetrahedra, which the wall alone does not have.
     let cream = [225, 210, 185];
     let cut = drawn(&tree, &["--clip", "view"]);
     assert!(2 * near(&cut, cream) > 3 * near(&wall, cream), "{} {}", near(&cut, cream), near(&wall, cream));

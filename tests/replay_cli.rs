@@ -1,4 +1,4 @@
-//! `replay` as it is run: blocks that fail again, blocks that come out, and files that are no dumps.
+//! Command line tests of `replay`: blocks that fail again, blocks that succeed, and invalid dumps.
 
 mod common;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json as value};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The dump that a network with a hopeless vessel leaves.
+/// Dump of a network with a hopeless vessel.
 fn failing(folder: &Path) -> PathBuf {
     let network = folder.join("hopeless.vtp");
     fs::write(&network, HOPELESS).expect("a file");
@@ -17,7 +17,7 @@ fn failing(folder: &Path) -> PathBuf {
     dumps.join(name)
 }
 
-/// The same with a vessel that can be meshed, or with other changes.
+/// Modified copy of a dump.
 fn changed(dump: &Path, name: &str, change: impl FnOnce(&mut Value)) -> PathBuf {
     let mut content = serde_json::from_slice(&fs::read(dump).expect("the dump")).expect("JSON");
     change(&mut content);
@@ -26,7 +26,7 @@ fn changed(dump: &Path, name: &str, change: impl FnOnce(&mut Value)) -> PathBuf 
     path
 }
 
-/// In place of the fork a straight vessel.
+/// Replaces the bifurcation by a straight vessel.
 fn thicken(content: &mut Value) {
     let tube = |a: f64, b: f64| value!({"a": [50.0, 0.0, a], "b": [50.0, 0.0, b], "ra": 1.0, "rb": 1.0});
     let end = |z: f64, way: f64, node: u32| {
@@ -149,7 +149,7 @@ fn numbers_that_no_block_has_are_refused() {
     refused(&format!("{cluster}/ends/0/section/axis"), value!([0.0, 0.0, 0.0]), &["an axis has the length 0"]);
     refused(&format!("{cluster}/ends/0/overrun"), 77.into(), &["tube 77 of 3"]);
     refused(&format!("{cluster}/ends/0/kind"), value!({"cut": {"cut": 0, "side": 2}}), &["side"]);
-    // What is no fault of the file is the block's: a stage says so.
+    // Faults beyond the file format belong to the block, and are reported by a stage.
     let path = changed(&dump, "empty.json", |content| content["input"]["cluster"]["cluster"]["tubes"] = value!([]));
     assert_code(&run("replay", &[&path], &[]), BAD_INPUT);
 }

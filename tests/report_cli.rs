@@ -1,4 +1,4 @@
-//! `--report` as it is run: one page, nothing from outside, all of it readable.
+//! Command line tests of `--report`: one readable, self-contained page.
 
 mod common;
 
@@ -7,13 +7,13 @@ use common::program::*;
 use std::fs;
 use std::path::Path;
 
-/// The page that a run wrote; it is well-formed, and needs nothing but itself.
+/// Page of a run, asserted to be well-formed and self-contained.
 #[track_caller]
 fn page(path: &Path) -> String {
     let html = fs::read_to_string(path).expect("a page");
     for outside in ["http://", "https://", "<script", "<link", "@import", "url("] {
         let found = html.matches(outside).count();
-        // The name of SVG's elements is an address that nobody asks.
+        // The SVG namespace is an address that is never requested.
         let names = if outside == "http://" { html.matches("http://www.w3.org/2000/svg").count() } else { 0 };
         assert_eq!(found, names, "{outside}");
     }
@@ -22,7 +22,7 @@ fn page(path: &Path) -> String {
         assert_eq!(open, html.matches(&format!("</{tag}>")).count(), "{tag}");
     }
     assert!(html.contains("prefers-color-scheme: dark") && html.contains("@media print"));
-    // Pictures are letters as well, and may be any.
+    // Base64 pictures may contain any letters.
     let text: String = html.split("base64,").map(|part| part.split_once('"').map_or(part, |(_, rest)| rest)).collect();
     assert!(!text.contains("NaN"));
     html
@@ -76,7 +76,7 @@ fn what_is_wrong_is_shown_where_it_is() {
     let [tree, broken, out] = ["tree.mesh", "broken.mesh", "r.html"].map(|name| folder.path().join(name));
     assert_code(&mesh(&fixture("tree_30.vtp"), &tree, &["-q"]), FINE);
     let text = fs::read_to_string(&tree).expect("a mesh");
-    // Turns the first tetrahedron inside out.
+    // Inverts the first tetrahedron.
     let mut lines: Vec<String> = text.lines().map(Into::into).collect();
     let at = lines.iter().position(|l| l.trim() == "Tetrahedra").expect("tetrahedra") + 2;
     let mut words: Vec<&str> = lines[at].split_whitespace().collect();

@@ -1,4 +1,4 @@
-//! The exact self-intersection test against CGAL's, pair by pair.
+//! Comparison of the exact self-intersection test with CGAL, pair by pair.
 
 mod common;
 
@@ -14,11 +14,11 @@ fn oracle() -> Option<PathBuf> {
 
 type Surface = (Vec<Point3>, Vec<[u32; 3]>);
 
-/// The pairs that CGAL finds.
+/// Pairs found by CGAL.
 fn cgal(program: &Path, (points, triangles): &Surface) -> Vec<(u32, u32)> {
     let mut input = format!("{} {}\n", points.len(), triangles.len());
     for p in points {
-        // Rust writes the shortest digits that give the number back.
+        // Rust prints the shortest digits that restore the number.
         let _ = writeln!(input, "{} {} {}", p.x, p.y, p.z);
     }
     for [a, b, c] in triangles {
@@ -33,12 +33,12 @@ fn cgal(program: &Path, (points, triangles): &Surface) -> Vec<(u32, u32)> {
     text.lines().map(pair).collect()
 }
 
-/// Triangles without common ids, with corners drawn by `corner` round random places.
+/// Triangles without shared ids, with corners by `corner` around random positions.
 fn soup(count: u32, random: &mut Random, corner: impl Fn(&mut Random) -> Point3) -> Surface {
     let mut points = Vec::new();
     while points.len() < 3 * count as usize {
         let t = [corner(random), corner(random), corner(random)];
-        // CGAL does not define the intersection of triangles without area.
+        // CGAL does not define intersections of degenerate triangles.
         if (t[1] - t[0]).cross(&(t[2] - t[0])).norm() > 0.0 {
             points.extend(t);
         }
@@ -46,7 +46,7 @@ fn soup(count: u32, random: &mut Random, corner: impl Fn(&mut Random) -> Point3)
     (points, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
 }
 
-/// A tube bent round a circle: a torus of `n` × `m` quadrilaterals, two triangles each.
+/// Torus of `n` × `m` quadrilaterals, two triangles each.
 fn torus(n: u32, m: u32, tube: f64) -> Surface {
     let mut points = Vec::new();
     for i in 0..n {
@@ -93,7 +93,7 @@ fn soups() {
         let grid = |r: &mut Random| Point3::new(0.0, 0.0, 0.0).map(|_: f64| (r.unit() * size).floor());
         assert!(agree(&soup(300, &mut random, grid), program) > 10);
     }
-    // Everything in one plane: touching and overlapping only.
+    // Coplanar triangles: contacts and overlaps only.
     let flat = |r: &mut Random| Point3::new((r.unit() * 30.0).floor(), (r.unit() * 30.0).floor(), 7.0);
     assert!(agree(&soup(200, &mut random, flat), program) > 100);
     let general = |r: &mut Random| Point3::new(r.unit(), r.unit(), r.unit());
@@ -104,14 +104,14 @@ fn soups() {
 fn surfaces_with_planted_intersections() {
     let Some(program) = &oracle() else { return };
     assert_eq!(agree(&torus(60, 24, 0.3), program), 0);
-    // A tube wider than its circle passes through itself.
+    // A torus with a tube wider than its circle intersects itself.
     assert!(agree(&torus(40, 24, 1.2), program) > 100);
-    // Two linked rings, one shifted so that it cuts, touches in equal points, or lies in the other.
+    // Two linked rings; one is shifted so that it intersects, touches in equal points, or lies inside the other.
     let ring = torus(48, 24, 0.3);
     assert!(agree(&joined(ring.clone(), &moved(ring.clone(), Vec3::new(0.4, 0.0, 0.0))), program) > 100);
     assert!(agree(&joined(ring.clone(), &moved(ring.clone(), Vec3::zeros())), program) > 1000);
     assert_eq!(agree(&joined(ring.clone(), &torus(48, 24, 0.2)), program), 0);
-    // Vertices thrown about: neighbours that fold over and cut beyond what they share.
+    // Displaced vertices: neighbours fold over and intersect beyond their shared elements.
     let mut random = Random(2);
     for size in [0.05, 0.2, 0.5] {
         let mut wild = ring.clone();
@@ -120,7 +120,7 @@ fn surfaces_with_planted_intersections() {
         }
         agree(&wild, program);
     }
-    // On a coarse grid, as single triangles: coplanar ones, equal points and edges, triangles that touch everywhere.
+    // Separate triangles on a coarse grid: coplanar ones, equal points and edges, contacts everywhere.
     let round = torus(30, 14, 0.4);
     let corners = round.1.iter().map(|t| t.map(|v| round.0[v as usize].map(|x| (x * 6.0).round())));
     let corners = corners.filter(|[a, b, c]| (b - a).cross(&(c - a)).norm() > 0.0);
@@ -129,7 +129,7 @@ fn surfaces_with_planted_intersections() {
     assert!(agree(&snapped, program) > 100);
 }
 
-/// Every kind is found, by name, where it was planted in a ring.
+/// Every kind is found by name where it was planted in a ring.
 #[test]
 fn each_kind_is_found_in_a_surface() {
     let ring = torus(48, 24, 0.3);
@@ -161,7 +161,7 @@ fn moved_tip(mut surface: Surface, by: Vec3) -> Surface {
     surface
 }
 
-/// The sound surfaces of the shared data do not meet themselves, and roughened they meet themselves where CGAL says.
+/// Valid shared surfaces have no self-intersections; perturbed ones have those that CGAL finds.
 #[test]
 fn surfaces_of_others() {
     let (Some(program), Some(shared)) = (&oracle(), common::shared()) else { return };
@@ -191,13 +191,13 @@ fn read_off(text: &str) -> Surface {
     (points, (0..triangles).map(|_| corners(&mut number)).collect())
 }
 
-/// The wall of a network whose vessels overlap: the real case that the check is for.
+/// Wall of a network with overlapping vessels, the main use of the check.
 #[test]
 fn the_wall_of_overlapping_vessels() {
     let (Some(program), Some(shared)) = (&oracle(), common::shared()) else { return };
     let network = common::network(&shared.join("data/kidney/subtree_989.vtp"));
     let meshed = common::mesh(&network, 3.0);
-    // The points inside are none of the wall's.
+    // Inner points are not part of the wall.
     let mut number = vec![u32::MAX; meshed.mesh.mesh.points.len()];
     let mut wall = Surface::default();
     for face in &meshed.mesh.boundary {

@@ -1,7 +1,8 @@
-//! Runs that share the blocks of one network in one work directory, as a scheduler starts, kills and repeats them.
+//! Tests of runs that share one network's blocks in a work directory, as a scheduler starts, kills and repeats them.
 
 mod common;
 
+use common::oracle::missing;
 use common::program::{BAD_INPUT, FINE, USAGE, assert_code, assert_says, folder, json, program, stderr};
 use common::{fixture, shared};
 use std::fs::{self, File};
@@ -10,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// A network, the work directory that runs share, and what comes of it.
+/// Network, shared work directory, and results.
 struct Shared {
     folder: TempDir,
     network: PathBuf,
@@ -18,12 +19,12 @@ struct Shared {
 }
 
 impl Shared {
-    /// Of the fixture, which is quickly meshed.
+    /// With the fixture, which is meshed quickly.
     fn small() -> Self {
         Self { folder: folder(), network: fixture("tree_30.vtp"), options: vec!["--refine", "20"] }
     }
 
-    /// Of a larger network where it is there.
+    /// With a larger network if available.
     fn large() -> Self {
         let network = shared().map(|shared| shared.join("data/kidney/subtree_289_clear.vtp"));
         Self { network: network.unwrap_or_else(|| fixture("tree_30.vtp")), ..Self::small() }
@@ -50,7 +51,7 @@ impl Shared {
         command
     }
 
-    /// One run in the work directory.
+    /// Runs in the work directory.
     fn run(&self, out: &str, more: &[&str]) -> Output {
         self.in_folder(out, more).output().expect("the program runs")
     }
@@ -65,7 +66,7 @@ impl Shared {
         self.run("no.vtu", &["--shard", shard])
     }
 
-    /// All shards, at the same time.
+    /// Runs all shards at the same time.
     fn all_shards(&self, of: usize) {
         let start = |i| self.in_folder("no.vtu", &["--shard", &format!("{i}/{of}")]).spawn().expect("the program runs");
         let children: Vec<_> = (1..=of).map(start).collect();
@@ -75,7 +76,7 @@ impl Shared {
         assert!(!self.path("no.vtu").exists() && !self.path("no_patches.csv").exists(), "shards write no mesh");
     }
 
-    /// The bytes that a run alone gives, without a work directory.
+    /// Bytes of a single run without a work directory.
     fn undisturbed(&self) -> Vec<u8> {
         assert_code(&self.command("alone.vtu", &[]).output().expect("the program runs"), FINE);
         fs::read(self.path("alone.vtu")).expect("a mesh")
@@ -88,7 +89,7 @@ impl Shared {
     }
 }
 
-/// Cuts a file short.
+/// Truncates a file.
 fn cut(path: &Path, bytes: u64) {
     let file = File::options().write(true).open(path).expect("there");
     file.set_len(bytes).expect("shorter");
@@ -106,7 +107,7 @@ fn shards_at_the_same_time_give_the_bytes_of_one_run() {
     let before = length(&net.work("blocks"));
     net.assert_joins(&whole, &[]);
     assert_eq!((before, length(&net.work("blocks"))), (0, 0), "shards have left nothing to be made");
-    // Refined and cut once, whoever came first.
+    // Refined and partitioned once, by whichever shard came first.
     let count = |what: &str| {
         let entries = fs::read_dir(net.path("work")).expect("a folder").map(|e| e.expect("an entry").file_name());
         entries.filter(|name| name.to_string_lossy().starts_with(&format!("anastomesh.{what}-"))).count()
@@ -207,7 +208,7 @@ fn shards_of_something_else_are_refused() {
     let other = Shared { network: fixture("crotch.vtp"), folder: net.folder, options: net.options.clone() };
     assert_says(&other.shard("2/3"), BAD_INPUT, &["another network"]);
     let net = Shared { network: fixture("tree_30.vtp"), ..other };
-    // What another version, or a machine that computes otherwise, would have left.
+    // Leftovers of another version, or of a machine with different arithmetic.
     let manifest = fs::read_to_string(net.work("json")).expect("a manifest");
     let arithmetic = manifest.split("\"arithmetic\": \"").nth(1).expect("it is there")[..32].to_owned();
     for (was, is, words) in
@@ -219,7 +220,7 @@ fn shards_of_something_else_are_refused() {
     }
     fs::write(net.work("json"), &manifest).expect("written");
     assert_code(&net.shard("2/3"), FINE);
-    // All of it is thrown away on request, by a run that is alone.
+    // Everything is discarded on request, by a run without concurrent shards.
     assert_code(&net.run("a.vtu", &["--rho", "4", "--restart"]), FINE);
     assert!(!net.work("shard_1_of_3.blocks").exists() && !net.work("shards").exists());
 }
@@ -257,7 +258,7 @@ fn one_shard_is_made_by_one_run_at_a_time() {
     assert_code(&net.shard("2/2"), FINE);
     drop(held);
     assert_code(&net.shard("1/2"), FINE);
-    // As long as a shard is at work nobody joins them, and as long as they are joined no shard begins.
+    // Shards cannot be joined while one is running, and no shard starts during joining.
     let shard = File::open(net.work("lock")).expect("a lock");
     shard.lock_shared().expect("locked");
     assert_says(&net.run("a.vtu", &[]), BAD_INPUT, &["another run is using this work directory"]);
@@ -280,7 +281,7 @@ fn what_a_run_alone_has_made_is_found_by_shards() {
     net.assert_joins(&whole, &[]);
 }
 
-/// A file system without locks, as the system's answer is: strace puts it into the program's mouth.
+/// A file system without locks, simulated by injecting the system's error with strace.
 #[test]
 fn a_file_system_without_locks_is_named() {
     let net = Shared::small();
@@ -296,9 +297,9 @@ fn a_file_system_without_locks_is_named() {
     for (inject, words) in
         [("inject=flock:error=ENOLCK", "No locks available"), ("inject=flock:retval=0", "grants one lock twice")]
     {
-        let Ok(done) = under_strace(inject) else { return };
+        let Ok(done) = under_strace(inject) else { return missing("strace is not there (apt-get install strace)") };
         if stderr(&done).contains("ptrace") {
-            return;
+            return missing("strace is not permitted to trace");
         }
         assert_says(&done, BAD_INPUT, &["has no locks", words]);
         assert!(!net.work("shard_1_of_2.blocks").exists());

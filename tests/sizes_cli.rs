@@ -1,4 +1,4 @@
-//! `mesh --size-at`: shorter edges at forks, tubes stretched as the network says.
+//! Command line tests of `mesh --size-at`: shorter edges at bifurcations, stretched tubes.
 
 mod common;
 
@@ -10,10 +10,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Where the vessels of the network part.
+/// Position of the bifurcation.
 const FORK: [f64; 3] = [0.0, 0.0, 20.0];
 
-/// A fork with long vessels, and a number for each of its nodes.
+/// A bifurcation with long vessels, and a number for each of its nodes.
 fn network(folder: &TempDir, sizes: [f64; 4]) -> PathBuf {
     let mut text = "id,x,y,z,radius,Size\n".to_owned();
     let nodes = [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 20.0, 1.0], [0.0, 14.0, 34.0, 0.8], [0.0, -14.0, 34.0, 0.8]];
@@ -26,7 +26,7 @@ fn network(folder: &TempDir, sizes: [f64; 4]) -> PathBuf {
     path
 }
 
-/// A mesh of the network, which is valid: its bytes, its tetrahedra, the mean length of wall edges at the fork and far from it.
+/// Valid mesh of the network: bytes, tetrahedra, and mean length of wall edges at the bifurcation and far from it.
 fn made(network: &Path, options: &[&str]) -> (Vec<u8>, usize, [f64; 2]) {
     let out = network.with_file_name("out.vtu");
     assert_code(&mesh(network, &out, &[&["-q"], options].concat()), FINE);
@@ -59,10 +59,10 @@ fn edges_are_shorter_at_forks_alone() {
         assert!((0.85..1.15).contains(&(shorter / far / factor)), "{factor}: {shorter} of {far}");
         assert!((0.98..1.02).contains(&(same / far)), "{factor}: {same} of {far}");
         assert!(more > tets, "{more} {tets}");
-        // However many threads there are.
+        // The number of threads has no influence.
         assert!(bytes == made(&network, &["--size-at", &option, "-j", "2"]).0);
     }
-    // As long as usual, edges are as usual.
+    // With factor 1 the mesh is the default one.
     made(&network, &["--size-at", "1"]);
     let [same, usual] = ["out.vtu", "usual.vtu"].map(|name| read_mesh(&network.with_file_name(name)).expect("a mesh"));
     assert!(same.volume.mesh == usual.volume.mesh);
@@ -74,14 +74,14 @@ fn an_array_of_the_network_says_where() {
     let plain = network(&folder, [1.0; 4]);
     let (_, tets, [_, far]) = made(&plain, &[]);
     let (_, finer, _) = made(&plain, &["--size-at", "0.5"]);
-    // Edges at the fork are half as long, the vessels below it are stretched by four or so.
+    // Edges at the bifurcation are half as long, and the vessels below it are stretched by about four.
     let sized = network(&folder, [1.0, 0.5, 8.0, 8.0]);
     let (bytes, stretched, [shorter, longer]) = made(&sized, &["--size-at", "size"]);
     assert!((0.85..1.15).contains(&(shorter / far / 0.5)), "{shorter} of {far}");
     assert!(longer > 1.2 * far, "{longer} of {far}");
     assert!(stretched < tets && stretched < finer, "{stretched} of {tets} and {finer}");
     assert!(bytes == made(&sized, &["--size-at", "size", "-j", "1"]).0);
-    // What is beyond the limits is held there, and said.
+    // Values beyond the limits are clamped, with a message.
     let out = folder.path().join("wild.vtu");
     let wild = mesh(&network(&folder, [1.0, 0.01, 500.0, 1.0]), &out, &["--size-at", "Size"]);
     assert_code(&wild, FINE);
@@ -103,7 +103,7 @@ fn kept_blocks_are_found_by_what_was_asked_of_them() {
         let options = options(more);
         mesh(&sized, &folder.path().join("out.vtu"), &options.iter().map(String::as_str).collect::<Vec<_>>())
     };
-    // Two shards, joined: blocks that are there are not made again.
+    // Two shards, joined: existing blocks are not recomputed.
     for shard in ["1/2", "2/2"] {
         assert_code(&run_with(&["--shard", shard]), FINE);
     }
@@ -113,7 +113,7 @@ fn kept_blocks_are_found_by_what_was_asked_of_them() {
     assert_eq!(again["check"]["verdict"], "valid");
     assert_eq!(again["plan"]["size_at"]["array"], "Size");
     assert!(fs::read(folder.path().join("out.vtu")).expect("the mesh") == alone);
-    // Other numbers of the same name are another run.
+    // Other numbers under this name define another run.
     network(&folder, [1.0, 0.6, 8.0, 8.0]);
     assert_says(&run_with(&[]), BAD_INPUT, &["--restart"]);
     assert_code(&run_with(&["--restart", "-q"]), FINE);

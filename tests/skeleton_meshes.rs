@@ -1,4 +1,4 @@
-//! Networks of other origin, which are not in the repository: skipped where the shared data is absent.
+//! Tests on networks of other origin, which are not in the repository: skipped without the shared data.
 
 mod common;
 
@@ -13,7 +13,7 @@ fn skeleton(name: &str) -> Option<Meshed> {
     Some(meshed)
 }
 
-/// No block failed; valid, or the vessels that overlap are named and nothing but the wall and the caps suffers.
+/// Asserts that no block failed, and that the mesh is valid or only wall and caps suffer from named overlaps.
 fn assert_valid_or_explained(Meshed { report, check, .. }: &Meshed) {
     const SOUND: [Line; 7] = [
         Line::PositiveTets,
@@ -43,7 +43,7 @@ fn a_carotid_artery_of_short_edges() {
     assert_valid_or_explained(&meshed);
 }
 
-/// 158 loops in one plane, in which vessels cross.
+/// 158 loops in one plane with crossing vessels.
 #[test]
 #[ignore = "21 million tetrahedra: two minutes"]
 fn a_mesentery_of_loops() {

@@ -1,4 +1,4 @@
-//! Meshes that are cases of solvers, patches that outlets share, and the table beside every mesh.
+//! Command line tests of solver cases, of patches shared by outlets, and of the table beside every mesh.
 
 mod common;
 
@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A vessel of radius 2 that forks into vessels of 1.6, 1.2 and 0.8; nodes are numbered from 5.
+/// A vessel of radius 2 with branches of 1.6, 1.2 and 0.8; nodes are numbered from 5.
 const FORKS: &str = "5 0 0 0 0 2 -1\n6 0 0 0 40 2 5\n7 0 0 30 70 1.6 6\n8 0 0 -30 70 1.6 6\n9 0 20 50 110 1.2 7\n\
                      10 0 -20 50 110 0.8 7\n";
 
-/// Writes the network and meshes it.
+/// Writes and meshes the network.
 fn meshed(folder: &Path, name: &str, options: &[&str]) -> PathBuf {
     let (network, out) = (folder.join("forks.swc"), folder.join(name));
     fs::write(&network, FORKS).expect("a file");
@@ -21,7 +21,7 @@ fn meshed(folder: &Path, name: &str, options: &[&str]) -> PathBuf {
     out
 }
 
-/// The rows of a table, each by its columns.
+/// Rows of a table, as maps from columns.
 fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
     let text = fs::read_to_string(path).expect("a table");
     let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned));
@@ -101,7 +101,7 @@ fn a_folder_for_simvascular_names_every_patch() {
     }
     let rows = table(&folder.path().join("forks_patches.csv"));
     assert!(solver.contains(&format!("<Value> {:e} </Value>", number(&rows[1], "resistance"))), "{solver}");
-    // Whatever is in the way is named before anything is meshed.
+    // Obstructing files are reported before meshing.
     fs::write(path.join("results.vtu"), "").expect("a file");
     assert_says(&mesh(&folder.path().join("forks.swc"), &path, &[]), BAD_INPUT, &["also holds results.vtu"]);
     assert_says(&run("check", &[&path], &[]), BAD_INPUT, &["cases of solvers are written, not read"]);
@@ -145,7 +145,7 @@ fn a_case_passes_openfoams_check_and_converges_as_it_is() {
     }
     let solved = solve.arg("-case").arg(&case).output().expect("simpleFoam runs");
     assert!(stdout(&solved).contains("SIMPLE solution converged"), "{}", stdout(&solved));
-    // The flow through each outlet is what the table says, but for forks, which the table knows nothing of.
+    // The flow through each outlet agrees with the table, except for losses at bifurcations, which the table ignores.
     let rows = table(&folder.path().join("forks_patches.csv"));
     let inflow = number(&rows[0], "flow");
     let time = entries(&case).into_iter().filter_map(|name| name.parse::<u32>().ok()).max().expect("a result");
@@ -156,7 +156,7 @@ fn a_case_passes_openfoams_check_and_converges_as_it_is() {
     }
 }
 
-/// Sum of the fluxes of a patch in a binary field.
+/// Total flux through a patch in a binary field.
 fn through(field: &[u8], patch: &str) -> f64 {
     let find = |from: usize, what: &str| {
         let found = field[from..].windows(what.len()).position(|window| window == what.as_bytes());

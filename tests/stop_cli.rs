@@ -1,4 +1,4 @@
-//! Runs that somebody stops: real signals to the real program.
+//! Tests of stopped runs, with real signals to the real program.
 #![cfg(target_os = "linux")]
 
 mod common;
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// The program, its answer caught.
+/// Starts the program with captured output.
 fn start(verb: &str, paths: &[&Path], options: &[&str]) -> Child {
     let mut command = program();
     command.arg(verb).args(paths).args(options).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -23,7 +23,7 @@ fn signal(child: &Child, name: &str) {
     assert!(sent.success());
 }
 
-/// Waits until something is there, for as long as the program runs.
+/// Waits for a condition while the program runs.
 fn wait_for(child: &mut Child, what: &str, is_there: impl Fn() -> bool) {
     let start = Instant::now();
     while !is_there() {
@@ -33,28 +33,28 @@ fn wait_for(child: &mut Child, what: &str, is_there: impl Fn() -> bool) {
     }
 }
 
-/// Whether a process has ways of its own to take SIGINT and SIGTERM: before that nobody listens.
+/// True if a process handles SIGINT and SIGTERM.
 fn listens(id: u32) -> bool {
     let status = fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
     let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap_or("0");
     u64::from_str_radix(caught.trim(), 16).is_ok_and(|mask| mask & 0x4002 == 0x4002)
 }
 
-/// Whether every thread of a process has been made to stand still.
+/// True if all threads of a process are stopped.
 fn is_held(id: u32) -> bool {
     let threads = fs::read_dir(format!("/proc/{id}/task")).into_iter().flatten().flatten();
     let state = |file: &Path| fs::read_to_string(file).unwrap_or_default();
     threads.map(|thread| state(&thread.path().join("status"))).all(|status| status.contains("State:\tT"))
 }
 
-/// What it says in the end, and how long it took to come to it.
+/// Final output of a process, and the time until its end.
 fn ended(child: Child) -> (Output, Duration) {
     let start = Instant::now();
     let output = child.wait_with_output().expect("it ends");
     (output, start.elapsed())
 }
 
-/// Blocks of a mesh that takes some time.
+/// Starts a mesh run that takes some time.
 fn fine(folder: &Path, work: &Path) -> Child {
     let (network, out) = (fixture("tree_30.vtp"), folder.join("a.vtu"));
     let paths = [&*network, Path::new("-o"), &out, Path::new("--work-dir"), work];
@@ -85,7 +85,7 @@ fn a_mesh_that_is_stopped_leaves_its_blocks_and_says_how_it_goes_on() {
         assert_eq!(entries(folder.path()), ["my work"]);
         assert!(took < Duration::from_secs(20), "{took:?}");
         let kept = length();
-        // The same command goes on: what is kept is not made again.
+        // The printed command continues the run without recomputing blocks.
         let last = said.lines().last().expect("a command").trim();
         let mut again = Command::new("sh");
         let again = again.args(["-c", &format!("exec {last} -q --json")]).output().expect("a shell");
@@ -100,7 +100,7 @@ fn a_mesh_that_is_stopped_leaves_its_blocks_and_says_how_it_goes_on() {
     }
 }
 
-/// Starts, waits until Ctrl-C is heard and a moment longer, and stops it.
+/// Starts a command, waits until it handles signals, and interrupts it.
 fn stopped(verb: &str, paths: &[&Path], options: &[&str]) -> Output {
     let mut child = start(verb, paths, options);
     let id = child.id();
@@ -161,8 +161,8 @@ fn the_second_signal_ends_it_at_once() {
     let folder = folder();
     let surface = save(&folder, "s.off", &sphere(40));
     let out = folder.path().join("a.vtu");
-    // Held while both are sent: it hears the first so soon that it may have ended before the second is on its way. (Two of
-    // one kind would be one signal to a program that is held.) Whether that one ended it, what it did not say tells.
+    // The process is stopped while both signals are sent; otherwise it could end before the second. (Two equal signals
+    // would merge.) Missing output shows that the second signal ended it.
     let ended_by_second = |first: &str, second: &str| {
         let mut child = start("tetrahedralize", &[&surface, Path::new("-o"), &out], &["--size", "0.02"]);
         let id = child.id();
@@ -179,13 +179,13 @@ fn the_second_signal_ends_it_at_once() {
         assert!(!out.exists());
         !stderr(&output).contains("nothing is kept")
     };
-    // Two threads of it may take one signal each, at the same time: then neither is the second.
+    // Two threads may handle one signal each at the same time; then neither counts as the second.
     for (first, second) in [("-INT", "-TERM"), ("-TERM", "-INT")] {
         assert!((0..6).any(|_| ended_by_second(first, second)), "{first} {second}");
     }
 }
 
-/// A verb that does not ask does not listen, either: the signal ends it as it ends any program.
+/// Commands without cancellation do not handle signals: the signal ends them like any program.
 #[test]
 fn other_verbs_end_as_any_program_does() {
     use std::os::unix::process::ExitStatusExt;

@@ -1,9 +1,10 @@
-//! `surface` as it is run: the wall of a network in every format, as other programs see it.
+//! Command line tests of `surface`: the wall of a network in every format, as read by other programs.
 
 mod common;
 
 use anastomesh::TriMesh;
 use anastomesh::io::read_surface;
+use common::oracle::missing;
 use common::program::*;
 use common::{fixture, shared};
 use std::collections::BTreeMap;
@@ -17,7 +18,7 @@ fn surface(network: &Path, out: &Path, options: &[&str]) -> std::process::Output
     run("surface", &[network, Path::new("--output"), out], options)
 }
 
-/// Edges that have no partner that runs the other way.
+/// Number of edges without an opposite partner.
 fn open_edges(mesh: &TriMesh) -> usize {
     let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
     for &[a, b, c] in &mesh.triangles {
@@ -103,8 +104,7 @@ fn what_cannot_be_written_is_refused_before_any_work() {
 fn slicers_accept_it() {
     let Some(shared) = shared() else { return };
     if Command::new("admesh").arg("--version").output().is_err() {
-        eprintln!("skipped: admesh is not there (apt-get install admesh)");
-        return;
+        return missing("admesh is not there (apt-get install admesh)");
     }
     let folder = folder();
     let out = folder.path().join("wall.stl");
@@ -112,7 +112,7 @@ fn slicers_accept_it() {
     assert_code(&made, FINE);
     let said = Command::new("admesh").arg(&out).output().expect("admesh runs");
     let said = stdout(&said);
-    // What it would repair, were there something.
+    // Repairs that it would report.
     for line in
         ["Edges fixed", "Facets removed", "Facets added", "Facets reversed", "Backwards edges", "Degenerate facets"]
     {

@@ -1,11 +1,11 @@
-//! Real surfaces in OFF, and through every other format and back.
+//! Real OFF surfaces, converted to every other format and back.
 
 mod common;
 
 use anastomesh::TriMesh;
 use anastomesh::io::{read_surface, write_surface};
 
-/// Triangles by the bits of their corners' coordinates (−0 as 0): what remains of a surface in STL.
+/// Corner coordinate bits of the triangles (−0 as 0): the information that STL preserves.
 fn places(mesh: &TriMesh) -> Vec<[[u64; 3]; 3]> {
     let bits = |v: u32| mesh.points[v as usize].coords.map(|x| (x + 0.0).to_bits()).into();
     mesh.triangles.iter().map(|t| t.map(bits)).collect()

@@ -1,4 +1,4 @@
-//! What the terminal shows: summaries, forecasts, plans from files, messages for programs.
+//! Tests of terminal output: summaries, forecasts, plan files, messages for programs.
 
 mod common;
 
@@ -60,10 +60,10 @@ fn options_come_from_a_file_and_the_plan_is_written() {
     let [plan, out] = ["plan.toml", "tree.vtu"].map(|name| folder.path().join(name));
     fs::write(&plan, "rho = 4\nroot = [\"7\"]\nquiet = true\nrefine = false\nformat = \"vtu\"\n").expect("written");
     let options = ["--config", plan.to_str().expect("a path"), "--root", "9", "--rho", "3.5"];
-    // Roots add up, numbers are replaced: 9 is no terminal, which shows that it was heard.
+    // Roots accumulate, numbers are replaced: 9 is not a terminal, so the error shows that it was read.
     let refused = mesh(&fixture("tree_30.swc"), &out, &options);
     assert_code(&refused, USAGE);
-    // A run that failed is to be run again, too.
+    // A failed run can be repeated, too.
     assert_eq!(entries(folder.path()), ["plan.toml", "tree_plan.toml"]);
     fs::write(&plan, "rho = 4\nquiet = true\nrefine = false\nformat = \"vtu\"\n").expect("written");
     assert_code(&mesh(&fixture("tree_30.swc"), &out, &[options[0], options[1], "--rho", "3.5"]), FINE);
@@ -72,7 +72,7 @@ fn options_come_from_a_file_and_the_plan_is_written() {
     for line in ["rho = 3.5", "quiet = true", "format = \"vtu\"", "# memory = \"2GiB\"", "# keep-going = false"] {
         assert!(resolved.lines().any(|l| l == line), "'{line}' in {resolved}");
     }
-    // What was resolved gives the same mesh again.
+    // The resolved plan reproduces the mesh.
     let first = fs::read(&out).expect("a mesh");
     let again = folder.path().join("tree_plan.toml");
     let config = ["--config", again.to_str().expect("a path"), "--output", out.to_str().expect("a path")];
@@ -116,12 +116,12 @@ fn messages_are_lines_or_objects_without_colours() {
     assert_code(&refused, BAD_INPUT);
     let error: Value = serde_json::from_str(stderr(&refused).trim()).expect("an object");
     assert!(level(&error) == "error" && error["message"].as_str().is_some_and(|m| m.contains("absent.swc")));
-    // Nothing of it has colours where no terminal is.
+    // No colours without a terminal.
     assert!(!stderr(&mesh(&fixture("tree_30.swc"), &out, &[])).contains('\u{1b}'));
     assert!(!stdout(&run("mesh", &[], &["--help"])).contains('\u{1b}'));
 }
 
-/// What `-h` shows is a screen; `--help` has all options under headings, none of which is longer than a screen.
+/// `-h` fits on a screen; `--help` groups all options under headings, each at most a screen long.
 #[test]
 fn help_is_a_screen_or_in_groups() {
     for verb in [
@@ -157,7 +157,7 @@ fn help_is_a_screen_or_in_groups() {
     }
 }
 
-/// `docs/options.md` is what the program says of its options.
+/// `docs/options.md` matches the program's help.
 #[test]
 fn the_list_of_options_is_that_of_the_program() {
     let said = stdout(&run("man", &[], &["--markdown"]));

@@ -1,5 +1,5 @@
-//! The tetrahedralizer against CGAL and TetGen: the answers they gave once, which `fixtures/oracle` keeps, and where the
-//! programs are there, the ones they give now.
+//! Comparison of the tetrahedralizer with CGAL and TetGen: with recorded answers in `fixtures/oracle`, and with the
+//! programs if available.
 
 #[path = "tet_oracles/delaunay.rs"]
 mod delaunay;

@@ -1,4 +1,4 @@
-//! `tetrahedralize` as it is run: formats, switches, files.
+//! Command line tests of `tetrahedralize`: formats, switches, files.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn check(mesh: &Path) -> Output {
     run("check", &[mesh], &[])
 }
 
-// ---- What works -----------------------------------------------------------------------------------------------------
+// ---- Successful runs ------------------------------------------------------------------------------------------------
 
 #[test]
 fn every_format_of_surfaces_is_read() {
@@ -85,7 +85,7 @@ fn points_alone_are_filled_up_to_their_hull() {
     assert!((report["mesh"]["volume"].as_f64().expect("a volume") - 1.0).abs() < 1e-12);
     assert_eq!((&report["mesh"]["points"], &report["mesh"]["added_points"]), (&16.into(), &0.into()));
     assert_code(&check(&out), FINE);
-    // Counted as the input, or from 0 on demand.
+    // Counted like the input, or from 0 on demand.
     let first_number = || fs::read_to_string(&out).expect("text").lines().nth(1).expect("a row")[..2].to_owned();
     assert_eq!(first_number(), "1 ");
     assert_code(&fill(&input, &out, &["--tetgen", "z"]), FINE);
@@ -128,7 +128,7 @@ fn facets_regions_and_markers() {
         let mesh = read_mesh(&out).expect("a mesh").volume;
         let with = |marker: i32| mesh.boundary_patch.iter().filter(|&&patch| patch == marker).count();
         assert_eq!((with(1), with(2)), (4, 16));
-        // The wall: 8 points in the plane, the window filled.
+        // The wall: 8 points in the plane, with the window filled.
         assert_eq!(with(3), 10);
         if name == "out.ele" {
             let mut blocks = mesh.tet_block.clone();
@@ -139,7 +139,7 @@ fn facets_regions_and_markers() {
         assert_code(&check(&out), FINE);
     }
     let made = fill(&open, &folder.path().join("open.ele"), &["--no-refine"]);
-    // Both seeds are in one region: one id for it cannot be told.
+    // Both seeds are in one region, which has no unique id.
     assert!(made.status.code() != Some(70), "{}", stderr(&made));
     let unlabelled = rooms(true).replace("2\n0 0.5 0.5 0.5 7 0.01\n1 1.5 0.5 0.5 -9 0.05\n", "0\n");
     let open = text(&folder, "open.poly", &unlabelled);

@@ -1,4 +1,4 @@
-//! `tetrahedralize` on input that is at fault: messages, exit codes, what is repaired or left out.
+//! Command line tests of `tetrahedralize` on faulty input: messages, exit codes, repairs, omissions.
 
 mod common;
 
@@ -17,9 +17,9 @@ fn check(mesh: &Path) -> Output {
     run("check", &[mesh], &[])
 }
 
-// ---- Input that cannot be used ---------------------------------------------------------------------------------------
+// ---- Input that cannot be used --------------------------------------------------------------------------------------
 
-/// Exit 3, one message that names the file and has all parts, and nothing left behind.
+/// Asserts exit code 3, one message with the file name and all parts, and no output files.
 #[track_caller]
 fn refuse(name: &str, content: impl AsRef<[u8]>, options: &[&str], parts: &[&str]) {
     let folder = folder();
@@ -64,7 +64,7 @@ fn surfaces_that_bound_no_volume() {
 fn triangles_and_points_that_make_no_sense() {
     let mut flat = cube();
     flat.points.push(Point3::new(0.5, 0.0, 0.0));
-    // The edge 0 1 is split on one side only in name: a triangle without area fills the gap.
+    // Edge 0 1 is split on one side only in name: a degenerate triangle fills the gap.
     flat.triangles.push([0, 8, 1]);
     flat.triangles.push([0, 1, 8]);
     refuse("a.off", off(&flat), &["--plc"], &["no area", "12"]);
@@ -101,7 +101,7 @@ fn facets_that_make_no_sense() {
     refuse("a.smesh", cube_smesh().replace("4 1 3 4 2 10", "4 1 3 4 9 10"), &[], &["facet 1", "9"]);
     let half = rooms(false).replace(" 7 0.01", " 7.5 0.01");
     refuse("a.poly", half, &[], &["region 0", "7.5", "integers"]);
-    // Without its lid the box holds nothing.
+    // Without its lid the box encloses nothing.
     refuse("a.smesh", cube_smesh().replace("6 1\n4 1 3 4 2 10\n", "5 1\n"), &[], &["enclose"]);
 }
 
@@ -139,7 +139,7 @@ fn paths_that_cannot_be_used() {
     assert_eq!(entries(folder.path()), ["c.off", "d.off"]);
 }
 
-// ---- Checking and repairing ------------------------------------------------------------------------------------------
+// ---- Checking and repairing -----------------------------------------------------------------------------------------
 
 #[test]
 fn inputs_are_checked_without_meshing() {
@@ -161,7 +161,7 @@ fn inputs_are_checked_without_meshing() {
 #[test]
 fn what_needs_no_choice_is_repaired() {
     let folder = folder();
-    // Some triangles turned over, some there twice, and each with points of its own.
+    // Some triangles inverted, some duplicated, all with separate points.
     let whole = sphere(5);
     let mut broken = TriMesh::default();
     for (i, t) in whole.triangles.iter().enumerate() {
@@ -182,7 +182,7 @@ fn what_needs_no_choice_is_repaired() {
     let volume = |report: &Value| report["report"]["mesh"]["volume"].as_f64().expect("a volume");
     assert!((volume(&mended) - volume(&plain)).abs() < 1e-12);
     assert_code(&check(&out), FINE);
-    // Facets keep their markers, points what belongs to them.
+    // Facets keep their markers, and points their attributes.
     let doubled = cube_smesh()
         .replace("8 3 0 0", "9 3 0 0")
         .replace("6 1\n", "9 1 1 0\n6 1\n")
@@ -197,10 +197,10 @@ fn what_needs_no_choice_is_repaired() {
     assert_eq!(markers, [10, 11, 12, 13, 14, 15]);
 }
 
-// ---- What other programs write ---------------------------------------------------------------------------------------
+// ---- Files of other programs ----------------------------------------------------------------------------------------
 
-/// The cube, counted from 1, with a square far off (facet 7), one that hangs on an edge outside (8), one inside (9), and
-/// a segment outside (facet 10).
+/// The cube, counted from 1, with facets and a segment outside or inside. Facet 7 is a distant square, 8 hangs on an
+/// outer edge, 9 is inside, and 10 holds the segment.
 fn cube_with_things_outside() -> String {
     let mut points = cube().points;
     points.extend([(3., 0.), (3., 1.)].iter().flat_map(|&(x, y)| [0., 1.].map(|z| Point3::new(x, y, z))));
@@ -233,7 +233,7 @@ fn facets_outside_are_left_out_with_a_note() {
         let mesh = read_mesh(&out).expect("a mesh").volume;
         let marked = |marker: i32| mesh.boundary_patch.contains(&marker);
         assert!(marked(20) && marked(10) && !marked(16) && !marked(17));
-        // Points keep their numbers; what was left out is no edge.
+        // Points keep their numbers; omitted elements have no edges.
         assert_eq!(mesh.mesh.points[8], Point3::new(3.0, 0.0, 0.0));
         let edges = fs::read_to_string(out.with_extension("edge")).expect("text");
         assert!(!edges.lines().any(|line| line.contains(" 18 19 ")), "{edges}");
@@ -258,7 +258,7 @@ fn strict_refuses_what_would_be_left_out() {
     refuse("a.poly", &all, &["--tetgen", "pY", "--strict"], &parts);
     let segment_only = all.replace("4 9 10 12 11", "2 18 19").replace("4 1 13 14 5", "2 18 19");
     refuse("a.poly", segment_only, &["--strict"], &["1 segments", "points 18-19 (points count from 1"]);
-    // Facets that repeat others are named, by their numbers.
+    // Duplicate facets are listed by their numbers.
     refuse(
         "a.poly",
         all.replace("4 9 10 12 11", "3 15 16 17"),
@@ -267,7 +267,7 @@ fn strict_refuses_what_would_be_left_out() {
     );
 }
 
-/// The triangles as a binary STL file.
+/// Triangles as a binary STL file.
 fn binary_stl(mesh: &TriMesh) -> Vec<u8> {
     let folder = folder();
     fs::read(save(&folder, "a.stl", mesh)).expect("a file")
@@ -349,7 +349,7 @@ fn corners_that_are_not_shared_are_said_to_be_so_and_joined() {
 
 #[test]
 fn numbers_are_those_of_the_file() {
-    // The last face, which has four corners as the others, is missing: so its neighbours are open.
+    // The last quadrilateral face is missing, so its neighbours have open edges.
     let whole = cube();
     let vertices: String = whole.points.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
     let faces: String =
@@ -357,7 +357,7 @@ fn numbers_are_those_of_the_file() {
     let said = "open: 4 triangles have an edge of their own: 1, 2, 3, 4; one is [2, 4] from {1, 0, 0} to {1, 1, 0} \
         (triangles have the numbers of their faces; faces and points count from 1, as in the file)";
     refuse("a.obj", vertices + &faces, &[], &[said]);
-    // After a repair that drops the first two triangles and joins points the others are still called what they were.
+    // After a repair that removes two triangles and merges points, the others keep their numbers.
     let mut holed = whole.clone();
     holed.triangles.splice(0..0, [[0, 0, 1], [8, 8, 8]]);
     holed.triangles.pop();
@@ -383,14 +383,14 @@ fn a_length_that_the_boundary_does_not_allow_is_told() {
     let unmet = &told["report"]["size_unmet"];
     assert_eq!((&unmet["longer"], &unmet["edges"]), (&18.into(), &18.into()));
     assert_eq!(told["report"]["to_split"], "--split");
-    // What can be met, and what may be split, is not told.
+    // Satisfiable requests and splittable input cause no message.
     for options in [&["--size", "2"][..], &["--size", "0.3", "--split"]] {
         let output = fill(&input, &out, options);
         assert_code(&output, FINE);
         assert!(!stderr(&output).contains("the input stay"), "{}", stderr(&output));
         assert!(report(&input, &out, options)["report"]["size_unmet"].is_null());
     }
-    // Bounds on tetrahedra say how many stand on what stays.
+    // Violated bounds report the number of tetrahedra at fixed faces.
     let output = fill(&input, &out, &["--tetgen", "pYq1.4/46"]);
     let said = stderr(&output);
     assert!(said.contains("of them on triangles of the input") && said.contains("leaving out Y lets them"), "{said}");

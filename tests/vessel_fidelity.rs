@@ -8,7 +8,7 @@ use anastomesh::{Point3, Vec3, VolumeMesh, WALL};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
-/// Usual resolutions.
+/// Typical resolutions.
 const RHO: [f64; 3] = [3.0, 4.0, 5.0];
 
 fn skeleton(nodes: &[(Point3, f64)], edges: &[[u32; 2]]) -> Skeleton {
@@ -17,18 +17,18 @@ fn skeleton(nodes: &[(Point3, f64)], edges: &[[u32; 2]]) -> Skeleton {
     Skeleton { nodes: nodes.iter().enumerate().map(node).collect(), edges: edges.iter().map(edge).collect() }
 }
 
-/// One vessel through these nodes.
+/// A vessel through these nodes.
 fn vessel(nodes: &[(Point3, f64)]) -> Skeleton {
     let edges: Vec<[u32; 2]> = (1..nodes.len() as u32).map(|i| [i - 1, i]).collect();
     skeleton(nodes, &edges)
 }
 
-/// An axis that no grid is aligned with.
+/// An axis that is not aligned with any grid.
 fn axis() -> Vec3 {
     Vec3::new(0.62, -0.31, 0.72).normalize()
 }
 
-/// A straight vessel of `pieces` equal edges whose radius goes from `radii[0]` to `radii[1]`.
+/// Straight vessel of `pieces` equal edges, with a radius from `radii[0]` to `radii[1]`.
 fn straight(length: f64, pieces: u32, radii: [f64; 2]) -> Skeleton {
     let at = |i: u32| {
         let t = f64::from(i) / f64::from(pieces);
@@ -52,18 +52,18 @@ fn volume(mesh: &VolumeMesh) -> f64 {
     mesh.mesh.tets.iter().map(six).sum::<f64>() / 6.0
 }
 
-/// What the mesh itself shows of a cap, from its triangles alone.
+/// Properties of a cap, computed from its triangles alone.
 struct Disc {
     name: String,
     /// Mean of its points.
     middle: Point3,
     normal: Vec3,
     area: f64,
-    /// Largest distance of a point from the plane through the middle.
+    /// Maximum distance of a point from the plane through the middle.
     unevenness: f64,
 }
 
-/// The caps, in the order of their patches.
+/// Caps in the order of their patches.
 fn discs(mesh: &VolumeMesh) -> Vec<Disc> {
     let at = |v: u32| mesh.mesh.points[v as usize];
     let disc = |id: i32, name: &str| {
@@ -83,7 +83,7 @@ fn discs(mesh: &VolumeMesh) -> Vec<Disc> {
     mesh.patches.iter().filter(|p| p.id != WALL).map(|p| disc(p.id, &p.name)).collect()
 }
 
-/// Flat discs of the right size, one on each end of a vessel, named and turned outwards.
+/// Asserts flat discs of the right size at both ends of a vessel, with names and outward orientation.
 fn assert_caps(mesh: &VolumeMesh, ends: [(Point3, Vec3, f64); 2]) {
     let caps = discs(mesh);
     let names: Vec<&str> = caps.iter().map(|c| c.name.as_str()).collect();
@@ -99,7 +99,7 @@ fn assert_caps(mesh: &VolumeMesh, ends: [(Point3, Vec3, f64); 2]) {
     }
 }
 
-/// Distance of the planes of the two caps.
+/// Distance between the planes of the two caps.
 fn length_between_caps(mesh: &VolumeMesh) -> f64 {
     let caps = discs(mesh);
     (caps[0].middle - caps[1].middle).dot(&axis()).abs()
@@ -110,7 +110,7 @@ fn ends_of(network: &Skeleton) -> [(Point3, Vec3, f64); 2] {
     [(first.position, -axis(), first.radius), (last.position, axis(), last.radius)]
 }
 
-/// The radius of the cylinder that has the volume and the length of the mesh.
+/// Asserts the radius of the cylinder with the volume and length of the mesh.
 fn assert_straight_tube(network: &Skeleton, name: &str) {
     for rho in RHO {
         let mesh = valid_mesh(network, rho).mesh;
@@ -138,7 +138,7 @@ fn a_polyline_of_short_edges_has_its_radius() {
     assert_straight_tube(&straight(14.0, 70, [1.0; 2]), "edges of 0.2 radii");
 }
 
-/// The same tube in metres and in nanometres.
+/// This tube in metres and in nanometres.
 #[test]
 fn the_unit_of_length_does_not_matter() {
     for scale in [1e-6, 1e6] {
@@ -172,7 +172,7 @@ fn a_tapering_tube_has_the_volume_of_its_frustum() {
     }
 }
 
-/// A quarter of a torus: its volume is that of a straight tube of the length of its axis (Pappus).
+/// Quarter torus: its volume is that of a straight tube with the length of its axis (Pappus).
 #[test]
 fn a_bent_tube_has_the_volume_of_its_axis() {
     const BEND: f64 = 8.0;
@@ -198,7 +198,7 @@ fn euler(mesh: &VolumeMesh) -> i64 {
     vertices.len() as i64 - edges.len() as i64 + mesh.boundary.len() as i64
 }
 
-/// A ring with a vessel in and a vessel out.
+/// A ring with one vessel in and one vessel out.
 #[test]
 fn a_loop_is_a_handle() {
     const RING: u32 = 48;
@@ -220,7 +220,7 @@ fn a_loop_is_a_handle() {
     assert_eq!(discs(&meshed.mesh).len(), 2);
 }
 
-/// Two vessels that have nothing to do with each other: two components, an inlet for each.
+/// Two unrelated vessels: two components, with one inlet each.
 #[test]
 fn components_stay_apart() {
     let at = |x: f64, z: f64, r: f64| (Point3::new(x, 0.0, z), r);

@@ -1,8 +1,9 @@
-//! `view` as it is run: one page, that a browser shows.
+//! Command line tests of `view`: one page, rendered by a browser.
 
 mod common;
 
 use common::fixture;
+use common::oracle::missing;
 use common::program::*;
 use serde_json::Value;
 use std::fs;
@@ -13,7 +14,7 @@ fn view(input: &Path, out: &Path, options: &[&str]) -> Output {
     run("view", &[input, Path::new("--output"), out], options)
 }
 
-/// What the page knows.
+/// Metadata of the page.
 #[track_caller]
 fn facts(path: &Path) -> Value {
     let html = fs::read_to_string(path).expect("a page");
@@ -66,13 +67,13 @@ fn a_work_directory_is_viewed_as_the_mesh_that_came_of_it() {
         fs::read(out).expect("a picture")
     };
     assert!(draw("w", "w.png") == draw("tree.vtu", "tree.png"));
-    // What there is of a run that failed, and where it did.
+    // Available parts of a failed run, and the positions of failures.
     fs::write(at("h.vtp"), HOPELESS).expect("written");
     assert_code(&mesh(&at("h.vtp"), &at("h.vtu"), &["-q", "--work-dir", &work("v")]), STAGE_FAILED);
     assert_code(&view(&at("v"), &at("v.html"), &["-q", "--dump-dir", &work("h.vtu.failed")]), FINE);
     let failed = facts(&at("v.html"));
     assert!(failed["wall"]["faces"].as_u64() > Some(50) && failed["faults"].as_array().map(Vec::len) == Some(1));
-    // Blocks that are gone are no mesh.
+    // Missing blocks are not a mesh.
     fs::remove_file(at("w").join("anastomesh.blocks")).expect("removed");
     assert_says(&view(&at("w"), &at("w.html"), &[]), BAD_INPUT, &["w", "No such file"]);
     fs::remove_file(at("w").join("anastomesh.whole")).expect("removed");
@@ -122,7 +123,7 @@ fn what_cannot_be_viewed_is_said() {
     assert!(entries(folder.path()).is_empty());
 }
 
-/// The page as a browser has it once it is ready, a place asked for; none where there is no browser.
+/// Page rendered by a browser at a requested position; `None` without a browser.
 fn shown(page: &Path, at: [f64; 3]) -> Option<String> {
     let [x, y, z] = at;
     let address = format!("file://{}#at={x},{y},{z}", page.display());
@@ -148,8 +149,7 @@ fn a_browser_shows_it_and_names_what_is_there() {
     let inside = cap.center - cap.normal * cap.radius;
     assert_code(&view(&tree, &page, &["-q", "--network", network.to_str().expect("a path")]), FINE);
     let Some(html) = shown(&page, inside.into()) else {
-        eprintln!("skipped: there is no browser (apt-get install chromium)");
-        return;
+        return missing("no browser was found (apt-get install chromium)");
     };
     assert!(html.contains("data-ready=") && !html.contains("id=\"wait\""));
     for word in ["patch 1: wall", "block ", "vessel (branch)", "nearest node", "radius "] {

@@ -1,10 +1,11 @@
-//! Points from bytes, on grids as a rule: cospherical, coplanar, collinear and repeated ones abound. Either a sound
-//! Delaunay tetrahedralization, or a typed error that is true.
+//! Delaunay tetrahedralization of points that mostly lie on grids: many are cospherical, coplanar, collinear or repeated.
+//! The result is a valid Delaunay complex or an error that applies.
 #![no_main]
 
-use anastomesh::Point3;
-use anastomesh::tet::TetError;
-use anastomesh::testing::{delaunay, insphere};
+use anastomesh_mesh::Point3;
+use anastomesh_mesh::geometry::predicates::insphere;
+use anastomesh_tet::TetError;
+use anastomesh_tet::parts::delaunay;
 use libfuzzer_sys::fuzz_target;
 use std::collections::HashSet;
 

@@ -1,8 +1,8 @@
-//! Whatever the bytes of `.ele` and `.face` over some points: a mesh that can be checked, or an error.
+//! Meshes in TetGen's `.ele` and `.face` over fixed points. A mesh that can be read can be checked.
 #![no_main]
 
-use anastomesh::io::tetgen::read_mesh_from;
-use anastomesh::check::check_volume;
+use anastomesh_io::tetgen::read_mesh_from;
+use anastomesh_mesh::check::check_volume;
 use libfuzzer_sys::fuzz_target;
 
 const NODE: &[u8] = b"6 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n6 -1 0 0\n";

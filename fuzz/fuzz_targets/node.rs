@@ -1,7 +1,7 @@
-//! Whatever the bytes: a list of points, or an error.
+//! Points in TetGen's `.node`.
 #![no_main]
 
-use anastomesh::io::tetgen::Nodes;
+use anastomesh_io::tetgen::Nodes;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,10 +1,12 @@
-//! Whatever the bytes stand for among sound arrays: a mesh, a network or a complex, or an error; never more memory than they ask for.
+//! One damaged array among valid ones: a mesh, a network, a complex or an error. Memory stays in proportion to the bytes.
 #![no_main]
 
-use anastomesh::check::{check_tets, check_volume};
-use anastomesh::io::NetworkOptions;
-use anastomesh::network::clean;
-use anastomesh::testing::{read_complex_arrays, read_mesh_arrays, read_network_arrays};
+use anastomesh_fuzz::check;
+use anastomesh_io::NetworkOptions;
+use anastomesh_io::network::read_network_arrays;
+use anastomesh_io::surface::read_complex_arrays;
+use anastomesh_io::volume::read_mesh_arrays;
+use anastomesh_skeleton::clean;
 use libfuzzer_sys::fuzz_target;
 
 macro_rules! seeds {
@@ -20,8 +22,7 @@ fuzz_target!(|bytes: &[u8]| {
         let mut files = sound;
         files[at].1 = bytes;
         if let Ok(file) = read_mesh_arrays(&files) {
-            let volume = &file.volume;
-            let _ = if file.labelled { check_volume(volume, None) } else { check_tets(&volume.mesh, None) };
+            check(&file);
         }
         if let Ok(file) = read_network_arrays(&files, &NetworkOptions::default()) {
             let _ = clean(&file.skeleton);

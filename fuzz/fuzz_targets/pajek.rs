@@ -1,13 +1,8 @@
-//! Whatever the bytes: a network or an error; what is read is sound, or said not to be.
+//! Networks in Pajek's format.
 #![no_main]
 
-use anastomesh::io::NetworkOptions;
-use anastomesh::testing::{NetworkFormat, read_network_from};
-use anastomesh::network::clean;
+use anastomesh_fuzz::network;
+use anastomesh_io::network::NetworkFormat;
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|bytes: &[u8]| {
-    if let Ok(file) = read_network_from(bytes, NetworkFormat::Pajek, &NetworkOptions::default()) {
-        let _ = clean(&file.skeleton);
-    }
-});
+fuzz_target!(|bytes: &[u8]| network(bytes, NetworkFormat::Pajek));

@@ -1,11 +1,11 @@
-//! Triangles between points of a coarse grid, in a box or not, as the bytes say; those that cut others, or have further
-//! points in them, are left out. What is left is a valid complex: it is filled, its triangles kept or split, and the mesh
-//! has the certificate.
+//! Tetrahedralization of triangles between points of a coarse grid, with or without a box around them. Triangles that
+//! intersect others, or contain further points, are left out, so the complex is valid. Its triangles are kept or split,
+//! and the mesh is certified.
 #![no_main]
 
-use anastomesh::Point3;
-use anastomesh::tet::{Boundary, InputKind, Interior, Plc, Refinement, TetError, Tetrahedralizer};
-use anastomesh::testing::Stuck;
+use anastomesh_mesh::Point3;
+use anastomesh_tet::parts::Stuck;
+use anastomesh_tet::{Boundary, InputKind, Interior, Plc, Refinement, TetError, Tetrahedralizer};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -47,7 +47,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// The distinct points of a grid of 4³ or, moved a little, of 8³.
+/// Returns distinct points of a grid of 4³ points or, perturbed, of 8³.
 fn points(bytes: &[u8], fine: bool) -> Vec<Point3> {
     let mut points: Vec<Point3> = Vec::new();
     for b in bytes.chunks_exact(3) {
@@ -60,7 +60,7 @@ fn points(bytes: &[u8], fine: bool) -> Vec<Point3> {
     points
 }
 
-/// A box around all.
+/// Adds a box around all points.
 fn add_box(plc: &mut Plc) {
     let first = plc.points.len() as u32;
     let side = |high: bool| if high { 9.0 } else { -1.0 };

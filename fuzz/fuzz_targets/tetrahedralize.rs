@@ -1,10 +1,10 @@
-//! A sphere whose points are moved along their rays and whose edges are flipped, as the bytes say, so that it stays a
-//! valid surface, seen whole from the origin. It is filled, and the mesh has the certificate.
+//! Tetrahedralization of a sphere whose points are moved along their rays and whose edges are flipped. The surface stays
+//! star-shaped around the origin, hence valid, and the mesh is certified.
 #![no_main]
 
-use anastomesh::tet::{Interior, Plc, Tetrahedralizer};
-use anastomesh::testing::orient3d;
-use anastomesh::{Point3, TriMesh};
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::{Point3, TriMesh};
+use anastomesh_tet::{Interior, Plc, Tetrahedralizer};
 use libfuzzer_sys::fuzz_target;
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ fuzz_target!(|bytes: &[u8]| {
     assert_eq!(made.faces.len(), surface.triangles.len());
 });
 
-/// Whether each triangle is turned away from the origin: then no two of them overlap but in what they share.
+/// Returns true if each triangle faces away from the origin. Two triangles then meet only in shared corners and edges.
 fn seen_from_origin(points: &[Point3], triangles: &[[u32; 3]]) -> bool {
     triangles.iter().all(|t| {
         let [a, b, c] = t.map(|v| &points[v as usize]);
@@ -37,7 +37,7 @@ fn seen_from_origin(points: &[Point3], triangles: &[[u32; 3]]) -> bool {
     })
 }
 
-/// Replaces two triangles by those over the other diagonal, where that is seen from the origin as well.
+/// Flips an edge if both new triangles face away from the origin.
 fn flip_edge(surface: &mut TriMesh, choice: usize) {
     let mut sides: BTreeMap<[u32; 2], (usize, u32)> = BTreeMap::new();
     for (i, &[a, b, c]) in surface.triangles.iter().enumerate() {
@@ -52,7 +52,7 @@ fn flip_edge(surface: &mut TriMesh, choice: usize) {
     }
 }
 
-/// A sphere of so many rings with twice as many points each.
+/// Returns a sphere with `rings` bands and `2 * rings` points around each.
 fn sphere(rings: u32) -> TriMesh {
     let around = 2 * rings;
     let mut mesh = TriMesh::default();

@@ -1,10 +1,10 @@
-//! A finished block as a mesh of its own.
+//! Conversion of a finished block to a volume mesh.
 
 use super::finished::{Finished, triangle_of};
 use anastomesh_mesh::{Patch, VolumeMesh, WALL};
 
 impl Finished {
-    /// The block alone, its joints and caps labelled: `wall`, `joint_0`, …, then `terminal_N` for the terminal N.
+    /// Converts the block to a mesh with patches: `wall`, `joint_0`, …, and `terminal_N` for terminal N.
     pub fn into_volume(self) -> VolumeMesh {
         let wall = (self.wall, Patch { id: WALL, name: "wall".into(), cap: None });
         let mut labelled = vec![wall];

@@ -1,11 +1,11 @@
-//! Tips that lie within another vessel: no cap has room there, whatever is tried.
+//! Buried tips, which lie within another vessel and cannot be capped.
 
 use crate::partition::{Cluster, ClusterEnd, EndKind};
 use anastomesh_mesh::geometry::{Point3, Tube, point_segment};
 use anastomesh_skeleton::NodeId;
 
-/// The terminals of a cluster, with their indices in `Cluster::ends`, whose whole disc lies within the tube of another vessel.
-/// The wall is around that one, and none is at the tip.
+/// Terminals whose whole disc lies within the tube of another vessel, with their indices in `Cluster::ends`. The wall
+/// encloses that vessel, and none exists at the tip.
 pub(crate) fn buried(cluster: &Cluster) -> impl Iterator<Item = (u32, NodeId, &ClusterEnd)> {
     let beyond: Vec<usize> = cluster.ends.iter().map(|end| end.overrun as usize).collect();
     (0..).zip(&cluster.ends).filter_map(move |(i, end)| match end.kind {
@@ -14,7 +14,7 @@ pub(crate) fn buried(cluster: &Cluster) -> impl Iterator<Item = (u32, NodeId, &C
     })
 }
 
-/// `beyond`: the tubes that lie beyond the ends.
+/// `beyond` are the tubes beyond the ends.
 fn is_buried(tubes: &[Tube], beyond: &[usize], end: &ClusterEnd) -> bool {
     let (tip, radius) = (end.section.origin, end.section.radius);
     let covers = |i: &usize| {
@@ -31,7 +31,7 @@ fn is_buried(tubes: &[Tube], beyond: &[usize], end: &ClusterEnd) -> bool {
     covering.any(|i| !own.contains(&i))
 }
 
-/// The tubes from a tip to the next branch point.
+/// Tubes from a tip to the next branch point.
 fn own_vessel(tubes: &[Tube], beyond: &[usize], tip: Point3) -> Vec<usize> {
     let mut own: Vec<usize> = Vec::new();
     let mut place = tip;

@@ -1,4 +1,4 @@
-//! One cluster: wall, caps, tetrahedra, end surfaces (3.2.2).
+//! Meshing of a cluster: wall, caps, tetrahedra, end surfaces (section 3.2.2 of the paper).
 
 use super::buried::buried;
 use super::corners::part_corners;
@@ -24,61 +24,61 @@ use anastomesh_tet::{
     parts::{Watch, tetrahedralize_watched},
 };
 
-/// The flat disc that closes a terminal.
+/// Flat cap of a terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CapFaces {
-    /// The terminal.
+    /// Node of the terminal.
     pub node: NodeId,
-    /// The plane; its axis points out of the mesh.
+    /// Cap plane; its axis points out of the mesh.
     pub section: Section,
     /// Boundary triangles, oriented outwards.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// A meshed cluster.
+/// Mesh of a cluster.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClusterMesh {
     /// Points and tetrahedra; no tetrahedra with [`BlockParams::hollow`].
     pub mesh: TetMesh,
-    /// The closed surface, with [`BlockParams::hollow`]; else empty.
+    /// Closed surface with [`BlockParams::hollow`], else empty.
     pub hull: Vec<[u32; 3]>,
-    /// One end surface per cut end, in the order of `Cluster::ends`, by which it is found: the cut may be renumbered. None
-    /// with [`EndStyle::Open`].
+    /// End surfaces of the cut ends, in the order of `Cluster::ends`, which identifies them: cuts may be renumbered.
+    /// Empty with [`EndStyle::Open`].
     pub ends: Vec<EndSurface>,
-    /// One cap per terminal, in the order of `Cluster::ends`.
+    /// Caps of the terminals, in the order of `Cluster::ends`.
     pub caps: Vec<CapFaces>,
-    /// Terminals without a cap: their tips lie in another vessel (only with [`BlockParams::allow_fused`]).
+    /// Terminals without a cap, because their tips lie in another vessel (only with [`BlockParams::allow_fused`]).
     pub uncapped: Vec<NodeId>,
-    /// What the wall does not keep of the vessels (only with [`BlockParams::allow_fused`]).
+    /// Deviations of the wall from its vessels (only with [`BlockParams::allow_fused`]).
     pub astray: Astray,
-    /// Cell edge of the contouring grid.
+    /// Cell size of the contouring grid.
     pub voxel: f64,
     /// Mean edge length of the wall.
     pub edge: f64,
-    /// Triangles of the wall before trimming, caps included.
+    /// Triangle count of the wall before trimming, including caps.
     pub surface_triangles: usize,
     /// Genus of the wall.
     pub handles: i64,
-    /// Independent loops of the cluster's skeleton, less those that are filled; other than `handles` only if that was allowed.
+    /// Independent loops of the cluster's skeleton, minus filled ones; equals `handles` unless deviations are allowed.
     pub loops: i64,
-    /// Loops of the skeleton that are filled by their own lumen.
+    /// Skeleton loops that are filled by their own lumen.
     pub filled: i64,
-    /// Where layers are thinner than asked for.
+    /// Report of layers that are thinner than requested.
     pub thin: Option<ThinLayers>,
 }
 
 /// Meshes one cluster.
 ///
 /// # Errors
-/// Any stage's, with the cluster's id; the caller may retry with other [`BlockParams`].
+/// Any stage may fail; the error contains the cluster id. The caller may retry with other [`BlockParams`].
 pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
     mesh_cluster_watched(id, cluster, params, &Watch::NOBODY)
 }
 
-/// As [`mesh_cluster`], watched: filling, which takes most of the time, ends when the watch says so.
+/// Meshes one cluster like [`mesh_cluster`], with cancellation of the tetrahedralization, which takes most of the time.
 ///
 /// # Errors
-/// As there.
+/// See [`mesh_cluster`].
 pub(crate) fn mesh_cluster_watched(
     id: ClusterId,
     cluster: &Cluster,
@@ -123,15 +123,15 @@ pub(crate) fn mesh_cluster_watched(
     Ok(out)
 }
 
-/// What lies within the surface of a cluster.
+/// Interior of a cluster's surface.
 struct Inside {
-    /// Points and tetrahedra, or points alone where it is to be hollow.
+    /// Points and tetrahedra; points only if hollow.
     mesh: TetMesh,
-    /// The closed surface where it is to be hollow; else empty.
+    /// Closed surface if hollow, else empty.
     hull: Vec<[u32; 3]>,
-    /// For each end its triangles; none where it is not closed.
+    /// Triangles of each end; empty if the end is open.
     discs: Vec<Vec<[u32; 3]>>,
-    /// Where layers are thin.
+    /// Report of thin layers.
     thin: Option<ThinLayers>,
 }
 
@@ -150,13 +150,13 @@ fn inside(cluster: &Cluster, surface: &CappedSurface, params: &BlockParams, watc
         return Ok(Inside { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, discs, thin: None });
     }
     let mut mesh = fill(&surface.mesh)?;
-    // Discs at cuts are on no boundary of the whole.
+    // Discs at cuts lie inside the final mesh.
     let of_cut = |end: u32| matches!(cluster.ends[end as usize].kind, EndKind::Cut { .. });
     part_corners(&mut mesh, &surface.mesh, |i| !surface.cap[i].is_some_and(of_cut));
     Ok(Inside { mesh, hull: Vec::new(), discs, thin: None })
 }
 
-/// A cluster that is one tube, by template.
+/// Meshes a single-tube cluster by template.
 fn of_tube(
     id: ClusterId,
     cluster: &Cluster,
@@ -174,10 +174,10 @@ fn of_tube(
     Ok(out)
 }
 
-/// The closed wall of a cluster with its caps, the cell edge it was contoured with, and what it does not keep: what [`mesh_cluster`] fills.
+/// Creates the closed wall of a cluster with its caps, for [`mesh_cluster`]. Also returns cell size and deviations.
 ///
 /// # Errors
-/// The wall cannot be made, is not of the skeleton's topology, or cannot be capped.
+/// The wall cannot be created, has a different topology than the skeleton, or cannot be capped.
 pub fn cluster_surface(
     id: ClusterId,
     cluster: &Cluster,
@@ -225,19 +225,19 @@ pub fn cluster_surface(
         let ends: Vec<Closing> = closed.iter().zip(discs.iter().map(Option::as_ref)).map(closing).collect();
         match cap_terminals(&wall, &mut field, &ends, &surface_params) {
             Ok(capped) => break capped,
-            // One end less each time, so this ends.
+            // Terminates, as each iteration removes one end.
             Err(CapError::End { end, node: Some(_), .. }) if params.allow_fused => drop(closed.remove(end as usize)),
             Err(source) => return Err(BlockError::Cap { cluster: id, source: name_end(source, &closed) }),
         }
     };
-    // Cap indices count the ends that were closed; from here on they count all ends.
+    // Converts cap indices from closed ends to all ends.
     for cap in capped.cap.iter_mut().flatten() {
         *cap = closed[*cap as usize].0;
     }
     Ok((capped, voxel, astray))
 }
 
-/// Whether a wall keeps its vessels.
+/// Checks that a wall matches its vessels.
 fn stays(cluster: ClusterId, astray: Astray) -> Result<(), BlockError> {
     match astray {
         Astray { outside: Some(at), .. } => Err(BlockError::Outside { cluster, at: at.into() }),
@@ -246,7 +246,7 @@ fn stays(cluster: ClusterId, astray: Astray) -> Result<(), BlockError> {
     }
 }
 
-/// The disc that the vessel alone gives at an end of a cluster, if that is a cut.
+/// Shared disc at an end of a cluster, if the end is a cut.
 fn disc_of_end(section: &Section, kind: EndKind, rho: f64) -> Option<SharedDisc> {
     match kind {
         EndKind::Cut { side, .. } => SharedDisc::at_end(section, side, rho),
@@ -254,13 +254,13 @@ fn disc_of_end(section: &Section, kind: EndKind, rho: f64) -> Option<SharedDisc>
     }
 }
 
-/// The ends that are closed by discs, with their indices in `Cluster::ends`.
+/// Ends closed by discs, with their indices in `Cluster::ends`.
 fn capped_ends(cluster: &Cluster, style: EndStyle) -> impl Iterator<Item = (u32, &ClusterEnd)> {
     let closed = move |e: &ClusterEnd| style != EndStyle::Open || matches!(e.kind, EndKind::Terminal(_));
     (0..).zip(&cluster.ends).filter(move |(_, e)| closed(e))
 }
 
-/// Makes the index of the end in an error count all ends of the cluster.
+/// Converts the end index of an error from closed ends to all ends.
 fn name_end(error: CapError, closed: &[(u32, &ClusterEnd)]) -> CapError {
     match error {
         CapError::End { end, node, origin, reason } => {
@@ -270,7 +270,7 @@ fn name_end(error: CapError, closed: &[(u32, &ClusterEnd)]) -> CapError {
     }
 }
 
-/// The smallest radius in a cluster, cuts included.
+/// Smallest radius in a cluster, including cuts.
 fn smallest_radius(cluster: &Cluster) -> f64 {
     let tubes = cluster.tubes.iter().map(Tube::min_radius);
     tubes.chain(cluster.ends.iter().map(|e| e.section.radius)).fold(f64::INFINITY, f64::min)
@@ -280,7 +280,7 @@ fn faces_of(surface: &CappedSurface, end: u32) -> Vec<[u32; 3]> {
     surface.mesh.triangles.iter().zip(&surface.cap).filter(|(_, c)| **c == Some(end)).map(|(t, _)| *t).collect()
 }
 
-/// The caps; `discs` are the triangles of each end.
+/// Caps of the terminals; `discs` are the triangles of each end.
 fn caps(cluster: &Cluster, discs: &[Vec<[u32; 3]>]) -> Vec<CapFaces> {
     (cluster.ends.iter().zip(discs))
         .filter_map(|(end, triangles)| match end.kind {
@@ -291,7 +291,7 @@ fn caps(cluster: &Cluster, discs: &[Vec<[u32; 3]>]) -> Vec<CapFaces> {
         .collect()
 }
 
-/// The terminals that have no cap.
+/// Terminals without a cap.
 fn uncapped(cluster: &Cluster, caps: &[CapFaces]) -> Vec<NodeId> {
     let terminal = |end: &ClusterEnd| match end.kind {
         EndKind::Terminal(node) => Some(node),
@@ -300,7 +300,7 @@ fn uncapped(cluster: &Cluster, caps: &[CapFaces]) -> Vec<NodeId> {
     cluster.ends.iter().filter_map(terminal).filter(|node| !caps.iter().any(|cap| cap.node == *node)).collect()
 }
 
-/// The cut ends with their indices in `Cluster::ends`.
+/// Cut ends with their indices in `Cluster::ends`.
 pub(crate) fn cut_ends(cluster: &Cluster) -> Vec<(u32, CutEnd)> {
     (0..)
         .zip(&cluster.ends)
@@ -331,7 +331,7 @@ fn disc_ends(
         .collect()
 }
 
-/// Triangles, each beginning with its smallest vertex, in order.
+/// Sorted triangles, each starting with its smallest vertex.
 fn sorted(triangles: impl Iterator<Item = [u32; 3]>) -> Vec<[u32; 3]> {
     let mut turned: Vec<[u32; 3]> = triangles
         .map(|mut t| {
@@ -344,8 +344,7 @@ fn sorted(triangles: impl Iterator<Item = [u32; 3]>) -> Vec<[u32; 3]> {
     turned
 }
 
-/// Whether every shared disc is in the mesh as the vessel gives it: the same points in the same order, the same
-/// triangles.
+/// Checks that the mesh contains every shared disc unchanged: equal points in equal order, and equal triangles.
 fn check_shared(id: ClusterId, cluster: &Cluster, mesh: &ClusterMesh, params: &BlockParams) -> Result<(), BlockError> {
     for ((i, end), surface) in cut_ends(cluster).iter().zip(&mesh.ends) {
         let vertices = surface.vertices();

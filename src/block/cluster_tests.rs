@@ -1,4 +1,4 @@
-//! Whole blocks: clusters from tubes, connectors between their end surfaces.
+//! Tests of whole blocks: clusters from tubes, and connectors between their end surfaces.
 
 use super::fixtures::{assert_mesh, bifurcation, cut, direction, facing, star, worst_ratio};
 use super::{BlockError, BlockParams, ClusterMesh, EndStyle, mesh_cluster, mesh_free_connector};
@@ -24,7 +24,7 @@ fn meshed(seed: u64, params: &BlockParams) -> (Cluster, ClusterMesh) {
     (cluster, mesh)
 }
 
-/// The points of a cluster's end, in the order of the shared disc.
+/// Points of a cluster's end, in the order of the shared disc.
 fn end_points(mesh: &ClusterMesh, end: usize) -> Vec<Point3> {
     mesh.ends[end].vertices().iter().map(|&v| mesh.mesh.points[v as usize]).collect()
 }
@@ -36,7 +36,7 @@ fn blocks_that_end_in_shared_discs_need_not_know_each_other() {
         let params = BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(rho) };
         let (cluster, lower) = meshed(seed, &params);
         let (facing, gap) = facing(&cluster);
-        // However the neighbour was made, its disc is the same.
+        // The neighbour's parameters do not change its disc.
         let finer = BlockParams { voxel_factor: 0.75, shift: [0.3, -0.2, 0.1], follow: 0.5, ..params };
         let upper = [params, finer].map(|p| mesh_cluster(ClusterId(1), &facing, &p).expect("facing cluster"));
         assert_eq!(end_points(&upper[0], 0), end_points(&upper[1], 0));
@@ -59,7 +59,7 @@ fn volume(mesh: &anastomesh_mesh::TetMesh) -> f64 {
     mesh.tets.iter().map(of).sum()
 }
 
-/// A bifurcation with edges so short that nothing is lost between them.
+/// Bifurcation with edges so short that its volume is accurate.
 fn true_wall(seed: u64) -> ClusterMesh {
     let params = BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(10.0) };
     mesh_cluster(ClusterId(0), &bifurcation(seed), &params).expect("a cluster")
@@ -82,10 +82,10 @@ fn a_finer_fork_owes_its_neighbours_the_same_discs() {
             for end in 0..2 {
                 assert_eq!(end_points(&plain, end), end_points(&finer, end));
             }
-            // Nearer to the vessels' true wall, if anything.
+            // At least as close to the accurate wall.
             let off = |made: &ClusterMesh| (volume(&made.mesh) / whole - 1.0).abs();
             assert!(off(&finer) < off(&plain) + 5e-4, "{factor}: {} and {}", off(&finer), off(&plain));
-            // As many as edges are shorter within a third of its vessels or so.
+            // Edges are shorter within about a third of its vessels.
             assert!(finer.mesh.tets.len() as f64 > plain.mesh.tets.len() as f64 * (1.0 + 0.1 / factor));
             assert!(layers.is_some() || worst_ratio(&finer.mesh) > 0.15, "{}", worst_ratio(&finer.mesh));
         }
@@ -123,7 +123,7 @@ fn a_shared_disc_is_the_same_from_both_sides() {
 
 #[test]
 fn ends_beside_each_other_leave_a_wall_between() {
-    // Two vessels that leave a node at an angle so small that the crotch lies just below their planes.
+    // Two vessels leave a node at a narrow angle, so that the crotch lies just below their planes.
     for (height, seed) in [(1.60, 0), (1.69, 1), (1.75, 2), (1.80, 3), (1.69, 4)] {
         let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
         let mut cluster = Cluster { nodes: vec![NodeId(0)], ..Cluster::default() };
@@ -147,7 +147,7 @@ fn ends_beside_each_other_leave_a_wall_between() {
 
 #[test]
 fn ends_that_take_each_others_wall_take_less() {
-    // Two planes so close to each other that taking off the tip at one leaves nothing of the wall before the other.
+    // Two planes so close that removing one tip leaves no wall before the other.
     let arms = [([-1.634, -0.86, -2.417], 0.899), ([-0.229, 1.085, -3.082], 0.933), ([0.083, -2.087, 0.69], 1.0)];
     for seed in 0..24 {
         let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
@@ -172,7 +172,7 @@ fn ends_that_take_each_others_wall_take_less() {
 
 #[test]
 fn a_terminal_that_looks_at_a_thick_vessel_stays_apart_from_it() {
-    // Its tip is 1.25 sums of the radii off the axis; with the usual overrun the two walls would touch.
+    // The tip is 1.25 sums of radii off the axis; with the default overrun the walls would touch.
     let points =
         [[0.0, 0.0, 0.0], [-20.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, 14.0, 0.0], [9.0, 14.0, 0.0], [9.0, 5.0, 0.0]];
     let edges = [(0, 1, 3.0), (0, 2, 3.0), (0, 3, 1.0), (3, 4, 1.0), (4, 5, 1.0)];
@@ -194,7 +194,7 @@ fn a_terminal_that_looks_at_a_thick_vessel_stays_apart_from_it() {
 
 #[test]
 fn fused_neighbours_are_told_by_the_genus() {
-    // A branch that curls back and ends in its own flank.
+    // A branch that curls back and ends in its own side.
     let center = Point3::origin();
     let mut cluster = star(center, &[(Vec3::z(), 1.0, cut(0, 0)), (-Vec3::z(), 1.0, EndKind::Terminal(NodeId(1)))]);
     let p = |x: f64, z: f64| Point3::new(x, 0.0, z);

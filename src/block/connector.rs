@@ -1,4 +1,4 @@
-//! One connector: the tube between two end surfaces, filled (3.2.3).
+//! Meshing of a connector: the filled tube between two end surfaces (section 3.2.3 of the paper).
 
 use super::connector_surface::{ConnectorEnd, ConnectorSurface, Division, EndVertex, connector_surface};
 use super::error::BlockError;
@@ -13,32 +13,32 @@ use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_tet::parts::Inset;
 use anastomesh_tet::{TetError, parts::tetrahedralize};
 
-/// A meshed connector.
+/// Mesh of a connector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConnectorMesh {
-    /// Points and tetrahedra; no tetrahedra with [`BlockParams::hollow`]. The first points are those of `shared`, bit for
-    /// bit.
+    /// Points and tetrahedra; no tetrahedra with [`BlockParams::hollow`]. The first points are those of `shared`, bit
+    /// for bit.
     pub mesh: TetMesh,
-    /// The closed surface, with [`BlockParams::hollow`]; else empty.
+    /// Closed surface with [`BlockParams::hollow`], else empty.
     pub hull: Vec<[u32; 3]>,
-    /// For each of the first points, which vertex of which cluster it is: side 0's, then side 1's.
+    /// Cluster vertex of each of the first points: side 0's, then side 1's.
     pub shared: Vec<EndVertex>,
-    /// Rings between the two rims.
+    /// Number of rings between the two rims.
     pub rings: u32,
-    /// Where layers are thinner than asked for.
+    /// Report of layers that are thinner than requested.
     pub thin: Option<ThinLayers>,
-    /// Attempts that failed before this one.
+    /// Failed attempts before this one.
     pub failed: Vec<ConnectorAttempt>,
 }
 
-/// Number of ways in which a connector's tube is divided.
+/// Number of divisions of a connector's tube to try.
 pub const DIVISIONS: usize = 5;
 
-/// Divisions in the order in which they are tried.
+/// Divisions in the order of attempts.
 const IN_ORDER: [Division; DIVISIONS] =
     [Division::Rings(1.0), Division::Rings(0.75), Division::Rings(1.35), Division::Rings(0.5), Division::Direct];
 
-/// Meshes one connector from side 0's end surface to side 1's.
+/// Meshes a connector from side 0's end surface to side 1's.
 ///
 /// # Errors
 /// [`BlockError::Connector`] with every attempt, or a parameter out of range.
@@ -53,7 +53,7 @@ pub fn mesh_connector(
     let mut tried: Vec<u32> = Vec::new();
     for division in IN_ORDER.into_iter().skip(params.first_division) {
         let failure = match connector_surface(&cut.path, ends, division) {
-            // Where there is little room, several divisions come down to the same rings.
+            // In short connectors several divisions give equal ring counts.
             Ok(surface) if tried.contains(&surface.rings) => continue,
             Ok(surface) => {
                 tried.push(surface.rings);
@@ -73,11 +73,11 @@ pub fn mesh_connector(
     Err(BlockError::Connector { cut: id, at, attempts: failed })
 }
 
-/// Meshes one connector between the two discs that the vessel alone gives; no cluster is needed. `shared` counts the
-/// discs' vertices. By template where the vessel lets it.
+/// Meshes a connector between the shared discs of the vessel, without clusters; by template if possible. `shared`
+/// refers to vertices of the discs.
 ///
 /// # Errors
-/// As [`mesh_connector`].
+/// See [`mesh_connector`].
 pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result<ConnectorMesh, BlockError> {
     params.check()?;
     let failed = |fault| BlockError::Connector {
@@ -92,12 +92,12 @@ pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result
     {
         return Ok(image(tube, params.hollow));
     }
-    // Layers come in when the tube is filled.
+    // Layers are added during filling.
     let plain = if params.layers.is_some() { free(&BlockParams { layers: None, ..*params })? } else { ends };
     mesh_connector(id, cut, plain.both(), params)
 }
 
-/// A connector by template.
+/// Converts a template tube to a connector.
 fn image(tube: FilledTube, hollow: bool) -> ConnectorMesh {
     let shared = sides([tube.disc; 2]).collect();
     let rings = tube.rings;
@@ -105,7 +105,7 @@ fn image(tube: FilledTube, hollow: bool) -> ConnectorMesh {
     ConnectorMesh { mesh, hull, shared, rings, thin: None, failed: Vec::new() }
 }
 
-/// The tube of a connector along a path, filled.
+/// Fills the tube of a connector along a path.
 fn filled(tube: ConnectorSurface, path: &[Section], params: &BlockParams) -> Result<ConnectorMesh, TetError> {
     let fill = |surface: &TriMesh| tetrahedralize(surface, &filling(surface, params.core));
     let ConnectorSurface { surface, shared, end_triangles, rings } = tube;
@@ -128,7 +128,7 @@ fn filled(tube: ConnectorSurface, path: &[Section], params: &BlockParams) -> Res
     Ok(ConnectorMesh { mesh: renumbered(mesh, &renamed), hull, shared, rings, thin, failed })
 }
 
-/// The points of two discs, one after the other.
+/// Points of two discs, one after the other.
 fn sides(counts: [u32; 2]) -> impl Iterator<Item = EndVertex> {
     [0, 1].into_iter().zip(counts).flat_map(|(side, count)| (0..count).map(move |vertex| EndVertex { side, vertex }))
 }

@@ -1,4 +1,4 @@
-//! The surface of a connector (3.2.3, Fig. 6): two end surfaces turned round, and a regular tube between them.
+//! Surface of a connector (section 3.2.3 of the paper, Fig. 6): a regular tube between two reversed end surfaces.
 
 use super::end_surface::{EndSurface, StoredEnd};
 use super::path::{AxisPath, PathEnd};
@@ -9,11 +9,11 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Section};
 use std::f64::consts::TAU;
 
-/// One side of a connector: an end surface and the points of the cluster that it belongs to.
+/// One side of a connector: an end surface with the points of its cluster.
 #[derive(Clone, Copy, Debug)]
 pub struct ConnectorEnd<'a> {
     pub surface: &'a EndSurface,
-    /// The cluster's points.
+    /// Points of the cluster.
     pub points: &'a [Point3],
 }
 
@@ -23,29 +23,29 @@ impl<'a> From<&'a StoredEnd> for ConnectorEnd<'a> {
     }
 }
 
-/// A connector vertex that is a vertex of one of the two clusters.
+/// Connector vertex that is a vertex of one of the two clusters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct EndVertex {
     /// Side of the cut, 0 or 1.
     pub side: u8,
-    /// Index in that side's cluster, or in that side's [`crate::surface::SharedDisc`] for a connector made without clusters.
+    /// Index in that side's cluster, or in its [`crate::surface::SharedDisc`] for a connector without clusters.
     pub vertex: u32,
 }
 
-/// A closed connector surface.
+/// Closed surface of a connector.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConnectorSurface {
-    /// The surface; its points begin with those of `shared`.
+    /// Surface; its points begin with those of `shared`.
     pub surface: TriMesh,
-    /// The first points, which are vertices of the clusters: side 0's, then side 1's, ascending.
+    /// Cluster vertices of the first points: side 0's, then side 1's, ascending.
     pub shared: Vec<EndVertex>,
-    /// How many of the triangles belong to the end surfaces; they come first.
+    /// Number of triangles in the end surfaces; they come first.
     pub end_triangles: u32,
-    /// Rings between the rims.
+    /// Number of rings between the rims.
     pub rings: u32,
 }
 
-/// Why there is no connector surface.
+/// Reasons for a missing connector surface.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConnectorFault {
@@ -55,10 +55,10 @@ pub enum ConnectorFault {
     /// The disc of a side cannot be triangulated.
     #[error("the disc of side {0} cannot be triangulated")]
     Disc(u8),
-    /// A rim does not run once round the axis.
+    /// A rim does not wind once around the axis.
     #[error("the rim of side {0} does not run once round the axis")]
     Rim(u8),
-    /// The end surfaces pass through each other's planes.
+    /// The end surfaces intersect each other's planes.
     #[error("the end surfaces overlap along the axis")]
     Overlap,
     /// Every strip between two neighbouring rings folds.
@@ -66,16 +66,16 @@ pub enum ConnectorFault {
     Fold(u32),
 }
 
-/// How the tube between the rims is divided.
+/// Division of the tube between the rims.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Division {
-    /// Rings at this multiple of the usual density.
+    /// Rings at this multiple of the default density.
     Rings(f64),
-    /// No rings: the rims are joined to each other.
+    /// No rings: the rims are joined directly.
     Direct,
 }
 
-/// Builds the surface of a connector along `path`, which runs from side 0 to side 1.
+/// Creates the surface of a connector along `path`, which runs from side 0 to side 1.
 ///
 /// # Errors
 /// See [`ConnectorFault`].
@@ -106,7 +106,7 @@ pub fn connector_surface(
     Ok(out)
 }
 
-/// Takes over an end surface, turned round; its rim, counter-clockwise about the path's direction.
+/// Adopts an end surface, reversed. Returns its rim, counter-clockwise about the path's direction.
 fn copy_end(out: &mut ConnectorSurface, end: ConnectorEnd, side: u8) -> Vec<u32> {
     let vertices = end.surface.vertices();
     let base = out.surface.points.len() as u32;
@@ -121,7 +121,7 @@ fn copy_end(out: &mut ConnectorSurface, end: ConnectorEnd, side: u8) -> Vec<u32>
     rim
 }
 
-/// A rim in path coordinates; `None` unless it winds once round the axis.
+/// Rim in path coordinates; `None` unless it winds once around the axis.
 fn rim(path: &AxisPath, points: &[Point3], vertices: &[u32], end: PathEnd) -> Option<Rim> {
     let located: Vec<(f64, f64, f64)> = vertices.iter().map(|&v| path.locate(&points[v as usize], end)).collect();
     let rim = Rim::new(&located);

@@ -8,7 +8,7 @@ use super::strip::best_strip;
 use crate::partition::CutId;
 use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 
-/// A fan-shaped end surface: `n` rim vertices of a circle, raised and turned by up to `noise` steps.
+/// Fan-shaped end surface: `n` rim vertices of a circle, with radial, axial and angular noise of up to `noise` steps.
 fn fan(at: &Section, side: u8, n: usize, noise: f64, seed: u64) -> (EndSurface, Vec<Point3>) {
     let (u, w) = at.frame();
     let step = std::f64::consts::TAU / n as f64;

@@ -1,4 +1,4 @@
-//! Failing inputs as small self-contained JSON files.
+//! Dumps: failing block inputs as small self-contained JSON files.
 
 use super::connector::DIVISIONS;
 use super::end_surface::StoredEnd;
@@ -8,82 +8,82 @@ use anastomesh_mesh::geometry::{Point3, Section, Tube};
 use anastomesh_skeleton::{FineFork, LARGEST, LEAST_SIZE, NodeId};
 use serde::{Deserialize, Serialize};
 
-/// Number of the format; another one whenever what a dump holds changes its meaning or its names.
+/// Format version; changes whenever the meaning or the names of the contents change.
 const FORMAT: u32 = 1;
 
-/// The input of one block, as it was first tried. Nodes are numbered as in the network that was read.
+/// Input of one block at its first attempt. Nodes are numbered as in the input network.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BlockDump {
     format: u32,
-    /// The program that wrote it.
+    /// Program and version that wrote the dump.
     pub program: String,
     /// Nodes of the block (the first 20).
     pub nodes: Vec<u32>,
-    /// Its parameters.
+    /// Parameters of the block.
     pub params: BlockParams,
-    /// What it is made from.
+    /// Input of the block.
     pub input: BlockInput,
 }
 
-/// What a block is made from.
+/// Input of a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BlockInput {
     /// A cluster.
     Cluster {
-        /// Its number.
+        /// Cluster index.
         id: ClusterId,
-        /// Its vessels and ends.
+        /// Vessels and ends.
         cluster: Cluster,
     },
-    /// A connector between the ends of its two clusters.
+    /// A connector between the end surfaces of its two clusters.
     Connector {
-        /// Number of the cut.
+        /// Cut index.
         id: CutId,
         /// The cut.
         cut: Cut,
-        /// The ends that it joins, side 0 first.
+        /// End surfaces, side 0 first.
         ends: Box<[StoredEnd; 2]>,
     },
-    /// A connector that is made without its clusters.
+    /// A connector between shared discs, without its clusters.
     FreeConnector {
-        /// Number of the cut.
+        /// Cut index.
         id: CutId,
         /// The cut.
         cut: Cut,
     },
 }
 
-/// A file that is no dump, or none that this program can run.
+/// Errors of reading a dump.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DumpError {
-    /// It ends too early.
+    /// The file is truncated.
     #[error("it is cut off ({0}): copy it again, or run `mesh` again, which writes it anew")]
     CutOff(serde_json::Error),
-    /// It is something else.
+    /// The file is not a dump.
     #[error("it is no dump of a block ({0}): give a file of the folder MESH.failed that `mesh` leaves")]
     Other(serde_json::Error),
-    /// It says nothing of its format.
+    /// The format version is missing.
     #[error("it does not say of which format it is: run `mesh` again with this version, which writes it anew")]
     NoFormat,
-    /// Another version of the program wrote it.
+    /// Another version of the program wrote the dump.
     #[error("it is of format {format} (by {program}), this version reads {FORMAT}: run `mesh` again, or that version")]
     Format {
-        /// Its format.
+        /// Format version of the dump.
         format: u32,
-        /// The program that wrote it.
+        /// Program that wrote the dump.
         program: String,
     },
-    /// A number that no dump has.
+    /// A number is out of range.
     #[error("{what}, which no block has: the file was changed, run `mesh` again, which writes it anew")]
     Senseless {
-        /// Which number, and what is wrong with it.
+        /// Name of the number and its fault.
         what: String,
     },
 }
 
-/// What dumps of all versions begin with.
+/// Common header of dumps of all versions.
 #[derive(Deserialize)]
 struct Head {
     format: Option<u32>,
@@ -92,7 +92,7 @@ struct Head {
 }
 
 impl BlockDump {
-    /// Of a cluster. `original`: the number of a node in the network as it was read; `nodes`: those to be named.
+    /// Creates the dump of a cluster. `original` maps nodes to the input network; `nodes` are listed in the dump.
     pub fn of_cluster(
         id: ClusterId,
         cluster: &Cluster,
@@ -115,12 +115,12 @@ impl BlockDump {
         Self::new(params, nodes, BlockInput::Cluster { id, cluster })
     }
 
-    /// Of a connector between the ends of its two clusters.
+    /// Creates the dump of a connector between the end surfaces of its two clusters.
     pub fn of_connector(id: CutId, cut: &Cut, ends: [StoredEnd; 2], params: BlockParams, nodes: Vec<u32>) -> Self {
         Self::new(params, nodes, BlockInput::Connector { id, cut: cut.clone(), ends: Box::new(ends) })
     }
 
-    /// Of a connector that is made without its clusters.
+    /// Creates the dump of a connector without its clusters.
     pub fn of_free_connector(id: CutId, cut: &Cut, params: BlockParams, nodes: Vec<u32>) -> Self {
         Self::new(params, nodes, BlockInput::FreeConnector { id, cut: cut.clone() })
     }
@@ -130,7 +130,7 @@ impl BlockDump {
         Self { format: FORMAT, program, nodes, params, input }
     }
 
-    /// `cluster 12` or `connector 7`.
+    /// Returns `cluster 12` or `connector 7`.
     pub fn name(&self) -> String {
         match &self.input {
             BlockInput::Cluster { id, .. } => format!("cluster {}", id.0),
@@ -138,27 +138,27 @@ impl BlockDump {
         }
     }
 
-    /// As JSON; numbers survive bit for bit.
+    /// Converts to JSON; numbers are preserved bit for bit.
     ///
     /// # Errors
-    /// A coordinate that is not finite.
+    /// A coordinate is not finite.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string(self)
     }
 
-    /// From JSON.
+    /// Parses JSON.
     ///
     /// # Errors
-    /// Text that is no dump, or one that no run can have written.
+    /// The text is not a dump, or contains values that no run writes.
     pub fn from_json(text: &[u8]) -> Result<Self, DumpError> {
-        // A number that is cut off is no number where the text ends.
+        // A truncated number is a syntax error at the end of the text.
         let ends = |e: &serde_json::Error| {
             let last = text.split(|&byte| byte == b'\n').enumerate().last();
             last.is_some_and(|(line, rest)| e.line() == line + 1 && e.column() >= rest.len())
         };
         let cut_off = |e: &serde_json::Error| e.is_eof() || e.is_syntax() && ends(e);
         let fault = |e: serde_json::Error| if cut_off(&e) { DumpError::CutOff(e) } else { DumpError::Other(e) };
-        // The format is looked at first: what else another version writes cannot be known.
+        // The format version is checked first, as the contents of other versions are unknown.
         match serde_json::from_slice(text).map_err(fault)? {
             Head { format: None, .. } => Err(DumpError::NoFormat),
             Head { format: Some(FORMAT), .. } => {
@@ -170,7 +170,7 @@ impl BlockDump {
         }
     }
 
-    /// Whether a block can have these numbers: what follows relies on it.
+    /// Checks the ranges of numbers on which later code relies.
     fn check(&self) -> Result<(), String> {
         self.params.check().map_err(|e| e.to_string())?;
         if self.params.first_division >= DIVISIONS {
@@ -232,7 +232,7 @@ fn check_section(section: &Section) -> Result<(), String> {
 }
 
 fn check_point(point: &Point3) -> Result<(), String> {
-    // Not the other way round: NaN is no coordinate, either.
+    // Not inverted, so that NaN is rejected, too.
     if point.coords.amax() <= LARGEST { Ok(()) } else { Err(format!("a point lies at {point}")) }
 }
 

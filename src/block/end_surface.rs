@@ -1,59 +1,59 @@
-//! End surface: the disc of triangles in which a block ends at a cut (3.2.2), and what has to hold for it.
+//! End surface: the triangle disc that ends a block at a cut (section 3.2.2 of the paper), and its invariants.
 
 use crate::partition::CutId;
 use crate::surface::SharedDisc;
 use anastomesh_mesh::geometry::{Point3, Section};
 
-/// Where a cluster ends at a cut.
+/// End of a cluster at a cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutEnd {
     pub cut: CutId,
-    /// Which side of the cut the cluster is.
+    /// Side of the cut on which the cluster lies.
     pub side: u8,
-    /// The cut plane; its axis points out of the cluster.
+    /// Cut plane; its axis points out of the cluster.
     pub section: Section,
 }
 
-/// The triangles at a cut.
+/// Triangles at a cut.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EndSurface {
     pub cut: CutId,
-    /// Which side of the cut this is.
+    /// Side of the cut.
     pub side: u8,
-    /// The cut plane; its axis points out of the cluster.
+    /// Cut plane; its axis points out of the cluster.
     pub section: Section,
-    /// Triangles, indices into the cluster's points, oriented out of the cluster.
+    /// Triangles as indices into the cluster's points, oriented out of the cluster.
     pub triangles: Vec<[u32; 3]>,
-    /// The boundary loop, counter-clockwise about the section's axis, starting at its smallest vertex.
+    /// Boundary loop, counter-clockwise about the section's axis, starting at its smallest vertex.
     pub rim: Vec<u32>,
 }
 
-/// An end surface over its own points alone.
+/// End surface with its own points only.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StoredEnd {
     /// The surface.
     pub surface: EndSurface,
-    /// Its points.
+    /// Points of the surface.
     pub points: Vec<Point3>,
 }
 
-/// What an end surface violates.
+/// Violated invariant of an end surface.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EndFault {
-    /// A triangle whose projection on the cut plane is not positive.
+    /// A triangle's projection onto the cut plane is not positive.
     #[error("triangle {0} is not projection flat")]
     Fold(u32),
-    /// A directed edge is used twice, or the boundary is not one simple loop, or the Euler number is not 1.
+    /// A directed edge occurs twice, the boundary is not one simple loop, or the Euler number is not 1.
     #[error("not a disc")]
     NotADisc,
-    /// The projected boundary loop crosses itself.
+    /// The projected boundary loop intersects itself.
     #[error("rim edges {0} and {1} cross in projection")]
     RimCrosses(u32, u32),
 }
 
-/// Plane coordinates of points in a section's frame, on an integer grid so fine that snapping is invisible and so
-/// coarse that `cross` is exact.
+/// Plane coordinates of points in a section's frame, on an integer grid. The grid is fine enough that snapping is
+/// negligible and coarse enough that `cross` is exact.
 pub(crate) struct Plane {
     section: Section,
     u: anastomesh_mesh::geometry::Vec3,
@@ -65,7 +65,7 @@ pub(crate) struct Plane {
 const GRID: f64 = (1u64 << 25) as f64;
 
 impl Plane {
-    /// `extent`: a bound on the distance from the axis of the points that will be projected.
+    /// `extent` bounds the distance of projected points from the axis.
     pub(crate) fn new(section: &Section, extent: f64) -> Self {
         let (u, w) = section.frame();
         Self { section: *section, u, w, scale: GRID / extent }
@@ -83,7 +83,7 @@ pub(crate) fn cross(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Whether two segments that share no end point meet.
+/// True if two segments without a common end point intersect.
 fn segments_meet(a: [i64; 2], b: [i64; 2], c: [i64; 2], d: [i64; 2]) -> bool {
     let within =
         |p: [i64; 2], q: [i64; 2], x: [i64; 2]| (0..2).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]));
@@ -96,7 +96,7 @@ fn segments_meet(a: [i64; 2], b: [i64; 2], c: [i64; 2], d: [i64; 2]) -> bool {
         || (s4 == 0 && within(c, d, b))
 }
 
-/// The first pair of edges of a closed polygon that meet elsewhere than in a common end point.
+/// First pair of edges of a closed polygon that intersect elsewhere than in a common end point.
 pub(crate) fn crossing(polygon: &[[i64; 2]]) -> Option<(u32, u32)> {
     let n = polygon.len();
     for i in 0..n {
@@ -121,13 +121,13 @@ pub(crate) fn crossing(polygon: &[[i64; 2]]) -> Option<(u32, u32)> {
     None
 }
 
-/// Whether b→c runs back over a→b.
+/// True if b→c overlaps a→b in the opposite direction.
 fn folds_back(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> bool {
     cross(a, b, c) == 0 && (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1]) > 0
 }
 
-/// The boundary loop of an oriented triangle set, if the set is one disc: no directed edge twice, one simple loop,
-/// Euler number 1, connected. Starts at its smallest vertex.
+/// Boundary loop of an oriented triangle set, starting at its smallest vertex. Returns `None` unless the set is one
+/// connected disc: no repeated directed edge, one simple loop, Euler number 1.
 pub(crate) fn disc_rim(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
     let mut edges: Vec<(u32, u32)> = Vec::with_capacity(3 * triangles.len());
     for t in triangles {
@@ -139,7 +139,7 @@ pub(crate) fn disc_rim(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
     }
     let boundary: Vec<(u32, u32)> =
         edges.iter().copied().filter(|&(a, b)| edges.binary_search(&(b, a)).is_err()).collect();
-    // Sorted by tail, so that a tail that occurs twice is a pinched vertex.
+    // Sorted by tail, so that a repeated tail is a pinched vertex.
     if boundary.is_empty() || boundary.windows(2).any(|w| w[0].0 == w[1].0) {
         return None;
     }
@@ -162,7 +162,7 @@ pub(crate) fn disc_rim(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
     (vertices.len() + triangles.len() == edge_count + 1).then_some(rim)
 }
 
-/// Whether the triangles hang together; `edges` are all their directed edges, sorted.
+/// True if the triangles are connected; `edges` are all their directed edges, sorted.
 fn edge_connected(triangles: &[[u32; 3]], edges: &[(u32, u32)]) -> bool {
     let owner: rustc_hash::FxHashMap<(u32, u32), u32> = triangles
         .iter()
@@ -193,7 +193,7 @@ fn edge_connected(triangles: &[[u32; 3]], edges: &[(u32, u32)]) -> bool {
 }
 
 impl EndSurface {
-    /// That of a piece of a vessel that ends in a disc; its vertices are the disc's own.
+    /// End surface of a vessel piece that ends in a disc; its vertices are those of the disc.
     pub fn of_disc(disc: &SharedDisc, cut: CutId, side: u8, outward: Section) -> Self {
         let mut rim = disc.rim.clone();
         if let Some(first) = (0..rim.len()).min_by_key(|&i| rim[i]) {
@@ -202,11 +202,11 @@ impl EndSurface {
         Self { cut, side, section: outward, triangles: disc.triangles.clone(), rim }
     }
 
-    /// Checks that the surface is one disc and projection flat: positive triangles whose boundary loop is a simple
-    /// polygon cover every point of the plane at most once.
+    /// Checks that the surface is one disc and projection flat. Positive triangles with a simple polygon as boundary
+    /// cover every point of the plane at most once.
     ///
     /// # Errors
-    /// The first fault.
+    /// Returns the first fault found.
     pub fn check(&self, points: &[Point3]) -> Result<(), EndFault> {
         let extent = self
             .triangles
@@ -228,7 +228,7 @@ impl EndSurface {
         crossing(&polygon).map_or(Ok(()), |(i, j)| Err(EndFault::RimCrosses(i, j)))
     }
 
-    /// The vertices of the surface, ascending.
+    /// Vertices of the surface, in ascending order.
     pub fn vertices(&self) -> Vec<u32> {
         let mut v: Vec<u32> = self.triangles.iter().flatten().copied().collect();
         v.sort_unstable();

@@ -1,4 +1,4 @@
-//! What can go wrong with one block.
+//! Errors of a block.
 
 use super::connector_surface::{ConnectorFault, Division};
 use super::end_surface::CutEnd;
@@ -7,14 +7,14 @@ use crate::surface::{CapError, SurfaceError};
 use anastomesh_mesh::check::Line;
 use anastomesh_tet::TetError;
 
-/// Why no end surface could be exposed at a cut.
+/// Reasons for a missing end surface at a cut.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FlattenFailure {
     /// No tetrahedron lies beyond the plane near the vessel's axis.
     #[error("nothing lies beyond the cut plane")]
     NothingBeyond,
-    /// The piece beyond the plane is joined to something far from the vessel's axis: a fused neighbour.
+    /// The part beyond the plane is connected to something far from the vessel's axis: a fused neighbour.
     #[error("the piece beyond the cut plane leaves its vessel")]
     LeavesVessel,
     /// Flattening removed tetrahedra down to the depth limit.
@@ -23,29 +23,29 @@ pub enum FlattenFailure {
     /// Handles, pinched vertices or several loops remain.
     #[error("the end surface is not one disc")]
     NotADisc,
-    /// The disc at the cut is not the one that the vessel gives.
+    /// The disc at the cut differs from the shared disc of the vessel.
     #[error("the disc at the cut is not the shared one")]
     NotShared,
-    /// The work budget is spent.
+    /// The work limit is reached.
     #[error("flattening does not end")]
     Budget,
 }
 
-/// Failure of one block. Every variant says which block, and where there is a place to look at.
+/// Failure of one block. Every variant identifies the block, and the place if there is one.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BlockError {
-    /// A parameter makes no sense.
+    /// A parameter is out of range.
     #[error("block parameter {name} = {value} is out of range")]
     Parameter { name: &'static str, value: f64 },
-    /// The wall could not be made.
+    /// The wall could not be created.
     #[error("cluster {}: {source}", cluster.0)]
     Surface {
         cluster: ClusterId,
-        /// Why.
+        /// Reason of the failure.
         source: SurfaceError,
     },
-    /// The wall has other handles than the skeleton has loops: neighbours fused, or a loop closed over.
+    /// The wall's genus differs from the skeleton's loop count: neighbours fused, or a loop closed.
     #[error("cluster {}: the wall has {handles} handles, the skeleton {loops} loops", cluster.0)]
     Genus {
         cluster: ClusterId,
@@ -54,98 +54,98 @@ pub enum BlockError {
         /// Independent loops of the cluster's tubes.
         loops: i64,
     },
-    /// The wall leaves a vessel's axis out.
+    /// A part of a vessel's axis lies outside the wall.
     #[error("cluster {}: the axis of a vessel is not within the wall near {at:?}", cluster.0)]
     Outside {
         cluster: ClusterId,
-        /// A place of the axis.
+        /// Point on the axis.
         at: [f64; 3],
     },
-    /// Vessels that are far from each other along the skeleton have one lumen, whatever the genus says.
+    /// Vessels that are distant along the skeleton share one lumen, whatever the genus.
     #[error("cluster {}: two vessels fused near {at:?}", cluster.0)]
     Fused {
         cluster: ClusterId,
-        /// A place on the axis of one of them.
+        /// Point on the axis of one of them.
         at: [f64; 3],
     },
     /// A terminal could not be capped.
     #[error("cluster {}: {source}", cluster.0)]
     Cap {
         cluster: ClusterId,
-        /// Which end, and why.
+        /// End and reason of the failure.
         source: CapError,
     },
     /// A cluster's surface could not be filled.
     #[error("cluster {}: {source}", cluster.0)]
     Tetrahedra {
         cluster: ClusterId,
-        /// Why.
+        /// Reason of the failure.
         source: TetError,
     },
-    /// A cluster has no sound end at a cut.
+    /// A cluster has no valid end at a cut.
     #[error("cluster {}, cut {}: {failure} near {at:?}", cluster.0, cut.0)]
     End {
         cluster: ClusterId,
         /// Index of the end in `Cluster::ends`.
         end: u32,
-        /// The cut there.
+        /// Cut at the end.
         cut: CutId,
-        /// Where the axis meets the cut plane.
+        /// Intersection of the axis with the cut plane.
         at: [f64; 3],
-        /// What failed.
+        /// Reason of the failure.
         failure: FlattenFailure,
     },
-    /// An end or a cap is not on the boundary of the block: a fault of the program.
+    /// An end or a cap is not on the boundary of the block, which is a bug.
     #[error("{block}: {source}")]
     Faces {
         /// `cluster 12` or `connector 7`.
         block: String,
-        /// Which face.
+        /// Face at fault.
         source: NotOnBoundary,
     },
-    /// The block came out, but with a tetrahedron so flat that another try is worth its time.
+    /// The block contains a tetrahedron so flat that a retry is worthwhile.
     #[error("{block}: a tetrahedron is all but flat (radius ratio {ratio:.2e}, dihedral angle {dihedral:.1}°)")]
     Flat {
         /// `cluster 12` or `connector 7`.
         block: String,
-        /// The smallest radius ratio.
+        /// Smallest radius ratio.
         ratio: f64,
-        /// The smallest dihedral angle in degrees.
+        /// Smallest dihedral angle, in degrees.
         dihedral: f64,
     },
-    /// The surface of a block that is not filled could not be filled.
+    /// The surface of a hollow block is invalid.
     #[error("{block}: its surface is not sound: it does not hold that {}", line.statement())]
     Unsound {
         /// `cluster 12` or `connector 7`.
         block: String,
-        /// What does not hold.
+        /// Violated check.
         line: Line,
     },
-    /// No way of building a connector works.
+    /// No division of a connector works.
     #[error("connector of cut {} near {at:?}: {}", cut.0, attempts.last().map_or_else(String::new, |a| a.failure.to_string()))]
     Connector {
         cut: CutId,
-        /// Middle of the cut's path.
+        /// Point on the cut's path.
         at: [f64; 3],
-        /// What was tried, in order, and why it failed.
+        /// Failed attempts in order.
         attempts: Vec<ConnectorAttempt>,
     },
 }
 
-/// An attempt at a connector that failed.
+/// Failed attempt at a connector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConnectorAttempt {
-    /// How the tube was divided.
+    /// Division of the tube.
     pub division: Division,
-    /// Why it failed.
+    /// Reason of the failure.
     pub failure: ConnectorFailure,
 }
 
-/// Why an attempt at a connector failed.
+/// Reasons for a failed attempt at a connector.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConnectorFailure {
-    /// The surface could not be made.
+    /// The surface could not be created.
     #[error(transparent)]
     Surface(ConnectorFault),
     /// The surface could not be filled.
@@ -153,21 +153,21 @@ pub enum ConnectorFailure {
     Tetrahedra(TetError),
 }
 
-/// A face that was said to close a block and does not: a fault of the program.
+/// Face assigned to an end that does not close the block, which is a bug.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("face {face:?} does not lie on the block's boundary, or belongs to two of its ends")]
 pub struct NotOnBoundary {
-    /// Its vertices in the block.
+    /// Vertices of the face in the block.
     pub face: [u32; 3],
 }
 
 impl BlockError {
-    /// Whether the thinnest vessel asks for a grid of more cells than there may be.
+    /// True if the thinnest vessel requires more grid cells than allowed.
     pub fn is_too_fine(&self) -> bool {
         matches!(self, Self::Surface { source: SurfaceError::TooLarge { .. }, .. })
     }
 
-    /// What was being done, for people.
+    /// Readable name of the failed stage.
     pub fn stage(&self) -> &'static str {
         match self {
             Self::Parameter { .. } => "parameters",
@@ -183,7 +183,7 @@ impl BlockError {
         }
     }
 
-    /// Of a cluster that fails at a cut; `end` is the index among all its ends.
+    /// Failure of a cluster at a cut; `end` is the index among all its ends.
     pub(crate) fn at_end(cluster: ClusterId, end: u32, cut: &CutEnd, failure: FlattenFailure) -> Self {
         Self::End { cluster, end, cut: cut.cut, at: cut.section.origin.coords.into(), failure }
     }

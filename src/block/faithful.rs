@@ -1,7 +1,7 @@
-//! Whether a wall is that of its vessels: their axes lie within it, and vessels that are apart are two lumens.
+//! Comparison of a wall with its vessels: axes lie inside, and separate vessels have separate lumens.
 //!
-//! The genus does not tell: the turns of a tight helix that fuse into a column have none, nor has a wall that leaves half of
-//! a vessel out.
+//! The genus is not sufficient. A tight helix that fuses to a column has genus 0, and so has a wall that omits half a
+//! vessel.
 
 use crate::partition::Cluster;
 use anastomesh_mesh::TriMesh;
@@ -10,21 +10,21 @@ use anastomesh_mesh::geometry::{Point3, Tube, crossing, place_key};
 use anastomesh_skeleton::{Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
 use rustc_hash::FxHashMap;
 
-/// An axis is looked at where so many of its radii lie between two places,
+/// Sampling step along an axis, in radii.
 const STEP: f64 = 2.0;
-/// and at so many places between the ends of a tube at most.
+/// Maximum samples per tube.
 const MOST: f64 = 8.0;
-/// Vessels further apart than this, in sums of their radii, do not fuse.
+/// Maximum distance at which vessels fuse, in sums of their radii.
 const NEAR: f64 = 1.3;
-/// Far along the vessels, in sums of radii that are wider by that: some 12 radii.
+/// Minimum distance along the vessels for fusion, in sums of radii widened by `NEAR`: about 12 radii.
 const FAR: f64 = 4.5;
 
-/// What a wall does not keep of its vessels: nothing, if it was not allowed to.
+/// Deviations of a wall from its vessels; empty unless they are allowed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Astray {
-    /// A place on an axis that is not within the wall.
+    /// Point of an axis outside the wall.
     pub outside: Option<Point3>,
-    /// Two places on axes that are far from each other along the vessels, with no wall between them.
+    /// Two points on axes that are distant along the vessels, with no wall between them.
     pub fused: Option<[Point3; 2]>,
 }
 
@@ -34,7 +34,7 @@ impl Astray {
     }
 }
 
-/// The first place on the axes of a cluster's vessels that does not lie within its wall.
+/// First sample on a cluster's axes that lies outside its wall.
 fn outside(wall: &TriMesh, cluster: &Cluster) -> Option<Point3> {
     let mut places = places(cluster);
     places.sort_by(|p, q| p.y.total_cmp(&q.y));
@@ -45,7 +45,7 @@ fn outside(wall: &TriMesh, cluster: &Cluster) -> Option<Point3> {
         let [low, high] = [a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y)];
         let first = places.partition_point(|p| p.y < low);
         for (i, p) in places.iter().enumerate().skip(first).take_while(|(_, p)| p.y <= high) {
-            // Rays go along x.
+            // Rays run along x.
             if p.x > a.x.max(b.x).max(c.x) || p.z < a.z.min(b.z).min(c.z) || p.z > a.z.max(b.z).max(c.z) {
                 continue;
             }
@@ -58,7 +58,7 @@ fn outside(wall: &TriMesh, cluster: &Cluster) -> Option<Point3> {
     (0..places.len()).find(|&i| winding[i] != 1 || on_wall[i]).map(|i| places[i])
 }
 
-/// Places on the axes of a cluster, up to its ends.
+/// Sample points on the axes of a cluster, up to its ends.
 fn places(cluster: &Cluster) -> Vec<Point3> {
     let mut places = Vec::with_capacity(2 * cluster.tubes.len());
     for tube in inner_tubes(cluster) {
@@ -74,8 +74,8 @@ fn inner_tubes(cluster: &Cluster) -> impl Iterator<Item = &Tube> {
     (0..).zip(&cluster.tubes).filter(move |(i, _)| !beyond(*i)).map(|(_, tube)| tube)
 }
 
-/// Two places on the axes of vessels that come near each other far from where they are joined, with no wall between them.
-/// The web in the crotch of a narrow fork is none.
+/// Two points on axes of vessels that are close but distant along the skeleton, with no wall between them. The web in a
+/// narrow crotch does not count.
 fn fused(wall: &TriMesh, cluster: &Cluster) -> Option<[Point3; 2]> {
     let skeleton = widened(cluster);
     let adjacency = skeleton.adjacency();
@@ -91,7 +91,7 @@ fn fused(wall: &TriMesh, cluster: &Cluster) -> Option<[Point3; 2]> {
     pairs.find(|o| !is_parted(wall, &o.points[0], &o.points[1])).map(|o| o.points)
 }
 
-/// The cluster's vessels as a graph, as wide as those that may fuse with them are near.
+/// Graph of the cluster's vessels, widened by the fusion distance.
 fn widened(cluster: &Cluster) -> Skeleton {
     let mut skeleton = Skeleton::default();
     let mut nodes: FxHashMap<[u64; 3], NodeId> = FxHashMap::default();
@@ -109,7 +109,7 @@ fn widened(cluster: &Cluster) -> Skeleton {
     skeleton
 }
 
-/// Whether the wall passes between two places, or touches the way between them.
+/// True if the wall crosses or touches the segment between two points.
 fn is_parted(wall: &TriMesh, p: &Point3, q: &Point3) -> bool {
     let low = p.coords.inf(&q.coords);
     let high = p.coords.sup(&q.coords);
@@ -120,7 +120,7 @@ fn is_parted(wall: &TriMesh, p: &Point3, q: &Point3) -> bool {
     })
 }
 
-/// Whether the segment from `p` to `q` meets a triangle.
+/// True if the segment from `p` to `q` intersects a triangle.
 fn meets([a, b, c]: [&Point3; 3], p: &Point3, q: &Point3) -> bool {
     let side = |x: &Point3| orient3d(a, b, c, x);
     if side(p) * side(q) > 0.0 {
@@ -151,7 +151,7 @@ mod tests {
             .mesh
     }
 
-    /// A helix of radius 2 with turns so far apart, in radii of the vessel.
+    /// Helix of radius 2 with this pitch, in radii of the vessel.
     fn helix(pitch: f64) -> Cluster {
         let point = |i: i32| {
             let a = f64::from(i) * 0.2;

@@ -1,4 +1,4 @@
-//! A block when it is done: what the whole needs of it, whichever kind it is, and nothing else.
+//! Finished block: common result of clusters and connectors for the final mesh.
 
 use super::error::NotOnBoundary;
 use anastomesh_mesh::face_key;
@@ -16,88 +16,88 @@ use anastomesh_mesh::geometry::Section;
 use anastomesh_mesh::{Cap, TetMesh};
 use anastomesh_skeleton::NodeId;
 
-/// A finished block. Faces are handles, `4 · tet + i` for the face opposite vertex `i`, ascending; in a hollow block they are
-/// numbers of triangles of its hull.
+/// Finished block. Faces are handles in ascending order: `4 · tet + i` for the face opposite vertex `i`. In a hollow
+/// block they are indices of hull triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Finished {
     /// Points and tetrahedra.
     pub mesh: TetMesh,
-    /// The closed surface of a hollow block, which has no tetrahedra; else empty.
+    /// Closed surface of a hollow block, which has no tetrahedra; else empty.
     pub hull: Vec<[u32; 3]>,
-    /// The first so many points are those of the joints, in their order: other blocks have them, too, and name them.
+    /// Number of leading points that belong to joints. Other blocks contain them, too, and refer to them.
     pub shared: u32,
     /// Boundary faces that belong to no joint and no cap.
     pub wall: Vec<u32>,
-    /// Where other blocks follow: a cluster's cut ends in the order of `Cluster::ends`, a connector's side 0 and side 1.
+    /// Interfaces with other blocks: a cluster's cut ends in the order of `Cluster::ends`, or a connector's two sides.
     pub joints: Vec<FinishedJoint>,
     /// Caps, in the order of `Cluster::ends`.
     pub caps: Vec<FinishedCap>,
-    /// What is known of it once it has been checked alone.
+    /// Certificate of the block's own checks.
     pub certificate: Certificate,
-    /// What a report says of it.
+    /// Report data.
     pub about: About,
 }
 
-/// The disc in which two blocks meet, as one of them has it.
+/// Disc between two blocks, as seen by one of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FinishedJoint {
-    /// Its vertices, ascending; the other block has them in the same order.
+    /// Vertices in ascending order; the other block has them in equal order.
     pub vertices: Vec<u32>,
     pub faces: Vec<u32>,
 }
 
-/// The flat disc that closes a terminal.
+/// Flat cap of a terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FinishedCap {
-    /// The terminal.
+    /// Node of the terminal.
     pub node: NodeId,
-    /// The plane; its axis points out of the mesh.
+    /// Cap plane; its axis points out of the mesh.
     pub section: Section,
     pub faces: Vec<u32>,
 }
 
 impl FinishedCap {
-    /// The disc, with the terminal's number in the network as it was read.
+    /// Cap with the terminal's number in the input network.
     pub fn disc(&self, original: u32) -> Cap {
         let Section { origin: center, axis: normal, radius } = self.section;
         Cap { node: original, center, normal, radius }
     }
 }
 
-/// What a report says of a block.
+/// Report data of a block.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct About {
-    /// Terminals without a cap: their tips lie in another vessel.
+    /// Terminals without a cap, because their tips lie in another vessel.
     pub uncapped: Vec<u32>,
-    /// What the wall does not keep of the vessels.
+    /// Deviations of the wall from the vessels.
     pub astray: Astray,
     /// Genus of a cluster's wall.
     pub handles: i64,
-    /// Independent loops of its skeleton, less those that are filled.
+    /// Independent loops of its skeleton, minus filled ones.
     pub loops: i64,
-    /// Loops of its skeleton that are filled by their own lumen.
+    /// Skeleton loops that are filled by their own lumen.
     pub filled: i64,
-    /// Where layers are thinner than asked for.
+    /// Report of layers that are thinner than requested.
     #[serde(default)]
     pub thin: Option<ThinLayers>,
-    /// What helped, where it failed before.
+    /// Successful retry after a failure.
     pub cured: Option<Cured>,
 }
 
-/// Why a block had to be tried again, and how it came out then.
+/// First failure of a block and the remedy that solved it.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cured {
     /// The first failure.
     pub failure: String,
-    /// The way in which it came out.
+    /// Retry variant that succeeded.
     pub remedy: String,
 }
 
 impl Finished {
-    /// A cluster. `original`: the number of a terminal in the network as it was read.
+    /// Converts a cluster. `original` maps terminals to the input network.
     ///
     /// # Errors
-    /// When an end or a cap is not on the boundary.
+    /// An end or a cap is not on the boundary.
     pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
         let ClusterMesh { mesh, hull, ends, caps, uncapped, astray, handles, loops, filled, thin, .. } = cluster;
         let mut faces = Faces::new(&mesh, &hull);
@@ -112,10 +112,10 @@ impl Finished {
         Ok(Self { mesh, hull, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
     }
 
-    /// A connector between two end surfaces.
+    /// Converts a connector between two end surfaces.
     ///
     /// # Errors
-    /// When an end is not on the boundary.
+    /// An end is not on the boundary.
     pub fn of_connector(connector: ConnectorMesh, ends: [&EndSurface; 2]) -> Result<Self, NotOnBoundary> {
         let ConnectorMesh { mesh, hull, shared, thin, .. } = connector;
         let about = About { thin, ..About::default() };
@@ -124,7 +124,7 @@ impl Finished {
         let mut base = 0;
         for end in ends {
             let vertices = end.vertices();
-            // The connector has the ends' vertices in ascending order, and their triangles turned round.
+            // The connector has the ends' vertices in ascending order, and their triangles reversed.
             let local = |v: u32| base + vertices.partition_point(|&x| x < v) as u32;
             let triangles: Vec<_> = end.triangles.iter().map(|t| [local(t[0]), local(t[2]), local(t[1])]).collect();
             joints.push(faces.joint(&triangles)?);
@@ -135,7 +135,7 @@ impl Finished {
         Ok(connector.certified(adjacency, |node| node.0))
     }
 
-    /// Checks it alone.
+    /// Adds the certificate of the block's own checks.
     fn certified(mut self, adjacency: Option<TetAdjacency>, original: impl Fn(NodeId) -> u32) -> Self {
         let joints: Vec<_> = self.joints.iter().map(|joint| self.triangles(&joint.faces)).collect();
         let cap = |cap: &FinishedCap| (cap.disc(original(cap.node)), self.triangles(&cap.faces));
@@ -148,12 +148,12 @@ impl Finished {
         self
     }
 
-    /// The vertices of faces.
+    /// Vertices of faces.
     pub fn triangles(&self, faces: &[u32]) -> Vec<[u32; 3]> {
         faces.iter().map(|&face| triangle_of(&self.mesh, &self.hull, face)).collect()
     }
 
-    /// A joint as an end surface over its own points alone; none if it is no disc.
+    /// Joint as an end surface with its own points; `None` if it is not a disc.
     pub fn end_surface(&self, joint: usize, cut: CutId, side: u8, section: Section) -> Option<StoredEnd> {
         let FinishedJoint { vertices, faces } = self.joints.get(joint)?;
         let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
@@ -164,15 +164,15 @@ impl Finished {
     }
 }
 
-/// The vertices of a face, by its handle.
+/// Vertices of a face handle.
 pub(super) fn triangle_of(mesh: &TetMesh, hull: &[[u32; 3]], face: u32) -> [u32; 3] {
     hull.get(face as usize).copied().unwrap_or_else(|| face_vertices(&mesh.tets, face))
 }
 
-/// The boundary faces of a block that no end has taken yet.
+/// Boundary faces of a block that are not yet assigned.
 struct Faces {
     left: FxHashMap<[u32; 3], u32>,
-    /// None in a hollow block.
+    /// `None` in a hollow block.
     adjacency: Option<TetAdjacency>,
 }
 
@@ -201,7 +201,7 @@ impl Faces {
         Ok(FinishedJoint { vertices, faces: self.take(triangles)? })
     }
 
-    /// The faces that nothing took, and what all were found with.
+    /// Returns the unassigned faces and the adjacency.
     fn rest(self) -> (Vec<u32>, Option<TetAdjacency>) {
         let mut rest: Vec<u32> = self.left.into_values().collect();
         rest.sort_unstable();

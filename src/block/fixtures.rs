@@ -1,4 +1,4 @@
-//! Synthetic meshes for the tests of blocks, and what holds for every mesh of one: tubes filled with a jittered lattice.
+//! Synthetic meshes for block tests, filled with a jittered lattice, and invariants of block meshes.
 
 use super::connector_surface::{ConnectorEnd, ConnectorSurface};
 use super::shape::tet_ratio;
@@ -9,7 +9,7 @@ use anastomesh_mesh::{TET_FACES, TetMesh, TriMesh};
 use anastomesh_skeleton::{BranchId, NodeId};
 use rustc_hash::FxHashMap;
 
-/// Jitter in [−0.5, 0.5] that depends on the ids alone.
+/// Jitter in [−0.5, 0.5] that depends only on the ids.
 pub(crate) fn jitter(seed: u64, id: u64) -> f64 {
     let mut x = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ id.wrapping_mul(0xD1B5_4A32_D192_ED03);
     for _ in 0..3 {
@@ -19,8 +19,8 @@ pub(crate) fn jitter(seed: u64, id: u64) -> f64 {
     (x >> 11) as f64 / (1u64 << 53) as f64 - 0.5
 }
 
-/// A tube (capsule about its axis) filled with cubes of edge `h` cut into six tetrahedra each, vertices jittered by
-/// `noise · h`; the lattice is turned by `seed`, so that tubes meet it at all angles.
+/// Tube (capsule about its axis) filled with cubes of edge `h`, split into six tetrahedra each. Vertices are jittered
+/// by `noise · h`. The lattice is rotated by `seed`, so that tubes intersect it at all angles.
 pub(crate) fn lattice_tube(tube: &Tube, h: f64, noise: f64, seed: u64) -> TetMesh {
     lattice_tubes(&[*tube], h, noise, seed)
 }
@@ -123,7 +123,7 @@ pub(crate) fn neighbours(mesh: &TetMesh) -> Vec<[u32; 4]> {
     out
 }
 
-/// A direction that depends on a seed alone.
+/// Direction that depends only on a seed.
 pub(crate) fn direction(seed: u64) -> Vec3 {
     Vec3::new(jitter(seed, 11), jitter(seed, 12), jitter(seed, 13) + 1e-6).normalize()
 }
@@ -132,7 +132,7 @@ pub(crate) fn section(origin: Point3, axis: Vec3, radius: f64) -> Section {
     Section { origin, axis, radius }
 }
 
-/// Positive tetrahedra, face-connected, boundary a closed manifold with single fans.
+/// Asserts positive tetrahedra, face connectivity, and a closed manifold boundary with single fans.
 pub(crate) fn assert_mesh(mesh: &TetMesh, euler: i64) {
     for t in &mesh.tets {
         assert!(tet_ratio(&t.map(|v| mesh.points[v as usize])) > 0.0, "inverted");
@@ -158,7 +158,7 @@ pub(crate) fn boundary(mesh: &TetMesh) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// The Euler number of a closed oriented 2-manifold; `None` if the triangles are not one.
+/// Euler number of a closed oriented 2-manifold; `None` if the triangles are not one.
 pub(crate) fn closed_euler(triangles: &[[u32; 3]]) -> Option<i64> {
     let mut links: FxHashMap<(u32, u32), u32> = FxHashMap::default();
     let mut valence: FxHashMap<u32, u32> = FxHashMap::default();
@@ -186,7 +186,7 @@ pub(crate) fn closed_euler(triangles: &[[u32; 3]]) -> Option<i64> {
     Some(valence.len() as i64 - links.len() as i64 / 2 + triangles.len() as i64)
 }
 
-/// A star of vessels from a node: one per direction, ending in a cut or a terminal at 4 radii.
+/// Star of vessels from a node, one per direction, ending in a cut or a terminal after 4 units.
 pub(crate) fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
     let mut cluster = Cluster { nodes: vec![NodeId(0)], ..Cluster::default() };
     for &(axis, radius, kind) in arms {
@@ -203,7 +203,7 @@ pub(crate) fn cut(cut: u32, side: u8) -> EndKind {
     EndKind::Cut { cut: CutId(cut), side }
 }
 
-/// A bifurcation turned by `seed`; end 0 is side 0 of cut 0.
+/// Bifurcation rotated by `seed`; end 0 is side 0 of cut 0.
 pub(crate) fn bifurcation(seed: u64) -> Cluster {
     let turn = nalgebra::Rotation3::new(direction(seed) * 2.0);
     let arm = |x: f64, z: f64| turn * Vec3::new(x, 0.1, z).normalize();
@@ -221,7 +221,7 @@ pub(crate) fn worst_ratio(mesh: &TetMesh) -> f64 {
     mesh.tets.iter().map(|t| tet_ratio(&t.map(|v| mesh.points[v as usize]))).fold(1.0, f64::min)
 }
 
-/// A second cluster opposite to a cluster's end 0, three radii away, and the gap between them.
+/// Second cluster opposite to a cluster's end 0, three radii away, and the cut between them.
 pub(crate) fn facing(cluster: &Cluster) -> (Cluster, Cut) {
     let first = cluster.ends[0].section;
     let center = first.origin + first.axis * 7.0;
@@ -230,7 +230,7 @@ pub(crate) fn facing(cluster: &Cluster) -> (Cluster, Cut) {
     (facing, Cut { branch: BranchId(0), sides: [(ClusterId(0), 0), (ClusterId(1), 0)], path, size: None })
 }
 
-/// End triangles and vertices bit for bit.
+/// Asserts that end triangles and vertices are adopted bit for bit.
 pub(crate) fn assert_taken_over(out: &ConnectorSurface, ends: [ConnectorEnd; 2]) {
     for (p, v) in out.surface.points.iter().zip(&out.shared) {
         assert_eq!(*p, ends[v.side as usize].points[v.vertex as usize]);
@@ -254,7 +254,7 @@ pub(crate) fn volume(s: &TriMesh) -> f64 {
     s.triangles.iter().map(|t| p(t[0]).dot(&p(t[1]).cross(&p(t[2]))) / 6.0).sum()
 }
 
-/// Smallest angle of the wall's triangles in degrees.
+/// Smallest angle of the wall's triangles, in degrees.
 pub(crate) fn wall_angle(c: &ConnectorSurface) -> f64 {
     let p = |v: u32| &c.surface.points[v as usize];
     let wall = &c.surface.triangles[c.end_triangles as usize..];
@@ -267,7 +267,7 @@ pub(crate) fn straight(seed: u64, length: f64, r: [f64; 2]) -> Vec<Section> {
     vec![section(o, axis, r[0]), section(o + axis * length, axis, r[1])]
 }
 
-/// The section seen from the other side.
+/// Section seen from the other side.
 pub(crate) fn flipped(s: &Section) -> Section {
     Section { axis: -s.axis, ..*s }
 }

@@ -1,4 +1,4 @@
-//! The discs at the two ends of a connector, which the vessel alone gives: no cluster is needed for them.
+//! Shared discs at the two ends of a connector, derived from the vessel alone, without clusters.
 
 use super::connector_surface::{ConnectorEnd, ConnectorFault};
 use super::end_surface::EndSurface;
@@ -8,7 +8,7 @@ use crate::partition::{Cut, CutId};
 use crate::surface::SharedDisc;
 use anastomesh_mesh::geometry::Section;
 
-/// Both discs, and as the end surfaces of the clusters that end in them.
+/// Both discs, also as end surfaces of the adjacent clusters.
 pub(super) struct FreeEnds {
     pub discs: [SharedDisc; 2],
     pub surfaces: [EndSurface; 2],
@@ -30,7 +30,7 @@ impl FreeEnds {
     }
 }
 
-/// The end surfaces between which a connector without clusters is made; none where the vessel gives no disc.
+/// End surfaces of a connector without clusters; `None` if the vessel gives no disc.
 pub fn shared_ends(id: CutId, cut: &Cut, params: &BlockParams) -> Option<[EndSurface; 2]> {
     FreeEnds::new(id, cut, params).ok().map(|ends| ends.surfaces)
 }

@@ -1,8 +1,8 @@
-//! Blocks with layers along their wall.
+//! Blocks with boundary layers along their wall.
 //!
-//! The discs in which blocks meet have the layers as rings, by the vessel alone, as all of the disc: what lies within the rim is
-//! drawn towards the centre. So are caps. Elsewhere layers are as thick as the radius there has it, the distance to the nearest
-//! axis.
+//! Shared discs contain the layers as rings, derived from the vessel alone: the interior of the disc is scaled towards
+//! its centre. Caps are treated likewise. Elsewhere the layer thickness is proportional to the local radius, the
+//! distance to the nearest axis.
 
 use super::params::BlockParams;
 use crate::surface::SharedDisc;
@@ -13,24 +13,23 @@ use anastomesh_tet::TetError;
 use anastomesh_tet::parts::{Directions, Inset, Numbers, Places, inset, rims, toward};
 use std::ops::Range;
 
-/// Layers are called thin below this share of what was asked for: curved walls and forks take some.
+/// Relative thickness below which layers are reported as thin: curved walls and bifurcations reduce it.
 const THIN: f64 = 0.5;
 
-/// Where layers of a block are thinner than asked for.
+/// Report of layers that are thinner than requested.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ThinLayers {
-    /// How thick they are at the thinnest place, as a share of what was asked for; 0 where there are none.
+    /// Minimum thickness relative to the request; 0 if a point has no layers.
     pub share: f64,
-    /// Where that is.
+    /// Position of the minimum.
     pub at: [f64; 3],
-    /// Points of the wall where they are less than half as thick as asked for, those where there are none included.
+    /// Number of wall points with less than half the requested thickness, including those without layers.
     pub points: u32,
-    /// Points of the wall where there are none.
+    /// Number of wall points without layers.
     pub without: u32,
 }
 
-/// The disc that ends the piece of a vessel on one `side` of a cut (see [`SharedDisc::at_end`]), with the layers that are asked
-/// for.
+/// Disc at the end of the vessel piece on one `side` of a cut (see [`SharedDisc::at_end`]), with the requested layers.
 pub(super) fn disc_at_end(outward: &Section, side: u8, params: &BlockParams) -> Option<SharedDisc> {
     let plain = SharedDisc::at_end(outward, side, params.rho)?;
     Some(match params.layers {
@@ -39,7 +38,7 @@ pub(super) fn disc_at_end(outward: &Section, side: u8, params: &BlockParams) -> 
     })
 }
 
-/// A disc with rings along its rim: its points, those within the rim drawn in; then for each of the rim its copies.
+/// Disc with rings along its rim: points with a scaled interior, then the copies of each rim point.
 fn layered_disc(disc: SharedDisc, centre: &Point3, layers: &Layers) -> SharedDisc {
     let SharedDisc { points, triangles, rim, edge } = disc;
     let mut is_rim = vec![false; points.len()];
@@ -52,17 +51,17 @@ fn layered_disc(disc: SharedDisc, centre: &Point3, layers: &Layers) -> SharedDis
     SharedDisc { points, triangles: numbers.disc(&triangles), rim, edge }
 }
 
-/// A block's closed surface, and what its layers depend on.
+/// Closed surface of a block, with the data for its layers.
 pub(super) struct Walled<'a> {
     pub surface: &'a TriMesh,
-    /// For each triangle the centre of the cap or disc that it belongs to; none for the wall.
+    /// Centre of the cap or disc of each triangle; `None` for the wall.
     pub caps: Vec<Option<Point3>>,
-    /// The axes of its vessels.
+    /// Axes of the block's vessels.
     pub axes: Vec<[Point3; 2]>,
 }
 
 impl Walled<'_> {
-    /// Fills it with layers along its wall.
+    /// Fills the block with layers along its wall.
     pub fn fill(
         &self,
         layers: &Layers,
@@ -94,7 +93,7 @@ impl Walled<'_> {
         let places = Places { surface: self.surface, wall: &wall, is_rim, wanted, is_held, is_narrow: false };
         let made = inset(&places, &layers.depths(), fill)?;
         let mut shares = made.shares.clone();
-        // Those without a way in, too.
+        // Includes points without an inward direction.
         wall.iter().flatten().filter(|&&v| made.numbers.copy(v, 1) == v).for_each(|&v| shares[v as usize] = 0.0);
         let thin = thin(points, &shares);
         Ok((made, thin))
@@ -106,8 +105,8 @@ impl Walled<'_> {
     }
 }
 
-/// New numbers for the points of a tube's mesh, so that those of its two discs come first, one disc after the other. `plain`:
-/// where points of the discs are without their copies. How many each disc has, and the new number of each point.
+/// Renumbers the points of a tube's mesh so that those of its two discs come first. `plain` are the disc points without
+/// their copies. Returns the point count of each disc, and the new number of each point.
 pub(super) fn discs_first(
     numbers: &Numbers,
     plain: [Range<u32>; 2],
@@ -131,7 +130,7 @@ pub(super) fn discs_first(
     (counts, renamed)
 }
 
-/// A mesh with its points under new numbers.
+/// Applies a renumbering of points to a mesh.
 pub(super) fn renumbered(mesh: TetMesh, renamed: &[u32]) -> TetMesh {
     let TetMesh { points, tets } = mesh;
     let mut moved = points.clone();
@@ -141,7 +140,7 @@ pub(super) fn renumbered(mesh: TetMesh, renamed: &[u32]) -> TetMesh {
     TetMesh { points: moved, tets: tets.into_iter().map(|tet| tet.map(|v| renamed[v as usize])).collect() }
 }
 
-/// Where layers are thin; none where they are as asked for everywhere.
+/// Report of thin layers; `None` if all have the requested thickness.
 fn thin(points: &[Point3], shares: &[f64]) -> Option<ThinLayers> {
     let (at, &share) =
         shares.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, share)| **share < THIN)?;

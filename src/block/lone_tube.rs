@@ -1,4 +1,4 @@
-//! Clusters that are one tube: the end of a vessel beyond its last cut, or what lies between two cuts of one vessel.
+//! Single-tube clusters: the end of a vessel beyond its last cut, or the piece between two cuts.
 
 use super::layered::disc_at_end;
 use super::params::{BlockParams, EndStyle};
@@ -7,10 +7,10 @@ use crate::partition::{Cluster, EndKind};
 use crate::surface::SharedDisc;
 use anastomesh_mesh::geometry::{Section, Vec3};
 
-/// A vessel that turns by more than this from one tube to the next, in radians, is left to the field, which rounds it.
+/// Maximum turn between consecutive tubes, in radians. Sharper bends are left to the field, which rounds them.
 const STRAIGHT: f64 = 0.35;
 
-/// The tube that such a cluster is, by template; none where it is no such cluster, or no template fits.
+/// Meshes a single-tube cluster by template. Returns `None` for other clusters or if no template fits.
 pub(super) fn lone_tube(cluster: &Cluster, params: &BlockParams) -> Option<FilledTube> {
     if params.ends != EndStyle::Shared || !params.by_template() {
         return None;
@@ -24,7 +24,7 @@ pub(super) fn lone_tube(cluster: &Cluster, params: &BlockParams) -> Option<Fille
     template::tube(&path, &[disc(0)?, disc(1)?], caps, params)
 }
 
-/// The sections from the first end to the second, if one vessel leads from it to there and there is nothing else.
+/// Sections from the first end to the second, if the cluster is a single vessel between them.
 fn path(cluster: &Cluster) -> Option<Vec<Section>> {
     let [first, last] = cluster.ends.as_slice() else { return None };
     let mut overruns = [first.overrun as usize, last.overrun as usize];

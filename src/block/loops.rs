@@ -1,4 +1,4 @@
-//! Loops of a cluster's vessels, and which of them are no holes: a loop that lies within its own lumen encloses nothing.
+//! Loops of a cluster's vessels. A loop within its own lumen is filled and creates no handle.
 
 use crate::partition::Cluster;
 use anastomesh_mesh::geometry::{DisjointSets, Point3, Total, Tube, place_key, point_segment};
@@ -6,22 +6,22 @@ use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A loop may be filled where all that it spans is within so many radii of its vessels: further off there is a hole, nearer
-/// walls blend.
+/// Maximum distance from the vessels, in radii, of points that a filled loop spans. Further away there is a hole;
+/// closer walls blend.
 const WITHIN: f64 = 1.25;
-/// What a loop spans is looked at in steps of so many of its smallest radius,
+/// Sampling step of the spanned area, in smallest radii of the loop.
 const STEP: f64 = 0.5;
-/// and in so many to a side of a triangle at most.
+/// Maximum samples per triangle side.
 const MOST: f64 = 64.0;
-/// Loops that are looked at in one cluster, at most.
+/// Maximum number of loops examined in one cluster.
 const MOST_LOOPS: usize = 64;
 
-/// Independent loops of the graph of a cluster's tubes, whose ends are the same node when they are the same point.
+/// Independent loops in the graph of a cluster's tubes. Equal end points are one node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Loops {
-    /// All of them.
+    /// Number of all loops.
     pub all: i64,
-    /// Those that may be filled by their own lumen.
+    /// Number of loops that may be filled by their own lumen.
     pub filled: i64,
 }
 
@@ -32,21 +32,21 @@ impl Loops {
         Self { all: graph.closing.len() as i64, filled: filled as i64 }
     }
 
-    /// The loops that a wall of so many handles has to have: its handles, where only such are missing that may be filled.
+    /// Expected handles of a wall: `handles` itself, if only fillable loops are missing.
     pub fn expected(self, handles: i64) -> i64 {
         if (self.all - self.filled..=self.all).contains(&handles) { handles } else { self.all }
     }
 }
 
-/// Tubes as edges.
+/// Graph with tubes as edges.
 struct Graph<'a> {
     tubes: &'a [Tube],
     places: Vec<Point3>,
-    /// The two places of each tube.
+    /// End nodes of each tube.
     ends: Vec<[u32; 2]>,
-    /// The tubes at each place.
+    /// Tubes at each node.
     beside: Vec<Vec<u32>>,
-    /// Tubes that close a loop, each another one.
+    /// Tubes that close a loop, one for each independent loop.
     closing: Vec<u32>,
 }
 
@@ -76,7 +76,7 @@ impl<'a> Graph<'a> {
         graph
     }
 
-    /// Whether the shortest loop through a tube spans nothing but lumen.
+    /// True if the shortest loop through a tube spans only lumen.
     fn is_filled(&self, tube: u32) -> bool {
         let [a, b] = self.ends[tube as usize];
         let Some(mut around) = self.way(a, b, tube) else { return false };
@@ -91,7 +91,7 @@ impl<'a> Graph<'a> {
         vessels.iter().all(|tube| self.holds([&center.into(), &tube.a, &tube.b], step))
     }
 
-    /// The tubes of the shortest way between two places that does without one of them (Dijkstra's algorithm).
+    /// Tubes of the shortest path between two nodes that avoids one tube (Dijkstra's algorithm).
     fn way(&self, from: u32, to: u32, without: u32) -> Option<Vec<u32>> {
         let mut came_by: Vec<Option<u32>> = vec![None; self.places.len()];
         let mut heap = BinaryHeap::from([Reverse((Total(0.0), from, without))]);
@@ -122,7 +122,7 @@ impl<'a> Graph<'a> {
         if a == place { b } else { a }
     }
 
-    /// Whether a triangle lies within the tubes, or all but.
+    /// True if a triangle lies within the tubes, up to `WITHIN`.
     fn holds(&self, [a, b, c]: [&Point3; 3], step: f64) -> bool {
         let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
         let count = (longest / step).ceil().clamp(1.0, MOST) as u32;
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// A ring of this radius of vessels of radius 1, with a vessel that leaves it.
+    /// A ring of this radius of vessels with radius 1, with a vessel that leaves it.
     fn ring(radius: f64) -> Cluster {
         let at = |i: u32| {
             let angle = TAU * f64::from(i % 12) / 12.0;

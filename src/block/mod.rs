@@ -1,8 +1,8 @@
-//! Floor 4: one block, cluster or connector, from its piece of skeleton to tetrahedra (3.2.2 and 3.2.3 of the paper).
+//! Meshing of one block, cluster or connector, from its skeleton part (sections 3.2.2 and 3.2.3 of the paper).
 //!
-//! A cluster is contoured, closed by discs at its terminals and cuts, and filled with tetrahedra; the disc at a cut is an
-//! [`EndSurface`]. A connector is a tube between two end surfaces, which it takes over vertex
-//! for vertex and triangle for triangle, so that blocks are later merged by identity and never by a distance.
+//! A cluster is contoured, closed by discs at its terminals and cuts, and filled with tetrahedra. The disc at a cut is
+//! an [`EndSurface`]. A connector is a tube between two end surfaces, whose vertices and triangles it adopts. Blocks
+//! are thus merged by identity and never by distance.
 
 mod alone;
 mod buried;

@@ -1,4 +1,4 @@
-//! How blocks are made, and what a retry may change.
+//! Parameters of a block, including those varied by retries.
 
 use super::error::BlockError;
 use anastomesh_mesh::TriMesh;
@@ -6,17 +6,16 @@ use anastomesh_skeleton::resolution::{FOLLOW, KAPPA, RHO};
 use anastomesh_tet::Effort;
 use anastomesh_tet::{Interior, Layers, parts::TetOptions};
 
-/// How a cluster ends at a cut.
+/// Type of a cluster's end at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum EndStyle {
-    /// The wall is closed by a flat disc on the plane, as at a terminal: the tip is taken off the surface before it is
-    /// filled, and nothing that is meshed is thrown away.
+    /// Close the wall by a flat disc on the plane, as at a terminal. The tip is removed from the surface before
+    /// filling, so no mesh is discarded.
     #[default]
     Disc,
-    /// As `Disc`, but the disc is the one that the vessel alone gives (`SharedDisc`), so that the neighbour need
-    /// not be known.
+    /// Like `Disc`, with the disc derived from the vessel alone (`SharedDisc`), so that the neighbour is not needed.
     Shared,
-    /// It does not: the vessel goes on beyond the plane and ends round. What lies there is for the caller to take off.
+    /// Leave the end open: the vessel continues beyond the plane with a round end, which the caller must remove.
     Open,
 }
 
@@ -25,38 +24,36 @@ pub enum EndStyle {
 pub struct BlockParams {
     /// Resolution ρ: voxels across the thinnest vessel of the cluster.
     pub rho: f64,
-    /// How far edges follow the radius of vessels wider than the thinnest of the cluster: they grow with it to this power,
-    /// 0 (not at all) to 1 (in proportion).
+    /// Exponent by which edge length grows with the radius of wider vessels, from 0 (constant) to 1 (proportional).
     pub follow: f64,
-    /// Factor on the voxel; below 1 is finer. For retries.
+    /// Factor on the voxel size; below 1 is finer. Varied by retries.
     pub voxel_factor: f64,
-    /// Origin of the contouring grid in voxels, each in [−1, 1]. For retries: another shift, another triangulation.
+    /// Origin of the contouring grid in voxels, each in [−1, 1]. Retries vary it to change the triangulation.
     pub shift: [f64; 3],
-    /// Kernel width σ / r of the convolution. For retries: thinner kernels fuse less.
+    /// Kernel width σ / r of the convolution. Retries use smaller kernels, which fuse less.
     pub kappa: f64,
-    /// Which division of a connector's tube is tried first, 0 to `DIVISIONS` − 1. For retries.
+    /// First division of a connector's tube to try, 0 to `DIVISIONS` − 1. Varied by retries.
     #[serde(default)]
     pub first_division: usize,
-    /// How clusters end at cuts.
+    /// Type of a cluster's ends at cuts.
     pub ends: EndStyle,
-    /// Whether end surfaces are relaxed after flattening.
+    /// Relax end surfaces after flattening.
     pub relax_ends: bool,
-    /// Take what comes where the network's own vessels overlap: a wall with other handles than the skeleton has loops
-    /// ([`super::ClusterMesh::handles`] tells), and tips inside another vessel without a cap
-    /// ([`super::ClusterMesh::uncapped`]).
+    /// Accept defects where vessels of the network overlap. Walls may have other handles than the skeleton has loops
+    /// ([`super::ClusterMesh::handles`]). Tips inside another vessel have no cap ([`super::ClusterMesh::uncapped`]).
     pub allow_fused: bool,
-    /// How deep below its plane an end surface may go, in radii of the cut.
+    /// Maximum depth of an end surface below its plane, in radii of the cut.
     pub depth: f64,
-    /// How much longer than wide tetrahedra of tubes by template are, along the vessel.
+    /// Elongation of template tetrahedra along the vessel.
     #[serde(default = "unstretched")]
     pub stretch: f64,
-    /// How much longer than at the wall edges are on the axis of a vessel.
+    /// Edge length on the axis of a vessel relative to the wall.
     #[serde(default = "unstretched")]
     pub core: f64,
-    /// Layers along the wall; only with [`EndStyle::Shared`].
+    /// Boundary layers along the wall; only with [`EndStyle::Shared`].
     #[serde(default)]
     pub layers: Option<Layers>,
-    /// Stop at the closed surface, and do not fill it.
+    /// Create the closed surface only, without tetrahedra.
     #[serde(default)]
     pub hollow: bool,
 }
@@ -87,12 +84,12 @@ impl Default for BlockParams {
 }
 
 impl BlockParams {
-    /// Usual parameters at a resolution.
+    /// Default parameters at a resolution.
     pub fn with_rho(rho: f64) -> Self {
         Self { rho, ..Self::default() }
     }
 
-    /// Whether nothing is tried in another way than usual: blocks that can be had by template are.
+    /// True if no retry parameter is set: only such blocks may use templates.
     pub(super) fn by_template(&self) -> bool {
         let Self { rho, follow, ends, allow_fused, stretch, core, layers, hollow, .. } = *self;
         *self == Self { rho, follow, ends, allow_fused, stretch, core, layers, hollow, ..Self::default() }
@@ -128,17 +125,16 @@ impl BlockParams {
     }
 }
 
-/// Side of the lattice's cubes inside a block and its distance from the wall, in edge lengths of the wall nearby: dense
-/// and close enough for a mean radius ratio of 0.84 in vessels of three voxels across.
+/// Cell size of the inner lattice and its distance from the wall, in edge lengths of the nearby wall. Dense and close
+/// enough for a mean radius ratio of 0.84 in vessels of three voxels across.
 const CELL: f64 = 1.38;
 const CLEARANCE: f64 = 0.37;
 
-/// A block is as wide as its core is far from its wall: from one radius (in mean edge lengths) to another, cubes become longer
-/// or shorter there, all that they are to.
+/// Range of block radii, in mean edge lengths, over which `core` takes effect: none at the first, full at the second.
 const WIDE: [f64; 2] = [1.0, 3.0];
 
-/// How a block is filled whose edges are `core` times as long on the axes of its vessels as at the wall. There is no
-/// certificate: the whole mesh is checked in the end.
+/// Fill options of a block whose edges are `core` times as long on the vessel axes as at the wall. No certificate is
+/// needed, as the whole mesh is checked at the end.
 pub(super) fn filling(surface: &TriMesh, core: f64) -> TetOptions {
     let wide = ((half_width(surface) / surface.mean_edge() - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
     let interior = Interior::Local { cell: CELL * (1.0 + (core - 1.0) * wide), clearance: CLEARANCE };

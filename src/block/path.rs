@@ -1,8 +1,8 @@
-//! The axis of a connector: a polyline of sections with rotation-minimising frames.
+//! Axis of a connector: a polyline of sections with rotation-minimizing frames.
 
 use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 
-/// A vessel's axis by arc length, with a frame that does not twist.
+/// Axis of a vessel by arc length, with a frame that does not twist.
 #[derive(Clone, Debug)]
 pub struct AxisPath {
     stations: Vec<Station>,
@@ -17,18 +17,18 @@ struct Station {
     radius: f64,
 }
 
-/// A place on the axis.
+/// Position on the axis with its frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// Point of the axis.
+    /// Point on the axis.
     pub origin: Point3,
     /// Unit tangent.
     pub axis: Vec3,
-    /// First unit vector across the axis.
+    /// First unit vector normal to the axis.
     pub u: Vec3,
-    /// Second unit vector across the axis, `axis × u`.
+    /// Second unit vector normal to the axis, `axis × u`.
     pub w: Vec3,
-    /// Radius of the vessel.
+    /// Vessel radius.
     pub radius: f64,
 }
 
@@ -36,12 +36,12 @@ pub struct Place {
 pub enum PathEnd {
     /// Arc length 0.
     Start,
-    /// The whole length.
+    /// Full length.
     End,
 }
 
 impl AxisPath {
-    /// Lays frames along sections. `None` if there are fewer than two sections or they do not span any length.
+    /// Creates frames along sections. Returns `None` for fewer than two sections or zero length.
     pub fn new(sections: &[Section]) -> Option<Self> {
         let first = sections.first()?;
         let station = |s: f64, x: &Section, u: Vec3| Station { s, origin: x.origin, axis: x.axis, u, radius: x.radius };
@@ -71,7 +71,7 @@ impl AxisPath {
         std::iter::once(0.0).chain(pieces).collect()
     }
 
-    /// The arc length with so many radii before it; `radii` is what the function of that name gives.
+    /// Arc length at a length in radii; `radii` is the result of the function `radii`.
     pub fn arc_of(&self, radii: &[f64], sought: f64) -> f64 {
         let k = radii.partition_point(|&x| x <= sought).clamp(1, radii.len() - 1);
         let [a, b] = [&self.stations[k - 1], &self.stations[k]];
@@ -79,14 +79,14 @@ impl AxisPath {
         a.s + (b.s - a.s) * share(a.radius, b.radius, of_piece)
     }
 
-    /// By how much the frame that came along is turned against that of the last section, about the axis.
+    /// Angle between the transported frame and that of the last section, about the axis.
     pub fn twist(&self) -> f64 {
         let last = &self.stations[self.stations.len() - 1];
         let (u, _) = Section { origin: last.origin, axis: last.axis, radius: last.radius }.frame();
         u.dot(&last.axis.cross(&last.u)).atan2(u.dot(&last.u))
     }
 
-    /// The place at arc length `s`; straight beyond either end.
+    /// Position at arc length `s`; extrapolated straight beyond the ends.
     pub fn at(&self, s: f64) -> Place {
         let k = self.stations.partition_point(|x| x.s <= s).clamp(1, self.stations.len() - 1);
         let (a, b) = (&self.stations[k - 1], &self.stations[k]);
@@ -111,13 +111,13 @@ impl AxisPath {
 }
 
 impl Place {
-    /// The point at an angle and a distance from the axis.
+    /// Point at an angle and a distance from the axis.
     pub fn point(&self, theta: f64, distance: f64) -> Point3 {
         self.origin + (self.u * theta.cos() + self.w * theta.sin()) * distance
     }
 }
 
-/// Length in radii between two stations, the radius linear: l ln(b / a) / (b − a), by a series where they are all but equal.
+/// Length in radii between two stations for a linear radius: l ln(b / a) / (b − a), by a series if nearly equal.
 fn radii_between(from: &Station, to: &Station) -> f64 {
     let (length, ratio) = (to.s - from.s, to.radius / from.radius);
     let x = ratio - 1.0;
@@ -125,13 +125,13 @@ fn radii_between(from: &Station, to: &Station) -> f64 {
     length / from.radius * mean
 }
 
-/// Which share of the arc length between two radii lies behind with a share of the radii there are.
+/// Fraction of the arc length between two radii that corresponds to a fraction of the length in radii.
 fn share(a: f64, b: f64, of_radii: f64) -> f64 {
     let ratio = b / a;
     if (ratio - 1.0).abs() < 1e-5 { of_radii } else { (ratio.powf(of_radii) - 1.0) / (ratio - 1.0) }
 }
 
-/// Carries a frame vector to the next station by two reflections (Wang, Jüttler, Zheng, Liu 2008).
+/// Transports a frame vector to the next station by two reflections (Wang, Jüttler, Zheng, Liu 2008).
 fn transport(from: &Station, axis: Vec3, step: Vec3) -> Vec3 {
     let reflect = |x: Vec3, v: Vec3| {
         let n2 = v.norm_squared();

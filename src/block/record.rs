@@ -1,9 +1,8 @@
-//! Finished blocks as bytes, and parts of them read without the rest.
+//! Binary records of finished blocks, with access to single sections.
 //!
-//! Little-endian. A head of [`HEAD`] counts, then, each as long as the counts say: certificate and
-//! what reports say (postcard), sizes of the
-//! joints, their vertices, their faces; the caps and their faces; the wall; points (3 × f64); tetrahedra and the triangles of
-//! a hull (u16 where the points are that few, else u32).
+//! Format: little-endian. A head of [`HEAD`] counts precedes the sections, whose lengths follow from the counts.
+//! Sections: certificate and report data (postcard); sizes of the joints, their vertices, their faces; caps and their
+//! faces; wall; points (3 × f64); tetrahedra and hull triangles (u16 for small point counts, else u32).
 
 use std::borrow::Cow;
 use std::io;
@@ -16,18 +15,18 @@ use anastomesh_mesh::check::parts::Certificate;
 use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_skeleton::NodeId;
 
-/// Number of counts in front.
+/// Number of counts in the head.
 const HEAD: usize = 11;
 
 /// Bytes of a cap before its faces: node, number of faces, origin, axis, radius.
 const CAP: usize = 2 * 4 + 7 * 8;
 
-/// How much a finished block holds.
+/// Sizes of a finished block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Sizes {
-    /// Points, shared ones included.
+    /// Points, including shared ones.
     pub points: u32,
-    /// Points that other blocks name.
+    /// Points that other blocks refer to.
     pub shared: u32,
     /// Tetrahedra.
     pub tets: u32,
@@ -41,7 +40,7 @@ pub struct Sizes {
     pub caps: u32,
     /// Faces of all caps.
     pub cap_faces: u32,
-    /// Triangles of the hull of a hollow block.
+    /// Hull triangles of a hollow block.
     pub hull: u32,
     notes: u32,
 }
@@ -79,8 +78,8 @@ impl Sizes {
         self.points <= 1 << 16
     }
 
-    /// Where each section begins and ends: notes, joints' sizes, their vertices, their faces, caps, their faces, wall,
-    /// points, tetrahedra, hull.
+    /// Byte ranges of the sections: notes, joint sizes, joint vertices, joint faces, caps, cap faces, wall, points,
+    /// tetrahedra, hull.
     fn sections(&self) -> [Range<u64>; 10] {
         let number = if self.narrow() { 2 } else { 4 };
         let lengths: [(u32, u64); 10] = [
@@ -108,24 +107,24 @@ impl Sizes {
         self.sections()[9].end
     }
 
-    /// Boundary faces of the block that belong to no joint.
+    /// Number of boundary faces that belong to no joint.
     pub fn outer_faces(&self) -> u32 {
         self.wall + self.cap_faces
     }
 }
 
-/// Where the bytes of a record are.
+/// Source of a record's bytes.
 pub trait Bytes {
-    /// How many there are.
+    /// Number of bytes.
     ///
     /// # Errors
-    /// When there is no record.
+    /// The record does not exist.
     fn count(&self) -> io::Result<u64>;
 
-    /// Some of them.
+    /// Reads a range of bytes.
     ///
     /// # Errors
-    /// When they cannot be read or are not there.
+    /// The range cannot be read or does not exist.
     fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>>;
 }
 
@@ -147,10 +146,10 @@ fn damaged() -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, "the record of a block does not fit together")
 }
 
-/// A block as bytes.
+/// Encodes a block.
 ///
 /// # Errors
-/// When what reports say cannot be serialised.
+/// The report data cannot be serialized.
 pub fn encode(block: &Finished) -> io::Result<Vec<u8>> {
     let notes = postcard::to_stdvec(&(&block.certificate, &block.about)).map_err(io::Error::other)?;
     let sizes = Sizes::of(block, notes.len());
@@ -194,10 +193,10 @@ fn put(out: &mut Vec<u8>, values: &[u32]) {
     }
 }
 
-/// So much of a record is read at once: all of most blocks, and of large ones what is asked for most often.
+/// Bytes read at once: all of most blocks, and the most requested sections of large ones.
 const FIRST: u64 = 1 << 14;
 
-/// A record of which parts are read when they are asked for.
+/// Record whose sections are read on demand.
 #[derive(Clone, Debug)]
 pub struct Record<'a, B: ?Sized> {
     bytes: &'a B,
@@ -206,10 +205,10 @@ pub struct Record<'a, B: ?Sized> {
 }
 
 impl<'a, B: Bytes + ?Sized> Record<'a, B> {
-    /// Reads how much there is.
+    /// Reads the head.
     ///
     /// # Errors
-    /// When that cannot be read.
+    /// The head cannot be read.
     pub fn open(bytes: &'a B) -> io::Result<Self> {
         let first = bytes.get(0..bytes.count()?.min(FIRST))?;
         let head = words(first.get(..4 * HEAD).ok_or_else(cut_short)?);
@@ -217,7 +216,7 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
         Ok(Self { bytes, first, sizes: Sizes::from_counts(counts) })
     }
 
-    /// How much there is.
+    /// Sizes of the block.
     pub fn sizes(&self) -> Sizes {
         self.sizes
     }
@@ -233,18 +232,18 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
         }
     }
 
-    /// What is known of it, and what reports say.
+    /// Reads certificate and report data.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// The section cannot be read.
     pub fn notes(&self) -> io::Result<(Certificate, About)> {
         postcard::from_bytes(&self.section(0)?).map_err(io::Error::other)
     }
 
-    /// The joints.
+    /// Reads the joints.
     ///
     /// # Errors
-    /// When they cannot be read.
+    /// The sections cannot be read.
     pub fn joints(&self) -> io::Result<Vec<FinishedJoint>> {
         let [_, sizes, vertices, faces, ..] = self.sizes.sections();
         let bytes = self.range(sizes.start..faces.end)?;
@@ -261,10 +260,10 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
             .collect()
     }
 
-    /// The caps.
+    /// Reads the caps.
     ///
     /// # Errors
-    /// When they cannot be read.
+    /// The sections cannot be read.
     pub fn caps(&self) -> io::Result<Vec<FinishedCap>> {
         let (heads, faces) = (self.section(4)?, words(&self.section(5)?));
         let mut faces = &faces[..];
@@ -280,43 +279,43 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
             .collect()
     }
 
-    /// The wall.
+    /// Reads the wall.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// The section cannot be read.
     pub fn wall(&self) -> io::Result<Vec<u32>> {
         Ok(words(&self.section(6)?))
     }
 
-    /// The points.
+    /// Reads the points.
     ///
     /// # Errors
-    /// When they cannot be read.
+    /// The section cannot be read.
     pub fn points(&self) -> io::Result<Vec<Point3>> {
         let bytes = self.section(7)?;
         Ok(doubles(&bytes).chunks_exact(3).map(|p| Point3::new(p[0], p[1], p[2])).collect())
     }
 
-    /// The tetrahedra.
+    /// Reads the tetrahedra.
     ///
     /// # Errors
-    /// When they cannot be read or name a point that is not there.
+    /// The section cannot be read or refers to a missing point.
     pub fn tets(&self) -> io::Result<Vec<[u32; 4]>> {
         self.cells(8)
     }
 
-    /// The hull; it is empty if the block is not hollow.
+    /// Reads the hull; it is empty if the block is not hollow.
     ///
     /// # Errors
-    /// When it cannot be read or names a point that is not there.
+    /// The section cannot be read or refers to a missing point.
     pub fn hull(&self) -> io::Result<Vec<[u32; 3]>> {
         self.cells(9)
     }
 
-    /// The vertices of faces.
+    /// Vertices of faces.
     ///
     /// # Errors
-    /// When the cells that they belong to cannot be read.
+    /// The cells of the faces cannot be read.
     pub fn triangles(&self, faces: &[u32]) -> io::Result<Vec<[u32; 3]>> {
         if self.sizes.hull == 0 {
             let tets = self.tets()?;
@@ -326,7 +325,7 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
         faces.iter().map(|&face| hull.get(face as usize).copied().ok_or_else(damaged)).collect()
     }
 
-    /// Cells with so many vertices each.
+    /// Reads cells with `N` vertices each.
     fn cells<const N: usize>(&self, section: usize) -> io::Result<Vec<[u32; N]>> {
         let bytes = self.section(section)?;
         let numbers: Vec<u32> = if self.sizes.narrow() {
@@ -338,10 +337,10 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
         if all_there { Ok(numbers.as_chunks().0.to_vec()) } else { Err(damaged()) }
     }
 
-    /// All of it.
+    /// Reads the whole block.
     ///
     /// # Errors
-    /// When a part cannot be read.
+    /// A section cannot be read.
     pub fn block(&self) -> io::Result<Finished> {
         let (certificate, about) = self.notes()?;
         Ok(Finished {

@@ -1,14 +1,14 @@
-//! The regular part of a connector: rings of vertices between two rims.
+//! Regular part of a connector: rings of vertices between two rims.
 //!
-//! The ring next to a rim stands at the mid-angles of the rim's vertices and follows the rim's height and radius; from
-//! ring to ring angles even out and height and radius approach those of the vessel. So the seam triangles are as good as
-//! the rim allows, and the rim's raggedness is gone after two or three rings.
+//! The ring next to a rim has vertices at the mid-angles of the rim and follows its height and radius. From ring to
+//! ring, angles become even, and height and radius approach those of the vessel. The seam triangles are thus as good as
+//! the rim permits, and irregularities decay within two or three rings.
 
 use super::path::AxisPath;
 use anastomesh_mesh::geometry::turn;
 use std::f64::consts::TAU;
 
-/// One rim in the coordinates of the path: arc length, angle (increasing), distance from the axis.
+/// Rim in path coordinates: arc length, angle (increasing), distance from the axis.
 #[derive(Clone, Debug)]
 pub(super) struct Rim {
     pub s: Vec<f64>,
@@ -19,7 +19,7 @@ pub(super) struct Rim {
 }
 
 impl Rim {
-    /// A rim from its vertices' (arc length, angle, distance), in order round the axis.
+    /// Creates a rim from (arc length, angle, distance) of its vertices, in order around the axis.
     pub(super) fn new(vertices: &[(f64, f64, f64)]) -> Self {
         let mut theta = Vec::with_capacity(vertices.len());
         let mut at = vertices.first().map_or(0.0, |v| v.1);
@@ -39,7 +39,7 @@ impl Rim {
     /// Height above the rim's mean and distance from the axis at an angle, linear between vertices.
     pub(super) fn at(&self, theta: f64) -> (f64, f64) {
         let n = self.len();
-        // The edge whose angles enclose `theta`; on a rim that runs back there may be several, the first is taken.
+        // First edge whose angles enclose `theta`; a non-monotone rim may have several.
         for i in 0..n {
             let j = (i + 1) % n;
             let (span, here) = (turn(self.theta[j] - self.theta[i]), turn(theta - self.theta[i]));
@@ -53,7 +53,7 @@ impl Rim {
     }
 }
 
-/// A vertex of a ring: arc length, angle and distance from the axis.
+/// Ring vertex: arc length, angle and distance from the axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RingVertex {
     pub s: f64,
@@ -61,15 +61,15 @@ pub(super) struct RingVertex {
     pub distance: f64,
 }
 
-/// What is left of a rim's own height and distance at the next ring.
+/// Decay per ring of a rim's height and distance deviations.
 const DECAY_HEIGHT: f64 = 0.45;
 const DECAY_DISTANCE: f64 = 0.4;
-/// Axial over angular step of a strip of equilateral triangles.
+/// Ratio of axial to angular step for equilateral triangles.
 pub(super) const EQUILATERAL: f64 = 0.866_025_403_784_438_6;
-/// No strip is thinner than this share of an axial step, measured where the rims come closest.
+/// Minimum thickness of a strip relative to the axial step, where the rims are closest.
 const THINNEST: f64 = 0.45;
 
-/// How many strips of triangles fit between two rims; `density` > 1 asks for more. At least one.
+/// Number of triangle strips between two rims, at least 1; `density` > 1 increases it.
 pub(super) fn strip_count(path: &AxisPath, rims: [&Rim; 2], density: f64) -> usize {
     let step = axial_step(path, rims);
     let width = rims[1].level - rims[0].level;
@@ -82,13 +82,13 @@ pub(super) fn strip_count(path: &AxisPath, rims: [&Rim; 2], density: f64) -> usi
     (width / step * density).round().clamp(1.0, most.min(100_000.0)) as usize
 }
 
-/// Axial step that makes triangles equilateral, from the mean angular step of the rims.
+/// Axial step for equilateral triangles, from the mean angular step of the rims.
 fn axial_step(path: &AxisPath, rims: [&Rim; 2]) -> f64 {
     let edge = |rim: &Rim, s: f64| TAU * path.at(s).radius / rim.len() as f64;
     EQUILATERAL * 0.5 * (edge(rims[0], 0.0) + edge(rims[1], path.length()))
 }
 
-/// The rings of a connector with `strips` strips: `strips − 1` of them, from the first rim to the second.
+/// The `strips − 1` rings of a connector with `strips` strips, from the first rim to the second.
 pub(super) fn rings(path: &AxisPath, rims: [&Rim; 2], strips: usize) -> Vec<Vec<RingVertex>> {
     let count = strips.saturating_sub(1);
     let sizes: Vec<usize> = (0..count).map(|k| ring_size(rims, k, count)).collect();
@@ -105,7 +105,7 @@ pub(super) fn rings(path: &AxisPath, rims: [&Rim; 2], strips: usize) -> Vec<Vec<
         .collect()
 }
 
-/// Angular count of ring `k` of `count`: the rims' own counts next to them, linear in between.
+/// Vertex count of ring `k` of `count`: those of the rims next to them, linear in between.
 fn ring_size(rims: [&Rim; 2], k: usize, count: usize) -> usize {
     let (a, b) = (rims[0].len() as f64, rims[1].len() as f64);
     let t = if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
@@ -116,7 +116,7 @@ fn smooth_step(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Angles of successive rings, each at the mid-angles of the one before (resampled where the count changes).
+/// Angles of successive rings, each at the mid-angles of the previous one (resampled if the count changes).
 fn angles(first: &[f64], sizes: impl Iterator<Item = usize>) -> Vec<Vec<f64>> {
     let mut last = first.to_vec();
     let mut out = Vec::new();
@@ -136,7 +136,7 @@ fn angles(first: &[f64], sizes: impl Iterator<Item = usize>) -> Vec<Vec<f64>> {
     out
 }
 
-/// Angles between those of two rings of the same size, matched by the rotation that brings them closest.
+/// Interpolates the angles of two rings of equal size after the best rotational match.
 fn blend(a: &[f64], b: &[f64], weight: f64) -> Vec<f64> {
     let m = a.len();
     let distance = |o: usize| -> f64 { (0..m).map(|i| turn(b[(i + o) % m] - a[i]).powi(2)).sum() };
@@ -158,8 +158,8 @@ fn place(path: &AxisPath, rims: [&Rim; 2], size: usize, k: usize, count: usize, 
     RingVertex { s, theta, distance: radius * scale }
 }
 
-/// What the radius of staggered rings of `size` vertices has to be multiplied by so that the tube through them has the
-/// volume of the round one: 1 + h²/(16 r²) with the chord h = 2πr/size, to second order.
+/// Factor on the radius of staggered rings of `size` vertices for which the tube has the volume of the round one. It is
+/// 1 + h²/(16 r²) with the chord h = 2πr/size, to second order.
 pub(super) fn chord_factor(size: usize) -> f64 {
     let x = TAU / size.max(3) as f64;
     1.0 + x * x / 16.0

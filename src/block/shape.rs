@@ -1,29 +1,29 @@
-//! Shape measures used while blocks are built.
+//! Quality measures for building blocks.
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::radius_ratio;
 
-/// Radius ratio of a triangle, 2 r / R of in- and circumcircle, in [0, 1]; 1 for the equilateral one.
+/// Radius ratio of a triangle, 2 r / R of incircle and circumcircle, in [0, 1]; 1 if equilateral.
 pub(crate) fn triangle_ratio(p: &[Point3; 3]) -> f64 {
     let (a, b, c) = ((p[1] - p[2]).norm(), (p[2] - p[0]).norm(), (p[0] - p[1]).norm());
-    // Written without the area: 2 r / R = (b+c−a)(c+a−b)(a+b−c) / abc.
+    // Without the area: 2 r / R = (b+c−a)(c+a−b)(a+b−c) / abc.
     let abc = a * b * c;
     if abc > 0.0 { ((b + c - a) * (c + a - b) * (a + b - c) / abc).max(0.0) } else { 0.0 }
 }
 
-/// A triangle of a tube's wall counts in full where its normal is within 45° of the direction away from the axis, as the
-/// cosine of that angle says: the wall of a taper or of a bend leans by less, one that folds by more.
+/// Cosine of the angle (45°) between normal and outward direction up to which a wall triangle has full quality. Walls
+/// of tapers and bends deviate less, folds more.
 const FACING: f64 = 0.7;
 
-/// Radius ratio of a triangle of a tube's wall, less where it does not face `outward`, the direction away from the axis;
-/// negative when it faces the axis.
+/// Radius ratio of a tube's wall triangle, reduced if it does not face `outward`, the direction away from the axis.
+/// Negative if it faces the axis.
 pub(super) fn facing_ratio(p: &[Point3; 3], outward: &Vec3) -> f64 {
     let normal = (p[1] - p[0]).cross(&(p[2] - p[0]));
     let cosine = normal.dot(outward) / (normal.norm() * outward.norm()).max(f64::MIN_POSITIVE);
     triangle_ratio(p) * (cosine / FACING).min(1.0)
 }
 
-/// Radius ratio of a tetrahedron, in [−1, 1]; negative for an inverted one.
+/// Radius ratio of a tetrahedron, in [−1, 1]; negative if inverted.
 pub(crate) fn tet_ratio(p: &[Point3; 4]) -> f64 {
     radius_ratio(&p[0], &p[1], &p[2], &p[3])
 }

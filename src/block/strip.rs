@@ -1,4 +1,4 @@
-//! The strips of a connector's wall: of all strips between two loops the one with the best shapes.
+//! Strips of a connector's wall: the strip between two loops with the best triangle shapes.
 
 use super::shape::facing_ratio;
 use crate::surface::strip::{Step, cheapest};
@@ -7,18 +7,18 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 /// Cost of a strip: Σ (radius ratio)⁻³, dominated by its worst triangle.
 pub type StripCost = f64;
 
-/// A strip of this cost per triangle is taken without looking for a better start: a mean radius ratio of about 0.87.
+/// Cost per triangle below which no other start is tried: a mean radius ratio of about 0.87.
 const GOOD: StripCost = 1.5;
 
-/// Radius ratio up to which a triangle counts as degenerate: its cost would be that of a fold.
+/// Radius ratio below which a triangle counts as degenerate: its cost would be that of a fold.
 const FLATTEST: f64 = 1e-3;
 
-/// A folded or degenerate triangle costs this much: no strip of sound ones costs more.
+/// Cost of a folded or degenerate triangle, above that of any valid strip.
 const FOLD: f64 = 1e9;
 
-/// Joins two loops, both counter-clockwise about `axis`, `upper` on the side to which it points. `center` is a point on
-/// the axis between them. Triangles face away from the axis. `None` when every strip folds or a loop has fewer than
-/// three vertices.
+/// Joins two loops, both counter-clockwise about `axis`, with `upper` on the side to which it points. `center` is a
+/// point on the axis between them. Triangles face away from the axis. Returns `None` if every strip folds or a loop has
+/// fewer than three vertices.
 pub fn best_strip(
     points: &[Point3],
     lower: &[u32],
@@ -56,7 +56,7 @@ struct Strip<'a> {
 }
 
 impl Strip<'_> {
-    /// Upper vertices that the first lower vertex may be joined to: the nearest ones by angle.
+    /// Candidate partners of the first lower vertex: the nearest upper vertices by angle.
     fn starts(&self) -> Vec<usize> {
         let direction = |v: u32| {
             let d = self.points[v as usize] - self.center;

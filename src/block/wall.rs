@@ -1,4 +1,4 @@
-//! The wall of a connector once its strips are chosen: edge flips and sliding of ring vertices until shapes stop improving.
+//! Improvement of a connector's wall: edge flips and sliding of ring vertices until triangle quality converges.
 
 use super::path::AxisPath;
 use super::rings::RingVertex;
@@ -6,17 +6,17 @@ use super::shape::facing_ratio;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 
-/// Triangles of this shape are left as they are.
+/// Radius ratio above which triangles are not changed.
 const GOOD: f64 = 0.9;
 
-/// Rounds of flips and slides.
+/// Maximum rounds of flips and slides.
 const ROUNDS: usize = 3;
 
-/// What a flip or a slide must gain in the worst shape: less is rounding, by which changes could undo each other for ever.
+/// Minimum gain in the worst radius ratio. Smaller gains are rounding, and changes could alternate forever.
 const GAIN: f64 = 1e-3;
 
-/// The wall: triangles between two rims. Vertices from `first_free` on are ring vertices, whose places on the path are
-/// in `rings`.
+/// Wall triangles between two rims. Vertices from `first_free` on are ring vertices, whose path coordinates are in
+/// `rings`.
 pub(super) struct Wall<'a> {
     pub path: &'a AxisPath,
     pub points: Vec<Point3>,
@@ -25,12 +25,12 @@ pub(super) struct Wall<'a> {
     pub rings: Vec<RingVertex>,
     /// Direction from the axis to each vertex.
     outward: Vec<Vec3>,
-    /// Shape of each triangle.
+    /// Quality of each triangle.
     shapes: Vec<f64>,
 }
 
 impl<'a> Wall<'a> {
-    /// A wall of strips.
+    /// Creates a wall from strips.
     pub(super) fn new(
         path: &'a AxisPath,
         points: Vec<Point3>,
@@ -44,7 +44,7 @@ impl<'a> Wall<'a> {
         wall
     }
 
-    /// Improves the wall. The rims' edges and vertices stay.
+    /// Improves the wall. Edges and vertices of the rims are fixed.
     pub(super) fn improve(&mut self) {
         for _ in 0..ROUNDS {
             let flips = self.flip();
@@ -59,14 +59,14 @@ impl<'a> Wall<'a> {
         self.points[v as usize]
     }
 
-    /// Radius ratio, negative when the triangle faces the axis.
+    /// Radius ratio, negative if the triangle faces the axis.
     fn shape(&self, t: [u32; 3]) -> f64 {
         let p = t.map(|v| self.at(v));
         let radial: Vec3 = t.iter().map(|&v| self.outward[v as usize]).sum();
         facing_ratio(&p, &radial)
     }
 
-    /// Direction from the axis to a vertex, roughly.
+    /// Approximate direction from the axis to a vertex.
     fn radial(&self, v: u32) -> Vec3 {
         let s = if v >= self.first_free {
             self.rings[(v - self.first_free) as usize].s
@@ -82,7 +82,7 @@ impl<'a> Wall<'a> {
         (self.at(v) - self.path.at(s).origin).normalize()
     }
 
-    /// Flips edges of triangles that are not good where that makes the worse of the two triangles better.
+    /// Flips edges of poor triangles if this improves the worse of the two triangles.
     fn flip(&mut self) -> usize {
         if self.shapes.iter().all(|&s| s > GOOD) {
             return 0;
@@ -128,8 +128,8 @@ impl<'a> Wall<'a> {
         flips
     }
 
-    /// Slides ring vertices along the tube towards their neighbours' mean where that makes the worst triangle at the
-    /// vertex better.
+    /// Slides ring vertices along the tube towards the mean of their neighbours if this improves the worst adjacent
+    /// triangle.
     fn slide(&mut self) -> usize {
         if self.shapes.iter().all(|&s| s > GOOD) {
             return 0;

@@ -1,4 +1,4 @@
-//! The wall along the vessels: where on its way from one end to the other it keeps to the radius, and where it does not.
+//! Wall error along the vessels, as a function of the position between their ends.
 
 use super::tubes::Tubes;
 use super::wall::wall_points;
@@ -7,29 +7,29 @@ use anastomesh_skeleton::Skeleton;
 use rayon::prelude::*;
 use std::io;
 
-/// Parts of a vessel's length.
+/// Number of bins along a vessel.
 const BINS: usize = 25;
 
-/// A part of all vessels' lengths.
+/// Bin over a fraction of all vessels' lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bin {
-    /// Its middle, 0 at one end of the vessel and 1 at the other.
+    /// Middle of the bin, from 0 at one end of the vessel to 1 at the other.
     pub share: f64,
-    /// (d − r) / r at 5, 50 and 95 % of what lies there; none where nothing does.
+    /// Percentiles 5, 50 and 95 of (d − r) / r in the bin; `None` if it is empty.
     pub quantiles: Option<[f64; 3]>,
 }
 
-/// How far the wall is from the given radius along the vessels: branches, from fork to fork.
+/// Deviation of the wall from the given radius along branches between bifurcations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Along {
     pub bins: Vec<Bin>,
 }
 
 impl Along {
-    /// Of a mesh and the network that it is held against.
+    /// Compares a mesh with its network.
     ///
     /// # Errors
-    /// When the mesh cannot be read.
+    /// The mesh cannot be read.
     pub fn of(network: &Skeleton, mesh: &dyn MeshSource) -> io::Result<Self> {
         let tubes = Tubes::of(network);
         let shares = shares(network);
@@ -53,7 +53,7 @@ impl Along {
     }
 }
 
-/// Where on its branch either end of each edge is.
+/// Relative position of each edge's ends on its branch.
 fn shares(network: &Skeleton) -> Vec<[f64; 2]> {
     let mut shares = vec![[0.0, 1.0]; network.edges.len()];
     for branch in &network.branches(&network.adjacency()).list {

@@ -1,4 +1,4 @@
-//! The given axis held against the one that was meshed.
+//! Comparison of the given axis with the meshed axis.
 
 use super::spread::Spread;
 use super::tubes::Tubes;
@@ -6,47 +6,47 @@ use anastomesh_skeleton::{EdgeId, Skeleton};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The axis is looked at in steps of so many radii,
+/// Sampling step along the axis, in radii.
 const STEP: f64 = 1.0;
-/// and in so many of an edge at most.
+/// Maximum samples per edge.
 const MOST_STEPS: f64 = 16.0;
-/// Places further off than this, in radii, are kept, and so many of them at most.
+/// Minimum displacement, in radii, of listed places, and maximum number of listed places.
 const FAR: f64 = 0.5;
 const MOST_KEPT: usize = 10_000;
 
-/// A place of the given axis that is far from the one that was meshed.
+/// Place of the given axis that is far from the meshed axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Displaced {
-    /// The nodes of the given edge, as in the file.
+    /// Nodes of the given edge, as in the file.
     pub given: [u32; 2],
-    /// Where it is.
+    /// Position of the place.
     pub place: [f64; 3],
-    /// The nodes of the edge that was meshed nearest to it.
+    /// Nodes of the nearest meshed edge.
     pub meshed: [u32; 2],
-    /// How far the meshed axis is from there, in radii.
+    /// Distance of the meshed axis, in radii.
     pub radii: f64,
 }
 
-/// How far the meshed axis is from the given one.
+/// Displacement between the given and the meshed axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Displacements {
-    /// Over the axis, in radii of the given vessel.
+    /// Distribution over the axis, in radii of the given vessel.
     #[serde(flatten)]
     pub spread: Spread,
     /// Length of the given axis.
     pub given_length: f64,
-    /// Length of the axis that was meshed.
+    /// Length of the meshed axis.
     pub meshed_length: f64,
-    /// Places half a radius off and more, the furthest of each edge, the furthest first; ten thousand at most.
+    /// Places displaced by more than half a radius: the maximum of each edge, in descending order, at most 10 000.
     #[serde(skip)]
     pub furthest: Vec<Displaced>,
 }
 
-/// Edges that are looked at at a time.
+/// Number of edges processed at a time.
 const AT_A_TIME: usize = 1 << 14;
 
 impl Displacements {
-    /// `tubes`: those of what was meshed.
+    /// Measures the displacements; `tubes` are those of the meshed network.
     pub(super) fn of(given: &Skeleton, meshed: &Skeleton, tubes: &Tubes) -> Self {
         let edges: Vec<EdgeId> = given.edge_ids().collect();
         let (mut all, mut furthest) = (Vec::new(), Vec::new());
@@ -57,7 +57,7 @@ impl Displacements {
                 all.extend(values);
                 furthest.extend(worst.filter(|d| d.radii > FAR));
             }
-            // A stable sort: the earlier of equals comes first.
+            // Stable sort: of equal values the earlier comes first.
             furthest.sort_by(|a: &Displaced, b| b.radii.total_cmp(&a.radii));
             furthest.truncate(MOST_KEPT);
         }
@@ -70,7 +70,7 @@ impl Displacements {
     }
 }
 
-/// The displacements along one edge, and the largest of them.
+/// Displacements along one edge, and their maximum.
 fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (Vec<f32>, Option<Displaced>) {
     let tube = given.tube(edge);
     let count = (tube.length() / (STEP * tube.min_radius())).ceil().clamp(1.0, MOST_STEPS);
@@ -79,11 +79,11 @@ fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (V
     let values = (0..=count as usize).map(|k| {
         let t = k as f64 / count;
         let place = tube.point(t);
-        // At a node of several vessels one lumen is shared, as wide as the node.
+        // Vessels at a node share one lumen with the radius of the node.
         let shared =
             ends.iter().filter(|n| (n.position - place).norm() <= n.radius).map(|n| n.radius).fold(0.0, f64::max);
         let radius = tube.radius(t).max(shared);
-        // In radii of the thicker: what lies within a thicker vessel, as a spur did that was taken off, is in its lumen.
+        // Relative to the thicker vessel: a removed spur within a thicker vessel lies in its lumen.
         let off = |distance: f64, meshed: f64| distance * (radius / meshed).min(1.0);
         let Some(near) = tubes.nearest(&place, radius, off) else { return f32::INFINITY };
         let radii = off(near.distance, near.radius) / radius;

@@ -1,8 +1,7 @@
-//! Volume of the given lumen: of the union of its tubes.
+//! Volume of the given lumen, the union of its tubes.
 //!
-//! Each tube is sampled; a sample that lies in n tubes counts for 1/n of its share, so that what tubes have in common is
-//! counted once. At inner nodes a ball fills the wedge between tubes that meet at an angle, but for what of it lies beyond
-//! the end of a vessel.
+//! Each tube is sampled. A sample inside n tubes has weight 1/n, so common volume counts once. At inner nodes a ball
+//! fills the wedge between tubes at an angle, except beyond the end of a vessel.
 
 use super::tubes::Tubes;
 use anastomesh_mesh::geometry::{Aabb, Point3, Section, Vec3, point_segment};
@@ -11,19 +10,19 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::f64::consts::{PI, TAU};
 
-/// Samples over all tubes, about, and bounds of those in each.
+/// Approximate number of samples over all tubes, and its bounds per tube.
 const SAMPLES: usize = 1 << 17;
 const LEAST: usize = 8;
 const MOST: usize = 512;
 
-/// A vessel that turns by less, in radians, has no wedge worth a ball.
+/// Minimum turning angle, in radians, of a vessel that needs a ball in its wedge.
 const STRAIGHT: f64 = 0.3;
 
-/// Steps of the additive recurrence that fills a cube evenly (Roberts 2018): powers of the inverse of the root of
-/// x⁴ = x + 1.
+/// Steps of an additive recurrence that fills a cube evenly (Roberts 2018): powers of the inverse of the root of x⁴ = x
+/// + 1.
 const EVEN: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_700_477_901_970_3];
 
-/// Volume of the union of the tubes and of the balls at the inner nodes of a network.
+/// Volume of the union of a network's tubes and of the balls at its inner nodes.
 pub(super) fn volume(network: &Skeleton, tubes: &Tubes) -> f64 {
     let adjacency = network.adjacency();
     let mut lumen = Lumen { network, tubes, adjacency: &adjacency, ends: FxHashMap::default() };
@@ -42,12 +41,12 @@ struct Lumen<'a> {
     network: &'a Skeleton,
     tubes: &'a Tubes,
     adjacency: &'a Adjacency,
-    /// The ends of vessels (a point and the direction outwards) that are within reach of a node's ball.
+    /// Vessel ends (point and outward direction) within reach of a node's ball.
     ends: FxHashMap<NodeId, Vec<(Point3, Vec3)>>,
 }
 
 impl Lumen<'_> {
-    /// Ends the balls of the nodes before a tip at its plane.
+    /// Clips the balls of nodes near a tip at its plane.
     fn end(&mut self, tip: NodeId) {
         let place = self.network.node(tip).position;
         let (mut node, mut before, mut within) = (tip, None, Vec::new());
@@ -55,7 +54,7 @@ impl Lumen<'_> {
         while let Some(&edge) = self.adjacency.edges(node).iter().find(|&&e| Some(e) != before) {
             (node, before) = (self.network.edge(edge).other(node), Some(edge));
             let from = place - self.network.node(node).position;
-            // The direction over the last radius: edges much shorter than that have none worth the name.
+            // Direction over the last radius, as much shorter edges have no reliable direction.
             if outwards.is_none() || from.norm() <= self.network.node(tip).radius {
                 outwards = from.try_normalize(0.0);
             }
@@ -70,12 +69,12 @@ impl Lumen<'_> {
         }
     }
 
-    /// Whether a point that a node's ball holds lies beyond the end of its vessel.
+    /// True if a point in a node's ball lies beyond the end of its vessel.
     fn beyond(&self, node: NodeId, point: &Point3) -> bool {
         self.ends.get(&node).is_some_and(|ends| ends.iter().any(|(place, way)| (point - place).dot(way) > 0.0))
     }
 
-    /// What a tube adds: its volume, less what is counted for others.
+    /// Volume contribution of a tube, weighted by overlap.
     fn of_tube(&self, edge: EdgeId, count: usize) -> f64 {
         let tube = self.network.tube(edge);
         let (length, [ra, rb]) = (tube.length(), [tube.ra, tube.rb]);
@@ -83,7 +82,7 @@ impl Lumen<'_> {
         let (u, w) = Section { origin: tube.a, axis, radius: ra }.frame();
         let (mut sum, mut seen) = (0.0, Vec::new());
         for [x, y, z] in evenly(edge.index(), count) {
-            // Evenly along the axis and over each section; a sample stands for its section's area.
+            // Uniform along the axis and over each section; a sample has the weight of its section's area.
             let radius = tube.radius(x);
             let (r, angle) = (radius * y.sqrt(), TAU * z);
             let point = tube.point(x) + u * (r * angle.cos()) + w * (r * angle.sin());
@@ -106,8 +105,8 @@ impl Lumen<'_> {
         4.0 / 3.0 * PI * radius.powi(3) * sum / count as f64
     }
 
-    /// Radius of the ball at an inner node: of the thickest vessel that needs a ball. None where
-    /// a vessel goes on all but straight.
+    /// Radius of the ball at an inner node: that of the thickest vessel that needs a ball. Zero if a vessel is almost
+    /// straight.
     fn ball(&self, node: NodeId) -> f64 {
         let edges = self.adjacency.edges(node);
         if let &[e, f] = edges
@@ -118,14 +117,14 @@ impl Lumen<'_> {
         self.network.shared_radius(self.adjacency, node)
     }
 
-    /// How many tubes and balls hold a point, 1 at least.
+    /// Number of tubes and balls that contain a point, at least 1.
     fn holders(&self, point: &Point3, reach: f64, seen: &mut Vec<NodeId>) -> f64 {
         let mut count = 0_u32;
         seen.clear();
         self.tubes.tree.query(&Aabb::of_points([point]).grown(1e-3 * reach), |id| {
             let tube = &self.tubes.list[id as usize];
             let (t, distance) = point_segment(point, &tube.a, &tube.b);
-            // Between its end planes: beyond them there are balls.
+            // Only between the end planes; balls cover the rest.
             let axis = tube.b - tube.a;
             let between = (point - tube.a).dot(&axis) >= 0.0 && (point - tube.b).dot(&axis) <= 0.0;
             count += u32::from(between && distance <= tube.radius(t));
@@ -141,8 +140,8 @@ impl Lumen<'_> {
     }
 }
 
-/// Points that fill the unit cube evenly: for each place the next so many, as the same ones would be off by the same
-/// everywhere.
+/// Points that fill the unit cube evenly. Each place uses the next `count` points, because repeated points would repeat
+/// the error.
 fn evenly(place: usize, count: usize) -> impl Iterator<Item = [f64; 3]> {
     let first = place * count + 1;
     (first..first + count).map(|i| EVEN.map(|step| (0.5 + step * i as f64).fract()))

@@ -1,22 +1,22 @@
-//! Median, 99th percentile and worst of what was looked at.
+//! Median, 99th percentile and maximum of samples.
 
 use serde::Serialize;
 
-/// How a quantity is spread over what was looked at.
+/// Distribution of a quantity over samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// How many places were looked at.
+    /// Number of samples.
     pub count: usize,
     /// The median.
     pub median: f64,
     /// The 99th percentile.
     pub p99: f64,
-    /// The largest.
+    /// Maximum.
     pub worst: f64,
 }
 
 impl Spread {
-    /// Of any number of values: there may be tens of millions.
+    /// Distribution of any number of values, possibly tens of millions.
     pub(super) fn of(mut values: Vec<f32>) -> Self {
         values.sort_unstable_by(f32::total_cmp);
         let Some(last) = values.len().checked_sub(1) else { return Self::default() };

@@ -1,32 +1,32 @@
-//! The tubes of a network, to be found by place.
+//! Tubes of a network with spatial search.
 
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, point_segment};
 use anastomesh_skeleton::{EdgeId, Skeleton};
 
-/// The tubes of a network, to be found by place.
+/// Tubes of a network with spatial search.
 pub struct Tubes {
     pub list: Vec<Tube>,
     pub tree: Bvh,
-    /// A length in which the network is large: no place of it is further from another one.
+    /// Upper bound for the distance between two points of the network.
     extent: f64,
     /// The median radius.
     pub typical: f64,
 }
 
-/// What is nearest to a place.
+/// Nearest tube to a place.
 #[derive(Clone, Copy)]
 pub struct Nearest {
     pub edge: EdgeId,
-    /// Where along it, in [0, 1].
+    /// Parameter along the edge, in [0, 1].
     pub t: f64,
-    /// Distance of the axis.
+    /// Distance from the axis.
     pub distance: f64,
-    /// Radius there.
+    /// Radius at this point.
     pub radius: f64,
 }
 
 impl Tubes {
-    /// Of all edges.
+    /// Collects the tubes of all edges.
     pub fn of(skeleton: &Skeleton) -> Self {
         let list: Vec<Tube> = skeleton.edge_ids().map(|e| skeleton.tube(e)).collect();
         let boxes: Vec<Aabb> = list.iter().map(|t| Aabb::of_points([&t.a, &t.b]).grown(t.max_radius())).collect();
@@ -37,13 +37,13 @@ impl Tubes {
         Self { tree: Bvh::of(boxes), list, extent: (all.max - all.min).norm(), typical }
     }
 
-    /// The tube whose wall is nearest, counted as negative inside.
+    /// Returns the tube with the nearest wall; distances inside are negative.
     pub fn nearest_wall(&self, place: &Point3) -> Option<Nearest> {
         self.nearest(place, 0.1 * self.typical, |distance, radius| distance - radius)
     }
 
-    /// The tube of which `measure` (distance of the axis, radius) is least among those near a place; `reach` is how far
-    /// off it is looked for first.
+    /// Returns the tube with the least `measure` (of axis distance and radius) near a place. `reach` is the initial
+    /// search radius.
     pub fn nearest(&self, place: &Point3, reach: f64, measure: impl Fn(f64, f64) -> f64) -> Option<Nearest> {
         let mut reach = reach.max(1e-3 * self.typical);
         loop {
@@ -57,7 +57,7 @@ impl Tubes {
                     best = Some((value, found));
                 }
             });
-            // What lies outside of the box is further from every tube's wall than its half.
+            // Tubes outside the box have walls further away than its half extent.
             if let Some((value, nearest)) = best
                 && value <= reach
             {

@@ -1,4 +1,4 @@
-//! The wall held against the given tubes.
+//! Comparison of the mesh wall with the given tubes.
 
 use super::spread::Spread;
 use super::tubes::Tubes;
@@ -8,18 +8,18 @@ use anastomesh_mesh::source::MeshSource;
 use rayon::prelude::*;
 use std::io;
 
-/// Parts that are read, at most, and points of the wall that are looked at, about.
+/// Maximum number of mesh parts read, and approximate number of wall points sampled.
 const PARTS: u32 = 500;
 const POINTS: usize = 50_000;
 
-/// |d − r| / r at points of the wall, d the distance from the axis of the tube whose wall is nearest.
+/// Distribution of |d − r| / r at wall points, where d is the distance from the axis of the tube with the nearest wall.
 pub(super) fn spread(tubes: &Tubes, mesh: &dyn MeshSource) -> io::Result<Spread> {
     Ok(Spread::of(wall_points(mesh)?.par_iter().filter_map(|p| error(tubes, p)).collect()))
 }
 
-/// Some points of the wall.
+/// Sample points of the wall.
 pub(super) fn wall_points(mesh: &dyn MeshSource) -> io::Result<Vec<Point3>> {
-    // The first of every so many parts, and of them each so many points: evenly over the mesh.
+    // Strides over parts and points sample the mesh evenly.
     let stride = mesh.parts().div_ceil(PARTS).max(1);
     let looked_at = mesh.counts().points / stride as usize;
     let every = looked_at.div_ceil(POINTS).max(1);

@@ -1,30 +1,30 @@
-//! Pressures in a network of conductors, by eliminating its nodes: the star of a node becomes a mesh between its neighbours.
+//! Pressures in a conductor network by node elimination: the star of a node becomes a mesh between its neighbours.
 //!
-//! Nothing is ever subtracted, so that every pressure is right to some units in the last place, however far conductances lie
-//! apart: those of vessels differ by more than what a sum of them in doubles can tell. A tree is eliminated from its tips and
-//! fills nothing in; loops fill in what their cuts are wide. A bed of capillaries has cuts of thousands: where many nodes are
-//! left that have many neighbours each, these are solved for by iteration (`iterate`).
+//! No subtractions occur, so every pressure is accurate to a few ulps for any range of conductances. (Those of vessels
+//! exceed the dynamic range of sums in doubles.) A tree is eliminated from its tips without fill-in; loops cause
+//! fill-in according to their cut width. A capillary bed has cuts of thousands, so a dense remainder is solved
+//! iteratively (`iterate`).
 
 use super::iterate::Linked;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// More nodes than these are not eliminated when each has more neighbours than that.
+/// Limits of elimination: it stops with more remaining nodes and more neighbours per node than these.
 const NODES: usize = 2000;
 const NEIGHBOURS: usize = 12;
 
-/// Nodes, what conducts between them and to the ground, and what flows in.
+/// Nodes with conductances between them and to ground, and inflows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Conductors {
-    /// The neighbours of each node, ascending, each with the conductance to it.
+    /// Neighbours of each node, ascending, with conductances.
     around: Vec<Vec<(u32, f64)>>,
-    /// Conductance from each node to the ground, whose pressure is 0.
+    /// Conductance from each node to ground, at pressure 0.
     ground: Vec<f64>,
-    /// What flows into each node from outside; not below 0.
+    /// External inflow of each node; not negative.
     inflow: Vec<f64>,
 }
 
-/// A node that is gone, and what it was joined to.
+/// Eliminated node and its former star.
 struct Gone {
     node: u32,
     total: f64,
@@ -36,7 +36,7 @@ impl Conductors {
         Self { around: vec![Vec::new(); nodes], ground: vec![0.0; nodes], inflow: vec![0.0; nodes] }
     }
 
-    /// Joins two nodes; beside a conductor that is there already.
+    /// Joins two nodes, in parallel to an existing conductor.
     pub(super) fn join(&mut self, [a, b]: [u32; 2], conductance: f64) {
         if a != b {
             add(&mut self.around[a as usize], b, conductance);
@@ -52,16 +52,16 @@ impl Conductors {
         self.inflow[node as usize] += flow;
     }
 
-    /// The pressure of each node; 0 where nothing leads to the ground, and nothing may flow in there.
+    /// Pressure of each node; 0 in components without ground, which must not have inflow.
     pub(super) fn pressures(mut self) -> Vec<f64> {
-        // Those with few neighbours first, of equals the first.
+        // Nodes with few neighbours first, then in order of index.
         let entry = |node: usize, around: &[(u32, f64)]| Reverse((around.len() as u32, node as u32));
         let mut next: BinaryHeap<_> = self.around.iter().enumerate().map(|(node, list)| entry(node, list)).collect();
         let mut is_gone = vec![false; self.around.len()];
         let mut gone = Vec::with_capacity(self.around.len());
         let mut core = Vec::new();
         while let Some(Reverse((degree, node))) = next.pop() {
-            // The heap also holds what nodes were before.
+            // The heap also contains outdated entries.
             if is_gone[node as usize] || self.around[node as usize].len() != degree as usize {
                 continue;
             }
@@ -88,7 +88,7 @@ impl Conductors {
         pressure
     }
 
-    /// The nodes that are left, numbered anew; ascending.
+    /// Remaining nodes, renumbered in ascending order.
     fn linked(&mut self, core: &[u32]) -> Linked {
         let number = |node: u32| core.partition_point(|&other| other < node) as u32;
         let mut linked = Linked::default();
@@ -123,7 +123,7 @@ fn add(list: &mut Vec<(u32, f64)>, node: u32, conductance: f64) {
     }
 }
 
-/// Two ascending lists as one, without a node that is gone.
+/// Merges two ascending lists, without an eliminated node.
 fn merged(own: &[(u32, f64)], gone: u32, more: impl Iterator<Item = (u32, f64)>) -> Vec<(u32, f64)> {
     let mut more = more.peekable();
     let mut all = Vec::with_capacity(own.len() + more.size_hint().1.unwrap_or(0));
@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(pressures(3, &[(0, 1, 1.0), (1, 2, 1.0)], &[], &[]), [0.0; 3]);
     }
 
-    /// A cube of so many nodes along each side, of conductances that differ a thousandfold; out at one corner.
+    /// Cube with `side` nodes along each edge and conductances over three orders of magnitude; ground at one corner.
     fn cube(side: u32) -> Vec<(u32, u32, f64)> {
         let at = |x: u32, y: u32, z: u32| x + side * (y + side * z);
         let mut joined = Vec::new();
@@ -216,7 +216,7 @@ mod tests {
     proptest! {
         #[test]
         fn as_by_a_dense_solution(joined in prop::collection::vec((0_u32..12, 0_u32..12, 0.1..10.0), 1..40)) {
-            // A ring joins all of it.
+            // A ring connects everything.
             let mut joined = joined;
             joined.extend((0..12).map(|i| (i, (i + 1) % 12, 1.0)));
             let found = pressures(12, &joined, &[(3, 0.7), (8, 2.0)], &[(0, 1.0), (5, 0.25)]);

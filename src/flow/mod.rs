@@ -1,4 +1,4 @@
-//! Floor 3: flow through a network in one dimension: each vessel a cone with Poiseuille's resistance, each node a balance.
+//! One-dimensional network flow: vessels are cones with Poiseuille resistance, and nodes conserve the flow.
 
 mod conductors;
 mod iterate;

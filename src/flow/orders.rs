@@ -1,23 +1,23 @@
-//! Strahler orders of vessels, and orders that go by their diameters as well.
+//! Strahler orders and diameter-defined orders of vessels.
 
 use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 
-/// The orders of all vessels, from 1.
+/// Orders of all vessels, from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Orders {
-    /// Strahler's, by edge: a vessel that ends at an outlet has 1; one that feeds two of the same order or more, and none of a
-    /// higher one, has one more than these. What a vessel feeds is told by the pressures.
+    /// Strahler order by edge. Vessels that end at outlets have 1. A vessel that feeds two or more of the highest order
+    /// below it has one more. Pressures define the direction.
     pub strahler: Vec<u32>,
-    /// Diameter-defined ones (Jiang, Kassab and Fung 1994), by edge: from Strahler's, each vessel moved to the order whose
-    /// diameters it has, until none moves. Outlets where a network was cut off are not all of order 1 then.
+    /// Diameter-defined orders (Jiang, Kassab and Fung 1994) by edge. Starting from Strahler orders, vessels move to
+    /// the order that matches their diameter, until convergence. Truncated outlets may then exceed order 1.
     pub by_diameter: Vec<u32>,
 }
 
-/// Rounds after which vessels that still move stay where they are.
+/// Maximum number of rounds.
 const ROUNDS: usize = 100;
 
 impl Orders {
-    /// Of the vessels of a network with these pressures at its nodes.
+    /// Orders of a network's vessels with these node pressures.
     pub fn of(skeleton: &Skeleton, pressure: &[f64]) -> Self {
         let strahler = strahler(skeleton, pressure);
         let branches = skeleton.branches(&skeleton.adjacency()).list;
@@ -45,7 +45,7 @@ impl Orders {
     }
 }
 
-/// Edges from the lowest pressures up, each after those that it feeds.
+/// Strahler orders, by edges in ascending order of pressure, each after those that it feeds.
 fn strahler(skeleton: &Skeleton, pressure: &[f64]) -> Vec<u32> {
     let adjacency = skeleton.adjacency();
     let ends = |e: EdgeId| {
@@ -71,8 +71,8 @@ fn strahler(skeleton: &Skeleton, pressure: &[f64]) -> Vec<u32> {
     orders
 }
 
-/// The radii between each order and the next: midway between what is usual for either, a standard deviation off their means.
-/// Orders that have lost all vessels are passed over.
+/// Radius limits between consecutive orders: midway between their means plus or minus a standard deviation. Empty
+/// orders are skipped.
 fn bounds(orders: &[u32], radii: &[f64]) -> Vec<f64> {
     let last = orders.iter().copied().max().unwrap_or(0);
     let mut usual: Vec<[f64; 2]> = Vec::new();
@@ -122,7 +122,7 @@ mod tests {
         for (edge, order) in tree.edges.iter_mut().zip(&strahler) {
             edge.radii = [levels[6 - *order as usize]; 2];
         }
-        // One of the tips was cut off early.
+        // One of the tips was truncated early.
         let tip = strahler.iter().rposition(|&order| order == 1).unwrap();
         tree.edges[tip].radii = [3.0; 2];
         let found = orders(&tree);

@@ -1,24 +1,24 @@
-//! Poiseuille's flow: given at the inlets, let out against no pressure.
+//! Poiseuille flow with given inflow and zero pressure at the outlets.
 
 use super::conductors::Conductors;
 use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// The flow through a network.
+/// Flow through a network.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NetworkFlow {
     /// Pressure of each node.
     pub pressure: Vec<f64>,
-    /// Volume per time in at each inlet, out at each outlet. Nothing goes into a component that has no outlet.
+    /// Volume flow rate into each inlet and out of each outlet. Components without an outlet have no flow.
     pub of_terminal: BTreeMap<NodeId, f64>,
 }
 
-/// Lengths below this share of the radius count as so much: a conductor of no length has no finite conductance.
+/// Minimum edge length relative to the radius: a zero length would give infinite conductance.
 const SHORTEST: f64 = 1e-9;
 
-/// Solves for the pressures of a network. `inlets`: terminals with the volume per time that they let in; all other terminals
-/// are outlets, at pressure 0.
+/// Solves for the node pressures. `inlets` holds terminals with their volume inflow rate; all other terminals are
+/// outlets at pressure 0.
 pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64) -> NetworkFlow {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);
@@ -57,7 +57,7 @@ pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64
     NetworkFlow { pressure, of_terminal }
 }
 
-/// Flow per pressure through a straight cone: 3 π a³ b³ / (8 μ L (a² + ab + b²)).
+/// Conductance of a straight cone: 3 π a³ b³ / (8 μ L (a² + ab + b²)).
 fn conductance(skeleton: &Skeleton, edge: EdgeId, viscosity: f64) -> f64 {
     let [a, b] = skeleton.edge(edge).radii;
     let length = skeleton.length(edge).max(SHORTEST * a.min(b));
@@ -81,7 +81,7 @@ mod tests {
         assert!((flow.pressure[0] / expected - 1.0).abs() < 1e-14, "{flow:?}");
         assert_eq!(flow.of_terminal[&NodeId(0)], 3.0);
         assert!((flow.of_terminal[&NodeId(2)] - 3.0).abs() < 1e-14);
-        // One cone is as good as two halves of it.
+        // A cone is equivalent to its two halves.
         tube.edges = vec![tube.edges[0]];
         tube.edges[0].radii = [2.0, 1.0];
         tube.nodes.pop();

@@ -1,4 +1,4 @@
-//! What a bed of capillaries is.
+//! Parameters of a capillary bed.
 
 use serde::Serialize;
 
@@ -9,10 +9,10 @@ use super::random::{Random, Stream};
 
 /// Nodes of the net per end of either tree.
 const PER_TERMINAL: f64 = 12.0;
-/// Spread of the radii of capillaries, as a share of their mean; none is off by more than three times as much.
+/// Standard deviation of capillary radii, relative to their mean; deviations are limited to three times this value.
 const RADIUS_SPREAD: f64 = 0.14;
 
-/// The bed between two trees. Lengths are in µm.
+/// Capillary bed between two trees. Lengths are in µm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BedParams {
     /// Mean radius.
@@ -22,34 +22,34 @@ pub struct BedParams {
 }
 
 impl Default for BedParams {
-    /// Radii as in the cortex of mice, whose capillaries are 2 to 5 µm wide (Sargent et al., 'Endothelial structure contributes to
-    /// heterogeneity in brain capillary diameter', Vasc. Biol. 5 (2023)). The length is an assumption: it is not taken from
-    /// measurements.
+    /// Radii are those of mouse cortex, with capillaries 2 to 5 µm wide. (Sargent et al., 'Endothelial structure
+    /// contributes to heterogeneity in brain capillary diameter', Vasc. Biol. 5 (2023)). The length is an assumption
+    /// without measurements.
     fn default() -> Self {
         Self { radius: 1.75, length: 60.0 }
     }
 }
 
 impl BedParams {
-    /// Longest extent of an ellipsoid with a bed for so many ends of either tree.
+    /// Longest extent of an ellipsoid whose bed serves this number of ends of either tree.
     pub fn usual_size(&self, terminals: u32) -> f64 {
         let volume = f64::from(terminals) * 2.0 * PER_TERMINAL * self.length.powi(3) / DENSITY;
         let unit = std::f64::consts::FRAC_PI_6 * SEMI_AXES[0] * SEMI_AXES[1] * SEMI_AXES[2];
         (volume / unit).cbrt()
     }
 
-    /// How thick capillaries are at most.
+    /// Maximum capillary radius.
     pub(super) fn thick(&self) -> f64 {
         self.radius * (1.0 + 3.0 * RADIUS_SPREAD)
     }
 
-    /// A radius about the mean; `which` of them.
+    /// Random radius around the mean; `which` is its index.
     pub(super) fn any_radius(&self, random: Random, stream: Stream, which: u64) -> f64 {
         self.radius * (1.0 + RADIUS_SPREAD * random.bell(stream, which))
     }
 
     /// # Errors
-    /// When vessels would be too thick for their length.
+    /// The vessels would be too thick for their length.
     pub(super) fn check(&self) -> Result<(), GenerateError> {
         let fits = self.radius > 0.0 && self.length.is_finite() && self.length >= 8.0 * self.thick();
         if fits { Ok(()) } else { Err(GenerateError::BadBed { radius: self.radius, length: self.length }) }

@@ -1,32 +1,32 @@
 //! A second tree that shares the terminals of the first, as veins share the capillaries with arteries.
 //!
-//! The paper leaves this to future work; its data hold such a network. The second tree has a copy of every node but the
-//! terminals, grown beside the first from its own root: each copy lies off the first vessel, across the plane in which
-//! the vessels of the node fork, so that the two trees run in layers. At the terminals, which they share, the two fold
-//! back on each other; refinement opens the folds and separates the trees.
+//! The paper leaves this to future work, but its data contain such a network. The second tree copies every node except
+//! the terminals, next to the first tree and from its own root. Copies are offset normal to the plane of the
+//! bifurcation, so the trees run in layers. They form folds at the shared terminals. Refinement opens the folds and
+//! separates the trees.
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
 
-/// Distance of the second tree's axes from the first's, in sums of their radii.
+/// Distance between the axes of both trees, in sums of their radii.
 const BESIDE: f64 = 1.3;
-/// How much the plane of a fork counts against the side on which the second tree runs before the fork.
+/// Weight of a bifurcation's plane relative to the side of the second tree before the bifurcation.
 const FORK: f64 = 2.0;
 
-/// A network of two trees.
+/// Network of two trees.
 #[derive(Clone, Debug)]
 pub struct Dual {
-    /// Both trees. The nodes and edges of the first come first, as they were.
+    /// Both trees; the nodes and edges of the first come first, unchanged.
     pub skeleton: Skeleton,
-    /// 0 for nodes of the first tree, 1 for those of the second, 2 for the terminals that they share.
+    /// Tree of each node: 0 for the first, 1 for the second, 2 for shared terminals.
     pub tree: Vec<u32>,
-    /// The root of the second tree in each component that has one.
+    /// Root of the second tree in each component that has one.
     pub roots: Vec<NodeId>,
 }
 
-/// Grows the second tree. Copies get the number (`original`) of their node plus one more than the largest there is.
+/// Grows the second tree. The `original` of a copy is that of its node plus one more than the maximum.
 ///
-/// A network with loops is legal: every vessel gets a companion. The root of a component is its thickest terminal.
+/// Networks with loops are allowed: every vessel gets a companion. The root of a component is its thickest terminal.
 ///
 /// ```
 /// use anastomesh::testing::{GenerateParams, Organ, dual, generate};
@@ -66,7 +66,7 @@ pub fn dual(skeleton: &Skeleton) -> Dual {
     }
     for edge in &skeleton.edges {
         let nodes = edge.nodes.map(|n| copy[n.index()]);
-        // A vessel between two terminals has no node of its own to copy: its companion would be itself.
+        // A vessel between two terminals has no inner node to copy: its companion would be itself.
         if nodes != edge.nodes {
             out.edges.push(Edge { nodes, radii: edge.radii });
         }
@@ -80,7 +80,7 @@ fn radius_at(skeleton: &Skeleton, edge: EdgeId, node: NodeId) -> f64 {
     edge.radii[edge.end(node)]
 }
 
-/// For each node the unit direction in which its copy lies: carried along the vessels from the seeds outwards.
+/// Unit direction from each node to its copy, propagated along the vessels from the seeds.
 fn sides(skeleton: &Skeleton, adjacency: &Adjacency, seeds: &[NodeId]) -> Vec<Vec3> {
     let mut sides = vec![Vec3::zeros(); skeleton.nodes.len()];
     let mut seen = vec![false; skeleton.nodes.len()];
@@ -107,7 +107,7 @@ fn sides(skeleton: &Skeleton, adjacency: &Adjacency, seeds: &[NodeId]) -> Vec<Ve
     sides
 }
 
-/// The side on which the copy of a node lies that is reached along `way`, `before` being the side until there.
+/// Direction to the copy of a node reached along `way`; `before` is the previous direction.
 fn side_of(skeleton: &Skeleton, adjacency: &Adjacency, node: NodeId, way: &Vec3, before: &Vec3) -> Vec3 {
     let way = way.try_normalize(0.0).unwrap_or_else(Vec3::x);
     let carried = (before - way * way.dot(before)).try_normalize(1e-6).unwrap_or_else(|| any_across(&way));
@@ -149,7 +149,7 @@ mod tests {
         let terminals = before.terminals().len() - 1;
         assert_eq!(dual.skeleton.edges.len(), 2 * s.edges.len());
         assert_eq!(dual.skeleton.nodes.len(), 2 * s.nodes.len() - terminals);
-        // Only the two roots are left open; each shared terminal but one closes a loop.
+        // Only the two roots remain open; each shared terminal but one closes a loop.
         assert_eq!(after.terminals(), [NodeId(0), dual.roots[0]]);
         let components = dual.skeleton.components(&after).list;
         assert_eq!((components.len(), components[0].loops()), (1, terminals - 1));

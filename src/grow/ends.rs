@@ -1,7 +1,7 @@
-//! Ends of arteries and veins, joined to the bed of capillaries between them.
+//! Connections between the ends of arteries and veins and the capillary bed.
 //!
-//! Where a capillary has gone from a node of the bed, a vessel from an end may take its place; else it leads to the middle of
-//! a capillary. So vessels meet by threes there, too.
+//! A vessel from an end may replace a capillary that was removed from a node of the bed. Otherwise it leads to the
+//! middle of a capillary. Either way three vessels meet.
 
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -12,13 +12,13 @@ use super::tubes::{Tubes, meet};
 use anastomesh_mesh::geometry::{Aabb, Point3, Tube, Vec3};
 use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
 
-/// How long vessels may be that join an end of a tree to the bed, in lengths of an edge.
+/// Maximum length of a joining vessel, in edge lengths.
 const REACH: f64 = 1.8;
-/// Cosine of the least angle between vessels that are joined.
+/// Cosine of the minimum angle between joined vessels.
 const SIDE_BY_SIDE: f64 = 0.6;
 
-/// Joins ends of the trees to the bed (whose nodes are those from `first` on): to nodes that have lost a vessel, else to the
-/// middles of vessels; which ends.
+/// Joins tree ends to the bed (nodes from `first` on) and returns the joined ends. Nodes that lost a vessel are
+/// preferred to the middles of vessels.
 pub(super) fn join(
     network: &mut Skeleton,
     ends: &[NodeId],
@@ -27,7 +27,7 @@ pub(super) fn join(
     random: Random,
 ) -> Vec<NodeId> {
     let adjacency = network.adjacency();
-    // The two inlets stay what they are.
+    // The two inlets remain unchanged.
     let leads_on = |end: &NodeId| network.edge(adjacency.edges(*end)[0]).nodes[0] != *end;
     let ends: Vec<NodeId> = ends.iter().copied().filter(leads_on).collect();
     let around = Surroundings {
@@ -59,7 +59,7 @@ pub(super) fn join(
     done
 }
 
-/// Puts a node into a vessel.
+/// Inserts a node into a vessel.
 fn split(network: &mut Skeleton, edge: EdgeId, place: Point3) -> NodeId {
     let middle = NodeId(network.nodes.len() as u32);
     let whole = *network.edge(edge);
@@ -69,7 +69,7 @@ fn split(network: &mut Skeleton, edge: EdgeId, place: Point3) -> NodeId {
     middle
 }
 
-/// Where an end of a tree can be joined to the bed.
+/// Position at which a tree's end can be joined to the bed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 enum At {
     Node(NodeId),
@@ -82,7 +82,7 @@ struct Target {
     place: Point3,
 }
 
-/// The trees and the bed, as an end finds them that is to be joined.
+/// Trees and bed, as search context for joining an end.
 struct Surroundings<'a> {
     network: &'a Skeleton,
     adjacency: Adjacency,
@@ -92,7 +92,7 @@ struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// Where an end can be joined: nodes before middles, nearer ones first.
+    /// Possible targets of an end: nodes before middles, nearer ones first.
     fn targets(&self, end: NodeId) -> Vec<Target> {
         let from = self.network.node(end).position;
         let reach = REACH * self.bed.length;
@@ -125,7 +125,7 @@ impl Surroundings<'_> {
         }
     }
 
-    /// Whether a vessel from an end has room, and none beside it where it begins and ends.
+    /// True if a vessel from an end is clear of others and of its neighbours at both ends.
     fn fits(&self, end: NodeId, target: &Target) -> bool {
         let from = self.network.node(end).position;
         let way = (target.place - from).normalize();
@@ -146,7 +146,7 @@ impl Surroundings<'_> {
             && !self.tubes.meets(&vessel, &[from, target.place], but)
     }
 
-    /// The ways that vessels leave a node.
+    /// Directions in which vessels leave a node.
     fn ways(&self, node: NodeId) -> Vec<Vec3> {
         let here = self.network.node(node).position;
         let others = self.adjacency.edges(node).iter().map(|&e| self.network.edge(e).other(node));
@@ -154,7 +154,7 @@ impl Surroundings<'_> {
     }
 }
 
-/// Vessels that join ends to the bed, found by where they begin: none is longer than the side of a cell.
+/// Joining vessels, hashed by their start. No vessel is longer than the side of a cell.
 struct Joined {
     side: f64,
     cells: FxHashMap<[i64; 3], Vec<Tube>>,
@@ -169,7 +169,7 @@ impl Joined {
         [0, 1, 2].map(|axis| (tube.a[axis] / self.side).floor() as i64)
     }
 
-    /// Whether a vessel is close to none of them.
+    /// True if a vessel is clear of all joining vessels.
     fn clear(&self, vessel: &Tube) -> bool {
         let cell = self.cell(vessel);
         let near = (0..125_i64)

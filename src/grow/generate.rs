@@ -1,4 +1,4 @@
-//! The walk from parameters to a grown tree.
+//! Growth of a tree from its parameters.
 
 use super::organ::Shape;
 use super::params::{
@@ -10,7 +10,7 @@ use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
 
 const TERMINAL_SPREAD: f64 = 0.014;
 
-/// Radius of the root, in longest extents of the organ, above which it would be most of it.
+/// Maximum root radius, in longest extents of the organ. A thicker root would fill most of it.
 const THICKEST: f64 = 0.15;
 
 impl GenerateParams {
@@ -19,10 +19,10 @@ impl GenerateParams {
         self.size.unwrap_or_else(|| self.organ.usual_size(self.terminals, self.terminal_radius))
     }
 
-    /// Whether such a network can be grown.
+    /// Checks that the network can be grown.
     ///
     /// # Errors
-    /// Says what cannot be.
+    /// The first invalid parameter.
     pub fn check(&self) -> Result<(), GenerateError> {
         if !(2..=MOST_TERMINALS).contains(&self.terminals) {
             return Err(GenerateError::BadCount { terminals: self.terminals });
@@ -50,8 +50,8 @@ impl GenerateParams {
     }
 }
 
-/// Grows a network: a tree of `2n` nodes and `2n − 1` straight vessels, the inlet being node 0. Lengths in µm; each edge
-/// has one radius, a node that of the vessel that leads to it. The same for a seed, whatever the number of threads.
+/// Grows a network: a tree of `2n` nodes and `2n − 1` straight vessels with the inlet as node 0. Lengths in µm; each
+/// edge has one radius, a node that of its incoming vessel. The number of threads has no influence.
 ///
 /// ```
 /// use anastomesh::testing::{GenerateParams, Organ, generate};
@@ -63,7 +63,7 @@ impl GenerateParams {
 /// ```
 ///
 /// # Errors
-/// When the parameters make no sense.
+/// The parameters are invalid.
 pub fn generate(params: &GenerateParams) -> Result<Skeleton, GenerateError> {
     params.check()?;
     let random = Random::new(params.seed);
@@ -76,7 +76,7 @@ pub fn generate(params: &GenerateParams) -> Result<Skeleton, GenerateError> {
     Ok(skeleton(&tree, &radii))
 }
 
-/// Radius of the vessel to each node, from the terminals up; the inlet's is that of its vessel.
+/// Radius of the vessel to each node, from the terminals upwards; the inlet has the radius of its vessel.
 fn murray(tree: &tree::Tree, params: &GenerateParams, random: Random) -> Vec<f64> {
     let p = params.exponent;
     let mut powers = vec![0.0; tree.sizes.len()];

@@ -1,8 +1,8 @@
-//! Arteries and veins, and the looped bed of capillaries that joins them.
+//! Arteries and veins, connected by a looped capillary bed.
 //!
-//! Two trees are grown into one ellipsoid, from inlets on opposite sides; where they are in each other's way the thinner
-//! vessel goes, with all behind it. Capillaries are a net through the whole of it (`net`), a little out of shape; those too
-//! close to the trees go, the ends of the trees are joined to what is left (`ends`), and capillaries that lead nowhere go, too.
+//! Two trees grow in one ellipsoid, from inlets on opposite sides. At collisions the thinner vessel is removed with its
+//! subtree. Capillaries form a jittered net in the whole ellipsoid (`net`). Those close to the trees are removed, and
+//! the ends of the trees are joined to the others (`ends`). Dead ends of the net are removed, too.
 
 use rayon::prelude::*;
 
@@ -17,9 +17,9 @@ use super::tubes::{APART, Tubes, meet};
 use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
 use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
 
-/// Nodes of the net are this far from their places at most, along each axis, in lengths of an edge.
+/// Maximum jitter of net nodes along each axis, in edge lengths.
 const JITTER: f64 = 0.12;
-/// No capillary is closer to an end of a tree than this, in lengths of an edge: those about it then have room for another one.
+/// Minimum distance of capillaries from a tree's end, in edge lengths: it leaves space for a joining vessel.
 const ROOM: f64 = 0.4;
 
 /// Arteries, veins and capillaries.
@@ -27,18 +27,18 @@ const ROOM: f64 = 0.4;
 pub struct Looped {
     /// All vessels.
     pub skeleton: Skeleton,
-    /// 0 for nodes of arteries, 1 for those of veins, 2 for those of capillaries.
+    /// Vessel type of each node: 0 for arteries, 1 for veins, 2 for capillaries.
     pub kind: Vec<u32>,
-    /// Ends of the two trees that are joined to the bed.
+    /// Number of tree ends joined to the bed.
     pub joined: usize,
-    /// Ends that are open, as no capillary has room beside them: outlets.
+    /// Number of open tree ends without space for a joining vessel: outlets.
     pub open: usize,
 }
 
-/// Grows arteries, veins and the bed between them. `params` say what either tree is.
+/// Grows arteries, veins and the bed between them. `params` describes each tree.
 ///
 /// # Errors
-/// When the parameters make no sense.
+/// The parameters are invalid.
 pub fn looped(params: &GenerateParams, bed: &BedParams) -> Result<Looped, GenerateError> {
     bed.check()?;
     if params.organ != Organ::Ellipsoid {
@@ -71,7 +71,7 @@ pub fn looped(params: &GenerateParams, bed: &BedParams) -> Result<Looped, Genera
     Ok(Looped { skeleton: compact(&network, &kept), kind, joined: joined.len(), open: open.saturating_sub(2) })
 }
 
-/// Both trees in one network, without what is in the way of something thicker; and where the veins begin.
+/// Combines both trees without colliding thinner vessels. Also returns the index of the first vein node.
 fn apart(arteries: Skeleton, veins: Skeleton) -> (Skeleton, usize) {
     let (nodes, edges) = (arteries.nodes.len() as u32, arteries.edges.len());
     let mut both = arteries;
@@ -86,7 +86,7 @@ fn apart(arteries: Skeleton, veins: Skeleton) -> (Skeleton, usize) {
             goes[both.edges[thinner as usize].nodes[1].index()] = true;
         }
     });
-    // Vessels lead from nodes to later ones.
+    // Edges lead from nodes to later ones.
     for edge in &both.edges {
         goes[edge.nodes[1].index()] |= goes[edge.nodes[0].index()];
     }
@@ -95,7 +95,7 @@ fn apart(arteries: Skeleton, veins: Skeleton) -> (Skeleton, usize) {
     (compact(&both, &kept), of_veins)
 }
 
-/// Adds the net, but for what is too close to the trees, and what is in the way where their ends are to be joined to it.
+/// Adds the net except for capillaries that are too close to the trees or to their ends.
 fn add_bed(network: &mut Skeleton, ends: &[NodeId], bed: &BedParams, size: f64, random: Random) {
     let half = Vec3::from(SEMI_AXES) * (0.5 * size);
     let net = Net::new(bed.length, &half);
@@ -133,8 +133,8 @@ fn add_bed(network: &mut Skeleton, ends: &[NodeId], bed: &BedParams, size: f64, 
     }));
 }
 
-/// The nodes that remain: the trees (before `first`), and of what hangs together with the first inlet those from which two
-/// ways lead on.
+/// Marks the remaining nodes: the trees (before `first`), and net nodes of the first inlet's component that are no dead
+/// ends.
 fn live(network: &Skeleton, first: usize) -> Vec<bool> {
     let adjacency = network.adjacency();
     let mut valence: Vec<usize> = network.node_ids().map(|n| adjacency.valence(n)).collect();
@@ -165,7 +165,7 @@ fn live(network: &Skeleton, first: usize) -> Vec<bool> {
     reached
 }
 
-/// The network without the nodes that go; nodes are numbered anew, and have the radius of their thickest vessel.
+/// Returns the network of the kept nodes, renumbered. Each node has the radius of its thickest vessel.
 fn compact(network: &Skeleton, kept: &[bool]) -> Skeleton {
     let mut number = vec![u32::MAX; kept.len()];
     let mut out = Skeleton::default();
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(components.len(), 1);
         let capillaries = made.kind.iter().filter(|kind| **kind == 2).count();
         assert!(capillaries > 1500 && components[0].loops() > capillaries / 3, "{capillaries}");
-        // Capillaries end nowhere; nearly all ends of the trees are joined.
+        // Capillaries have no open ends; nearly all tree ends are joined.
         let terminals = adjacency.terminals();
         assert!(terminals.iter().all(|n| made.kind[n.index()] < 2) && terminals.len() <= made.open + 2);
         assert!(made.joined > 20 * made.open, "{} joined, {} open", made.joined, made.open);

@@ -1,13 +1,11 @@
-//! Floor 3: networks that are made, not measured. Grown ones: an organ filled with terminals, and a tree of vessels that
-//! reaches them all.
+//! Synthetic networks, grown as a vessel tree that reaches all terminals of an organ.
 //!
-//! Terminals fill the organ evenly (`organ`). The tree is grown from the inlet by splitting the set of terminals again and
-//! again (`tree`); how many go to either side is such that each Strahler order has as many vessels as in a rat's kidney
-//! (`split`). Radii follow from those of the terminals by Murray's law. Then every fork is moved to where its three vessels
-//! have the least volume, as far as they stay long enough to be cut, and nodes move out of thick vessels (`relax`). That
-//! takes about n log n steps and memory proportional to n.
+//! Terminals fill the organ evenly (`organ`). The tree grows from the inlet by repeated splitting of the set of
+//! terminals (`tree`). The split ratios reproduce the vessel counts per Strahler order of a rat kidney (`split`). Radii
+//! follow from those of the terminals by Murray's law. Bifurcations then move to minimum volume, subject to minimum
+//! vessel lengths, and nodes move out of thick vessels (`relax`). Time is O(n log n), memory O(n).
 //!
-//! The published morphometry, and what a network has of it, is in `morphometry`.
+//! Published and measured morphometry are in `morphometry`.
 
 mod bed;
 mod dual;

@@ -1,11 +1,11 @@
-//! Number, radius and length of the vessels of each Strahler order, as measured and as published.
+//! Number, radius and length of the vessels per Strahler order: measured and published values.
 //!
-//! A vessel is a chain of edges of one order. Terminals have order 0; where two vessels of one order meet, that before has
-//! the next order.
+//! A vessel is a chain of edges of one order. Terminals have order 0. A parent of two vessels of equal order has the
+//! next order.
 
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// Mean and standard deviation.
+/// Published mean and standard deviation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Published {
     /// Number of vessels.
@@ -36,24 +36,24 @@ pub const RAT_KIDNEY: [Published; 11] = [
     published([1.0, 0.0], [216.10, 4.74], [185.0, 0.0]),
 ];
 
-/// The vessels of one order.
+/// Figures of the vessels of one order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct OrderFigures {
     /// Number of vessels: chains of edges of this order.
     pub count: usize,
     /// Number of edges.
     pub edges: usize,
-    /// Mean radius of the vessels, each weighted alike; that of a vessel is the mean along it.
+    /// Mean radius of the vessels, with equal weights; the radius of a vessel is the mean along it.
     pub radius: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the radius.
     pub radius_deviation: f64,
     /// Mean length of the vessels.
     pub length: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the length.
     pub length_deviation: f64,
 }
 
-/// The vessels of a tree, by order.
+/// Morphometry of a tree by Strahler order.
 ///
 /// ```
 /// use anastomesh::testing::{GenerateParams, Morphometry, Organ, generate};
@@ -69,17 +69,17 @@ pub struct Morphometry {
     pub orders: Vec<OrderFigures>,
 }
 
-/// One vessel while it is followed.
+/// Partially traversed vessel.
 #[derive(Clone, Copy)]
 struct Vessel {
     order: usize,
     length: f64,
-    /// Integral of the radius along it.
+    /// Integral of the radius along the vessel.
     area: f64,
 }
 
 impl Morphometry {
-    /// Of a tree whose edges lead away from its inlet, node 0, to nodes of higher numbers, as `generate` makes it.
+    /// Morphometry of a tree made by `generate`: edges lead from the inlet (node 0) to nodes of higher index.
     pub fn of(tree: &Skeleton) -> Self {
         let orders = strahler(tree);
         let count = orders.iter().max().map_or(0, |most| most + 1);
@@ -90,7 +90,7 @@ impl Morphometry {
             let [from, to] = edge.nodes.map(NodeId::index);
             let order = orders[to];
             edges[order] += 1;
-            // Only one of the vessels after a fork has the order of the one before.
+            // At most one vessel after a bifurcation has the order of the parent.
             let goes_on = from != 0 && orders[from] == order;
             let vessel = if goes_on { vessel_of_node[from] } else { vessels.len() as u32 };
             if !goes_on {
@@ -112,10 +112,10 @@ impl Morphometry {
     }
 }
 
-/// The order of the vessel to each node.
+/// Order of the vessel to each node.
 fn strahler(tree: &Skeleton) -> Vec<usize> {
     let mut orders = vec![0; tree.nodes.len()];
-    // Highest order among the branches of each node, and how many have it.
+    // Highest order among the branches of each node, and its number of occurrences.
     let mut best = vec![(0, 0_u32); tree.nodes.len()];
     for edge in tree.edges.iter().rev() {
         let [from, to] = edge.nodes.map(NodeId::index);

@@ -1,10 +1,10 @@
-//! A net in space whose every node has three straight edges of one length, in one plane and at 120 degrees: the net of the
-//! gyroid (K4, srs). Its shortest loops have ten edges. Capillaries, too, meet by threes, make loops and fill space evenly
+//! Net of the gyroid (K4, srs). Every node has three straight edges of equal length, in one plane at 120 degrees, and
+//! the shortest loops have ten edges. Capillaries are similar: they meet in threes, form loops and fill space evenly
 //! (Blinder et al., 'The cortical angiome', Nat. Neurosci. 16 (2013)).
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// Nodes of one cell of the net, in its edge length.
+/// Nodes of one cell, in cell edges.
 const CELL: [[f64; 3]; 8] = [
     [0.125, 0.125, 0.125],
     [0.375, 0.875, 0.625],
@@ -16,24 +16,24 @@ const CELL: [[f64; 3]; 8] = [
     [0.125, 0.875, 0.375],
 ];
 
-/// Length of an edge in edges of a cell: √2 / 4.
+/// Edge length in cell edges: √2 / 4.
 const EDGE: f64 = 0.25 * std::f64::consts::SQRT_2;
 
-/// Nodes per volume, in cubes of an edge's length.
+/// Nodes per cubed edge length.
 pub const DENSITY: f64 = 8.0 * EDGE * EDGE * EDGE;
 
-/// The net in a box about the origin.
+/// Net in a box around the origin.
 #[derive(Debug)]
 pub struct Net {
     cell: f64,
-    /// Cells from the origin to either side, along each axis.
+    /// Number of cells from the origin to either side, along each axis.
     reach: [i64; 3],
-    /// Of each node of a cell: the three that it is joined to, and in which cells beside its own.
+    /// Neighbours of each node of a cell: node index and cell offset.
     joined: [[(usize, [i64; 3]); 3]; 8],
 }
 
 impl Net {
-    /// With edges of this length, in a box of these half extents.
+    /// Creates a net with this edge length in a box with these half extents.
     pub fn new(edge: f64, half: &Vec3) -> Self {
         let cell = edge / EDGE;
         let reach = [0, 1, 2].map(|axis| (half[axis] / cell).ceil() as i64);
@@ -44,7 +44,7 @@ impl Net {
         2 * self.reach[axis] as u64
     }
 
-    /// How many places for nodes there are.
+    /// Number of nodes in the box.
     pub fn len(&self) -> u64 {
         8 * self.extent(0) * self.extent(1) * self.extent(2)
     }
@@ -57,13 +57,13 @@ impl Net {
         ([x as i64 - a, y as i64 - b, z as i64 - c], node)
     }
 
-    /// Where a node is.
+    /// Position of a node.
     pub fn point(&self, place: u64) -> Point3 {
         let (cell, node) = self.cell_of(place);
         Point3::from([0, 1, 2].map(|axis| (cell[axis] as f64 + CELL[node][axis]) * self.cell))
     }
 
-    /// The three places that a node is joined to; none beyond the box.
+    /// The three neighbours of a node; `None` outside the box.
     pub fn joined(&self, place: u64) -> [Option<u64>; 3] {
         let (cell, node) = self.cell_of(place);
         self.joined[node].map(|(other, step)| {
@@ -79,7 +79,7 @@ fn neighbours(node: usize) -> [(usize, [i64; 3]); 3] {
     let mut found = [(0, [0; 3]); 3];
     let mut count = 0;
     for (other, place) in CELL.iter().enumerate() {
-        // The nearest copy of it.
+        // Offset of the nearest copy.
         let step = [0, 1, 2].map(|axis| -(place[axis] - CELL[node][axis]).round() as i64);
         let way = [0, 1, 2].map(|axis| place[axis] + step[axis] as f64 - CELL[node][axis]);
         let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();

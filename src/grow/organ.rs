@@ -1,33 +1,33 @@
-//! Shapes that are filled with terminals, and where in them the terminals are.
+//! Organ shapes and the distribution of terminals in them.
 
 use super::params::{GenerateError, Organ, TERMINAL_RADIUS, TERMINALS};
 use super::random::{Random, Stream};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// Half the extent of the organ along x, y, z; z is the longest. That of the published rat kidney
-/// (14.2 × 11.3 × 21.8 mm).
+/// Half extents of the organ along x, y, z, relative to the longest (z). Those of the published rat kidney (14.2 × 11.3
+/// × 21.8 mm).
 pub(super) const SEMI_AXES: [f64; 3] = [0.651, 0.518, 1.0];
 
-/// Longest extent of a rat's kidney with so many terminals of such a radius, µm.
+/// Longest extent of a rat kidney with `TERMINALS` terminals of radius `TERMINAL_RADIUS`, in µm.
 const KIDNEY: f64 = 21_800.0;
 
-/// The cortex lies outside this fraction of the way from the centre to the surface: it is 44 % of the ellipsoid.
+/// Inner boundary of the cortex, as a fraction of the radius: the cortex is 44 % of the ellipsoid.
 const CORTEX: f64 = 0.80;
 
-/// Terminals per volume in the medulla, that in the cortex being 1.
+/// Terminal density in the medulla relative to the cortex.
 const MEDULLA_DENSITY: f64 = 0.02;
 
-/// Radius of the hilum, in units of the half axes, around the point where the vessel enters.
+/// Radius of the hilum around the inlet, in half axes.
 const HILUM: f64 = 0.45;
 
-/// Share of the kidney's ellipsoid that a cortex of the same number of terminals would fill: an ellipsoid filled
-/// uniformly is smaller.
+/// Fraction of the kidney's ellipsoid that a cortex with the same number of terminals would fill. A uniformly filled
+/// ellipsoid is smaller.
 const FILLED: f64 = 0.46;
 
-/// How far a candidate may be from its place in the sequence, in distances between neighbours.
+/// Maximum displacement of a candidate from the sequence, in distances between neighbours.
 const JITTER: f64 = 0.2;
 
-/// A shape at its size.
+/// Scaled shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape {
     organ: Organ,
@@ -36,8 +36,8 @@ pub struct Shape {
 }
 
 impl Organ {
-    /// Longest extent of an organ with so many terminals, in µm: volume goes with the number of terminals, and all
-    /// lengths with their radius.
+    /// Longest extent of an organ with this number of terminals, in µm. Volume is proportional to the number of
+    /// terminals, and lengths are proportional to their radius.
     pub fn usual_size(self, terminals: u32, terminal_radius: f64) -> f64 {
         let kidney = KIDNEY * (f64::from(terminals) / TERMINALS).cbrt() * terminal_radius / TERMINAL_RADIUS;
         match self {
@@ -52,12 +52,12 @@ impl Shape {
         Self { organ, axes: Vec3::from(SEMI_AXES) * (0.5 * size), random }
     }
 
-    /// Where the vessel enters: the middle of the side that looks along x.
+    /// Inlet position: the middle of the side that faces along x.
     pub fn inlet(&self) -> Point3 {
         Point3::new(self.axes.x, 0.0, 0.0)
     }
 
-    /// Terminals per volume at a point, 1 at most.
+    /// Relative terminal density at a point, at most 1.
     fn density(&self, p: &Point3) -> f64 {
         let u = p.coords.component_div(&self.axes);
         let m = u.norm();
@@ -71,14 +71,14 @@ impl Shape {
         }
     }
 
-    /// Whether a point is where terminals are.
+    /// True if a point lies in a zone with terminals.
     #[cfg(test)]
     pub fn holds(&self, p: &Point3) -> bool {
         self.density(p) > 0.0
     }
 
-    /// So many points that fill the organ evenly: those of a sequence of low discrepancy (Roberts 2018: multiples of the
-    /// powers of the root of x⁴ = x + 1) that fall into it, a little off their places.
+    /// Returns `count` points that fill the organ evenly. They are the jittered points inside it of a low-discrepancy
+    /// sequence (Roberts 2018: multiples of the powers of the root of x⁴ = x + 1).
     pub fn terminals(&self, count: u32) -> Result<Vec<Point3>, GenerateError> {
         const ROOT: f64 = 1.220_744_084_605_759_5;
         let step = [1.0 / ROOT, 1.0 / (ROOT * ROOT), 1.0 / (ROOT * ROOT * ROOT)];
@@ -104,7 +104,7 @@ impl Shape {
         Err(GenerateError::NoRoom { placed: found.len() as u32, terminals: count })
     }
 
-    /// Share of the cube around the organ that terminals fill; a thin zone counts by its density.
+    /// Fraction of the enclosing cube filled by terminals; sparse zones count by their density.
     fn filled(&self) -> f64 {
         let ellipsoid = std::f64::consts::FRAC_PI_6 * SEMI_AXES[0] * SEMI_AXES[1] * SEMI_AXES[2];
         match self.organ {

@@ -1,40 +1,39 @@
-//! What to grow, and why it may not be possible.
+//! Parameters of a grown network and their errors.
 
-/// Terminals of a rat's kidney (afferent arterioles; Nordsletten et al. 2006).
+/// Number of terminals of a rat kidney (afferent arterioles; Nordsletten et al. 2006).
 pub(super) const TERMINALS: f64 = 29_566.0;
 
-/// Their radius, µm, and its standard deviation as a share of it.
+/// Radius of these terminals, in µm.
 pub(super) const TERMINAL_RADIUS: f64 = 10.08;
 
-/// Radii of terminals, µm.
+/// Range of terminal radii, in µm.
 pub(super) const LEAST_RADIUS: f64 = 1e-6;
 
 pub(super) const LARGEST_RADIUS: f64 = 1e6;
 
-/// More terminals have more nodes than ids.
+/// Maximum number of terminals: more would exceed the node ids.
 pub(super) const MOST_TERMINALS: u32 = 1_000_000_000;
 
-/// Longest organ, µm: beyond, lengths and radii are nothing that can be meshed.
+/// Maximum organ size, in µm. Larger lengths and radii cannot be meshed.
 pub(super) const LARGEST_SIZE: f64 = 1e9;
 
-/// Terminals closer than this, in their radii, leave no room for vessels between them.
+/// Minimum distance of terminals, in their radii, that leaves space for vessels.
 pub(super) const CLOSEST: f64 = 6.0;
 
-/// What is filled with vessels.
+/// Shape to fill with vessels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Organ {
-    /// An ellipsoid whose cortex is dense with terminals and whose medulla holds few; the vessel enters at a hilum that
-    /// holds none.
+    /// Ellipsoid with a dense cortex and a sparse medulla; the vessel enters at a hilum without terminals.
     #[default]
     Kidney,
-    /// An ellipsoid filled evenly.
+    /// Ellipsoid with uniform density.
     Ellipsoid,
 }
 
 impl Organ {
-    /// Exponent of Murray's law unless another is asked for: 3 is Murray's own; with 3.2 all orders of a kidney of
-    /// 29,566 terminals come closest to the published radii (from the thinnest to the thickest it is 3.36 there).
+    /// Default exponent of Murray's law: 3 is Murray's own. With 3.2 all orders of a kidney of 29,566 terminals come
+    /// closest to the published radii (thinnest to thickest alone: 3.36).
     pub fn usual_exponent(self) -> f64 {
         match self {
             Self::Kidney => 3.2,
@@ -43,12 +42,12 @@ impl Organ {
     }
 }
 
-/// What to grow. Lengths are in µm.
+/// Parameters of a grown network. Lengths are in µm.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct GenerateParams {
-    /// What is filled.
+    /// Organ to fill.
     pub organ: Organ,
-    /// Number of terminals: outlets of the tree, which has one inlet besides.
+    /// Number of terminals: the outlets of the tree, in addition to one inlet.
     pub terminals: u32,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -56,33 +55,33 @@ pub struct GenerateParams {
     pub terminal_radius: f64,
     /// Exponent p of Murray's law r₀ᵖ = r₁ᵖ + r₂ᵖ.
     pub exponent: f64,
-    /// Longest extent of the organ; by default that at which terminals are as dense as in a rat's kidney.
+    /// Longest extent of the organ; the default gives the terminal density of a rat kidney.
     pub size: Option<f64>,
 }
 
-/// Why no network can be grown.
+/// Reasons why no network can be grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GenerateError {
-    /// Too few terminals for a tree, or more than there are ids.
+    /// The number of terminals is too small for a tree, or exceeds the node ids.
     #[error("{terminals} terminals: a tree has 2 to {MOST_TERMINALS}")]
     BadCount {
-        /// Number asked for.
+        /// Requested number.
         terminals: u32,
     },
-    /// The radius of the terminals is not one.
+    /// The terminal radius is out of range.
     #[error("terminal radius {radius}: from {LEAST_RADIUS:e} to {LARGEST_RADIUS:e} µm is possible")]
     BadRadius {
-        /// What was asked for, µm.
+        /// Requested radius, µm.
         radius: f64,
     },
-    /// The exponent leads to vessels that are no tree of vessels.
+    /// The exponent is out of range.
     #[error("exponent {exponent}: Murray's law takes 3; from 1.5 to 10 is possible")]
     BadExponent {
-        /// What was asked for.
+        /// Requested exponent.
         exponent: f64,
     },
-    /// The size is not one.
+    /// The size is out of range.
     #[error("size {size} µm: it must be above 0 and at most {LARGEST_SIZE:e} µm")]
     BadSize {
         /// Longest extent, µm.
@@ -93,12 +92,12 @@ pub enum GenerateError {
         "a root of radius {root:.0} µm does not fit into {size:.0} µm: take a larger exponent or size, or thinner terminals"
     )]
     TooThick {
-        /// Radius that Murray's law gives it, µm.
+        /// Root radius by Murray's law, µm.
         root: f64,
         /// Longest extent, µm.
         size: f64,
     },
-    /// Terminals would be closer than vessels between them allow.
+    /// The terminals would be too close for vessels between them.
     #[error(
         "{terminals} terminals do not fit into {size:.0} µm: they would be closer to each other than {CLOSEST} radii; a \
          size of {least:.0} µm holds them"
@@ -106,12 +105,12 @@ pub enum GenerateError {
     TooDense {
         /// Longest extent, µm.
         size: f64,
-        /// Least size that holds them, µm.
+        /// Minimum size that holds them, µm.
         least: f64,
         /// Number of terminals.
         terminals: u32,
     },
-    /// Capillaries that are too thick for their length.
+    /// The capillaries are too thick for their length.
     #[error(
         "capillaries of radius {radius} and length {length} µm: the radius must be above 0, and the length at least twelve \
          times as large"
@@ -122,7 +121,7 @@ pub enum GenerateError {
         /// Mean length, µm.
         length: f64,
     },
-    /// A bed in a kidney.
+    /// A capillary bed was requested in a kidney.
     #[error("capillaries fill a piece of tissue evenly: give --organ ellipsoid")]
     BedOfKidney,
     /// The organ could not be filled.
@@ -130,13 +129,13 @@ pub enum GenerateError {
     NoRoom {
         /// Terminals placed.
         placed: u32,
-        /// Number asked for.
+        /// Requested number.
         terminals: u32,
     },
 }
 
 impl GenerateParams {
-    /// So many terminals in an organ, all else as usual.
+    /// Default parameters for this number of terminals in an organ.
     pub fn new(organ: Organ, terminals: u32) -> Self {
         Self {
             organ,

@@ -1,4 +1,4 @@
-//! Numbers that look random and depend on a seed, a stream and an index alone: the same for any number of threads.
+//! Pseudo-random numbers that depend only on seed, stream and index, for any number of threads.
 
 /// Mixes 64 bits so that each bit of the result depends on all of them (`SplitMix64`; Steele, Lea, Flood 2014).
 fn mix(mut x: u64) -> u64 {
@@ -7,26 +7,26 @@ fn mix(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// What a number is for: each use has a stream of its own.
+/// Purpose of a number; each purpose has its own stream.
 #[derive(Clone, Copy, Debug)]
 pub enum Stream {
-    /// Where the sequence of candidate points starts.
+    /// Start of the sequence of candidate points.
     Start,
-    /// How far a candidate is from its place in the sequence.
+    /// Displacement of a candidate from the sequence.
     Jitter,
-    /// Whether a candidate of a thin zone becomes a terminal.
+    /// Acceptance of a candidate in a sparse zone.
     Zone,
-    /// How a set of terminals is shared out.
+    /// Division of a set of terminals.
     Split,
     /// Radius of a terminal.
     Radius,
-    /// Where the nodes of a bed of capillaries are, and how thick its vessels.
+    /// Node positions and radii of a capillary bed.
     Bed,
-    /// How thick a vessel is that joins a tree to the bed.
+    /// Radius of a vessel that joins a tree to the bed.
     Joint,
 }
 
-/// Source of the numbers of one seed.
+/// Source of random numbers for one seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Random {
     seed: u64,
@@ -37,13 +37,13 @@ impl Random {
         Self { seed: mix(seed.wrapping_add(0x9e37_79b9_7f4a_7c15)) }
     }
 
-    /// In [0, 1), for the `index`-th use of a stream.
+    /// Uniform number in [0, 1) for the `index`-th use of a stream.
     pub fn unit(self, stream: Stream, index: u64) -> f64 {
         let key = index.wrapping_mul(8).wrapping_add(stream as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         (mix(self.seed ^ mix(key)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Nearly normal, mean 0, standard deviation 1, never beyond ±3: a sum of three in [−1, 1).
+    /// Nearly normal number with mean 0 and standard deviation 1, within ±3: a sum of three uniform ones in [−1, 1).
     pub fn bell(self, stream: Stream, index: u64) -> f64 {
         (0..3).map(|i| 2.0 * self.unit(stream, 3 * index + i) - 1.0).sum()
     }

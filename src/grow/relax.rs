@@ -1,5 +1,5 @@
-//! Forks moved to where their three vessels have the least volume, as far as these stay long enough to be meshed; and
-//! nodes moved out of thick vessels that they are no part of.
+//! Relaxation of a grown tree. Bifurcations move to the minimum volume of their three vessels, subject to minimum
+//! vessel lengths. Nodes move out of thick vessels of other branches.
 
 use super::tree::{Tree, weiszfeld};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, Vec3, point_tube};
@@ -8,25 +8,25 @@ use rayon::prelude::*;
 /// Rounds of sweeps and clearing.
 const ROUNDS: usize = 6;
 
-/// Sweeps over all forks per round, and over those that are squeezed in the end.
+/// Sweeps over all bifurcations per round, and final sweeps over squeezed ones.
 const SWEEPS: usize = 10;
 
-/// Cosine and sine of the angle up to which vessels that leave a fork side by side are opened.
+/// Cosine and sine of the angle below which vessels at a bifurcation are spread.
 const NARROW: (f64, f64) = (0.6, 0.8);
 
-/// Vessels this many times as thick as the thinnest are kept clear of nodes.
+/// Minimum radius of vessels that are kept clear of nodes, relative to the thinnest.
 const THICK: f64 = 1.2;
 
-/// Vessels this many times as thick as the thinnest are not moved after the last clearing.
+/// Minimum radius of vessels that stay fixed after the last clearing, relative to the thinnest.
 const THIN: f64 = 4.0;
 
-/// Distance of a node from the wall of such a vessel, in radii of the node and of the vessel.
+/// Clear distance of a node from the wall of a thick vessel, in radii of the node and of the vessel.
 const CLEAR: [f64; 2] = [4.0, 0.3];
 
-/// Least distance of terminals, in their radii.
+/// Minimum distance of terminals, in their radii.
 const APART: f64 = 8.0;
 
-/// Moves forks (and terminals that lie in a thick vessel) of a tree whose vessels have the given radii, by node.
+/// Relaxes a tree whose vessels have the given radii, by node. Moves bifurcations, and terminals inside thick vessels.
 pub fn relax(tree: &mut Tree, radii: &[f64]) {
     let parity = levels(tree);
     for _ in 0..ROUNDS {
@@ -36,7 +36,7 @@ pub fn relax(tree: &mut Tree, radii: &[f64]) {
         clear(tree, radii);
         part_terminals(tree, radii);
     }
-    // What was moved last may be close to its neighbours; thick vessels stay where they were cleared.
+    // Nodes moved last may be close to their neighbours; cleared thick vessels stay fixed.
     let thin = THIN * radii.iter().copied().fold(f64::INFINITY, f64::min);
     for _ in 0..SWEEPS {
         sweep(tree, &parity, |tree, fork| {
@@ -49,7 +49,7 @@ pub fn relax(tree: &mut Tree, radii: &[f64]) {
     }
 }
 
-/// Whether each node is an odd number of vessels away from the inlet.
+/// True for nodes at an odd number of vessels from the inlet.
 fn levels(tree: &Tree) -> Vec<bool> {
     let mut odd = vec![false; tree.parents.len()];
     for i in 1..odd.len() {
@@ -58,7 +58,7 @@ fn levels(tree: &Tree) -> Vec<bool> {
     odd
 }
 
-/// Moves the forks of one parity, then the others; none of their neighbours moves meanwhile.
+/// Moves bifurcations of one parity, then of the other, so that no neighbours move at the same time.
 fn sweep(tree: &mut Tree, parity: &[bool], place: impl Fn(&Tree, usize) -> Point3 + Sync) {
     for odd in [false, true] {
         let moved = (0..tree.positions.len())
@@ -69,7 +69,7 @@ fn sweep(tree: &mut Tree, parity: &[bool], place: impl Fn(&Tree, usize) -> Point
     }
 }
 
-/// Whether a vessel at a fork has less than half the length that it needs.
+/// True if a vessel at a bifurcation has less than half its minimum length.
 fn squeezed(tree: &Tree, radii: &[f64], fork: usize) -> bool {
     let [a, b] = tree.branches(fork);
     [fork, a, b].into_iter().any(|node| {
@@ -78,7 +78,7 @@ fn squeezed(tree: &Tree, radii: &[f64], fork: usize) -> bool {
     })
 }
 
-/// Length that the vessel to `node` needs: for a cut at either end, and to leave the vessel that it comes from.
+/// Minimum length of the vessel to `node`: a cut at either end and separation from its parent vessel.
 fn least_length(tree: &Tree, radii: &[f64], node: usize) -> f64 {
     let parent = tree.parents[node] as usize;
     let from = if parent == 0 { 0.0 } else { 2.0 * radii[parent] };
@@ -86,7 +86,7 @@ fn least_length(tree: &Tree, radii: &[f64], node: usize) -> f64 {
     from + to + 4.0 * radii[node]
 }
 
-/// A better place of a fork: towards the least volume, then so that vessels are long enough and angles wide enough.
+/// Improved position of a bifurcation: a step towards minimum volume, then corrections of lengths and angles.
 fn better(tree: &Tree, radii: &[f64], fork: usize) -> Point3 {
     let [a, b] = tree.branches(fork);
     let ends = [tree.parents[fork] as usize, a, b];
@@ -99,7 +99,7 @@ fn better(tree: &Tree, radii: &[f64], fork: usize) -> Point3 {
             let away = x - q;
             let length = away.norm();
             if length < least {
-                // The other end does its half, if it can move.
+                // A movable other end contributes its half.
                 let half = if tree.is_fork(end) { 0.6 } else { 1.0 };
                 let direction = away.try_normalize(0.0).unwrap_or_else(|| any_direction(fork));
                 x += direction * (half * (least - length));
@@ -112,7 +112,7 @@ fn better(tree: &Tree, radii: &[f64], fork: usize) -> Point3 {
     x
 }
 
-/// How a fork has to move so that its vessels to `p` and `q` are not side by side: around the nearer end.
+/// Shift of a bifurcation that rotates the nearer of two narrow vessels, to `p` and `q`, around its end.
 fn opening(x: &Point3, p: &Point3, q: &Point3) -> Vec3 {
     let (u, v) = (p - x, q - x);
     let (near, far) = if u.norm_squared() <= v.norm_squared() { (u, v) } else { (v, u) };
@@ -126,7 +126,7 @@ fn opening(x: &Point3, p: &Point3, q: &Point3) -> Vec3 {
     (near - wide * near.norm()) * 0.5
 }
 
-/// A direction that depends on the node alone, for nodes at one place.
+/// Direction that depends only on the node, for coinciding nodes.
 fn any_direction(node: usize) -> Vec3 {
     let turn = node as f64 * 2.399_963_229_728_653;
     Vec3::new(turn.cos(), turn.sin(), 0.5).normalize()
@@ -171,7 +171,7 @@ fn clear(tree: &mut Tree, radii: &[f64]) {
     tree.positions = moved;
 }
 
-/// Moves terminals apart that leaving thick vessels brought close to each other.
+/// Separates terminals that became close by leaving thick vessels.
 fn part_terminals(tree: &mut Tree, radii: &[f64]) {
     let ends: Vec<usize> = (1..radii.len()).filter(|&i| !tree.is_fork(i)).collect();
     let boxes: Vec<Aabb> =
@@ -192,7 +192,7 @@ fn part_terminals(tree: &mut Tree, radii: &[f64]) {
     }
 }
 
-/// Whether a vessel ends at a node, or at a neighbour of it.
+/// True if a vessel ends at a node or at one of its neighbours.
 fn joined(tree: &Tree, node: usize, vessel: usize) -> bool {
     let parent = |n: usize| tree.parents[n] as usize;
     let ends = [vessel, parent(vessel)];
@@ -200,7 +200,7 @@ fn joined(tree: &Tree, node: usize, vessel: usize) -> bool {
     ends.into_iter().any(near)
 }
 
-/// How a point has to move to be `gap` away from the wall of a tube.
+/// Shift of a point to a distance of `gap` from the wall of a tube.
 fn push(p: &Point3, tube: &Tube, gap: f64) -> Vec3 {
     let (t, _) = point_tube(p, tube);
     let axis = tube.point(t);

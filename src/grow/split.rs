@@ -1,20 +1,20 @@
-//! How the terminals of a vessel are shared between its two branches, so that each Strahler order has as many vessels as
-//! it has in a rat's kidney.
+//! Division of a vessel's terminals between its two branches. The resulting vessel count of each Strahler order matches
+//! a rat kidney.
 //!
-//! The order of a vessel follows from the number n of its terminals alone: it is k when `LEAST[k]` ≤ n < `LEAST[k + 1]`.
-//! A vessel of order k with n < 2·`LEAST[k]` forks into two of order k − 1; with more terminals it gives off one of order
-//! k − 1 and goes on. The thresholds are those for which the mean numbers of vessels in a tree of 29,566 terminals are
-//! closest to the published ones (fitted by simulation).
+//! The order of a vessel depends only on its number n of terminals: it is k for `LEAST[k]` ≤ n < `LEAST[k + 1]`. A
+//! vessel of order k with n < 2·`LEAST[k]` divides into two of order k − 1. With more terminals, one branch has order k
+//! − 1 and the other continues. The thresholds were fitted by simulation to the published mean counts in a tree of
+//! 29,566 terminals.
 
 use super::random::{Random, Stream};
 
-/// Least number of terminals of each order; from the last on, each order has `RATIO` times as many as the one before.
+/// Minimum number of terminals per order. Orders beyond the table grow by the factor `RATIO`.
 const LEAST: [u32; 11] = [1, 2, 4, 9, 31, 65, 151, 446, 1878, 6330, 13_487];
 
-/// Mean ratio of the numbers of vessels of neighbouring orders: the tenth root of 29,566.
+/// Mean ratio between vessel counts of consecutive orders: the tenth root of 29,566.
 const RATIO: f64 = 2.8;
 
-/// The least number of terminals of an order.
+/// Minimum number of terminals of an order.
 fn least(order: usize) -> f64 {
     LEAST.get(order).map_or_else(
         || f64::from(LEAST[LEAST.len() - 1]) * RATIO.powi((order + 1 - LEAST.len()) as i32),
@@ -22,7 +22,7 @@ fn least(order: usize) -> f64 {
     )
 }
 
-/// The Strahler order of a vessel with so many terminals; terminals have 0.
+/// Strahler order of a vessel with this number of terminals; a terminal has order 0.
 pub fn order(terminals: u32) -> usize {
     let mut order = 0;
     while least(order + 1) <= f64::from(terminals) {
@@ -31,15 +31,15 @@ pub fn order(terminals: u32) -> usize {
     order
 }
 
-/// Terminals of the lesser branch of a vessel with `terminals` ≥ 2; `index` numbers the vessel.
+/// Number of terminals of the lesser branch of a vessel with `terminals` ≥ 2; `index` numbers the vessel.
 pub fn lesser(terminals: u32, random: Random, index: u64) -> u32 {
     let k = order(terminals);
     let n = f64::from(terminals);
-    // The middle half: numbers of vessels vary little from seed to seed.
+    // Only the middle half, so that vessel counts vary little between seeds.
     let chance = 0.25 + 0.5 * random.unit(Stream::Split, index);
     let (here, below) = (least(k), least(k.saturating_sub(1)));
     let share = if n < 2.0 * here {
-        // Both below `here`, neither below `below`; around the half.
+        // Both branches below `here` and at least `below`, around the half.
         let low = below.max(n - here + 1.0);
         let high = (here - 1.0).min(n - below);
         low + (high - low + 1.0) * chance

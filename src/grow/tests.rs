@@ -13,7 +13,7 @@ fn grown(organ: Organ, terminals: u32, seed: u64) -> Skeleton {
     generate(&params(organ, terminals, seed)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What holds for every grown network.
+/// Invariants of every grown network.
 fn check(s: &Skeleton, p: &GenerateParams) {
     s.check().unwrap_or_else(|e| panic!("{p:?}: {e}"));
     let n = p.terminals as usize;
@@ -73,13 +73,13 @@ fn vessels_of_each_order_are_as_in_a_rats_kidney() {
         assert_eq!(orders.len(), RAT_KIDNEY.len());
         for (order, (ours, theirs)) in orders.iter().zip(&RAT_KIDNEY).enumerate() {
             let off = |value: f64, [mean, deviation]: [f64; 2]| ((value - mean).abs(), deviation, mean);
-            // Numbers: within the deviation; two of the orders 6 and 7, where it is 6 and 1.
+            // Counts: within the deviation, plus two for orders 6 and 7, where it is 6 and 1.
             let (count, deviation, _) = off(ours.count as f64, theirs.count);
             assert!(count <= deviation + if (6..8).contains(&order) { 2.0 } else { 0.0 }, "{seed} {order} {ours:?}");
-            // Radii: within the deviation, or 18 % where it is less than any one exponent of Murray's law allows.
+            // Radii: within the deviation, or 18 % if no exponent of Murray's law reaches the deviation.
             let (radius, deviation, mean) = off(ours.radius, theirs.radius);
             assert!(radius <= deviation.max(0.18 * mean), "{seed} {order} {ours:?}");
-            // Lengths: within the deviation, but for order 4 and those of which there is no deviation or few vessels.
+            // Lengths: within the deviation, except for order 4 and orders without deviation or with few vessels.
             let (length, deviation, _) = off(ours.length, theirs.length);
             assert!(length <= deviation || [4, 5, 8, 9, 10].contains(&order), "{seed} {order} {ours:?}");
         }
@@ -96,14 +96,14 @@ fn terminals_fill_the_organ_evenly() {
         let ends: Vec<Vec3> = adjacency.terminals().iter().skip(1).map(|n| s.node(*n).position.coords).collect();
         let outside = ends.iter().filter(|e| !shape.holds(&(**e).into())).count();
         assert!(outside < 200, "{organ:?}: {outside}");
-        // Each octant of the half away from the hilum has an eighth of the terminals or a little more.
+        // Each octant of the half away from the hilum has about an eighth of the terminals.
         for octant in 0..8 {
             let sign = |axis: usize| if octant >> axis & 1 == 1 { 1.0 } else { -1.0 };
             let here = ends.iter().filter(|e| (0..3).all(|axis| e[axis] * sign(axis) > 0.0)).count();
             let least = if organ == Organ::Kidney && octant & 1 == 1 { 600 } else { 900 };
             assert!((least..1300).contains(&here), "{organ:?}: {here} in octant {octant}");
         }
-        // No two at one place: cells of half the spacing hold few more than one.
+        // No coinciding terminals: cells of half the spacing rarely contain more than one.
         let cell = 0.5 * shape.spacing(8000);
         let cells: HashSet<[i64; 3]> = ends.iter().map(|e| [0, 1, 2].map(|i| (e[i] / cell).floor() as i64)).collect();
         assert!(cells.len() > 7700, "{organ:?}: {}", cells.len());

@@ -1,7 +1,7 @@
-//! The tree from the inlet to the terminals: each set of terminals is split in two, down to single ones.
+//! Tree from the inlet to the terminals, by recursive bisection of the set of terminals.
 //!
-//! Nodes are in the order of a walk from the inlet (node 0): each fork is followed by all of its first branch, then by all
-//! of its second. A vessel with n terminals has 2n − 1 nodes, so every branch knows its place beforehand and branches
+//! Nodes are in depth-first order from the inlet (node 0): each bifurcation is followed by its first branch, then its
+//! second. A vessel with n terminals has 2n − 1 nodes, so the position of every branch is known beforehand and branches
 //! grow in parallel.
 
 use super::random::Random;
@@ -9,46 +9,46 @@ use super::split::lesser;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use nalgebra::Matrix3;
 
-/// Sets larger than this are grown in parallel.
+/// Minimum size of sets that grow in parallel.
 const PARALLEL: usize = 2048;
 
-/// Along the vessel, distances count so much less when the direction is chosen in which terminals are split: vessels fork
-/// to the sides rather than into near and far.
+/// Weight of distances along the vessel for the choice of the split direction. Vessels thus branch sideways rather than
+/// into near and far parts.
 const ALONG: f64 = 0.5;
 
-/// A tree with one fork or terminal per node; every node but the inlet has the vessel that leads to it.
+/// Tree with one bifurcation or terminal per node. Every node except the inlet stands for its incoming vessel.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
-    /// Where each node is.
+    /// Node positions.
     pub positions: Vec<Point3>,
-    /// The node before; the inlet's own is 0.
+    /// Parent of each node; 0 for the inlet.
     pub parents: Vec<u32>,
-    /// Terminals behind each node, itself included.
+    /// Number of terminals in each node's subtree, itself included.
     pub sizes: Vec<u32>,
 }
 
 impl Tree {
-    /// The two nodes after a fork.
+    /// The two child nodes of a bifurcation.
     pub fn branches(&self, fork: usize) -> [usize; 2] {
         [fork + 1, fork + 2 * self.sizes[fork + 1] as usize]
     }
 
-    /// Whether a node has two branches: all but the inlet and the terminals.
+    /// True if a node has two branches, as all except the inlet and the terminals.
     pub fn is_fork(&self, node: usize) -> bool {
         node > 0 && self.sizes[node] > 1
     }
 }
 
-/// The part of a tree behind one vessel.
+/// Part of a tree behind one vessel.
 struct Part<'a> {
     points: &'a mut [Point3],
     positions: &'a mut [Point3],
     parents: &'a mut [u32],
     sizes: &'a mut [u32],
-    /// Index of its first node, and of the node before.
+    /// Index of its first node, and of that node's parent.
     first: u32,
     parent: u32,
-    /// Where the vessel comes from.
+    /// Start of the vessel.
     from: Point3,
 }
 
@@ -73,7 +73,7 @@ pub fn grow(inlet: Point3, points: &mut [Point3], exponent: f64, random: Random)
     tree
 }
 
-/// Recursion goes as deep as the tree: some tens of forks.
+/// Recursion depth is that of the tree: some tens of bifurcations.
 fn branch(part: Part, weight: f64, random: Random) {
     let Part { points, positions, parents, sizes, first, parent, from } = part;
     let n = points.len();
@@ -118,9 +118,9 @@ fn centroid(points: &[Point3]) -> Point3 {
     Point3::from(sum / points.len() as f64)
 }
 
-/// Brings `near` of the points to the front: those on one side of a plane across their longest extent, the side of
-/// `from`. Compact parts matter most: splitting where the next vessels have the least volume makes networks in which four
-/// times as many vessels overlap.
+/// Moves `near` of the points to the front: those on the side of `from` of a plane normal to their longest extent.
+/// Compact parts matter most. Splitting by minimum volume of the next vessels gives four times as many overlapping
+/// vessels.
 fn part_points(points: &mut [Point3], near: usize, from: &Point3) {
     let centre = centroid(points);
     let along = (centre - from).try_normalize(0.0).unwrap_or_else(Vec3::zeros);
@@ -138,8 +138,8 @@ fn part_points(points: &mut [Point3], near: usize, from: &Point3) {
     points.select_nth_unstable_by(near, |p, q| axis.dot(&p.coords).total_cmp(&axis.dot(&q.coords)));
 }
 
-/// About the point with the least sum of weighted distances from three (Weiszfeld 1937): vessels from there to the three
-/// have the least volume when the weights are the squares of their radii (Murray 1926).
+/// Approximates the point of least weighted distance sum from three points (Weiszfeld 1937). With squared radii as
+/// weights, the three vessels have minimum volume (Murray 1926).
 fn fermat(targets: &[Point3; 3], weights: [f64; 3]) -> Point3 {
     let total: f64 = weights.iter().sum();
     let sum: Vec3 = targets.iter().zip(weights).map(|(q, w)| q.coords * w).sum();
@@ -150,7 +150,7 @@ fn fermat(targets: &[Point3; 3], weights: [f64; 3]) -> Point3 {
     x
 }
 
-/// One step towards it.
+/// One Weiszfeld step towards the weighted Fermat point.
 pub fn weiszfeld(x: &Point3, targets: &[Point3; 3], weights: [f64; 3]) -> Point3 {
     let mut sum = Vec3::zeros();
     let mut total = 0.0;

@@ -1,17 +1,17 @@
-//! Vessels in each other's way.
+//! Collision tests between vessels.
 
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, tube_tube};
 
-/// Axes of vessels that do not meet are further apart than this, in sums of their radii.
+/// Minimum distance of the axes of separate vessels, in sums of their radii.
 pub(super) const APART: f64 = 1.5;
 
-/// Whether two vessels that share no node are too close to each other.
+/// True if two vessels without a common node are too close to each other.
 pub(super) fn meet(a: &Tube, b: &Tube) -> bool {
     let pair = tube_tube(a, b);
     pair.gap < (APART - 1.0) * (a.radius(pair.s) + b.radius(pair.t))
 }
 
-/// Vessels, and a tree in which those close to a place are found.
+/// Vessels with a search tree.
 pub(super) struct Tubes {
     pub list: Vec<Tube>,
     pub tree: Bvh,
@@ -24,7 +24,7 @@ impl Tubes {
         Self { tree: Bvh::new(&boxes), list }
     }
 
-    /// Whether one of them is too close to a vessel, but for those that begin or end at one of these points, and for one.
+    /// True if a vessel is too close to another one, except `but_one` and those with an end in `but`.
     pub fn meets(&self, vessel: &Tube, but: &[Point3], but_one: Option<u32>) -> bool {
         let mut meets = false;
         self.tree.query(&around(vessel), |i| {
@@ -36,7 +36,7 @@ impl Tubes {
     }
 }
 
-/// Boxes of vessels that are too close to each other overlap.
+/// Bounding box; the boxes of vessels that are too close to each other overlap.
 fn around(tube: &Tube) -> Aabb {
     Aabb::of_points([&tube.a, &tube.b]).grown(APART * tube.max_radius())
 }

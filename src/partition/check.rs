@@ -1,4 +1,4 @@
-//! The invariants of a partition.
+//! Invariant checks of a partition.
 
 // Arc lengths of neighbouring pieces and connectors are copies of one number.
 
@@ -7,7 +7,7 @@ use anastomesh_mesh::geometry::DisjointSets;
 use anastomesh_mesh::geometry::{Point3, Section, Tube};
 use anastomesh_skeleton::{Branch, BranchId, NodeId, Skeleton};
 
-/// What is wrong with a partition.
+/// Violated invariant of a partition.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PartitionFlaw {
@@ -15,24 +15,24 @@ pub enum PartitionFlaw {
     #[error("branch {} is not covered once around arc length {arc}", branch.0)]
     Coverage {
         branch: BranchId,
-        /// Where.
+        /// Arc length of the flaw.
         arc: f64,
     },
-    /// The tubes of a piece are not the vessel's axis there, or not connected.
+    /// The tubes of a piece do not follow the vessel's axis or are not connected.
     #[error("the tubes of cluster {} leave branch {} at {at}", cluster.0, branch.0)]
     Tubes {
         cluster: ClusterId,
         branch: BranchId,
-        /// Where.
+        /// Position of the flaw.
         at: Point3,
     },
-    /// A node is in no cluster, in several, or in the wrong one.
+    /// A node is in no cluster, in several clusters, or in the wrong one.
     #[error("node {} is not in exactly one cluster", node.0)]
     Node { node: NodeId },
     /// The pieces of a cluster are not connected.
     #[error("cluster {} is not connected", cluster.0)]
     Disconnected { cluster: ClusterId },
-    /// An end and its cut do not name each other, or a terminal has no end.
+    /// An end and its cut do not refer to each other, or a terminal has no end.
     #[error("end {end} of cluster {} is not what its cut or terminal says", cluster.0)]
     End {
         cluster: ClusterId,
@@ -46,7 +46,7 @@ pub enum PartitionFlaw {
         /// Index of the end.
         end: u32,
     },
-    /// A connector's path does not lead from one end plane to the other, or its cross-sections meet.
+    /// A connector's path does not connect the end planes, or its cross-sections intersect.
     #[error("the path of cut {} is bad at section {section}", cut.0)]
     Path {
         cut: CutId,
@@ -56,13 +56,13 @@ pub enum PartitionFlaw {
 }
 
 /// Checks a partition of a skeleton:
-/// - every branch's length is covered exactly once by pieces and connectors, and each piece's tubes follow it;
-/// - every node with an edge is in exactly one cluster (inside a connector: in none), every cluster connected;
-/// - ends, cuts and terminals name each other; ends point outwards and the vessel runs straight through its plane;
-/// - connectors lead from plane to plane and their cross-sections do not meet.
+/// - pieces and connectors cover every branch exactly once, and the tubes of each piece follow it;
+/// - every node with an edge is in exactly one connected cluster (inside a connector: in none);
+/// - ends, cuts and terminals refer to each other; ends point outwards, and vessels cross their planes straight;
+/// - connectors run from plane to plane without intersecting cross-sections.
 ///
 /// # Errors
-/// The first flaw found.
+/// Returns the first flaw found.
 pub fn check_partition(skeleton: &Skeleton, partition: &Partition) -> Result<(), PartitionFlaw> {
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
@@ -102,7 +102,7 @@ fn coverage(partition: &Partition, branches: &[Branch]) -> Result<(), PartitionF
         rest = others;
         let mut reached = 0.0;
         for (i, &(_, [lo, hi], cut)) in own.iter().enumerate() {
-            // Pieces and connectors take turns, pieces first and last; both have a length.
+            // Pieces and connectors alternate, with pieces first and last. Both have a positive length.
             if lo != reached || hi <= lo || cut != (i % 2 == 1) {
                 return Err(flaw(lo));
             }
@@ -115,7 +115,7 @@ fn coverage(partition: &Partition, branches: &[Branch]) -> Result<(), PartitionF
     rest.first().map_or(Ok(()), |p| Err(PartitionFlaw::Coverage { branch: BranchId(p.0), arc: p.1[0] }))
 }
 
-/// A piece's tubes are a chain from its start to its end, on the axis, of nearly its length.
+/// Checks that a piece's tubes form a chain from its start to its end, on the axis, with nearly its length.
 fn follows(skeleton: &Skeleton, partition: &Partition, branch: &Branch, piece: &Piece) -> Result<(), PartitionFlaw> {
     let cluster = &partition.clusters[piece.cluster.0 as usize];
     let flaw = |at| PartitionFlaw::Tubes { cluster: piece.cluster, branch: piece.branch, at };
@@ -127,12 +127,12 @@ fn follows(skeleton: &Skeleton, partition: &Partition, branch: &Branch, piece: &
     let mut at = start;
     let mut length = 0.0;
     for tube in tubes {
-        // Positive, also when something is not a number.
+        // Written positively so that NaN fails.
         let sound = tube.min_radius() > 0.0 && tube.length() > 0.0;
         if (tube.a - at).norm() > tolerance || !sound {
             return Err(flaw(tube.a));
         }
-        // A chord stands for no more than the axis beside it.
+        // A chord is at most as long as the axis that it replaces.
         length += tube.length();
         at = tube.b;
     }
@@ -168,11 +168,11 @@ fn nodes(skeleton: &Skeleton, partition: &Partition, branches: &[Branch]) -> Res
             }
         }
     }
-    // What is left was claimed by a cluster that has no piece with it.
+    // Remaining nodes were claimed by a cluster without a piece that contains them.
     seen.iter().position(|&c| c != NOWHERE).map_or(Ok(()), |i| Err(PartitionFlaw::Node { node: NodeId(i as u32) }))
 }
 
-/// Pieces that share a node at the end of a branch are connected; nothing else connects them.
+/// Checks connectivity: pieces are connected exactly if they share a node at the end of a branch.
 fn connected(skeleton: &Skeleton, partition: &Partition, branches: &[Branch]) -> Result<(), PartitionFlaw> {
     let pieces = &partition.pieces;
     let mut sets = DisjointSets::new(pieces.len() + skeleton.nodes.len());
@@ -221,7 +221,7 @@ fn check_end(skeleton: &Skeleton, partition: &Partition, id: ClusterId, index: u
         let d = t.b - t.a;
         d.dot(&section.axis) > 0.0 && d.cross(&section.axis).norm() <= tolerance * d.norm()
     };
-    // The overrun leaves the plane, and some tube of a piece runs into it, both along its axis.
+    // The overrun starts at the plane, and a tube of a piece ends there; both follow the axis.
     let overrun = &cluster.tubes[end.overrun as usize];
     let leaves = overrun.a == section.origin && overrun.ra == section.radius && along(overrun);
     let mut tubes = cluster.tubes.iter().enumerate().filter(|(i, _)| *i != end.overrun as usize);
@@ -263,9 +263,9 @@ fn check_cut(partition: &Partition, id: CutId) -> Result<(), PartitionFlaw> {
     meet.map_or(Ok(()), |i| Err(flaw(i + 1)))
 }
 
-/// Whether the disc of `b` lies wholly before that of `a` as seen along the path.
+/// True if the discs of `a` and `b` do not intersect, in this order along the path.
 fn follows_clear(a: &Section, b: &Section) -> bool {
-    // Lowest point of a disc over a plane: its centre less the radius times the sine of the angle between the axes.
+    // Extent of a disc over a plane: its centre minus the radius times the sine of the angle between the axes.
     let sine = a.axis.cross(&b.axis).norm();
     a.axis.dot(&b.axis) > 0.0 && a.height(&b.origin) > sine * b.radius && -b.height(&a.origin) > sine * a.radius
 }

@@ -1,34 +1,34 @@
-//! Whether the tip of a vessel stays clear of another vessel.
+//! Clearance test between the tip of a vessel and other vessels.
 //!
-//! Equation 12 says where the wall of a vessel leaves the wall of its neighbour at a junction. The same question, asked
-//! of any other vessel: how far is its axis from the solid that the tip fills? The neighbour at the junction
-//! is then no exception, and bends need no angle.
+//! Equation 12 locates the point where the walls of two vessels at a junction separate. This module generalizes it to
+//! any vessel: the distance between its axis and the solid of the tip decides. Junction neighbours and bends then need
+//! no special case.
 
 use anastomesh_mesh::geometry::{Aabb, Point3, Section, Tube, segment_segment};
 
-/// How far a tip reaches back from its end plane, in radii: trimming and flattening work there.
+/// Extent of a tip before its end plane, in radii: trimming and flattening affect this part.
 const BACK: f64 = 0.5;
 
-/// How far the wall goes on, in radii, where the axis of a vessel ends: with σ = κ r = 0.33 r the field on the axis,
-/// exp(r² / 2σ²) Φ(−h / σ), falls to 1 at h = 0.77 r. The wall there is half a sphere about the point at h = −0.23 r,
-/// within 0.06 r.
+/// Height of the wall beyond the end of a vessel's axis, in radii. Let σ = κ r = 0.33 r. The field on the axis, exp(r²
+/// / 2σ²) Φ(−h / σ), falls to 1 at h = 0.77 r. The wall there is a hemisphere about the point at h = −0.23 r, within
+/// 0.06 r.
 const ROUND: f64 = 0.77;
 
-/// The golden section, and how often an interval is cut by it at most: to 10⁻¹⁰ of it.
+/// Golden ratio and maximum number of golden section steps: they reduce an interval to 10⁻¹⁰ of its length.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const GOLDEN_STEPS: u32 = 48;
 
-/// How far the middle of the round tip that an overrun gives a vessel lies beyond the end plane.
+/// Distance of the centre of a vessel's round tip beyond its end plane.
 pub(super) fn tip_middle(radius: f64, overrun: f64) -> f64 {
     overrun - (1.0 - ROUND) * radius
 }
 
-/// The end of a vessel: the solid cylinder about its end plane, from shortly before it to the middle of the round tip, and
-/// half a ball about this.
+/// End of a vessel: a solid cylinder from shortly before the end plane to the centre of the round tip, and half a ball
+/// about that centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tip {
     section: Section,
-    /// Heights over the plane between which the cylinder reaches.
+    /// Heights of the cylinder's ends over the plane.
     reach: [f64; 2],
 }
 
@@ -42,19 +42,19 @@ impl Tip {
         self.section.origin + self.section.axis * height
     }
 
-    /// Distance that has to lie between the cylinder and the axis of a vessel of radius `other`: two parallel vessels
-    /// are then `blending` × the sum of their radii apart.
+    /// Required distance between the cylinder and the axis of a vessel of radius `other`. It keeps parallel vessels
+    /// `blending` times the sum of their radii apart.
     fn margin(&self, other: f64, blending: f64) -> f64 {
         blending * other + (blending - 1.0) * self.section.radius
     }
 
-    /// A box that meets the box of every vessel in the way, if that is grown by `blending` × its radius.
+    /// Box that overlaps the box of every obstructing vessel, if that is grown by `blending` times its radius.
     pub fn aabb(&self, blending: f64) -> Aabb {
         let ends = self.reach.map(|h| self.axis_point(h));
         Aabb::of_points(&ends).grown(blending * self.section.radius)
     }
 
-    /// Whether the vessel is far enough off.
+    /// True if the vessel keeps the required distance.
     pub fn clears(&self, tube: &Tube, blending: f64) -> bool {
         let radius = self.section.radius;
         let ends = self.reach.map(|h| self.axis_point(h));
@@ -62,9 +62,9 @@ impl Tip {
         if near.distance >= radius + self.margin(tube.max_radius(), blending) {
             return true;
         }
-        // How much there is to spare is convex along the axis: a distance to a convex solid, less a linear radius. A
-        // golden section closes in on its least value, until the steepest that it can fall decides. A cone's widest part
-        // need not be what comes closest.
+        // The clearance is convex along the axis: distance to a convex solid minus a linear radius. Golden section
+        // search encloses its minimum until the steepest possible decrease decides. The widest part of a cone need not
+        // be the closest.
         let spare = |t: f64| {
             let p = tube.point(t);
             (p - self.closest(&p)).norm() - self.margin(tube.radius(t), blending)
@@ -86,7 +86,7 @@ impl Tip {
         true
     }
 
-    /// The point of the solid that is closest to `p`.
+    /// Closest point of the solid to `p`.
     fn closest(&self, p: &Point3) -> Point3 {
         let height = self.section.height(p);
         if height > self.reach[1] {

@@ -1,5 +1,5 @@
-//! A network that is cut, held as where it is cut: what a cluster or a connector is made from is put together when it is
-//! looked at. Of millions of vessels that takes a tenth of the memory of their tubes, ends and paths.
+//! Compact form of a partition: only the cut positions are stored. The inputs of clusters and connectors are built on
+//! access. For millions of vessels this takes a tenth of the memory of tubes, ends and paths.
 
 mod same;
 
@@ -20,46 +20,46 @@ use anastomesh_skeleton::course::{Course, Courses, Way};
 use anastomesh_skeleton::{BranchId, Chains, FineFork, Leg, NodeId, SizeAt, Skeleton};
 
 const NONE: u32 = u32::MAX;
-/// Over how many radii of a fork the directions of its vessels are measured.
+/// Length over which a vessel's direction at a bifurcation is measured, in radii of the node.
 const LEG: f64 = 3.0;
 
-/// Where a network is cut. Clusters are ordered by their lowest node, cuts by branch and place.
+/// Cut positions of a network. Clusters are ordered by their lowest node, cuts by branch and position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Layout {
     #[serde(skip)]
     skeleton: Arc<Skeleton>,
-    /// How long edges are asked to be.
+    /// Requested edge sizes.
     #[serde(skip)]
     sizes: Option<SizeAt>,
     chains: Chains,
     overrun: Overruns,
-    /// The pieces of branches that the clusters hold, cluster by cluster.
+    /// Branch pieces of the clusters, cluster by cluster.
     pieces: Vec<Placed>,
-    /// Where the pieces of each cluster begin; one more than there are clusters.
+    /// Offset of each cluster's pieces, plus the total.
     first_piece: Vec<u32>,
     /// Smallest radius of each cluster.
     r_min: Vec<f64>,
-    /// Nodes of the clusters, and where those of each begin.
+    /// Nodes of the clusters, and the offset for each cluster.
     nodes: Vec<NodeId>,
     first_node: Vec<u32>,
     cuts: Vec<PlacedCut>,
-    /// Lengths of the overruns beyond an end (0 or 1) of a piece that are not the usual ones.
+    /// Overrun lengths that differ from the default, by piece and end (0 or 1).
     overruns: BTreeMap<(u32, u8), f64>,
     uncut: Vec<(BranchId, UncutReason)>,
     warnings: Vec<PartitionWarning>,
 }
 
-/// A piece of a branch.
+/// Piece of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Placed {
     branch: u32,
-    /// The cuts at its ends; `NONE` at the branch's own ends.
+    /// Cuts at its ends; `NONE` at the branch's own ends.
     cuts: [u32; 2],
-    /// Whether these are terminals.
+    /// True for ends that are terminals.
     terminals: [bool; 2],
 }
 
-/// Where a branch is cut.
+/// Position of a cut.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct PlacedCut {
     branch: u32,
@@ -77,7 +77,7 @@ impl Layout {
             cut_of_slot[i] = cuts.len() as u32;
             cuts.push(PlacedCut { branch: slot.branch, planes: slot.planes, sides: Cut::NOWHERE });
         }
-        // A branch of several cuts may have lost only some of them.
+        // A branch with several cuts may have lost only some of them.
         let is_cut = |branch: u32| {
             let slots = settler.first_slot[branch as usize] as usize..settler.first_slot[branch as usize + 1] as usize;
             settler.slots[slots].iter().any(|s| s.alive)
@@ -88,7 +88,7 @@ impl Layout {
         let mut layout = Self {
             skeleton,
             sizes: None,
-            // They belong to the settler still.
+            // The settler still borrows the chains.
             chains: Chains::default(),
             overrun: settler.params.overruns(),
             pieces: Vec::with_capacity(settler.runs.len()),
@@ -105,7 +105,7 @@ impl Layout {
         layout
     }
 
-    /// Places the runs cluster by cluster, and says at which ends the cuts are.
+    /// Adds the runs cluster by cluster and records the end index of each cut.
     fn place(
         &mut self,
         settler: &Settler,
@@ -142,23 +142,23 @@ impl Layout {
         self.first_piece.push(self.pieces.len() as u32);
     }
 
-    /// With the branches that it was made of.
+    /// Sets the chains from which the layout was created.
     pub(super) fn with(self, chains: Chains) -> Self {
         Self { chains, ..self }
     }
 }
 
-/// The nodes of the clusters.
+/// Nodes of the clusters.
 struct Clusters {
     count: usize,
     nodes: Vec<NodeId>,
     first_node: Vec<u32>,
-    /// The cluster of each root.
+    /// Cluster of each root.
     of_root: Vec<u32>,
 }
 
 impl Clusters {
-    /// Ordered by lowest node, those without a node last.
+    /// Numbers clusters by lowest node; those without a node come last.
     fn of(settler: &Settler) -> Self {
         let mut members: Vec<(u32, NodeId)> = Vec::new();
         for branch in 0..settler.courses.len() {
@@ -190,7 +190,7 @@ impl Clusters {
     }
 }
 
-/// Nodes within a run, and those at its ends that no cut takes.
+/// Collects the inner nodes of a run and those at ends without a cut.
 fn collect_nodes(settler: &Settler, run: &Run, course: &Course, members: &mut Vec<(u32, NodeId)>) {
     let [lo, hi] = settler.range(run, course);
     let nodes = &course.branch.nodes;
@@ -207,10 +207,10 @@ fn collect_nodes(settler: &Settler, run: &Run, course: &Course, members: &mut Ve
     }
 }
 
-/// Terminals with another vessel in their way.
+/// Terminals obstructed by another vessel.
 #[derive(Default)]
 struct Shortened {
-    /// Length of the overrun beyond an end (0 or 1) of a run, if it is not the usual one.
+    /// Overrun lengths that differ from the default, by run and end (0 or 1).
     overruns: BTreeMap<(u32, usize), f64>,
     warnings: Vec<PartitionWarning>,
 }
@@ -254,13 +254,13 @@ impl Shortened {
 }
 
 impl Layout {
-    /// The same of a skeleton: layouts are kept without theirs.
+    /// Sets the skeleton, which is not stored with layouts.
     #[must_use]
     pub fn of(self, skeleton: Arc<Skeleton>) -> Self {
         Self { skeleton, ..self }
     }
 
-    /// The same with edges of such lengths asked for.
+    /// Sets the requested edge sizes.
     #[must_use]
     pub fn sized(self, sizes: Option<SizeAt>) -> Self {
         Self { sizes, ..self }
@@ -286,55 +286,55 @@ impl Layout {
         (0..self.cuts_len()).map(|i| self.cut(CutId(i as u32)))
     }
 
-    /// The branches that are in one cluster from end to end, and why.
+    /// Branches that lie in one cluster from end to end, with the reason.
     pub(super) fn uncut(&self) -> &[(BranchId, UncutReason)] {
         &self.uncut
     }
 
-    /// What may go wrong in a cluster.
+    /// Possible defects of cluster meshes.
     pub(super) fn warnings(&self) -> &[PartitionWarning] {
         &self.warnings
     }
 
-    /// Nodes of the cluster that has most.
+    /// Node count of the largest cluster.
     pub fn largest_nodes(&self) -> usize {
         self.first_node.windows(2).map(|w| (w[1] - w[0]) as usize).max().unwrap_or(0)
     }
 
-    /// The branches that run through clusters of more than so many nodes.
+    /// Branches in clusters with more than `nodes` nodes.
     pub(super) fn in_clusters_above(&self, nodes: usize) -> Vec<BranchId> {
         let large = |(_, cluster): &(BranchId, ClusterId)| self.nodes(*cluster).len() > nodes;
         self.branches_of_clusters().filter(large).map(|(branch, _)| branch).collect()
     }
 
-    /// Each piece of a branch that a cluster holds, cluster by cluster.
+    /// Branch and cluster of each piece, cluster by cluster.
     pub fn branches_of_clusters(&self) -> impl Iterator<Item = (BranchId, ClusterId)> + '_ {
         let of = |cluster: usize| self.pieces_of(cluster).iter().map(move |p| (p.branch, cluster));
         (0..self.clusters_len()).flat_map(of).map(|(branch, cluster)| (BranchId(branch), ClusterId(cluster as u32)))
     }
 
-    /// How many pieces of branches a cluster holds.
+    /// Number of branch pieces in a cluster.
     pub(super) fn pieces_in(&self, cluster: ClusterId) -> usize {
         self.pieces_of(cluster.0 as usize).len()
     }
 
-    /// The branch of a cut.
+    /// Branch of a cut.
     pub fn branch_of_cut(&self, cut: CutId) -> BranchId {
         BranchId(self.cuts[cut.0 as usize].branch)
     }
 
-    /// The clusters at the two sides of a cut, each with the index of its end there.
+    /// Clusters on the two sides of a cut, each with its end index.
     pub fn sides_of_cut(&self, cut: CutId) -> [(ClusterId, u32); 2] {
         self.cuts[cut.0 as usize].sides
     }
 
-    /// The nodes of a cluster.
+    /// Nodes of a cluster.
     pub fn nodes(&self, cluster: ClusterId) -> &[NodeId] {
         let i = cluster.0 as usize;
         &self.nodes[self.first_node[i] as usize..self.first_node[i + 1] as usize]
     }
 
-    /// How many of a cluster's ends, before the given one, are cuts.
+    /// Number of cuts among the cluster's ends before the given end.
     pub fn cuts_before(&self, cluster: ClusterId, end: u32) -> u32 {
         let at = |piece: &Placed, i: usize| (piece.cuts[i] != NONE, piece.cuts[i] != NONE || piece.terminals[i]);
         let ends = self.pieces_of(cluster.0 as usize).iter().flat_map(|piece| [at(piece, 0), at(piece, 1)]);
@@ -354,7 +354,7 @@ impl Layout {
         [at(0).unwrap_or(0.0), at(1).unwrap_or_else(|| course.length())]
     }
 
-    /// What a connector is made from.
+    /// Returns the input of a connector.
     pub fn cut(&self, id: CutId) -> Cut {
         let PlacedCut { branch, planes, sides } = self.cuts[id.0 as usize];
         let course = self.course(branch);
@@ -362,7 +362,7 @@ impl Layout {
         Cut { branch: BranchId(branch), sides, path: path(&course, planes), size }
     }
 
-    /// What a cluster is made from.
+    /// Returns the input of a cluster.
     pub fn cluster(&self, id: ClusterId) -> Cluster {
         self.cluster_with(id, |_| {})
     }
@@ -400,16 +400,16 @@ impl Layout {
         cluster
     }
 
-    /// A vessel as it leaves the node at one of its ends.
+    /// Direction and radius of a vessel that leaves the node at one of its ends.
     fn leg(&self, course: &Course, end: usize, way: Way) -> Leg {
         let node = self.skeleton.node(course.branch.ends()[end]);
-        // Seen from a node, the ways out are named the other way round.
+        // Directions out of a node are named in reverse.
         let out = [Way::Onward, Way::Back][end];
         let radius = course.radius([0.0, course.length()][end], way);
         Leg { direction: course.leaving(out, LEG * node.radius), radius }
     }
 
-    /// The forks of a cluster that are to have shorter edges, by the vessels that leave each node.
+    /// Bifurcations of a cluster with shorter edges, from the vessels that leave each node.
     fn fine(&self, mut legs: Vec<(NodeId, Leg)>) -> Vec<FineFork> {
         let Some(sizes) = &self.sizes else { return Vec::new() };
         legs.sort_by_key(|(node, _)| *node);
@@ -421,7 +421,7 @@ impl Layout {
         legs.chunk_by(|a, b| a.0 == b.0).filter_map(fork).collect()
     }
 
-    /// What is asked for in the middle of a piece of a vessel, by the nodes beside it.
+    /// Requested edge size in the middle of a vessel piece, interpolated between adjacent nodes.
     fn size_amid(&self, course: &Course, [lo, hi]: [f64; 2]) -> Option<f64> {
         let (sizes, branch) = (self.sizes.as_ref()?, &course.branch);
         let middle = 0.5 * (lo + hi);
@@ -431,7 +431,7 @@ impl Layout {
         sizes.between([a, b], share.clamp(0.0, 1.0))
     }
 
-    /// All of it at hand.
+    /// Expands the layout into a full partition.
     pub(super) fn explicit(&self) -> Partition {
         let mut pieces = Vec::with_capacity(self.pieces.len());
         let clusters = (0..self.clusters_len() as u32).map(|i| self.cluster_with(ClusterId(i), |p| pieces.push(p)));
@@ -449,7 +449,7 @@ impl Layout {
     }
 }
 
-/// Adds an end and its overrun.
+/// Appends an end and its overrun.
 fn add_end(cluster: &mut Cluster, section: Section, overrun: f64, kind: EndKind) {
     let tube = cluster.tubes.len() as u32;
     let Section { origin, axis, radius } = section;
@@ -458,7 +458,7 @@ fn add_end(cluster: &mut Cluster, section: Section, overrun: f64, kind: EndKind)
 }
 
 impl Layout {
-    /// The partition in figures.
+    /// Summary figures of the partition.
     pub fn summary(&self) -> PartitionSummary {
         let mut summary = PartitionSummary {
             clusters: self.clusters_len(),
@@ -468,7 +468,7 @@ impl Layout {
             ..PartitionSummary::default()
         };
         for (i, cluster) in (0..).zip(self.clusters()) {
-            // A cluster without a junction is one piece; every other has three pieces or a piece that closes on a junction.
+            // Clusters with a junction have three pieces, or one that closes on the junction; others have one piece.
             let pieces = self.pieces_in(ClusterId(i));
             summary.junction_clusters += usize::from(pieces > 2 || (pieces == 2 && cluster.ends.len() != 2));
             summary.largest_tubes = summary.largest_tubes.max(cluster.tubes.len());

@@ -1,4 +1,4 @@
-//! Floor 3: 3.2.1 of the paper. Long vessels are cut; what stays together is a cluster.
+//! Partition (section 3.2.1 of the paper): long vessels are cut, and the parts between cuts are clusters.
 
 mod check;
 mod clearance;
@@ -28,22 +28,22 @@ pub(crate) use parts::PartitionWarning;
 pub use parts::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, Piece};
 pub use summary::PartitionSummary;
 
-/// Cuts a skeleton into clusters and connectors (3.2.1 of the paper, read for graphs with loops).
+/// Partitions a skeleton into clusters and connectors (section 3.2.1 of the paper, generalized to graphs with loops).
 ///
-/// The skeleton is a cleaned one. Branches, not edges, are cut. Where that leaves a cluster too large, as equations 11 and 12
-/// forbid every cut in a dense place, its branches are cut wherever there is room for discs. The result depends on nothing but
-/// the arguments; clusters are ordered by their lowest node, cuts by branch and place.
+/// The skeleton must be cleaned. Cuts apply to branches, not to edges. If equations 11 and 12 forbid all cuts in a
+/// dense region, clusters may be too large. Their branches are then cut wherever two discs fit. The result depends only
+/// on the arguments. Clusters are ordered by their lowest node, cuts by branch and position.
 ///
 /// # Errors
-/// If a parameter is not positive or the skeleton has an edge without length, radius or node.
+/// A parameter is not positive, or the skeleton has an edge without length, radius or node.
 pub fn partition(skeleton: &Skeleton, params: &PartitionParams) -> Result<Partition, PartitionError> {
     Ok(lay_out(&Arc::new(skeleton.clone()), params)?.explicit())
 }
 
-/// The same, held as where the skeleton is cut.
+/// Partitions a skeleton and returns the compact form.
 ///
 /// # Errors
-/// As [`partition`].
+/// See [`partition`].
 pub fn lay_out(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Result<Layout, PartitionError> {
     params.check()?;
     params::check_skeleton(skeleton)?;
@@ -71,7 +71,7 @@ fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Layout {
             uncut.push((BranchId(branch), reason));
         }
     }
-    // Large networks ask for the room.
+    // Frees memory, which matters for large networks.
     drop(cutter);
     let terminal = |node| BranchEnd::of(&adjacency, node) == BranchEnd::Terminal;
     let terminals = (0..courses.len() as u32).map(|branch| chains.ends(branch).map(terminal)).collect();

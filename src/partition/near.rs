@@ -1,11 +1,11 @@
-//! What may be in the way of the ends of a cluster: the vessels that it holds, and the overruns beyond their terminals.
+//! Obstacles for the ends of a cluster: its vessels and the overruns beyond their terminals.
 
 use super::clearance::tip_middle;
 use super::params::PartitionParams;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Tube};
 use anastomesh_skeleton::course::{Course, Courses, Way};
 
-/// Something in the way: a part of a branch, or the overrun beyond its terminal.
+/// Obstacle: an edge of a branch, or the overrun beyond its terminal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Obstacle {
     pub branch: u32,
@@ -14,18 +14,18 @@ pub(super) struct Obstacle {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
-    /// The edge of this index in the branch.
+    /// Edge with this index in the branch.
     Edge(u32),
-    /// The overrun at the branch's start or end.
+    /// Overrun at the branch's start or end.
     Overrun(Way),
 }
 
-/// More obstacles than this are searched by a tree.
+/// Maximum number of obstacles that are searched without a tree.
 const FEW: usize = 48;
 
-/// The courses of some branches, and what of them may be in the way.
+/// Courses of some branches and the obstacles that they form.
 pub(super) struct Near {
-    /// Ascending.
+    /// Courses in ascending order of branch.
     courses: Vec<(u32, Course)>,
     obstacles: Vec<Obstacle>,
     boxes: Vec<Aabb>,
@@ -33,7 +33,7 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// Of these branches, ascending.
+    /// Collects the obstacles of the given branches, which are in ascending order.
     pub fn new(
         all: Courses,
         terminals: &[[bool; 2]],
@@ -62,12 +62,12 @@ impl Near {
         Self { courses, obstacles, boxes, tree }
     }
 
-    /// One of the branches.
+    /// Returns the course of one of the branches.
     pub fn course(&self, branch: u32) -> &Course {
         &self.courses[self.courses.partition_point(|(b, _)| *b < branch)].1
     }
 
-    /// Calls `found` for all that has a box which overlaps `aabb`.
+    /// Calls `found` for all obstacles whose box overlaps `aabb`.
     pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(&Obstacle)) {
         if let Some(tree) = &self.tree {
             return tree.query(aabb, |i| found(&self.obstacles[i as usize]));
@@ -77,7 +77,7 @@ impl Near {
     }
 }
 
-/// The axis of the tip beyond a terminal, with the longest overrun that it may have.
+/// Returns the axis of the tip beyond a terminal, with the longest overrun allowed.
 pub(super) fn terminal_overrun(course: &Course, end: Way, params: &PartitionParams) -> Tube {
     let s = if end == Way::Onward { course.length() } else { 0.0 };
     let section = course.section(s, end);

@@ -1,47 +1,46 @@
-//! What a caller may choose about the partition, and what may be wrong with its input.
+//! Parameters of the partition and errors of its input.
 
 use anastomesh_skeleton::resolution::{KAPPA, RHO};
 use std::collections::{BTreeMap, BTreeSet};
 
 use anastomesh_skeleton::{BranchId, CutRules, EdgeId, NodeId, Skeleton};
 
-/// How a skeleton is cut. Lengths are in radii of the vessel concerned unless said otherwise.
+/// Parameters of the partition. Lengths are in radii of the respective vessel unless stated otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartitionParams {
     /// Resolution ρ: a cluster is contoured with voxels of 2 · (its smallest radius) / ρ.
     pub rho: f64,
-    /// Width κ of the convolution kernel: σ = κ r. Decides how close two vessels may come before they fuse.
+    /// Width κ of the convolution kernel: σ = κ r. Controls the distance at which two vessels fuse.
     pub kappa: f64,
-    /// What a cut needs, in the terms of equations 11 and 12.
+    /// Rules for a cut, as in equations 11 and 12.
     pub cuts: CutRules,
-    /// What it needs where a cluster would be too large otherwise: room for two discs, and little more.
+    /// Rules for cuts in clusters that would otherwise be too large: little more than space for two discs.
     pub eager_cuts: CutRules,
-    /// A cluster of more nodes than this is too large.
+    /// Maximum number of nodes per cluster.
     pub large: usize,
-    /// Branches that are cut as `eager_cuts` says; those of clusters that are too large are added to them.
+    /// Branches that follow `eager_cuts`. Branches of clusters above `large` are added.
     pub eager: BTreeSet<BranchId>,
-    /// Length of the straight piece that continues a vessel beyond its end plane.
+    /// Length of the straight extension of a vessel beyond its end plane.
     pub overrun: f64,
-    /// Least length of that piece in voxels.
+    /// Minimum length of the overrun, in voxels.
     pub overrun_voxels: f64,
-    /// What a terminal's overrun may be shortened to when another vessel is in its way. At 0.4 the wall is 1.3 % thinner
-    /// at the plane than the vessel, and its tip no longer than the ball at the vessel's end.
+    /// Minimum overrun of a terminal obstructed by another vessel. At 0.4 the wall is 1.3 % thinner at the plane than
+    /// the vessel. The tip is then no longer than the ball at the vessel's end.
     pub shortest_overrun: f64,
-    /// Branches with a terminal are cut wherever there is room: what lies between forks and caps is then tubes.
+    /// Cut branches with a terminal wherever possible, so that straight tubes connect bifurcations and caps.
     pub cut_terminals: bool,
-    /// Else a branch with a terminal is cut when it is longer than this; a longer piece of any branch is cut again.
+    /// Minimum length of a terminal branch to be cut otherwise. Longer pieces of any branch are cut again.
     pub long: f64,
-    /// A branch with a terminal is also cut when its radii differ by more than this factor.
+    /// Minimum ratio of its radii for a terminal branch to be cut.
     pub taper: f64,
-    /// Longest connector.
+    /// Maximum connector length.
     pub longest_connector: f64,
     /// Branches that must not be cut.
     pub forbidden_cuts: BTreeSet<BranchId>,
-    /// Pairs of branches that are to be in one cluster, though they may meet nowhere in the skeleton. They are not cut.
+    /// Pairs of uncut branches that must share a cluster, even if they do not meet in the skeleton.
     pub together: BTreeSet<[BranchId; 2]>,
-    /// Branches whose planes are to be moved off their usual place by a share of the room there is, in [−1, 1]: a
-    /// positive value moves the plane at the branch's start towards its end, a negative one the plane at its end
-    /// towards its start.
+    /// Shift of cut planes, as a fraction of the free space, in [−1, 1]. A positive value moves the plane at the
+    /// branch's start towards its end. A negative value moves the plane at the end towards the start.
     pub shifted_cuts: BTreeMap<BranchId, f64>,
 }
 
@@ -69,18 +68,18 @@ impl Default for PartitionParams {
 }
 
 impl PartitionParams {
-    /// What a cut of a branch needs.
+    /// Cut rules of a branch.
     pub(super) fn rules(&self, branch: u32) -> CutRules {
         if self.eager.contains(&BranchId(branch)) { self.eager_cuts } else { self.cuts }
     }
 
-    /// How far the axes of two parallel vessels have to be apart, in sums of their radii, to stay two vessels: the
-    /// distance at which equal tubes of the convolution surface fuse, √(1 + 2 κ² ln 2), and 5 % more.
+    /// Minimum distance of two parallel vessels' axes, in sums of their radii, without fusion. Equal tubes of the
+    /// convolution surface fuse at √(1 + 2 κ² ln 2); 5 % are added.
     pub fn blending(&self) -> f64 {
         1.05 * (1.0 + 2.0 * self.kappa * self.kappa * std::f64::consts::LN_2).sqrt()
     }
 
-    /// What says how long overruns are.
+    /// Rule for overrun lengths.
     pub(super) fn overruns(&self) -> Overruns {
         Overruns { radii: self.overrun, voxels: self.overrun_voxels, rho: self.rho }
     }
@@ -107,7 +106,7 @@ impl PartitionParams {
     }
 }
 
-/// What says how long overruns are.
+/// Rule for overrun lengths.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Overruns {
     radii: f64,
@@ -116,32 +115,32 @@ pub(super) struct Overruns {
 }
 
 impl Overruns {
-    /// Length of the overrun of a vessel of radius `radius` in a cluster whose smallest radius is `r_min`.
+    /// Overrun length of a vessel of radius `radius` in a cluster with smallest radius `r_min`.
     pub fn length(self, radius: f64, r_min: f64) -> f64 {
         (self.radii * radius).max(self.voxels * 2.0 * r_min / self.rho)
     }
 }
 
-/// Why a skeleton cannot be partitioned. Cleaning removes all of these from a skeleton.
+/// Reasons why a skeleton cannot be partitioned. Cleaning removes all of them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PartitionError {
     /// A parameter is not a positive number.
     #[error("partition parameter {name} is {value}; it has to be a positive number")]
     Parameter { name: &'static str, value: f64 },
-    /// An edge names a node that does not exist.
+    /// An edge refers to a node that does not exist.
     #[error("edge {} joins node {}, which does not exist", edge.0, node.0)]
     NoSuchNode {
         edge: EdgeId,
-        /// The node that it names.
+        /// The missing node.
         node: NodeId,
     },
-    /// An edge whose length or radius is zero, negative or not a number.
+    /// An edge has a length or radius that is zero, negative or not a number.
     #[error("edge {} has length {length} and radii {} and {}; all have to be positive", edge.0, radii[0], radii[1])]
     BadEdge { edge: EdgeId, length: f64, radii: [f64; 2] },
 }
 
-/// Checks what the partition relies on.
+/// Checks the preconditions of the partition.
 pub(super) fn check_skeleton(skeleton: &Skeleton) -> Result<(), PartitionError> {
     for (i, edge) in skeleton.edges.iter().enumerate() {
         let id = EdgeId(i as u32);

@@ -1,4 +1,4 @@
-//! What a network is cut into: clusters, the cuts between them, and what may go wrong there.
+//! Result types of the partition: clusters, cuts, and warnings.
 
 use std::ops::Range;
 
@@ -14,148 +14,148 @@ pub struct ClusterId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct CutId(pub u32);
 
-/// The network cut into clusters.
+/// Partition of a network into clusters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Partition {
     /// Clusters, by `ClusterId`.
     pub clusters: Vec<Cluster>,
-    /// Cuts, by `CutId`; each joins two clusters (or a cluster to itself round a loop) by one connector.
+    /// Cuts, by `CutId`; each joins two clusters (or a cluster to itself around a loop) by one connector.
     pub cuts: Vec<Cut>,
-    /// Where on its branch each cut stands: arc lengths of the planes of side 0 and side 1, by `CutId`.
+    /// Position of each cut on its branch: arc lengths of the planes of side 0 and side 1, by `CutId`.
     pub cut_arcs: Vec<[f64; 2]>,
-    /// The pieces of the branches that the clusters hold, by branch and arc length. With the cuts they cover every
-    /// branch exactly once.
+    /// Branch pieces of the clusters, by branch and arc length. Together with the cuts they cover every branch exactly
+    /// once.
     pub pieces: Vec<Piece>,
-    /// The branches that are in one cluster from end to end, and why.
+    /// Branches that lie in one cluster from end to end, with the reason.
     pub uncut: Vec<(BranchId, UncutReason)>,
-    /// What may go wrong in a cluster.
+    /// Possible defects of cluster meshes.
     pub warnings: Vec<PartitionWarning>,
     pub(super) summary: PartitionSummary,
 }
 
 impl Partition {
-    /// All of it in figures.
+    /// Summary figures of the partition.
     pub fn summary(&self) -> PartitionSummary {
         self.summary
     }
 }
 
-/// A piece of a branch in a cluster.
+/// Piece of a branch in a cluster.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     pub cluster: ClusterId,
     pub branch: BranchId,
-    /// Arc lengths between which it lies.
+    /// Arc lengths of its two ends.
     pub arc: [f64; 2],
-    /// Its tubes, in the direction of the branch, without overruns: a range of `Cluster::tubes`.
+    /// Tubes in the direction of the branch, without overruns: a range of `Cluster::tubes`.
     pub tubes: Range<u32>,
 }
 
-/// Why a branch is not cut.
+/// Reason why a branch is not cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum UncutReason {
-    /// It ends in a terminal and is not long.
+    /// The branch ends in a terminal and is not long.
     Terminal,
-    /// The caller forbade it.
+    /// The caller forbade the cut.
     Forbidden,
-    /// Too short (equation 11, and room for a connector).
+    /// The branch is too short for equation 11 and a connector.
     Length,
-    /// Too short for the angle at which it leaves another branch (equation 12).
+    /// The branch is too short for its angle with another branch (equation 12).
     Angle,
-    /// Nowhere straight enough for a connector.
+    /// No part is straight enough for a connector.
     Bend,
-    /// Nowhere clear of another vessel of its cluster.
+    /// No place is clear of other vessels of the cluster.
     Clearance {
-        /// The branch in its way at the first place that was tried.
+        /// Obstructing branch at the first place tried.
         near: BranchId,
     },
 }
 
-/// Something that a cluster's mesh may suffer from.
+/// Possible defect of a cluster's mesh.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum PartitionWarning {
-    /// A terminal's overrun was shortened, as a vessel is in its way.
+    /// Overrun of a terminal, shortened because a vessel is in its way.
     ShortOverrun {
         cluster: ClusterId,
-        /// The terminal.
+        /// Node of the terminal.
         node: NodeId,
-        /// The branch in the way.
+        /// Obstructing branch.
         near: BranchId,
-        /// Length of the overrun in radii.
+        /// Length of the overrun, in radii.
         radii: f64,
     },
-    /// A terminal lies within or too close to another vessel of its cluster: its cap may fail.
+    /// Terminal inside or too close to another vessel of its cluster: its cap may fail.
     CapNotClear {
         cluster: ClusterId,
-        /// The terminal.
+        /// Node of the terminal.
         node: NodeId,
-        /// The other vessel.
+        /// Branch of the other vessel.
         near: BranchId,
     },
 }
 
-/// Branches that are meshed together.
+/// Set of branches that are meshed together.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cluster {
     /// Nodes inside the cluster.
     pub nodes: Vec<NodeId>,
-    /// The vessels to mesh, up to the cut planes and terminals, each continued straight beyond its end plane by
-    /// [`super::PartitionParams::overrun`] radii so that the surface has its full radius at the plane.
+    /// Vessels to mesh, up to the cut planes and terminals. An overrun of [`super::PartitionParams::overrun`] radii
+    /// continues each vessel straight beyond its end plane, so that the surface has the full radius at the plane.
     pub tubes: Vec<Tube>,
-    /// Where the cluster ends.
+    /// End planes of the cluster.
     pub ends: Vec<ClusterEnd>,
-    /// Forks that are to have shorter edges.
+    /// Bifurcations with shorter edges.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fine: Vec<FineFork>,
-    /// What the network asks for in the middle of a cluster that is one vessel, in edges that the resolution gives.
+    /// Requested edge size in the middle of a single-vessel cluster, relative to the edge length of the resolution.
     #[serde(skip)]
     pub size: Option<f64>,
 }
 
-/// A plane at which a cluster ends.
+/// End plane of a cluster.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClusterEnd {
-    /// The plane; its axis points out of the cluster.
+    /// Plane whose axis points out of the cluster.
     pub section: Section,
-    /// What is there.
+    /// Kind of the end.
     pub kind: EndKind,
-    /// Index into `Cluster::tubes` of the overrun: the piece that lies beyond the plane.
+    /// Index into `Cluster::tubes` of the overrun, the tube beyond the plane.
     pub overrun: u32,
 }
 
-/// What a cluster ends in.
+/// Kind of a cluster end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndKind {
-    /// A cut; `side` says which of the cut's two sides this cluster is.
+    /// A cut; `side` is the side of the cut on which this cluster lies.
     Cut {
-        /// The cut.
+        /// Index of the cut.
         cut: CutId,
-        /// 0 or 1.
+        /// Side: 0 or 1.
         side: u8,
     },
-    /// A terminal or root: a flat cap goes here, its centre is the node.
+    /// A terminal or root: a flat cap is placed here, centred at the node.
     Terminal(NodeId),
 }
 
-/// A place where a vessel is cut and later joined by a connector.
+/// Gap between two cut planes of a vessel, later bridged by a connector.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cut {
-    /// The branch that is cut.
+    /// Branch of the cut.
     pub branch: BranchId,
-    /// For either side: the cluster and the index of the end in `Cluster::ends`.
+    /// Cluster and index into `Cluster::ends`, for each side.
     pub sides: [(ClusterId, u32); 2],
-    /// The vessel between the two cut planes: sections from side 0's plane to side 1's, axes along the way from 0 to 1;
-    /// between two consecutive sections the axis is straight (or turns by little) and the radius linear.
+    /// Sections of the vessel from side 0's plane to side 1's, with axes from 0 to 1. Between consecutive sections the
+    /// axis is straight (or turns slightly) and the radius is linear.
     pub path: Vec<Section>,
-    /// What the network asks for in the middle of it, in edges that the resolution gives.
+    /// Requested edge size in the middle, relative to the edge length of the resolution.
     #[serde(skip)]
     pub size: Option<f64>,
 }
 
 impl Cut {
-    /// The sides of a cut between no clusters.
+    /// Placeholder for the sides of a cut without clusters.
     pub(crate) const NOWHERE: [(ClusterId, u32); 2] = [(ClusterId(u32::MAX), u32::MAX); 2];
 }

@@ -1,18 +1,18 @@
-//! The way of a connector from plane to plane.
+//! Path of a connector from plane to plane.
 
 use anastomesh_mesh::geometry::{Section, Vec3};
 use anastomesh_skeleton::course::{Course, Way};
 
-/// Distance of sections on a vessel that turns, in radii.
+/// Section spacing on a curved vessel, in radii.
 const SPACING: f64 = 0.75;
-/// What a section may add to its neighbours to be left out: a share of the radius, an angle in radians.
+/// Tolerance for omitting a section: a fraction of the radius, and an angle in radians.
 const TOLERANCE: f64 = 0.01;
-/// Sections that one step of the simplification looks over at most.
+/// Maximum number of sections that one simplification step examines.
 const LOOK_AHEAD: usize = 64;
-/// Sections of a path at most, before simplification.
+/// Maximum number of sections in a path before simplification.
 const SECTIONS: f64 = 4096.0;
 
-/// Sections from the plane at `planes[0]` to that at `planes[1]`, axes along the branch.
+/// Returns sections from the plane at `planes[0]` to that at `planes[1]`, with axes along the branch.
 pub(super) fn path(course: &Course, planes: [f64; 2]) -> Vec<Section> {
     let first = course.section(planes[0], Way::Onward);
     let mut last = course.section(planes[1], Way::Back);
@@ -32,7 +32,7 @@ pub(super) fn path(course: &Course, planes: [f64; 2]) -> Vec<Section> {
     sections
 }
 
-/// Evenly spread arc lengths strictly between the planes.
+/// Returns evenly spaced arc lengths strictly between the planes.
 fn stations(course: &Course, [lo, hi]: [f64; 2]) -> Vec<f64> {
     let mut list = Vec::new();
     let mut s = lo;
@@ -40,7 +40,7 @@ fn stations(course: &Course, [lo, hi]: [f64; 2]) -> Vec<f64> {
         s += (SPACING * course.radius(s, Way::Back)).max((hi - lo) / SECTIONS);
         list.push(s);
     }
-    // Stretched or shrunk so that the last one is the second plane, which is nearer by: that many less or not.
+    // The spacing is scaled so that the last station coincides with the second plane, then that station is dropped.
     if list.len() > 1 && s - hi > 0.5 * SPACING * course.radius(hi, Way::Onward) {
         list.pop();
         s = list[list.len() - 1];
@@ -53,7 +53,7 @@ fn stations(course: &Course, [lo, hi]: [f64; 2]) -> Vec<f64> {
     list
 }
 
-/// Leaves out sections that lie where interpolation between their neighbours puts them.
+/// Omits sections that interpolation between their neighbours reproduces.
 fn simplified(sections: &[Section]) -> Vec<Section> {
     let mut kept = vec![sections[0]];
     let mut i = 0;
@@ -69,7 +69,7 @@ fn simplified(sections: &[Section]) -> Vec<Section> {
     kept
 }
 
-/// Whether all but the first and last section may be left out.
+/// True if all sections but the first and last are redundant.
 fn redundant(sections: &[Section]) -> bool {
     let (a, b) = (&sections[0], &sections[sections.len() - 1]);
     let span = b.origin - a.origin;

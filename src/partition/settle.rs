@@ -1,8 +1,8 @@
-//! Which cuts are made, and where their planes stand, so that every cluster's ends are clear of its other vessels.
+//! Selects cuts and places their planes so that every end of a cluster is clear of the cluster's other vessels.
 //!
-//! What a cluster holds is known only when its cuts are, and a cut depends on what its clusters hold. All candidate
-//! cuts are made at first; then planes whose vessel is not clear move away from their cluster, and cuts for which there
-//! is no such place are given up, which joins two clusters. Both only ever go one way, so it ends.
+//! The vessels of a cluster depend on its cuts, and cuts depend on the vessels of their clusters. All candidate cuts
+//! start enabled. Planes without clearance move away from their cluster; cuts without any clear place are dropped,
+//! which joins two clusters. Both changes are monotone, so the iteration terminates.
 
 use super::clearance::{Tip, tip_middle};
 use super::near::{Kind, Near, Obstacle, terminal_overrun};
@@ -15,13 +15,13 @@ use anastomesh_skeleton::{BranchId, NodeId};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
-/// A piece of a branch that is in one cluster.
+/// Piece of a branch that lies in one cluster.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     pub branch: u32,
-    /// The cuts at its start and end; none at the branch's own ends.
+    /// Cuts at its start and end; `None` at the branch's own ends.
     pub slots: [Option<u32>; 2],
-    /// Its cluster, named by an element of the union.
+    /// Its cluster, identified by an element of the union.
     pub root: u32,
 }
 
@@ -29,32 +29,32 @@ pub(super) struct Settler<'a> {
     pub courses: Courses<'a>,
     pub params: &'a PartitionParams,
     pub slots: Vec<Slot>,
-    /// The slots of each branch are `first_slot[branch]..first_slot[branch + 1]`.
+    /// Offsets of the slots per branch: `first_slot[branch]..first_slot[branch + 1]`.
     pub first_slot: Vec<u32>,
     pub runs: Vec<Run>,
-    /// The runs of each branch are `first_run[branch]..first_run[branch + 1]`.
+    /// Offsets of the runs per branch: `first_run[branch]..first_run[branch + 1]`.
     pub first_run: Vec<u32>,
-    /// The runs by cluster.
+    /// Run indices sorted by cluster.
     by_root: Vec<u32>,
-    /// Terminals at the branch's start and end.
+    /// Terminal flags of each branch's start and end.
     pub terminals: Vec<[bool; 2]>,
     union: DisjointSets,
     /// Smallest radius of each cluster, by root.
     r_min: Vec<f64>,
-    /// What may be in the way in large clusters, by root.
+    /// Cached obstacles of large clusters, by root.
     large: FxHashMap<u32, Rc<Near>>,
     blending: f64,
 }
 
-/// In clusters of more runs than this, what may be in the way is listed once for all of their ends.
+/// Maximum number of runs in a cluster whose obstacles are not cached.
 const LARGE: usize = 24;
 
-/// How far before its plane, in radii, a vessel only leads to its own tip. A straight vessel's axis is clear of the tip from
-/// 2.8 radii on (half a radius of tip behind the plane, one radius, and the margin for two vessels side by side of 1.3
-/// radii); the rest is for bends.
+/// Length before a plane, in radii, in which a vessel cannot obstruct its own tip. The axis of a straight vessel is
+/// clear of the tip from 2.8 radii on: 0.5 of tip, 1 radius, and a margin of 1.3 for parallel vessels. The rest is for
+/// bends.
 const OWN_LEAD: f64 = 3.5;
 
-/// Step of a plane that moves, in radii; it grows after a while.
+/// Step of a moving plane, in radii; it grows after `STEADY_STEPS` steps.
 const STEP: f64 = 0.25;
 const STEPS: u32 = 96;
 const STEADY_STEPS: u32 = 24;
@@ -89,12 +89,12 @@ impl<'a> Settler<'a> {
         settler
     }
 
-    /// Element of the `i`-th piece of a branch, counted with all of its slots.
+    /// Union element of the `i`-th piece of a branch, counted with all of its slots.
     fn piece(&self, branch: u32, i: u32) -> u32 {
         self.first_slot[branch as usize] + branch + i
     }
 
-    /// Element of a node.
+    /// Union element of a node.
     fn node(&self, node: NodeId) -> u32 {
         (self.slots.len() + self.courses.len()) as u32 + node.0
     }
@@ -111,7 +111,7 @@ impl<'a> Settler<'a> {
         }
     }
 
-    /// Moves planes and gives up cuts until every end is clear; returns why cuts were given up, by branch.
+    /// Moves planes and drops cuts until every end is clear. Returns the reasons for dropped cuts, by branch.
     pub fn settle(&mut self) -> Vec<(BranchId, UncutReason)> {
         let mut given_up = Vec::new();
         let mut dirty = vec![true; self.union.len()];
@@ -149,7 +149,7 @@ impl<'a> Settler<'a> {
         given_up
     }
 
-    /// Joins what cuts that were given up no longer part, and marks the clusters of all changed slots.
+    /// Joins the pieces on both sides of dropped cuts and marks the clusters of all changed slots.
     fn mark(&mut self, changed: &[u32], dirty: &mut [bool]) {
         dirty.fill(false);
         let pieces = |s: &Self, slot: u32| {
@@ -170,7 +170,7 @@ impl<'a> Settler<'a> {
         }
     }
 
-    /// Finds the runs and the smallest radius of each cluster.
+    /// Updates the runs and the smallest radius of each cluster.
     fn gather(&mut self) {
         self.union.flatten();
         self.runs.clear();
@@ -205,14 +205,14 @@ impl<'a> Settler<'a> {
         self.large.clear();
     }
 
-    /// The runs of a cluster, ascending.
+    /// Runs of a cluster, in ascending order.
     pub fn runs_of(&self, root: u32) -> &[u32] {
         let from = self.by_root.partition_point(|&run| self.runs[run as usize].root < root);
         let count = self.by_root[from..].partition_point(|&run| self.runs[run as usize].root == root);
         &self.by_root[from..from + count]
     }
 
-    /// What may be in the way of the ends of a cluster.
+    /// Returns the obstacles for the ends of a cluster.
     pub fn near(&mut self, root: u32) -> Rc<Near> {
         if let Some(near) = self.large.get(&root) {
             return Rc::clone(near);
@@ -228,7 +228,7 @@ impl<'a> Settler<'a> {
         near
     }
 
-    /// Where a run of a course starts and ends.
+    /// Start and end of a run of a course.
     pub fn range(&self, run: &Run, course: &Course) -> [f64; 2] {
         let lo = run.slots[0].map_or(0.0, |s| self.slots[s as usize].planes[1]);
         let hi = run.slots[1].map_or_else(|| course.length(), |s| self.slots[s as usize].planes[0]);
@@ -240,12 +240,12 @@ impl<'a> Settler<'a> {
         self.r_min[root as usize]
     }
 
-    /// Length of the overrun of a vessel of radius `radius` in the cluster `root`.
+    /// Overrun length of a vessel of radius `radius` in the cluster `root`.
     pub fn overrun(&self, radius: f64, root: u32) -> f64 {
         self.params.overruns().length(radius, self.r_min[root as usize])
     }
 
-    /// Next place for a plane, away from its cluster, at which its vessel is clear.
+    /// Returns the next clear position for a plane, moving away from its cluster.
     fn clear_place(&self, near: &Near, run: usize, way: Way, slot: usize) -> Option<f64> {
         let Slot { branch, planes, .. } = self.slots[slot];
         let course = near.course(branch);
@@ -266,14 +266,14 @@ impl<'a> Settler<'a> {
         None
     }
 
-    /// Whether a run that ended at `s` would be clear of the other vessels of its cluster there; if not, one of these.
+    /// Checks that a run ending at `s` is clear of its cluster's other vessels. The error names an obstructing branch.
     fn clear_at(&self, near: &Near, run: usize, way: Way, s: f64) -> Result<(), BranchId> {
         let Run { branch, root, .. } = self.runs[run];
         let section = near.course(branch).section(s, way);
         self.tip_clear(near, run, way, s, &section, self.overrun(section.radius, root))
     }
 
-    /// The same for an end with a given overrun.
+    /// Checks an end with a given overrun.
     pub fn tip_clear(
         &self,
         near: &Near,
@@ -307,7 +307,7 @@ impl<'a> Settler<'a> {
             if run == own {
                 reach[way.end_index()] = s;
             }
-            // The overruns follow the course closely enough.
+            // Overruns are close enough to the continued course.
             let beyond = |radius| tip_middle(radius, self.overrun(radius, root));
             if slots[0].is_some() {
                 reach[0] -= beyond(course.radius(reach[0], Way::Back));
@@ -319,7 +319,7 @@ impl<'a> Settler<'a> {
                 Kind::Edge(i) => {
                     let i = i as usize;
                     if run == own {
-                        // What leads to the tip is not in its way, only what comes back to it.
+                        // The vessel that leads to the tip does not obstruct it, unless it returns to it.
                         let r = course.radii[i][0].max(course.radii[i][1]).max(course.radius(s, way));
                         let lead = s - way.sign() * OWN_LEAD * r;
                         match way {

@@ -1,39 +1,39 @@
-//! A partition in figures.
+//! Summary figures of a partition.
 
-/// What the pipeline prints of a partition.
+/// Partition figures for the run log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct PartitionSummary {
     /// Number of clusters.
     pub clusters: usize,
-    /// Clusters that hold a junction, as the paper counts.
+    /// Clusters with a junction, counted as in the paper.
     pub junction_clusters: usize,
-    /// Nodes of the cluster that has most.
+    /// Node count of the largest cluster.
     pub largest_nodes: usize,
-    /// Tubes of the cluster that has most, overruns included.
+    /// Largest tube count of a cluster, including overruns.
     pub largest_tubes: usize,
-    /// Number of cuts, that is of connectors.
+    /// Number of cuts, equal to the number of connectors.
     pub cuts: usize,
-    /// Branches that are not cut, by reason.
+    /// Uncut branches, by reason.
     pub uncut: UncutCounts,
-    /// Terminals whose overrun was shortened.
+    /// Terminals with a shortened overrun.
     pub short_overruns: usize,
-    /// Terminals whose cap is not clear of another vessel.
+    /// Terminals whose cap is too close to another vessel.
     pub caps_not_clear: usize,
 }
 
-/// Branches that are not cut, by reason (see `UncutReason`).
+/// Uncut branches, by reason (see `UncutReason`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct UncutCounts {
-    /// They end in a terminal and are not long.
+    /// The branch ends in a terminal and is not long.
     pub terminal: usize,
-    /// The caller forbade it.
+    /// The caller forbade the cut.
     pub forbidden: usize,
-    /// Too short.
+    /// The branch is too short.
     pub length: usize,
-    /// Too short for their angle to a neighbour.
+    /// The branch is too short for its angle with a neighbour.
     pub angle: usize,
-    /// Nowhere straight enough.
+    /// No part is straight enough.
     pub bend: usize,
-    /// Nowhere clear of another vessel.
+    /// No place is clear of other vessels.
     pub clearance: usize,
 }

@@ -1,6 +1,6 @@
 //! Partitions of hand-made and random skeletons.
 
-// Radii and arc lengths that are copied come out the same to the bit.
+// Copied radii and arc lengths are identical bit for bit.
 
 use proptest::prelude::*;
 
@@ -11,7 +11,7 @@ use anastomesh_mesh::geometry::{Point3, Tube, Vec3, point_segment, segment_segme
 use anastomesh_skeleton::{Edge, Node, NodeId};
 use std::ops::Range;
 
-/// A skeleton of points with radii and edges between them.
+/// Skeleton of points with radii, and edges between them.
 fn skeleton(points: &[([f64; 3], f64)], edges: &[[u32; 2]]) -> Skeleton {
     let node = |(i, (p, radius)): (usize, &([f64; 3], f64))| Node {
         position: Point3::from(*p),
@@ -25,7 +25,7 @@ fn skeleton(points: &[([f64; 3], f64)], edges: &[[u32; 2]]) -> Skeleton {
     Skeleton { nodes: points.iter().enumerate().map(node).collect(), edges: edges.iter().map(edge).collect() }
 }
 
-/// One polyline of unit radius.
+/// Polyline of unit radius.
 fn polyline(points: impl IntoIterator<Item = [f64; 3]>) -> Skeleton {
     let points: Vec<_> = points.into_iter().map(|p| (p, 1.0)).collect();
     let edges: Vec<_> = (1..points.len() as u32).map(|i| [i - 1, i]).collect();
@@ -94,13 +94,13 @@ fn an_h_is_cut_in_its_middle() {
 
 #[test]
 fn length_decides() {
-    // 2 × 2.2 + 2 of room.
+    // Minimum: 2 × 2.2 plus 2 for the connector.
     assert_eq!(default_cut(&h_shape(6.5)).cuts.len(), 1);
     let p = default_cut(&h_shape(6.3));
     assert_eq!((p.cuts.len(), only_reason(&p, 0)), (0, Some(UncutReason::Length)));
 }
 
-/// A junction at the origin: a stem, an arm along x to another junction, and an arm at `degrees` to it.
+/// Junction at the origin with a stem, an arm along x to another junction, and an arm at `degrees` to it.
 fn acute(degrees: f64, arm: f64) -> Skeleton {
     let (sin, cos) = degrees.to_radians().sin_cos();
     skeleton(
@@ -119,11 +119,11 @@ fn acute(degrees: f64, arm: f64) -> Skeleton {
 #[test]
 fn acute_angles_need_length() {
     let p = default_cut(&acute(30.0, 16.0));
-    // 1.25 (1 / sin 30° + 1 / tan 30°) = 4.67; clear is what begins half a radius before the plane: 4.87.
+    // 1.25 (1 / sin 30° + 1 / tan 30°) = 4.67; the clear zone starts half a radius before the plane: 4.87.
     assert!(p.cut_arcs[0][0] > 4.87 && p.cut_arcs[0][0] < 5.1, "{:?}", p.cut_arcs);
     let p = default_cut(&acute(15.0, 13.0));
     assert_eq!((p.cuts.len(), only_reason(&p, 1)), (0, Some(UncutReason::Angle)));
-    // The angle itself, not its supplement: an arm that goes straight back does not count.
+    // The angle itself counts, not its supplement: an arm straight back is ignored.
     let p = default_cut(&acute(100.0, 12.0));
     assert!((p.cut_arcs[0][0] - 2.2).abs() < 1e-9);
 }
@@ -154,7 +154,7 @@ fn least_clearance(p: &Partition) -> f64 {
 
 #[test]
 fn a_cut_moves_out_of_the_way_of_another_vessel() {
-    // An arm of the junction comes back and passes the bridge of the H at x = 3, 2.2 from its axis.
+    // An arm of the junction returns and passes the bridge of the H at x = 3, 2.2 from its axis.
     let mut points: Vec<_> =
         h_shape(16.0).nodes.iter().map(|n| (n.position.into(), 1.0)).collect::<Vec<([f64; 3], f64)>>();
     points[2].0 = [0.0, 9.0, 0.0];
@@ -166,7 +166,7 @@ fn a_cut_moves_out_of_the_way_of_another_vessel() {
     assert_eq!(p.cuts.len(), 1);
     assert!(p.cut_arcs[0][0] > 3.9, "{:?}", p.cut_arcs);
     assert!(least_clearance(&p) > 1.0);
-    // With less room behind it, the cut is given up, and the reason names the branch.
+    // With less space behind it the cut is dropped, and the reason names the branch.
     for point in &mut points[..] {
         if point.0[0] > 15.0 {
             point.0[0] -= 9.0;
@@ -178,7 +178,7 @@ fn a_cut_moves_out_of_the_way_of_another_vessel() {
 
 #[test]
 fn parallel_vessels_of_different_clusters_do_not_matter() {
-    // Two H one beside the other, nearly touching: separate components are separate clusters.
+    // Two nearly touching H shapes: separate components are separate clusters.
     let one = h_shape(14.0);
     let mut points: Vec<([f64; 3], f64)> = one.nodes.iter().map(|n| (n.position.into(), 1.0)).collect();
     let other: Vec<_> = points.iter().map(|(p, r)| ([p[0], p[1] + 0.5, p[2] + 2.01], *r)).collect();
@@ -205,7 +205,7 @@ fn loops_and_rings_are_cut() {
     );
     let p = default_cut(&s);
     assert_eq!((p.clusters.len(), p.cuts.len()), (2, 2));
-    // One branch uncut: the two junctions are one cluster, the other branch cut from it at both of its sides.
+    // With one branch uncut, both junctions share a cluster that the other branch leaves and enters.
     let params = PartitionParams { forbidden_cuts: [BranchId(0)].into(), ..PartitionParams::default() };
     let p = cut_up(&s, &params);
     assert_eq!((p.clusters.len(), p.cuts.len()), (1, 1));
@@ -222,7 +222,7 @@ fn loops_and_rings_are_cut() {
         assert!(!p.cuts.is_empty(), "{n}");
         assert!(least_clearance(&p) > 1.0);
     }
-    // A ring too small to be cut is one cluster without an end.
+    // A ring that is too small to be cut is one cluster without ends.
     let p = default_cut(&skeleton(
         &[([2.0, 0.0, 0.0], 1.0), ([0.0, 2.0, 0.0], 1.0), ([-2.0, 0.0, 0.0], 1.0), ([0.0, -2.0, 0.0], 1.0)],
         &[[0, 1], [1, 2], [2, 3], [3, 0]],
@@ -236,10 +236,10 @@ fn tubes_are_cut_when_they_are_long() {
     assert_eq!(tube(29.0).clusters.len(), 1);
     let p = tube(100.0);
     assert_eq!((p.clusters.len(), p.cuts.len()), (2, 1));
-    // A connector is no longer than 200 radii.
+    // Connectors are at most 200 radii long.
     let p = tube(1000.0);
     assert!(p.cuts.len() >= 5 && p.cut_arcs.iter().all(|a| a[1] - a[0] <= 200.0), "{:?}", p.cut_arcs);
-    // A strong taper is cut, too.
+    // Strong tapers are cut, too.
     let p = default_cut(&skeleton(&[([0.0; 3], 3.0), ([25.0, 0.0, 0.0], 1.0)], &[[0, 1]]));
     assert_eq!(p.cuts.len(), 1);
 }
@@ -268,25 +268,25 @@ fn polylines_of_tiny_edges_are_cut_along_their_course() {
     assert!(!p.cuts.is_empty());
     let path = &p.cuts[0].path;
     assert!(path.len() > 10);
-    // Turns by little from section to section.
+    // Axes turn only slightly from section to section.
     assert!(path.windows(2).all(|s| s[0].axis.dot(&s[1].axis) > 30_f64.to_radians().cos()));
-    // No cluster got a tube shorter than the edges.
+    // No cluster has a tube shorter than the edges.
     let tubes = p.clusters.iter().flat_map(|c| &c.tubes);
     assert!(tubes.map(Tube::length).fold(f64::INFINITY, f64::min) > 0.1);
 }
 
 #[test]
 fn kinks_stay_in_clusters() {
-    // Two straight parts of 25 with a right angle between them.
+    // Two straight parts of 25 at a right angle.
     let p = default_cut(&polyline([[0.0; 3], [25.0, 0.0, 0.0], [25.0, 25.0, 0.0]]));
     assert!(!p.cuts.is_empty());
     for arc in &p.cut_arcs {
         assert!(arc[1] <= 24.0 || arc[0] >= 26.0, "{arc:?}");
     }
-    // A bend of less than 3 radii all along has no place for a connector.
+    // A continuous bend of less than 3 radii leaves no place for a connector.
     let p = default_cut(&polyline(wiggly(400, 0.2, 2.0)));
     assert_eq!(only_reason(&p, 0), Some(UncutReason::Bend));
-    // A slight kink does no harm, and the connector goes round it.
+    // A slight kink is acceptable, and the connector follows it.
     let p = default_cut(&polyline([[0.0; 3], [25.0, 0.0, 0.0], [50.0, 5.0, 0.0]]));
     assert_eq!(p.cuts.len(), 1);
     assert!(p.cuts[0].path.len() >= 4);
@@ -328,7 +328,7 @@ fn caps_in_the_way_are_reported() {
     );
     let p = default_cut(&s);
     assert!(matches!(p.warnings[..], [PartitionWarning::CapNotClear { node: NodeId(3), .. }]), "{:?}", p.warnings);
-    // A terminal that looks at another vessel 2.6 radii ahead.
+    // A terminal faces another vessel 2.6 radii ahead.
     let s = skeleton(
         &[
             ([0.0; 3], 1.0),
@@ -363,7 +363,7 @@ fn bad_input_is_an_error() {
     assert_eq!(default_cut(&Skeleton::default()), Partition::default());
 }
 
-/// The checker finds what it is there to find.
+/// The checker detects every kind of flaw.
 #[test]
 fn flaws_are_found() {
     let s = h_shape(12.0);
@@ -390,7 +390,7 @@ fn flaws_are_found() {
     ));
 }
 
-/// A random tree, and extra edges that close loops; each edge a polyline of one to `pieces` pieces.
+/// Random tree with extra edges that close loops; each edge is a polyline of one to `pieces` pieces.
 fn any_network() -> impl Strategy<Value = Skeleton> {
     let node =
         (prop::array::uniform3(-1.0..1.0_f64), 0.3..2.0_f64, any::<u32>(), 1..6_u32, 2.0..40.0_f64, any::<bool>());
@@ -435,7 +435,7 @@ fn any_network() -> impl Strategy<Value = Skeleton> {
     )
 }
 
-/// Smallest distance of the rim of an end's tip from the axes of all vessels but its own, in radii of these.
+/// Minimum distance between the rim of an end's tip and the axes of all other vessels, in their radii.
 fn rim_clearance(cluster: &Cluster, end: &ClusterEnd, own: &Range<u32>) -> f64 {
     let (u, w) = end.section.frame();
     let (r, length) = (end.section.radius, cluster.tubes[end.overrun as usize].length());
@@ -472,7 +472,7 @@ proptest! {
         prop_assert!(p == partition(&s, &params).unwrap());
     }
 
-    /// What the metrics call cuttable is cut, but for vessels in the way.
+    /// Branches that the metrics call cuttable are cut, unless vessels are in the way.
     #[test]
     fn what_is_called_cuttable_is_cut(s in any_network()) {
         prop_assume!(s.edge_ids().all(|e| s.length(e) > 1e-6));
@@ -491,7 +491,7 @@ proptest! {
         prop_assert_eq!((cuttable.count, cuttable.of), (inner.iter().filter(|b| is_cut(**b)).count(), inner.len()));
     }
 
-    /// No vessel of a cluster comes close to the tip of another one that ends in a cut.
+    /// No vessel of a cluster comes close to the tip of another vessel that ends in a cut.
     #[test]
     fn tips_are_clear(s in any_network()) {
         prop_assume!(s.edge_ids().all(|e| s.length(e) > 1e-6));
@@ -511,7 +511,7 @@ proptest! {
         }
     }
 
-    /// Units do not matter.
+    /// Partitions do not depend on units.
     #[test]
     fn partitions_scale(s in any_network()) {
         prop_assume!(s.edge_ids().all(|e| s.length(e) > 1e-6));

@@ -1,4 +1,4 @@
-//! The places where a branch is to be cut, of all where it may be.
+//! Selection of cut positions within the feasible parts of a branch.
 
 use super::params::PartitionParams;
 use super::parts::UncutReason;
@@ -6,19 +6,19 @@ use anastomesh_skeleton::course::{Course, Courses, Way};
 use anastomesh_skeleton::cuttability::{BranchEnd, Cuttability, Uncuttable};
 use anastomesh_skeleton::{Adjacency, BranchId};
 
-/// A place for one cut: the planes may stand anywhere in `window` with room for the connector between them.
+/// Candidate cut: the planes may lie anywhere in `window` that leaves space for the connector between them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slot {
     pub branch: u32,
-    /// Where planes may stand, as arc lengths.
+    /// Allowed plane positions, as arc lengths.
     pub window: [f64; 2],
-    /// Where they stand now: side 0 and side 1.
+    /// Current plane positions: side 0 and side 1.
     pub planes: [f64; 2],
-    /// Whether the cut is made.
+    /// True if the cut is made.
     pub alive: bool,
 }
 
-/// Looks for places to cut, branch by branch.
+/// Searches for cut positions, branch by branch.
 pub(super) struct Cutter<'a> {
     courses: Courses<'a>,
     params: &'a PartitionParams,
@@ -27,7 +27,7 @@ pub(super) struct Cutter<'a> {
     eager: Option<Cuttability<'a>>,
 }
 
-/// Shortest piece between two cuts of a branch, in radii.
+/// Minimum piece length between two cuts of a branch, in radii.
 const SHORTEST_PIECE: f64 = 4.0;
 
 impl<'a> Cutter<'a> {
@@ -37,7 +37,7 @@ impl<'a> Cutter<'a> {
         Self { courses, params, adjacency, usual: cuttability(params.cuts), eager }
     }
 
-    /// The places where `branch` is to be cut, in order along it, or why there is none.
+    /// Appends the cut positions of `branch`, or returns the reason why there are none.
     pub fn slots(&self, branch: u32, out: &mut Vec<Slot>) -> Option<UncutReason> {
         let course = &self.courses.get(branch);
         if self.params.forbidden_cuts.contains(&BranchId(branch)) {
@@ -65,18 +65,18 @@ impl<'a> Cutter<'a> {
         course.length() > self.params.long * course.mean_radius() || large > self.params.taper * small
     }
 
-    /// Takes the longest straight part of [lo, hi]; then, where a long piece is left beside it, the same there.
+    /// Selects the longest straight part of `[lo, hi]`, then repeats where a long piece remains beside it.
     fn choose(&self, course: &Course, branch: u32, [lo, hi]: [f64; 2], parts: &[[f64; 2]], out: &mut Vec<Slot>) {
-        // Stretches to search, each with the piece of vessel that stays whole unless a cut is found in it.
+        // Intervals to search, each with the vessel piece that remains uncut if the search fails.
         let mut pending = vec![(lo, hi, 0.0, course.length())];
         while let Some((lo, hi, piece_lo, piece_hi)) = pending.pop() {
             let clipped = parts.iter().map(|p| [p[0].max(lo), p[1].min(hi)]);
-            // Another cut only for a fair length of connector; the first one as soon as there is room.
+            // The first cut needs only the minimum space, further cuts a connector of reasonable length.
             let least = if piece_lo > 0.0 || piece_hi < course.length() { 2.0 } else { 1.0 };
             let rules = self.params.rules(branch);
             let fits = |p: &[f64; 2]| rules.fits(course, *p, least);
             let best = clipped.filter(fits).reduce(|a, b| {
-                // Not the first of nearly equal ones by rounding.
+                // Ties within rounding go to the first part.
                 if b[1] - b[0] > (a[1] - a[0]) * (1.0 + 1e-9) { b } else { a }
             });
             let Some(window) = best else { continue };
@@ -94,7 +94,7 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// Makes a slot of a window, or several with short pieces between them if it is longer than a connector may be.
+    /// Converts a window to one slot, or to several with short pieces between them if it exceeds the longest connector.
     fn divide(&self, course: &Course, branch: u32, window: [f64; 2], out: &mut Vec<Slot>) {
         let radius = course.radius_range(window[0], window[1])[1];
         let length = window[1] - window[0];
@@ -108,12 +108,12 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// Where the planes stand first: at the ends of the window, or shifted as the caller asks.
+    /// Initial plane positions: the ends of the window, shifted on request of the caller.
     fn planes(&self, course: &Course, branch: u32, window: [f64; 2]) -> [f64; 2] {
         let shift = self.params.shifted_cuts.get(&BranchId(branch)).copied().unwrap_or(0.0).clamp(-1.0, 1.0);
         let largest = course.radius_range(window[0], window[1])[1];
         let slack = (window[1] - window[0] - self.params.rules(branch).room * largest).max(0.0);
-        // A NaN is no shift.
+        // NaN counts as no shift.
         if shift > 0.0 {
             [window[0] + shift * slack, window[1]]
         } else if shift < 0.0 {

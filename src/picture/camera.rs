@@ -1,49 +1,49 @@
-//! From where a picture is taken: straight lines of sight, all parallel, so that lengths can be measured in it.
+//! Orthographic camera: lengths can be measured in the picture.
 
 use super::outline::Outline;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// Where the viewer is.
+/// View direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Direction {
-    /// Where most of the thing is seen: across its longest and its second longest axis.
+    /// Across the two longest axes of the object, which shows most of it.
     #[default]
     Broadside,
-    /// In a direction from the thing, with another one upwards.
+    /// From the direction `towards` of the object, with `up` upwards.
     From { towards: Vec3, up: Vec3 },
 }
 
 impl Direction {
-    /// By angles in degrees: round the z axis from −y, and above the plane of x and y.
+    /// Direction from angles in degrees: around the z axis from −y, and above the xy plane.
     pub fn by_angles(azimuth: f64, elevation: f64) -> Self {
         let (a, e) = (azimuth.to_radians(), elevation.to_radians());
         let towards = Vec3::new(e.cos() * a.sin(), -e.cos() * a.cos(), e.sin());
-        // The derivative by the elevation: it is upwards even where one looks from above.
+        // Derivative by the elevation, defined also for a view from above.
         let up = Vec3::new(-e.sin() * a.sin(), e.sin() * a.cos(), e.cos());
         Self::From { towards, up }
     }
 }
 
-/// A camera whose picture is so many samples wide and high.
+/// Camera with a picture size in samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     right: Vec3,
     up: Vec3,
-    /// From the thing to the viewer.
+    /// Direction from the object to the viewer.
     pub towards: Vec3,
-    /// What is in the middle of the picture.
+    /// Point at the centre of the picture.
     pub centre: Point3,
     /// Samples per unit of length.
     pub scale: f64,
-    /// Samples.
+    /// Picture size in samples.
     pub size: [usize; 2],
 }
 
-/// How much of the picture the thing fills.
+/// Fraction of the picture that the object fills.
 const FILLED: f64 = 0.94;
 
 impl Camera {
-    /// Looks at all of a thing; `zoom` times as close, and at a place, where these are given.
+    /// Creates a camera that shows the whole object, magnified by `zoom` and centred on `at` if given.
     pub fn new(direction: Direction, outline: &Outline, size: [usize; 2], zoom: f64, at: Option<Point3>) -> Self {
         let (towards, up) = match direction {
             Direction::Broadside => outline.broadside(),
@@ -57,12 +57,12 @@ impl Camera {
         let fits =
             |[low, high]: [f64; 2], samples: usize| FILLED * samples as f64 / (high - low).max(f64::MIN_POSITIVE);
         let scale = fits(across, size[0]).min(fits(upwards, size[1]));
-        // A thing of no extent is seen as if it were one unit large.
+        // An object without extent is shown like one of unit size.
         let scale = if scale.is_finite() && scale < 1e300 { scale } else { FILLED * size[0].min(size[1]) as f64 };
         Self { right, up, towards, centre: at.unwrap_or(centre), scale: zoom * scale, size }
     }
 
-    /// Where a place is in the picture: samples from the left, from above, and towards the viewer.
+    /// Projects a point: samples from the left, from the top, and towards the viewer.
     #[inline]
     pub fn project(&self, place: &Point3) -> [f64; 3] {
         let v = place - self.centre;
@@ -74,7 +74,7 @@ impl Camera {
         ]
     }
 
-    /// A direction as the viewer sees it: to the right, upwards, towards him.
+    /// Direction in view coordinates: right, up, towards the viewer.
     #[inline]
     pub fn turned(&self, v: &Vec3) -> [f64; 3] {
         [v.dot(&self.right), v.dot(&self.up), v.dot(&self.towards)]

@@ -1,4 +1,4 @@
-//! What is seen in each sample: the facet nearest to the viewer.
+//! Depth buffer: each sample keeps the facet nearest to the viewer.
 
 use super::camera::Camera;
 use super::colours::Rgb;
@@ -6,22 +6,22 @@ use super::plane::Plane;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use rayon::prelude::*;
 
-/// A triangle to be drawn.
+/// Triangle to render.
 #[derive(Clone, Copy, Debug)]
 pub struct Facet {
     pub corners: [Point3; 3],
-    /// Outward, one per corner: where they differ the facet looks curved.
+    /// Outward normal at each corner; different normals make the facet look curved.
     pub normals: [Vec3; 3],
-    /// Seen from outside.
+    /// Colour of the outside.
     pub colour: Rgb,
-    /// Seen from inside.
+    /// Colour of the inside.
     pub inside: Rgb,
-    /// Whether its edges are drawn, where they can be told apart.
+    /// True if edges are drawn where they are large enough.
     pub lined: bool,
 }
 
 impl Facet {
-    /// A flat one. Triangles without area are never seen.
+    /// Creates a flat facet. Triangles without area are invisible.
     pub fn flat(corners: [Point3; 3], colour: Rgb, inside: Rgb) -> Self {
         let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
         let normal = normal.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
@@ -29,67 +29,67 @@ impl Facet {
     }
 }
 
-/// What is seen in a sample.
+/// Visible state of a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
-    /// How far towards the viewer, in samples; −∞ where there is nothing.
+    /// Depth towards the viewer, in samples; −∞ if empty.
     pub depth: f32,
     pub colour: Rgb,
-    /// How much of it is an edge.
+    /// Edge coverage.
     pub line: u8,
-    /// As the viewer sees it, in 32,767ths.
+    /// Normal in view coordinates, in 1/32,767.
     pub normal: [i16; 3],
 }
 
 const NOTHING: Sample = Sample { depth: f32::NEG_INFINITY, colour: [0; 3], line: 0, normal: [0; 3] };
 
-/// Rows that one thread draws at a time.
+/// Rows per parallel task.
 const BAND: usize = 48;
-/// Facets that are drawn at a time.
+/// Facets per batch.
 const BATCH: usize = 1 << 16;
-/// Edges appear when facets are so many pixels high, and are fully there at the second.
+/// Facet sizes at which edges begin to appear and are fully visible, in pixels.
 const LINED: [f64; 2] = [5.0, 14.0];
-/// Half the width of an edge, pixels.
+/// Half the line width of an edge, in pixels.
 const LINE: f64 = 0.6;
 
-/// A picture in the making.
+/// Picture during rendering.
 pub struct Canvas {
     pub camera: Camera,
-    /// Samples per pixel and direction.
+    /// Samples per pixel in each direction.
     pub(super) factor: usize,
-    /// What is before this plane is not drawn.
+    /// Clipping plane: everything before it is hidden.
     pub cut: Option<Plane>,
     pub(super) samples: Vec<Sample>,
     waiting: Vec<Facet>,
 }
 
-/// A facet in samples.
+/// Facet in sample coordinates.
 struct Projected {
     corners: [[f64; 3]; 3],
-    /// How far behind the cut.
+    /// Distances behind the clipping plane.
     behind: [f64; 3],
-    /// Twice its area.
+    /// Twice the signed area.
     area: f64,
     normals: [[f64; 3]; 3],
     colour: Rgb,
-    /// Heights over the three edges; infinite where edges are not drawn.
+    /// Heights over the three edges; infinite if edges are hidden.
     heights: [f64; 3],
     strength: f64,
 }
 
 impl Canvas {
-    /// An empty one; the camera counts samples.
+    /// Creates an empty canvas; the camera size is in samples.
     pub fn new(camera: Camera, factor: usize) -> Self {
         let [width, height] = camera.size;
         Self { camera, factor, cut: None, samples: vec![NOTHING; width * height], waiting: Vec::new() }
     }
 
-    /// How many pixels a length is.
+    /// Length in pixels.
     pub fn pixels(&self, length: f64) -> f64 {
         length * self.camera.scale / self.factor as f64
     }
 
-    /// Draws a facet, now or later.
+    /// Queues a facet for rendering.
     pub fn add(&mut self, facet: Facet) {
         self.waiting.push(facet);
         if self.waiting.len() >= BATCH {
@@ -97,7 +97,7 @@ impl Canvas {
         }
     }
 
-    /// Draws what was added.
+    /// Renders all queued facets.
     pub fn flush(&mut self) {
         let facets: Vec<Projected> = self.waiting.par_iter().filter_map(|facet| self.project(facet)).collect();
         self.waiting.clear();
@@ -110,14 +110,14 @@ impl Canvas {
         });
     }
 
-    /// None where nothing of it can be seen.
+    /// Projects a facet; returns `None` if it is invisible.
     fn project(&self, facet: &Facet) -> Option<Projected> {
         let corners = facet.corners.map(|p| self.camera.project(&p));
         let [width, height] = self.camera.size.map(|n| n as f64);
         let within = |axis: usize, most: f64| {
             let values = corners.map(|c| c[axis]);
             let (low, high) = (values[0].min(values[1]).min(values[2]), values[0].max(values[1]).max(values[2]));
-            // No sample's middle lies between them where they are that close.
+            // Such close bounds contain no sample centre.
             low < most && high > 0.0 && (low - 0.5).ceil() <= (high - 0.5).floor()
         };
         if !corners.iter().flatten().all(|x| x.is_finite()) || !within(0, width) || !within(1, height) {
@@ -127,7 +127,7 @@ impl Canvas {
         if behind.iter().all(|&b| b < 0.0) {
             return None;
         }
-        // Counter-clockwise from outside, and rows are counted downwards.
+        // Facets are counter-clockwise from outside, and rows are counted downwards.
         let area = -cross(corners[0], corners[1], corners[2]);
         if area == 0.0 {
             return None;
@@ -139,7 +139,7 @@ impl Canvas {
         Some(Projected { corners, behind, area, normals, colour, heights, strength })
     }
 
-    /// Heights over the edges in pixels, and how clearly edges are drawn.
+    /// Heights over the edges in pixels, and the opacity of edges.
     fn heights(&self, corners: &[[f64; 3]; 3], area: f64, lined: bool) -> ([f64; 3], f64) {
         let pixels = area.abs().sqrt() / self.factor as f64;
         let strength = ((pixels - LINED[0]) / (LINED[1] - LINED[0])).clamp(0.0, 1.0);
@@ -160,7 +160,7 @@ fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
 }
 
 impl Projected {
-    /// Draws what lies in some rows.
+    /// Renders the part within a band of rows.
     fn draw(&self, samples: &mut [Sample], first: usize, rows: usize, width: usize, factor: usize) {
         let [a, b, c] = self.corners;
         let range = |axis: usize, from: usize, count: usize| {
@@ -192,7 +192,7 @@ impl Projected {
         let normal = [0, 1, 2].map(|i| weigh(weights, self.normals.map(|n| n[i])));
         let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-12);
         let edge = weights.iter().zip(self.heights).map(|(w, h)| w * h).fold(f64::INFINITY, f64::min);
-        // Fades out over a sample.
+        // The line fades out over one sample.
         let soft = 0.5 / factor as f64;
         let line = self.strength * ((LINE + soft - edge) / (2.0 * soft)).clamp(0.0, 1.0);
         Sample {

@@ -1,39 +1,39 @@
-//! Which colour a thing has, and why.
+//! Colours of displayed quantities.
 
 use anastomesh_mesh::{Patch, WALL};
 
-/// Red, green and blue as screens have them.
+/// sRGB colour: red, green, blue.
 pub type Rgb = [u8; 3];
 
-/// What colours tell.
+/// Quantity shown by colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
-    /// Nothing.
+    /// No quantity.
     Plain,
-    /// Wall, inlets and outlets.
+    /// Boundary patch: wall, inlet or outlet.
     Patch,
-    /// The block.
+    /// Block index.
     Block,
-    /// The radius of the vessel.
+    /// Vessel radius.
     Radius,
-    /// Strahler's order of the vessel.
+    /// Strahler order of the vessel.
     Order,
-    /// The shape of cells, from bad to good.
+    /// Quality of the cells, from bad to good.
     Quality,
 }
 
-/// What a picture is drawn on.
+/// Background of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Background {
     #[default]
     Light,
     Dark,
-    /// Nothing.
+    /// Transparent.
     None,
 }
 
 impl Background {
-    /// Its colour; far things fade into it.
+    /// Background colour, into which distant samples fade.
     pub(super) fn colour(self) -> Rgb {
         match self {
             Self::Light | Self::None => [255, 255, 255],
@@ -42,20 +42,20 @@ impl Background {
     }
 }
 
-/// The wall of vessels, seen from outside and from inside.
+/// Vessel wall, seen from outside and from inside.
 pub(super) const WALL_COLOURS: [Rgb; 2] = [[206, 122, 110], [128, 62, 58]];
-/// Faces of tetrahedra within the mesh.
+/// Inner faces of tetrahedra.
 pub(super) const INSIDE: Rgb = [238, 224, 198];
-/// What is to be seen at once.
+/// Highlighted objects.
 pub(super) const MARKED: Rgb = [226, 40, 40];
 const INLET: Rgb = [38, 101, 178];
 const OUTLET: Rgb = [236, 180, 64];
-/// What has no name that says more.
+/// Patches without a known role.
 const OTHERS: [Rgb; 6] =
     [[38, 101, 178], [236, 180, 64], [62, 150, 110], [150, 96, 170], [90, 170, 205], [140, 140, 140]];
-/// Cells of bad, of middling and of good shape.
+/// Cells of bad to good quality.
 const QUALITY: [Rgb; 5] = [[165, 0, 38], [244, 109, 67], [254, 224, 139], [102, 189, 160], [40, 110, 170]];
-/// Viridis, in steps of an eighth.
+/// Viridis colour map, in steps of an eighth.
 const VIRIDIS: [Rgb; 9] = [
     [68, 1, 84],
     [71, 45, 123],
@@ -68,7 +68,7 @@ const VIRIDIS: [Rgb; 9] = [
     [253, 231, 37],
 ];
 
-/// The colour of a patch of this id.
+/// Colour of the patch with this id.
 pub(super) fn of_patch(patches: &[Patch], id: i32) -> Rgb {
     let named = patches.binary_search_by_key(&id, |p| p.id).ok().map(|i| &patches[i]);
     match named {
@@ -79,9 +79,9 @@ pub(super) fn of_patch(patches: &[Patch], id: i32) -> Rgb {
     }
 }
 
-/// The colour of a block: those of numbers next to each other differ.
+/// Colour of a block; consecutive blocks differ.
 pub(super) fn of_block(block: i32) -> Rgb {
-    // Steps of the golden ratio round the circle of hues never come back.
+    // Hue steps of the golden ratio never repeat.
     let turn = (f64::from(block) * 0.618_033_988_749_895).rem_euclid(1.0);
     let value = 0.78 + 0.14 * (f64::from(block) * 0.754_877_666).rem_euclid(1.0);
     hue(turn, 0.42, value)
@@ -94,12 +94,12 @@ fn hue(turn: f64, saturation: f64, value: f64) -> Rgb {
     })
 }
 
-/// The colour of a radius ratio.
+/// Colour of a radius ratio.
 pub(super) fn of_quality(ratio: f64) -> Rgb {
     between(&QUALITY, ratio)
 }
 
-/// A colour at a share of a scale.
+/// Interpolated colour at a position on a colour map, 0 to 1.
 fn between(scale: &[Rgb], share: f64) -> Rgb {
     let at = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 } * (scale.len() - 1) as f64;
     let i = (at as usize).min(scale.len() - 2);
@@ -107,17 +107,17 @@ fn between(scale: &[Rgb], share: f64) -> Rgb {
     [0, 1, 2].map(|c| (f64::from(scale[i][c]) * (1.0 - t) + f64::from(scale[i + 1][c]) * t).round() as u8)
 }
 
-/// A scale of values, and what it says for people.
+/// Colour scale of values, with its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Legend {
     pub low: f64,
     pub high: f64,
-    /// Whether equal ratios are equal steps.
+    /// True for a logarithmic scale.
     pub logarithmic: bool,
 }
 
 impl Legend {
-    /// Of these values, those that are not finite left out.
+    /// Scale that covers the finite values.
     pub fn of(values: impl Iterator<Item = f64>, logarithmic: bool) -> Self {
         let usable = values.filter(|v| v.is_finite() && (!logarithmic || *v > 0.0));
         let (low, high) = usable.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
@@ -129,7 +129,7 @@ impl Legend {
         let place = |x: f64| if self.logarithmic { x.max(f64::MIN_POSITIVE).ln() } else { x };
         let (low, high) = (place(self.low), place(self.high));
         let share = if high > low { (place(value) - low) / (high - low) } else { 0.5 };
-        // The darkest and the lightest are hard to see on what they are drawn on.
+        // The extremes of the map contrast badly with the backgrounds.
         between(&VIRIDIS, 0.06 + 0.86 * share.clamp(0.0, 1.0))
     }
 }

@@ -1,8 +1,8 @@
-//! A finished picture, and its file.
+//! Finished picture and its PNG file.
 
 use std::io::{self, Write};
 
-/// Red, green, blue and how opaque, row by row from above.
+/// RGBA image, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     pub width: u32,
@@ -11,10 +11,10 @@ pub struct Image {
 }
 
 impl Image {
-    /// Writes it as PNG: without the fourth value where all is opaque.
+    /// Writes the image as PNG, without an alpha channel if all pixels are opaque.
     ///
     /// # Errors
-    /// What the stream reports.
+    /// The stream fails.
     pub fn write_png(&self, out: impl Write) -> io::Result<()> {
         let opaque = self.pixels.iter().all(|p| p[3] == 255);
         let mut encoder = png::Encoder::new(out, self.width, self.height);

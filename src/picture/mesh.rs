@@ -1,8 +1,8 @@
-//! Meshes of any size, drawn in passes.
+//! Multi-pass rendering of meshes of any size.
 //!
-//! Where tetrahedra are to be seen, those stay of which a corner is behind the plane. The faces that this lays open are then
-//! those with all corners before the plane whose tetrahedron has its fourth behind it: each tetrahedron tells its own, without
-//! its neighbours.
+//! With a cut through tetrahedra, every tetrahedron with a corner behind the plane is kept. An exposed face has all
+//! corners before the plane and belongs to a tetrahedron whose fourth corner is behind it. Each tetrahedron thus
+//! determines its exposed face without its neighbours.
 
 use super::canvas::{Canvas, Facet};
 use super::colours::{Colour, INSIDE, Legend, Rgb, WALL_COLOURS, of_block, of_patch, of_quality};
@@ -16,24 +16,24 @@ use anastomesh_mesh::{TET_FACES, face_key};
 use rustc_hash::FxHashMap;
 use std::io;
 
-/// What a plane takes away.
+/// Object that a cutting plane removes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cut {
-    /// Tetrahedra, as wholes.
+    /// Whole tetrahedra.
     Tets(Plane),
-    /// The wall, sharply: the inside of the other side is seen.
+    /// The wall, cut exactly: the inside of the other half becomes visible.
     Wall(Plane),
 }
 
-/// A mesh to be drawn.
+/// Mesh to render.
 pub struct MeshPicture<'a> {
     pub mesh: &'a dyn MeshSource,
     pub colour: Colour,
-    /// Where the colour tells the vessel: its values in the first column, and their scale.
+    /// Vessel values in the first column, with their scale, if the colour shows a vessel property.
     pub values: Option<(&'a dyn Beside, Legend)>,
 }
 
-/// A face that a plane lays open.
+/// Face exposed by a cutting plane.
 struct Open {
     corners: [Point3; 3],
     block: i32,
@@ -41,10 +41,10 @@ struct Open {
 }
 
 impl MeshPicture<'_> {
-    /// How large a mesh is.
+    /// Extent of a mesh.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// The mesh cannot be read.
     pub fn outline(mesh: &dyn MeshSource) -> io::Result<Outline> {
         let mut outline = Outline::for_points(mesh.counts().boundary);
         mesh.each_face_corners(|corners| {
@@ -56,10 +56,10 @@ impl MeshPicture<'_> {
         Ok(outline)
     }
 
-    /// Draws it.
+    /// Renders the mesh.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// The mesh cannot be read.
     pub fn draw(&self, canvas: &mut Canvas, cut: Option<Cut>) -> io::Result<()> {
         canvas.cut = None;
         let plane = match cut {
@@ -71,7 +71,7 @@ impl MeshPicture<'_> {
             None => return self.draw_faces(canvas, |_, _| true),
         };
         let mut open = self.opened(&plane)?;
-        // Of the boundary before the plane only that stays which stays with its tetrahedron.
+        // Before the plane, boundary faces are visible only if their tetrahedron is kept.
         self.draw_faces(canvas, |face, corners| {
             corners.iter().any(|p| plane.behind(p) >= 0.0) || open.remove(&face_key(*face)).is_some()
         })?;
@@ -85,7 +85,7 @@ impl MeshPicture<'_> {
         Ok(())
     }
 
-    /// The faces of tetrahedra that a plane lays open, those of the boundary among them.
+    /// Faces of tetrahedra that a plane exposes, including boundary faces.
     fn opened(&self, plane: &Plane) -> io::Result<FxHashMap<[u32; 3], Open>> {
         let mut open = FxHashMap::default();
         let read = |part| {
@@ -111,7 +111,7 @@ impl MeshPicture<'_> {
         Ok(open)
     }
 
-    /// Draws those faces of the boundary that are wanted.
+    /// Draws the selected faces of the boundary.
     fn draw_faces(
         &self,
         canvas: &mut Canvas,
@@ -141,7 +141,7 @@ impl MeshPicture<'_> {
         let each = |colour: &dyn Fn(usize) -> Rgb| (0..corners.len()).map(colour).collect();
         match (self.colour, &self.values) {
             (Colour::Radius | Colour::Order, Some((beside, legend))) => {
-                // Values of points stand for cells in their middles.
+                // Cells use the interpolated point values at their centres.
                 let values = if beside.columns().first().is_some_and(|column| column.at_points) {
                     beside.at_points(0, &corners.iter().map(middle).collect::<Vec<_>>())
                 } else {
@@ -173,7 +173,7 @@ impl MeshPicture<'_> {
     }
 }
 
-/// The wall is darker within.
+/// Colour of a back face: the wall is darker inside.
 fn seen_from_inside(colour: Rgb) -> Rgb {
     if colour == WALL_COLOURS[0] { WALL_COLOURS[1] } else { colour.map(|c| (u16::from(c) * 5 / 8) as u8) }
 }

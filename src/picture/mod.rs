@@ -1,8 +1,8 @@
-//! Floor 5: pictures of meshes and networks, drawn by the processor alone.
+//! Software rendering of meshes and networks to images.
 //!
-//! What is drawn becomes facets, a batch at a time, so that a mesh of any size is drawn in passes: `mesh` and `network` make
-//! them, `canvas` keeps of each sample the facet that is nearest to the viewer, and `shade` lights the samples once all is
-//! drawn. The same input and options give the same bytes for any number of threads.
+//! Objects become facets in batches, so meshes of any size are rendered in passes. `mesh` and `network` create the
+//! facets, `canvas` is the depth buffer, and `shade` computes the lighting at the end. Equal input and options give
+//! identical bytes for any number of threads.
 
 mod camera;
 mod canvas;

@@ -1,4 +1,4 @@
-//! Networks as cones and balls.
+//! Rendering of networks as cones and balls.
 
 use super::canvas::{Canvas, Facet};
 use super::colours::{Colour, Legend, MARKED, Rgb, WALL_COLOURS, of_block};
@@ -8,27 +8,27 @@ use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 use std::f64::consts::TAU;
 
-/// Vessels thinner than this, in samples, are drawn as thick as this.
+/// Minimum drawn radius of a vessel, in samples.
 const THINNEST: f64 = 0.75;
 
-/// What is shown of a network.
+/// Displayed quantity of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
     pub colour: Colour,
-    /// The scale of its values, where the colour tells some.
+    /// Scale of the values, if the colour shows any.
     pub legend: Option<Legend>,
 }
 
-/// A network to be drawn.
+/// Network to render.
 pub struct NetworkPicture<'a> {
     network: &'a Skeleton,
-    /// Per edge, at either end.
+    /// Colours of each edge at its two ends.
     colours: Vec<[Rgb; 2]>,
     shown: Shown,
 }
 
 impl<'a> NetworkPicture<'a> {
-    /// Of a network. What concerns meshes alone (patches, quality) is drawn plain, blocks as branches.
+    /// Prepares a network. Mesh-only colours (patches, quality) fall back to plain, blocks to branches.
     pub fn new(network: &'a Skeleton, colour: Colour, roots: &[NodeId]) -> Self {
         let radii = || network.edges.iter().map(|e| e.radii);
         let (legend, colours) = match colour {
@@ -50,19 +50,19 @@ impl<'a> NetworkPicture<'a> {
         Self { network, colours, shown: Shown { colour, legend } }
     }
 
-    /// Draws some edges in a colour that nothing else has.
+    /// Draws some edges in the marker colour.
     pub fn mark(&mut self, edges: &[EdgeId]) {
         for edge in edges {
             self.colours[edge.index()] = [MARKED; 2];
         }
     }
 
-    /// What its colours tell.
+    /// Displayed quantity and its scale.
     pub fn shown(&self) -> Shown {
         self.shown
     }
 
-    /// How large it is.
+    /// Extent of the network.
     pub fn outline(&self) -> Outline {
         let mut outline = Outline::for_points(6 * self.network.nodes.len());
         for node in &self.network.nodes {
@@ -74,7 +74,7 @@ impl<'a> NetworkPicture<'a> {
         outline
     }
 
-    /// Draws it.
+    /// Renders the network.
     pub fn draw(&self, canvas: &mut Canvas) {
         let thinnest = THINNEST / canvas.camera.scale;
         for (id, colours) in self.network.edge_ids().zip(&self.colours) {
@@ -84,7 +84,7 @@ impl<'a> NetworkPicture<'a> {
             if tube.length() > 0.0 {
                 cone(canvas, &tube, sides, *colours);
             }
-            // Balls at both ends close the joints, and the ends.
+            // Balls at both ends close the joints and the ends.
             for (centre, radius, colour) in [(tube.a, tube.ra, colours[0]), (tube.b, tube.rb, colours[1])] {
                 if canvas.pixels(radius) > 1.0 {
                     ball(canvas, &centre, radius, sides, colour);
@@ -95,28 +95,28 @@ impl<'a> NetworkPicture<'a> {
     }
 }
 
-/// Strahler's orders of the edges, from these roots.
+/// Strahler orders of the edges for the given roots.
 fn orders(network: &Skeleton, roots: &[NodeId]) -> Vec<u32> {
     let inflow = roots.iter().map(|&node| (node, 1.0)).collect();
     Orders::of(network, &solve(network, &inflow, 1.0).pressure).strahler
 }
 
-/// As many sides as are told apart.
+/// Number of sides of a cone that is visually sufficient.
 fn sides(canvas: &Canvas, radius: f64) -> usize {
     (5.0 + 2.5 * canvas.pixels(radius).sqrt()).clamp(5.0, 48.0) as usize
 }
 
-/// The wall of a cone.
+/// Draws the lateral surface of a cone.
 fn cone(canvas: &mut Canvas, tube: &Tube, sides: usize, colours: [Rgb; 2]) {
     let axis = (tube.b - tube.a) / tube.length();
     let (u, w) = Section { origin: tube.a, axis, radius: tube.ra }.frame();
-    // Normals of a cone lean towards its thin end.
+    // Normals of a cone are inclined towards its thin end.
     let lean = axis * ((tube.ra - tube.rb) / tube.length());
     let out = |i: usize| {
         let angle = TAU * i as f64 / sides as f64;
         u * angle.cos() + w * angle.sin()
     };
-    // Colours change along the vessel in as many steps as are seen.
+    // Colours change along the vessel in visible steps.
     let steps =
         if colours[0] == colours[1] { 1 } else { (canvas.pixels(tube.length()) / 6.0).clamp(1.0, 24.0) as usize };
     for step in 0..steps {

@@ -1,10 +1,10 @@
-//! A plane that takes away what is before it.
+//! Cutting plane.
 
 use super::camera::Camera;
 use super::outline::Outline;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// A plane; what is on the side to which it points is taken away.
+/// Plane; everything on the side of its normal is removed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     pub normal: Vec3,
@@ -12,26 +12,26 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// How far behind the plane a place is: what is negative is taken away.
+    /// Distance behind the plane; negative for removed points.
     #[inline]
     pub fn behind(&self, place: &Point3) -> f64 {
         self.offset - place.coords.dot(&self.normal)
     }
 }
 
-/// A plane as it is asked for: across an axis, or across the line of sight where there is none.
+/// Requested plane: normal to an axis, or to the view direction if `axis` is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneWish {
     pub axis: Option<Vec3>,
     pub place: Place,
 }
 
-/// Where a plane is.
+/// Position of a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// In the middle of the picture.
+    /// At the centre of the picture.
     Middle,
-    /// At a share of the thing's extent, 0 to 1.
+    /// At a fraction of the object's extent, 0 to 1.
     Share(f64),
     /// At a coordinate.
     Coordinate(f64),
@@ -40,7 +40,7 @@ pub enum Place {
 impl std::str::FromStr for PlaneWish {
     type Err = String;
 
-    /// `x`, `-y`, `z:12.5`, `x:40%`, `view`, `view:60%`.
+    /// Parses `x`, `-y`, `z:12.5`, `x:40%`, `view`, `view:60%`.
     fn from_str(text: &str) -> Result<Self, String> {
         let help = "give x, y, z, -x, -y, -z or view, and where it is not to be in the middle a coordinate or a share: x:12.5, view:40%";
         let (axis, place) = text.split_once(':').map_or((text, None), |(axis, place)| (axis, Some(place)));
@@ -67,20 +67,20 @@ impl std::str::FromStr for PlaneWish {
 }
 
 impl PlaneWish {
-    /// The plane, once it is known what is looked at, and from where.
+    /// Resolves the plane for a camera and an object.
     pub fn plane(&self, camera: &Camera, outline: &Outline) -> Plane {
-        // Of x the viewer's side goes, of −x the other one.
+        // `x` removes the viewer's side, `-x` the other one.
         let facing = |axis: Vec3| if axis.abs().dot(&camera.towards) < 0.0 { -axis } else { axis };
         let normal = self.axis.map_or(camera.towards, facing);
         let offset = match self.place {
             Place::Middle => camera.centre.coords.dot(&normal),
             Place::Share(share) => {
-                // Counted along the axis itself, whichever side is taken away.
+                // The fraction is measured along the positive axis, whichever side is removed.
                 let share = if normal.sum() < 0.0 && self.axis.is_some() { 1.0 - share } else { share };
                 let [low, high] = outline.range(normal);
                 low + share * (high - low)
             }
-            // The coordinate of −x is still that on x.
+            // Coordinates of `-x` are those of x.
             Place::Coordinate(c) if self.axis.is_some() => c * normal.sum(),
             Place::Coordinate(c) => c,
         };

@@ -1,6 +1,6 @@
-//! Light: samples become pixels.
+//! Lighting: converts samples to pixels.
 //!
-//! One lamp is above and to the left of the viewer, the sky gives the rest, less where something near stands in its way.
+//! One lamp is above and to the left of the viewer; ambient sky light is reduced by occlusion.
 
 use super::canvas::{Canvas, Sample};
 use super::colours::Background;
@@ -8,22 +8,22 @@ use super::image::Image;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Towards the lamp, as the viewer sees it; of length 1.
+/// Unit vector to the lamp, in view coordinates.
 const LAMP: [f64; 3] = [-0.408_248, 0.408_248, 0.816_497];
 const LAMP_LIGHT: f64 = 0.62;
 const SKY_LIGHT: f64 = 0.46;
-/// How much of an edge's darkness is seen.
+/// Opacity of edges.
 const LINE_DARKNESS: f64 = 0.62;
-/// How far the furthest things fade into the background.
+/// Maximum fraction by which distant samples fade into the background.
 const FADING: f64 = 0.42;
-/// Places that are looked at for what stands in the sky's way, and how far off they are, as a share of the picture.
+/// Number of ambient occlusion samples, and their maximum distance as a fraction of the picture.
 const LOOKS: usize = 28;
 const REACH: f64 = 0.045;
-/// Steps from one angle to the next: no two looks go the same way.
+/// Angle between successive occlusion samples: the golden angle avoids equal directions.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 impl Canvas {
-    /// Lights what was drawn.
+    /// Computes the lighting of the rendered samples.
     pub fn finish(mut self, background: Background) -> Image {
         self.flush();
         let [width, height] = self.camera.size.map(|n| n / self.factor);
@@ -41,9 +41,9 @@ impl Canvas {
 struct Light<'a> {
     canvas: &'a Canvas,
     background: Background,
-    /// The nearest and the furthest of what is seen.
+    /// Depth of the nearest and of the furthest sample.
     depths: [f32; 2],
-    /// Linear values of the 256 steps of a screen.
+    /// Linear values of the 256 sRGB levels.
     linear: [f64; 256],
     looks: Vec<[f64; 2]>,
     reach: f64,
@@ -66,7 +66,7 @@ impl<'a> Light<'a> {
         &self.canvas.samples[y * self.canvas.camera.size[0] + x]
     }
 
-    /// The mean of a pixel's samples.
+    /// Mean of a pixel's samples.
     fn pixel(&self, x: usize, y: usize) -> [u8; 4] {
         let n = self.canvas.factor;
         let ground = self.background.colour().map(|c| self.linear[c as usize]);
@@ -74,9 +74,9 @@ impl<'a> Light<'a> {
         for (i, j) in (0..n).flat_map(|j| (0..n).map(move |i| (i, j))) {
             let (x, y) = (n * x + i, n * y + j);
             let sample = self.sample(x, y);
-            // What is far lets the background through, what is not there does so altogether.
+            // Distant samples are translucent, empty ones transparent.
             let (own, share) = if sample.depth.is_finite() {
-                // One look at the sky per pixel is enough.
+                // One occlusion test per pixel suffices.
                 let sky = *sky.get_or_insert_with(|| self.sky(sample, x, y));
                 (self.lit(sample, sky), 1.0 - self.faded(sample))
             } else {
@@ -98,31 +98,31 @@ impl<'a> Light<'a> {
     fn lit(&self, sample: &Sample, sky: f64) -> [f64; 3] {
         let normal = sample.normal.map(|x| f64::from(x) / 32_767.0);
         let lamp = normal.iter().zip(LAMP).map(|(a, b)| a * b).sum::<f64>().max(0.0);
-        // More of the sky is above than below.
+        // More sky light comes from above than from below.
         let above = 0.75 + 0.25 * normal[1];
         let light = LAMP_LIGHT * lamp * (0.55 + 0.45 * sky) + SKY_LIGHT * above * sky;
         let ink = 1.0 - LINE_DARKNESS * f64::from(sample.line) / 255.0;
         sample.colour.map(|c| self.linear[c as usize] * light * ink)
     }
 
-    /// How far a sample fades into the background.
+    /// Fraction by which a sample fades into the background.
     fn faded(&self, sample: &Sample) -> f64 {
         let [near, far] = self.depths.map(f64::from);
         let faded = FADING * ((near - f64::from(sample.depth)) / (near - far).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         faded * self.deep()
     }
 
-    /// What is as deep as it is wide fades in full, what is flat not at all.
+    /// Strength of the depth fading: full for objects as deep as wide, zero for flat ones.
     fn deep(&self) -> f64 {
         let width = self.canvas.camera.size[0] as f64;
         (f64::from(self.depths[0] - self.depths[1]) / width).clamp(0.0, 1.0)
     }
 
-    /// How much of the sky is seen from a sample, from 0 to 1.
+    /// Visible fraction of the sky at a sample, from 0 to 1.
     fn sky(&self, sample: &Sample, x: usize, y: usize) -> f64 {
         let normal = sample.normal.map(|x| f64::from(x) / 32_767.0);
         let [width, height] = self.canvas.camera.size;
-        // Looks are turned from pixel to pixel, in a pattern of four by four, so that they leave no rings.
+        // The sampling pattern rotates between pixels in blocks of four by four, which avoids rings.
         let [column, row] = [x, y].map(|n| (n / self.canvas.factor) & 3);
         let turn = TAU * ((4 * column + row) * 7 % 16) as f64 / 16.0;
         let (sin, cos) = turn.sin_cos();

@@ -1,9 +1,9 @@
-//! Edges turned so that they lead away from the inlet.
+//! Orientation of edges away from the inlet.
 
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// The same network with every edge of each component leading away from its inlet (the thickest terminal; where there is
-/// none, the first node), breadth first. In a network with loops two edges lead to one node.
+/// Orients every edge away from the inlet of its component, breadth first. The inlet is the thickest terminal, or the
+/// first node if there is no terminal. In a network with loops two edges may lead to one node.
 pub fn directed(skeleton: &Skeleton) -> Skeleton {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);

@@ -1,20 +1,20 @@
-//! Components too small to matter.
+//! Components too small to mesh.
 
 use anastomesh_skeleton::{Skeleton, SkeletonError, clean};
 use serde::Serialize;
 
-/// A component that was dropped.
+/// Removed component.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Island {
-    /// Its first node.
+    /// First node of the component.
     pub node: u32,
-    /// How many it had.
+    /// Number of nodes.
     pub nodes: usize,
-    /// Length of its vessels, in the unit of the network.
+    /// Length of the vessels, in the unit of the network.
     pub length: f64,
 }
 
-/// Drops components of fewer nodes than `smallest`.
+/// Removes components with fewer than `smallest` nodes.
 pub(super) fn drop(skeleton: &Skeleton, smallest: usize) -> Result<(Skeleton, Vec<Island>), SkeletonError> {
     let components = skeleton.components(&skeleton.adjacency());
     let small = components.list.iter().filter(|c| c.nodes.len() < smallest);

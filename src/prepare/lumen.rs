@@ -1,42 +1,42 @@
-//! Branch points beside each other in one lumen, and loops that enclose nothing but lumen.
+//! Adjacent branch points within one lumen, and loops that enclose only lumen.
 
 use anastomesh_mesh::geometry::{Tube, point_segment};
 use anastomesh_skeleton::{Branch, Branches, Edge, NodeId, Skeleton, SkeletonError, clean};
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
-/// A branch point that was joined to another one.
+/// Branch point merged into another one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct JoinedNodes {
-    /// The node that went.
+    /// Removed node.
     pub node: u32,
-    /// The node that it became.
+    /// Node that replaces it.
     pub into: u32,
-    /// Their distance, in the unit of the network.
+    /// Distance of the nodes, in the unit of the network.
     pub distance: f64,
-    /// Radius of the lumen, the smaller of those of the two.
+    /// Radius of the lumen: the smaller of the two nodes' radii.
     pub radius: f64,
 }
 
-/// A loop that was closed, by taking away a branch that lay within the lumen of another or of its own branch point.
+/// Loop closed by removing a branch inside another branch's lumen or inside that of its own branch point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ClosedLoop {
     /// Ends of the branch.
     pub nodes: [u32; 2],
-    /// Its length, in the unit of the network.
+    /// Length of the branch, in the unit of the network.
     pub length: f64,
 }
 
-/// What joining did.
+/// Report of the lumen cure.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct JoinedReport {
-    /// Branch points that were joined to others.
+    /// Merged branch points.
     pub nodes: Vec<JoinedNodes>,
-    /// Loops that were closed.
+    /// Closed loops.
     pub loops: Vec<ClosedLoop>,
 }
 
-/// Joins branch points within one lumen and closes loops within their own.
+/// Merges branch points within one lumen and closes loops within their own lumen.
 pub(super) fn join(skeleton: &Skeleton) -> Result<(Skeleton, JoinedReport), SkeletonError> {
     let (closed, mut loops) = close_loops(skeleton)?;
     let (joined, nodes) = join_nodes(&closed)?;
@@ -45,8 +45,8 @@ pub(super) fn join(skeleton: &Skeleton) -> Result<(Skeleton, JoinedReport), Skel
     Ok((result, JoinedReport { nodes, loops }))
 }
 
-/// Contracts branches between branch points that are no longer than the lumen at either end is wide, the shortest first.
-/// No node moves further than a radius, so that a vessel with a side branch in each radius is not drawn into a point.
+/// Contracts branches between branch points that are at most as long as the lumen radius at either end, shortest first.
+/// No node moves by more than a radius, so a vessel with many side branches does not collapse to a point.
 fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), SkeletonError> {
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
@@ -57,7 +57,7 @@ fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), Skele
         .map(|(i, b)| (b.length(), i))
         .collect();
     short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    // A node that others became becomes none itself: so none moves twice.
+    // A merge target is never merged itself, so no node moves twice.
     let mut into: Vec<NodeId> = skeleton.node_ids().collect();
     let mut is_target = vec![false; skeleton.nodes.len()];
     let mut report = Vec::new();
@@ -65,7 +65,7 @@ fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), Skele
     for &(distance, index) in &short {
         let branch = &branches.list[index];
         let [a, b] = branch.ends();
-        // The wider stays where it is.
+        // The wider node stays.
         let pair = if radius(b) > radius(a) { [b, a] } else { [a, b] };
         let free = |n: NodeId| into[n.index()] == n && !is_target[n.index()];
         let Some([stays, goes]) =
@@ -84,7 +84,7 @@ fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), Skele
     if report.is_empty() {
         return Ok((skeleton.clone(), report));
     }
-    // Another short branch between the two has become a loop within the lumen; folded up it would be a spur.
+    // A second short branch between the nodes is now a loop within the lumen; folded, it would be a spur.
     for (_, index) in short {
         let branch = &branches.list[index];
         let [a, b] = branch.ends().map(|n| into[n.index()]);
@@ -97,8 +97,8 @@ fn join_nodes(skeleton: &Skeleton) -> Result<(Skeleton, Vec<JoinedNodes>), Skele
     Ok((clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?.0, report))
 }
 
-/// Takes away branches that return to their branch point within its lumen, and of two between the same branch points the
-/// one that lies within the other.
+/// Removes branches that return to their branch point within its lumen. Of two branches between the same branch points,
+/// removes one that lies within the other.
 fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), SkeletonError> {
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
@@ -117,7 +117,7 @@ fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), Skele
     let mut groups: Vec<Vec<usize>> = beside.into_values().filter(|group| group.len() > 1).collect();
     groups.sort_unstable();
     for mut group in groups {
-        // The thickest stays; the others are held against those that stay.
+        // The thickest branch stays; the others are compared with the remaining ones.
         let radius = |i: usize| branches.list[i].mean_radius(skeleton);
         group.sort_by(|&i, &j| radius(j).total_cmp(&radius(i)).then(i.cmp(&j)));
         let mut kept: Vec<usize> = Vec::new();
@@ -139,17 +139,17 @@ fn close_loops(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ClosedLoop>), Skele
     Ok((clean(&Skeleton { nodes: skeleton.nodes.clone(), edges })?.0, loops))
 }
 
-/// Branches between the same two branch points that others are held against, at most.
+/// Maximum number of parallel branches that serve as reference.
 const MOST_BESIDE: usize = 8;
-/// Pairs of points and edges that are looked at to find whether one branch lies within another, at most.
+/// Maximum number of point-edge pairs in a containment test.
 const MOST_LOOKS: f64 = 1e6;
-/// A branch lies within another one up to so many of its radii: further out there may be a hole between their walls.
+/// Containment tolerance, in radii of the outer branch. Beyond it there may be a hole between the walls.
 const WITHIN: f64 = 1.25;
-/// A branch is looked at in steps of so many of its radii.
+/// Sampling step along a branch, in its radii.
 const STEP: f64 = 0.5;
 
-/// Whether branch `i` lies within the tubes of branch `k` all along, or all but; no where they have too many points to tell: a loop
-/// within a lumen is short.
+/// True if branch `i` lies within the tubes of branch `k` along its whole length. Returns false if there are too many
+/// points to test, as a loop within a lumen is short.
 fn within(skeleton: &Skeleton, branches: &Branches, i: usize, k: usize) -> bool {
     let (inner, outer) = (&branches.list[i], &branches.list[k]);
     let tubes: Vec<_> = outer.tubes(skeleton).collect();
@@ -159,7 +159,7 @@ fn within(skeleton: &Skeleton, branches: &Branches, i: usize, k: usize) -> bool 
         return false;
     }
     inner.tubes(skeleton).all(|inner| {
-        // Both ends of most edges are looked at twice; a branch of one edge has no node but those that it shares.
+        // Most edge ends are tested twice; a single-edge branch has only shared nodes.
         (0..=steps(&inner) as usize).all(|j| {
             let point = inner.point(j as f64 / steps(&inner));
             tubes.iter().any(|tube| {

@@ -1,9 +1,9 @@
-//! Floor 3: a measured network made one graph of one line per vessel.
+//! Preparation of measured networks: one graph with one line per vessel.
 //!
-//! What users hold is not what a mesh needs: the same vessel drawn several times (one line from the inlet to each
-//! outlet), radii of zero, points a hundredth of a radius apart, tips that segmentation left, branch points beside each
-//! other in one lumen. Each has a cure here, with a switch of its own and a list of all that it changed. None moves an
-//! axis that stays by more than its bound.
+//! Input networks have typical defects: vessels drawn several times (one line from the inlet to each outlet), zero
+//! radii, and points a hundredth of a radius apart. Others are segmentation spurs and adjacent branch points in one
+//! lumen. Each defect has a cure with its own switch and a list of its changes. No cure moves a remaining axis beyond
+//! its tolerance.
 
 mod directed;
 mod islands;
@@ -30,35 +30,34 @@ pub use touching::{TouchedBy, Touching, TouchingTip, take_back};
 
 use anastomesh_skeleton::{LineGroup, Skeleton, SkeletonError, clean};
 
-/// Which cures are applied, and their bounds. Lengths are in radii of the vessel concerned.
+/// Selection of cures and their tolerances. Lengths are in radii of the respective vessel.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PrepareParams {
-    /// Apply no cure but that of the radii to a network that was grown: of which the vessels have no points of their own
-    /// between branch points.
+    /// Apply only the radius cure to grown networks, whose vessels have no points between branch points.
     pub only_measured: bool,
-    /// Fill radii that are zero, missing or absurd from their neighbours.
+    /// Replace zero, missing or implausible radii by values from neighbours.
     pub radii: bool,
     /// Merge lines that run together.
     pub merge: bool,
-    /// Take spurs off.
+    /// Remove spurs.
     pub spurs: bool,
-    /// Join branch points within one lumen and close loops within their own.
+    /// Merge branch points within one lumen and close loops within their own lumen.
     pub join: bool,
-    /// Put tips out whose cap would lie in another vessel of their branch point.
+    /// Extend tips whose cap would lie in another vessel of their branch point.
     pub short_tips: bool,
-    /// What is done about tips that end in or on another vessel.
+    /// Treatment of tips that end in or on another vessel.
     pub touching: Touching,
-    /// Drop components of fewer nodes than this (0: none).
+    /// Remove components with fewer nodes than this (0: none).
     pub drop_islands: usize,
     /// Resample polylines.
     pub resample: bool,
-    /// Even out the noise of polylines that are resampled, by half of the two bounds that follow. Not by default: a lumen
-    /// around an axis that steps from voxel to voxel loses 2 % of its volume with the steps.
+    /// Smooth resampled polylines, by half of the two tolerances below. Off by default: a lumen around an axis with
+    /// voxel steps loses 2 % of its volume with them.
     pub smooth: bool,
-    /// How far a resampled axis may be from the given one, in radii.
+    /// Maximum distance of a resampled axis from the given one, in radii.
     pub axis_tolerance: f64,
-    /// How much a resampled radius may differ from the given one, as a share of it.
+    /// Maximum relative difference of a resampled radius.
     pub radius_tolerance: f64,
 }
 
@@ -79,7 +78,7 @@ impl Default for PrepareParams {
 }
 
 impl PrepareParams {
-    /// No cure at all: the network is only cleaned, as every verb does.
+    /// No cures: the network is only cleaned, as in every command.
     pub fn as_is() -> Self {
         Self {
             only_measured: false,
@@ -98,40 +97,40 @@ impl PrepareParams {
     }
 }
 
-/// A prepared network and what was done to it.
+/// Prepared network and report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
-    /// The network; satisfies `Skeleton::check`. `Node::original` are nodes of the input.
+    /// Prepared network; satisfies `Skeleton::check`. `Node::original` refers to nodes of the input.
     pub skeleton: Skeleton,
-    /// The network as it was read, cleaned and with usable radii: what a mesh is held against.
+    /// Input network, cleaned and with usable radii: the reference for the mesh.
     pub given: Skeleton,
-    /// The same with as many points as its shape needs, to find its lumen by.
+    /// Resampled reference network, used to locate the lumen.
     pub outline: Skeleton,
-    /// What was done.
+    /// Report of the preparation.
     pub report: PrepareReport,
 }
 
-/// Makes a network as it was read fit for refinement and meshing.
+/// Prepares an input network for refinement and meshing.
 ///
-/// The order is that in which one cure needs another: radii first, for they say what lies in what; then lines become
-/// one graph, of which spurs, branch points and islands are judged; at last the lines are resampled, so that all before
-/// saw the axis as it was given.
+/// Cures run in the order of their dependencies. Radii come first, as they define containment. Merged lines form one
+/// graph, on which spurs, branch points and islands are found. Resampling comes last, so that all other cures see the
+/// given axis.
 ///
 /// # Errors
-/// When a number cannot be used (with `radii`, only positions and networks without any usable radius), an edge names a
-/// node that does not exist, or no vessel remains.
+/// A number is unusable (with `radii`: a position, or all radii), an edge refers to a missing node, or no vessel
+/// remains.
 pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, SkeletonError> {
     prepare_lines(raw, &[], params)
 }
 
-/// The same for a network whose file says of its nodes which vessel their lines are drawn for (empty: of none).
+/// Prepares a network with known line groups per node (an empty slice if unknown).
 pub(crate) fn prepare_lines(
     raw: &Skeleton,
     groups: &[Option<LineGroup>],
     params: &PrepareParams,
 ) -> Result<Prepared, SkeletonError> {
     let mut report = PrepareReport { given: Size::of(raw), ..PrepareReport::default() };
-    // Large networks ask for the room of what is done with.
+    // Large networks require an early release of intermediate results.
     let (mut skeleton, cleaned) = if params.radii {
         let (filled, radii) = radii::fill(raw)?;
         report.radii = radii;

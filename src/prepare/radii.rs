@@ -1,4 +1,4 @@
-//! Radii that cannot be true, filled from their neighbours.
+//! Replacement of implausible radii by values from neighbours.
 
 use anastomesh_mesh::geometry::{DisjointSets, Total, place_key};
 use anastomesh_skeleton::{LARGEST, NodeId, Skeleton, SkeletonError};
@@ -7,47 +7,47 @@ use serde::Serialize;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A radius this many times that of all its neighbours, or as many times smaller, is absurd.
+/// Ratio between a radius and its neighbours' above which it is implausible.
 const ABSURD: f64 = 10.0;
-/// Over so many radii of a wider place a vessel that goes on does not narrow to a tenth and widen again, nor end in a point:
-/// that is where a distance map had nothing to measure.
+/// Distance, in radii of a wider place, within which a real vessel neither narrows to a tenth nor ends in a point. Such
+/// narrow places come from distance maps without data.
 const WINDOW: f64 = 4.0;
-/// Places looked at to either side of one, at most.
+/// Maximum number of places examined on either side.
 const MOST_BESIDE: usize = 256;
-/// Sweeps by which filled radii are evened out: a run of so many nodes becomes linear.
+/// Sweeps that smooth replaced radii. A run of up to this many nodes becomes linear.
 const SWEEPS: usize = 50;
-/// The least distance that two places have, in the unit of the network: its inverse is a number.
+/// Minimum distance of two places, in the unit of the network, so that its inverse is finite.
 const APART: f64 = f64::MIN_POSITIVE * 1e20;
 
-/// What is wrong with a radius.
+/// Fault of a radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fault {
-    /// It is zero, negative, infinite or no number.
+    /// The radius is zero, negative, infinite or NaN.
     Missing,
-    /// It is ten times that of all its neighbours, or less than a tenth of what the vessel has to both sides near by, or at
-    /// the one side of a tip.
+    /// The radius is ten times that of all neighbours. Or it is below a tenth of the nearby vessel radius on both
+    /// sides, or on the one side of a tip.
     Absurd,
 }
 
-/// A radius that was filled.
+/// Replaced radius.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FilledRadius {
-    /// The node.
+    /// Node index.
     pub node: u32,
-    /// What was there; none when it was no finite number.
+    /// Given value; `None` if it was not finite.
     pub given: Option<f64>,
-    /// What it is now, in the unit of the network.
+    /// New value, in the unit of the network.
     pub filled: f64,
-    /// What was wrong.
+    /// Fault of the given value.
     pub fault: Fault,
 }
 
-/// The network with usable radii, and the nodes whose radius was filled: between those of the nodes around it that are
-/// good, in proportion to their distance along the vessel. What has no good one in its component gets the median of all.
+/// Replaces faulty radii and returns the affected nodes. New values interpolate between the surrounding valid radii by
+/// distance along the vessel. Components without a valid radius get the median of all.
 ///
 /// # Errors
-/// When an edge names no node or a position is no number. Where no radius is good nothing is filled.
+/// An edge refers to a missing node or a position is not finite. If no radius is valid, nothing is replaced.
 pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), SkeletonError> {
     check_all_but_radii(raw)?;
     let mut network = raw.clone();
@@ -62,7 +62,7 @@ pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), Skel
     }
     let filled = places.filled(&radii);
     let Some(filled) = filled else {
-        // Nothing to fill from: the caller's own check names the node, or there is none.
+        // No source for values: the caller's check reports the node, if there is one.
         return Ok((network, Vec::new()));
     };
     let mut report = Vec::new();
@@ -76,7 +76,7 @@ pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), Skel
     for edge in &mut network.edges {
         for end in 0..2 {
             let node = edge.nodes[end].index();
-            // An edge that has its radius from its node follows it.
+            // An edge with the radius of its node follows the node.
             let same = edge.radii[end] == raw.nodes[node].radius;
             if !good(edge.radii[end]) || faults[node].is_some() && same {
                 edge.radii[end] = filled[places.of_node[node] as usize];
@@ -99,31 +99,31 @@ fn check_all_but_radii(raw: &Skeleton) -> Result<(), SkeletonError> {
     sound.check_numbers()
 }
 
-/// What a vessel does beyond a place.
+/// Continuation of a vessel beyond a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Beyond {
-    /// It becomes ten times as wide, near by for that width.
+    /// The vessel becomes ten times as wide within `WINDOW` of the wider radii.
     Wider,
-    /// It ends.
+    /// The vessel ends.
     End,
-    /// It goes on as it is.
+    /// The vessel continues unchanged.
     Same,
 }
 
-/// Nodes at one place are one: many files hold each vessel with points of its own.
+/// Distinct places. Coinciding nodes are one place, as many files give each vessel its own points.
 struct Places {
     of_node: Vec<u32>,
     count: usize,
     beside: Vec<Vec<Beside>>,
 }
 
-/// A place beside another.
+/// Neighbour of a place.
 #[derive(Clone, Copy, Debug)]
 struct Beside {
     place: u32,
-    /// How far it is along the vessel.
+    /// Distance along the vessel.
     length: f64,
-    /// Radius that the vessel has there: a branch point has that of its widest.
+    /// Radius of the vessel there: a branch point has that of its widest vessel.
     radius: f64,
 }
 
@@ -149,7 +149,7 @@ impl Places {
         Self { of_node, count, beside }
     }
 
-    /// What is wrong with the radius of each node.
+    /// Fault of each node's radius.
     fn faults(&self, raw: &Skeleton) -> Vec<Option<Fault>> {
         let mut at = vec![0.0_f64; self.count];
         for (node, &place) in raw.nodes.iter().zip(&self.of_node) {
@@ -157,13 +157,13 @@ impl Places {
                 at[place as usize] = at[place as usize].max(node.radius);
             }
         }
-        // Of an inner node of a vessel, of which both neighbours agree, it can be told.
+        // Decidable for inner nodes of a vessel with similar neighbours.
         let absurd = |place: u32| {
             let [p, q] = self.beside[place as usize][..] else { return false };
             let [r, a, b] = [place, p.place, q.place].map(|i| at[i as usize]);
             a > 0.0 && b > 0.0 && a.max(b) <= 2.0 * a.min(b) && (r > ABSURD * a.max(b) || r * ABSURD < a.min(b))
         };
-        // A radius that is absurdly large says nothing of those beside it.
+        // An implausibly large radius carries no information about its neighbours.
         let all: Vec<bool> = (0..self.count as u32).map(absurd).collect();
         let mut told = at.clone();
         for (radius, _) in told.iter_mut().zip(&all).filter(|(_, absurd)| **absurd) {
@@ -177,8 +177,7 @@ impl Places {
         raw.nodes.iter().zip(&self.of_node).map(fault).collect()
     }
 
-    /// Whether the vessel is ten times as wide to both sides of a place, near by for that width, or to one side where it ends
-    /// to the other.
+    /// True if the vessel is ten times as wide near both sides of a place, or near one side if it ends on the other.
     fn is_dip(&self, place: u32, radii: &[f64]) -> bool {
         let beside = &self.beside[place as usize];
         if beside.len() > 2 {
@@ -188,7 +187,7 @@ impl Places {
         found.contains(&Beyond::Wider) && !found.contains(&Beyond::Same)
     }
 
-    /// What follows where the vessel leaves a place towards `next`.
+    /// Continuation of the vessel from a place towards `next`.
     fn beyond(&self, place: u32, mut next: Beside, radii: &[f64]) -> Beyond {
         let (own, mut last, mut arc) = (radii[place as usize], place, 0.0);
         for _ in 0..MOST_BESIDE {
@@ -206,7 +205,7 @@ impl Places {
         Beyond::Same
     }
 
-    /// A radius for each place; none when there is no good one.
+    /// A radius for each place; `None` if no valid radius exists.
     fn filled(&self, known: &[Option<f64>]) -> Option<Vec<f64>> {
         let mut all: Vec<f64> = known.iter().flatten().copied().collect();
         all.sort_unstable_by(f64::total_cmp);
@@ -218,7 +217,7 @@ impl Places {
         }
         let mut radii: Vec<f64> = radii.into_iter().flatten().collect();
         for sweep in 0..SWEEPS {
-            // To and fro, so that it does not matter at which end a run begins.
+            // Alternating direction, so that the result does not depend on the end at which a run begins.
             for k in 0..missing.len() {
                 let place = missing[if sweep % 2 == 0 { k } else { missing.len() - 1 - k }];
                 radii[place] = self.mean(place, &radii).unwrap_or(radii[place]);
@@ -227,7 +226,7 @@ impl Places {
         Some(radii)
     }
 
-    /// Mean of the radii beside a place, weighted by nearness.
+    /// Mean of the neighbouring radii, weighted by inverse distance.
     fn mean(&self, place: usize, radii: &[f64]) -> Option<f64> {
         let (mut sum, mut weights) = (0.0, 0.0);
         for next in &self.beside[place] {
@@ -239,11 +238,11 @@ impl Places {
         good(mean).then_some(mean)
     }
 
-    /// The nearest known radius along the vessels.
+    /// Nearest known radius along the vessels.
     fn nearest(&self, known: &[Option<f64>]) -> Vec<Option<f64>> {
         let mut radii = vec![None; self.count];
         let sources = (0..).zip(known).filter_map(|(place, r)| Some((Total(0.0), place, Total((*r)?))));
-        // The nearest first: its distance, its place, and the radius that comes along.
+        // Min-heap of distance, place, and propagated radius.
         let mut heap: BinaryHeap<Reverse<(Total, u32, Total)>> = sources.map(Reverse).collect();
         while let Some(Reverse((Total(distance), place, radius))) = heap.pop() {
             if radii[place as usize].is_some() {

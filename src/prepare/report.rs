@@ -1,10 +1,10 @@
-//! What was done to a network.
+//! Report of the preparation.
 
 use super::{FilledRadius, Island, JoinedReport, MergeReport, ResampleReport, ShortTip, Spur, TouchingTip};
 use anastomesh_skeleton::{CleanReport, Skeleton};
 use serde::Serialize;
 
-/// How large a network is.
+/// Size of a network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Size {
     /// Number of nodes.
@@ -22,7 +22,7 @@ pub struct Size {
 }
 
 impl Size {
-    /// The size of a network; all zero but nodes and edges when an edge names no node.
+    /// Size of a network; only nodes and edges are set if an edge refers to a missing node.
     pub fn of(skeleton: &Skeleton) -> Self {
         let (nodes, edges) = (skeleton.nodes.len(), skeleton.edges.len());
         let mut size = Self { nodes, edges, ..Self::default() };
@@ -40,40 +40,40 @@ impl Size {
 }
 
 impl PrepareReport {
-    /// Whether anything was done.
+    /// True if the preparation changed anything.
     pub fn changed(&self) -> bool {
         let Self { given, measured, result, .. } = *self;
         *self != Self { given, read: given, measured, result, ..Self::default() }
     }
 }
 
-/// What was done to a network. Nodes are numbered as in the input, from 0.
+/// Changes to a network. Nodes are numbered as in the input, from 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PrepareReport {
-    /// As given.
+    /// Size of the input.
     pub given: Size,
-    /// When read and cleaned, before any cure but that of the radii.
+    /// Size after reading and cleaning, before all cures except that of the radii.
     pub read: Size,
-    /// Whether the network was measured: its vessels are polylines.
+    /// True if the network is measured: its vessels are polylines.
     pub measured: bool,
-    /// In the end.
+    /// Size of the result.
     pub result: Size,
-    /// Radii that were filled, by node.
+    /// Replaced radii, by node.
     pub radii: Vec<FilledRadius>,
-    /// What cleaning did.
+    /// Report of the cleaning.
     pub cleaned: CleanReport,
-    /// Lines that were merged.
+    /// Merged lines.
     pub merge: MergeReport,
-    /// Spurs that were taken off, in the order in which they went.
+    /// Removed spurs, in order of removal.
     pub spurs: Vec<Spur>,
-    /// Branch points joined, loops closed.
+    /// Merged branch points and closed loops.
     pub joined: JoinedReport,
     /// Tips that were too close to their branch point for a cap.
     pub short_tips: Vec<ShortTip>,
     /// Tips that end in or on another vessel.
     pub touching: Vec<TouchingTip>,
-    /// Components that were dropped.
+    /// Removed components.
     pub islands: Vec<Island>,
-    /// What resampling did.
+    /// Report of the resampling.
     pub resample: ResampleReport,
 }

@@ -1,10 +1,9 @@
-//! Polylines with as many points as their shape needs.
+//! Resampling of polylines to the points that their shape needs.
 //!
-//! Of each branch those points stay between which straight tapering tubes follow it: every point left out lies within a
-//! share of its radius of the chord (so the axis does, for a tube is convex), and its radius within a share of the
-//! chord's there. Chords are found by doubling and bisection, so that the work is linear in the points but for a
-//! logarithm, whatever the chords' lengths. Where points are dense their noise can be evened out first, by half of what
-//! is allowed; the given points are what the result is held against.
+//! The remaining points of a branch define straight tapering tubes. Every omitted point lies within a fraction of its
+//! radius from the chord (and so does the axis, as a tube is convex). Its radius is within a fraction of the chord's
+//! radius. Chords are found by doubling and bisection, in O(n log n) for any chord length. Noise of dense points can be
+//! smoothed first, by half of the tolerance; errors are relative to the given points.
 
 use super::smooth::smoothed;
 use anastomesh_mesh::geometry::{Point3, point_segment};
@@ -12,23 +11,23 @@ use anastomesh_skeleton::{Branch, Edge, NodeId, Skeleton, SkeletonError, clean};
 use rustc_hash::FxHashSet;
 use serde::Serialize;
 
-/// The share of its bounds by which noise may be evened out.
+/// Fraction of the tolerances available for smoothing.
 const FOR_NOISE: f64 = 0.5;
 
-/// What resampling did.
+/// Report of the resampling.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ResampleReport {
-    /// Nodes before.
+    /// Node count before.
     pub before: usize,
-    /// Nodes after.
+    /// Node count after.
     pub after: usize,
-    /// Largest distance of a given point from the new axis, in radii.
+    /// Maximum distance of a given point from the new axis, in radii.
     pub furthest: f64,
-    /// Largest difference of a radius, as a share of it.
+    /// Maximum relative difference of a radius.
     pub radius: f64,
 }
 
-/// Resamples all branches, with noise evened out or not.
+/// Resamples all branches, with or without smoothing.
 pub(super) fn resample(
     skeleton: &Skeleton,
     axis: f64,
@@ -48,7 +47,7 @@ pub(super) fn resample(
         } else if stay.len() == 2 {
             let [a, b] = branch.ends();
             if !joined.insert([a.min(b), a.max(b)]) {
-                // Two vessels between the same two branch points.
+                // Two vessels connect the same two branch points.
                 stay = at_least(stay, branch.nodes.len(), 3);
             }
         }
@@ -72,7 +71,7 @@ pub(super) fn resample(
     Ok((result, report))
 }
 
-/// More points, evenly by their number, so that at least so many stay; `stay` where there are not as many.
+/// Adds evenly numbered points until `count` remain; returns all points if there are fewer.
 fn at_least(stay: Vec<usize>, points: usize, count: usize) -> Vec<usize> {
     if stay.len() >= count || points < count {
         return if stay.len() >= count { stay } else { (0..points).collect() };
@@ -83,7 +82,7 @@ fn at_least(stay: Vec<usize>, points: usize, count: usize) -> Vec<usize> {
     more
 }
 
-/// A branch as it is given and with its noise evened out.
+/// Given and smoothed points of a branch.
 struct Line {
     given: Vec<Point3>,
     given_radii: Vec<f64>,
@@ -100,8 +99,7 @@ impl Line {
         Self { given, given_radii, points, radii }
     }
 
-    /// Largest distance of the given points from one to another from the chord, in radii, and of their radii from the
-    /// chord's.
+    /// Maximum error of a chord between two points: distance of given points in radii, and relative radius error.
     fn worst(&self, a: usize, b: usize) -> [f64; 2] {
         let mut worst = [0.0_f64; 2];
         for i in a..=b {
@@ -125,7 +123,7 @@ impl Line {
         self.points[a] != self.points[b] && (a..=b).all(within)
     }
 
-    /// The points that stay, the ends among them.
+    /// Indices of the remaining points, including the ends.
     fn simplified(&self, bounds: [f64; 2]) -> Vec<usize> {
         let last = self.points.len() - 1;
         let mut stay = vec![0];

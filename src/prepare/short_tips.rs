@@ -1,32 +1,32 @@
-//! Tips so close to their branch point that their cap lies in the wall of another vessel of it.
+//! Short tips, whose cap would lie in the wall of another vessel of their branch point.
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_skeleton::{Adjacency, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean, separation};
 use serde::Serialize;
 
-/// How much further than where two walls part (equation 12) a tip has to be: walls blend before they part, and a cap needs a
-/// stretch of its own vessel.
+/// Required tip length: a factor on the distance at which two walls separate (equation 12), and an addition in radii.
+/// Walls blend before they separate, and a cap needs a piece of its own vessel.
 const MARGIN: f64 = 1.1;
 const OWN: f64 = 0.3;
-/// How far a tip is put out at most, in its radii: what is shorter than that by more is no vessel.
+/// Maximum extension of a tip, in its radii. Shorter branches are no vessels.
 const FURTHEST: f64 = 3.0;
 
-/// A tip that was too close to its branch point.
+/// Tip that is too close to its branch point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ShortTip {
-    /// The tip.
+    /// Tip node.
     pub tip: u32,
-    /// The branch point that its vessel leaves.
+    /// Branch point of its vessel.
     pub from: u32,
     /// Length of the vessel, in the unit of the network.
     pub length: f64,
-    /// The length at which its cap is clear.
+    /// Length at which the cap is clear.
     pub needed: f64,
-    /// Whether it was put out so far; else its vessel was taken off.
+    /// True if the tip was extended to that length; otherwise its vessel was removed.
     pub put_out: bool,
 }
 
-/// Puts such tips out, straight on, or takes their vessels off.
+/// Extends short tips straight on, or removes their vessels.
 pub(super) fn treat(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ShortTip>), SkeletonError> {
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
@@ -51,7 +51,7 @@ pub(super) fn treat(skeleton: &Skeleton) -> Result<(Skeleton, Vec<ShortTip>), Sk
     Ok((clean(&result)?.0, found.into_iter().map(|(_, tip)| tip.told).collect()))
 }
 
-/// A tip and where it is put out to.
+/// Short tip and its extension.
 struct Found {
     node: NodeId,
     /// Direction in which its vessel ends.
@@ -89,7 +89,7 @@ fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: Bra
     })
 }
 
-/// The node of a branch that leaves `from` by an edge that is the first so far along it, or its last.
+/// First node at distance `length` along the branch that leaves `from` by an edge, or its last node.
 fn point_along(
     skeleton: &Skeleton,
     branches: &Branches,

@@ -1,24 +1,24 @@
-//! Noise of a measured line evened out, within a bound.
+//! Smoothing of measured centrelines within a bound.
 //!
-//! Segmentation moves the points of a centreline by a share of a voxel to and fro. Where points are closer than half a radius
-//! such noise has no meaning: each is put to the mean of its line over a radius, which is taken twice and corrected by
-//! what it takes from the mean itself (Tukey's twicing, 'Exploratory Data Analysis', 1977), so that bends stay. No point
-//! moves by more than a share of its radius.
+//! Segmentation moves centreline points by a fraction of a voxel. At point spacings below half a radius such noise has
+//! no meaning. Each point moves to the mean of the line over one radius, applied twice. Bends are kept by a correction
+//! with the mean of the residual (Tukey's twicing, 'Exploratory Data Analysis', 1977). Displacements are bounded by a
+//! fraction of the radius.
 
 use anastomesh_mesh::geometry::Point3;
 use nalgebra::Vector4;
 
-/// Half the length of line over which is averaged, in radii.
+/// Half width of the averaging window, in radii.
 const REACH: f64 = 0.5;
 
 /// Position and radius along a line.
 type Values = Vec<Vector4<f64>>;
 
-/// Evens a line out: positions by `bounds[0]` radii at most, radii by `bounds[1]` of their own. Ends stay.
+/// Smooths a line with fixed ends: positions by at most `bounds[0]` radii, radii by at most `bounds[1]` of their value.
 pub(super) fn smoothed(points: &[Point3], radii: &[f64], bounds: [f64; 2]) -> (Vec<Point3>, Vec<f64>) {
     let arc = arc_lengths(points);
     let half = half_widths(&arc, radii);
-    // Relative to the start, so that what lies far from the origin loses nothing.
+    // Coordinates relative to the start avoid loss of precision far from the origin.
     let given: Values = points.iter().zip(radii).map(|(p, r)| (p - points[0]).push(*r)).collect();
     let mean = |values: &Values| means(&means(values, &arc, &half), &arc, &half);
     let once = mean(&given);
@@ -46,7 +46,7 @@ fn arc_lengths(points: &[Point3]) -> Vec<f64> {
     arc
 }
 
-/// Over how much of the line to each side a point is averaged: nothing where its neighbours are further off than that.
+/// Half width of the averaging window of each point; zero if its neighbours are further away.
 fn half_widths(arc: &[f64], radii: &[f64]) -> Vec<f64> {
     let last = arc.len() - 1;
     let half = |i: usize| {
@@ -60,7 +60,7 @@ fn half_widths(arc: &[f64], radii: &[f64]) -> Vec<f64> {
     (0..=last).map(half).collect()
 }
 
-/// The mean of the line through values over each point's window.
+/// Mean of the piecewise linear values over each point's window.
 fn means(values: &Values, arc: &[f64], half: &[f64]) -> Values {
     let mut sums = vec![Vector4::zeros()];
     for i in 1..values.len() {
@@ -83,12 +83,12 @@ fn means(values: &Values, arc: &[f64], half: &[f64]) -> Values {
 mod tests {
     use super::*;
 
-    /// Numbers between -1 and 1 that look like noise.
+    /// Pseudo-random numbers between -1 and 1.
     fn noise(i: usize) -> f64 {
         (i as f64 * 12.9898).sin() * 43758.5453 % 1.0
     }
 
-    /// A bend of three radii with noise, and how far its points are from the circle in the mean.
+    /// A noisy bend of three radii: points and radii.
     fn bend(amplitude: f64) -> (Vec<Point3>, Vec<f64>) {
         let at = |i: usize| {
             let (angle, off) = (i as f64 * 0.02, 3.0 + amplitude * noise(i));

@@ -1,42 +1,42 @@
-//! Tips that segmentation left: no vessel, but a hair on one.
+//! Spurs: segmentation artifacts that look like tiny branches.
 
 use anastomesh_mesh::geometry::point_segment;
 use anastomesh_skeleton::{Adjacency, Branch, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean};
 use serde::Serialize;
 
-/// A branch that ends inside a vessel of its branch point is a spur up to this length, in radii of that vessel.
+/// Maximum length of a spur that ends inside a vessel of its branch point, in radii of that vessel.
 const LONGEST: f64 = 4.0;
 
-/// Rounds at most: a branch point of n tips needs n of them; more than so many belong to no vessel.
+/// Maximum rounds: a branch point with n spurs needs n. Larger numbers belong to no vessel.
 const ROUNDS: usize = 100;
 
-/// Why a branch is no vessel.
+/// Reason why a branch is a spur.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SpurReason {
-    /// It is no longer than the radius of the vessel that it leaves.
+    /// The branch is at most as long as the radius of its parent vessel.
     Short,
-    /// Its tip lies within a vessel of its branch point.
+    /// The tip lies within a vessel of its branch point.
     Inside,
 }
 
-/// A branch that was taken off.
+/// Removed spur.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spur {
-    /// Its tip.
+    /// Tip of the spur.
     pub tip: u32,
-    /// The branch point that it left.
+    /// Branch point of the spur.
     pub from: u32,
-    /// Its length, in the unit of the network.
+    /// Length of the spur, in the unit of the network.
     pub length: f64,
-    /// Radius of the vessel that it left.
+    /// Radius of the parent vessel.
     pub radius: f64,
-    /// Why.
+    /// Reason for the removal.
     pub reason: SpurReason,
 }
 
-/// Takes spurs off, the shortest of each branch point, until none is left: when one is gone the others may be parts of one
-/// vessel.
+/// Removes the shortest spur of each branch point until none is left. After each removal the remaining branches may
+/// join to one vessel.
 pub(super) fn take_off(skeleton: &Skeleton) -> Result<(Skeleton, Vec<Spur>), SkeletonError> {
     let (mut current, mut all) = (skeleton.clone(), Vec::new());
     for _ in 0..ROUNDS {
@@ -59,7 +59,7 @@ pub(super) fn take_off(skeleton: &Skeleton) -> Result<(Skeleton, Vec<Spur>), Ske
     Ok((current, all))
 }
 
-/// The shortest spur of each branch point.
+/// Shortest spur of each branch point.
 fn spurs(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches) -> Vec<(BranchId, Spur)> {
     let mut is_root = vec![false; skeleton.nodes.len()];
     for root in skeleton.roots(adjacency, &skeleton.components(adjacency)).into_iter().flatten() {
@@ -68,7 +68,7 @@ fn spurs(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches) -> Vec
     let mut best: Vec<Option<(BranchId, Spur)>> = vec![None; skeleton.nodes.len()];
     for (id, branch) in (0..).map(BranchId).zip(&branches.list) {
         let Some((from, tip)) = hangs(adjacency, branch) else { continue };
-        // The inlet stays whatever it looks like.
+        // The inlet is never a spur.
         if is_root[tip.index()] {
             continue;
         }
@@ -81,7 +81,7 @@ fn spurs(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches) -> Vec
     best.into_iter().flatten().collect()
 }
 
-/// The branch point and the tip of a branch that has both.
+/// Branch point and tip of a branch that has both.
 fn hangs(adjacency: &Adjacency, branch: &Branch) -> Option<(NodeId, NodeId)> {
     let [a, b] = branch.ends();
     match [a, b].map(|n| adjacency.valence(n)) {
@@ -113,7 +113,7 @@ fn spur(
     Some(Spur { tip: name(tip), from: name(from), length, radius, reason })
 }
 
-/// Whether a tip lies within the first radii of the branch that leaves `from` by an edge.
+/// True if a tip lies within the first radii of the branch that leaves `from` by an edge.
 fn inside(
     skeleton: &Skeleton,
     branches: &Branches,

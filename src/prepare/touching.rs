@@ -1,4 +1,4 @@
-//! Tips that end in or on another vessel: no cap has room there.
+//! Tips that end in or on another vessel, without space for a cap.
 
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, point_segment};
 use anastomesh_skeleton::{
@@ -6,63 +6,63 @@ use anastomesh_skeleton::{
 };
 use serde::Serialize;
 
-/// What is done about a tip that touches another vessel.
+/// Treatment of a tip that touches another vessel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Touching {
-    /// It stays.
+    /// Keep the tip.
     Keep,
-    /// It is drawn back along its own vessel until its cap has room.
+    /// Retract the tip along its own vessel until its cap is clear.
     #[default]
     Retract,
-    /// It is joined to the other vessel.
+    /// Join the tip to the other vessel.
     Join,
 }
 
-/// What became of a tip.
+/// Result for a tip.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "done", rename_all = "snake_case")]
 pub enum TouchedBy {
-    /// It was drawn back by this much, in the unit of the network.
+    /// The tip was retracted.
     Retracted {
-        /// How far.
+        /// Distance, in the unit of the network.
         by: f64,
     },
-    /// It was joined to the other vessel.
+    /// The tip was joined to the other vessel.
     Joined,
-    /// Its vessel had no room for a cap anywhere, and is gone.
+    /// The vessel had no space for a cap and was removed.
     Removed,
-    /// It stays: its vessel runs along the other one for longer than a tip does.
+    /// The tip is unchanged: its vessel runs along the other one for longer than a tip would.
     Left,
 }
 
-/// A tip that touches another vessel.
+/// Tip that touches another vessel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TouchingTip {
-    /// The tip.
+    /// Tip node.
     pub tip: u32,
-    /// The nodes of the edge that it touches.
+    /// Nodes of the touched edge.
     pub with: [u32; 2],
-    /// What was done.
+    /// Result of the treatment.
     #[serde(flatten)]
     pub done: TouchedBy,
 }
 
-/// A cap has room this far from the axis of another vessel, in sums of the radii: closer, walls fuse.
+/// Clear distance of a cap from the axis of another vessel, in sums of the radii. Closer walls fuse.
 const CLEAR: f64 = 1.15;
-/// How far a tip is drawn back at most, in sums of the radii.
+/// Maximum retraction of a tip, in sums of the radii.
 const FURTHEST: f64 = 4.0;
-/// How far a tip that could not be capped is drawn back, in its radii.
+/// Retraction of a tip that could not be capped, in its radii.
 const BACK: f64 = 2.0;
-/// What is left of a vessel that is drawn back, in radii of the branch point that it leaves; less is a spur.
+/// Minimum remaining length of a retracted vessel, in radii of its branch point. Shorter vessels are spurs.
 const LEFT: f64 = 2.0;
-/// Steps in which a tip is drawn back, in its radii.
+/// Step of the retraction, in radii of the tip.
 const STEP: f64 = 0.25;
-/// Points closer than this along the skeleton, in radii, belong to one place: a tip does not touch its own vessel.
+/// Distance along the skeleton, in radii, within which vessels count as the tip's own.
 const OWN: f64 = 6.0;
 
-/// Treats all tips, in the order of their numbers.
+/// Treats all tips in ascending order.
 pub(super) fn treat(skeleton: &Skeleton, how: Touching) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
     if how == Touching::Keep {
         return Ok((skeleton.clone(), Vec::new()));
@@ -80,11 +80,11 @@ pub(super) fn treat(skeleton: &Skeleton, how: Touching) -> Result<(Skeleton, Vec
     Ok((clean(&work.result())?.0, found))
 }
 
-/// Draws tips that could not be capped back, by some radii each, or takes what is left of their vessels off: those of `tips`, by
-/// their numbers in the input.
+/// Retracts tips that could not be capped by some radii, or removes the remains of their vessels. `tips` holds their
+/// numbers in the input.
 ///
 /// # Errors
-/// When no vessel remains.
+/// No vessel remains.
 pub fn take_back(skeleton: &Skeleton, tips: &[u32]) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
     let mut work = Work::new(skeleton);
     let mut found = Vec::new();
@@ -98,7 +98,7 @@ pub fn take_back(skeleton: &Skeleton, tips: &[u32]) -> Result<(Skeleton, Vec<Tou
     Ok((clean(&work.result())?.0, found))
 }
 
-/// The network while tips are treated. Vessels only become shorter, so that boxes hold what they held.
+/// Network during the treatment. Vessels only become shorter, so bounding boxes stay valid.
 struct Work<'a> {
     given: &'a Skeleton,
     adjacency: Adjacency,
@@ -106,25 +106,25 @@ struct Work<'a> {
     tree: Bvh,
     nodes: Vec<Node>,
     gone: Vec<bool>,
-    /// Edges that join a tip to a place on another edge.
+    /// Edges that join a tip to a position on another edge.
     joints: Vec<(NodeId, EdgeId, f64)>,
 }
 
-/// A branch from a tip of it on, as far as it is there.
+/// Remaining part of a branch, starting from its tip.
 struct Way {
     tip: NodeId,
     branch: BranchId,
     edges: Vec<EdgeId>,
     length: f64,
-    /// The branch point at its other end, if it has one.
+    /// Branch point at its other end, if any.
     from: Option<NodeId>,
 }
 
-/// Where along its vessel a tip is looked at.
+/// Position along a vessel at which a tip is tested.
 struct Stand {
-    /// How far from the tip.
+    /// Distance from the tip.
     arc: f64,
-    /// Index of the edge, counted from the tip.
+    /// Edge index, counted from the tip.
     piece: usize,
     point: Point3,
     radius: f64,
@@ -165,7 +165,7 @@ impl<'a> Work<'a> {
         Some(TouchingTip { tip: name(tip), with: names, done })
     }
 
-    /// The way from a tip; none when nothing is left of its branch.
+    /// Returns the path from a tip; `None` if nothing remains of its branch.
     fn way(&self, tip: NodeId) -> Option<Way> {
         let (id, _) = self.branches.of_edge[self.adjacency.edges(tip).first()?.index()];
         let branch = &self.branches.list[id.index()];
@@ -175,7 +175,7 @@ impl<'a> Work<'a> {
             edges.reverse();
             (near, far) = (far, near);
         }
-        // Another tip of the same vessel may have been drawn back.
+        // The other tip of the vessel may have been retracted.
         let there = edges.iter().take_while(|e| !self.gone[e.index()]).count();
         edges.truncate(there);
         let length = edges.iter().map(|&e| self.given.length(e)).sum();
@@ -183,7 +183,7 @@ impl<'a> Work<'a> {
         (!edges.is_empty() && near == tip).then_some(Way { tip, branch: id, edges, length, from })
     }
 
-    /// The nearest vessel that leaves no room for a cap at a place of a way, and its radius there.
+    /// Nearest vessel that leaves no space for a cap at a position, and its radius there.
     fn in_the_way(&self, way: &Way, stand: &Stand) -> Option<(EdgeId, f64)> {
         let reach = Aabb::of_points([&stand.point]).grown(CLEAR * stand.radius);
         let mut nearest: Option<(f64, EdgeId, f64)> = None;
@@ -205,7 +205,7 @@ impl<'a> Work<'a> {
         nearest.map(|(_, edge, radius)| (edge, radius))
     }
 
-    /// Whether all of a section of a way lies within another vessel.
+    /// True if a whole section of a path lies within another vessel.
     fn is_buried(&self, way: &Way, stand: &Stand) -> bool {
         let mut found = false;
         self.tree.query(&Aabb::of_points([&stand.point]), |id| {
@@ -218,7 +218,7 @@ impl<'a> Work<'a> {
         found
     }
 
-    /// Whether an edge belongs to the place where a way is looked at: it is near along the skeleton.
+    /// True if an edge is near a position along the skeleton and thus no obstacle.
     fn is_own(&self, way: &Way, stand: &Stand, edge: EdgeId, radius: f64) -> bool {
         let near = OWN * stand.radius.max(radius);
         if self.branches.of_edge[edge.index()].0 == way.branch {
@@ -243,7 +243,7 @@ impl<'a> Work<'a> {
         TouchedBy::Joined
     }
 
-    /// Draws a tip back to the first place where a cap has room.
+    /// Retracts a tip to the first position with space for a cap.
     fn retract(&mut self, way: &Way, radii: f64) -> TouchedBy {
         let last = way.edges[way.edges.len() - 1];
         let keep = LEFT * self.given.tube(last).max_radius();
@@ -259,7 +259,7 @@ impl<'a> Work<'a> {
                 return TouchedBy::Retracted { by: stand.arc };
             }
         }
-        // Nothing of a vessel that hangs on another one is left but a spur; one that hangs on nothing is no spur.
+        // The remains of a vessel on another one are a spur; a free vessel is none.
         if way.from.is_none() || way.length > FURTHEST * radii + keep {
             return TouchedBy::Left;
         }
@@ -267,7 +267,7 @@ impl<'a> Work<'a> {
         TouchedBy::Removed
     }
 
-    /// Draws a tip back by some radii, and on until its disc does not lie within another vessel.
+    /// Retracts a tip by `BACK` radii, and further until its disc leaves other vessels.
     fn draw_back(&mut self, way: &Way) -> TouchedBy {
         let stands = self.stands(way);
         let radius = stands[0].radius;
@@ -279,7 +279,7 @@ impl<'a> Work<'a> {
                 TouchedBy::Retracted { by: stand.arc }
             }
             None if way.from.is_none() => TouchedBy::Left,
-            // What lies within another vessel all along is a spur however long it is.
+            // A branch that lies within another vessel throughout is a spur of any length.
             None if way.length > (BACK + FURTHEST) * radius + keep && !self.is_buried(way, &stands[0]) => {
                 TouchedBy::Left
             }
@@ -290,7 +290,7 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// The edge of another vessel that is nearest to a tip, or the way's own last one where none is near.
+    /// Edge of another vessel nearest to a tip, or the path's own last edge if none is near.
     fn beside(&self, way: &Way) -> EdgeId {
         let last = self.given.edge(way.edges[0]);
         let (point, radius) = (self.given.node(way.tip).position, last.radii[last.end(way.tip)]);
@@ -307,7 +307,7 @@ impl<'a> Work<'a> {
         nearest.map_or(way.edges[0], |(_, edge)| edge)
     }
 
-    /// Places along a way, from its tip on.
+    /// Positions along a path, starting from its tip.
     fn stands(&self, way: &Way) -> Vec<Stand> {
         let mut stands = Vec::new();
         let (mut arc, mut node) = (0.0, way.tip);
@@ -328,19 +328,19 @@ impl<'a> Work<'a> {
         stands
     }
 
-    /// Takes away what of a way lies before a place and puts its tip there.
+    /// Removes the part of a path before a position and moves its tip there.
     fn cut(&mut self, way: &Way, stand: &Stand) {
         let mut node = way.tip;
         for &edge in &way.edges[..stand.piece] {
             self.gone[edge.index()] = true;
             node = self.given.edge(edge).other(node);
         }
-        // The node before the place becomes the tip, and keeps the number of the tip that was.
+        // The node before the position becomes the tip and inherits the number of the old tip.
         let original = self.nodes[way.tip.index()].original;
         self.nodes[node.index()] = Node { position: stand.point, radius: stand.radius, original };
     }
 
-    /// The network with all changes.
+    /// Returns the network with all changes.
     fn result(self) -> Skeleton {
         let mut skeleton = Skeleton { nodes: self.nodes, edges: Vec::new() };
         let mut joints = self.joints;
@@ -349,14 +349,14 @@ impl<'a> Work<'a> {
         for id in self.given.edge_ids() {
             let mut edge = *self.given.edge(id);
             for (radius, node) in edge.radii.iter_mut().zip(edge.nodes) {
-                // Where a tip was drawn back the edge has the radius of the place.
+                // The edge of a retracted tip has the radius of the new position.
                 if skeleton.node(node).position != self.given.node(node).position {
                     *radius = skeleton.node(node).radius;
                 }
             }
             let [a, b] = edge.nodes.map(|n| skeleton.node(n).position);
             let radii = edge.radii;
-            // Tips that are joined to this edge, in order along it.
+            // Tips joined to this edge, in order along it.
             while let Some((tip, _, t)) = joints.next_if(|j| j.1 == id) {
                 let radius = radii[0] + (radii[1] - radii[0]) * t;
                 let foot = NodeId(skeleton.nodes.len() as u32);
@@ -380,7 +380,7 @@ mod tests {
     use super::*;
     use anastomesh_skeleton::fixtures::network;
 
-    /// A trunk of radius 1 with a side branch of this length from its middle.
+    /// A trunk of radius 1 with a side branch of the given length at its middle.
     fn fork(length: f64) -> Skeleton {
         let points = [[-20.0, 0.0, 0.0], [0.0; 3], [20.0, 0.0, 0.0], [0.0, length, 0.0]];
         network(&points, 1.0, &[(0, 1), (1, 2), (1, 3)])
@@ -399,7 +399,7 @@ mod tests {
                 _ => assert!((end.expect("there").position.y - (length - BACK)).abs() < 1e-9),
             }
         }
-        // A hair that does not leave its trunk, however long it is for its width.
+        // A hair that does not leave its trunk, though it is long for its width.
         let mut hair = fork(0.9);
         hair.edges[2].radii = [0.02; 2];
         hair.nodes[3].radius = 0.02;
@@ -411,7 +411,7 @@ mod tests {
 
     #[test]
     fn a_tip_that_faces_another_one_is_in_its_way_however_near_its_branch_point_is() {
-        // The other vessel belongs to no place of this one, though the branch point is near.
+        // The other vessel is an obstacle, although the branch point is near.
         let mut broken = fork(4.0);
         let other = network(&[[0.0, 4.5, 0.0], [0.0, 24.0, 0.0]], 1.0, &[(0, 1)]);
         let first = broken.nodes.len() as u32;

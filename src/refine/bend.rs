@@ -1,15 +1,15 @@
-//! Bends: vessels that are stuck get a node in the middle.
+//! Bends: additional nodes in the middle of stuck vessels.
 //!
-//! A straight vessel between two terminals on either side of a thick one cannot leave it, and two long vessels that
-//! leave a node side by side would have to move as a whole; a bend lets them part where they are too close.
+//! A straight vessel between terminals on either side of a thick vessel cannot leave it. Two long vessels that leave a
+//! node side by side would have to move as a whole. A bend lets them separate at the overlap.
 
 use super::frame::Frame;
 use anastomesh_skeleton::{EdgeId, Overlap, Overlaps};
 
-/// Pieces that a bend makes are at least this long, in radii.
+/// Minimum length, in radii, of the pieces on both sides of a bend.
 const SHORTEST: f64 = 5.0;
 
-/// Puts bends into vessels that overlap; returns how many. `Frame::rejoin` has to follow.
+/// Adds bends to overlapping vessels and returns their number. `Frame::rejoin` must follow.
 pub(super) fn add_bends(frame: &mut Frame, overlaps: &Overlaps) -> usize {
     let edges = frame.skeleton.edges.len();
     let mut done = vec![false; edges];
@@ -27,7 +27,7 @@ pub(super) fn add_bends(frame: &mut Frame, overlaps: &Overlaps) -> usize {
     count
 }
 
-/// Where to bend which of the two edges: the thinner one if it is long enough, else the other one.
+/// Edge to bend and parameter on it: the thinner edge if it is long enough, else the other one.
 fn place(frame: &Frame, overlap: &Overlap) -> Option<(EdgeId, f64)> {
     let at = |i: usize| {
         let edge = overlap.edges[i];
@@ -35,11 +35,11 @@ fn place(frame: &Frame, overlap: &Overlap) -> Option<(EdgeId, f64)> {
         let length = tube.length();
         let margin = SHORTEST * tube.max_radius() / length;
         let own = (overlap.points[i] - tube.a).norm() / length;
-        // Both pieces long enough.
+        // Both pieces must be long enough.
         (margin <= 0.5).then(|| (edge, own.clamp(margin, 1.0 - margin), length / tube.max_radius(), tube.max_radius()))
     };
     let mut both: Vec<_> = [0, 1].into_iter().filter_map(at).collect();
-    // The thinner one; the one that is longer for its radius among equals.
+    // Thinner edge first; among equals, the one that is longer relative to its radius.
     both.sort_by(|x, y| x.3.total_cmp(&y.3).then(y.2.total_cmp(&x.2)).then(x.0.cmp(&y.0)));
     both.first().map(|&(edge, t, ..)| (edge, t))
 }

@@ -1,4 +1,4 @@
-//! Vessels that are too close to each other: which pairs to watch, and how they are pushed apart.
+//! Contact handling: pairs of vessels to watch, and the corrections that push them apart.
 
 use super::frame::Frame;
 use super::push::{Push, project};
@@ -6,41 +6,41 @@ use anastomesh_mesh::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tub
 use anastomesh_skeleton::{EdgeId, JOINED, LocalDistances, NodeId, deepest_apart};
 use rayon::prelude::*;
 
-/// Distances along the skeleton between the ends of two edges; infinite when long.
+/// Distances along the skeleton between the ends of two edges; infinite if long.
 type Ways = [[f64; 2]; 2];
 
-/// Two edges that share no node and may come close to each other.
+/// Two edges without a common node that may come close to each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub edges: [EdgeId; 2],
-    /// Index into `Contacts::ways`; `u32::MAX` when every way is long.
+    /// Index into `Contacts::ways`; `u32::MAX` if all distances are long.
     ways: u32,
 }
 
 impl Pair {
-    /// Whether the two edges are near each other along the skeleton.
+    /// True if the two edges are near each other along the skeleton.
     pub fn is_near_along(&self) -> bool {
         self.ways != u32::MAX
     }
 }
 
-/// The pairs to watch.
+/// Pairs to watch.
 #[derive(Default)]
 pub(super) struct Contacts {
     pub pairs: Vec<Pair>,
     ways: Vec<Ways>,
-    /// Pairs of edges of one node.
+    /// Pairs of edges that share a node.
     forks: Vec<(NodeId, [EdgeId; 2])>,
 }
 
-/// A box that holds a tube and all within `clearance` radii of its axis.
+/// Bounding box of all points within `clearance` radii of a tube's axis.
 fn reach_box(tube: &Tube, clearance: f64) -> Aabb {
     let ball = |p, r: f64| Aabb::of_points([p]).grown(clearance * r);
     ball(&tube.a, tube.ra).union(&ball(&tube.b, tube.rb))
 }
 
 impl Contacts {
-    /// Finds all pairs that can come within `clearance` sums of their radii while no node moves more than `skin / 2`.
+    /// Finds all pairs that may come within `clearance` sums of their radii before any node moves more than `skin / 2`.
     pub fn find(frame: &Frame, clearance: f64, skin: f64) -> Self {
         let s = &frame.skeleton;
         let boxes: Vec<Aabb> = s.edge_ids().map(|e| reach_box(&s.tube(e), clearance).grown(0.5 * skin)).collect();
@@ -85,7 +85,7 @@ impl Contacts {
         contacts
     }
 
-    /// What the pairs ask for that are closer than `clearance` sums of their radii.
+    /// Corrections of all pairs closer than `clearance` sums of their radii.
     pub fn pushes(&self, frame: &Frame, clearance: f64) -> Vec<Push> {
         let apart = self.pairs.par_iter().with_min_len(512).fold(Vec::new, |mut out, pair| {
             self.push_apart(frame, pair, clearance, &mut out);
@@ -95,7 +95,7 @@ impl Contacts {
             push_fork(frame, fork, clearance, &mut out);
             out
         });
-        // Folds keep the order of the pairs, however the work was divided.
+        // Folds preserve the order of the pairs, for any division of the work.
         let mut all: Vec<Push> = apart.collect::<Vec<_>>().concat();
         all.extend(forks.collect::<Vec<_>>().concat());
         all
@@ -162,7 +162,7 @@ fn pairs_of(
     }
 }
 
-/// Pushes two vessels of one node apart where they are too close to each other beyond three radii.
+/// Pushes two vessels of one node apart if they are too close beyond three radii from it.
 fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f64, out: &mut Vec<Push>) {
     let [a, b] = edges.map(|e| frame.skeleton.tube(e));
     let [e, f] = edges.map(|e| frame.skeleton.edge(e));
@@ -176,7 +176,7 @@ fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f
     if frame.is_as_close_as_may_be(node, far) {
         return;
     }
-    // Equal vessels are apart at three radii when sin(angle / 2) > clearance / 3.
+    // Equal vessels separate within three radii if sin(angle / 2) > clearance / 3.
     let half = (clearance / 3.0).min(1.0);
     if u.dot(&v) < (1.0 - 2.0 * half * half) * lu * lv {
         return;
@@ -185,8 +185,8 @@ fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f
     ways[e.end(node)][f.end(node)] = 0.0;
     let Some((s, t)) = deepest_apart(&a, &b, ways, clearance) else { return };
     let Closeness { normal, distance, radii } = closeness(&a, &b, (s, t));
-    // The places keep their way from the node, where vessels begin to count as apart: so the node itself can open the
-    // fork by moving towards both ends, though their directions do not change to first order.
+    // The places keep their distance from the node, beyond which vessels count as separate. The node can thus open the
+    // bifurcation by moving towards both ends, though directions do not change to first order.
     let (u, v) = (u / lu, v / lv);
     let [s, t] = [(s, e), (t, f)].map(|(x, edge)| if edge.end(node) == 0 { x } else { 1.0 - x });
     let across = |axis: &Vec3| normal - axis * axis.dot(&normal);
@@ -195,7 +195,7 @@ fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f
     project(frame, &gradient, clearance * radii - distance, 0.5 * radii, out);
 }
 
-/// Asks for the distance at one place of each tube.
+/// Requests the distance at one place of each tube.
 fn push_tubes(
     frame: &Frame,
     edges: [EdgeId; 2],
@@ -210,9 +210,9 @@ fn push_tubes(
     project(frame, &gradient, clearance * radii - distance, 0.5 * radii, out);
 }
 
-/// How two tubes lie to each other at a place of each.
+/// Relative position of two tubes at a place of each.
 struct Closeness {
-    /// The direction in which the first is pushed.
+    /// Push direction of the first tube.
     normal: Vec3,
     /// Distance of the axes.
     distance: f64,
@@ -223,12 +223,12 @@ struct Closeness {
 fn closeness(a: &Tube, b: &Tube, (s, t): (f64, f64)) -> Closeness {
     let way = a.point(s) - b.point(t);
     let (distance, radii) = (way.norm(), a.radius(s) + b.radius(t));
-    // Axes that meet have no direction to part in.
+    // Intersecting axes define no direction.
     let normal = if distance > 1e-6 * radii { way / distance } else { parting(a, b) };
     Closeness { normal, distance, radii }
 }
 
-/// A direction in which two vessels part whose axes meet: across both, or across one if they are parallel.
+/// Push direction for vessels with intersecting axes: normal to both, or to one if they are parallel.
 fn parting(a: &Tube, b: &Tube) -> Vec3 {
     let (d, e) = (a.b - a.a, b.b - b.a);
     let across = d.cross(&e);

@@ -1,36 +1,36 @@
-//! Terminals that are too close to each other for two caps, or for the loop through two that two trees share: listed,
-//! moved apart, or merged on request.
+//! Crowded terminals, which are too close for two caps or for the loop through a pair that two trees share. They are
+//! listed, moved apart, or merged on request.
 
 use super::params::{Crowded, RefineParams};
 use anastomesh_skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
 use serde::{Deserialize, Serialize};
 
-/// How far terminals are moved apart, in sums of their radii: their walls must not fuse either.
+/// Target distance of terminals, in sums of their radii: their walls must not fuse either.
 const APART: f64 = 1.2;
-/// The same for terminals that two trees share: four vessels of radius r run round the hole between them, from forks some
-/// 2.8 r off to either side. At this distance it is 1.6 r wide; at 1.2 r the walls close it.
+/// Target distance of terminals that two trees share. Four vessels of radius r surround the hole between them, from
+/// bifurcations about 2.8 r away. At this distance the hole is 1.6 r wide; at 1.2 r the walls close it.
 const SHARED_APART: f64 = 2.0;
-/// Sweeps at most: a terminal that gives way to one may come close to a third.
+/// Maximum number of sweeps: a terminal that moves away from one may approach a third.
 const SWEEPS: usize = 100;
 
-/// Two terminals closer than the sum of their radii, and what became of them.
+/// Two terminals closer than the sum of their radii, and the result of their treatment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrowdedPair {
-    /// The two, as indices into the input.
+    /// The terminals, as indices into the input.
     pub nodes: [u32; 2],
-    /// Their distance as given.
+    /// Distance before treatment.
     pub distance: f64,
-    /// The sum of their radii.
+    /// Sum of the radii.
     pub radii: f64,
-    /// Whether they are apart now, or one.
+    /// True if they are now apart or merged.
     pub resolved: bool,
-    /// How far each was moved.
+    /// Displacement of each terminal.
     pub moved: [f64; 2],
 }
 
-/// Lists crowded terminals and treats them as `params.crowded` says; with `folds` also nodes at which a vessel turns back,
-/// which are terminals that two trees share, or noise in a polyline. Nodes that a merger removes are removed from
-/// `origin`, too.
+/// Lists crowded terminals and treats them according to `params.crowded`. With `folds`, this includes nodes at which a
+/// vessel reverses: terminals that two trees share, or noise in a polyline. Nodes removed by a merge are also removed
+/// from `origin`.
 pub(super) fn treat(
     skeleton: &mut Skeleton,
     origin: &mut Vec<anastomesh_mesh::geometry::Point3>,
@@ -51,7 +51,7 @@ pub(super) fn treat(
             let apart = |pair: &CrowdedTerminals| if is_free(pair) { APART } else { SHARED_APART };
             part(skeleton, &found, &ends, apart)
         }
-        // Those that two trees share stay what they are.
+        // Pairs shared by two trees remain unchanged.
         Crowded::Merge => found.iter().map(is_free).collect(),
     };
     let original = |n: NodeId| skeleton.node(n).original;
@@ -73,8 +73,8 @@ pub(super) fn treat(
     pairs
 }
 
-/// Moves the terminals of each pair `apart` sums of their radii apart, half the way each, until all `ends` are clear of
-/// each other; says which are.
+/// Moves the terminals of each pair to a distance of `apart` sums of their radii, each by half the change. Repeats
+/// until all `ends` are clear; returns a flag for each pair.
 fn part(
     skeleton: &mut Skeleton,
     found: &[CrowdedTerminals],
@@ -100,13 +100,13 @@ fn part(
     found.iter().map(|pair| close.iter().all(|c| c.nodes != pair.nodes)).collect()
 }
 
-/// From one terminal to another; any direction if they are at one place.
+/// Direction from one terminal to another; arbitrary if they coincide.
 fn direction(a: &Node, b: &Node) -> anastomesh_mesh::geometry::Vec3 {
     (b.position - a.position).try_normalize(0.0).unwrap_or_else(anastomesh_mesh::geometry::Vec3::x)
 }
 
-/// Makes one terminal of each pair: of two that hang on one node the thinner vessel is taken away, others are joined
-/// where they lie, halfway.
+/// Merges the terminals of each pair. If both hang on one node, the thinner vessel is removed; others are joined
+/// halfway.
 fn merge(skeleton: &mut Skeleton, origin: &mut Vec<anastomesh_mesh::geometry::Point3>, found: &[CrowdedTerminals]) {
     let adjacency = skeleton.adjacency();
     let mut gone = vec![false; skeleton.nodes.len()];
@@ -163,7 +163,7 @@ mod tests {
     use super::super::tests::{network, run};
     use super::*;
 
-    /// A fork whose two ends lie close to each other, and a vessel that ends close to one of them.
+    /// A bifurcation whose two ends are close together, and a vessel that ends close to one of them.
     fn crowd() -> Skeleton {
         let points = [
             [0.0, 0.0, 0.0],
@@ -228,7 +228,7 @@ mod tests {
         assert_eq!(merged.origin.len(), merged.skeleton.nodes.len());
         let adjacency = merged.skeleton.adjacency();
         let left: Vec<u32> = adjacency.terminals().iter().map(|&n| merged.skeleton.node(n).original).collect();
-        // 2 went, as its vessel was no thicker than that of 3, which then was joined to 5.
+        // Terminal 2 was removed, as its vessel is no thicker than that of 3, which was then joined to 5.
         assert_eq!(left, [0, 4]);
         assert_eq!(merged.skeleton.components(&adjacency).list.len(), 1);
     }

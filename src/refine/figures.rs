@@ -1,31 +1,31 @@
-//! The figures of one state, and which of two states is worse in what.
+//! Quality figures of a state, and comparison of states.
 
 use anastomesh_skeleton::{Metrics, Overlaps, Share, Skeleton};
 use serde::{Deserialize, Serialize};
 
-/// Metrics and numbers of overlaps of one state.
+/// Metrics and overlap counts of one state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Figures {
     pub metrics: Metrics,
     /// Overlapping pairs of edges.
     pub overlaps: usize,
-    /// Those of them that share a node.
+    /// Overlapping pairs that share a node.
     pub beside: usize,
-    /// Pairs of edges that share no node and meet, neighbours along a vessel included.
+    /// Pairs of touching edges without a common node, including neighbours along a vessel.
     pub unconnected: usize,
-    /// Those of them that no edge joins.
+    /// Unconnected pairs that no edge joins.
     pub far: usize,
 }
 
-/// A metric that a caller may ask to be held: the result is not worse in it than what was given.
+/// Metric that a caller may protect: the result must not be worse in it than the input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Metric {
     /// Overlapping pairs of edges.
     Overlaps,
-    /// Pairs of edges that meet and that no edge joins.
+    /// Pairs of touching edges that no edge joins.
     FarPairs,
     /// Barrier potential.
     Barrier,
@@ -37,7 +37,7 @@ pub enum Metric {
     Shorter3,
     /// Pairs of edges that leave a node at less than π/10.
     Angles,
-    /// Nodes of valence 2 at which a vessel turns back on itself.
+    /// Nodes of valence 2 at which a vessel reverses its direction.
     Folds,
     /// Edges that fail equation 11.
     Equation11,
@@ -48,7 +48,7 @@ pub enum Metric {
 }
 
 impl Metric {
-    /// All of them.
+    /// All metrics.
     pub const ALL: [Self; 11] = [
         Self::Overlaps,
         Self::FarPairs,
@@ -63,7 +63,7 @@ impl Metric {
         Self::Cuttable,
     ];
 
-    /// Its name on the command line.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Overlaps => "overlaps",
@@ -80,7 +80,7 @@ impl Metric {
         }
     }
 
-    /// How much there is of what is bad: less is better.
+    /// Badness in this metric: less is better.
     fn bad(self, of: &Figures) -> f64 {
         let m = of.metrics;
         let missing = |s: Share| (s.of - s.count) as f64;
@@ -118,13 +118,13 @@ impl Figures {
         (figures, overlaps)
     }
 
-    /// The metrics among some in which this state is worse than another one.
+    /// Metrics among `among` in which this state is worse than `other`.
     pub fn worse_than(&self, other: &Self, among: &[Metric]) -> Vec<Metric> {
         among.iter().copied().filter(|m| m.bad(self) > m.bad(other)).collect()
     }
 
-    /// What decides between two states, the first number first: overlaps, far pairs, inner branches that cannot be cut,
-    /// edges that fail equation 11.
+    /// Lexicographic score of a state: overlaps, far pairs, inner branches that cannot be cut, edges that fail equation
+    /// 11.
     pub(super) fn score(&self) -> [usize; 4] {
         let missing = |s: Share| s.of - s.count;
         [self.overlaps, self.far, missing(self.metrics.cuttable), missing(self.metrics.long_enough)]

@@ -1,4 +1,4 @@
-//! The three forces of the paper (section 3.1), with their signs and reaches as they have to be.
+//! The three forces of the paper (section 3.1), with corrected signs and ranges.
 
 use super::contact::Contacts;
 use super::frame::{Chain, Frame};
@@ -10,10 +10,10 @@ use rayon::prelude::*;
 
 /// Lower bound λ of the angle in (9).
 const LEAST_ANGLE: f64 = 0.1;
-/// Vessels further apart than this (in `NARROW`) do not feel the angle force, which moves every node of a network that
-/// has no need of it.
+/// Maximum angle at which the angle force acts, in `NARROW`. Without it the force would move every node of a network
+/// without need.
 const WIDE: f64 = 1.5;
-/// The repelling force ends at this multiple of what a cut needs.
+/// Range of the repelling force, as a multiple of the length that a cut needs.
 const REACH: f64 = 1.2;
 
 /// Rates ℓ1, ℓ2, ℓ3.
@@ -24,7 +24,7 @@ pub(super) struct Rates {
     pub angle: f64,
 }
 
-/// All that the forces ask for in one step: angle, repel, barrier.
+/// Steps of all forces for one iteration: angle, repel, barrier.
 pub(super) fn pushes(frame: &Frame, contacts: &Contacts, barrier: &Barrier, rates: Rates) -> Vec<Push> {
     let nodes = (0..frame.origin.len() as u32).into_par_iter().with_min_len(512).fold(Vec::new, |mut out, node| {
         angle(frame, NodeId(node), rates.angle, &mut out);
@@ -51,7 +51,7 @@ fn capped(step: Vec3, cap: f64) -> Vec3 {
     if length > cap { step * (cap / length) } else { step }
 }
 
-/// Adds a force's step for a node that may move.
+/// Adds a capped step for a movable node.
 fn add(frame: &Frame, node: NodeId, step: Vec3, cap: f64, out: &mut Vec<Push>) {
     let step = capped(step, cap);
     if frame.mobility[node.index()] > 0.0 && step.iter().all(|x| x.is_finite()) && step.norm_squared() > 0.0 {
@@ -59,7 +59,7 @@ fn add(frame: &Frame, node: NodeId, step: Vec3, cap: f64, out: &mut Vec<Push>) {
     }
 }
 
-/// (7): down the gradient of the barrier, both edges of the pair.
+/// Equation (7): descends the gradient of the barrier, for both edges of the pair.
 fn push_barrier(
     frame: &Frame,
     edges: [anastomesh_skeleton::EdgeId; 2],
@@ -76,7 +76,7 @@ fn push_barrier(
     }
 }
 
-/// (8): the ends of a vessel repel each other while it is shorter than what a cut needs.
+/// Equation (8): the ends of a vessel repel each other while it is too short for a cut.
 fn repel(frame: &Frame, chain: &Chain, rate: f64, out: &mut Vec<Push>) {
     let Some(need) = room::need(frame, chain) else { return };
     let length: f64 = chain.edges.iter().map(|&e| frame.skeleton.length(e)).sum();
@@ -92,7 +92,7 @@ fn repel(frame: &Frame, chain: &Chain, rate: f64, out: &mut Vec<Push>) {
     }
 }
 
-/// The cubic B-spline.
+/// Cubic B-spline.
 fn spline(x: f64) -> f64 {
     match x {
         x if x < 1.0 => 2.0 / 3.0 - x * x + 0.5 * x * x * x,
@@ -101,7 +101,7 @@ fn spline(x: f64) -> f64 {
     }
 }
 
-/// (9), (10): towards the weighted mean of the midpoints between pairs of neighbours, narrow pairs weighing most.
+/// Equations (9), (10): steps towards the mean midpoint of neighbour pairs, weighted by narrowness.
 fn angle(frame: &Frame, node: NodeId, rate: f64, out: &mut Vec<Push>) {
     let edges = frame.adjacency.edges(node);
     if edges.len() < 3 || frame.mobility[node.index()] <= 0.0 {

@@ -1,19 +1,19 @@
-//! What stays the same while a skeleton is refined: who is joined to whom, who may move, and how chains of vessel run.
+//! State of a refinement that rarely changes: connectivity, mobility, and chains.
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_skeleton::{Adjacency, CUT_DISTANCE, Edge, EdgeId, Node, NodeId, Skeleton};
 use rayon::prelude::*;
 
-/// Length that a vessel keeps while it overlaps another one, in radii: parting comes before room for cuts, and two
-/// terminals close to each other can have the fork that leads to them only near by.
+/// Length that a vessel keeps while it overlaps another, in radii. Separation has priority over cuts, and two close
+/// terminals require a nearby bifurcation.
 pub(super) const LEAST: f64 = 2.5;
 
-/// A vessel between two nodes at which something happens: a branch, or a part of one between nodes that are held.
+/// Vessel between two special nodes: a branch, or a part of one between fixed nodes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chain<'a> {
-    /// Nodes along the way, one more than edges.
+    /// Nodes along the chain, one more than edges.
     pub nodes: &'a [NodeId],
-    /// Edges along the way.
+    /// Edges along the chain.
     pub edges: &'a [EdgeId],
 }
 
@@ -24,17 +24,17 @@ impl Chain<'_> {
     }
 }
 
-/// All chains, one behind the other: there are millions of them.
+/// All chains in flat arrays, as there are millions of them.
 #[derive(Debug, Default)]
 pub(super) struct AllChains {
     nodes: Vec<NodeId>,
     edges: Vec<EdgeId>,
-    /// Where the edges of each end; its nodes end as much later as there are chains up to it.
+    /// End offset of each chain's edges. Its nodes end at this offset plus the number of chains up to it.
     ends: Vec<u32>,
 }
 
 impl AllChains {
-    /// Adds an edge to the chain that is not closed yet, and the node that it leads to.
+    /// Appends an edge and its end node to the open chain.
     fn add(&mut self, edge: EdgeId, node: NodeId) {
         self.edges.push(edge);
         self.nodes.push(node);
@@ -59,35 +59,35 @@ impl AllChains {
     }
 }
 
-/// The skeleton that moves and what does not change about it.
+/// Moving skeleton and its constant properties.
 pub(super) struct Frame {
-    /// The skeleton at its present places.
+    /// Skeleton at its current position.
     pub skeleton: Skeleton,
-    /// Where the nodes were.
+    /// Original node positions.
     pub origin: Vec<Point3>,
-    /// Who is joined to whom.
+    /// Adjacency of the skeleton.
     pub adjacency: Adjacency,
-    /// How readily a node moves: 0 for one that is held.
+    /// Mobility of each node; 0 if fixed.
     pub mobility: Vec<f64>,
-    /// How far a node that is not held may go from its origin, and the paper's unit.
+    /// Displacement limit of free nodes, and the paper's unit.
     furthest: f64,
     unit: f64,
-    /// How far a node may go from its origin.
+    /// Displacement limit of each node.
     pub leash: Vec<f64>,
-    /// Nodes of valence 2 at which the vessel turns back: terminals that two trees share.
+    /// Nodes of valence 2 at which the vessel reverses: terminals that two trees share.
     pub is_fold: Vec<bool>,
-    /// Nodes that were put in so that a vessel can bend.
+    /// Nodes added as bends.
     pub is_bend: Vec<bool>,
-    /// Nodes of vessels that overlapped at the last count: parting them comes before room for cuts.
+    /// Nodes of vessels that overlapped at the last count. Their separation has priority over cuts.
     pub urgent: Vec<bool>,
-    /// Length that each edge keeps at least: what it had, or what equation 11 asks of it if that is less.
+    /// Minimum length of each edge: its old length, or that of equation 11 if less.
     pub kept: Vec<f64>,
-    /// All vessels between junctions, terminals and folds.
+    /// Vessels between junctions, terminals and folds.
     pub chains: AllChains,
 }
 
 impl Frame {
-    /// `furthest` is how far a node may go, `free_terminals` how far a terminal may.
+    /// Creates a frame with displacement limits for nodes (`furthest`) and for terminals (`free_terminals`).
     pub fn new(skeleton: Skeleton, free_terminals: f64, furthest: f64, unit: f64) -> Self {
         let adjacency = skeleton.adjacency();
         let is_fold = skeleton.folds(&adjacency);
@@ -124,7 +124,7 @@ impl Frame {
         frame
     }
 
-    /// Holds every node until it is let loose. Terminals stay as free as they are.
+    /// Fixes every node except terminals until it is released.
     pub fn hold(&mut self) {
         for node in self.skeleton.node_ids().filter(|&n| self.adjacency.valence(n) > 1) {
             self.leash[node.index()] = 0.0;
@@ -132,7 +132,7 @@ impl Frame {
         }
     }
 
-    /// Lets a node go so far from its origin, unless it is a terminal.
+    /// Releases a node with a displacement limit, unless it is a terminal.
     pub fn loosen(&mut self, node: NodeId, way: f64) {
         if self.adjacency.valence(node) > 1 {
             self.leash[node.index()] = way.min(self.furthest);
@@ -163,12 +163,12 @@ impl Frame {
         chains
     }
 
-    /// Puts a node into an edge at parameter `t`, so that the vessel can bend there.
+    /// Inserts a node into an edge at parameter `t`, so that the vessel can bend.
     pub fn add_bend(&mut self, edge: EdgeId, t: f64) {
         let [a, b] = self.skeleton.edge(edge).nodes;
         let tube = self.skeleton.tube(edge);
         let (radius, node) = (tube.radius(t), NodeId(self.skeleton.nodes.len() as u32));
-        // Not a terminal: these are found by their number.
+        // Not a terminal, because terminals are identified by this index.
         let inner = |n: NodeId| self.adjacency.valence(n) > 1;
         let nearer = if (t < 0.5 || !inner(b)) && inner(a) { a } else { b };
         let nearer = self.skeleton.node(nearer).original;
@@ -187,7 +187,7 @@ impl Frame {
         self.kept.push(self.keep(EdgeId(self.kept.len() as u32)));
     }
 
-    /// Finds again who is joined to whom and where vessels turn back, after nodes were put in or moved.
+    /// Updates adjacency, folds and chains after nodes were added or moved.
     pub fn rejoin(&mut self) {
         self.adjacency = self.skeleton.adjacency();
         for (fold, now) in self.is_fold.iter_mut().zip(self.skeleton.folds(&self.adjacency)) {
@@ -208,16 +208,16 @@ impl Frame {
         e.radii[e.end(node)]
     }
 
-    /// Whether the vessels from a node to two ends that are held are so short that the node is not to come closer to them,
-    /// the only way in which it could open the angle between them.
+    /// True if the vessels from a node to two fixed ends are at minimum length. The node must not approach the ends,
+    /// which is its only way to open the angle.
     pub fn is_as_close_as_may_be(&self, node: NodeId, ends: [NodeId; 2]) -> bool {
         let radius = self.skeleton.node(node).radius;
         let is_close = |n: NodeId| (self.at(n) - self.at(node)).norm() <= LEAST * radius;
         ends.iter().all(|n| self.mobility[n.index()] <= 0.0) && ends.into_iter().any(is_close)
     }
 
-    /// The node over which the direction is measured in which a vessel leaves `node` by `edge`: the first along the way
-    /// that is three radii off, or the vessel's end.
+    /// Node that defines the direction in which a vessel leaves `node` by `edge`: the first at a distance of three
+    /// radii, or the vessel's end.
     pub fn lever(&self, node: NodeId, mut edge: EdgeId) -> NodeId {
         let start = self.at(node);
         let window = 3.0 * self.skeleton.node(node).radius;
@@ -235,8 +235,8 @@ impl Frame {
     }
 }
 
-/// How readily a node moves. Thick vessels give way more readily: a thin one that is pinned by its terminals close to a
-/// thick one cannot, and what the thick one has to go is little for its size.
+/// Mobility of a node. Thick vessels move more readily: a thin one with fixed terminals close to a thick one cannot
+/// move. The displacement is small relative to the thick vessel.
 fn readiness(radius: f64, unit: f64) -> f64 {
     (radius / unit).sqrt()
 }

@@ -1,22 +1,22 @@
-//! How far the nodes of a network have moved, and what that has brought.
+//! Displacement of the nodes and metrics over the iterations.
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_skeleton::{Metrics, Skeleton};
 use serde::{Deserialize, Serialize};
 
-/// The metrics after some iterations.
+/// Metrics after some iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// How many iterations.
+    /// Iteration number.
     pub iteration: usize,
     /// Displacement of the nodes.
     pub displacement: Displacement,
     pub metrics: Metrics,
-    /// Pairs of vessels pushed apart in this iteration, and vessels lengthened or opened.
+    /// Vessel pairs pushed apart in this iteration, plus vessels lengthened or opened.
     pub asked: usize,
 }
 
-/// How far nodes have moved, in the unit of the skeleton unless it says otherwise.
+/// Displacement statistics of nodes, in the unit of the skeleton unless stated otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Displacement {
     pub mean: f64,
@@ -25,17 +25,17 @@ pub struct Displacement {
     pub p95: f64,
     /// 99th percentile.
     pub p99: f64,
-    /// Largest.
+    /// Maximum.
     pub max: f64,
 }
 
 impl Displacement {
-    /// Of the nodes of `skeleton` from where they were.
+    /// Displacement of the nodes of `skeleton` from `origin`.
     pub fn of(skeleton: &Skeleton, origin: &[Point3]) -> Self {
         Self::among(skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).norm()).collect())
     }
 
-    /// The same in radii of the nodes.
+    /// Displacement in radii of the nodes.
     pub fn in_radii(skeleton: &Skeleton, origin: &[Point3]) -> Self {
         Self::among(skeleton.nodes.iter().zip(origin).map(|(n, o)| (n.position - o).norm() / n.radius).collect())
     }

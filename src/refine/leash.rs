@@ -1,4 +1,4 @@
-//! How far the nodes of a measured network may go: nothing moves but what overlaps, and that no further than it has to.
+//! Displacement limits of a measured network: only overlapping vessels move, and no further than necessary.
 
 use super::frame::Frame;
 use super::params::Freedom;
@@ -9,43 +9,43 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// How far a node of a polyline may go, in its radii, unless an overlap demands more: short of what counts as displaced, which
-/// is measured between nodes, too.
+/// Default displacement limit of a polyline node, in its radii, unless an overlap demands more. Below 1, as
+/// displacement is also measured between nodes.
 const USUAL: f64 = 0.9;
-/// Along the skeleton vessels give way this far from where they overlap, in sums of the radii there.
+/// Distance along the skeleton, in sums of radii, within which vessels yield to an overlap.
 const REACH: f64 = 4.0;
-/// The last share of it over which the way that a node may go falls to nothing.
+/// Final fraction of `REACH` over which the limit falls to zero.
 const RAMP: f64 = 0.6;
-/// Vessels closer than this, in sums of their radii, are all but touching.
+/// Vessels closer than this, in sums of their radii, almost touch.
 const CLOSE: f64 = 1.02;
-/// The furthest that an overlap can demand, in sums of its radii: a vessel that crosses another one's axis has to go one.
+/// Maximum limit for an overlap, in sums of its radii: a vessel that crosses another axis has to move by one.
 const DEMANDED: f64 = 2.0;
 
-/// A node that moved far.
+/// Node with a large displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FarNode {
-    /// The node, as in the input.
+    /// Node index in the input.
     pub node: u32,
-    /// How far, in radii of its thinnest vessel.
+    /// Displacement, in radii of its thinnest vessel.
     pub radii: f64,
 }
 
-/// Whether there is nothing for whose sake anything would have to move.
+/// True if no vessels overlap.
 fn overlaps_nowhere(network: &Skeleton) -> bool {
     network.overlaps(&network.adjacency()).pairs.is_empty()
 }
 
-/// How far nodes may go.
+/// Displacement limits of nodes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leashes {
-    /// At first, in radii of the node.
+    /// Initial limit, in radii of the node.
     radii: f64,
-    /// Whether vessels that still overlap may go further.
+    /// True if the limit grows for vessels that still overlap.
     grows: bool,
 }
 
 impl Leashes {
-    /// What is asked for; none where nodes are as free as the paper has them.
+    /// Limits for a `freedom`; `None` if nodes move freely as in the paper.
     pub(super) fn of(freedom: Freedom, given: &Skeleton) -> Option<Self> {
         let measured = Self { radii: USUAL, grows: true };
         match freedom {
@@ -56,9 +56,9 @@ impl Leashes {
         }
     }
 
-    /// The nodes that moved further than usual, the furthest first.
+    /// Nodes displaced beyond the initial limit, largest displacement first.
     pub(super) fn demanded(self, skeleton: &Skeleton, origin: &[Point3]) -> Vec<FarNode> {
-        // In radii of the thinnest vessel at each.
+        // Displacement is in radii of the thinnest vessel at each node.
         let mut thin = vec![f64::INFINITY; skeleton.nodes.len()];
         for (node, radius) in skeleton.edges.iter().flat_map(|e| e.nodes.into_iter().zip(e.radii)) {
             thin[node.index()] = thin[node.index()].min(radius);
@@ -70,7 +70,7 @@ impl Leashes {
         far
     }
 
-    /// Overlaps, and vessels that were let go and are all but touching: walls are not exactly at their radius.
+    /// Overlaps, plus released vessels that almost touch: walls deviate slightly from the radius.
     pub(super) fn close(frame: &Frame, overlaps: &Overlaps) -> Overlaps {
         let is_loose = |node: &NodeId| frame.leash[node.index()] > 0.0;
         let overlapping: FxHashSet<[EdgeId; 2]> = overlaps.pairs.iter().map(|o| o.edges).collect();
@@ -81,10 +81,10 @@ impl Leashes {
         close
     }
 
-    /// Lets the nodes near overlaps go: at first by so many of their radii, then twice as far each time.
+    /// Raises the limits of nodes near overlaps: first to the initial limit, then by doubling.
     pub(super) fn loosen(self, frame: &mut Frame, overlaps: &Overlaps) {
         let mut seen = vec![false; frame.origin.len()];
-        // How far the search goes on, its node, and the sum of the radii of the overlap that it comes from.
+        // Remaining search distance, its node, and the sum of radii of the originating overlap.
         let mut heap: BinaryHeap<(Total, Reverse<NodeId>, Total)> = BinaryHeap::new();
         for overlap in &overlaps.pairs {
             let reached = |node| (Total(REACH * overlap.radii), Reverse(node), Total(overlap.radii));
@@ -96,7 +96,7 @@ impl Leashes {
             }
             let usual = self.radii * frame.skeleton.node(node).radius;
             let further = if self.grows { (2.0 * frame.leash[node.index()]).min(DEMANDED * radii) } else { 0.0 };
-            // Less and less towards where nothing moves, so that no kink is left there.
+            // Decreases towards fixed vessels, so that no kink remains.
             let share = (left / (RAMP * REACH * radii)).min(1.0);
             frame.loosen(node, share * usual.max(further));
             for &edge in frame.adjacency.edges(node) {

@@ -1,4 +1,4 @@
-//! Floor 3: 3.1 of the paper, improvement of the skeleton before it is meshed.
+//! Refinement of the skeleton before meshing (section 3.1 of the paper).
 
 mod bend;
 mod contact;
@@ -33,21 +33,20 @@ use anastomesh_skeleton::Skeleton;
 use leash::Leashes;
 use serde::{Deserialize, Serialize};
 
-/// A refined skeleton.
+/// Refined skeleton.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Refined {
-    /// The skeleton. Nodes keep their `original`.
+    /// Skeleton; nodes keep their `original`.
     pub skeleton: Skeleton,
-    /// Where each node was before it moved: after splitting; for a bend, the place on the straight vessel.
+    /// Position of each node after splitting and before moving. For a bend, the point on the straight vessel.
     pub origin: Vec<Point3>,
-    /// What was found and done.
+    /// Report of the refinement.
     #[serde(with = "as_text")]
     pub report: RefineReport,
 }
 
-/// A report as bytes of JSON, whatever the rest is kept as: parts of it are flattened, which formats without names have no way
-/// to read.
+/// Serializes a report as JSON bytes in any format. Formats without field names cannot read its flattened parts.
 mod as_text {
     use super::RefineReport;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
@@ -61,7 +60,7 @@ mod as_text {
     }
 }
 
-/// What a refinement found and did.
+/// Report of a refinement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RefineReport {
@@ -69,45 +68,44 @@ pub struct RefineReport {
     pub size_before: [usize; 2],
     /// Nodes and edges after.
     pub size_after: [usize; 2],
-    /// Nodes that were split, as they had more than three vessels.
+    /// Split nodes, which had more than three vessels.
     pub nodes_split: usize,
-    /// Bends that were put into vessels that were stuck.
+    /// Bends added to stuck vessels.
     pub bends: usize,
-    /// The iteration after which the result was best: that state is the one that is kept. None when every state was
-    /// worse than the input in a metric that was to be held: then the result is the input.
+    /// Iteration with the best state, which is the result. `None` if every state was worse than the input in a
+    /// protected metric; the result is then the input.
     pub chosen: Option<usize>,
     /// The paper's unit of length, in the unit of the skeleton: the median radius is 0.448 of it.
     pub unit: f64,
-    /// As given.
+    /// Figures of the input.
     pub given: Figures,
-    /// After splitting, before anything moved.
+    /// Figures after splitting.
     pub split: Figures,
-    /// When the nodes had come to rest, before what is left was treated.
+    /// Figures at the end of the iterations, before the residual treatment.
     pub moved: Figures,
-    /// In the end.
+    /// Figures of the result.
     pub result: Figures,
-    /// How far the nodes moved.
+    /// Displacement of the nodes.
     pub displacement: Displacement,
-    /// How far the nodes moved, in radii of theirs.
+    /// Displacement of the nodes, in their radii.
     pub displacement_radii: Displacement,
-    /// Nodes of a measured network that moved further than their radius, as an overlap was not parted by less.
+    /// Nodes of a measured network displaced by more than their radius to resolve an overlap.
     pub demanded: Vec<FarNode>,
-    /// Terminals that are too close to each other for two caps.
+    /// Terminals that are too close for two caps.
     pub crowded: Vec<CrowdedPair>,
-    /// What was left, and what was done about it.
+    /// Remaining overlaps and their treatment.
     pub residual: ResidualReport,
-    /// Metrics that are worse in the end than they were given.
+    /// Metrics in which the result is worse than the input.
     pub worse: Vec<Metric>,
-    /// The metrics over the iterations.
+    /// Metrics over the iterations.
     pub history: Vec<Sample>,
 }
 
-/// Refines a skeleton (3.1 of the paper): nodes of more than three vessels are split; the paper's three forces act; then
-/// vessels are pushed apart, lengthened and opened by projection until none overlap and all can be cut, or the
-/// iterations are over; what is left is treated as `params.residual` says.
+/// Refines a skeleton (section 3.1 of the paper). Nodes of more than three vessels are split, then the paper's three
+/// forces act. Projection then pushes vessels apart, lengthens and opens them until none overlap and all can be cut.
+/// Overlaps that remain after the last iteration are treated according to `params.residual`.
 ///
-/// The result depends on nothing but the arguments, and not on the unit of length. Memory grows with the number of
-/// edges.
+/// The result depends only on the arguments, and not on the unit of length. Memory is linear in the number of edges.
 ///
 /// ```
 /// use anastomesh::io::{NetworkOptions, read_network};
@@ -122,7 +120,7 @@ pub struct RefineReport {
 /// ```
 ///
 /// # Errors
-/// When a parameter is out of its range, or the skeleton does not satisfy `Skeleton::check`.
+/// A parameter is out of range, or the skeleton does not satisfy `Skeleton::check`.
 pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) -> Result<Refined, RefineError> {
     params.check()?;
     given.check()?;
@@ -137,7 +135,7 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
     let chosen = moved.best.as_ref().map(|best| best.iteration);
     let bends = moved.best.as_ref().map_or(0, |best| best.bends);
     let (mut skeleton, mut origin) = match moved.best {
-        // Nodes that came with bends follow the others.
+        // Nodes added by bends follow the others.
         Some(best) => (best.skeleton, [&origin[..], &best.origin[origin.len()..]].concat()),
         None => (given.clone(), given.nodes.iter().map(|n| n.position).collect()),
     };
@@ -168,14 +166,14 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
     Ok(Refined { skeleton, origin, report })
 }
 
-/// In polylines pieces that follow each other count as far pairs: nothing that is to be held.
+/// Removes `FarPairs` from the protected metrics: consecutive polyline pieces count as far pairs.
 fn unlike_grown(params: &RefineParams) -> RefineParams {
     let mut params = params.clone();
     params.hold.retain(|&metric| metric != Metric::FarPairs);
     params
 }
 
-/// Treats what is left; undone when shrinking made it worse than the input in what is to be held.
+/// Treats remaining overlaps. Reverts if shrinking made a protected metric worse than in the input.
 fn treat_residual(
     skeleton: &mut Skeleton,
     origin: &mut Vec<Point3>,

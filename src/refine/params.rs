@@ -1,61 +1,61 @@
-//! What a caller may choose about the refinement, and what may be wrong with it.
+//! Parameters of the refinement and their errors.
 
 use super::figures::Metric;
 use anastomesh_skeleton::SkeletonError;
 use anastomesh_skeleton::resolution::RHO;
 use serde::Serialize;
 
-/// What is done about vessels that still overlap when the nodes have come to rest.
+/// Treatment of vessels that still overlap after the iterations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Residual {
-    /// They are listed.
+    /// List them.
     Report,
-    /// Their radii are reduced where they meet, smoothly and by 30 % at most.
+    /// Reduce their radii at the overlap, smoothly and by at most 30 %.
     #[default]
     Shrink,
-    /// They are listed as vessels that are to be meshed together.
+    /// List them as vessels to be meshed together.
     Fuse,
 }
 
-/// What is done about terminals that are too close to each other for two caps.
+/// Treatment of terminals that are too close for two caps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Crowded {
-    /// They are listed.
+    /// List them.
     Keep,
-    /// They are moved apart, no further than two caps need.
+    /// Move them apart, no further than two caps need.
     #[default]
     Part,
-    /// They become one: of two vessels that leave one node the thinner is taken away, others are joined.
+    /// Merge them: of two vessels from one node the thinner is removed, others are joined.
     Merge,
 }
 
-/// How freely the nodes of a network move.
+/// Freedom of node movement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Freedom {
-    /// As in a measured network where vessels are polylines, or where nothing overlaps; else as in a grown one.
+    /// `Measured` if vessels are polylines or nothing overlaps, else `Grown`.
     #[default]
     Auto,
-    /// Nothing moves but what overlaps, by a radius of the node; further only where an overlap is not parted by that.
+    /// Only overlapping vessels move, by up to a radius of the node; further only if the overlap remains.
     Measured,
-    /// Nothing moves but what overlaps, by so many radii of the node at most.
+    /// Only overlapping vessels move, by at most this many radii of the node.
     Radii(f64),
-    /// As the paper has it: vessels are lengthened and opened, too, so that they can be cut.
+    /// As in the paper: vessels are also lengthened and opened so that they can be cut.
     Grown,
 }
 
-/// How a skeleton is refined. Lengths are in the paper's unit (`unit` of the report: the length in which the median
-/// radius of an edge is 0.448) or in radii, so that the unit of the file makes no difference.
+/// Parameters of the refinement. Lengths are in radii or in the paper's unit (`unit` of the report), in which the
+/// median edge radius is 0.448. Results are thus independent of the unit of the file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RefineParams {
-    /// Steps at most.
+    /// Maximum number of iterations.
     pub iterations: usize,
-    /// The share of them in which the paper's three forces act; the rest is projection.
+    /// Fraction of the iterations in which the paper's three forces act; the rest is projection.
     pub forces: f64,
     /// Rate ℓ1 of the barrier force (7).
     pub barrier_rate: f64,
@@ -63,27 +63,27 @@ pub struct RefineParams {
     pub repel_rate: f64,
     /// Rate ℓ3 of the angle force (10).
     pub angle_rate: f64,
-    /// How far the axes of two vessels are to be apart, in sums of their radii.
+    /// Target distance of two vessel axes, in sums of their radii.
     pub clearance: f64,
-    /// How far terminals and roots may move, in the unit of the skeleton; 0 holds them.
+    /// Displacement limit of terminals and roots, in the unit of the skeleton; 0 fixes them.
     pub free_terminals: f64,
-    /// How far any node may go from where it was, in the paper's unit.
+    /// Displacement limit of any node, in the paper's unit.
     pub furthest: f64,
-    /// How freely nodes move.
+    /// Freedom of node movement.
     pub freedom: Freedom,
-    /// Vessels that are stuck get a bend: a new node of valence 2.
+    /// Allow bends in stuck vessels: new nodes of valence 2.
     pub bends: bool,
-    /// What is done about terminals that are too close to each other.
+    /// Treatment of terminals that are too close together.
     pub crowded: Crowded,
-    /// The result is not worse than the input in these.
+    /// Metrics in which the result must not be worse than the input.
     pub hold: Vec<Metric>,
-    /// What is done about vessels that overlap in the end.
+    /// Treatment of overlaps that remain at the end.
     pub residual: Residual,
-    /// Largest share by which a radius may be reduced.
+    /// Maximum reduction of a radius, as a fraction.
     pub shrink: f64,
-    /// Voxels across the thinnest vessel, as in meshing: shrunk vessels clear each other by a voxel.
+    /// Voxels across the thinnest vessel, as in meshing. Shrunk vessels keep a gap of one voxel.
     pub rho: f64,
-    /// The metrics are measured every so many iterations, and after each of the first ten; 0: at the ends only.
+    /// Sampling interval of the metrics, in iterations, in addition to the first ten. 0 samples only start and end.
     pub every: usize,
 }
 
@@ -110,24 +110,24 @@ impl Default for RefineParams {
     }
 }
 
-/// Why a skeleton is not refined.
+/// Errors of the refinement.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefineError {
     /// A parameter is out of its range.
     #[error("refinement: {name} is {value}; it has to be {expected}")]
     Parameter {
-        /// Which one.
+        /// Name of the parameter.
         name: &'static str,
-        /// Its value.
+        /// Value found.
         value: f64,
-        /// What it has to be.
+        /// Expected range.
         expected: &'static str,
     },
-    /// The skeleton cannot be used.
+    /// The skeleton is not usable.
     #[error(transparent)]
     Skeleton(#[from] SkeletonError),
-    /// The caller said so.
+    /// The caller cancelled the run.
     #[error("cancelled")]
     Cancelled,
 }

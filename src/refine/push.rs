@@ -1,17 +1,17 @@
-//! Corrections: what each condition asks of the nodes, and their sum.
+//! Corrections that conditions request of nodes.
 //!
-//! Conditions are solved by projection (position based dynamics; Müller, Heidelberger, Hennix, Ratcliff 2007): each one
-//! that is not met asks its nodes for the smallest move, weighted by their mobility, that meets it to first order.
+//! Conditions are solved by projection (position based dynamics; Müller, Heidelberger, Hennix, Ratcliff 2007). Each
+//! violated condition requests the smallest move, weighted by mobility, that satisfies it to first order.
 
 use super::frame::Frame;
 use anastomesh_mesh::geometry::Vec3;
 use anastomesh_skeleton::NodeId;
 
-/// A move that one condition asks of one node.
+/// Move of one node that one condition requests.
 pub(super) type Push = (NodeId, Vec3);
 
-/// The moves that meet a condition which lacks `deficit`, `gradient` being its derivatives by its nodes. Each move is
-/// at most `cap` long.
+/// Adds the moves that satisfy a condition with the given `deficit`. `gradient` holds its derivatives by its nodes.
+/// Each move is at most `cap` long.
 pub(super) fn project(frame: &Frame, gradient: &[(NodeId, Vec3)], deficit: f64, cap: f64, out: &mut Vec<Push>) {
     let mobility = |n: NodeId| frame.mobility[n.index()];
     let below: f64 = gradient.iter().map(|(n, g)| mobility(*n) * g.norm_squared()).sum();

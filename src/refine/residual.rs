@@ -1,4 +1,4 @@
-//! What is left when the nodes have come to rest, and what is done about it.
+//! Treatment of overlaps that remain after the iterations.
 
 use super::params::{RefineParams, Residual};
 use anastomesh_mesh::geometry::{Point3, Tube};
@@ -6,63 +6,63 @@ use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Skelet
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::{Deserialize, Serialize};
 
-/// Rounds of shrinking at most: a vessel may have several others in its way, and one of them is looked at in a round.
+/// Maximum shrink rounds: a vessel may have several obstacles, and each round treats one.
 const ROUNDS: usize = 12;
-/// Length over which a radius returns to its old value, in radii.
+/// Length over which a shrunk radius recovers, in radii.
 const TAPER: f64 = 3.0;
-/// Pieces that shrinking makes are at least this long, in radii.
+/// Minimum length of the pieces created by shrinking, in radii.
 const SHORTEST: f64 = 2.0;
 
-/// What became of a pair of vessels that still overlapped.
+/// Treatment of a vessel pair that still overlapped.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "treatment", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Treatment {
-    /// Nothing: they overlap.
+    /// None: the vessels overlap.
     Left,
-    /// Radii were reduced where they meet; `kept` is the smaller share that is left of a radius.
+    /// The radii were reduced at the overlap. `kept` is the smaller remaining fraction.
     Shrunk {
-        /// Share of the radius that is left.
+        /// Remaining fraction of the radius.
         kept: f64,
     },
-    /// What was done about other pairs parted them, too.
+    /// The treatment of other pairs also separated this one.
     Cleared,
-    /// They are to be meshed together.
+    /// The vessels are to be meshed together.
     Fused,
 }
 
-/// A pair of vessels that still overlapped when the nodes had come to rest.
+/// Vessel pair that overlapped after the iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResidualPair {
-    /// The nodes of both edges, as indices into the input.
+    /// Nodes of both edges, as indices into the input.
     pub edges: [[u32; 2]; 2],
-    /// Whether both edges end in a terminal and these two are closer than their radii: no refinement can help.
+    /// True if both edges end in terminals closer than the sum of their radii: refinement cannot help.
     pub terminals_too_close: bool,
     /// Distance of the axes.
     pub distance: f64,
-    /// Sum of the radii there.
+    /// Sum of the radii at the overlap.
     pub radii: f64,
-    /// What was done.
+    /// Treatment of the pair.
     #[serde(flatten)]
     pub treatment: Treatment,
 }
 
-/// What was done about the pairs that were left.
+/// Report of the residual treatment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ResidualReport {
-    /// The pairs, in the order in which they were found.
+    /// Pairs in the order of discovery.
     pub pairs: Vec<ResidualPair>,
-    /// Edges of which the radius was reduced.
+    /// Edges with a reduced radius.
     pub shrunk_edges: usize,
     /// Lumen volume before shrinking.
     pub volume: f64,
-    /// Lumen volume that was lost.
+    /// Lost lumen volume.
     pub volume_lost: f64,
-    /// Pairs that overlap still.
+    /// Pairs that still overlap.
     pub left: usize,
 }
 
-/// Lumen volume of an edge: a frustum.
+/// Lumen volume of an edge (a frustum).
 fn volume(tube: &Tube) -> f64 {
     std::f64::consts::PI / 3.0 * tube.length() * (tube.ra * tube.ra + tube.ra * tube.rb + tube.rb * tube.rb)
 }
@@ -71,7 +71,7 @@ fn total_volume(skeleton: &Skeleton) -> f64 {
     skeleton.edge_ids().map(|e| volume(&skeleton.tube(e))).sum()
 }
 
-/// Treats what overlaps. New nodes are added to `origin`, too.
+/// Treats remaining overlaps. New nodes are also added to `origin`.
 pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &RefineParams) -> ResidualReport {
     let adjacency = skeleton.adjacency();
     let found = skeleton.overlaps(&adjacency).pairs;
@@ -130,7 +130,7 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
     report
 }
 
-/// A terminal has one vessel, or the two of the trees that share it, which turn back there.
+/// A terminal has one vessel, or two vessels of the trees that share it, which reverse there.
 fn terminals_too_close(skeleton: &Skeleton, adjacency: &Adjacency, overlap: &Overlap) -> bool {
     let ends = |n: NodeId| match *adjacency.edges(n) {
         [_] => true,
@@ -147,15 +147,15 @@ struct Shrinker<'a> {
     skeleton: &'a mut Skeleton,
     origin: &'a mut Vec<Point3>,
     params: &'a RefineParams,
-    /// Radii of each edge's ends before anything was shrunk.
+    /// Radii at each edge's ends before shrinking.
     was: Vec<[f64; 2]>,
-    /// The edges at each node.
+    /// Edges at each node.
     around: Vec<Vec<EdgeId>>,
 }
 
 impl Shrinker<'_> {
-    /// Reduces the radii of an overlapping pair where they meet; the share kept, none when it cannot be helped or one of
-    /// the edges has been cut in pieces since the pair was found.
+    /// Reduces the radii of an overlapping pair at the overlap and returns the remaining fraction. Returns `None` if
+    /// shrinking cannot help or an edge was divided since the search.
     fn shrink(&mut self, overlap: &Overlap) -> Option<f64> {
         let is_whole = |(e, nodes): (EdgeId, [NodeId; 2])| self.skeleton.edge(e).nodes == nodes;
         if !overlap.edges.into_iter().zip(overlap.nodes).all(is_whole) {
@@ -163,7 +163,7 @@ impl Shrinker<'_> {
         }
         let thin = overlap.edges.map(|e| self.skeleton.tube(e).min_radius()).into_iter().fold(f64::INFINITY, f64::min);
         let voxel = 2.0 * thin / self.params.rho;
-        // Clear by a voxel if that can be had, else as far as it goes.
+        // Aims at a gap of one voxel, limited by the maximum reduction.
         let wanted = ((overlap.distance - voxel) / overlap.radii).max(1.0 - self.params.shrink).min(1.0);
         if overlap.distance < (1.0 - self.params.shrink) * overlap.radii {
             return None;
@@ -175,20 +175,20 @@ impl Shrinker<'_> {
         (least_kept < 1.0).then_some(least_kept)
     }
 
-    /// Reduces the radius of an edge at a point to `share` of what it is, tapering back to either side.
+    /// Reduces the radius of an edge at a point to the fraction `share`, with a taper on both sides.
     fn pinch(&mut self, edge: EdgeId, point: &Point3, share: f64) -> f64 {
         let tube = self.skeleton.tube(edge);
         let length = tube.length();
         let t = (point - tube.a).norm() / length;
         let room = SHORTEST * tube.max_radius() / length;
         if t < room || t > 1.0 - room {
-            // Too close to an end for a node of its own.
+            // Too close to an end for an additional node.
             return self.pinch_end(self.skeleton.edge(edge).nodes[usize::from(t > 0.5)], edge, share);
         }
         let was = self.was[edge.index()];
         let before = was[0] + (was[1] - was[0]) * t;
         let radius = (tube.radius(t) * share).max((1.0 - self.params.shrink) * before);
-        // From far to near, so that the part before keeps its id.
+        // From far to near, so that the first part keeps its id.
         let reach = TAPER * tube.max_radius() / length;
         if t + reach <= 1.0 - room {
             self.insert(edge, t + reach, tube.radius(t + reach));
@@ -201,7 +201,7 @@ impl Shrinker<'_> {
         radius / before
     }
 
-    /// Reduces the radius of an edge at one of its nodes; of both edges when the vessel goes on there.
+    /// Reduces the radius of an edge at one of its nodes, and of both edges if the vessel continues there.
     fn pinch_end(&mut self, node: NodeId, edge: EdgeId, share: f64) -> f64 {
         let around = &self.around[node.index()];
         let all = if around.len() == 2 { around.clone() } else { vec![edge] };
@@ -217,7 +217,7 @@ impl Shrinker<'_> {
         kept
     }
 
-    /// Gives one end of an edge a radius and keeps the rest as it was from `TAPER` radii on, if it is long enough.
+    /// Sets the radius at one end of an edge. From `TAPER` radii on, a long enough edge keeps its old radius.
     fn taper(&mut self, edge: EdgeId, end: usize, radius: f64) {
         let tube = self.skeleton.tube(edge);
         let length = tube.length();
@@ -233,12 +233,12 @@ impl Shrinker<'_> {
         self.skeleton.edges[near.index()].radii[end] = radius;
     }
 
-    /// Puts a node into an edge.
+    /// Inserts a node into an edge.
     fn insert(&mut self, edge: EdgeId, t: f64, radius: f64) {
         let Edge { nodes: [a, b], radii } = *self.skeleton.edge(edge);
         let tube = self.skeleton.tube(edge);
         let node = NodeId(self.skeleton.nodes.len() as u32);
-        // Not a terminal: these are found by their number.
+        // Not a terminal, because terminals are identified by this index.
         let inner = |n: NodeId| self.around[n.index()].len() > 1;
         let nearer = if (t < 0.5 || !inner(b)) && inner(a) { a } else { b };
         let original = self.skeleton.node(nearer).original;

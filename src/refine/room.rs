@@ -1,4 +1,4 @@
-//! Room for a cut on every vessel: long enough for the angles at which it leaves its neighbours.
+//! Space for cuts: every vessel must be long enough for its angles with its neighbours.
 
 use super::frame::{Chain, Frame, LEAST};
 use super::push::{Push, project};
@@ -6,10 +6,10 @@ use anastomesh_mesh::geometry::Vec3;
 use anastomesh_skeleton::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, EdgeId, NARROW, NodeId, separation};
 use rayon::prelude::*;
 
-/// Where conditions are taken as met: a little beyond what is asked for.
+/// Safety factor on the required length.
 const MARGIN: f64 = 1.02;
 
-/// What the vessels ask for that cannot be cut, are too short for equation 11, or leave their node too close together.
+/// Corrections of vessels that cannot be cut, are too short for equation 11, or leave their node at a narrow angle.
 pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
     let chains = frame.chains.par_iter().with_min_len(512).fold(Vec::new, |mut out, chain| {
         push_chain(frame, &chain, &mut out);
@@ -27,7 +27,7 @@ pub(super) fn pushes(frame: &Frame) -> Vec<Push> {
     all
 }
 
-/// What pieces of polylines ask for that have become shorter.
+/// Corrections of polyline pieces that became shorter.
 pub(super) fn lengths(frame: &Frame) -> Vec<Push> {
     let mut out = Vec::new();
     for &edge in frame.chains.iter().filter(|chain| chain.edges.len() > 1).flat_map(|chain| chain.edges) {
@@ -36,13 +36,13 @@ pub(super) fn lengths(frame: &Frame) -> Vec<Push> {
     out
 }
 
-/// The length that a vessel needs: to leave the others at its junctions and have room for a cut or a cap; at least what
-/// equation 11 asks. None for a loop at one node.
+/// Required length of a vessel: distance from its neighbours at junctions plus space for a cut or a cap. At least the
+/// length of equation 11. `None` for a loop at one node.
 pub(super) fn need(frame: &Frame, chain: &Chain) -> Option<f64> {
     needed(frame, chain, &mut Vec::new())
 }
 
-/// The length that a vessel needs; adds its derivatives, taken away, to `gradient`.
+/// Required length of a vessel; appends its negative derivatives to `gradient`.
 fn needed(frame: &Frame, chain: &Chain, gradient: &mut Vec<(NodeId, Vec3)>) -> Option<f64> {
     let ends = chain.ends();
     if ends[0] == ends[1] {
@@ -55,7 +55,7 @@ fn needed(frame: &Frame, chain: &Chain, gradient: &mut Vec<(NodeId, Vec3)>) -> O
     }
     let by_11 = CUT_DISTANCE * (radii[0] + radii[1]);
     let inner = ends.map(|n| frame.adjacency.valence(n) > 2);
-    // Between two junctions a connector of 2 r, at a terminal a piece of r with its cap.
+    // Between junctions a connector of 2 r, at a terminal a piece of r with its cap.
     let mut cut = 0.0;
     for i in [0, 1] {
         cut += 0.5 * CONNECTOR_ROOM * radii[i];
@@ -83,7 +83,7 @@ fn push_chain(frame: &Frame, chain: &Chain, out: &mut Vec<Push>) {
     }
 }
 
-/// Pieces of a polyline do not become shorter than they were, as far as equation 11 minds.
+/// Keeps polyline pieces at their old length, as far as equation 11 requires it.
 fn keep_length(frame: &Frame, edge: EdgeId, out: &mut Vec<Push>) {
     let deficit = 1.001 * frame.kept[edge.index()] - frame.skeleton.length(edge);
     if deficit > 0.0 {
@@ -93,7 +93,7 @@ fn keep_length(frame: &Frame, edge: EdgeId, out: &mut Vec<Push>) {
     }
 }
 
-/// Least distance of a cut from a node; adds its derivatives, taken away, to `gradient`.
+/// Minimum distance of a cut from a node; appends its negative derivatives to `gradient`.
 fn distance(frame: &Frame, node: NodeId, own: EdgeId, gradient: &mut Vec<(NodeId, Vec3)>) -> f64 {
     let lever = frame.lever(node, own);
     let u = frame.at(lever) - frame.at(node);
@@ -113,18 +113,18 @@ fn distance(frame: &Frame, node: NodeId, own: EdgeId, gradient: &mut Vec<(NodeId
     let v = frame.at(end) - frame.at(node);
     let (lu, lv) = (u.norm(), v.norm());
     let cos = u.dot(&v) / (lu * lv);
-    // Angles below two degrees or so give no useful derivative.
+    // Angles below about two degrees give no useful derivative.
     let sin = (u.cross(&v).norm() / (lu * lv)).max(0.04);
     let slope = ANGLE_MARGIN * (r + r2 * cos) / (sin * sin);
     let [by_u, by_v] = opening(&u, &v);
     gradient.push((lever, by_u * slope));
     gradient.push((end, by_v * slope));
     gradient.push((node, (by_u + by_v) * -slope));
-    // No more than can be had by both ways together.
+    // At most the length that both vessels together can provide.
     ANGLE_MARGIN * (r2 + r * cos) / sin
 }
 
-/// Derivatives of the angle between `u` and `v` by both.
+/// Derivatives of the angle between `u` and `v` with respect to both.
 fn opening(u: &Vec3, v: &Vec3) -> [Vec3; 2] {
     let (lu, lv) = (u.norm(), v.norm());
     let (u, v) = (u / lu, v / lv);
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// Length less need of the first chain.
+    /// Length minus required length of the first chain, with its gradient.
     fn slack(skeleton: &Skeleton) -> (f64, Vec<(NodeId, Vec3)>) {
         let frame = Frame::new(skeleton.clone(), 1e9, 1e9, 1.0);
         let chain = frame.chains.iter().find(|c| c.edges == [EdgeId(0)]).expect("edge 0 is a chain");
@@ -227,7 +227,7 @@ mod tests {
                         slack(&s).0
                     };
                     let (up, down) = (moved(h), moved(-h));
-                    // Not across a change of the neighbour that asks for most, or of what decides.
+                    // Not where the decisive neighbour or the active bound changes.
                     if (up - 2.0 * value + down).abs() > 1e-9 {
                         continue;
                     }

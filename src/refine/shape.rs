@@ -1,13 +1,13 @@
-//! Polylines keep their shape: the nodes along a vessel move with their neighbours.
+//! Shape preservation of polylines: the nodes along a vessel move with their neighbours.
 
 use super::frame::{Chain, Frame};
 use anastomesh_mesh::geometry::Vec3;
 use rayon::prelude::*;
 
-/// Over how many radii along a vessel its nodes move together.
+/// Smoothing length along a vessel, in radii.
 const REACH: f64 = 4.0;
 
-/// Replaces the steps of the nodes inside each chain by smooth ones. Ends keep their steps.
+/// Smooths the steps of the nodes inside each chain. The ends keep their steps.
 pub(super) fn smooth_steps(frame: &Frame, steps: &mut [Vec3], asked: &[u32]) {
     let smooth: Vec<Vec<Vec3>> = frame
         .chains
@@ -24,8 +24,8 @@ pub(super) fn smooth_steps(frame: &Frame, steps: &mut [Vec3], asked: &[u32]) {
     }
 }
 
-/// The steps of a chain's nodes: those of which nothing was asked follow the others, then all are smoothed once more,
-/// as the first pass leaves a kink where something was asked.
+/// Smoothed steps of a chain's nodes. Nodes without a request first follow the others. A second pass over all nodes
+/// removes the kinks at requests.
 fn smoothed(frame: &Frame, chain: &Chain, steps: &[Vec3], asked: &[u32]) -> Vec<Vec3> {
     let springs: Vec<f64> = (0..chain.edges.len()).map(|i| spring(frame, chain, i)).collect();
     let mut values: Vec<Vec3> = chain.nodes.iter().map(|n| steps[n.index()]).collect();
@@ -34,17 +34,17 @@ fn smoothed(frame: &Frame, chain: &Chain, steps: &[Vec3], asked: &[u32]) -> Vec<
     values
 }
 
-/// How strongly the nodes at both ends of a chain's edge move together: (`REACH` radii over length)², so that a step
-/// falls off by a factor e over `REACH` radii.
+/// Spring constant between the nodes of a chain's edge: (`REACH` radii over length)². A step then decays by a factor e
+/// over `REACH` radii.
 fn spring(frame: &Frame, chain: &Chain, i: usize) -> f64 {
     let tube = frame.skeleton.tube(chain.edges[i]);
     let k = (REACH * 0.5 * (tube.ra + tube.rb) / tube.length().max(1e-3 * tube.max_radius())).powi(2);
-    // A bend is there to bend.
+    // Bends are free to bend.
     let bend = [chain.nodes[i], chain.nodes[i + 1]].iter().any(|m| frame.is_bend[m.index()]);
     if bend { 1e-2 * k } else { k }
 }
 
-/// Makes Σ weight |x − value|² + Σ spring |difference|² least over the inner values; a tridiagonal system, solved by
+/// Minimizes Σ weight |x − value|² + Σ spring |difference|² over the inner values. The tridiagonal system is solved by
 /// elimination.
 fn along(springs: &[f64], values: &mut [Vec3], weight: impl Fn(usize) -> f64) {
     let n = values.len();

@@ -1,4 +1,4 @@
-//! The loop: forces first, then projection until nothing is asked for any more.
+//! Main loop of the refinement: forces first, then projection until no condition is violated.
 
 use super::bend::add_bends;
 use super::contact::Contacts;
@@ -14,22 +14,22 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
 
-/// How much of what is asked of a node by several conditions at once it does: their sum over the number to this power.
+/// Exponent p of the combined correction of a node: the sum of n requests is divided by n^p.
 const AVERAGE: f64 = 0.25;
-/// Bounds of a node's rate, and how it falls when the node turns back and rises when it does not.
+/// Bounds of a node's step rate. The rate falls if the node reverses direction, else it rises.
 const RATES: [f64; 2] = [0.1, 1.5];
 const FALL: f64 = 0.7;
 const RISE: f64 = 1.1;
-/// Bends are put in after this share of the iterations, and again as often.
+/// Interval between bend insertions, as a fraction of the iterations.
 const BENDS: f64 = 0.125;
-/// The first so many iterations are measured each, if any are.
+/// Number of first iterations that are all sampled, if any are.
 const EARLY: usize = 10;
-/// It stops when the state has not become better in so many rounds of bends.
+/// Maximum bend intervals without improvement before the loop stops.
 const PATIENCE: usize = 4;
 
-/// What the loop hands over.
+/// Result of the loop.
 pub(super) struct Moved {
-    /// The best state; none when each was worse than the input in what was to be held.
+    /// Best state; `None` if every state was worse than the input in a protected metric.
     pub best: Option<State>,
     pub history: Vec<Sample>,
     pub unit: f64,
@@ -39,11 +39,11 @@ pub(super) struct State {
     pub skeleton: Skeleton,
     pub origin: Vec<Point3>,
     pub bends: usize,
-    /// After how many iterations.
+    /// Number of iterations.
     pub iteration: usize,
 }
 
-/// Moves the nodes of a split skeleton; `given` is what the input had.
+/// Moves the nodes of a split skeleton; `given` holds the figures of the input.
 ///
 /// # Errors
 /// [`RefineError::Cancelled`].
@@ -77,7 +77,7 @@ pub(super) fn solve(
         if last || quiet || iteration % between == 0 {
             let was_perfect = best.is_perfect();
             let overlaps = best.offer(&solver, iteration);
-            // Once more after all is well, for the clearance.
+            // One more interval after success, for the clearance.
             last |= was_perfect && best.is_perfect() || iteration >= best.improved + PATIENCE * between;
             last |= quiet && best.is_perfect();
             if !last && iteration + between / 2 <= params.iterations {
@@ -85,7 +85,7 @@ pub(super) fn solve(
                 last = quiet && bends == 0;
             }
         }
-        // Most happens at the beginning.
+        // Most changes happen in the first iterations.
         if last || (params.every > 0 && (iteration % params.every == 0 || iteration < params.every.min(EARLY))) {
             history.push(solver.sample(iteration, asked));
         }
@@ -97,18 +97,18 @@ pub(super) fn solve(
     Ok(Moved { best: best.state, history, unit: solver.unit })
 }
 
-/// The best state so far.
+/// Best state so far.
 struct Best {
     given: Figures,
-    /// Its figures that decide, the first first: fewer are better.
+    /// Lexicographic score: fewer are better.
     score: Option<[usize; 4]>,
-    /// When the score last fell.
+    /// Iteration of the last improvement.
     improved: usize,
     state: Option<State>,
 }
 
 impl Best {
-    /// Keeps the solver's state if it is better than what there is, and not worse than the input in what is to be held.
+    /// Keeps the solver's state if it improves the score and no protected metric is worse than in the input.
     fn offer(&mut self, solver: &Solver, iteration: usize) -> Overlaps {
         let (figures, overlaps) = Figures::with_overlaps(&solver.frame.skeleton);
         let score = if solver.leashes.is_some() { [figures.overlaps, 0, 0, 0] } else { figures.score() };
@@ -128,8 +128,8 @@ impl Best {
         overlaps
     }
 
-    /// Whether nothing is left to do. Pairs of a polyline's own pieces count as far in the plain count, and its pieces
-    /// are shorter than equation 11 asks: only what the others say counts.
+    /// True if no overlaps or uncuttable branches remain. The plain count treats pieces of one polyline as far pairs,
+    /// and short pieces fail equation 11. Both are ignored here.
     fn is_perfect(&self) -> bool {
         self.score.is_some_and(|s| s[0] == 0 && s[2] == 0)
     }
@@ -137,12 +137,12 @@ impl Best {
 
 struct Solver<'a> {
     params: &'a RefineParams,
-    /// How far nodes may go where nothing is to move but what overlaps.
+    /// Displacement limits, if only overlapping vessels move.
     leashes: Option<Leashes>,
     frame: Frame,
     unit: f64,
     contacts: Contacts,
-    /// How far each node has moved at most since the contacts were found.
+    /// Maximum displacement of each node since the last contact search.
     moved: Vec<f64>,
     last: Vec<Vec3>,
     rate: Vec<f64>,
@@ -171,7 +171,7 @@ impl<'a> Solver<'a> {
         solver
     }
 
-    /// After a change of the nodes there are: contacts have to be found again.
+    /// Resets per-node state after nodes were added; contacts are searched again.
     fn restart(&mut self) {
         let n = self.frame.origin.len();
         self.moved.clear();
@@ -180,12 +180,12 @@ impl<'a> Solver<'a> {
         self.rate.resize(n, 1.0);
     }
 
-    /// One step; returns how much was asked for.
+    /// Performs one step and returns the number of requests.
     fn step(&mut self, with_forces: bool) -> usize {
-        // Pairs further apart than the skin cannot come together while no node has moved half of it.
+        // Pairs further apart than the skin cannot touch before a node has moved by half of it.
         let skin = 2.0 * self.unit;
         if self.moved.iter().any(|&m| m > 0.5 * skin) {
-            // Those that were found before make room first.
+            // Frees the old contacts first, to save memory.
             self.contacts = Contacts::default();
             self.contacts = Contacts::find(&self.frame, self.params.clearance, skin);
             self.moved.fill(0.0);
@@ -205,7 +205,7 @@ impl<'a> Solver<'a> {
             add(&forces::pushes(&self.frame, &self.contacts, &barrier, rates));
         }
         let contacts = self.contacts.pushes(&self.frame, self.params.clearance);
-        // Where nothing is to move but what overlaps, no vessel is lengthened or opened for the sake of a cut.
+        // If only overlapping vessels move, none is lengthened or opened for a cut.
         let room = if self.leashes.is_some() { room::lengths(&self.frame) } else { room::pushes(&self.frame) };
         add(&contacts);
         add(&room);
@@ -217,7 +217,7 @@ impl<'a> Solver<'a> {
         contacts.len() + room.len()
     }
 
-    /// Moves every node by its step times its rate, no further than its leash.
+    /// Moves every node by its step times its rate, within its limit.
     fn advance(&mut self, steps: &[Vec3]) {
         for (i, step) in steps.iter().enumerate() {
             if step.norm_squared() <= 0.0 {
@@ -238,7 +238,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Vessels that overlap come first until the next count, and may bend; returns how many bends were put in.
+    /// Gives overlapping vessels priority until the next count and adds bends; returns the number of bends.
     fn attend(&mut self, overlaps: &Overlaps) -> usize {
         self.frame.urgent.fill(false);
         for node in overlaps.pairs.iter().flat_map(|o| o.nodes).flatten() {
@@ -255,7 +255,7 @@ impl<'a> Solver<'a> {
         bends
     }
 
-    /// Lets loose what overlaps, where nothing else is to move; false when nothing is to move at all.
+    /// Releases overlapping vessels if all others are fixed. Returns false if nothing may move.
     fn loosen(&mut self, overlaps: &Overlaps) -> bool {
         let Some(leashes) = self.leashes else { return true };
         leashes.loosen(&mut self.frame, overlaps);

@@ -1,40 +1,39 @@
-//! 3.1: nodes of valence above 3 become chains of nodes of valence 3.
+//! Splitting of nodes (section 3.1 of the paper): a node of valence above 3 becomes a chain of nodes of valence 3.
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_skeleton::{Edge, EdgeId, Node, NodeId, Skeleton};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// How often the shift is halved when it would make an edge too short.
+/// Maximum halvings of the shift if an edge would become too short.
 const HALVINGS: u32 = 8;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SplitNode {
     /// The node; it keeps its id and moves upstream.
     pub node: NodeId,
-    /// The new nodes, in the order in which they follow downstream.
+    /// New nodes, in downstream order.
     pub made: Vec<NodeId>,
-    /// Length of the shortest new edge, in radii of the node; 2 where there is room.
+    /// Length of the shortest new edge, in radii of the node; 2 if space permits.
     pub shortest_link: f64,
 }
 
-/// What splitting did.
+/// Report of a split.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SplitReport {
-    /// The nodes that were split, in ascending order.
+    /// Split nodes, in ascending order.
     pub nodes: Vec<SplitNode>,
 }
 
-/// Splits every node of more than three edges until none is left.
+/// Splits every node of more than three edges until none remains.
 ///
-/// The thickest vessel of the node (the parent, in a tree) gives the direction: the old node moves up to one radius
-/// upstream and keeps the thickest vessel and the one that points most upstream; a new node up to one radius downstream
-/// takes the others, and is split in turn. The shift is at most half of the thickest vessel, and is halved while it
-/// makes an edge shorter than half of what it was and than half a radius. The new edge carries what Murray's law gives
-/// for the vessels behind it, at most the radius of the node. Terminals stay where they are; a new node's `original` is
-/// that of the node that was split.
+/// The thickest vessel of the node (the parent, in a tree) defines the upstream direction. The old node moves up to one
+/// radius upstream. It keeps the thickest vessel and the one that points most upstream. A new node up to one radius
+/// downstream takes the others and is split in turn. The shift is at most half of the thickest vessel. It is halved
+/// while an edge would be shorter than half its old length and half a radius. Murray's law gives the new edge's radius,
+/// up to that of the node. Terminals do not move; a new node inherits the `original` of the split node.
 ///
-/// The skeleton must satisfy `Skeleton::check`; the result does, too.
+/// The skeleton must satisfy `Skeleton::check`, as does the result.
 pub fn split(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
     let adjacency = skeleton.adjacency();
     let mut out = skeleton.clone();
@@ -45,7 +44,7 @@ pub fn split(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
     (out, report)
 }
 
-/// The same of a network that is held by several: where no node is split it is the same one.
+/// Splits a shared network. Returns the given network if no node has to be split.
 pub fn split_shared(skeleton: &Arc<Skeleton>) -> (Arc<Skeleton>, SplitReport) {
     let adjacency = skeleton.adjacency();
     if skeleton.node_ids().all(|node| adjacency.valence(node) <= 3) {
@@ -75,7 +74,7 @@ fn split_node(skeleton: &mut Skeleton, node: NodeId, mut edges: Vec<EdgeId>) -> 
     done
 }
 
-/// Splits off one new node; returns it, the edge that leads to it, and the edges that moved to it.
+/// Splits off one new node. Returns it, the edge that leads to it, and the edges moved to it.
 fn split_once(skeleton: &mut Skeleton, node: NodeId, edges: &[EdgeId]) -> (NodeId, EdgeId, Vec<EdgeId>) {
     let centre = *skeleton.node(node);
     let parent = thickest(skeleton, edges);
@@ -101,13 +100,13 @@ fn split_once(skeleton: &mut Skeleton, node: NodeId, edges: &[EdgeId]) -> (NodeI
     (made, link, rest)
 }
 
-/// The edge of the largest mean radius; the first among equals.
+/// Edge with the largest mean radius; the first among equals.
 fn thickest(skeleton: &Skeleton, edges: &[EdgeId]) -> EdgeId {
     let radius = |e: EdgeId| skeleton.edge(e).mean_radius();
     edges.iter().copied().fold(edges[0], |best, e| if radius(e) > radius(best) { e } else { best })
 }
 
-/// Radius of a vessel that feeds the given ones (the cubes add up), from their radii at `node`.
+/// Murray radius of a vessel that feeds the given ones (cubes add up), from their radii at `node`.
 fn murray(skeleton: &Skeleton, node: NodeId, edges: &[EdgeId]) -> f64 {
     let largest = edges.iter().map(|&e| radius_at(skeleton, e, node)).fold(0.0, f64::max);
     // Divided by the largest, so that no unit of length under- or overflows.
@@ -120,7 +119,7 @@ fn radius_at(skeleton: &Skeleton, edge: EdgeId, node: NodeId) -> f64 {
     edge.radii[edge.end(node)]
 }
 
-/// How far the old node can move towards `parent` and the new one away from it.
+/// Maximum shift of the old node towards `parent` and of the new node away from it.
 fn room(centre: &Node, parent: Point3, kept: Point3, rest: &[Point3]) -> f64 {
     let toward = parent - centre.position;
     let length = toward.norm();
@@ -189,7 +188,7 @@ mod tests {
         check(&s, &after, &report);
         assert!((after.nodes[0].position - Point3::new(0.0, 0.0, 1.0)).norm() < 1e-12);
         assert!((after.nodes[5].position - Point3::new(0.0, 0.0, -1.0)).norm() < 1e-12);
-        // The vessel that leaves sideways stays upstream, the two that go on share the new node by Murray's law.
+        // The sideways vessel stays upstream; the other two share the new node by Murray's law.
         assert_eq!(after.edges[3].nodes, [NodeId(0), NodeId(4)]);
         assert_eq!(after.edges[1].nodes, [NodeId(5), NodeId(2)]);
         assert!((after.nodes[5].radius - (2.0 * 0.6_f64.powi(3)).cbrt()).abs() < 1e-12);

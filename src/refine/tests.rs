@@ -1,4 +1,4 @@
-//! Refinement as a whole.
+//! Tests of the complete refinement.
 
 use super::*;
 
@@ -33,7 +33,7 @@ fn a_tangle_is_parted_and_can_be_cut() {
     assert!(r.given.overlaps > 20, "{}", r.given.overlaps);
     assert!(10 * r.moved.overlaps < r.given.overlaps && r.moved.far <= 1, "{:?}", r.moved);
     assert!(r.moved.metrics.cuttable.percent() > 97.0, "{:?}", r.moved.metrics.cuttable);
-    // Terminals and the root are where they were.
+    // Terminals and the root are fixed.
     let before = s.adjacency();
     for node in before.terminals() {
         assert_eq!(refined.skeleton.node(node).position, s.node(node).position);
@@ -45,7 +45,7 @@ fn a_tangle_is_parted_and_can_be_cut() {
 #[test]
 fn the_unit_makes_no_difference() {
     let s = tangle(5, 7);
-    // Few steps: rounding differs between units, and a tangle is sensitive to it in the long run.
+    // Few steps only: rounding differs between units, and a tangle amplifies it.
     let params = RefineParams { iterations: 40, ..RefineParams::default() };
     let reference = run(&s, &params).skeleton;
     for f in [1e-3, 1e-6, 22.7] {
@@ -89,7 +89,7 @@ fn vessels_that_cross_exactly_in_a_plane_are_parted() {
 
 #[test]
 fn what_cannot_move_is_bent_or_shrunk_or_listed() {
-    // Two vessels between fixed terminals: they can part only by bends.
+    // Two vessels between fixed terminals can separate only by bends.
     let s =
         network(&[[-20.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, -20.0, 0.5], [0.0, 20.0, 0.5]], 1.0, &[(0, 1), (2, 3)]);
     let refined = run(&s, &RefineParams::default());
@@ -115,7 +115,7 @@ fn shrinking_is_local_and_at_most_by_a_third() {
     assert!(r.residual.shrunk_edges == 2 && r.residual.volume_lost < 0.1 * r.residual.volume, "{:?}", r.residual);
     let radii = refined.skeleton.edges.iter().flat_map(|e| e.radii);
     assert!(radii.clone().fold(f64::INFINITY, f64::min) >= 0.7 - 1e-12);
-    // The ends keep theirs, and the radius does not jump.
+    // The ends keep their radii, and the radius is continuous.
     assert!(radii.fold(0.0, f64::max) <= 1.0 + 1e-12);
     let adjacency = refined.skeleton.adjacency();
     for node in refined.skeleton.node_ids() {
@@ -147,7 +147,7 @@ fn terminals_move_only_as_far_as_they_may() {
 
 #[test]
 fn a_fork_to_terminals_side_by_side_comes_close_enough_to_part() {
-    // The ends are clear of each other, and cannot move; long legs overlap whatever their fork does.
+    // The ends are fixed and clear of each other; long legs overlap for any position of the bifurcation.
     let points = [[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 1.2, 0.0], [20.0, -1.2, 0.0]];
     let s = network(&points, 1.0, &[(0, 1), (1, 2), (1, 3)]);
     let params = RefineParams { bends: false, ..RefineParams::default() };
@@ -160,7 +160,7 @@ fn a_fork_to_terminals_side_by_side_comes_close_enough_to_part() {
 
 #[test]
 fn what_is_held_does_not_become_worse() {
-    // Each leg satisfies equation 11; to part they have to become shorter than that.
+    // Each leg satisfies equation 11. Separating them requires legs that violate it.
     let points = [[-20.0, 0.0, 0.0], [0.0, 0.0, 0.0], [20.0, 1.2, 0.0], [20.0, -1.2, 0.0]];
     let s = network(&points, 1.0, &[(0, 1), (1, 2), (1, 3)]);
     let params = RefineParams { bends: false, residual: Residual::Report, ..RefineParams::default() };
@@ -171,7 +171,7 @@ fn what_is_held_does_not_become_worse() {
 
 #[test]
 fn polylines_keep_their_shape() {
-    // A vessel in short pieces along an arc, crossed by a straight one.
+    // A polyline of short pieces along an arc, crossed by a straight vessel.
     let mut points: Vec<[f64; 3]> = (0..=60)
         .map(|i| {
             let a = std::f64::consts::PI * f64::from(i) / 60.0;
@@ -184,7 +184,7 @@ fn polylines_keep_their_shape() {
     let s = network(&points, 1.0, &edges);
     let refined = run(&s, &RefineParams { bends: false, ..RefineParams::default() });
     assert_eq!((refined.report.given.overlaps > 0, refined.report.moved.overlaps), (true, 0));
-    // Neighbours move together: no piece turns by much more than it did.
+    // Neighbours move together, so the angle between pieces changes little.
     for i in 1..60 {
         let at = |j: usize| refined.skeleton.nodes[j].position;
         let (u, v) = (at(i) - at(i - 1), at(i + 1) - at(i));
@@ -193,7 +193,7 @@ fn polylines_keep_their_shape() {
     }
 }
 
-/// A polyline of 60 pieces along a parabola, and a straight vessel of points of its own beside its vertex.
+/// A polyline of 60 pieces along a parabola, and a separate straight vessel beside its vertex.
 fn beside_a_bow(apart: f64) -> Skeleton {
     let x = |i: u32| f64::from(i) - 30.0;
     let mut points: Vec<[f64; 3]> = (0..=60).map(|i| [x(i), 0.02 * x(i) * x(i), 0.0]).collect();
@@ -217,7 +217,7 @@ fn nothing_measured_moves_but_what_overlaps() {
 
 #[test]
 fn an_overlap_may_demand_more_than_a_radius_unless_that_is_the_bound() {
-    // One within the other: to part they have to go a radius each.
+    // Coinciding vessels: each has to move by a radius.
     let s = beside_a_bow(0.1);
     let params = RefineParams { bends: false, residual: Residual::Report, ..RefineParams::default() };
     let refined = run(&s, &params);

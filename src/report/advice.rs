@@ -1,12 +1,12 @@
-//! What to try when a network did not become a valid mesh: options to be pasted.
+//! Advice after a failed run: command line options to try.
 
 use crate::pipeline::RunReport;
 
-/// How much finer the blocks are that come next.
+/// Factor on the resolution for the next attempt.
 const FINER: f64 = 1.5;
 
-/// One line for each option that may help. `invalid`: the mesh, if there is one, is not valid; `refined`: the network was
-/// refined first; `rho`: the resolution that was asked for.
+/// Returns one line per option that may help. `invalid`: the mesh is not valid; `refined`: the network was refined
+/// first; `rho`: requested resolution.
 pub fn advice(run: &RunReport, invalid: bool, refined: bool, rho: f64) -> Vec<String> {
     let mut lines = Vec::new();
     if run.failed.is_empty() && !invalid {

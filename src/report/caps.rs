@@ -1,11 +1,11 @@
-//! All inlets and outlets as a table.
+//! CSV table of all inlets and outlets.
 
 use crate::pipeline::{CapRow, Caps};
 use anastomesh_io::network::NodeNames;
 use anastomesh_skeleton::NodeId;
 use std::error::Error;
 
-/// The columns. Lengths are in the mesh's unit; flow is volume per time, in at inlets, out at outlets.
+/// Columns. Lengths are in the mesh's unit; flow is volume per time, into inlets and out of outlets.
 const COLUMNS: [&str; 16] = [
     "id",
     "name",
@@ -25,17 +25,17 @@ const COLUMNS: [&str; 16] = [
     "resistance",
 ];
 
-/// A row for each inlet and outlet, in CSV; nodes as the network's file calls them.
+/// Table with a row for each inlet and outlet; nodes have their names in the network file.
 ///
 /// # Errors
-/// When the table cannot be put together, which memory alone can be the reason of.
+/// The table cannot be created, which happens only if memory is insufficient.
 pub fn table(caps: &Caps, names: &NodeNames) -> Result<String, Box<dyn Error>> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(COLUMNS)?;
     for CapRow { id, name, cap, area, strahler, order, flow, pressure, resistance, .. } in &caps.rows {
         let mut record = vec![id.to_string(), name.clone(), names.of(NodeId(cap.node))];
         let numbers = cap.center.coords.iter().chain(&cap.normal).chain([area, &cap.radius]);
-        // The shortest form that reads back as the same number.
+        // Shortest form that is read back unchanged.
         let text = |number: &f64| format!("{number:?}");
         record.extend(numbers.map(text));
         record.extend([strahler, order].map(ToString::to_string));

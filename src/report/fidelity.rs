@@ -1,10 +1,10 @@
-//! What is said of how a mesh keeps its network.
+//! Text report of a mesh's fidelity to its network.
 
 use std::fmt::{self, Write as _};
 
 use crate::fidelity::{Displaced, Fidelity};
 
-/// Places that are spelt out for people.
+/// Maximum number of listed places.
 const LISTED: usize = 10;
 
 impl fmt::Display for Fidelity {
@@ -27,7 +27,7 @@ impl fmt::Display for Fidelity {
     }
 }
 
-/// Places that are further off than a bound, in words; none when there are none.
+/// Message on places beyond the displacement limit; `None` if there are none.
 #[cfg(feature = "cli")]
 pub fn displaced(far: &[Displaced], bound: f64) -> Option<String> {
     if far.is_empty() {

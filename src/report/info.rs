@@ -1,4 +1,4 @@
-//! What `info` says about a network.
+//! Report of `info` on a network.
 
 use super::inlets::Inlet;
 use anastomesh_mesh::geometry::Aabb;
@@ -7,26 +7,26 @@ use anastomesh_skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Shar
 use serde::Serialize;
 use std::fmt;
 
-/// Overlaps that the text lists; the JSON form has all.
+/// Maximum number of overlaps in the text; the JSON form lists all.
 const LISTED: usize = 10;
 
-/// Least, quartiles and largest of some numbers; all 0 when there are none.
+/// Minimum, quartiles and maximum of numbers; all 0 without numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// Smallest.
+    /// Minimum.
     pub min: f64,
-    /// A quarter is smaller.
+    /// First quartile.
     pub quarter: f64,
-    /// Half is smaller.
+    /// Median.
     pub median: f64,
-    /// Three quarters are smaller.
+    /// Third quartile.
     pub three_quarters: f64,
-    /// Largest.
+    /// Maximum.
     pub max: f64,
 }
 
 impl Spread {
-    /// Of these numbers.
+    /// Computes the quartiles of these numbers.
     pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_unstable_by(f64::total_cmp);
         let Some(last) = values.len().checked_sub(1) else {
@@ -44,7 +44,7 @@ impl fmt::Display for Spread {
     }
 }
 
-/// A guess at the unit of length.
+/// Estimated unit of length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UnitGuess {
@@ -57,7 +57,7 @@ pub enum UnitGuess {
 }
 
 impl UnitGuess {
-    /// From the largest radius and the extent: no vessel is thicker than 20 mm, no network larger than 2 m.
+    /// Estimate from largest radius and extent: no vessel is thicker than 20 mm, no network larger than 2 m.
     fn of(largest_radius: f64, extent: f64) -> Self {
         if largest_radius > 20.0 || extent > 2000.0 {
             Self::Micrometres
@@ -79,7 +79,7 @@ impl fmt::Display for UnitGuess {
     }
 }
 
-/// What a network holds. Lengths are in the network's unit.
+/// Properties of a network. Lengths are in the network's unit.
 ///
 /// ```
 /// use anastomesh::io::{NetworkOptions, read_network};
@@ -94,9 +94,9 @@ impl fmt::Display for UnitGuess {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NetworkInfo {
-    /// What the reader decided.
+    /// Decisions of the reader.
     pub notes: Vec<String>,
-    /// What cleaning did; everything below is about the cleaned network.
+    /// Report of the cleaning; all other fields describe the cleaned network.
     pub cleaned: CleanReport,
     /// Number of nodes.
     pub nodes: usize,
@@ -104,15 +104,15 @@ pub struct NetworkInfo {
     pub edges: usize,
     /// Number of branches: chains through nodes of valence 2.
     pub branches: usize,
-    /// Number of connected pieces.
+    /// Number of connected components.
     pub components: usize,
-    /// Nodes of the largest piece.
+    /// Number of nodes in the largest component.
     pub largest_component: usize,
     /// Number of independent loops.
     pub loops: usize,
     /// Number of nodes of valence 1.
     pub terminals: usize,
-    /// How many nodes have 0, 1, 2, … edges.
+    /// Number of nodes with 0, 1, 2, … edges.
     pub valences: Vec<usize>,
     /// Radii at the ends of the edges.
     pub radius: Spread,
@@ -122,26 +122,26 @@ pub struct NetworkInfo {
     pub edges_shorter_than_radius: usize,
     /// Lengths of the branches.
     pub branch_length: Spread,
-    /// Length of each branch over its mean radius.
+    /// Length of each branch relative to its mean radius.
     pub branch_length_in_radii: Spread,
-    /// Length of all edges together.
+    /// Total length of all edges.
     pub total_length: f64,
-    /// Terminals that become inlets, as far as the caller knows them.
+    /// Terminals that become inlets, as far as known to the caller.
     pub inlets: Vec<Inlet>,
     /// Lowest and highest coordinates of the nodes.
     pub bounding_box: [[f64; 3]; 2],
-    /// A guess at the unit of length from the sizes.
+    /// Unit of length estimated from the sizes.
     pub unit_guess: UnitGuess,
-    /// How well it can be meshed.
+    /// Suitability for meshing.
     pub metrics: Metrics,
-    /// Where vessels run into each other.
+    /// Overlapping vessels.
     pub overlaps: Overlaps,
-    /// Terminals too close to each other for two caps.
+    /// Terminals that are too close for two caps.
     pub crowded_terminals: Vec<CrowdedTerminals>,
 }
 
 impl NetworkInfo {
-    /// Looks at a cleaned network; `notes` are passed on.
+    /// Analyses a cleaned network; `notes` are included unchanged.
     pub fn new(skeleton: &Skeleton, cleaned: CleanReport, notes: Vec<String>) -> Self {
         let adjacency = skeleton.adjacency();
         let components = skeleton.components(&adjacency).list;
@@ -294,7 +294,7 @@ mod tests {
     use anastomesh_mesh::geometry::Point3;
     use anastomesh_skeleton::{Edge, Node, NodeId, clean};
 
-    /// A trunk of two edges with a ring of three at its end, and a vessel of its own that crosses the trunk.
+    /// A trunk of two edges with a ring of three at its end, and a separate vessel that crosses the trunk.
     fn network() -> Skeleton {
         let points = [[0, 0, 0], [1, 0, 0], [9, 0, 0], [20, 9, 0], [20, -9, 0], [4, -9, 1], [4, 9, 1]];
         let node = |(i, p): (usize, &[i8; 3])| Node {

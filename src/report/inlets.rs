@@ -1,4 +1,4 @@
-//! Which terminals become inlets, and why.
+//! Selection of the terminals that become inlets.
 
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::units::number;
@@ -6,31 +6,31 @@ use anastomesh_skeleton::{NodeId, Skeleton};
 use serde::Serialize;
 use std::fmt;
 
-/// Why a terminal is an inlet.
+/// Reason why a terminal is an inlet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Why {
-    /// The caller named it.
+    /// Requested by the caller.
     Asked,
-    /// The file has it as root.
+    /// Root of the file.
     RootOfFile,
-    /// It is the widest of its component.
+    /// Widest terminal of its component.
     Widest,
 }
 
-/// A terminal that becomes an inlet.
+/// Terminal that becomes an inlet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inlet {
-    /// Its number in the file, from 0.
+    /// Node index in the file, from 0.
     #[serde(skip)]
     pub original: u32,
-    /// As the file calls it.
+    /// Node name in the file.
     pub node: String,
-    /// Where it is.
+    /// Position of the node.
     pub position: [f64; 3],
-    /// Radius of the vessel there.
+    /// Vessel radius at the node.
     pub radius: f64,
-    /// Why it is one.
+    /// Reason for the selection.
     pub why: Why,
 }
 
@@ -46,31 +46,31 @@ impl fmt::Display for Inlet {
     }
 }
 
-/// Inlets of a cleaned network, those that are known by their numbers in the file before the widest.
+/// Inlets of a cleaned network: those identified by index in the file, else the widest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inlets {
-    /// One or more per component that has terminals, in the order of nodes.
+    /// One or more per component with terminals, in the order of nodes.
     pub list: Vec<Inlet>,
-    /// Numbers in the file, from 0, of those that do not go by their radius.
+    /// Indices in the file, from 0, of those not selected by radius.
     pub roots: Vec<u32>,
-    /// Roots of the file that are no terminals, with their numbers of vessels.
+    /// Roots of the file that are not terminals, with their vessel counts.
     pub inner: Vec<(String, usize)>,
 }
 
-/// A root that was asked for is no terminal; how many vessels it has, if it is there at all.
+/// Requested root that is not a terminal, with its vessel count if the node exists.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoTerminal {
-    /// As it was asked for.
+    /// Node name as requested.
     pub node: String,
-    /// None where there is no such node.
+    /// Vessel count; `None` if there is no such node.
     pub vessels: Option<usize>,
 }
 
 impl Inlets {
-    /// Of a cleaned network: the nodes asked for; else the roots of the file; else, in each component, the widest terminal.
+    /// Selects the requested nodes; else the roots of the file; else the widest terminal of each component.
     ///
     /// # Errors
-    /// When a node that is asked for is no terminal.
+    /// A requested node is not a terminal.
     pub fn of(
         skeleton: &Skeleton,
         names: &NodeNames,
@@ -99,7 +99,7 @@ impl Inlets {
                 match now(root).map(|n| (n, adjacency.valence(n))) {
                     Some((node, 1)) => why[node.index()] = Some(Why::RootOfFile),
                     Some((_, vessels)) => inner.push((names.of(root), vessels)),
-                    // Cleaning has merged it with a node before it.
+                    // Cleaning merged it with an earlier node.
                     None => {}
                 }
             }
@@ -127,7 +127,7 @@ impl Inlets {
         Ok(Self { list, roots: chosen.into_iter().map(original).collect(), inner })
     }
 
-    /// Lines for people, of which there are not too many.
+    /// Text lines, limited in number.
     pub fn remarks(&self) -> Vec<String> {
         const LISTED: usize = 10;
         let mut lines: Vec<String> = self.list.iter().take(LISTED).map(|inlet| format!("inlet: {inlet}")).collect();
@@ -150,7 +150,7 @@ mod tests {
     use anastomesh_io::network::{NetworkFormat, NetworkOptions, read_network_from};
     use anastomesh_skeleton::clean;
 
-    /// The root 7 is thinner than the leaf 1.
+    /// Root 7 is thinner than leaf 1.
     const TREE: &str = "7 0 0 0 0 1 -1\n5 0 0 0 9 1 7\n1 0 0 6 20 2 5\n3 0 0 -6 20 1 5\n";
 
     fn inlets(text: &str, asked: &[&str]) -> Result<Inlets, NoTerminal> {

@@ -1,11 +1,11 @@
-//! What a run of the mesher did, for people.
+//! Text report of a meshing run.
 
 use crate::block::ThinLayers;
 use crate::pipeline::{RunReport, ThinBlock};
 use anastomesh_mesh::units::grouped;
 use std::fmt;
 
-/// For people: blocks, retries, failures, sizes and times.
+/// Text report: blocks, retries, failures, sizes and times.
 impl fmt::Display for RunReport {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let (b, m) = (&self.blocks, &self.mesh);
@@ -66,7 +66,7 @@ impl fmt::Display for RunReport {
 }
 
 impl RunReport {
-    /// Blocks whose thin layers are told to people.
+    /// Maximum number of listed blocks with thin layers.
     const THIN: usize = 3;
 
     fn write_thin_layers(&self, out: &mut fmt::Formatter) -> fmt::Result {

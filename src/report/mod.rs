@@ -1,4 +1,4 @@
-//! Floor 7: what the verbs say, for people, in tables and plots; models with a text and a JSON form.
+//! Reports of the commands, as text, tables and plots; models with a text and a JSON form.
 
 #[cfg(feature = "cli")]
 pub mod advice;

@@ -1,36 +1,36 @@
-//! Line plots as SVG: panels side by side, each with axes, units and a legend.
+//! Line plots as SVG: panels side by side, with axes, units and legend.
 
 use std::fmt::Write as _;
 
-/// One line of a plot.
+/// Line of a plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// What it shows, for the legend.
+    /// Label for the legend.
     pub label: String,
-    /// Its points; those that are not finite (or not positive on a logarithmic axis) are left out.
+    /// Points; those that are not finite (or not positive on a logarithmic axis) are omitted.
     pub points: Vec<[f64; 2]>,
 }
 
-/// One diagram.
+/// Diagram.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// Above it.
+    /// Title above the diagram.
     pub title: String,
-    /// Along its axes: what, and in which unit.
+    /// Axis labels with units.
     pub axes: [String; 2],
-    /// Whether the vertical axis is logarithmic.
+    /// True for a logarithmic vertical axis.
     pub logarithmic: bool,
-    /// The width of bars about the points, which stand in for lines then.
+    /// Bar width, for a bar chart instead of lines.
     pub bars: Option<f64>,
-    /// The lines.
+    /// Lines or bars.
     pub series: Vec<Series>,
 }
 
 const WIDTH: f64 = 460.0;
 const HEIGHT: f64 = 320.0;
-/// Left, right, top, bottom.
+/// Margins: left, right, top, bottom.
 const MARGINS: [f64; 4] = [74.0, 16.0, 36.0, 50.0];
-/// Colours that people with colour blindness tell apart (Okabe and Ito 2008).
+/// Colours that are distinguishable with colour blindness (Okabe and Ito 2008).
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#000000"];
 
 /// Draws panels in rows of two.
@@ -53,7 +53,7 @@ pub fn svg(panels: &[Panel]) -> String {
     out
 }
 
-/// An axis: its range, its ticks, and whether it is logarithmic.
+/// Axis with range, ticks and scale type.
 struct Axis {
     low: f64,
     high: f64,
@@ -90,7 +90,7 @@ impl Axis {
         Self { low, high, ticks, logarithmic }
     }
 
-    /// Where a value lies on the axis, from 0 to 1.
+    /// Relative position of a value on the axis, from 0 to 1.
     fn place(&self, value: f64) -> Option<f64> {
         let value = if self.logarithmic { value.log10() } else { value };
         value.is_finite().then(|| (value - self.low) / (self.high - self.low))
@@ -111,13 +111,13 @@ impl Axis {
     }
 }
 
-/// An integer in raised digits: a raised `tspan` is misplaced by some viewers.
+/// Integer in superscript digits, as some viewers misplace a raised `tspan`.
 fn superscript(number: &str) -> String {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     number.chars().map(|c| c.to_digit(10).map_or('⁻', |d| RAISED[d as usize])).collect()
 }
 
-/// 1, 2 or 5 times a power of ten, at least `x`.
+/// Smallest 1, 2 or 5 times a power of ten that is at least `x`.
 fn nice(x: f64) -> f64 {
     let power = 10_f64.powf(x.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|f| f * power).find(|&s| s >= x * (1.0 - 1e-9)).unwrap_or(10.0 * power)
@@ -129,7 +129,7 @@ fn escaped(text: &str) -> String {
 
 fn draw(panel: &Panel, out: &mut String) {
     let points = || panel.series.iter().flat_map(|s| s.points.iter());
-    // Bars reach further than their middles.
+    // Bars extend beyond their centres.
     let half = panel.bars.map_or(0.0, |width| 0.5 * width);
     let across = Axis::new(points().flat_map(|p| [p[0] - half, p[0] + half]), false);
     let up = Axis::new(points().map(|p| p[1]), panel.logarithmic);

@@ -1,4 +1,4 @@
-//! What `prepare` says of its cures: text for people.
+//! Text report of `prepare` on its cures.
 
 use std::fmt::Write as _;
 
@@ -6,15 +6,15 @@ use super::rows::row;
 use crate::prepare::{Fault, PrepareReport, Size, SpurReason, TouchedBy, TouchingTip};
 use anastomesh_mesh::units::{counted, grouped};
 
-/// A line of the table of sizes.
+/// Row of the table of sizes.
 type Row = (&'static str, fn(&Size) -> usize);
 
-/// Cases of one cure that are spelt out for people.
+/// Maximum number of listed cases per cure.
 const LISTED: usize = 20;
-/// And in a summary.
+/// Maximum number of listed cases in a summary.
 const SPELT_OUT: usize = 3;
 
-/// The report for people: with `all` more cases of each cure and a table of sizes, else what is read in ten seconds.
+/// Text report; with `all` more cases of each cure and a table of sizes, else a short summary.
 pub fn text(report: &PrepareReport, all: bool) -> String {
     let mut out = Lists { text: String::new(), listed: if all { LISTED } else { SPELT_OUT } };
     let filled = report.radii.iter().map(|r| {
@@ -69,7 +69,7 @@ pub fn text(report: &PrepareReport, all: bool) -> String {
     out.text
 }
 
-/// The network as it came in and as it is now, in one row.
+/// Sizes of the network before and after, in one row.
 pub fn row_of(report: &PrepareReport) -> String {
     let Size { nodes, edges, tips, components, loops, .. } = report.result;
     let given = report.given.nodes;
@@ -79,21 +79,21 @@ pub fn row_of(report: &PrepareReport) -> String {
     row("network", &format!("{nodes} nodes{was}, {edges} edges, {tips} tips, {components}, {loops} loops"))
 }
 
-/// What became of tips that end in or on another vessel.
+/// Results for tips that end in or on another vessel.
 pub fn touching(tips: &[TouchingTip]) -> String {
     let mut out = Lists { text: String::new(), listed: SPELT_OUT };
     out.touching(tips);
     out.text
 }
 
-/// Cures and their cases, of which so many are spelt out.
+/// List of cures with a limited number of cases.
 struct Lists {
     text: String,
     listed: usize,
 }
 
 impl Lists {
-    /// A heading with the number of cases, and the first of them.
+    /// Appends a heading with the number of cases, and the first cases.
     fn list(&mut self, what: &str, cases: impl ExactSizeIterator<Item = String>) {
         let count = cases.len();
         if count == 0 {

@@ -1,4 +1,4 @@
-//! What `refine` says of a refinement: text for people, a table, the panels of a plot.
+//! Reports of a refinement: text, table, plot panels.
 
 use std::fmt::{self, Write as _};
 
@@ -13,16 +13,16 @@ use anastomesh_mesh::units::grouped;
 #[cfg(feature = "cli")]
 use anastomesh_mesh::units::{number, percent as share};
 
-/// A line of the table of figures: its name and what it shows of a state.
+/// Row of the figures table: name, and value for a state.
 type Row = (&'static str, fn(&Figures) -> String);
 
-/// Pairs that are spelt out for people.
+/// Maximum number of listed pairs.
 const LISTED: usize = 50;
-/// And in a summary.
+/// Maximum number of listed pairs in a summary.
 #[cfg(feature = "cli")]
 const SPELT_OUT: usize = 3;
 
-/// A summary and a table of figures for people.
+/// Text report with a table of figures.
 impl fmt::Display for RefineReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(&text(self))
@@ -76,7 +76,7 @@ fn text(report: &RefineReport) -> String {
     out
 }
 
-/// What is read in ten seconds: what came in, how far it was moved, what overlaps still, where it is.
+/// Short summary: input, displacement, remaining overlaps, output files.
 #[cfg(feature = "cli")]
 pub fn brief(report: &RefineReport, ended: &Ended) -> String {
     let RefineReport { size_before, size_after, displacement: d, given, result, .. } = report;
@@ -118,7 +118,7 @@ pub fn brief(report: &RefineReport, ended: &Ended) -> String {
     out + &left + " (-v shows all figures)\n"
 }
 
-/// Nodes split and bends put in, where there are any.
+/// Number of split nodes and added bends, if any.
 #[cfg(feature = "cli")]
 fn changes(report: &RefineReport) -> String {
     let of = |count, what: &str| if count > 0 { Some(format!("{} {what}", grouped(count))) } else { None };
@@ -131,7 +131,7 @@ fn worse(report: &RefineReport) -> String {
     report.worse.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
 }
 
-/// The figures as a table: the name of each, and its values as given, after splitting, after moving, in the end.
+/// Table of figures: name, and values of the input, after splitting, after moving, and of the result.
 pub fn figures_table(report: &RefineReport) -> Vec<Vec<String>> {
     let states = [&report.given, &report.split, &report.moved, &report.result];
     let rows: [Row; 13] = [
@@ -175,7 +175,7 @@ fn crowded_text(report: &RefineReport, listed: usize, out: &mut String) {
     unlisted(report.crowded.len(), listed, out);
 }
 
-/// How many pairs are not spelt out.
+/// Appends the number of unlisted pairs.
 fn unlisted(count: usize, listed: usize, out: &mut String) {
     if count > listed {
         let _ = writeln!(out, "  and {} more (--json lists all)", grouped(count - listed));
@@ -213,7 +213,7 @@ fn residual_text(report: &RefineReport, listed: usize, out: &mut String) {
     unlisted(r.pairs.len(), listed, out);
 }
 
-/// The metrics over the iterations as a table.
+/// CSV table of the metrics over the iterations.
 #[cfg(feature = "cli")]
 pub fn csv(report: &RefineReport) -> String {
     let mut out = String::from(
@@ -242,7 +242,7 @@ pub fn csv(report: &RefineReport) -> String {
     out
 }
 
-/// The four panels of the paper's Fig. 11.
+/// Four panels as in Fig. 11 of the paper.
 #[cfg(feature = "cli")]
 pub fn panels(report: &RefineReport) -> Vec<Panel> {
     let line = |label: &str, value: fn(&Sample) -> f64| Series {

@@ -1,22 +1,21 @@
-//! Rows of what the terminal shows in the end: a word and what there is to say of it; files, time and memory of every verb.
+//! Rows of the terminal summary: a label and a text, with files, time and memory of every command.
 
 use crate::pipeline::StageTime;
 use anastomesh_mesh::units::{bytes_of, seconds_of};
 
-/// Stages that took a smaller share of the time are not mentioned.
+/// Minimum fraction of the total time for a stage to be listed.
 const MENTIONED: f64 = 0.05;
-/// Nor are those that took less than so many seconds.
+/// Minimum time for a stage to be listed, in seconds.
 const NOTICED: f64 = 0.05;
-/// Stages that are mentioned.
+/// Maximum number of listed stages.
 const STAGES: usize = 3;
 
-/// A row.
+/// Formats a row.
 pub fn row(what: &str, text: &str) -> String {
     format!("{what:<8} {text}\n")
 }
 
-/// What a verb leaves behind: files and their sizes in bytes, seconds that it took, and the most bytes of memory that were in use,
-/// where the system tells.
+/// Outcome of a command: files with their sizes in bytes, time in seconds, and peak memory in bytes if known.
 #[derive(Clone, Debug, Default)]
 pub struct Ended {
     pub files: Vec<(String, u64)>,
@@ -25,7 +24,7 @@ pub struct Ended {
 }
 
 impl Ended {
-    /// A row for each file, and one for time and memory with the longest stages.
+    /// One row per file, and one for time and memory with the longest stages.
     pub fn rows(&self, stages: &[StageTime]) -> String {
         let file = |(name, bytes): &(String, u64)| row("file", &format!("{name} ({})", bytes_of(*bytes)));
         let files: String = self.files.iter().map(file).collect();
@@ -40,7 +39,7 @@ impl Ended {
                 None => longest.push(stage.clone()),
             }
         }
-        // Reading, refining, and meshes that were made before this one.
+        // Remaining time: reading, refinement, and earlier meshes of the run.
         let staged: f64 = longest.iter().map(|stage| stage.seconds).sum();
         if !longest.is_empty() {
             longest.push(StageTime { stage: "beforehand", seconds: self.seconds - staged });

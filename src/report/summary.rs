@@ -1,4 +1,4 @@
-//! What a run did, read in ten seconds: what came in, what was made, whether it is valid, where it is, how long it took.
+//! Short summary of a run: input, mesh, validity, output files, time.
 
 use super::rows::{Ended, row};
 use crate::fidelity::Fidelity;
@@ -8,18 +8,18 @@ use anastomesh_mesh::check::text::{faults, shape, sizes, tally, verdict};
 use anastomesh_mesh::units::{bytes_of, counted, digits, grouped, rounded, seconds_of};
 use std::fmt::{self, Write as _};
 
-/// Things of a kind that are spelt out.
+/// Maximum number of listed items of a kind.
 const SPELT_OUT: usize = 3;
 
-/// What there is to say of a run.
+/// Contents of a summary.
 #[derive(Clone, Debug)]
 pub struct Summary<'a> {
     pub run: &'a RunReport,
-    /// None where there is no mesh.
+    /// Check result; `None` without a mesh.
     pub check: Option<&'a CheckReport>,
     pub fidelity: Option<&'a Fidelity>,
     pub ended: Ended,
-    /// Whether all there is to say stands above it.
+    /// True if all details are printed above it.
     pub listed: bool,
 }
 
@@ -64,7 +64,7 @@ impl Summary<'_> {
         text
     }
 
-    /// Blocks that failed, axes that are outside, vessels that became one.
+    /// Appends failed blocks, axes outside the wall, and fused vessels.
     fn troubles(&self, out: &mut fmt::Formatter) -> fmt::Result {
         for failed in self.run.failed.iter().take(SPELT_OUT) {
             writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason)?;
@@ -89,18 +89,18 @@ impl Summary<'_> {
     }
 }
 
-/// The mesh: its size and its shape.
+/// Size and quality of the mesh.
 pub fn of_mesh(check: &CheckReport) -> String {
     let shape = shape(check).map_or_else(String::new, |shape| row("shape", &shape));
     row("mesh", &sizes(check)) + &shape
 }
 
-/// What a check found: how many conditions hold, those that do not, and the verdict. `listed`: all of them stand elsewhere.
+/// Result of a check: passed conditions, failed ones, verdict. With `listed`, all are printed elsewhere.
 pub fn of_check(check: &CheckReport, listed: bool) -> String {
     format!("{}{}{}\n", row("check", &tally(check, listed)), faults(check), verdict(check.verdict))
 }
 
-/// How a mesh keeps its network: where vessels were moved, how far; else how far the wall is from the radius.
+/// Fidelity of a mesh: displacement if vessels were moved, else the radius error of the wall.
 fn vessels(fidelity: &Fidelity) -> String {
     let volume = format!("volume {:+.1} %", 100.0 * fidelity.swelling());
     let (axis, wall) = (&fidelity.axis.spread, &fidelity.wall);
@@ -118,7 +118,7 @@ fn more(out: &mut fmt::Formatter, count: usize) -> fmt::Result {
     }
 }
 
-/// What a run is expected to take, on so many threads.
+/// Expected cost of a run with this number of threads.
 pub fn forecast(forecast: &Forecast, threads: usize) -> String {
     let Forecast { clusters, connectors, largest_nodes, estimate, .. } = forecast;
     let [clusters, connectors] = [*clusters, *connectors].map(grouped);

@@ -1,4 +1,4 @@
-//! What a tetrahedralization has to say, for people and as JSON.
+//! Report of a tetrahedralization, as text and JSON.
 
 use super::rows::{Ended, row};
 use crate::pipeline::StageTime;
@@ -15,11 +15,11 @@ use std::fmt::Write as _;
 pub struct InputSize {
     /// Number of points.
     pub points: usize,
-    /// Number of facets, where the file has any that are not triangles.
+    /// Number of facets, if the file has non-triangular ones.
     pub facets: Option<usize>,
     /// Number of triangles.
     pub triangles: usize,
-    /// Number of segments that are edges of no triangle.
+    /// Number of segments that are not edges of triangles.
     pub segments: usize,
     /// Number of holes.
     pub holes: usize,
@@ -30,42 +30,42 @@ pub struct InputSize {
 pub struct OutputSize {
     /// Number of points.
     pub points: usize,
-    /// Points that the input does not have.
+    /// Number of points that are not in the input.
     pub added_points: usize,
     /// Number of tetrahedra.
     pub tets: usize,
-    /// Faces that are triangles of the input, or parts of them.
+    /// Faces that are input triangles or parts of them.
     pub faces: usize,
-    /// Those of them between two tetrahedra.
+    /// Number of these faces between two tetrahedra.
     pub interior_faces: usize,
     /// Volume of all tetrahedra.
     pub volume: f64,
 }
 
-/// What the mesh does not have of the input: it lies outside of what is filled, or in a hole. Numbers are those of the
-/// file.
+/// Input elements that are not in the mesh, because they lie outside the filled region or in a hole. Numbers are those
+/// of the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
     /// Number of triangles.
     pub triangles: usize,
-    /// What their numbers count: triangles, or what these are pieces of.
+    /// Element type that the triangle numbers count: triangles, or the elements of which they are pieces.
     #[serde(skip)]
     pub triangles_of: &'static str,
-    /// The faces or facets of the file that they are, or are pieces of.
+    /// Faces or facets of the file that contain the triangles.
     pub faces: Vec<u32>,
-    /// Ends of each segment.
+    /// End points of each segment.
     pub segments: Vec<[u32; 2]>,
     /// Number of the first face and of the first point.
     pub counted_from: u32,
-    /// Points of the input that no tetrahedron has; they are points of the mesh all the same.
+    /// Number of input points without tetrahedra; they are still points of the mesh.
     pub unused_points: usize,
 }
 
 impl LeftOut {
-    /// Numbers that are named to people.
+    /// Maximum number of listed indices.
     const NAMED: usize = 10;
 
-    /// A line for people for each kind; empty when nothing is left out.
+    /// Text with one line per element type; empty if nothing is left out.
     pub fn text(&self) -> String {
         const WHY: &str = "outside of what is filled, or in a hole (--strict refuses that)";
         let from = self.counted_from;
@@ -93,56 +93,56 @@ impl LeftOut {
     }
 }
 
-/// A region of the mesh.
+/// Region of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RegionSize {
     pub id: i32,
     /// Number of tetrahedra.
     pub tets: usize,
-    /// Their volume.
+    /// Volume of these tetrahedra.
     pub volume: f64,
 }
 
-/// What recovery did.
+/// Report of the boundary recovery.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Recovery {
-    /// Edges that the Delaunay tetrahedralization lacked.
+    /// Edges missing in the Delaunay tetrahedralization.
     pub missing_edges: usize,
-    /// Triangles that it lacked.
+    /// Triangles missing in the Delaunay tetrahedralization.
     pub missing_triangles: usize,
-    /// Points added to get them.
+    /// Points added to recover them.
     pub steiner_points: usize,
 }
 
-/// A bound that was asked for, and how many tetrahedra are beyond it.
+/// Requested bound and the number of tetrahedra that violate it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BoundResult {
-    /// What is bounded.
+    /// Bounded quantity.
     pub bound: &'static str,
-    /// The bound.
+    /// Value of the bound.
     pub value: f64,
-    /// Tetrahedra beyond it.
+    /// Number of tetrahedra beyond the bound.
     pub beyond: usize,
-    /// Those of them on triangles of the input that stay.
+    /// Number of these tetrahedra at fixed input triangles.
     pub on_input: usize,
 }
 
-/// A length of edges that was asked for, where edges of the input are longer and stay.
+/// Requested edge length that fixed longer input edges prevent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SizeUnmet {
-    /// The length asked for.
+    /// Requested length.
     pub size: f64,
-    /// Edges of the input that are so much longer that they would be split if they might.
+    /// Number of input edges so long that they would be split if allowed.
     pub longer: usize,
-    /// Edges of the input.
+    /// Number of input edges.
     pub edges: usize,
-    /// The longest of them.
+    /// Length of the longest input edge.
     pub longest: f64,
 }
 
 impl SizeUnmet {
-    /// What edges of triangles and segments that stay do to a wished length; none when none is more than `factor` times
-    /// as long.
+    /// Compares the edges of fixed triangles and segments with the requested length. Returns `None` if no edge exceeds
+    /// `factor` times that length.
     pub fn of(
         size: f64,
         factor: f64,
@@ -161,26 +161,26 @@ impl SizeUnmet {
     }
 }
 
-/// What became of layers.
+/// Report of boundary layers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayerReport {
-    /// How many tetrahedra are in layers.
+    /// Number of tetrahedra in layers.
     pub tets: usize,
-    /// Shape of all others.
+    /// Quality of all other tetrahedra.
     pub inside: TetQuality,
-    /// Points of the surface where there was no room for half of the thickness asked for.
+    /// Surface points with less than half the requested layer thickness.
     pub thin: usize,
-    /// The point with the thinnest layers, and how much of what was asked for they are.
+    /// Point with the thinnest layers, and their thickness relative to the request.
     pub thinnest: Option<(u32, f64)>,
-    /// Points of the surface without layers.
+    /// Surface points without layers.
     pub without: Vec<u32>,
 }
 
 impl LayerReport {
-    /// Points without layers that are named to people.
+    /// Maximum number of listed points without layers.
     const NAMED: usize = 5;
 
-    /// `name`: the number in the file of a point.
+    /// Creates the report; `name` maps points to their numbers in the file.
     pub fn of(made: &LayerSummary, mesh: &TetMesh, name: impl Fn(u32) -> u32) -> Self {
         Self {
             tets: made.tets,
@@ -220,47 +220,47 @@ impl LayerReport {
     }
 }
 
-/// Everything that a tetrahedralization has to say.
+/// Complete report of a tetrahedralization.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TetReport {
     pub input: InputSize,
-    /// What is odd about the file, as a list of sentences.
+    /// Anomalies of the file, as sentences.
     pub notes: Vec<String>,
-    /// What was mended in it, as a list of sentences.
+    /// Repairs of the file, as sentences.
     pub repaired: Vec<String>,
     pub mesh: OutputSize,
-    /// What it does not have of the input.
+    /// Input elements that are not in the mesh.
     pub left_out: LeftOut,
-    /// Shape of the tetrahedra.
+    /// Quality of the tetrahedra.
     pub quality: Option<TetQuality>,
-    /// What became of layers, where they were asked for.
+    /// Report of layers, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayerReport>,
-    /// The bounds asked for.
+    /// Requested bounds.
     pub bounds: Vec<BoundResult>,
-    /// Where the input does not let the wished length of edges be met.
+    /// Requested edge length that the input prevents.
     pub size_unmet: Option<SizeUnmet>,
-    /// What lets the triangles of the input be split, where they are not.
+    /// Option that permits splitting of input triangles, if they are fixed.
     pub to_split: Option<&'static str>,
-    /// The regions, ascending; empty when the mesh is one.
+    /// Regions in ascending order; empty for a single region.
     pub regions: Vec<RegionSize>,
-    /// What recovery did.
+    /// Report of the boundary recovery.
     pub recovery: Recovery,
     /// Wall time per stage.
     pub stages: Vec<StageTime>,
-    /// Most memory that was in use, in bytes, where the system tells it.
+    /// Peak memory in bytes, if the system reports it.
     pub peak_memory: Option<u64>,
-    /// The files that were written.
+    /// Names of the output files.
     pub files: Vec<String>,
 }
 
 impl BoundResult {
-    /// What the bound on volume is called.
+    /// Name of the volume bound.
     const VOLUME: &'static str = "volume at most";
 
-    /// How many tetrahedra are beyond each bound that is set, and how many of these have one of the faces that stay.
+    /// Counts the tetrahedra beyond each active bound, and those of them with a fixed face.
     pub fn of(bounds: &Bounds, mesh: &TetMesh, staying: &[[u32; 3]]) -> Vec<Self> {
-        // What was made to lie on the bound may be beyond it by rounding.
+        // Tolerance for tetrahedra built to lie exactly on the bound.
         const ROUNDING: f64 = 1e-9;
         let corners = |t: &[u32; 4]| t.map(|v| &mesh.points[v as usize]);
         let mut staying: Vec<[u32; 3]> = staying.iter().map(|&f| face_key(f)).collect();
@@ -289,7 +289,7 @@ impl BoundResult {
     }
 }
 
-/// Circumradius over shortest edge; infinite for a flat tetrahedron.
+/// Ratio of circumradius to shortest edge; infinite for a flat tetrahedron.
 fn radius_edge([a, b, c, d]: [&Point3; 4]) -> f64 {
     let (u, v, w) = (b - a, c - a, d - a);
     let center = v.cross(&w) * u.norm_squared() + w.cross(&u) * v.norm_squared() + u.cross(&v) * w.norm_squared();
@@ -299,7 +299,7 @@ fn radius_edge([a, b, c, d]: [&Point3; 4]) -> f64 {
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }
 
-/// The regions of a mesh, ascending; `regions` has the id of each tetrahedron.
+/// Regions of a mesh in ascending order; `regions` has the id of each tetrahedron.
 pub fn region_sizes(mesh: &TetMesh, regions: &[i32]) -> Vec<RegionSize> {
     let mut sizes: std::collections::BTreeMap<i32, RegionSize> = std::collections::BTreeMap::new();
     for (t, &id) in mesh.tets.iter().zip(regions) {
@@ -317,12 +317,12 @@ pub fn volume_of(mesh: &TetMesh, t: &[u32; 4]) -> f64 {
 }
 
 impl TetReport {
-    /// Whether every bound that can always be met is.
+    /// True if every bound that can always be met is met.
     pub fn bounds_met(&self) -> bool {
         self.bounds.iter().all(|result| result.bound != BoundResult::VOLUME || result.beyond == 0)
     }
 
-    /// What became of the wishes, and what the input has to do with it.
+    /// Appends the results of requested bounds, and the influence of the input.
     fn write_bounds(&self, out: &mut String) {
         let mut stays = false;
         for b in &self.bounds {
@@ -351,10 +351,10 @@ impl TetReport {
         }
     }
 
-    /// Regions that are spelt out in a summary.
+    /// Maximum number of regions in a summary.
     const REGIONS: usize = 10;
 
-    /// The report as lines for people; with `all` every region and stage.
+    /// Text report; with `all` it lists every region and stage.
     pub fn text(&self, all: bool, ended: &Ended) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
@@ -403,7 +403,7 @@ impl TetReport {
     }
 }
 
-/// `, 3 holes`, or nothing when there are none.
+/// Formats a count as `, 3 holes`, or as nothing if it is 0.
 fn extra(count: usize, what: &str) -> String {
     if count == 0 { String::new() } else { format!(", {} {what}", grouped(count)) }
 }
@@ -427,7 +427,7 @@ mod tests {
         let bounds = Bounds { max_radius_edge: Some(0.613), min_dihedral: Some(70.5), max_volume: Some(0.1) };
         let results = BoundResult::of(&bounds, &mesh, &[[3, 0, 1]]);
         assert_eq!(results.iter().map(|r| r.beyond).collect::<Vec<_>>(), [1, 1, 1]);
-        // The face is one of the first tetrahedron, which is too large; the flat one is the second.
+        // The face belongs to the first tetrahedron, which is too large; the second is flat.
         assert_eq!(results.iter().map(|r| r.on_input).collect::<Vec<_>>(), [0, 0, 1]);
         let report = TetReport { bounds: results, to_split: Some("--split"), ..TetReport::default() };
         assert!(!report.bounds_met());

@@ -1,6 +1,6 @@
-//! Terminals end in flat discs (3.2.2 of the paper, without the round tip). The tip beyond the plane is taken off, a
-//! regular ring is put on the plane and filled, a strip is woven between the wall that is left and the ring, and the
-//! wall near it is relaxed on the level set.
+//! Flat caps at terminals (section 3.2.2 of the paper, without the round tip). The tip beyond the plane is removed, and
+//! a filled regular ring is placed on the plane. A triangle strip joins the ring with the wall, which is then relaxed
+//! near it.
 
 #[cfg(test)]
 mod tests;
@@ -17,23 +17,23 @@ use anastomesh_mesh::{Kept, TriMesh};
 use anastomesh_skeleton::NodeId;
 use weave::weave;
 
-/// A closed wall whose terminals are flat discs.
+/// Closed wall with flat caps at its terminals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CappedSurface {
-    /// The surface: closed, 2-manifold, oriented outwards.
+    /// Closed 2-manifold, oriented outwards.
     pub mesh: TriMesh,
-    /// For every triangle the index, into the ends that were given, of the cap it belongs to; none for the wall.
+    /// Cap of each triangle, as an index into the given ends; `None` for the wall.
     pub cap: Vec<Option<u32>>,
 }
 
-/// Why an end could not be capped.
+/// Errors of capping.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CapError {
     /// The surface is not a closed 2-manifold.
     #[error("the wall is not a closed manifold at edge {} – {}", edge[0], edge[1])]
     NotManifold {
-        /// Vertices of the edge (equal: of the vertex).
+        /// Vertices of the edge; both are equal if a vertex is at fault.
         edge: [u32; 2],
     },
     /// One end could not be capped.
@@ -41,29 +41,29 @@ pub enum CapError {
     End {
         /// Index of the end.
         end: u32,
-        /// The terminal's node; none for a cut.
+        /// Node of the terminal; `None` for a cut.
         node: Option<NodeId>,
-        /// Centre of the cap that was to be.
+        /// Centre of the intended cap.
         origin: Point3,
-        /// Why.
+        /// Reason for the failure.
         reason: CapFailure,
     },
 }
 
-/// What is wrong at an end.
+/// Reasons why an end cannot be capped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CapFailure {
-    /// The tip lies within another vessel, all of its disc: there is no wall.
+    /// The disc of the tip lies within another vessel and has no wall.
     #[error("the tip lies within another vessel")]
     Buried,
-    /// The vessel does not reach beyond the plane.
+    /// The vessel does not extend beyond the plane.
     #[error("no tip lies beyond the plane")]
     NoTip,
-    /// What lies beyond the plane is not only this vessel's tip.
+    /// The part beyond the plane includes more than the tip of this vessel.
     #[error("the tip is joined to another vessel")]
     Merged,
-    /// What is left of the wall does not end in one loop.
+    /// The remaining wall does not end in one loop.
     #[error("the wall does not end in one loop")]
     Loops,
     /// The disc could not be triangulated.
@@ -71,44 +71,42 @@ pub enum CapFailure {
     Disc,
 }
 
-/// The strip between wall and ring starts so far (in edge lengths) before the plane; less where that leaves no wall.
+/// Start of the strip between wall and ring, in edge lengths before the plane. Smaller values are for short walls.
 const MARGINS: [f64; 3] = [0.4, 0.2, 0.05];
-/// The wall is relaxed up to so far (in edge lengths) before the plane.
+/// Extent of the relaxed wall before the plane, in edge lengths.
 const RELAXED: f64 = 3.5;
-/// A tip is longer than so many radii only where it runs into another vessel.
+/// Maximum tip length, in radii. Longer tips occur only if the vessel runs into another one.
 const LONGEST_TIP: f64 = 3.0;
-/// What lies further (in radii) from the axis than this belongs to another vessel.
+/// Maximum distance from the axis, in radii. Anything beyond belongs to another vessel.
 const WIDTH: f64 = 1.1;
 
-/// How often a rim that is not yet one loop may lose what spoils it: each time a row of triangles goes, and so many rows are
-/// far more than the four edge lengths that may go.
+/// Maximum rounds that repair a rim. Each round removes one row of triangles, so the limit is far above `DEEPEST_RIM`.
 const RIM_ROUNDS: usize = 20;
-/// How far before the plane, in edge lengths, triangles may go for the rim's sake.
+/// Maximum depth before the plane, in edge lengths, of triangles removed to repair the rim.
 const DEEPEST_RIM: f64 = 4.0;
 
-/// An end, and the disc that closes it where that is given.
+/// An end and the optional given disc that closes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Closing<'a> {
-    /// The plane; its axis points out of the vessel.
+    /// Cap plane; its axis points out of the vessel.
     pub section: Section,
-    /// The terminal's node; none for a cut.
+    /// Node of the terminal; `None` for a cut.
     pub node: Option<NodeId>,
-    /// The disc, seen along the end's axis; none: one that suits the wall.
+    /// Disc seen along the end's axis; `None` for one fitted to the wall.
     pub disc: Option<&'a SharedDisc>,
 }
 
 impl Closing<'_> {
-    /// The edge length of the disc.
+    /// Edge length of the disc.
     fn edge(&self, params: &SurfaceParams) -> f64 {
         self.disc.map_or_else(|| params.edge_at(self.section.radius), |disc| disc.edge)
     }
 }
 
-/// Replaces the tips beyond the `ends` by flat discs. `field` is the field that the wall is a level set of, `params` are
-/// those that it was made with.
+/// Replaces the tips beyond the `ends` by flat discs. The wall is a level set of `field` and was created with `params`.
 ///
 /// # Errors
-/// A surface that is not closed; an end whose tip is missing, joined to another vessel, or does not leave one loop.
+/// The surface is not closed, or a tip is missing, joined to another vessel, or does not leave one loop.
 pub fn cap_terminals(
     wall: &SizedWall,
     field: &mut Field,
@@ -116,7 +114,7 @@ pub fn cap_terminals(
     params: &SurfaceParams,
 ) -> Result<CappedSurface, CapError> {
     let mut closed = closed(wall, ends, params, &MARGINS);
-    // An end that was closed before may have left nothing of the wall between the two.
+    // An end closed earlier may have removed the wall between two ends, so smaller margins follow.
     for first in 1..MARGINS.len() {
         if !matches!(closed, Err(CapError::End { reason: CapFailure::Loops, .. })) {
             break;
@@ -127,8 +125,7 @@ pub fn cap_terminals(
     relaxed(&mesh, sizes, &cap, field, ends, params, &wall.finer)
 }
 
-/// The wall with all ends closed, the strips beginning so far before the planes as the first of `margins` says that can be
-/// had.
+/// Closes all ends of the wall. Strips start at the first of `margins` that works.
 fn closed<'a>(
     wall: &'a SizedWall,
     ends: &[Closing],
@@ -156,21 +153,21 @@ fn closed<'a>(
     Ok(cutter)
 }
 
-/// The surface while tips are taken off and discs put on.
+/// Surface during capping.
 struct Cutter<'a> {
     surface: &'a HalfEdges,
     /// Length of the longest edge.
     longest: f64,
     removed: Vec<bool>,
     points: Vec<Point3>,
-    /// The edge length aimed at, at each point.
+    /// Target edge length at each point.
     sizes: Vec<f64>,
     added: Vec<[u32; 3]>,
     cap: Vec<Option<u32>>,
 }
 
 impl Cutter<'_> {
-    /// Takes one tip off and puts the disc on.
+    /// Replaces one tip by its disc.
     fn cut(&mut self, closing: &Closing, end: u32, edge: f64, margins: &[f64]) -> Result<(), CapFailure> {
         let section = &closing.section;
         let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
@@ -189,8 +186,8 @@ impl Cutter<'_> {
         Ok(())
     }
 
-    /// Takes the tip off; the loop in which the wall then ends. Where another end is so near that nothing is left of the
-    /// wall between the two, less is taken.
+    /// Removes the tip and returns the boundary loop of the wall. If nothing remains of the wall towards another end, a
+    /// smaller margin is tried.
     fn opened(&mut self, section: &Section, seed: u32, edge: f64, margins: &[f64]) -> Result<Vec<u32>, CapFailure> {
         let mut failure = CapFailure::Loops;
         for margin in margins {
@@ -210,7 +207,7 @@ impl Cutter<'_> {
         [0, 1, 2].map(|i| self.points[self.surface.from(3 * face + i) as usize])
     }
 
-    /// The triangle through which the axis leaves the vessel beyond the plane.
+    /// Returns the triangle through which the axis leaves the vessel beyond the plane.
     fn tip(&self, section: &Section) -> Option<u32> {
         let (u, w) = section.frame();
         let reach = LONGEST_TIP * section.radius;
@@ -229,7 +226,7 @@ impl Cutter<'_> {
             let [a, b, c] = &local;
             let (wa, wb, wc) = (side(b, c), side(c, a), side(a, b));
             let total = wa + wb + wc;
-            // Seen from outside, along the axis from above, an exit is counter-clockwise.
+            // An exit is counter-clockwise seen from above, along the axis.
             if wa >= 0.0 && wb >= 0.0 && wc >= 0.0 && total > 0.0 {
                 let height = (wa * a.z + wb * b.z + wc * c.z) / total;
                 if height > 0.0 && height < best.0 {
@@ -240,8 +237,8 @@ impl Cutter<'_> {
         best.1
     }
 
-    /// Marks the connected triangles round `seed` that reach above `margin` before the plane as removed, within the
-    /// vessel's own cylinder: where another vessel leans on the tip, the wall will rise from the ring to that vessel.
+    /// Marks the connected triangles around `seed` above `-margin` as removed, within the vessel's own cylinder. If
+    /// another vessel touches the tip, the wall later rises from the ring to that vessel.
     fn beyond(&mut self, section: &Section, seed: u32, margin: f64) -> Result<Vec<u32>, CapFailure> {
         let (wide, long) = (WIDTH * section.radius + margin, section.radius * LONGEST_TIP + margin);
         let across = |p: &Point3, height: f64| (p - section.origin - section.axis * height).norm();
@@ -269,8 +266,8 @@ impl Cutter<'_> {
         Ok(tip)
     }
 
-    /// The loop in which the wall now ends, counter-clockwise about the axis; removes more where it is pinched, has
-    /// teeth, or is not one loop.
+    /// Returns the boundary loop of the wall, counter-clockwise about the axis. Removes further triangles if the loop
+    /// is pinched, has teeth, or is not single.
     fn rim(&mut self, section: &Section, tip: &mut Vec<u32>, edge: f64) -> Result<Vec<u32>, CapFailure> {
         for _ in 0..RIM_ROUNDS {
             let boundary = self.boundary(tip);
@@ -291,13 +288,13 @@ impl Cutter<'_> {
         Err(CapFailure::Loops)
     }
 
-    /// The half-edges of the kept wall along the removed tip.
+    /// Returns the half-edges of the kept wall along the removed tip.
     fn boundary(&self, tip: &[u32]) -> Vec<u32> {
         let sides = tip.iter().flat_map(|&f| 3 * f..3 * f + 3).map(|h| self.surface.twin(h));
         sides.filter(|&h| !self.removed[h as usize / 3]).collect()
     }
 
-    /// Kept triangles to remove as well: teeth (two sides on the boundary) and fans of pinched vertices.
+    /// Returns further triangles to remove: teeth (two sides on the boundary) and fans of pinched vertices.
     fn spoilers(&self, boundary: &[u32]) -> Vec<u32> {
         let mut faces: Vec<u32> = boundary.iter().map(|h| h / 3).collect();
         faces.sort_unstable();
@@ -312,7 +309,7 @@ impl Cutter<'_> {
         extra
     }
 
-    /// The boundary as one loop of vertices, against the direction of its half-edges.
+    /// Returns the boundary as one loop of vertices, against the direction of its half-edges.
     fn walk(&self, boundary: &[u32]) -> Result<Vec<u32>, CapFailure> {
         let mut pairs: Vec<(u32, u32)> = boundary.iter().map(|&h| (self.surface.to(h), self.surface.from(h))).collect();
         pairs.sort_unstable();
@@ -346,7 +343,7 @@ impl Cutter<'_> {
         self.cap.resize(self.added.len(), Some(end));
     }
 
-    /// The mesh with the triangles that are left and those added, without the vertices that are no longer used.
+    /// Returns the mesh of remaining and added triangles, without unused vertices.
     fn finish(self) -> (TriMesh, Vec<f64>, Vec<Option<u32>>) {
         let kept = (0..self.removed.len() as u32).filter(|&f| !self.removed[f as usize]);
         let mut triangles: Vec<[u32; 3]> = kept.map(|f| [0, 1, 2].map(|i| self.surface.from(3 * f + i))).collect();
@@ -367,7 +364,7 @@ fn longest_edge(surface: &TriMesh) -> f64 {
     surface.triangles.iter().flat_map(|t| (0..3).map(|i| length(t, i))).fold(0.0, f64::max).sqrt()
 }
 
-/// The disc whose ring goes best with the loop's points.
+/// Returns the disc whose ring fits the loop's points best.
 fn suited_disc(section: &Section, low: &[Point3], edge: f64) -> Option<SharedDisc> {
     let corners = corners(section.radius, edge);
     let flat = disc(section.radius, corners, phase(section, low, corners))?;
@@ -380,7 +377,7 @@ fn suited_disc(section: &Section, low: &[Point3], edge: f64) -> Option<SharedDis
     })
 }
 
-/// The angle of the first ring point at which a regular ring fits the loop's points best.
+/// Returns the angle of the first ring point for the best fit of a regular ring to the loop.
 fn phase(section: &Section, low: &[Point3], corners: u32) -> f64 {
     let (u, w) = section.frame();
     let m = f64::from(corners);
@@ -391,17 +388,17 @@ fn phase(section: &Section, low: &[Point3], corners: u32) -> f64 {
         s += angle.sin();
         c += angle.cos();
     }
-    // Ring points go between those of the loop.
+    // Ring points lie between those of the loop.
     (s.atan2(c) + std::f64::consts::PI) / m
 }
 
-/// The level set, raised by what a polyhedron of this edge length lacks; none beyond the plane, where the wall rises
-/// from the ring to another vessel.
+/// Level set shifted by the chord error of a polyhedron with this edge length. It does not constrain vertices beyond
+/// the plane, where the wall may rise to another vessel.
 struct Raised<'a> {
     field: &'a mut Field,
     by: f64,
     section: &'a Section,
-    /// The edge length, and where edges are shorter.
+    /// Edge length, before the refinement of `finer`.
     edge: f64,
     finer: &'a Finer,
 }
@@ -416,7 +413,7 @@ impl Level for Raised<'_> {
     }
 }
 
-/// Relaxes the wall next to each disc; discs and everything further away stay.
+/// Relaxes the wall next to each disc; keeps discs and more distant parts fixed.
 fn relaxed(
     mesh: &TriMesh,
     mut sizes: Vec<f64>,
@@ -463,7 +460,7 @@ fn relaxed(
             if leans || near && before(height) {
                 hold[v] = Hold::Free;
                 if closing.disc.is_some() {
-                    // A disc that is given may have longer or shorter edges than the wall.
+                    // The edges of a given disc may be longer or shorter than those of the wall.
                     let stray = GROWTH * height.abs();
                     sizes[v] = sizes[v].clamp(edge - stray.min(edge), edge + stray);
                 }

@@ -1,27 +1,27 @@
-//! The 256 sign cases of a grid cell, derived from one rule: on a face whose signs alternate the inside corners are kept
-//! apart. A face looks the same from both of its cells, so the patches of neighbouring cells always fit.
+//! The 256 sign cases of a grid cell, derived from one rule: inside corners stay separate on ambiguous faces. Both
+//! cells of a face see it alike, so the patches of neighbouring cells always match.
 //!
-//! Corner c of a cell lies at offset (c & 1, c >> 1 & 1, c >> 2 & 1). Edge 4·d + k runs along axis d, from the corner
-//! with offset k & 1 along axis d + 1 and k >> 1 along axis d + 2. Face 2·d + s lies across axis d at offset s.
+//! Corner c of a cell lies at offset (c & 1, c >> 1 & 1, c >> 2 & 1). Edge 4·d + k runs along axis d; its start has
+//! offset k & 1 along axis d + 1 and k >> 1 along axis d + 2. Face 2·d + s lies across axis d at offset s.
 
-/// How the wall passes through a cell.
+/// Topology of the wall within a cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Case {
     /// Number of patches (connected pieces of the wall), at most 4.
     pub patches: u8,
-    /// Patch that each edge's crossing belongs to; `NONE` where the edge is not crossed.
+    /// Patch of each edge's crossing; `NONE` for edges without a crossing.
     pub patch_of_edge: [u8; 12],
-    /// Bit f is set when the signs alternate round face f.
+    /// Bit f is set if the signs alternate around face f.
     pub ambiguous: u8,
 }
 
-/// No patch.
+/// Marks the absence of a patch.
 pub(crate) const NONE: u8 = u8::MAX;
 
-/// The case of every set of inside corners (bit c: corner c is inside).
+/// Cases indexed by the set of inside corners (bit c: corner c is inside).
 pub(crate) static CASES: [Case; 256] = derive();
 
-/// The edges of every face, in cyclic order seen from outside the cell.
+/// Edges of each face, in cyclic order seen from outside the cell.
 pub(crate) const FACE_EDGES: [[u8; 4]; 6] = face_edges();
 
 /// First and last corner of an edge.
@@ -43,7 +43,7 @@ const fn edge_between(a: usize, b: usize) -> u8 {
     NONE
 }
 
-/// The corners of a face, counter-clockwise seen from outside the cell.
+/// Corners of a face, counter-clockwise seen from outside the cell.
 const fn face_corners(face: usize) -> [usize; 4] {
     let (d, side) = (face / 2, face % 2);
     let (u, v) = (1 << ((d + 1) % 3), 1 << ((d + 2) % 3));
@@ -100,7 +100,7 @@ const fn derive_case(mask: usize) -> Case {
         while i < 4 {
             if inside(mask, c[i]) && !inside(mask, c[(i + 1) % 4]) {
                 leaving += 1;
-                // The segment on the face joins the way out of an inside stretch with the way into it.
+                // The segment on the face joins the exit of an inside run with its entry.
                 let mut j = i;
                 while inside(mask, c[j]) {
                     j = (j + 3) % 4;
@@ -175,7 +175,7 @@ mod tests {
     fn inside_corners_are_kept_apart_on_ambiguous_faces() {
         // Two opposite corners of the cell's lower face: two patches of three.
         assert_eq!(CASES[0b0000_1001].patches, 2);
-        // Its complement has the outside corners joined through the cell's side: one patch.
+        // The complement joins the outside corners through the cell's side: one patch.
         assert_eq!(CASES[0b1111_0110].patches, 1);
         assert_eq!(CASES[0b1001_0110].patches, 4);
         assert_eq!(CASES[0b0000_0000].patches + CASES[0b1111_1111].patches, 0);

@@ -1,10 +1,10 @@
-//! Contouring on a sparse grid: from seed cells along the wall, evaluating only the nodes of cells that it crosses.
+//! Contouring on a sparse grid from seed cells along the wall. Only nodes of crossed cells are evaluated.
 //!
-//! The patches of the marching-cubes cells form a closed 2-manifold for every sign field (`cases`). Their dual is what is
-//! built: one vertex per patch, at the mean of its crossings, and one quadrilateral per crossed grid edge, split along
-//! its better diagonal. It has as many triangles as marching cubes and no slivers. The dual is a simplicial manifold but
-//! for one case: two patches that share both segments of an ambiguous face would be joined by two edges. Each of these
-//! gets a vertex of its own in the middle, and the quadrilaterals beside it are split from a vertex at their crossing.
+//! The patches of marching-cubes cells form a closed 2-manifold for every sign field (`cases`). This module builds
+//! their dual. It has one vertex per patch, at the mean of its crossings, and one quadrilateral per crossed grid edge,
+//! split along its better diagonal. The dual has as many triangles as marching cubes and no slivers. It is a simplicial
+//! manifold except if two patches share both segments of an ambiguous face. Each such edge gets a middle vertex, and
+//! the adjacent quadrilaterals are split from a vertex at their crossing.
 
 use rustc_hash::FxHashMap;
 
@@ -14,18 +14,18 @@ use super::relax::largest_cosine;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// A grid node, or the cell of which it is the lowest corner.
+/// Grid node, or the cell of which it is the lowest corner.
 pub(crate) type Node = [i32; 3];
 
-/// Coordinates have to stay within ± this.
+/// Maximum absolute value of a coordinate.
 pub(crate) const MAX_COORDINATE: i32 = 1 << 20;
 
-/// Bits and mask of a coordinate within its tile, and places in a tile.
+/// Bits and mask of a coordinate within its tile, and cells per tile.
 const BITS: u32 = 3;
 const WITHIN: u64 = (1 << BITS) - 1;
 const PLACES: usize = 1 << (3 * BITS);
 
-/// Nodes and cells of 8 × 8 × 8 of the grid.
+/// Block of 8 × 8 × 8 grid nodes and cells.
 struct Tile {
     value: [f64; PLACES],
     first_vertex: [u32; PLACES],
@@ -34,11 +34,11 @@ struct Tile {
     visited: [u64; PLACES / 64],
 }
 
-/// Contours the zero level of `value` (negative inside) from `seeds`, cells that the level crosses. Positions are in
-/// grid units. With the mesh comes, for every seed, a vertex in its cell.
+/// Contours the zero level of `value` (negative inside) from crossed `seeds`. Positions are in grid units. Also returns
+/// a vertex in the cell of each seed.
 ///
 /// # Errors
-/// `TooLarge` when more than `max_cells` cells are crossed or the grid's coordinates overflow.
+/// `TooLarge` if more than `max_cells` cells are crossed or the grid's coordinates overflow.
 pub(crate) fn contour(
     seeds: &[Node],
     max_cells: usize,
@@ -66,7 +66,7 @@ struct Grid<F> {
 }
 
 impl<F: FnMut(Node) -> f64> Grid<F> {
-    /// Tile and place within it.
+    /// Tile of a node and index within it.
     #[inline]
     fn locate(&mut self, n: Node) -> (usize, usize) {
         let c = n.map(|x| (x + 2 * MAX_COORDINATE) as u64);
@@ -105,7 +105,7 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
         self.tiles[tile].value[place]
     }
 
-    /// The values at the corners of a cell.
+    /// Values at the corners of a cell.
     fn corners(&mut self, cell: Node) -> [f64; 8] {
         let mut v = [0.0; 8];
         let (tile, place) = self.locate(cell);
@@ -123,8 +123,8 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
         v
     }
 
-    /// All crossed cells that are joined to the seeds through crossed faces, with their sign masks. Their patches'
-    /// vertices are appended to `points`.
+    /// Returns the crossed cells connected to the seeds through crossed faces, with sign masks. Appends the vertices of
+    /// their patches to `points`.
     fn flood(
         &mut self,
         seeds: &[Node],
@@ -162,7 +162,7 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
         Ok(cells)
     }
 
-    /// Puts a cell on the stack unless it has been there.
+    /// Pushes a cell unless it was visited before.
     fn visit(&mut self, cell: Node, stack: &mut Vec<Node>) -> Result<(), SurfaceError> {
         if cell.iter().any(|x| x.abs() >= MAX_COORDINATE) {
             return Err(SurfaceError::TooLarge { cells: f64::INFINITY, limit: MAX_COORDINATE as usize });
@@ -176,7 +176,7 @@ impl<F: FnMut(Node) -> f64> Grid<F> {
         Ok(())
     }
 
-    /// Where the level crosses the grid edge from `n` along axis `d`.
+    /// Crossing of the level with the grid edge from `n` along axis `d`.
     fn crossing(&mut self, n: Node, d: usize) -> Point3 {
         let mut end = n;
         end[d] += 1;
@@ -225,7 +225,7 @@ fn shifted(n: Node, axis: usize, by: i32) -> Node {
     m
 }
 
-/// One corner of the polygon round a crossed grid edge.
+/// Corner of the polygon around a crossed grid edge.
 #[derive(Clone, Copy)]
 struct Around {
     cell: Node,
@@ -235,12 +235,12 @@ struct Around {
 
 struct Dual {
     mesh: TriMesh,
-    /// Vertices in the middle of doubled edges, by face (cell, axis) and the inside node that the segment cuts off.
+    /// Vertices in the middle of doubled edges, by face (cell, axis) and the inside node cut off by the segment.
     midpoints: FxHashMap<(Node, usize, Node), u32>,
 }
 
 impl Dual {
-    /// The polygon of the crossed grid edge from `n`, which is `inside` or not, along axis `d`.
+    /// Adds the polygon of the crossed grid edge from `n` along axis `d`; `inside` tells if `n` is inside.
     fn crossing<F: FnMut(Node) -> f64>(&mut self, grid: &mut Grid<F>, n: Node, d: usize, inside: bool) {
         let (u, v) = ((d + 1) % 3, (d + 2) % 3);
         // Counter-clockwise seen from the far end of the edge.
@@ -282,7 +282,7 @@ impl Dual {
         }
     }
 
-    /// The vertex in the middle of the segment that crosses the edge (n, d) on the lower face across `axis` of `cell`.
+    /// Returns the middle vertex of the segment that crosses edge (n, d) on the lower face of `cell` across `axis`.
     fn midpoint<F: FnMut(Node) -> f64>(
         &mut self,
         grid: &mut Grid<F>,
@@ -296,7 +296,7 @@ impl Dual {
         if let Some(&vertex) = self.midpoints.get(&(cell, axis, corner)) {
             return vertex;
         }
-        // The other edge of the face at the inside corner that the segment cuts off.
+        // Other edge of the face at the inside corner that the segment cuts off.
         let other = 3 - axis - d;
         let start = if corner[other] == cell[other] { corner } else { shifted(corner, other, -1) };
         let p = nalgebra::center(&grid.crossing(n, d), &grid.crossing(start, other));
@@ -306,7 +306,7 @@ impl Dual {
         vertex
     }
 
-    /// Two triangles whose smallest angle is as large as a diagonal can make it.
+    /// Splits a quadrilateral along the diagonal with the larger minimum angle.
     fn split_quad(&mut self, [a, b, c, d]: [u32; 4]) {
         let cosine = |x: u32, y: u32, z: u32| {
             let p = |i: u32| self.mesh.points[i as usize];
@@ -319,7 +319,7 @@ impl Dual {
     }
 }
 
-/// Whether two cells share both segments of the face between them within one patch each.
+/// True if two cells share both segments of their common face within one patch each.
 fn doubled(upper: Around, lower: Around, axis: usize) -> bool {
     let (cu, cl) = (&CASES[upper.mask as usize], &CASES[lower.mask as usize]);
     if cu.ambiguous >> (2 * axis) & 1 == 0 {

@@ -1,15 +1,15 @@
-//! The flat disc in a regular ring: rings of points towards the centre, triangulated by constrained Delaunay (spade).
+//! Flat disc in a regular ring: concentric rings of points, triangulated by constrained Delaunay (spade).
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
-/// Mean edge length of a relaxed wall over the length that was aimed at.
+/// Mean edge length of a relaxed wall relative to the target edge length.
 pub(super) const MEAN_EDGE: f64 = 0.92;
-/// Least number of corners of a ring.
+/// Minimum number of ring corners.
 const LEAST_CORNERS: u32 = 8;
 
-/// A triangulated disc in its plane; the first points are the ring, counter-clockwise from angle `phase`.
+/// Triangulated disc in its plane. The first points are the ring, counter-clockwise from angle `phase`.
 #[derive(Clone, Debug)]
 pub(super) struct Disc {
     /// Points in the plane.
@@ -18,17 +18,17 @@ pub(super) struct Disc {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// The radius at which the corners of a regular polygon have to lie for its area to be that of the circle.
+/// Circumradius of a regular polygon with the area of a circle.
 pub(crate) fn ring_radius(radius: f64, corners: u32) -> f64 {
     let t = TAU / f64::from(corners);
     radius * (t / t.sin()).sqrt()
 }
 
-/// Rings with fewer corners share their triangulation.
+/// Number of cached triangulations: rings with fewer corners share theirs.
 const KEPT: usize = 128;
 
-/// The disc of `radius` whose ring has `corners` points, filled at the ring's spacing; none if the triangulation does
-/// not keep the ring.
+/// Returns the disc of `radius` whose ring has `corners` points, filled at the ring's spacing. Returns `None` if the
+/// triangulation does not contain the ring.
 pub(super) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
     static DISCS: [OnceLock<Option<Disc>>; KEPT] = [const { OnceLock::new() }; KEPT];
     match DISCS.get(corners as usize) {
@@ -38,7 +38,7 @@ pub(super) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
 }
 
 impl Disc {
-    /// Scaled and turned.
+    /// Scales and rotates the disc.
     fn placed(&self, radius: f64, phase: f64) -> Self {
         let (s, c) = phase.sin_cos();
         let (s, c) = (s * radius, c * radius);
@@ -47,7 +47,7 @@ impl Disc {
     }
 }
 
-/// The disc of radius 1 whose first corner is at angle 0.
+/// Disc of radius 1 with its first corner at angle 0.
 fn unit_disc(corners: u32) -> Option<Disc> {
     let ring = ring_radius(1.0, corners);
     let spacing = 2.0 * ring * (PI / f64::from(corners)).sin();
@@ -72,7 +72,7 @@ fn circle(radius: f64, count: u32, phase: f64) -> Vec<[f64; 2]> {
     (0..count).map(|i| [radius * angle(i).cos(), radius * angle(i).sin()]).collect()
 }
 
-/// Constrained Delaunay triangulation whose constraints are the ring of the first `corners` points.
+/// Constrained Delaunay triangulation. The constraints are the ring of the first `corners` points.
 fn triangulate(points: &[[f64; 2]], corners: u32) -> Option<Vec<[u32; 3]>> {
     let mut cdt = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
     let mut handles = Vec::with_capacity(points.len());
@@ -91,11 +91,11 @@ fn triangulate(points: &[[f64; 2]], corners: u32) -> Option<Vec<[u32; 3]>> {
         cdt.add_constraint(a, b);
     }
     let triangles: Vec<[u32; 3]> = cdt.inner_faces().map(|f| f.vertices().map(|v| v.fix().index() as u32)).collect();
-    // A disc: each interior point makes two triangles, the ring two less than its corners.
+    // Triangle count of a disc: two for each interior point, plus the number of ring corners minus two.
     (triangles.len() == 2 * (points.len() - m) + m - 2).then_some(triangles)
 }
 
-/// Moves the interior points to the mean of their neighbours.
+/// Moves each interior point to the mean of its neighbours.
 fn smooth(points: &mut [[f64; 2]], triangles: &[[u32; 3]], corners: u32) {
     let mut sums = vec![[0.0; 3]; points.len()];
     for t in triangles {
@@ -109,7 +109,7 @@ fn smooth(points: &mut [[f64; 2]], triangles: &[[u32; 3]], corners: u32) {
     }
 }
 
-/// How many corners the ring of a disc has where edges of the wall are aimed to be so long.
+/// Number of ring corners of a disc for a target edge length of the wall.
 pub(super) fn corners(radius: f64, edge: f64) -> u32 {
     ((TAU * radius / (MEAN_EDGE * edge)).round() as u32).max(LEAST_CORNERS)
 }

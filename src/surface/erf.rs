@@ -1,4 +1,4 @@
-//! The error function from a table: value and slope at equidistant knots, cubic between them.
+//! Error function from a table: value and slope at equidistant knots, with cubic interpolation.
 
 use std::sync::LazyLock;
 
@@ -12,14 +12,14 @@ const KNOTS: usize = PER_UNIT * LIMIT + 1;
 /// Value and slope (per knot spacing) at every knot.
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
-/// The tabulated error function; at most 2e-8 off, odd, and monotone.
+/// Tabulated error function: odd, monotone, error at most 2e-8.
 #[derive(Debug)]
 pub(crate) struct Table {
     knots: Vec<[f64; 2]>,
 }
 
 impl Table {
-    /// The table, built at its first use.
+    /// Returns the table, built at its first use.
     pub(crate) fn get() -> &'static Self {
         &TABLE
     }
@@ -32,7 +32,7 @@ impl Table {
         for i in 0..KNOTS {
             let x = i as f64 * step;
             knots.push([value, density(x) * step]);
-            // Five Gauss points integrate the density over one step to the last bit.
+            // Five-point Gauss quadrature integrates the density over one step to full precision.
             value += GAUSS.iter().map(|&(node, weight)| weight * density(x + 0.5 * step * (1.0 + node))).sum::<f64>()
                 * 0.5
                 * step;

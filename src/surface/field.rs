@@ -1,10 +1,10 @@
-//! The convolution field of a set of tubes (equation 13 of the paper, in its scale-invariant form).
+//! Convolution field of a set of tubes (equation 13 of the paper, in its scale-invariant form).
 //!
-//! Every tube adds the line integral of a Gaussian along its axis, `exp(−d²/2σ²) · ½ (erf((L−s)/√2σ) + erf(s/√2σ))`,
-//! with σ = κ·r and r taken at the point's projection (s along the axis, d from it). An infinite tube has the level
-//! `exp(−1/2κ²)` at exactly its radius, whatever the radius, and the pieces of a polyline add up to the whole. What is
-//! contoured is the distance form `g = √(−2κ² ln F)`: on one tube it is the distance from the axis over the radius, so
-//! the surface is `g = 1` and `g` is almost linear across it.
+//! Each tube adds the line integral of a Gaussian along its axis: `exp(−d²/2σ²) · ½ (erf((L−s)/√2σ) + erf(s/√2σ))`.
+//! Here σ = κ·r, s is the position along the axis and d the distance from it; r is the radius at s. An infinite tube
+//! has the level `exp(−1/2κ²)` at exactly its radius, and pieces of a polyline add up to the whole. The contoured
+//! function is the distance form `g = √(−2κ² ln F)`. On one tube it is distance over radius, so the surface is `g = 1`
+//! and `g` is almost linear across it.
 
 use rustc_hash::FxHashMap;
 
@@ -12,20 +12,20 @@ use super::SurfaceError;
 use super::erf::Table;
 use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
 
-/// Contributions below this fraction of the level are left out.
+/// Contributions below this fraction of the level are neglected.
 const NEGLIGIBLE: f64 = 3e-4;
-/// Up to so many tubes a search structure costs more than it saves.
+/// Maximum number of tubes without a search structure, which would cost more than it saves.
 const FEW: usize = 6;
-/// A run of tubes is one taper when nothing in it is off by more than this many radii.
+/// Maximum deviation of a merged run of tubes from one taper, in radii.
 const CHORD_ERROR: f64 = 0.01;
-/// Longest chord of a run, in radii.
+/// Maximum chord of a run, in radii.
 const LONGEST_CHORD: f64 = 2.0;
-/// Most tubes in a run, which bounds the work.
+/// Maximum number of tubes in a run. Bounds the run time.
 const MOST_MERGED: usize = 64;
 /// Bits per coordinate of a search cell's key.
 const KEY_BITS: u32 = 21;
 
-/// One tube, ready for evaluation.
+/// One tube, prepared for evaluation.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     a: Point3,
@@ -36,20 +36,20 @@ struct Piece {
     reach: f64,
 }
 
-/// The distance form of the convolution field: below 1 inside the vessels, 1 on the wall, above 1 outside.
+/// Distance form of the convolution field: below 1 inside the vessels, 1 on the wall, above 1 outside.
 #[derive(Debug)]
 pub struct Field {
     pieces: Vec<Piece>,
     kappa: f64,
-    /// Square of the largest distance, in radii, at which a tube counts.
+    /// Square of the tube cutoff distance, in radii.
     cutoff2: f64,
-    /// The value far from all tubes.
+    /// Value far from all tubes.
     far: f64,
     erf: &'static Table,
     locator: Option<Locator>,
 }
 
-/// Which pieces count near a point, found once per cell of a coarse grid.
+/// Cached lists of the relevant pieces, one per cell of a coarse grid.
 #[derive(Debug)]
 struct Locator {
     origin: Point3,
@@ -60,11 +60,11 @@ struct Locator {
 }
 
 impl Field {
-    /// The field of `tubes` for the kernel width `kappa` (σ over r).
+    /// Creates the field of `tubes` for the kernel width `kappa` (σ over r).
     ///
     /// # Errors
-    /// `InvalidTube` for a coordinate or radius that is not finite or a radius that is not positive, `InvalidParameter`
-    /// for a kernel width outside (0, 2], `Empty` when no tube has a length.
+    /// `InvalidTube` for a coordinate or radius that is not finite or a radius that is not positive. `InvalidParameter`
+    /// for a kernel width outside (0, 2]. `Empty` if no tube has a length.
     pub fn new(tubes: &[Tube], kappa: f64) -> Result<Self, SurfaceError> {
         if !(kappa > 0.0 && kappa <= 2.0) {
             return Err(SurfaceError::InvalidParameter { name: "kappa", value: kappa });
@@ -85,12 +85,12 @@ impl Field {
         Ok(Self { pieces, kappa, cutoff2, far: cutoff2.sqrt(), erf: Table::get(), locator })
     }
 
-    /// The kernel width.
+    /// Kernel width.
     pub fn kappa(&self) -> f64 {
         self.kappa
     }
 
-    /// The box outside which every value is the far value: lower and upper corner.
+    /// Lower and upper corner of the box outside which every value is the far value.
     pub fn bounds(&self) -> (Point3, Point3) {
         let (mut lo, mut hi) = (self.pieces[0].a, self.pieces[0].a);
         for piece in &self.pieces {
@@ -103,7 +103,7 @@ impl Field {
         (lo, hi)
     }
 
-    /// The distance form at `p`.
+    /// Distance form at `p`.
     pub fn value(&mut self, p: &Point3) -> f64 {
         let mut sum = 0.0;
         if let Some(locator) = &mut self.locator {
@@ -119,7 +119,7 @@ impl Field {
         self.distance(sum)
     }
 
-    /// The distance form at `p` and its gradient (zero far from all tubes and on an axis).
+    /// Distance form at `p` and its gradient (zero far from all tubes and on an axis).
     pub fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
         let (mut sum, mut gradient) = (0.0, Vec3::zeros());
         let mut add = |piece: &Piece| {
@@ -143,7 +143,7 @@ impl Field {
         (g, gradient * (-self.kappa * self.kappa / (g * sum)))
     }
 
-    /// Mean radius of the tubes near `p`, those weighing more that are nearer; 0 far from all.
+    /// Mean radius of the tubes near `p`, weighted by the kernel; 0 far from all tubes.
     pub fn radius(&mut self, p: &Point3) -> f64 {
         let (mut sum, mut radii) = (0.0, 0.0);
         let mut add = |piece: &Piece| {
@@ -162,7 +162,7 @@ impl Field {
         if sum > 0.0 { radii / sum } else { 0.0 }
     }
 
-    /// The largest radius of a tube.
+    /// Largest radius of a tube.
     pub(crate) fn largest_radius(&self) -> f64 {
         self.pieces.iter().map(|p| p.ra.max(p.ra + p.slope * p.length)).fold(0.0, f64::max)
     }
@@ -180,8 +180,8 @@ impl Field {
     }
 }
 
-/// The tubes, with runs of short ones along one polyline replaced by their chord where it stays close: the pieces of a
-/// finely sampled centreline would each be evaluated at every point near them.
+/// Replaces runs of short tubes along a polyline by their chord if it stays close. Otherwise each piece of a finely
+/// sampled centreline would be evaluated at every nearby point.
 fn merged(tubes: &[Tube]) -> Vec<Tube> {
     let mut out = Vec::with_capacity(tubes.len());
     let mut first = 0;
@@ -196,7 +196,7 @@ fn merged(tubes: &[Tube]) -> Vec<Tube> {
     out
 }
 
-/// Whether consecutive tubes are one straight taper but for a hundredth of a radius.
+/// True if consecutive tubes form one straight taper within [`CHORD_ERROR`].
 fn is_chord(run: &[Tube]) -> bool {
     let (Some(first), Some(last)) = (run.first(), run.last()) else { return false };
     let chord = last.b - first.a;
@@ -220,7 +220,7 @@ fn is_chord(run: &[Tube]) -> bool {
 }
 
 impl Piece {
-    /// None for a tube without length; `reach` is the cutoff in radii.
+    /// Returns `None` for a tube without length; `reach` is the cutoff in radii.
     fn new(t: &Tube, reach: f64) -> Option<Self> {
         let length = t.length();
         (length > 0.0).then(|| Self {
@@ -233,7 +233,7 @@ impl Piece {
         })
     }
 
-    /// Position along the axis, squared distance from it and radius; none out of reach.
+    /// Offset from the start, axial position, squared distance from the axis, and radius; `None` out of reach.
     #[inline]
     fn locate(&self, p: &Point3, cutoff2: f64) -> Option<(Vec3, f64, f64, f64)> {
         let w = p - self.a;
@@ -257,7 +257,7 @@ impl Piece {
     fn value_and_gradient(&self, p: &Point3, kappa: f64, cutoff2: f64, table: &Table) -> Option<(f64, Vec3)> {
         let (w, s, d2, r) = self.locate(p, cutoff2)?;
         let q = std::f64::consts::FRAC_1_SQRT_2 / (kappa * r);
-        // Relative change of sigma along the axis; none beyond the ends, where the radius is held.
+        // Relative change of σ along the axis; zero beyond the ends, where the radius is constant.
         let growth = if s > 0.0 && s < self.length { self.slope / r } else { 0.0 };
         let across = (-d2 * q * q).exp();
         let (e1, m1) = table.erf_and_slope((self.length - s) * q);
@@ -269,7 +269,7 @@ impl Piece {
         Some((across * along, (w - self.axis * s) * radial + self.axis * axial))
     }
 
-    /// The kernel at the distance from the axis segment, and the radius there.
+    /// Kernel value at the distance from the axis segment, and the radius there.
     #[inline]
     fn weight_and_radius(&self, p: &Point3, kappa: f64, cutoff2: f64) -> (f64, f64) {
         let w = p - self.a;
@@ -286,7 +286,7 @@ impl Piece {
 }
 
 impl Locator {
-    /// Cells per block edge: a cell's list is picked from its block's, a block's from all pieces.
+    /// Cells per block edge. A cell's list is selected from its block's, a block's from all pieces.
     const BLOCK: u64 = 8;
 
     fn new(pieces: &[Piece]) -> Self {
@@ -303,7 +303,7 @@ impl Locator {
         Self { origin: lo, size, cells: FxHashMap::default(), blocks: FxHashMap::default(), lists: Vec::new() }
     }
 
-    /// The pieces that reach the cell of `p`, as a range of `lists`.
+    /// Returns the pieces that reach the cell of `p`, as a range of `lists`.
     fn range(&mut self, pieces: &[Piece], p: &Point3) -> (u32, u32) {
         let limit = ((1u64 << KEY_BITS) - 1) as f64;
         let c: [u64; 3] =
@@ -325,7 +325,7 @@ impl Locator {
         range
     }
 
-    /// Appends the pieces that reach the cube `cell` of edge `size`, out of the range `from` or out of all.
+    /// Appends the pieces that reach the cube `cell` of edge `size`, selected from the range `from` or from all.
     fn pick(&mut self, pieces: &[Piece], from: Option<(u32, u32)>, cell: [u64; 3], size: f64) -> (u32, u32) {
         let center = self.origin + Vec3::from_fn(|i, _| (cell[i] as f64 + 0.5) * size);
         let half = 0.5 * size * 3f64.sqrt() * (1.0 + 1e-9);
@@ -334,7 +334,7 @@ impl Locator {
         for k in first..last {
             let i = if from.is_some() { self.lists[k as usize] } else { k };
             let piece = &pieces[i as usize];
-            // The kernel reaches `reach` across and `reach` along: sqrt(2) covers the corner of that cylinder.
+            // The kernel extends `reach` across and along the axis: √2 covers the corner of that cylinder.
             if piece.distance(&center) <= half + piece.reach * std::f64::consts::SQRT_2 {
                 self.lists.push(i);
             }

@@ -1,42 +1,42 @@
-//! A closed triangle surface that can be edited: flip, split and collapse of edges in constant time.
+//! Half-edge structure of a closed triangle surface, with edge flip, split and collapse in constant time.
 //!
-//! Half-edge `3 f + i` runs from corner `i` of triangle `f` to its next corner. Only closed 2-manifolds are held, and
-//! every operation keeps them so.
+//! Half-edge `3 f + i` runs from corner `i` of triangle `f` to the next corner. The surface is a closed 2-manifold, and
+//! every operation preserves this.
 
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// No half-edge; also marks what has been removed.
+/// Missing half-edge; also marks removed elements.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// A closed 2-manifold triangle surface under edit.
+/// Closed 2-manifold triangle surface under edit.
 #[derive(Clone, Debug)]
 pub(crate) struct HalfEdges {
     /// Vertex positions, removed vertices included.
     pub points: Vec<Point3>,
-    /// Where each half-edge starts; `NONE` for those of removed triangles.
+    /// Start of each half-edge; `NONE` in removed triangles.
     from: Vec<u32>,
-    /// The half-edge on the other side of each half-edge.
+    /// Opposite half-edge of each half-edge.
     twin: Vec<u32>,
     /// One half-edge that starts at each vertex; `NONE` for removed vertices.
     out: Vec<u32>,
 }
 
-/// The half-edge after `h` in its triangle.
+/// Half-edge after `h` in its triangle.
 #[inline]
 pub(crate) fn next(h: u32) -> u32 {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
-/// The half-edge before `h` in its triangle.
+/// Half-edge before `h` in its triangle.
 #[inline]
 pub(crate) fn prev(h: u32) -> u32 {
     if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
 impl HalfEdges {
-    /// Links the triangles of a closed, consistently oriented surface; the error is an edge (vertex pair) that does not
-    /// have exactly one triangle on either side, or a vertex (twice) with several fans or none.
+    /// Links the triangles of a closed, consistently oriented surface. The error is an edge (vertex pair) without
+    /// exactly one triangle per side. For a vertex with several fans or none, the error repeats that vertex.
     pub(crate) fn new(mesh: &TriMesh) -> Result<Self, [u32; 2]> {
         let n = mesh.points.len();
         let from: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
@@ -48,7 +48,7 @@ impl HalfEdges {
             start[i + 1] += start[i];
         }
         let mut fill = start.clone();
-        // For each vertex the half-edges that start there, each with the vertex it leads to.
+        // Half-edges that start at each vertex, with their end vertices.
         let mut starting = vec![(0u32, 0u32); from.len()];
         for (h, &v) in from.iter().enumerate() {
             starting[fill[v as usize] as usize] = (from[next(h as u32) as usize], h as u32);
@@ -58,7 +58,7 @@ impl HalfEdges {
         let mut twin = vec![NONE; from.len()];
         for a in 0..n as u32 {
             for &(b, h) in at(a).iter().filter(|x| x.0 > a) {
-                // One half-edge back from b to a, and this is the only one from a to b.
+                // Exactly one half-edge runs from b to a, and exactly one from a to b.
                 let mut back = at(b).iter().filter(|o| o.0 == a);
                 let again = at(a).iter().filter(|o| o.0 == b).nth(1);
                 match (back.next(), back.next(), again) {
@@ -67,7 +67,7 @@ impl HalfEdges {
                 }
             }
         }
-        // Half-edges to a smaller vertex without one back, and loops, have found no twin.
+        // Loops and unmatched half-edges to a smaller vertex have no twin.
         if let Some(h) = twin.iter().position(|&o| o == NONE) {
             return Err([from[h], from[next(h as u32) as usize]]);
         }
@@ -81,8 +81,8 @@ impl HalfEdges {
         Ok(surface)
     }
 
-    /// The surface without what has been removed, vertices and triangles in their order; and the new index of every
-    /// vertex (`NONE` for removed ones).
+    /// Returns the surface without removed elements, in the original order. Also returns the new index of each vertex
+    /// (`NONE` for removed ones).
     pub(crate) fn to_mesh(&self) -> (TriMesh, Vec<u32>) {
         let mut map = vec![NONE; self.points.len()];
         let mut mesh = TriMesh::default();
@@ -100,7 +100,7 @@ impl HalfEdges {
         (mesh, map)
     }
 
-    /// The same without what has been removed, as `to_mesh` numbers it.
+    /// Returns the structure without removed elements, numbered as in `to_mesh`.
     pub(crate) fn compacted(&self) -> (Self, Vec<u32>) {
         let mut vertex = vec![NONE; self.points.len()];
         let mut points = Vec::with_capacity(self.points.len());
@@ -119,23 +119,23 @@ impl HalfEdges {
         (Self { points, from, twin, out }, vertex)
     }
 
-    /// The triangle (by its first half-edge over three) that each triangle of `to_mesh` was.
+    /// Original triangle (first half-edge over three) of each triangle of `to_mesh`.
     pub(crate) fn live_triangles(&self) -> Vec<u32> {
         (0..self.len() / 3).filter(|&f| self.is_live(3 * f)).collect()
     }
 
-    /// Number of half-edges, removed ones included.
+    /// Number of half-edges, including removed ones.
     pub(crate) fn len(&self) -> u32 {
         self.from.len() as u32
     }
 
-    /// Whether a half-edge is part of the surface.
+    /// True if a half-edge is part of the surface.
     #[inline]
     pub(crate) fn is_live(&self, h: u32) -> bool {
         self.from[h as usize] != NONE
     }
 
-    /// Whether a vertex is part of the surface.
+    /// True if a vertex is part of the surface.
     #[inline]
     pub(crate) fn has_vertex(&self, v: u32) -> bool {
         self.out[v as usize] != NONE
@@ -153,19 +153,19 @@ impl HalfEdges {
         self.from[next(h) as usize]
     }
 
-    /// The vertex opposite a half-edge in its triangle.
+    /// Vertex opposite a half-edge in its triangle.
     #[inline]
     pub(crate) fn apex(&self, h: u32) -> u32 {
         self.from[prev(h) as usize]
     }
 
-    /// The other side of the edge.
+    /// Opposite half-edge.
     #[inline]
     pub(crate) fn twin(&self, h: u32) -> u32 {
         self.twin[h as usize]
     }
 
-    /// The half-edges that start at `v`, clockwise.
+    /// Half-edges that start at `v`, clockwise.
     pub(crate) fn fan(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
         let first = self.out[v as usize];
         let mut at = first;
@@ -187,7 +187,7 @@ impl HalfEdges {
         self.fan(v).count()
     }
 
-    /// Number of edges at every vertex.
+    /// Number of edges at each vertex.
     pub(crate) fn valences(&self) -> Vec<i32> {
         let mut out = vec![0; self.points.len()];
         for &v in self.from.iter().filter(|&&v| v != NONE) {
@@ -196,7 +196,7 @@ impl HalfEdges {
         out
     }
 
-    /// Whether an edge joins the two vertices.
+    /// True if an edge joins the two vertices.
     pub(crate) fn joined(&self, a: u32, b: u32) -> bool {
         self.fan(a).any(|h| self.to(h) == b)
     }
@@ -212,7 +212,7 @@ impl HalfEdges {
         (self.point(self.to(h)) - self.point(self.from(h))).norm()
     }
 
-    /// Twice the area vector of the triangle of a half-edge.
+    /// Twice the area vector of a half-edge's triangle.
     #[inline]
     pub(crate) fn area_vector(&self, h: u32) -> Vec3 {
         let a = self.point(self.from(h));
@@ -231,7 +231,7 @@ impl HalfEdges {
         self.twin[b as usize] = a;
     }
 
-    /// Whether flipping leaves a manifold: both ends keep three edges, and the new edge is not there yet.
+    /// True if a flip preserves the manifold: both ends keep three edges, and the new edge does not exist yet.
     pub(crate) fn can_flip(&self, h: u32) -> bool {
         let o = self.twin(h);
         self.fan(self.from(h)).nth(3).is_some()
@@ -240,7 +240,7 @@ impl HalfEdges {
             && !self.joined(self.apex(h), self.apex(o))
     }
 
-    /// Replaces the edge by the other diagonal of its two triangles; `can_flip` has to hold.
+    /// Replaces the edge by the other diagonal of its two triangles. Requires `can_flip`.
     pub(crate) fn flip(&mut self, h: u32) {
         let o = self.twin(h);
         let (a, b, c, d) = (self.from(h), self.to(h), self.apex(h), self.apex(o));
@@ -255,8 +255,8 @@ impl HalfEdges {
         self.link(y + 1, bc);
     }
 
-    /// Whether collapsing leaves a manifold (link condition): the two ends have the two apexes as their only common
-    /// neighbours, and no vertex is left with less than three edges.
+    /// True if a collapse preserves the manifold (link condition): the ends share only the two apexes as neighbours,
+    /// and every vertex keeps at least three edges.
     pub(crate) fn can_collapse(&self, h: u32) -> bool {
         let (a, b) = (self.from(h), self.to(h));
         let common = self.fan(a).filter(|&e| self.joined(self.to(e), b)).count();
@@ -267,7 +267,7 @@ impl HalfEdges {
             && self.valence(a) + self.valence(b) >= 7
     }
 
-    /// Removes the start of `h` by moving it into the end; `can_collapse` has to hold.
+    /// Collapses the start of `h` into its end. Requires `can_collapse`.
     pub(crate) fn collapse(&mut self, h: u32) {
         let o = self.twin(h);
         let (a, b, c, d) = (self.from(h), self.to(h), self.apex(h), self.apex(o));
@@ -296,7 +296,7 @@ impl HalfEdges {
         debug_assert!(self.from(ca) == b && self.from(bc) == c && self.from(ad) == d);
     }
 
-    /// Puts a vertex on the edge; returns it.
+    /// Inserts a vertex on the edge and returns it.
     pub(crate) fn split(&mut self, h: u32, p: Point3) -> u32 {
         let o = self.twin(h);
         let (a, b, c, d) = (self.from(h), self.to(h), self.apex(h), self.apex(o));

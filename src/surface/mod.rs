@@ -1,5 +1,5 @@
-//! Floor 3: 3.2.2 of the paper. The wall of a cluster: the level set of a convolution field, contoured on a sparse grid
-//! and relaxed into well-shaped triangles.
+//! Wall of a vessel cluster (section 3.2.2 of the paper): the level set of a convolution field. It is contoured on a
+//! sparse grid and relaxed into well-shaped triangles.
 
 mod cap;
 mod cases;
@@ -29,32 +29,31 @@ use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
 use halfedge::HalfEdges;
 use relax::Relaxation;
 
-/// The wall of the vessels `tubes`: one closed 2-manifold, oriented outwards, at the tubes' radii.
+/// Returns the wall of the vessels `tubes`, at the radii of the tubes: a closed 2-manifold, oriented outwards.
 ///
 /// # Errors
-/// Tubes or parameters that make no sense; a wall that is too large for the limit, not resolved by the grid, or not one
-/// piece.
+/// The tubes or the parameters are invalid, or the wall is too large, not resolved by the grid, or disconnected.
 pub fn vessel_surface(tubes: &[Tube], params: &SurfaceParams) -> Result<TriMesh, SurfaceError> {
     vessel_wall(tubes, params, &Finer::default()).map(|wall| wall.mesh)
 }
 
-/// A wall, and how long its edges are meant to be.
+/// A wall and its target edge lengths.
 #[derive(Clone, Debug)]
 pub struct SizedWall {
     /// Closed, oriented outwards.
     pub mesh: TriMesh,
-    /// The edge length aimed at, at each vertex.
+    /// Target edge length at each vertex.
     pub sizes: Vec<f64>,
-    /// Where these are shorter than the radius asks for.
+    /// Places where the target is shorter than the radius asks for.
     pub finer: Finer,
-    /// The mesh once more, its triangles linked.
+    /// Half-edge structure of the mesh.
     pub(crate) halves: HalfEdges,
 }
 
-/// As [`vessel_surface`], with the edge lengths aimed at, which are shorter where `finer` says so.
+/// Returns the wall like [`vessel_surface`], with its target edge lengths, which `finer` shortens locally.
 ///
 /// # Errors
-/// As there.
+/// See [`vessel_surface`].
 pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams, finer: &Finer) -> Result<SizedWall, SurfaceError> {
     check(params)?;
     let mut field = Field::new(tubes, params.kappa)?;
@@ -95,13 +94,13 @@ fn check(params: &SurfaceParams) -> Result<(), SurfaceError> {
     }
 }
 
-/// About how many cells the wall crosses: one and a half per cell face of its area.
+/// Estimates the number of cells that the wall crosses: 1.5 per cell face of its area.
 fn estimated_cells(tubes: &[Tube], voxel: f64) -> f64 {
     let area: f64 = tubes.iter().map(|t| std::f64::consts::PI * (t.ra + t.rb) * t.length()).sum();
     1.5 * area / (voxel * voxel)
 }
 
-/// The contour of the field on the grid: the outer surfaces that carry the tubes, which have to be one.
+/// Contours the field on the grid and returns the outer surface around the tubes. There must be exactly one.
 fn contour_field(tubes: &[Tube], field: &mut Field, params: &SurfaceParams) -> Result<TriMesh, SurfaceError> {
     let grid = Grid::new(field, params)?;
     let mut seeds = Vec::with_capacity(2 * tubes.len());
@@ -121,7 +120,7 @@ fn contour_field(tubes: &[Tube], field: &mut Field, params: &SurfaceParams) -> R
     outer_component(mesh, &at_seeds, &owners)
 }
 
-/// Keeps the one component that is turned outwards; voids inside the vessels are dropped.
+/// Keeps the only component with outward orientation; drops voids inside the vessels.
 fn outer_component(mesh: TriMesh, at_seeds: &[u32], owners: &[u32]) -> Result<TriMesh, SurfaceError> {
     let component = components(&mesh);
     let count = component.iter().max().map_or(0, |&c| c as usize + 1);
@@ -143,7 +142,7 @@ fn outer_component(mesh: TriMesh, at_seeds: &[u32], owners: &[u32]) -> Result<Tr
     }
 }
 
-/// Component of every vertex, numbered by first vertex.
+/// Component of each vertex, numbered by first vertex.
 fn components(mesh: &TriMesh) -> Vec<u32> {
     let mut sets = DisjointSets::new(mesh.points.len());
     for &[a, b, c] in &mesh.triangles {
@@ -159,7 +158,7 @@ fn restricted(mesh: &TriMesh, component: &[u32], keep: u32) -> TriMesh {
     TriMesh { points: kept.select(&mesh.points), triangles: triangles.map(|t| kept.cell(t)).collect() }
 }
 
-/// The grid on which the field is sampled.
+/// Sampling grid of the field.
 struct Grid {
     origin: Point3,
     voxel: f64,
@@ -180,8 +179,8 @@ impl Grid {
         self.origin + Vec3::new(f64::from(n[0]), f64::from(n[1]), f64::from(n[2])) * self.voxel
     }
 
-    /// The cells where lines from the middle of the tube, both ways across it, leave the vessels; none when no node near
-    /// the middle is inside.
+    /// Cells in which a grid line through the middle of the tube, across it, leaves the vessels on either side. Returns
+    /// `None` if no node near the middle is inside.
     fn seeds(&self, field: &mut Field, tube: &Tube) -> Option<[contour::Node; 2]> {
         let at = (tube.point(0.5) - self.origin) / self.voxel;
         let low: contour::Node = std::array::from_fn(|i| at[i].floor() as i32);
@@ -193,7 +192,7 @@ impl Grid {
         let axis = (tube.b - tube.a).iamin();
         let mut march = |step: i32| {
             let mut n = start;
-            // The field ends within its bounds, so this does.
+            // Terminates because the field ends within its bounds.
             loop {
                 let mut m = n;
                 m[axis] += step;

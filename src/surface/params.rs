@@ -1,35 +1,34 @@
-//! How a surface is made, and why there may be none.
+//! Parameters and errors of the surface stage.
 
 use anastomesh_skeleton::resolution::KAPPA;
 
-/// How a surface is made.
+/// Parameters of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceParams {
-    /// Edge of a grid cell, in the unit of the tubes: `2 r_min / ρ`.
+    /// Cell size of the grid, in the unit of the tubes: `2 r_min / ρ`.
     pub voxel: f64,
     /// Kernel width σ / r.
     pub kappa: f64,
-    /// Where the grid lies: its origin, in cells. Another shift gives another triangulation of the same wall.
+    /// Origin of the grid, in cells. A different shift gives a different triangulation of the wall.
     pub shift: [f64; 3],
-    /// Edge length to aim at, in cells, where vessels have the radius `thin` or less.
+    /// Target edge length, in cells, on vessels with radius at most `thin`.
     pub edge: f64,
-    /// A radius.
+    /// Reference radius for `edge`.
     pub thin: f64,
-    /// How far edges follow the radius of wider vessels: they grow with the radius to this power. 0: not at all; 1: in
-    /// proportion.
+    /// Exponent by which edge length grows with the radius of wider vessels: 0 for constant, 1 for proportional.
     pub follow: f64,
-    /// Rounds of relaxation.
+    /// Number of relaxation rounds.
     pub rounds: u32,
-    /// Most cells that the wall may cross.
+    /// Maximum number of cells that the wall may cross.
     pub max_cells: usize,
 }
 
-/// Collapsing a contour that is too fine leaves longer edges than a contour of the right size has: so much less is aimed
-/// at.
+/// Factor on the target edge length of coarsened contours. Collapsing edges of a too fine contour leaves longer edges
+/// than contouring at the right size.
 const COARSENED: f64 = 0.93;
 
 impl SurfaceParams {
-    /// Usual parameters for a cell edge; edges are as long everywhere.
+    /// Default parameters for a cell size, with constant edge length.
     pub fn with_voxel(voxel: f64) -> Self {
         Self {
             voxel,
@@ -43,18 +42,18 @@ impl SurfaceParams {
         }
     }
 
-    /// The edge length to aim at where a vessel has this radius.
+    /// Target edge length on a vessel of this radius.
     pub fn edge_at(&self, radius: f64) -> f64 {
         let wider = (radius / self.thin).max(1.0).powf(self.follow);
         self.edge * self.voxel * (COARSENED * wider).max(1.0)
     }
 }
 
-/// Why there is no surface.
+/// Reasons for a missing surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
-    /// There is no tube with a length.
+    /// No tube has a length.
     #[error("no tube has a length")]
     Empty,
     /// A tube has a coordinate or radius that is not finite, or a radius that is not positive.
@@ -73,15 +72,15 @@ pub enum SurfaceError {
         cells: f64,
         limit: usize,
     },
-    /// The grid is too coarse to see a tube.
+    /// The grid is too coarse to resolve a tube.
     #[error("the grid (cell {voxel}) does not see tube {tube}")]
     Unresolved {
         /// Index of the tube.
         tube: u32,
-        /// The cell edge.
+        /// Cell size.
         voxel: f64,
     },
-    /// The tubes do not make one connected vessel.
+    /// The tubes do not form one connected vessel.
     #[error("tubes {} and {} are not connected: the wall has {components} components", tubes[0], tubes[1])]
     Disconnected {
         /// Number of components.
@@ -89,10 +88,10 @@ pub enum SurfaceError {
         /// One tube of each of two components.
         tubes: [u32; 2],
     },
-    /// Contouring gave a surface that is not a closed manifold, which is a bug.
+    /// The contour is not a closed manifold, which is a bug.
     #[error("the contour is not a closed manifold at edge {} – {}", edge[0], edge[1])]
     NotManifold {
-        /// Vertices of the edge (equal: of the vertex).
+        /// Vertices of the edge; both are equal if a vertex is at fault.
         edge: [u32; 2],
     },
 }

@@ -1,6 +1,6 @@
-//! From the contour to a surface of well-shaped triangles at the right radius: edges are split, collapsed and flipped
-//! towards equal lengths and six neighbours, vertices move within the surface and are projected back onto the level.
-//! (Isotropic remeshing after Botsch and Kobbelt 2004, projected by Newton steps on the field.)
+//! Isotropic remeshing after Botsch and Kobbelt (2004), with projection by Newton steps on the field. Edges are split,
+//! collapsed and flipped towards equal lengths and valence 6. Vertices move within the surface and are projected back
+//! onto the level set.
 
 use super::field::Field;
 use super::halfedge::HalfEdges;
@@ -8,10 +8,10 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 
 mod crotch;
 
-/// Where a vertex may go.
+/// Level set onto which vertices are projected.
 pub(crate) trait Level {
-    /// Value (the level is at 1) and gradient of a function that grows outwards; no gradient where there is no level
-    /// to keep to.
+    /// Returns value and gradient of a function that grows outwards and is 1 on the level set. The gradient is zero
+    /// where the level does not constrain vertices.
     fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3);
 }
 
@@ -21,50 +21,50 @@ impl Level for Field {
     }
 }
 
-/// Whether a vertex may move.
+/// Constraint on a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Hold {
-    /// It may move and vanish.
+    /// The vertex may move and vanish.
     Free,
-    /// It stays, and so do edges between two of its kind.
+    /// The vertex is fixed, and so are edges between two `Still` vertices.
     Still,
-    /// The same, for a second kind (a disc): an edge between the two kinds may be split and flipped.
+    /// Fixed vertex of a disc. Edges between `Disc` and `Still` vertices may be split and flipped.
     Disc,
 }
 
-/// What is worked on, and where.
+/// Relaxation of a surface or of a part of it.
 pub(crate) struct Relaxation<'a, L> {
     pub surface: &'a mut HalfEdges,
-    /// The level set that its vertices lie on.
+    /// Level set of the vertices.
     pub level: &'a mut L,
-    /// The edge length to aim at, at each vertex.
+    /// Target edge length at each vertex.
     pub sizes: Vec<f64>,
-    /// Which vertices may move; all, when empty.
+    /// Constraint of each vertex; if empty, all vertices are free.
     pub hold: Vec<Hold>,
-    /// Unit normal of the level set at every vertex.
+    /// Unit normal of the level set at each vertex.
     normals: Vec<Vec3>,
-    /// Where to work; everywhere, when none.
+    /// Part to relax; `None` for the whole surface.
     patch: Option<Patch>,
 }
 
-/// The part of a surface in which vertices are free.
+/// Part of a surface with free vertices.
 #[derive(Debug, Default)]
 struct Patch {
-    /// The free vertices, and those that splits have added.
+    /// Free vertices and those added by splits.
     vertices: Vec<u32>,
-    /// The triangles that have one of them, and those that splits have added. Every operation replaces triangles of the
-    /// patch by triangles of the patch.
+    /// Triangles at free vertices and those added by splits. Every operation replaces triangles of the patch by
+    /// triangles of the patch.
     faces: Vec<u32>,
 }
 
-/// What a flip must take from the largest cosine: less is rounding, by which flips could undo each other for ever.
+/// Minimum decrease of the largest cosine by a flip. Rounding errors could make flips alternate forever.
 const COSINE_GAIN: f64 = 1e-3;
-/// Edges longer or shorter than these multiples of the aim are split or collapsed.
+/// Edges beyond these multiples of the target length are split or collapsed.
 const SPLIT_ABOVE: f64 = 1.45;
 const COLLAPSE_BELOW: f64 = 0.62;
-/// Triangles without an angle below 41° are not flipped for a better one.
+/// Triangles with a minimum angle above 41° are not flipped for a better one.
 const GOOD_COSINE: f64 = 0.75;
-/// A vertex moves at most so far (of the edge length) in one projection.
+/// Maximum vertex step in one projection, in edge lengths.
 const MAX_STEP: f64 = 0.5;
 
 impl<'a, L: Level> Relaxation<'a, L> {
@@ -72,7 +72,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         let normals = vec![Vec3::zeros(); surface.points.len()];
         let patch = (!hold.is_empty()).then(|| Patch::of(surface, &hold));
         let mut this = Self { surface, level, sizes, hold, normals, patch };
-        // Contours and relaxed walls lie near the level: the normals of the surface will do until the first projection.
+        // Contours and relaxed walls lie near the level, so surface normals suffice until the first projection.
         for i in 0..this.vertex_count() {
             let v = this.vertex(i);
             let sum: Vec3 = this.surface.fan(v).map(|h| this.surface.area_vector(h)).sum();
@@ -81,29 +81,29 @@ impl<'a, L: Level> Relaxation<'a, L> {
         this
     }
 
-    /// Number of half-edges to go through, removed ones included.
+    /// Number of half-edges to visit, including removed ones.
     fn half_count(&self) -> u32 {
         self.patch.as_ref().map_or(self.surface.len(), |p| 3 * p.faces.len() as u32)
     }
 
-    /// The half-edges to go through.
+    /// Half-edge number `i` of those to visit.
     #[inline]
     fn half(&self, i: u32) -> u32 {
         self.patch.as_ref().map_or(i, |p| 3 * p.faces[i as usize / 3] + i % 3)
     }
 
-    /// Number of vertices to go through, removed ones included.
+    /// Number of vertices to visit, including removed ones.
     fn vertex_count(&self) -> usize {
         self.patch.as_ref().map_or(self.surface.points.len(), |p| p.vertices.len())
     }
 
-    /// The vertices to go through.
+    /// Vertex number `i` of those to visit.
     #[inline]
     fn vertex(&self, i: usize) -> u32 {
         self.patch.as_ref().map_or(i as u32, |p| p.vertices[i])
     }
 
-    /// The rounds for a surface that is good but for a seam within it: flips go by angle only.
+    /// Relaxes a surface that is good except for an inner seam: flips use the angle criterion only.
     pub(crate) fn mend(&mut self, rounds: usize) {
         for _ in 0..rounds {
             self.split_long();
@@ -115,7 +115,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         self.project();
     }
 
-    /// Rounds of splitting, collapsing, flipping and smoothing, then crotches, then what brings it to its place. For whole
+    /// Runs rounds of split, collapse, flip and smooth, then opens crotches and runs the final passes. For whole
     /// surfaces.
     pub(crate) fn run(&mut self, rounds: usize) {
         for _ in 0..rounds {
@@ -127,7 +127,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         self.open_crotches(Self::finish);
     }
 
-    /// The passes that only better the worst angles, then the last move.
+    /// Improves the worst angles and applies the final projection and chord compensation.
     fn finish(&mut self) {
         self.flip(Criterion::Angle);
         self.smooth();
@@ -136,8 +136,8 @@ impl<'a, L: Level> Relaxation<'a, L> {
         self.compensate_chords();
     }
 
-    /// Moves each vertex outwards by a quarter of the normal part of its distance from its neighbours' mean: vertices on
-    /// the level make an inscribed polyhedron, and this is, to second order, what it lacks (h²/16r on a tube; negative
+    /// Moves each vertex outwards by a quarter of its normal distance from the mean of its neighbours. Vertices on the
+    /// level form an inscribed polyhedron. The shift compensates its error to second order (h²/16r on a tube, negative
     /// in saddles).
     fn compensate_chords(&mut self) {
         let moves: Vec<Vec3> = (0..self.surface.points.len() as u32)
@@ -154,7 +154,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         }
     }
 
-    /// The length to aim at for an edge between two vertices.
+    /// Target length of an edge between two vertices.
     #[inline]
     fn aim(&self, a: u32, b: u32) -> f64 {
         0.5 * (self.sizes[a as usize] + self.sizes[b as usize])
@@ -183,7 +183,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         Point3::from(sum / count)
     }
 
-    /// One Newton step of every free vertex onto the level; keeps the normals.
+    /// Moves each free vertex by one Newton step onto the level and updates its normal.
     fn project(&mut self) {
         for i in 0..self.vertex_count() {
             let v = self.vertex(i);
@@ -207,7 +207,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         p + if length > limit { step * (limit / length) } else { step }
     }
 
-    /// Moves every free vertex, within the tangent plane, towards the area-weighted centre of its triangles, then
+    /// Moves each free vertex, within the tangent plane, towards the area-weighted centre of its triangles, then
     /// projects it.
     fn smooth(&mut self) {
         let targets: Vec<Point3> = (0..self.vertex_count()).map(|i| self.smoothed(self.vertex(i))).collect();
@@ -228,7 +228,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         for h in self.surface.fan(v) {
             let a = self.surface.points[self.surface.to(h) as usize] - p;
             let b = self.surface.points[self.surface.apex(h) as usize] - p;
-            // Where sizes differ, triangles are to as well.
+            // Weights areas by target size, so graded meshes keep their grading.
             let size = self.sizes[self.surface.to(h) as usize] + self.sizes[self.surface.apex(h) as usize];
             let area = a.cross(&b).norm() / (size * size);
             sum += (a + b) * (area / 3.0);
@@ -257,7 +257,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         }
     }
 
-    /// A vertex amid an edge, not projected.
+    /// Inserts a vertex amid an edge without projecting it.
     fn split(&mut self, h: u32, size: f64) -> u32 {
         let [a, b] = [self.surface.from(h), self.surface.to(h)].map(|v| v as usize);
         let m = self.surface.split(h, nalgebra::center(&self.surface.points[a], &self.surface.points[b]));
@@ -272,7 +272,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         m
     }
 
-    /// An edge that is there and not held by its two ends.
+    /// True if the edge exists and its ends do not fix it.
     fn is_editable(&self, h: u32) -> bool {
         if !self.surface.is_live(h) {
             return false;
@@ -299,7 +299,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
             if self.surface.can_collapse(h) && self.collapse_is_sound(h, target) {
                 self.surface.collapse(h);
                 self.sizes[b as usize] = self.aim(a, b);
-                // It is projected when it is smoothed.
+                // The vertex is projected during smoothing.
                 self.surface.points[b as usize] = target;
             }
         }
@@ -309,8 +309,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         self.hold(v) == Hold::Disc
     }
 
-    /// No triangle turns over or comes to lie on a disc, and no edge becomes too long when both ends of `h` meet in
-    /// `target`.
+    /// True if the collapse of `h` to `target` inverts no triangle, places none on a disc, and makes no edge too long.
     fn collapse_is_sound(&self, h: u32, target: Point3) -> bool {
         let (a, b) = (self.surface.from(h), self.surface.to(h));
         let limit = SPLIT_ABOVE * self.aim(a, b);
@@ -341,7 +340,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
                 let quad = [s.from(h), s.to(h), s.apex(h), s.apex(s.twin(h))].map(|v| v as usize);
                 let wanted =
                     if by_valence { flip_evens_valence(quad.map(|v| valence[v])) } else { self.flip_opens_angle(h) };
-                // A new edge between two vertices of a disc would lie in its plane, and so would a triangle beside it.
+                // A new edge between two disc vertices would lie in the disc plane, and so would an adjacent triangle.
                 let chord = self.is_on_disc(quad[2] as u32) && self.is_on_disc(quad[3] as u32);
                 if wanted && !chord && self.surface.can_flip(h) && self.flip_is_sound(h) {
                     self.surface.flip(h);
@@ -367,7 +366,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
         after < before - COSINE_GAIN
     }
 
-    /// The two new triangles look the way the old ones did, and the new edge is not a ridge.
+    /// True if the new triangles face the old direction and the new edge is not a ridge.
     fn flip_is_sound(&self, h: u32) -> bool {
         let s = &*self.surface;
         let o = s.twin(h);
@@ -390,7 +389,7 @@ impl Patch {
     }
 }
 
-/// Whether six neighbours each come nearer when the first two vertices of a quadrilateral lose an edge to the others.
+/// True if a flip improves valences: the first two vertices lose an edge, the others gain one.
 fn flip_evens_valence(valence: [i32; 4]) -> bool {
     let badness = |x: [i32; 4]| x.iter().map(|n| (n - 6) * (n - 6)).sum::<i32>();
     let [a, b, c, d] = valence;
@@ -403,7 +402,7 @@ enum Criterion {
     Angle,
 }
 
-/// The cosine of a triangle's smallest angle.
+/// Cosine of a triangle's smallest angle.
 pub(crate) fn largest_cosine(a: &Point3, b: &Point3, c: &Point3) -> f64 {
     let (x, y, z) = ((c - b).norm_squared(), (a - c).norm_squared(), (b - a).norm_squared());
     // The smallest angle lies opposite the shortest side.

@@ -1,31 +1,31 @@
-//! The flat disc in which two blocks meet, as the vessel alone gives it: its triangles are the same, bit for bit,
-//! whichever block asks for them, so blocks owe each other nothing and are merged by the disc's vertices.
+//! Flat disc between two blocks, derived from the vessel alone. Every block gets bit-identical triangles, so blocks are
+//! independent and are merged at the vertices of the disc.
 
 use super::SurfaceParams;
 use super::disc::{MEAN_EDGE, corners, disc};
 use anastomesh_mesh::geometry::{Point3, Section};
 use anastomesh_skeleton::resolution::FOLLOW;
 
-/// Edges of a wall at the radius of its thinnest vessel and at larger ones differ by 7 % in what is aimed at; a disc
-/// does not know which its neighbours are.
+/// Factor on the edge length of a disc, between those of thin and wide vessels. Their targets differ by 7 %, and a disc
+/// does not know its neighbours.
 const BETWEEN: f64 = 0.965;
 
 /// A disc on a plane across a vessel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SharedDisc {
-    /// Its points; every block that ends in it has them in this order.
+    /// Points, in the order used by every block that ends in the disc.
     pub points: Vec<Point3>,
-    /// Its triangles, counter-clockwise about the outward axis it is seen along.
+    /// Triangles, counter-clockwise about the outward axis from which the disc is seen.
     pub triangles: Vec<[u32; 3]>,
-    /// Its rim, counter-clockwise likewise.
+    /// Boundary vertices, in counter-clockwise order.
     pub rim: Vec<u32>,
-    /// The edge length that a wall is to have beside it.
+    /// Target edge length of the adjacent wall.
     pub edge: f64,
 }
 
 impl SharedDisc {
-    /// The disc at a section whose axis is in the direction of the branch, seen along it. Depends on the section and ρ
-    /// alone. None if a disc of so many corners cannot be triangulated.
+    /// Creates the disc at a section whose axis has the direction of the branch. The result depends on the section and
+    /// ρ alone. Returns `None` if the disc cannot be triangulated.
     pub fn new(along: &Section, rho: f64) -> Option<Self> {
         let radius = along.radius;
         let wall = SurfaceParams { thin: radius, follow: FOLLOW, ..SurfaceParams::with_voxel(2.0 * radius / rho) };
@@ -40,8 +40,8 @@ impl SharedDisc {
         })
     }
 
-    /// The disc that ends the piece of a vessel on one `side` of a cut, seen along `outward`, the section's axis out of
-    /// that piece: with the branch for side 0, against it for side 1.
+    /// Creates the disc at the end of the vessel piece on one `side` of a cut. The section's axis points out of that
+    /// piece: along the branch for side 0, against it for side 1.
     pub fn at_end(outward: &Section, side: u8, rho: f64) -> Option<Self> {
         if side == 0 {
             return Self::new(outward, rho);
@@ -49,7 +49,7 @@ impl SharedDisc {
         Self::new(&Section { axis: -outward.axis, ..*outward }, rho).map(Self::turned)
     }
 
-    /// The same disc seen from behind.
+    /// Returns the disc seen from behind.
     #[must_use]
     pub fn turned(mut self) -> Self {
         self.rim.reverse();

@@ -1,5 +1,4 @@
-//! How long the edges of a wall are to be: in proportion to the radius of the vessel they lie on, growing slowly away
-//! from what is thin.
+//! Target edge lengths of a wall: proportional to the vessel radius, with limited growth away from thin vessels.
 
 use super::SurfaceParams;
 use super::field::Field;
@@ -8,27 +7,27 @@ use anastomesh_mesh::geometry::{Point3, Section};
 use anastomesh_skeleton::FineFork;
 use std::collections::VecDeque;
 
-/// How much longer edges may become on a way, over its length: edges that share a vertex differ by a fifth.
+/// Maximum growth of the target edge length per unit of distance: edges that share a vertex differ by a fifth.
 pub(crate) const GROWTH: f64 = 0.25;
 
-/// Where edges are shorter than the radius asks for: at forks, from where they grow again, and are as long as elsewhere at
-/// ends, which other blocks have as well.
+/// Local refinement of edges at bifurcations. Edges grow from there and reach the usual length at the ends, which other
+/// blocks share.
 #[derive(Clone, Debug, Default)]
 pub struct Finer {
-    /// The forks.
+    /// The refined bifurcations.
     pub forks: Vec<FineFork>,
-    /// The ends.
+    /// The ends of the block.
     pub ends: Vec<Section>,
 }
 
 impl Finer {
-    /// Rounds of relaxation on top of the usual ones: each halves edges once.
+    /// Number of additional relaxation rounds. Each round halves edges once.
     pub(super) fn rounds(&self) -> u32 {
         let least = self.forks.iter().map(|fork| fork.factor).fold(1.0, f64::min);
         (1.0 / least).log2().ceil() as u32
     }
 
-    /// How many times as long as `size` edges at a place on the wall are.
+    /// Factor on the target edge length `size` at a point of the wall.
     pub(super) fn factor(&self, p: &Point3, size: f64) -> f64 {
         if self.forks.is_empty() {
             return 1.0;
@@ -39,7 +38,7 @@ impl Finer {
             if from_fork == 0.0 {
                 return fork.factor;
             }
-            // As quickly as edges grow elsewhere, and quicker where an end is near.
+            // Growth as elsewhere, or faster where an end is near.
             let share = from_fork / (from_fork + to_end);
             fork.factor + (GROWTH * from_fork / size).max((1.0 - fork.factor) * share)
         };
@@ -47,14 +46,14 @@ impl Finer {
     }
 }
 
-/// Distance of a place from the disc of an end.
+/// Distance of a point from the disc of an end.
 fn distance(end: &Section, p: &Point3) -> f64 {
     let height = end.height(p);
     let across = (p - end.origin - end.axis * height).norm();
     height.hypot((across - end.radius).max(0.0))
 }
 
-/// The edge length to aim at, at each vertex of a surface near the wall.
+/// Target edge length at each vertex of a surface near the wall.
 pub(super) fn wall_sizes(surface: &HalfEdges, field: &mut Field, params: &SurfaceParams, finer: &Finer) -> Vec<f64> {
     let mut sizes = graded(surface, field, params);
     if !finer.forks.is_empty() {
@@ -63,7 +62,7 @@ pub(super) fn wall_sizes(surface: &HalfEdges, field: &mut Field, params: &Surfac
     sizes
 }
 
-/// Those that the radius asks for.
+/// Target edge lengths from the radius alone.
 fn graded(surface: &HalfEdges, field: &mut Field, params: &SurfaceParams) -> Vec<f64> {
     if params.edge_at(field.largest_radius()) <= params.edge_at(0.0) {
         return vec![params.edge_at(0.0); surface.points.len()];
@@ -73,11 +72,11 @@ fn graded(surface: &HalfEdges, field: &mut Field, params: &SurfaceParams) -> Vec
     sizes
 }
 
-/// Lowers sizes until no two neighbours differ by more than [`GROWTH`] times their distance.
+/// Lowers sizes until neighbours differ by at most [`GROWTH`] times their distance.
 fn grade(surface: &HalfEdges, sizes: &mut [f64]) {
     let mut queue: VecDeque<u32> = (0..sizes.len() as u32).filter(|&v| surface.has_vertex(v)).collect();
     let mut queued = vec![true; sizes.len()];
-    // Sizes only fall, and to one of finitely many sums along ways: this ends.
+    // Terminates: sizes only fall, and only to finitely many sums along paths.
     while let Some(v) = queue.pop_front() {
         queued[v as usize] = false;
         let size = sizes[v as usize];

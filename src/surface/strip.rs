@@ -1,34 +1,34 @@
-//! The triangle strip between two loops (3.2.3, Fig. 6), by dynamic programming: of all strips the cheapest.
+//! Triangle strip of least cost between two loops (section 3.2.3, Fig. 6), by dynamic programming.
 //!
-//! Merging by angle is optimal for regular rings only; the cheapest strip is never worse and does not fold where a strip
+//! Merging by angle is optimal for regular rings only. The cheapest strip is never worse, and has no folds if a strip
 //! without folds exists.
 
-/// One triangle of a strip: a step along one loop, seen from a vertex of the other. Numbers are places in the loops.
+/// One triangle of a strip: a step along one loop and an apex on the other. Fields are positions in the loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
     /// A step along the lower loop.
     Low {
-        /// Where the step begins.
+        /// Start of the step.
         from: usize,
-        /// Where it ends.
+        /// End of the step.
         to: usize,
-        /// The vertex of the upper loop.
+        /// Vertex of the upper loop.
         apex: usize,
     },
     /// A step along the upper loop.
     High {
-        /// Where the step begins.
+        /// Start of the step.
         from: usize,
-        /// Where it ends.
+        /// End of the step.
         to: usize,
-        /// The vertex of the lower loop.
+        /// Vertex of the lower loop.
         apex: usize,
     },
 }
 
 impl Step {
-    /// The triangle, with what the loops hold at its corners. Both loops run counter-clockwise about an axis that points
-    /// from the lower to the upper one; the triangle looks away from it.
+    /// Returns the loops' values at the corners of the triangle. Both loops run counter-clockwise about an axis from
+    /// the lower to the upper loop. The triangle faces away from the axis.
     pub(crate) fn triangle<T: Copy>(self, low: &[T], high: &[T]) -> [T; 3] {
         match self {
             Self::Low { from, to, apex } => [low[from], low[to], high[apex]],
@@ -37,9 +37,9 @@ impl Step {
     }
 }
 
-/// The cheapest strip between loops of `low` and `high` vertices that joins lower vertex 0 to upper vertex `first`, with
-/// its cost, the sum of `cost` over its triangles. The shares of the two loops that lie behind never differ by more than
-/// `band`. `None` when there is no such strip.
+/// Returns the strip of least total `cost` and that cost. The loops have `low` and `high` vertices; lower vertex 0 is
+/// joined to upper vertex `first`. The traversed fractions of the loops differ by at most `band`. Returns `None` if no
+/// such strip exists.
 pub(crate) fn cheapest(
     [low, high]: [usize; 2],
     first: usize,
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_strip_is_the_cheapest_of_all() {
-        // Every strip between loops of 3 and 4 vertices, as the set of steps along the lower loop among all seven.
+        // Every strip between loops of 3 and 4 vertices, as the set of lower-loop steps among all seven.
         let cost = |s: Step| match s {
             Step::Low { to, apex, .. } => ((7 * to + 3 * apex) % 11) as f64,
             Step::High { to, apex, .. } => ((5 * to + 8 * apex) % 13) as f64,

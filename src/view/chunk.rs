@@ -1,4 +1,4 @@
-//! Pieces of a wall that lie near each other, packed together: what is not on the screen is not drawn.
+//! Chunks of nearby wall pieces, so that off-screen parts are not drawn.
 
 use super::pack::{Grid, Pack};
 use super::wall::{Group, Piece, Wall};
@@ -6,12 +6,12 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::hilbert::hilbert_key;
 use serde::Serialize;
 
-/// Points of a chunk, about.
+/// Approximate number of points per chunk.
 const POINTS: usize = 40_000;
-/// Steps of a chunk's grid.
+/// Grid resolution of a chunk, in steps.
 const STEPS: u32 = 65_535;
 
-/// What a page has to know of a chunk beside its arrays.
+/// Metadata of a chunk for the page.
 #[derive(Debug, Serialize)]
 struct Head {
     grid: Grid,
@@ -19,7 +19,7 @@ struct Head {
     groups: usize,
 }
 
-/// Packs a wall; what the page has to know of it.
+/// Packs a wall and returns the metadata for the page.
 pub fn pack_wall(wall: Wall, pack: &mut Pack) -> serde_json::Value {
     let Wall { mut pieces, exact, faces } = wall;
     let radii = pieces.iter().flat_map(|p| &p.groups).flat_map(|g| &g.radii).filter(|r| **r > 0.0);
@@ -53,7 +53,7 @@ struct RadiusScale {
 }
 
 impl RadiusScale {
-    /// 1 to 255 in equal ratios, 0 for what is not known.
+    /// Logarithmic code of a radius, 1 to 255; 0 if unknown.
     fn step(&self, radius: f64) -> i32 {
         if radius <= 0.0 || self.low > self.high {
             return 0;
@@ -64,7 +64,7 @@ impl RadiusScale {
 }
 
 fn pack_chunk(number: usize, mut pieces: Vec<Piece>, scale: &RadiusScale, pack: &mut Pack) -> Head {
-    // The page draws the thick ones as faces and the others as lines: two ranges.
+    // Sorted by radius, because the page draws thick pieces as faces and thin ones as lines.
     pieces.sort_by(|a, b| b.radius.total_cmp(&a.radius).then(a.block.cmp(&b.block)));
     let groups: Vec<(&Piece, &Group)> = pieces.iter().flat_map(|p| p.groups.iter().map(move |g| (p, g))).collect();
     let points = || groups.iter().flat_map(|(_, g)| &g.points);
@@ -93,7 +93,7 @@ fn pack_chunk(number: usize, mut pieces: Vec<Piece>, scale: &RadiusScale, pack: 
     add("groupFaces", &of_groups(&|(_, g)| g.triangles.len() as i32), 1);
     let of_pieces = |of: &dyn Fn(&Piece) -> i32| -> Vec<i32> { pieces.iter().map(of).collect() };
     add("pieceGroups", &of_pieces(&|p| p.groups.len() as i32), 1);
-    // In steps of the grid; what has no radius is always drawn.
+    // In steps of the grid; pieces without a radius are always drawn.
     add("pieceRadius", &of_pieces(&|p| (p.radius / grid.step * 16.0).min(f64::from(i32::MAX / 2)) as i32), 1);
     add("pieceLines", &of_pieces(&|p| p.lines.len() as i32), 1);
     add("line", &grid.steps(ends.iter()), 6);

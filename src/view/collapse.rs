@@ -1,4 +1,4 @@
-//! A surface made coarser by letting edges go, the one that is missed least first.
+//! Surface simplification by edge collapse, in order of least error.
 
 use super::quadric::{Quadric, relative};
 use anastomesh_mesh::geometry::{Point3, Vec3};
@@ -6,34 +6,34 @@ use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// With more triangles than so many times what is to be left, edges go without being compared.
+/// Above this multiple of the target triangle count, edges are collapsed without comparison.
 const MANY: usize = 6;
 
-/// A surface in the making.
+/// Surface during simplification.
 pub struct Collapse {
     points: Vec<Point3>,
-    /// What a point knows of the planes about it.
+    /// Error quadric of each point.
     quadrics: Vec<Quadric>,
-    /// Points that stay where they are.
+    /// Points that must not move.
     fixed: Vec<bool>,
-    /// Changes with each move of a point: candidates of before are stale.
+    /// Version of each point: a move makes older candidates stale.
     moves: Vec<u32>,
     triangles: Vec<Option<[u32; 3]>>,
-    /// Triangles of each point, gone ones among them.
+    /// Triangles of each point, including removed ones.
     around: Vec<Vec<u32>>,
     left: usize,
     centre: Point3,
 }
 
-/// An edge that may go: its cost (bits of a number that is not negative), its ends and their moves.
+/// Collapse candidate: cost (bits of a non-negative number), ends, and their versions.
 type Candidate = Reverse<(u64, [u32; 2], [u32; 2])>;
 
 impl Collapse {
-    /// Of a surface whose `fixed` points are to stay.
+    /// Creates the simplification of a surface with `fixed` points.
     pub fn new(points: Vec<Point3>, triangles: Vec<[u32; 3]>, fixed: Vec<bool>) -> Self {
         let centre = points.first().copied().unwrap_or_else(Point3::origin);
         let mut quadrics = vec![Quadric::default(); points.len()];
-        // One after the other a vector grows many times.
+        // Preallocated, as vectors would otherwise grow one by one.
         let mut valences = vec![0; points.len()];
         triangles.as_flattened().iter().for_each(|&v| valences[v as usize] += 1);
         let mut around: Vec<Vec<u32>> = valences.into_iter().map(Vec::with_capacity).collect();
@@ -63,10 +63,10 @@ impl Collapse {
         }
     }
 
-    /// Lets edges go until so many triangles are left, or none may go. The points that are left, and the triangles.
+    /// Collapses edges down to the target triangle count or until none is allowed. Returns points and triangles.
     pub fn run(mut self, target: usize) -> (Vec<Point3>, Vec<[u32; 3]>) {
         self.thin(MANY * target);
-        // Edges have two sides, which run opposite ways; those with one are of rings, and stay.
+        // Edges with two opposite half-edges; those with one belong to rings and stay.
         let edges = self.triangles.iter().flatten().flat_map(|t| sides(*t)).filter(|[a, b]| a < b);
         let mut heap: BinaryHeap<Candidate> = edges.filter_map(|edge| self.candidate(edge)).collect();
         let mut near = [Vec::new(), Vec::new()];
@@ -87,8 +87,7 @@ impl Collapse {
         self.done()
     }
 
-    /// Of far more triangles than are to be left most go without a look at which edges are missed least: at each point one edge
-    /// in a sweep.
+    /// Reduces very large surfaces without comparing errors: one edge per point in a sweep.
     fn thin(&mut self, target: usize) {
         let mut near = [Vec::new(), Vec::new()];
         let mut before = usize::MAX;
@@ -116,7 +115,7 @@ impl Collapse {
         }
     }
 
-    /// An edge as it is now; none if it is to stay.
+    /// Candidate of an edge; `None` if the edge is fixed.
     fn candidate(&self, edge: [u32; 2]) -> Option<Candidate> {
         if edge.iter().all(|&v| self.fixed[v as usize]) {
             return None;
@@ -133,11 +132,11 @@ impl Collapse {
 
     fn cost(&self, edge: [u32; 2], place: &Point3) -> f64 {
         let [a, b] = edge.map(|v| self.points[v as usize]);
-        // Where nothing is lost, short edges go first.
+        // Among lossless collapses, short edges go first.
         Self::sum(edge, &self.quadrics).at(&relative(place, &self.centre)) + 1e-6 * (b - a).norm_squared().powi(2)
     }
 
-    /// Where the point is to be that an edge becomes.
+    /// Position of the point that replaces an edge.
     fn place(&self, edge: [u32; 2]) -> Point3 {
         let [a, b] = edge.map(|v| self.points[v as usize]);
         match edge.map(|v| self.fixed[v as usize]) {
@@ -146,13 +145,13 @@ impl Collapse {
             _ => {
                 let middle = Point3::from((a.coords + b.coords) * 0.5);
                 let least = Self::sum(edge, &self.quadrics).least().map(|v| self.centre + v);
-                // What is far off is no place for it.
+                // Distant minima are rejected.
                 least.filter(|p| (p - middle).norm() <= 2.0 * (b - a).norm()).unwrap_or(middle)
             }
         }
     }
 
-    /// Whether no triangle turns over, and the surface stays one. `near`: room for the neighbours of both ends.
+    /// True if a collapse inverts no triangle and keeps the topology. `near` is a buffer for the ends' neighbours.
     fn may_go(&self, [a, b]: [u32; 2], place: &Point3, near: &mut [Vec<u32>; 2]) -> bool {
         let [of_a, of_b] = near;
         self.neighbours(a, of_a);
@@ -171,7 +170,7 @@ impl Collapse {
         })
     }
 
-    /// Points beside a point: few, so that they are looked through one by one.
+    /// Neighbours of a point; few, so linear search suffices.
     fn neighbours(&self, v: u32, near: &mut Vec<u32>) {
         near.clear();
         for w in self.alive(v).flat_map(|(_, t)| t).filter(|&w| w != v) {
@@ -185,7 +184,7 @@ impl Collapse {
         self.around[v as usize].iter().filter_map(|&t| Some((t, self.triangles[t as usize]?)))
     }
 
-    /// Makes an edge a point.
+    /// Collapses an edge to a point.
     fn merge(&mut self, [a, b]: [u32; 2], place: Point3) {
         let of_b: Vec<(u32, [u32; 3])> = self.alive(b).collect();
         for (t, corners) in of_b {
@@ -237,7 +236,7 @@ mod tests {
     use crate::view::rings::rings;
     use std::f64::consts::TAU;
 
-    /// A tube of radius 1 along z, open at both ends.
+    /// Tube of radius 1 along z, open at both ends.
     fn tube(sides: u32, steps: u32) -> (Vec<Point3>, Vec<[u32; 3]>) {
         let at = |i: u32, j: u32| j * sides + i % sides;
         let point = |n: u32| {
@@ -258,7 +257,7 @@ mod tests {
         let before = triangles.len();
         let (points, triangles) = Collapse::new(points, triangles, ends).run(60);
         assert!(triangles.len() <= 60 && triangles.len() < before / 8, "{}", triangles.len());
-        // Both rings are whole, and all of it is near the cylinder.
+        // Both rings are intact, and all points are near the cylinder.
         let rings = rings(&triangles);
         assert_eq!(rings.iter().map(Vec::len).collect::<Vec<_>>(), [12, 12]);
         let off = |p: &Point3| (p.x.hypot(p.y) - 1.0).abs();

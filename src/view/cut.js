@@ -1,4 +1,4 @@
-// Tetrahedra that a plane lays open: those with corners on both sides of it.
+// Tetrahedra cut by a plane: those with corners on both sides.
 
 class Tets {
   constructor(gl, array) {
@@ -13,7 +13,7 @@ class Tets {
     this.edges = gl.createVertexArray();
   }
 
-  /** Finds those that a plane cuts. */
+  /** Finds the tetrahedra cut by a plane, and fills the buffers with their faces. */
   cut([x, y, z, w], colourOf) {
     const { points, tets, behind } = this;
     for (let i = 0; i < behind.length; i++) behind[i] = w - x * points[3 * i] - y * points[3 * i + 1] - z * points[3 * i + 2];
@@ -22,7 +22,7 @@ class Tets {
       const n = (behind[tets[t]] >= 0) + (behind[tets[t + 1]] >= 0) + (behind[tets[t + 2]] >= 0) + (behind[tets[t + 3]] >= 0);
       if (n > 0 && n < 4) found.push(t);
     }
-    // All of their faces: those between two of them hide behind the others.
+    // All faces are drawn; the depth test hides faces between two cut tetrahedra.
     const SIDES = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1];
     const place = new Float32Array(36 * found.length), normal = new Int8Array(48 * found.length);
     const colour = new Uint8Array(48 * found.length), lines = new Uint32Array(24 * found.length);
@@ -78,7 +78,7 @@ class Tets {
   }
 }
 
-/** 3 r/R of a tetrahedron. */
+/** Radius ratio 3 r/R of a tetrahedron. */
 function radiusRatio([a, b, c, d]) {
   const [u, v, w] = [b, c, d].map(p => add(p, a, -1));
   const [vw, wu, uv] = [cross(v, w), cross(w, u), cross(u, v)];

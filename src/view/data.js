@@ -1,8 +1,8 @@
-// What the page holds: facts as JSON, and packed arrays of numbers.
+// Data of the page: facts as JSON, and packed arrays of integers.
 
 const facts = JSON.parse(document.getElementById("facts").textContent);
 
-/** The bytes of the page's data, unpacked. */
+/** Decompresses the data of the page. */
 async function unpacked() {
   const element = document.getElementById("data");
   const address = "data:application/octet-stream;base64," + element.textContent;
@@ -12,7 +12,7 @@ async function unpacked() {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** A function that gives the array of a name; empty where there is none. */
+/** Returns a function that decodes the array of a name; unknown names give an empty array. */
 function arrays(bytes) {
   const entries = new Map(facts.arrays.map(entry => [entry.name, entry]));
   return name => {

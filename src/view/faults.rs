@@ -1,4 +1,4 @@
-//! Places to fly to: what a check found, blocks that failed, vessels that overlap.
+//! Faults as navigation targets: failed checks, missing blocks, overlapping vessels.
 
 use super::wall::{Group, Wall};
 use crate::block::{BlockDump, BlockInput};
@@ -8,12 +8,12 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_skeleton::{Overlap, Skeleton};
 use serde::Serialize;
 
-/// Faults of a kind that are listed, at most.
+/// Maximum number of listed faults of a kind.
 const LISTED: usize = 200;
-/// Numbers of points that an offender is named by, at most.
+/// Maximum number of indices in an offender's description.
 const NAMED: usize = 3;
 
-/// What the numbers of an offender are.
+/// Kind of an offender's indices.
 fn ids_of(kind: OffenderKind) -> &'static str {
     match kind {
         OffenderKind::Point | OffenderKind::Edge | OffenderKind::Face | OffenderKind::FacePair => "points",
@@ -23,18 +23,18 @@ fn ids_of(kind: OffenderKind) -> &'static str {
     }
 }
 
-/// A place where something is wrong.
+/// Position of a defect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fault {
-    /// What is wrong, for people.
+    /// Readable description.
     pub what: String,
     pub place: [f64; 3],
-    /// A length of what is to be seen about it; 0 where none is known.
+    /// Size of the relevant region; 0 if unknown.
     pub extent: f64,
 }
 
 impl Fault {
-    /// The offenders of a check that have a place.
+    /// Offenders of a check that have a position.
     pub fn of_check(check: &CheckReport) -> Vec<Self> {
         let of_line = |line: &LineResult| {
             let statement = line.line.statement();
@@ -49,7 +49,7 @@ impl Fault {
         check.failed().flat_map(of_line).collect()
     }
 
-    /// Pairs of vessels that overlap, the deepest first.
+    /// Overlapping pairs of vessels, deepest first.
     pub fn of_overlaps(network: &Skeleton) -> Vec<Self> {
         let mut pairs = network.overlaps(&network.adjacency()).pairs;
         pairs.sort_by(|a, b| (a.distance / a.radii).total_cmp(&(b.distance / b.radii)));
@@ -65,7 +65,7 @@ impl Fault {
         pairs.iter().take(LISTED).map(fault).collect()
     }
 
-    /// Where blocks are missing: their neighbours end in patches that are called so.
+    /// Missing blocks, recognized by the patch names of their neighbours.
     pub fn of_missing(wall: &Wall, patches: &[Patch]) -> Vec<Self> {
         let name_of = |group: &Group| patches.iter().find(|patch| patch.id == group.patch).map(|patch| &*patch.name);
         let fault = |group: &Group| {

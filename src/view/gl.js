@@ -1,4 +1,4 @@
-// WebGL: one program for faces and lines, one for the cones of networks; each can draw colours or names.
+// WebGL programs: one for faces and lines, one for cones of networks; both draw colours or names.
 
 const LIGHT = `
 uniform vec3 ground; uniform float fade, reach;
@@ -87,7 +87,7 @@ function buffer(gl, values, target = gl.ARRAY_BUFFER) {
   return made;
 }
 
-/** A picture of names and depths beside the one that is seen, of one pixel. */
+/** Frame buffer of one pixel for names and depths, used for picking. */
 function nameTarget(gl) {
   const frame = gl.createFramebuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
@@ -106,7 +106,7 @@ function nameTarget(gl) {
   return frame;
 }
 
-// Directions and places, as arrays of three.
+// Vectors as arrays of three numbers.
 const add = (a, b, t = 1) => [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];

@@ -1,12 +1,12 @@
-// The page: camera, controls, questions.
+// Page: camera, controls, queries.
 
 const $ = id => document.getElementById(id);
 
-/** Where the viewer is: straight lines of sight, all parallel. */
+/** Camera with parallel projection. */
 class View {
   constructor(box) {
     this.box = box;
-    // Across the shortest side, the longest one lying.
+    // Looks along the shortest side of the box, with the longest side horizontal.
     const side = add(box.high, box.low, -1), order = [0, 1, 2].sort((a, b) => side[a] - side[b]);
     const axis = k => [0, 1, 2].map(i => Number(i === k));
     this.towards = axis(order[0]);
@@ -15,7 +15,7 @@ class View {
     this.right = cross(this.up, this.towards);
     this.centre = box.centre;
     this.zoom = 1;
-    // How much coarser all is drawn while something moves, so that it moves smoothly.
+    // Coarsening factor during motion; 1 is full detail.
     this.haste = 1;
   }
 
@@ -56,7 +56,7 @@ class View {
     this.centre = add(add(this.centre, this.right, -dx / this.scale), this.up, dy / this.scale);
   }
 
-  /** The place in a pixel, counted from the middle, at a depth of 0 to 1. */
+  /** Position of a pixel relative to the centre, at a depth between 0 and 1. */
   place(dx, dy, depth) {
     const reach = 1.05 * this.box.radius + Math.hypot(...add(this.centre, this.box.centre, -1));
     const across = add(add(this.centre, this.right, dx / this.scale), this.up, -dy / this.scale);
@@ -83,16 +83,16 @@ class Viewer {
     this.plane = [0, 0, 0, 1];
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
-    // What has no names of its own has none, instead of a fraction.
+    // Default name 0 for geometry without names; the attribute must be an integer.
     gl.vertexAttribI4ui(3, 0, 0, 0, 0);
-    // What is large begins to move coarse, and gets finer as far as there is time.
+    // Large walls start coarse during motion, and get finer if the frame time permits.
     this.haste = Math.min(Math.max((this.wall ? this.wall.triangles : 0) / 60000, 1), 64);
     this.fill();
     this.listen();
     this.colour();
   }
 
-  /** Draws soon, and again in full when nothing moves any more. */
+  /** Requests a coarse frame, and a full one 200 ms after the last motion. */
   move() {
     this.moving = true;
     clearTimeout(this.rest);
@@ -100,7 +100,7 @@ class Viewer {
     this.redraw();
   }
 
-  /** Draws soon. */
+  /** Requests a frame. */
   redraw() {
     this.pending ||= requestAnimationFrame(() => { this.pending = 0; this.draw(); });
   }
@@ -119,13 +119,13 @@ class Viewer {
     this.view.haste = this.moving ? this.haste : 1;
     this.scene(0, this.view.matrix);
     if (!this.moving) return;
-    // Waits until it is drawn, to know how long that takes.
+    // Reading a pixel waits for the frame, so that its time can be measured.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     const took = performance.now() - start;
     this.haste = Math.min(Math.max(this.haste * (took > 40 ? 1.6 : took < 15 ? 0.85 : 1), 1), 64);
   }
 
-  /** Draws all; with names instead of colours to ask what is there. */
+  /** Draws the scene with colours, or with names for picking. */
   scene(names, camera) {
     const { gl, view } = this;
     const set = one => {
@@ -149,11 +149,11 @@ class Viewer {
     if (this.tets && this.plane[3] !== 1) this.tets.draw(at);
   }
 
-  /** What is in a pixel of the page: its group or edge, and the place; null where there is nothing. */
+  /** Returns the group or edge at a pixel and the position; `null` for the background. */
   pick(x, y) {
     const { gl } = this, canvas = $("canvas"), ratio = canvas.width / canvas.clientWidth;
     const [px, py] = [x * ratio, y * ratio];
-    // The camera turned so that this pixel fills the picture.
+    // Scales and shifts the camera so that this pixel fills the frame.
     const camera = this.view.matrix, [w, h] = [canvas.width, canvas.height];
     for (let k = 0; k < 4; k++) {
       const own = camera[4 * k + 3];
@@ -180,7 +180,7 @@ class Viewer {
     return { id, place: this.view.place(px - w / 2, py - h / 2, depth) };
   }
 
-  /** The same in words. */
+  /** Describes the result of `pick`. */
   told(found) {
     const lines = [];
     if (this.wall && found.id > 0) {
@@ -196,14 +196,14 @@ class Viewer {
     return lines.join("\n");
   }
 
-  /** Where along an edge a place is. */
+  /** Edge parameter of the point nearest to a position, with the radius there. */
   along(edge, place) {
     const { network } = this, [a, b] = [0, 1].map(k => network.node(network.edges[2 * edge + k]));
     const d = add(b, a, -1), t = Math.min(Math.max(dot(add(place, a, -1), d) / (dot(d, d) || 1), 0), 1);
     return { edge, t, radius: network.radii[2 * edge] + t * (network.radii[2 * edge + 1] - network.radii[2 * edge]) };
   }
 
-  /** Goes where something is wrong. */
+  /** Centres the view on a fault and describes it. */
   fly(fault, item) {
     document.querySelectorAll("li.at").forEach(li => li.classList.remove("at"));
     item?.classList.add("at");
@@ -217,7 +217,7 @@ class Viewer {
     this.redraw();
   }
 
-  /** `#at=x,y,z` at the end of the address is a place to begin with; what is there is said. */
+  /** Centres the view on `#at=x,y,z` of the address, and describes the object there. */
   goWhereTheAddressSays() {
     const place = (location.hash.match(/^#at=([-+.,\deE]+)$/) || ["", ""])[1].split(",").map(Number);
     if (place.length !== 3 || !place.every(Number.isFinite)) return;
@@ -232,7 +232,7 @@ class Viewer {
     $("place").disabled = axis === "";
     if (axis === "") this.plane = [0, 0, 0, 1];
     else {
-      // What is taken away is on the viewer's side, as he stood when he asked for it.
+      // Removes the side that faced the viewer when the axis was selected.
       const normal = axis === "view" ? view.towards : ["x", "y", "z"].map(a => this.side * Number(a === axis));
       const half = [0, 1, 2].reduce((sum, k) => sum + Math.abs(normal[k]) * (view.box.high[k] - view.box.low[k]) / 2, 0);
       const place = ($("place").value / 500 - 1) * (axis === "view" ? 1 : this.side);
@@ -326,7 +326,7 @@ class Viewer {
       e.preventDefault();
       const ratio = canvas.width / canvas.clientWidth;
       const [dx, dy] = [e.offsetX * ratio - canvas.width / 2, e.offsetY * ratio - canvas.height / 2];
-      // What is under the pointer stays there.
+      // Zooms about the pointer.
       view.moveBy(-dx, -dy);
       view.zoom = Math.min(Math.max(view.zoom * Math.exp(-e.deltaY / 600), 0.2), 1e5);
       view.moveBy(dx, dy);
@@ -343,7 +343,7 @@ class Viewer {
     $("colour").onchange = () => this.colour();
     $("axis").onchange = () => {
       this.side = view.towards["xyz".indexOf($("axis").value)] < 0 ? -1 : 1;
-      // Where tetrahedra are to be seen.
+      // Starts at the plane whose tetrahedra the page contains.
       const held = facts.tets && facts.tets.shown < facts.tets.all && facts.tets.plane;
       if (held && $("axis").value === "xyz"[held[0]]) {
         const [k, at] = held, { low, high } = view.box;
@@ -369,7 +369,7 @@ class Viewer {
     new ResizeObserver(() => this.redraw()).observe(canvas);
   }
 
-  /** Says what is at a pixel. */
+  /** Describes the object at a pixel. */
   ask(x, y) {
     const found = this.pick(x, y);
     $("ring").hidden = true;

@@ -1,9 +1,8 @@
-//! Floor 5: a mesh or a network as a page that turns it before one's eyes, in one file that needs nothing else.
+//! Interactive 3D viewer for meshes and networks, as one self-contained HTML page.
 //!
-//! What is shown is packed small: places in steps of a 65,536th of their chunk, numbers as differences, all of it compressed.
-//! A wall of very many faces is made coarser block by block, each vessel to as many sides as its size calls for, and where a
-//! vessel is thinner than a pixel the page draws a line. The page itself is `page.html` and the scripts beside it, by hand,
-//! without a library.
+//! Data is packed compactly: positions in 1/65,536 of their chunk and numbers as differences, all compressed. Large
+//! walls are simplified block by block; the number of a vessel's sides depends on its size. Vessels thinner than a
+//! pixel are drawn as lines. The page consists of `page.html` and the scripts beside it, without libraries.
 
 mod chunk;
 mod collapse;

@@ -1,13 +1,13 @@
-//! A network: to be drawn, or to tell what a place of its mesh belongs to.
+//! Networks in the viewer: displayed, or used to look up the vessel of a mesh point.
 
 use super::pack::{Grid, Pack};
 use crate::flow::{Orders, solve};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// Steps of the grid of its nodes, and of its radii.
+/// Grid resolution of node positions and of radii, in steps.
 const STEPS: u32 = 1 << 20;
 
-/// Adds a network whose inlets these are; what the page has to know of it.
+/// Packs a network with its inlets and returns the metadata for the page.
 pub fn add_network(network: &Skeleton, inlets: &[NodeId], pack: &mut Pack) -> serde_json::Value {
     let grid = Grid::of(network.nodes.iter().map(|n| &n.position), STEPS);
     pack.add("node", &grid.steps(network.nodes.iter().map(|n| &n.position)), 3);

@@ -1,4 +1,4 @@
-//! Arrays of numbers, small: differences of neighbours, a plane for each of their bytes, compressed.
+//! Compact integer arrays: differences of neighbours, split into byte planes and compressed.
 
 use anastomesh_mesh::geometry::Point3;
 use flate2::Compression;
@@ -6,15 +6,15 @@ use flate2::write::ZlibEncoder;
 use serde::Serialize;
 use std::io::{self, Write};
 
-/// Where an array is among the bytes, and how it is read.
+/// Position and format of an array.
 #[derive(Clone, Debug, Serialize)]
 struct Entry {
     name: String,
-    /// How many numbers.
+    /// Number of values.
     count: usize,
-    /// Each number is the difference to the one so many before it.
+    /// Each value is stored as the difference from the value `stride` positions before.
     stride: usize,
-    /// Bytes of a number.
+    /// Bytes per value.
     planes: usize,
     offset: usize,
 }
@@ -27,9 +27,9 @@ pub struct Pack {
 }
 
 impl Pack {
-    /// Adds whole numbers, of which those `stride` apart are like each other.
+    /// Adds integers; values at a distance of `stride` are similar.
     pub fn add(&mut self, name: impl Into<String>, values: &[i32], stride: usize) {
-        // Small numbers of either sign become small ones without.
+        // Zigzag coding: small signed numbers become small unsigned ones.
         let coded = |i: usize| {
             let before = i.checked_sub(stride).map_or(0, |j| values[j]);
             let difference = values[i].wrapping_sub(before);
@@ -44,32 +44,32 @@ impl Pack {
         }
     }
 
-    /// The compressed bytes.
+    /// Returns the compressed bytes.
     ///
     /// # Errors
-    /// When there is no memory for them.
+    /// Memory is insufficient.
     pub fn compressed(&self) -> io::Result<Vec<u8>> {
         let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(6));
         encoder.write_all(&self.bytes)?;
         encoder.finish()
     }
 
-    /// How the arrays are read, as JSON.
+    /// Array descriptions as JSON.
     pub fn entries(&self) -> serde_json::Value {
         serde_json::json!(self.entries)
     }
 }
 
-/// A box in which places are counted in steps.
+/// Quantization grid for positions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Grid {
     pub origin: [f64; 3],
-    /// Length of a step.
+    /// Step length.
     pub step: f64,
 }
 
 impl Grid {
-    /// That of some points, with so many steps along its longest side.
+    /// Grid of some points, with this number of steps along the longest side.
     pub fn of<'a>(points: impl Iterator<Item = &'a Point3>, steps: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for p in points {
@@ -82,7 +82,7 @@ impl Grid {
         Self { origin, step: if side > 0.0 { side / f64::from(steps) } else { 1.0 } }
     }
 
-    /// The steps of places, three numbers for each.
+    /// Quantized positions, three numbers each.
     pub fn steps<'a>(&self, points: impl Iterator<Item = &'a Point3>) -> Vec<i32> {
         points.flat_map(|p| [0, 1, 2].map(|k| ((p[k] - self.origin[k]) / self.step).round() as i32)).collect()
     }
@@ -92,7 +92,7 @@ impl Grid {
 mod tests {
     use super::*;
 
-    /// As the page reads them.
+    /// Decodes an array as the page does.
     fn read(pack: &Pack, entry: &Entry) -> Vec<i32> {
         let mut values: Vec<i32> = Vec::new();
         for i in 0..entry.count {

@@ -1,4 +1,4 @@
-//! The page put together.
+//! Assembly of the HTML page.
 
 use super::chunk::pack_wall;
 use super::faults::Fault;
@@ -12,7 +12,7 @@ use std::io;
 
 const FRAME: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
-/// In the order in which they need each other.
+/// Scripts in the order of their dependencies.
 const SCRIPTS: [&str; 5] = [
     include_str!("data.js"),
     include_str!("gl.js"),
@@ -21,14 +21,14 @@ const SCRIPTS: [&str; 5] = [
     include_str!("main.js"),
 ];
 
-/// A page in the making.
+/// Page during assembly.
 pub struct Page {
     pub pack: Pack,
     facts: Map<String, Value>,
 }
 
 impl Page {
-    /// Of a file.
+    /// Creates a page with this title.
     pub fn new(title: &str) -> Self {
         let mut facts = Map::new();
         facts.insert("title".into(), json!(title));
@@ -36,7 +36,7 @@ impl Page {
         Self { pack: Pack::default(), facts }
     }
 
-    /// Adds what the page is to know under a name.
+    /// Adds metadata under a name.
     pub fn know(&mut self, name: &str, fact: Value) {
         self.facts.insert(name.into(), fact);
     }
@@ -49,19 +49,19 @@ impl Page {
         self.know("patches", patches.iter().map(patch).collect());
     }
 
-    /// Adds places to fly to.
+    /// Adds faults that the viewer can navigate to.
     pub fn add_faults(&mut self, faults: &[Fault]) {
         self.know("faults", json!(faults));
     }
 
-    /// The file.
+    /// Returns the HTML document.
     ///
     /// # Errors
-    /// When there is no memory for it.
+    /// Memory is insufficient.
     pub fn html(mut self) -> io::Result<String> {
         let entries = self.pack.entries();
         self.know("arrays", entries);
-        // No text of the input can end the element that it stands in.
+        // Escaped, so that no input text can close its element.
         let facts = Value::Object(self.facts).to_string().replace('<', "\\u003c");
         let data = STANDARD.encode(self.pack.compressed()?);
         let parts = [("/*style*/", STYLE.to_owned()), ("/*facts*/", facts), ("/*data*/", data)];

@@ -1,10 +1,10 @@
-//! Sums of squared distances from planes (Garland and Heckbert 1997), which say what a surface loses when an edge goes.
+//! Quadric error metric (Garland and Heckbert 1997): sums of squared distances from planes.
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use nalgebra::Matrix3;
 use std::ops::AddAssign;
 
-/// The sum of squared distances from some planes, each by its weight: vᵀAv + 2bᵀv + c about a centre.
+/// Weighted sum of squared distances from planes: vᵀAv + 2bᵀv + c relative to a centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quadric {
     a: Matrix3<f64>,
@@ -13,18 +13,18 @@ pub struct Quadric {
 }
 
 impl Quadric {
-    /// Of the plane through a point; the normal has length 1. Points are relative to some centre nearby.
+    /// Quadric of a plane with unit normal through a point. Points are relative to a nearby centre.
     pub fn plane(normal: &Vec3, point: &Vec3, weight: f64) -> Self {
         let d = -normal.dot(point);
         Self { a: weight * normal * normal.transpose(), b: weight * d * normal, c: weight * d * d }
     }
 
-    /// Its value at a place.
+    /// Value at a point.
     pub fn at(&self, v: &Vec3) -> f64 {
         (v.dot(&(self.a * v)) + 2.0 * self.b.dot(v) + self.c).max(0.0)
     }
 
-    /// Where it is least; none where that is a line or a plane, or all but.
+    /// Minimizer; `None` if it is not unique or ill-conditioned.
     pub fn least(&self) -> Option<Vec3> {
         let scale = self.a.trace() / 3.0;
         let sound = self.a.determinant().abs() > 1e-4 * scale.powi(3);
@@ -40,7 +40,7 @@ impl AddAssign for Quadric {
     }
 }
 
-/// A place relative to another.
+/// Point relative to a centre.
 pub fn relative(point: &Point3, centre: &Point3) -> Vec3 {
     point - centre
 }

@@ -1,11 +1,10 @@
-//! Where the wall of a block ends: rings that it shares with its neighbours.
+//! Rings: boundary loops of a block's wall, shared with its neighbours.
 //!
-//! Both blocks at a ring keep the same points of it, though neither knows the other: the choice depends on the ring alone.
+//! Both blocks at a ring keep identical points of it, because the selection depends on the ring alone.
 
 use rustc_hash::FxHashMap;
 
-/// The rings of a surface whose triangles run counter-clockwise: each as its points in order. Where two rings touch in a
-/// point they may be one.
+/// Rings of a surface with counter-clockwise triangles, as point sequences. Rings that touch in a point may be merged.
 pub fn rings(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
     let edges = open_sides(triangles);
     let mut next: FxHashMap<u32, u32> = FxHashMap::default();
@@ -27,9 +26,9 @@ pub fn rings(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
     rings
 }
 
-/// Sides of triangles that no other triangle has the other way round, ascending.
+/// Half-edges without an opposite one, in ascending order.
 fn open_sides(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-    // By their ends whichever way they run; of each, how often it runs upwards more than downwards.
+    // Edges with their orientation balance: upward minus downward half-edges.
     let mut sides: Vec<([u32; 2], i8)> = Vec::with_capacity(3 * triangles.len());
     for &[a, b, c] in triangles {
         sides.extend([[a, b], [b, c], [c, a]].map(|[a, b]| if a < b { ([a, b], 1) } else { ([b, a], -1) }));
@@ -48,8 +47,8 @@ fn open_sides(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     open
 }
 
-/// Which of a ring's points are kept, and which of these each point becomes: `keep` of them, evenly, counted from the point
-/// of the lowest number in the whole towards its neighbour of the lower number.
+/// Selects `keep` evenly spaced points of a ring and maps each ring point to a selected one. Counting starts at the
+/// point with the lowest global number, towards its lower-numbered neighbour.
 pub fn thinned(ring: &[u32], keep: usize, number: impl Fn(u32) -> u32) -> Vec<(u32, u32)> {
     let count = ring.len();
     if keep >= count {
@@ -60,7 +59,7 @@ pub fn thinned(ring: &[u32], keep: usize, number: impl Fn(u32) -> u32) -> Vec<(u
     let at = |i: usize| if forwards { ring[(first + i) % count] } else { ring[(first + 2 * count - i) % count] };
     let kept = |i: usize| i * count / keep;
     let way = |a: usize, b: usize| a.abs_diff(b).min(count - a.abs_diff(b));
-    // The point that stands for the i-th one is the nearest that is kept.
+    // Each point is mapped to the nearest selected one.
     let stands = |i: usize| (0..keep).map(kept).min_by_key(|&place| way(i, place)).unwrap_or(0);
     (0..count).map(|i| (at(i), at(stands(i)))).collect()
 }

@@ -1,4 +1,4 @@
-// What is shown: chunks of a wall, or the cones of a network, and their colours.
+// Scene: chunks of a wall or cones of a network, with their colours.
 
 const WALL = 1;
 const PALETTE = { wall: [206, 122, 110], inlet: [38, 101, 178], outlet: [236, 180, 64], inside: [238, 224, 198] };
@@ -32,7 +32,7 @@ function ofPatch(id) {
   return OTHERS[Math.abs(id) % OTHERS.length];
 }
 
-/** A wall: chunks with their buffers, and what each group of faces is. */
+/** Wall as chunks with vertex buffers; each group of faces has a block and a patch. */
 class Walls {
   constructor(gl, array) {
     this.gl = gl;
@@ -52,7 +52,7 @@ class Walls {
       this.groups.patch.push(kinds[g]);
       names.fill(first + g + 1, v, v += points[g]);
     }
-    // Pieces from the widest to the thinnest: faces and lines up to each.
+    // Pieces from the widest to the thinnest, with cumulative counts of faces and lines.
     const pieces = get("pieceRadius"), ends = { faces: [0], lines: [0] };
     const ofPieces = get("pieceGroups"), linesOf = get("pieceLines");
     const lineNames = [];
@@ -87,7 +87,7 @@ class Walls {
     return chunk;
   }
 
-  /** Colours all by what is asked for. */
+  /** Colours the wall by patch, block, quality, radius or order. */
   colour(what) {
     const gl = this.gl;
     const most = facts.network ? facts.network.orders : 1;
@@ -114,7 +114,7 @@ class Walls {
       const ofVertex = paint(chunk.names, i => table[of[i]]);
       gl.bindBuffer(gl.ARRAY_BUFFER, chunk.colours);
       gl.bufferData(gl.ARRAY_BUFFER, ofVertex, gl.STATIC_DRAW);
-      // A line has the colour of the first point of its group.
+      // Lines have the colour of the first point of their group.
       const firstOf = new Map();
       if (table) for (let v = 0; v < chunk.count; v++) if (!firstOf.has(chunk.names[v])) firstOf.set(chunk.names[v], v);
       const ofLines = paint(chunk.lineNames, i => table[of[firstOf.get(chunk.lineNames[i])]]);
@@ -123,7 +123,7 @@ class Walls {
     }
   }
 
-  /** Draws what can be seen: faces of what is wide enough, lines for all else. */
+  /** Draws the visible chunks: wide pieces as faces, thin ones as lines. */
   draw(at, view, lined) {
     const gl = this.gl;
     for (const chunk of this.chunks) {
@@ -137,7 +137,7 @@ class Walls {
       if (end > 0) gl.drawElements(gl.TRIANGLES, end, gl.UNSIGNED_INT, 0);
       if (lined && end > 0) this.drawEdges(chunk, end, at);
       const [from, end_] = [chunk.ends.lines[wide], chunk.ends.lines[chunk.radii.length]];
-      // In haste the thinnest are left out.
+      // During motion the thinnest pieces are omitted.
       const to = from + 2 * Math.ceil((end_ - from) / 2 / Math.max(view.haste / 4, 1));
       if (to > from) {
         gl.uniform1f(at.flatness, 2);
@@ -172,7 +172,7 @@ class Walls {
   }
 }
 
-/** How many numbers, which descend, are at least this large. */
+/** Number of elements that are at least `least`, in a descending array. */
 function lower(numbers, least) {
   let [low, high] = [0, numbers.length];
   while (low < high) {
@@ -207,7 +207,7 @@ function bounds(position, origin, step) {
     low: low.map((x, k) => origin[k] + step * x), high: high.map((x, k) => origin[k] + step * x) };
 }
 
-/** Normals at points: the mean of the faces about them, by area. */
+/** Vertex normals: area-weighted means of the adjacent face normals. */
 function smooth(position, corners) {
   const sum = new Float32Array(position.length);
   for (let i = 0; i < corners.length; i += 3) {
@@ -225,7 +225,7 @@ function smooth(position, corners) {
   return out;
 }
 
-/** A network: its numbers, for drawing and for questions. */
+/** Network arrays, for drawing and for queries. */
 class Network {
   constructor(array) {
     const { grid, radiusStep } = facts.network;
@@ -239,7 +239,7 @@ class Network {
 
   node(i) { return [this.nodes[3 * i], this.nodes[3 * i + 1], this.nodes[3 * i + 2]]; }
 
-  /** The edge whose wall is nearest to a place, where along it, and its radius there. */
+  /** Edge whose wall is nearest to a position, with the edge parameter and radius there. */
   nearest(place) {
     let best = { least: Infinity };
     for (let e = 0; e < this.orders.length; e++) {
@@ -254,7 +254,7 @@ class Network {
     return best;
   }
 
-  /** What a person wants to know of an edge. */
+  /** Description of a point on an edge: branch, order, nodes, radius. */
   told({ edge, t, radius }) {
     const ends = [0, 1].map(k => this.names[this.edges[2 * edge + k]]);
     return `vessel (branch) ${this.branches[edge]}, order ${this.orders[edge]}\nedge ${ends[0]}–${ends[1]}, nearest node ` +
@@ -262,7 +262,7 @@ class Network {
   }
 }
 
-/** The cones of a network, widest first. */
+/** Cones of a network, widest first. */
 class Cones {
   constructor(gl, network) {
     this.gl = gl;
@@ -281,7 +281,7 @@ class Cones {
       names[i] = e + 1;
     });
     this.names = names;
-    // The thin ones without their ends.
+    // Three levels of detail by sides and rings; thin cones have no end caps.
     this.levels = [[20, [-0.5, 0, 1, 1.5]], [8, [-0.5, 0, 1, 1.5]], [4, [0, 1]]]
       .map(([sides, rings]) => this.level(sides, rings, ends, names));
     this.lines = gl.createVertexArray();
@@ -322,7 +322,7 @@ class Cones {
     return level;
   }
 
-  /** Lets instances begin with the one of this number. */
+  /** Binds the instance buffers of a level, starting at instance `first`. */
   from(level, first) {
     const gl = this.gl;
     gl.bindVertexArray(level.made);
@@ -353,7 +353,7 @@ class Cones {
     }
   }
 
-  /** Cones of many sides, then of few, then lines. */
+  /** Draws cones by decreasing number of sides, and the thinnest as lines. */
   draw(programs, set, view) {
     const gl = this.gl;
     const [near, middle, far] = [6, 2.5, 0.8].map(pixels => lower(this.radii, pixels * view.haste / view.scale));
@@ -371,13 +371,13 @@ class Cones {
       gl.uniform1f(at.size, 1);
       gl.uniform1f(at.flatness, 2);
       gl.bindVertexArray(this.lines);
-      // In haste the thinnest are left out.
+      // During motion the thinnest lines are omitted.
       gl.drawArrays(gl.LINES, 2 * far, 2 * Math.ceil((this.radii.length - far) / Math.max(view.haste / 4, 1)));
     }
   }
 }
 
-/** Four digits. */
+/** Formats a number with up to five significant digits. */
 function number(x) {
   return Math.abs(x) >= 1e6 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(3) : String(Number(x.toPrecision(5)));
 }

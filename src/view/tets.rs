@@ -1,4 +1,4 @@
-//! Tetrahedra that a plane can lay open: all of them where they are few, else those of some blocks.
+//! Tetrahedra for cut views: all of a small mesh, otherwise those of selected blocks.
 
 use super::pack::{Grid, Pack};
 use super::wall::Wall;
@@ -7,18 +7,18 @@ use anastomesh_mesh::source::{MeshSource, TetPiece};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::io;
 
-/// Tetrahedra that a page holds, at most.
+/// Maximum number of tetrahedra in a page with the whole mesh.
 const MOST: usize = 1_000_000;
-/// And when they are only some of many.
+/// Maximum number of tetrahedra in a page with selected blocks.
 const SOME: usize = 300_000;
-/// Steps of the grid of their points.
+/// Grid resolution of their points, in steps.
 const STEPS: u32 = 1 << 20;
 
-/// Adds tetrahedra. Of very many those of blocks that the plane across the longest side cuts in the middle, the widest first.
-/// What the page has to know of them.
+/// Adds tetrahedra and returns the metadata for the page. Of a large mesh, selects blocks at the middle plane across
+/// the longest side, widest first.
 ///
 /// # Errors
-/// What reading the mesh fails with.
+/// The mesh cannot be read.
 pub fn add_tets(mesh: &dyn MeshSource, wall: &Wall, pack: &mut Pack) -> io::Result<serde_json::Value> {
     let count = mesh.counts().tets;
     let mut held = Held::default();
@@ -33,7 +33,7 @@ pub fn add_tets(mesh: &dyn MeshSource, wall: &Wall, pack: &mut Pack) -> io::Resu
         )?;
     } else {
         let wanted = crossed(wall, plane);
-        // Each part is a block, or all of them are one part that stands in memory.
+        // Each part is a block, or a single part in memory holds all blocks.
         for part in 0..mesh.parts() {
             let is_wanted = mesh.parts() == 1 || {
                 let blocks = mesh.face_labels(part)?.blocks;
@@ -60,7 +60,7 @@ fn held_part(mesh: &dyn MeshSource, part: u32) -> io::Result<Part<'_>> {
     Ok((piece, corners))
 }
 
-/// Tetrahedra in numbers of their own.
+/// Collected tetrahedra with renumbered points.
 #[derive(Default)]
 struct Held {
     numbers: FxHashMap<u32, i32>,
@@ -70,7 +70,7 @@ struct Held {
 }
 
 impl Held {
-    /// Adds those of a part that are wanted.
+    /// Adds the selected tetrahedra of a part.
     fn add(&mut self, piece: &TetPiece, corners: &[[Point3; 4]], of: Option<&FxHashSet<i32>>) {
         for (i, (tet, at)) in piece.tets.iter().zip(corners).enumerate() {
             let block = piece.blocks.get(i).copied().unwrap_or(0);
@@ -89,7 +89,7 @@ impl Held {
     }
 }
 
-/// The axis along which a wall is longest, and the middle there.
+/// Longest axis of a wall and the middle coordinate on it.
 fn middle(wall: &Wall) -> (usize, f64) {
     let points = || wall.pieces.iter().flat_map(|p| &p.groups).flat_map(|g| &g.points);
     let range = |k: usize| points().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p[k]), h.max(p[k])]);
@@ -103,7 +103,7 @@ fn middle(wall: &Wall) -> (usize, f64) {
     (k, if middle.is_finite() { middle } else { 0.0 })
 }
 
-/// Blocks whose wall a plane cuts, the widest, as many as have room.
+/// Widest blocks whose wall crosses the plane, as many as the limit allows.
 fn crossed(wall: &Wall, (axis, at): (usize, f64)) -> FxHashSet<i32> {
     let cuts = |piece: &&super::wall::Piece| {
         let mut sides = piece.groups.iter().flat_map(|g| &g.points).map(|p| p[axis] < at);
@@ -112,7 +112,7 @@ fn crossed(wall: &Wall, (axis, at): (usize, f64)) -> FxHashSet<i32> {
     };
     let mut found: Vec<(f64, i32)> = wall.pieces.iter().filter(cuts).map(|p| (p.radius, p.block)).collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    // Some hundred tetrahedra are the least that a block has.
+    // A block has at least some hundred tetrahedra.
     found.truncate(SOME / 300);
     found.into_iter().map(|(_, block)| block).collect()
 }

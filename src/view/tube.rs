@@ -1,11 +1,11 @@
-//! The wall of a straight tube as a strip between what is kept of its two rings: nothing has to be searched for.
+//! Strip between the reduced rings of a straight tube, computed without search.
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// How far from the axis the wall of a straight tube is at most, in radii.
+/// Maximum distance of a straight tube's wall from its axis, in radii.
 const STRAIGHT: f64 = 1.25;
 
-/// Triangles between two rings, each in the order of its surface's edges, if what is between them is a straight tube.
+/// Triangle strip between two rings, each ordered like its surface's edges, if a straight tube connects them.
 pub fn straight(points: &[Point3], rings: [&[u32]; 2]) -> Option<Vec<[u32; 3]>> {
     let [a, b] = rings.map(|ring| middle(points, ring));
     let axis = b - a;
@@ -25,7 +25,7 @@ fn middle(points: &[Point3], ring: &[u32]) -> Point3 {
     Point3::from(sum / ring.len() as f64)
 }
 
-/// Both rings run as the edges of the surface do: one of them round the axis, the other one against it.
+/// Both rings follow the surface orientation, so they run in opposite directions around the axis.
 fn strip(points: &[Point3], [first, second]: [&[u32]; 2], [a, b]: [Point3; 2]) -> Vec<[u32; 3]> {
     let other: Vec<u32> = second.iter().rev().copied().collect();
     let start = points[first[0] as usize] - a;
@@ -37,7 +37,7 @@ fn strip(points: &[Point3], [first, second]: [&[u32]; 2], [a, b]: [Point3; 2]) -
     let (mut i, mut j) = (0, 0);
     let mut triangles = Vec::with_capacity(n + m);
     while i < n || j < m {
-        // That ring goes on which is behind.
+        // The ring that is behind advances.
         if j == m || (i < n && (i + 1) * m <= (j + 1) * n) {
             triangles.push([at(i), at(i + 1), beside(j)]);
             i += 1;
@@ -55,7 +55,7 @@ mod tests {
     use crate::view::rings::rings;
     use std::f64::consts::TAU;
 
-    /// Two rings of so many corners, which run against each other, and the surface that they end.
+    /// Two rings of opposite direction with these corner counts, and the surface between them.
     fn ends(corners: [u32; 2], bend: f64) -> (Vec<Point3>, [Vec<u32>; 2]) {
         let ring = |count: u32, z: f64, x: f64| {
             (0..count).map(move |i| {

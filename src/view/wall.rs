@@ -1,4 +1,4 @@
-//! The wall of a mesh by blocks and patches, as it is or coarser.
+//! Wall of a mesh by blocks and patches, at full or reduced resolution.
 
 use super::collapse::Collapse;
 use super::rings::{rings, thinned};
@@ -13,64 +13,64 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::io;
 
-/// A wall of no more faces is shown as it is.
+/// Maximum number of faces shown at full resolution.
 const AS_IT_IS: usize = 400_000;
-/// Of one with more about so many are shown, if vessels are not to have fewer sides than on a screen can be told apart.
+/// Approximate number of faces of a reduced wall, unless vessels would get too few sides for their size on the screen.
 const SHOWN: f64 = 900_000.0;
-/// Pixels across a screen: how many sides a vessel gets goes by its radius on it.
+/// Assumed screen width, in pixels. The number of sides of a vessel depends on its radius on the screen.
 const SCREEN: f64 = 1500.0;
-/// Where fewer than this share of the faces are shown, straight tubes are strips between their rings.
+/// Fraction of shown faces below which straight tubes become strips between their rings.
 const STRAIGHTENED: f64 = 0.2;
-/// Sides of the thinnest and of the thickest vessels.
+/// Number of sides of the thinnest and of the thickest vessels.
 const SIDES: [f64; 2] = [3.0, 24.0];
 
-/// What is to be known of the wall beside its shape.
+/// Additional data of the wall.
 #[derive(Default)]
 pub struct WallOptions<'a> {
-    /// Radius at points in the first column, Strahler's order in cells in the second.
+    /// Vessel radius at points in the first column, Strahler order of cells in the second.
     pub vessels: Option<&'a dyn Beside>,
 }
 
-/// The faces of a block on one patch.
+/// Faces of a block on one patch.
 #[derive(Clone, Debug, Default)]
 pub struct Group {
     pub patch: i32,
     pub points: Vec<Point3>,
     pub triangles: Vec<[u32; 3]>,
-    /// Worst radius ratio of the faces at each point, in 255ths.
+    /// Worst radius ratio of the faces at each point, in 1/255.
     pub quality: Vec<u8>,
-    /// Radius of the vessel at each point, 0 where it is not known.
+    /// Vessel radius at each point; 0 if unknown.
     pub radii: Vec<f64>,
-    /// Strahler's order there.
+    /// Strahler order at each point.
     pub orders: Vec<u8>,
 }
 
-/// The wall of a block.
+/// Wall of a block.
 #[derive(Clone, Debug, Default)]
 pub struct Piece {
     pub block: i32,
-    /// Of its rings, in the mean; infinite where it has none.
+    /// Mean radius of its rings; infinite without rings.
     pub radius: f64,
-    /// What it is when it is thinner than a pixel.
+    /// Lines that replace a piece thinner than a pixel.
     pub lines: Vec<[Point3; 2]>,
     pub groups: Vec<Group>,
 }
 
-/// A wall.
+/// Wall of a mesh.
 #[derive(Debug)]
 pub struct Wall {
     pub pieces: Vec<Piece>,
-    /// Whether it is shown as it is.
+    /// True if shown at full resolution.
     pub exact: bool,
-    /// Faces of the mesh's boundary.
+    /// Number of boundary faces of the mesh.
     pub faces: usize,
 }
 
 impl Wall {
-    /// Reads the boundary of a mesh, in one pass where inlets and outlets tell how large it is.
+    /// Reads the boundary of a mesh, in one pass if inlets and outlets define its extent.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// The mesh cannot be read.
     pub fn of(mesh: &dyn MeshSource, options: &WallOptions) -> io::Result<Self> {
         let faces = mesh.counts().boundary;
         let exact = faces <= AS_IT_IS;
@@ -96,22 +96,22 @@ impl Wall {
         Ok(Self { pieces, exact, faces })
     }
 
-    /// Triangles that are shown.
+    /// Number of triangles shown.
     pub fn triangles(&self) -> usize {
         self.pieces.iter().flat_map(|p| &p.groups).map(|g| g.triangles.len()).sum()
     }
 }
 
-/// How much coarser a wall is to be.
+/// Degree of simplification.
 #[derive(Clone, Copy, Debug)]
 struct Coarse {
-    /// How many pixels a length is on a screen.
+    /// Screen pixels per unit of length.
     pixels: f64,
-    /// Which share of its faces would be few enough.
+    /// Sufficient fraction of the faces.
     share: f64,
 }
 
-/// How large a mesh is: by its inlets and outlets, if it has some.
+/// Extent of a mesh, from its inlets and outlets if it has enough.
 fn extent(mesh: &dyn MeshSource) -> io::Result<f64> {
     let caps: Vec<Point3> = mesh.patches().iter().filter_map(|patch| Some(patch.cap?.center)).collect();
     let mut all = Aabb::of_points(&caps);
@@ -132,7 +132,7 @@ fn by_block(piece: &FacePiece) -> BTreeMap<i32, Vec<usize>> {
     blocks
 }
 
-/// The wall of a block; coarser where it is said how many pixels a length is.
+/// Wall of a block, simplified if `coarse` is given.
 fn made(
     block: i32,
     faces: &[usize],
@@ -147,7 +147,7 @@ fn made(
     }
     let mut out = Piece { block, radius: f64::INFINITY, ..Piece::default() };
     let locals: Vec<Local> = patches.iter().map(|(&patch, faces)| Local::of(patch, faces, piece, corners)).collect();
-    // That with the most faces is the wall.
+    // The patch with the most faces is the wall.
     if let Some(wall) = locals.iter().max_by_key(|local| local.group.triangles.len()) {
         let rings: Vec<Ring> = wall.rings.iter().map(|ring| Ring::of(ring, &wall.group.points)).collect();
         if !rings.is_empty() {
@@ -159,7 +159,7 @@ fn made(
     out
 }
 
-/// A ring: its middle, and the radius of a circle of its length.
+/// Ring: centre, and radius of a circle of equal circumference.
 struct Ring {
     centre: Point3,
     radius: f64,
@@ -174,7 +174,7 @@ impl Ring {
     }
 }
 
-/// From ring to ring, or from the middle of several to each.
+/// Lines between two rings, or from the common centre to each ring.
 fn lines(rings: &[Ring]) -> Vec<[Point3; 2]> {
     match rings {
         [a, b] => vec![[a.centre, b.centre]],
@@ -187,7 +187,7 @@ fn lines(rings: &[Ring]) -> Vec<[Point3; 2]> {
     }
 }
 
-/// A group with what its points are called in the whole.
+/// Group with the global numbers of its points.
 struct Local {
     group: Group,
     numbers: Vec<u32>,
@@ -231,7 +231,7 @@ impl Local {
         group
     }
 
-    /// With as many points on each ring as the vessel is large on a screen, and as few faces between them as that allows.
+    /// Simplifies a group: ring points by the vessel's screen size, and as few faces between them as possible.
     fn coarser(self, Coarse { pixels, share }: Coarse) -> Group {
         let Group { patch, points, triangles, quality, .. } = self.group;
         let mut stands: Vec<u32> = (0..points.len() as u32).collect();
@@ -265,14 +265,14 @@ impl Local {
         }
         let mapped = triangles.iter().map(|t| t.map(|v| stands[v as usize]));
         let triangles: Vec<[u32; 3]> = mapped.filter(|[a, b, c]| a != b && b != c && c != a).collect();
-        // A closed surface has no rings that say how large it is.
+        // A closed surface has no rings that define its size.
         let target = if target == 0 { 100 } else { target + target / 8 };
         let target = target.max((triangles.len() as f64 * share) as usize);
         of(Collapse::new(points, triangles, fixed).run(target))
     }
 }
 
-/// The points that triangles have, and the triangles with these.
+/// Returns the points used by triangles, and renumbered triangles.
 fn compact(points: &[Point3], mut triangles: Vec<[u32; 3]>) -> (Vec<Point3>, Vec<[u32; 3]>) {
     let mut used: Vec<u32> = triangles.as_flattened().to_vec();
     used.sort_unstable();
@@ -291,7 +291,7 @@ mod tests {
     use anastomesh_mesh::{VolumeMesh, WALL};
     use std::collections::BTreeSet;
 
-    /// A tube of two blocks, with caps at both ends.
+    /// A tube of two blocks with caps at both ends.
     fn tube() -> VolumeMesh {
         let mesh = tube_lattice(4, 40, 0.3);
         let boundary = boundary_faces(&mesh);
@@ -345,7 +345,7 @@ mod tests {
                 )
             })
             .collect();
-        // The points of a group's rings, exactly: those at the joint are the same in both blocks.
+        // Exact points of a group's rings: both blocks share those at the joint.
         let rims = |piece: &Piece, patch: i32| -> BTreeSet<[u64; 3]> {
             let group = piece.groups.iter().find(|g| g.patch == patch).unwrap();
             let key = |&v: &u32| <[f64; 3]>::from(group.points[v as usize].coords).map(f64::to_bits);
@@ -355,7 +355,7 @@ mod tests {
         assert_eq!(shared, 3);
         let faces: usize = blocks.iter().flat_map(|p| &p.groups).map(|g| g.triangles.len()).sum();
         assert!(faces < 40, "{faces}");
-        // Caps keep to the rim of their wall.
+        // Caps match the rim of their wall.
         assert!(rims(&blocks[0], 2).is_subset(&rims(&blocks[0], WALL)));
     }
 }

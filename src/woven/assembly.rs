@@ -1,4 +1,4 @@
-//! Woven joints: the blocks put together in memory, the joints smoothed (3.2.4), the boundary labelled anew.
+//! Assembly of woven meshes: merges blocks in memory, smooths joints (section 3.2.4) and labels the boundary.
 
 use std::io;
 
@@ -13,7 +13,7 @@ use anastomesh_tet::{
     parts::{OptimizeOptions, optimize},
 };
 
-/// The blocks in one mesh, and what of it the joints' smoothing needs.
+/// Merged blocks, with the data for joint smoothing.
 #[derive(Debug)]
 pub struct Assembly {
     volume: VolumeMesh,
@@ -21,16 +21,16 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// Puts the blocks together. `joints`: the vertices of each.
+    /// Merges the blocks; `joints` lists the vertices of each joint.
     ///
     /// # Errors
-    /// When a block cannot be read.
+    /// A block cannot be read.
     pub fn new(whole: &dyn MeshSource, joints: Vec<Vec<u32>>) -> io::Result<Self> {
         let joints = joints.into_iter().map(|vertices| Joint { vertices }).collect();
         Ok(Self { volume: gather(whole)?, joints })
     }
 
-    /// Smooths the joints; leaves those that are left when it is told to stop.
+    /// Smooths the joints; skips the remaining ones after cancellation.
     pub fn smooth(&mut self, progress: &dyn Progress) -> JointReport {
         let VolumeMesh { mesh, tet_block, boundary, boundary_patch, .. } = &mut self.volume;
         let mut frozen = vec![false; mesh.points.len()];
@@ -53,10 +53,10 @@ impl Assembly {
         smooth_joints(mesh, tet_block, &self.joints, &frozen, &JointOptions::default(), &improve)
     }
 
-    /// Labels the boundary; with the mesh come its face neighbours.
+    /// Labels the boundary; also returns the face neighbours.
     ///
     /// # Errors
-    /// When a cap is not on the boundary.
+    /// A cap is not on the boundary.
     pub fn label(self) -> Result<(VolumeMesh, TetAdjacency), LabelError> {
         let VolumeMesh { mesh, tet_block, boundary, boundary_patch, patches, .. } = self.volume;
         let mut faces: Vec<(i32, [u32; 3])> = boundary_patch.into_iter().zip(boundary).collect();

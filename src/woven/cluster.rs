@@ -1,4 +1,4 @@
-//! A cluster whose ends are trimmed (3.2.2).
+//! Cluster with trimmed ends (section 3.2.2 of the paper).
 
 use super::trim::{TrimOptions, Trimmed, trim};
 use crate::block::{BlockError, BlockParams, ClusterMesh, CutEnd, EndStyle, cut_ends, mesh_cluster_watched};
@@ -6,10 +6,10 @@ use crate::partition::{Cluster, ClusterId};
 use anastomesh_mesh::adjacency::tet_adjacency;
 use anastomesh_tet::parts::Watch;
 
-/// Meshes a cluster with its vessels going on beyond the cuts, and takes off what lies there.
+/// Meshes a cluster with its vessels extended beyond the cuts, and trims it at the cuts.
 ///
 /// # Errors
-/// As without trimming, or where an end cannot be made flat.
+/// Meshing fails, or an end cannot be flattened.
 pub fn mesh_trimmed(
     id: ClusterId,
     cluster: &Cluster,

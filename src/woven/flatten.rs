@@ -1,35 +1,35 @@
-//! Greedy flattening (3.2.2, Fig. 5): tetrahedra are removed under an end surface until it is projection flat.
+//! Greedy flattening (section 3.2.2 of the paper, Fig. 5): removes tetrahedra until an end surface is projection flat.
 //!
-//! Positive triangles that form one disc whose projected rim is a simple polygon cover every point of the plane at most
-//! once (the degree of the projection is one), so overlap need not be searched triangle against triangle.
+//! Let positive triangles form one disc with a simple polygon as projected rim. They cover each point of the plane at
+//! most once (degree 1). Pairwise overlap tests are not needed.
 
 use super::region::{OUTSIDE, Region, WALL};
 use crate::block::{FlattenFailure, cross, crossing, disc_rim};
 use anastomesh_mesh::TET_FACES;
 use anastomesh_mesh::geometry::Point3;
 
-/// One attempt at an end surface.
+/// Parameters of one attempt at an end surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Attempt {
-    /// Height at which the first cut is made.
+    /// Height of the initial cut.
     pub offset: f64,
-    /// Triangles steeper than this cosine against the plane are removed too; 0 asks for a positive projection only.
+    /// Minimum cosine of triangles against the plane; 0 requires a positive projection only.
     pub min_cosine: f64,
-    /// No tetrahedron with a vertex deeper than this is removed.
+    /// Maximum depth: tetrahedra with a deeper vertex are not removed.
     pub depth: f64,
 }
 
-/// An end surface in local numbers.
+/// End surface with local numbers.
 pub(super) struct Flat {
-    /// Which tetrahedra of the region go.
+    /// Removed tetrahedra of the region.
     pub removed: Vec<bool>,
-    /// Triangles, oriented out of what stays.
+    /// Triangles, oriented out of the remaining part.
     pub triangles: Vec<[u32; 3]>,
     /// Boundary loop.
     pub rim: Vec<u32>,
 }
 
-/// Rounds of mending the topology before giving up.
+/// Maximum rounds of topology repair.
 const ROUNDS: usize = 60;
 
 struct Flattener<'a> {
@@ -37,13 +37,13 @@ struct Flattener<'a> {
     points: &'a [Point3],
     attempt: Attempt,
     removed: Vec<bool>,
-    /// Exposed faces `4·tet + face`, some of them stale (their owner is gone).
+    /// Exposed faces `4·tet + face`; stale if their owner was removed.
     exposed: Vec<u32>,
-    /// How many of `exposed` have been looked at.
+    /// Number of leading entries of `exposed` already examined.
     checked: usize,
 }
 
-/// Makes a flat end surface, or says why not.
+/// Creates a flat end surface.
 pub(super) fn flatten(region: &Region, points: &[Point3], seed: u32, attempt: Attempt) -> Result<Flat, FlattenFailure> {
     let mut f =
         Flattener { region, points, attempt, removed: vec![false; region.tets.len()], exposed: Vec::new(), checked: 0 };
@@ -71,7 +71,7 @@ pub(super) fn flatten(region: &Region, points: &[Point3], seed: u32, attempt: At
 }
 
 impl Flattener<'_> {
-    /// Removes what lies wholly beyond the plane and hangs together with the seed.
+    /// Removes the tetrahedra that lie wholly beyond the plane and are connected to the seed.
     fn cut(&mut self, seed: u32) -> Result<(), FlattenFailure> {
         let region = self.region;
         let offset = self.attempt.offset;
@@ -128,7 +128,7 @@ impl Flattener<'_> {
         Ok(())
     }
 
-    /// Exposed face in local vertices, oriented out of what stays.
+    /// Exposed face in local vertices, oriented out of the remaining part.
     fn triangle(&self, face: u32) -> [u32; 3] {
         let corners = self.region.corners[(face / 4) as usize];
         TET_FACES[(face % 4) as usize].map(|k| corners[k])
@@ -144,7 +144,7 @@ impl Flattener<'_> {
         }
         let [a, b, c] = t.map(|v| self.points[self.region.vertices[v as usize] as usize]);
         let [ha, hb, hc] = t.map(|v| self.region.height[v as usize]);
-        // The gradient of the height over the triangle, squared, is tan² of its slope.
+        // The squared gradient of the height over the triangle is tan² of its slope.
         let (e, f) = (b - a, c - a);
         let n2 = e.cross(&f).norm_squared();
         let (p, q) = (hb - ha, hc - ha);
@@ -172,7 +172,7 @@ impl Flattener<'_> {
         self.exposed.clone()
     }
 
-    /// Drops what is cut off from the cluster by the removed part.
+    /// Removes tetrahedra that are no longer connected to the cluster.
     fn drop_islands(&mut self) {
         let region = self.region;
         let mut kept = vec![false; region.tets.len()];
@@ -180,7 +180,7 @@ impl Flattener<'_> {
             .filter(|&t| !self.removed[t as usize] && region.neighbours[t as usize].contains(&OUTSIDE))
             .collect();
         if stack.is_empty() {
-            // The whole cluster lies in the region: its deepest tetrahedron stands for the main part.
+            // The region contains the whole cluster: its deepest tetrahedron represents the main part.
             let height = |t: u32| region.corners[t as usize].iter().map(|&v| region.height[v as usize]).sum::<f64>();
             let deepest = (0..region.tets.len() as u32)
                 .filter(|&t| !self.removed[t as usize])
@@ -203,7 +203,7 @@ impl Flattener<'_> {
         }
     }
 
-    /// The rim, or the tetrahedra to remove next.
+    /// Returns the rim, or the tetrahedra to remove next.
     fn fault(&self, faces: &[u32], triangles: &[[u32; 3]]) -> Result<Vec<u32>, Vec<u32>> {
         let pinched = self.pinched(triangles);
         if !pinched.is_empty() {
@@ -214,7 +214,7 @@ impl Flattener<'_> {
         };
         let polygon: Vec<[i64; 2]> = rim.iter().map(|&v| self.region.flat[v as usize]).collect();
         if let Some((i, j)) = crossing(&polygon) {
-            // The higher of the two edges is the one that hangs over.
+            // The higher of the two edges is the overhanging one.
             let n = rim.len();
             let edge = |i: u32| [rim[i as usize], rim[(i as usize + 1) % n]];
             let height = |e: [u32; 2]| self.region.height[e[0] as usize] + self.region.height[e[1] as usize];
@@ -225,7 +225,7 @@ impl Flattener<'_> {
         Ok(rim)
     }
 
-    /// Vertices of the end surface at which the boundary of what stays is not a single fan.
+    /// Vertices of the end surface at which the remaining boundary is not a single fan.
     fn pinched(&self, triangles: &[[u32; 3]]) -> Vec<u32> {
         let mut vertices: Vec<u32> = triangles.iter().flatten().copied().collect();
         vertices.sort_unstable();
@@ -243,7 +243,7 @@ impl Flattener<'_> {
         vertices
     }
 
-    /// Appends, for every boundary face of tetrahedron `t` at vertex `v`, the edge opposite `v`.
+    /// Appends the edge opposite `v` for every boundary face of tetrahedron `t` at vertex `v`.
     fn boundary_links(&self, t: u32, v: u32, links: &mut Vec<(u32, u32)>) {
         let corners = self.region.corners[t as usize];
         for (i, &n) in self.region.neighbours[t as usize].iter().enumerate() {
@@ -257,7 +257,7 @@ impl Flattener<'_> {
         }
     }
 
-    /// Owners of triangles at boundary loops other than the widest one: rims of pockets.
+    /// Owners of triangles at boundary loops other than the widest one, which are rims of pockets.
     fn off_main_loop(&self, faces: &[u32], triangles: &[[u32; 3]]) -> Vec<u32> {
         let loops = boundary_loops(triangles);
         let area = |l: &Vec<u32>| -> i64 {
@@ -273,7 +273,7 @@ impl Flattener<'_> {
     }
 }
 
-/// Whether the directed edges round a vertex form one cycle.
+/// True if the directed edges around a vertex form one cycle.
 fn single_fan(links: &mut [(u32, u32)]) -> bool {
     links.sort_unstable();
     if links.is_empty() || links.windows(2).any(|w| w[0].0 == w[1].0) {
@@ -291,7 +291,7 @@ fn single_fan(links: &mut [(u32, u32)]) -> bool {
     false
 }
 
-/// The boundary loops of an oriented triangle set without pinched vertices.
+/// Boundary loops of an oriented triangle set without pinched vertices.
 fn boundary_loops(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
     let mut edges: Vec<(u32, u32)> =
         triangles.iter().flat_map(|t| (0..3).map(move |k| (t[k], t[(k + 1) % 3]))).collect();

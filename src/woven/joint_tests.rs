@@ -1,4 +1,4 @@
-//! Two tetrahedralized blocks, merged at a common end surface, smoothed there with the tetrahedralizer's optimiser.
+//! Two blocks, merged at a common end surface and smoothed there with the optimizer of the tetrahedralizer.
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,11 +13,11 @@ use anastomesh_tet::parts::{TetOptions, tetrahedralize};
 
 const SIDES: u32 = 14;
 const LAYERS: u32 = 8;
-/// Distance of layers: about that of the sides.
+/// Distance of layers, close to that of the sides.
 const STEP: f64 = 0.42;
 
-/// A closed tube of radius 1 along z from `z0`, flat discs at both ends. The end at z = 0 is ragged: its vertices are
-/// shaken along z by a fixed sequence.
+/// Closed tube of radius 1 along z from `z0`, with flat discs at both ends. The end at z = 0 is ragged: a fixed
+/// sequence displaces its vertices along z.
 fn tube(z0: f64) -> TriMesh {
     let mut points = Vec::new();
     for layer in 0..=LAYERS {

@@ -1,9 +1,9 @@
-//! Smoothing of the joints (3.2.4 of the paper): first the wall around the rim of an end surface by Taubin's steps, then
-//! the cells inside with the wall fixed.
+//! Smoothing of joints (section 3.2.4 of the paper): Taubin smoothing of the wall around an end surface's rim, then
+//! optimization of the cells inside with the wall fixed.
 //!
-//! Each joint owns the tetrahedra within a few rings of its end surface; where two joints are close, the rings meet
-//! half-way. What is owned by different joints is disjoint, vertices shared with others do not move, so joints are
-//! worked on in parallel and the result does not depend on the number of threads.
+//! Each joint owns the tetrahedra within a few rings of its end surface; rings of close joints meet half-way. The sets
+//! are disjoint and shared vertices do not move. Joints are thus processed in parallel, independent of the number of
+//! threads.
 
 mod region;
 mod wall;
@@ -15,28 +15,28 @@ use anastomesh_mesh::smooth::Taubin;
 pub use region::Improve;
 use region::Region;
 
-/// One end surface at which two blocks meet.
+/// End surface at which two blocks meet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Joint {
-    /// Its vertices, rim and inside, as indices into the whole mesh.
+    /// Vertices of rim and interior, as indices into the whole mesh.
     pub vertices: Vec<u32>,
 }
 
-/// How joints are smoothed.
+/// Options of joint smoothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointOptions {
     /// Rings of tetrahedra around an end surface that belong to its joint. Vertices one ring further in may move.
     pub rings: u8,
-    /// Taubin's steps for the wall.
+    /// Parameters of Taubin smoothing of the wall.
     pub taubin: Taubin,
-    /// Taubin's steps may lower the worst radius ratio around a vertex down to this (or to the joint's worst, if that is
-    /// higher): the inside is improved after them.
+    /// Limit to which Taubin smoothing may lower the worst radius ratio around a vertex (or the joint's worst, if
+    /// higher). The inside is optimized afterwards.
     pub good: f64,
-    /// Wall vertices are moved along the wall when a tetrahedron around them still has a radius ratio below this.
+    /// Radius ratio of an adjacent tetrahedron below which wall vertices are moved along the wall.
     pub lift_below: f64,
-    /// The inside is improved where a tetrahedron has a radius ratio below this.
+    /// Radius ratio of a tetrahedron below which the inside is optimized.
     pub improve_below: f64,
-    /// Rounds of wall and inside: Taubin's steps in the first, lifting in the others.
+    /// Rounds over wall and inside: Taubin smoothing in the first, lifting in the others.
     pub rounds: usize,
 }
 
@@ -53,16 +53,16 @@ impl Default for JointOptions {
     }
 }
 
-/// What was done.
+/// Report of joint smoothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct JointReport {
-    /// Joints that were given.
+    /// Number of joints.
     pub joints: usize,
-    /// Tetrahedra that belong to a joint.
+    /// Number of tetrahedra that belong to a joint.
     pub tets: usize,
-    /// Moves of wall vertices.
+    /// Number of moves of wall vertices.
     pub wall_moves: usize,
-    /// Joints whose inside could not be improved because a tetrahedron there was not positive or did not conform.
+    /// Joints whose inside could not be optimized, because a tetrahedron was not positive or not conforming.
     pub refused: usize,
     /// Smallest radius ratio in the joints before; infinite without joints.
     pub worst_before: f64,
@@ -72,13 +72,12 @@ pub struct JointReport {
 
 /// Smooths the joints of a merged mesh.
 ///
-/// `tet_block` holds the block of each tetrahedron and is kept up: a tetrahedron that stays keeps its block, one that
-/// is new takes the block to which most of the former tetrahedra around its vertices belong (the smaller index where two
-/// are equal). Vertices for which `frozen` is true (those of caps) do not move, nor do boundary faces change. Points
-/// keep their index; new ones are appended.
+/// `tet_block` holds the block of each tetrahedron and is updated. Unchanged tetrahedra keep their block. New ones get
+/// the block of most former tetrahedra around their vertices, or the smaller index if equal. Vertices with `frozen` set
+/// (those of caps) and boundary faces do not change. Points keep their index; new ones are appended.
 ///
-/// No tetrahedron is inverted, by the exact predicate; a move of the wall is made only if the worst radius ratio around
-/// does not fall, or stays above both that of the whole joint and `options.good`.
+/// No tetrahedron is inverted, by the exact predicate. A wall move must not lower the worst radius ratio around it
+/// below the joint's worst and `options.good`.
 pub fn smooth_joints(
     mesh: &mut TetMesh,
     tet_block: &mut Vec<i32>,
@@ -127,7 +126,7 @@ fn smooth_region(region: &mut Region, options: &JointOptions, improve: &Improve)
             break;
         }
         let mut walls = wall::Walls::new(region);
-        // The wall is bent for a bad tetrahedron only when the inside alone could not mend it.
+        // The wall is moved for a bad tetrahedron only if the inside alone could not improve it.
         let moves = if round == 0 {
             walls.taubin(region, &options.taubin, options.good)
         } else {
@@ -146,11 +145,11 @@ fn smooth_region(region: &mut Region, options: &JointOptions, improve: &Improve)
     report
 }
 
-/// For each joint the tetrahedra that it owns: those of whose vertices all lie within `rings` edges of some joint, and
-/// the nearest vertex nearest to this one.
+/// Tetrahedra owned by each joint: those with all vertices within `rings` edges of some joint, and the nearest vertex
+/// nearest to this one.
 fn owned_tets(mesh: &TetMesh, joints: &[Joint], rings: u8) -> Vec<Vec<u32>> {
     const FAR: (u8, u32) = (u8::MAX, u32::MAX);
-    // Distance in edges, and the joint with the smallest index among the nearest.
+    // Distance in edges, and the smallest index among the nearest joints.
     let mut nearest = vec![FAR; mesh.points.len()];
     for (j, joint) in joints.iter().enumerate() {
         for &v in &joint.vertices {
@@ -187,7 +186,7 @@ fn degrees(mesh: &TetMesh) -> Vec<u32> {
     degree
 }
 
-/// Removes the tetrahedra listed in `gaps`, keeping the order of the others.
+/// Removes the tetrahedra listed in `gaps` and keeps the order of the others.
 fn close_gaps(mesh: &mut TetMesh, tet_block: &mut Vec<i32>, gaps: &mut [u32]) {
     gaps.sort_unstable();
     let mut next_gap = gaps.iter().copied().peekable();

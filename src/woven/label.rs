@@ -1,4 +1,4 @@
-//! Labels on the boundary: which face is wall, which closes a vessel.
+//! Labels of boundary faces: the wall and the patches that close vessels.
 
 use anastomesh_mesh::face_key;
 use rustc_hash::FxHashMap;
@@ -6,22 +6,22 @@ use rustc_hash::FxHashMap;
 use anastomesh_mesh::adjacency::{self, TetAdjacency};
 use anastomesh_mesh::{Patch, TetMesh, VolumeMesh, WALL};
 
-/// The faces of one patch other than the wall.
+/// Faces of one patch other than the wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatchFaces {
     pub patch: Patch,
-    /// Its faces, vertices in any order.
+    /// Faces with vertices in any order.
     pub faces: Vec<[u32; 3]>,
 }
 
-/// Why the boundary cannot be labelled. Any of these is a fault of the program.
+/// Errors of labelling; each is a bug.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LabelError {
     /// A face of a patch is not a face of the boundary.
     #[error("face {face:?} of patch {patch} does not lie on the boundary")]
     NotOnBoundary {
-        /// The patch's id.
+        /// Patch id.
         patch: i32,
         face: [u32; 3],
     },
@@ -29,18 +29,18 @@ pub enum LabelError {
     #[error("face {face:?} belongs to patch {first} and to patch {second}")]
     Twice {
         face: [u32; 3],
-        /// One patch's id.
+        /// Id of the first patch.
         first: i32,
-        /// The other's.
+        /// Id of the second patch.
         second: i32,
     },
 }
 
-/// Gives every boundary face of `mesh` its patch: the one that lists it, else the wall. With the labelled mesh come the
-/// face neighbours, which had to be found for it.
+/// Assigns every boundary face of `mesh` to the patch that lists it, or else to the wall. Also returns the face
+/// neighbours, which are computed on the way.
 ///
 /// # Errors
-/// When a listed face is not on the boundary or is listed twice.
+/// A listed face is not on the boundary or is listed twice.
 pub fn label(
     mesh: TetMesh,
     tet_block: Vec<i32>,
@@ -63,7 +63,7 @@ pub fn label(
         out.boundary_patch.push(listed.remove(&face_key(face)).unwrap_or(WALL));
     }
     out.mesh = mesh;
-    // What is left was listed but is not there; name the smallest so that the message does not depend on the hashing.
+    // Remaining faces are not on the boundary; the smallest makes the message independent of hashing.
     if let Some((&face, &patch)) = listed.iter().min() {
         return Err(LabelError::NotOnBoundary { patch, face });
     }

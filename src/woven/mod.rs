@@ -1,9 +1,8 @@
-//! Floor 5: how the paper ends blocks and joins them (3.2.2 to 3.2.4), for `--joint woven`. Tetrahedra beyond a cut plane are
-//! taken off a cluster and what that exposes is made flat (`cluster`: `trim`, `flatten`, `relax`); connectors run between the
-//! ends that their clusters have; the whole is collected in memory (`assembly`), its joints are smoothed (`joints`) and its
-//! boundary is labelled anew (`label`).
+//! Block ends and joints as in the paper (sections 3.2.2 to 3.2.4), for `--joint woven`. Clusters are trimmed at cut
+//! planes and flattened (`cluster`: `trim`, `flatten`, `relax`). Connectors run between these ends. The merged mesh is
+//! collected in memory (`assembly`), its joints are smoothed (`joints`), and its boundary is labelled (`label`).
 //!
-//! Only the pipeline imports from this room, and only where a plan asks for it: joints between discs do not come here.
+//! Only the pipeline uses this module, and only if a plan requests it; joints between discs do not need it.
 
 mod assembly;
 mod cluster;

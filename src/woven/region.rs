@@ -1,24 +1,23 @@
-//! The part of a cluster's mesh round one cut: everything trimming may look at, renumbered.
+//! Part of a cluster's mesh around one cut, renumbered: the working set of trimming.
 
 use crate::block::Plane;
 use anastomesh_mesh::geometry::{Point3, Section};
 
-/// Neighbour entries of a tetrahedron that has no neighbour in the region.
+/// Neighbour entry for the boundary of the mesh.
 pub(super) const WALL: u32 = u32::MAX;
-/// There is a neighbour, but it lies outside the region.
+/// Neighbour entry for a tetrahedron outside the region.
 pub(super) const OUTSIDE: u32 = u32::MAX - 1;
 
-/// A region: the tetrahedra that can be reached through faces from the vessel's tip without leaving a cylinder round
-/// the cut.
+/// Region of tetrahedra that are connected through faces to the vessel's tip, within a cylinder around the cut.
 #[derive(Default)]
 pub(super) struct Region {
-    /// Global ids of the tetrahedra, in the order in which they were reached.
+    /// Global ids of the tetrahedra, in breadth-first order.
     pub tets: Vec<u32>,
     /// Global ids of the vertices.
     pub vertices: Vec<u32>,
-    /// The tetrahedra in local vertices.
+    /// Tetrahedra with local vertices.
     pub corners: Vec<[u32; 4]>,
-    /// Across face `i`: local tetrahedron, `WALL` or `OUTSIDE`.
+    /// Neighbour across face `i`: local tetrahedron, `WALL` or `OUTSIDE`.
     pub neighbours: Vec<[u32; 4]>,
     /// Signed distance of each vertex from the cut plane.
     pub height: Vec<f64>,
@@ -26,13 +25,13 @@ pub(super) struct Region {
     pub lateral: Vec<f64>,
     /// Position of each vertex in the cut plane, on an integer grid.
     pub flat: Vec<[i64; 2]>,
-    /// First entry of each vertex in `star_tets`; one more at the end.
+    /// Offset of each vertex in `star_tets`, plus the total.
     pub star_start: Vec<u32>,
-    /// The tetrahedra at each vertex.
+    /// Tetrahedra at each vertex.
     pub star_tets: Vec<u32>,
 }
 
-/// How far a region reaches.
+/// Extent of a region.
 #[derive(Clone, Copy)]
 pub(super) struct Reach {
     /// Distance from the axis.
@@ -41,7 +40,7 @@ pub(super) struct Reach {
     pub depth: f64,
 }
 
-/// What growing regions needs of the whole mesh; the maps are reset after every use.
+/// Data of the whole mesh for growing regions; the maps are reset after every use.
 pub(super) struct Ground<'a> {
     pub points: &'a [Point3],
     pub tets: &'a [[u32; 4]],
@@ -52,7 +51,7 @@ pub(super) struct Ground<'a> {
 }
 
 impl Region {
-    /// Collects the region round a cut from a seed tetrahedron in the tip.
+    /// Collects the region around a cut, from a seed tetrahedron in the tip.
     pub(super) fn grow(ground: &mut Ground, seed: u32, section: &Section, reach: Reach) -> Self {
         let mut region = Self::default();
         region.tets.push(seed);
@@ -140,13 +139,13 @@ impl Region {
         self.star_start = start;
     }
 
-    /// The tetrahedra at a vertex.
+    /// Tetrahedra at a vertex.
     pub(super) fn star(&self, v: u32) -> &[u32] {
         &self.star_tets[self.star_start[v as usize] as usize..self.star_start[v as usize + 1] as usize]
     }
 }
 
-/// The tetrahedron of a handle `4·tet + face`.
+/// Tetrahedron of a handle `4·tet + face`.
 fn neighbour(handle: u32) -> u32 {
     if handle == u32::MAX { WALL } else { handle >> 2 }
 }

@@ -1,8 +1,8 @@
-//! Relaxing an end surface before it is handed to a connector.
+//! Relaxation of an end surface before a connector is built on it.
 //!
-//! Greedy removal leaves a ragged rim. Its vertices slide along the wall towards the plane of their mean height and
-//! towards even angles, and the vertices inside the disc follow, as long as no tetrahedron and no triangle gets worse
-//! than it has to be. This is where a seam's needles would otherwise come from.
+//! Greedy removal leaves a ragged rim. Rim vertices slide along the wall towards their mean height and towards even
+//! angles, and inner vertices of the disc follow. Moves must not degrade tetrahedra and triangles beyond limits. This
+//! avoids needles in the seam.
 
 use super::region::{OUTSIDE, Region, WALL};
 use crate::block::{tet_ratio, triangle_ratio};
@@ -12,17 +12,17 @@ use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 
 /// Passes over the vertices of the end surface.
 const PASSES: usize = 8;
-/// A move may lower the worst radius ratio at a vertex down to these, never further.
+/// Limits down to which a move may lower the worst radius ratio at a vertex.
 const TET_FLOOR: f64 = 0.35;
 const TRIANGLE_FLOOR: f64 = 0.6;
-/// Triangles of the end surface keep this cosine against the plane, or what they have.
+/// Minimum cosine between triangles of the end surface and the plane, unless they start lower.
 const COSINE_FLOOR: f64 = 0.5;
 
 pub(super) struct Relaxation<'a> {
     pub region: &'a Region,
     pub removed: &'a [bool],
     pub section: &'a Section,
-    /// Vertices (local) that must not move.
+    /// Fixed vertices (local numbers).
     pub frozen: &'a dyn Fn(u32) -> bool,
 }
 
@@ -33,7 +33,7 @@ struct Worst {
 }
 
 impl Relaxation<'_> {
-    /// Moves `points` (global) of the end surface's vertices. `triangles` and `rim` are in local vertices.
+    /// Moves `points` (global) of the end surface. `triangles` and `rim` use local vertices.
     pub(super) fn run(&self, points: &mut [Point3], triangles: &[[u32; 3]], rim: &[u32]) {
         let inner = inner_vertices(triangles, rim);
         let around: Vec<Vec<u32>> = inner.iter().map(|&v| ring_of(v, triangles)).collect();
@@ -65,7 +65,7 @@ impl Relaxation<'_> {
             let (after, radius_after, _) = polar(self.at(points, rim[(i + 1) % n]));
             let (back, ahead) = (turn(before - theta), turn(after - theta));
             let shift = 0.25 * (back + ahead);
-            // Along the wall the radius is that of the neighbour one moves to.
+            // Along the wall, the radius changes towards that of the neighbour in the direction of the move.
             let (gap, toward) = if shift > 0.0 { (ahead, radius_after) } else { (back, radius_before) };
             let share = if gap.abs() > 1e-9 { (shift / gap).clamp(0.0, 0.5) } else { 0.0 };
             let r = radius + share * (toward - radius);
@@ -76,7 +76,7 @@ impl Relaxation<'_> {
         }
     }
 
-    /// Moves `v` towards `target` as far as shapes allow.
+    /// Moves `v` towards `target` as far as quality permits.
     fn step(&self, points: &mut [Point3], v: u32, target: Point3) {
         if (self.frozen)(v) {
             return;
@@ -97,7 +97,7 @@ impl Relaxation<'_> {
         points[global] = from;
     }
 
-    /// The worst shapes at a vertex, of what stays.
+    /// Worst quality among the remaining elements at a vertex.
     fn worst(&self, points: &[Point3], v: u32) -> Worst {
         let mut worst = Worst { tet: 1.0, triangle: 1.0, cosine: 1.0 };
         for &t in self.region.star(v) {

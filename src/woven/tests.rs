@@ -1,4 +1,4 @@
-//! Clusters with trimmed ends, and connectors between them.
+//! Tests of trimmed clusters and the connectors between them.
 
 use super::cluster::mesh_trimmed;
 use super::trim::{TrimOptions, trim};
@@ -15,7 +15,7 @@ use anastomesh_tet::parts::Watch;
 fn bifurcations_are_meshed_and_joined() {
     for seed in 0..6 {
         let params = BlockParams::with_rho(3.0 + (seed % 2) as f64);
-        // Discs, too, may be those that the walls of the two clusters give.
+        // The discs may also come from the walls of the two clusters.
         let mesh = |id, cluster: &Cluster| match seed % 3 {
             2 => mesh_cluster(id, cluster, &params),
             _ => mesh_trimmed(id, cluster, &params, &Watch::NOBODY),
@@ -69,6 +69,6 @@ fn trimmed_tubes_are_joined() {
         worst = worst.min(wall_angle(&out));
     }
     assert!(joined >= 22, "{joined}");
-    // Staircase rims, far worse than those of a contoured wall.
+    // Staircase rims are far worse than those of a contoured wall.
     assert!(worst > 8.0, "{worst}");
 }

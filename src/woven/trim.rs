@@ -1,4 +1,4 @@
-//! Trimming (3.2.2): what lies beyond a cut plane is taken off the cluster, and the end surface is made flat.
+//! Trimming (section 3.2.2 of the paper): removes the cluster beyond a cut plane and flattens the end surface.
 
 use super::flatten::{Attempt, Flat, flatten};
 use super::region::{Ground, Reach, Region, WALL};
@@ -8,36 +8,36 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::{Kept, TetMesh};
 
-/// How to trim.
+/// Options of trimming.
 #[derive(Clone, Copy, Debug)]
 pub struct TrimOptions {
     /// Edge length of the mesh.
     pub edge: f64,
-    /// Whether to relax the end surfaces.
+    /// Relax the end surfaces.
     pub relax: bool,
-    /// How deep below the plane flattening may go, in radii of the cut.
+    /// Maximum depth of flattening below the plane, in radii of the cut.
     pub depth: f64,
 }
 
-/// A trimmed mesh.
+/// Trimmed mesh.
 #[derive(Clone, Debug, Default)]
 pub struct Trimmed {
-    /// What stays, vertices renumbered in their old order.
+    /// Remaining mesh, with vertices in their old order.
     pub mesh: TetMesh,
-    /// For each old vertex, its new number, or `u32::MAX`.
+    /// New number of each old vertex, or `u32::MAX`.
     pub renumbered: Vec<u32>,
-    /// One end surface for each end that was asked for.
+    /// End surface of each requested end.
     pub ends: Vec<EndSurface>,
 }
 
-/// An end surface as good as this is taken without trying others.
+/// Score above which an end surface is accepted without further attempts.
 const GOOD: f64 = 0.25;
 
-/// Trims a mesh at its ends. `neighbours` are the face neighbours as handles `4·tet + face`, `u32::MAX` at the boundary;
-/// vertices in `frozen` (sorted: those of the caps) are neither moved nor taken away.
+/// Trims a mesh at its ends. `neighbours` are face neighbours as handles `4·tet + face`, `u32::MAX` at the boundary.
+/// Vertices in `frozen` (sorted: those of caps) are neither moved nor removed.
 ///
 /// # Errors
-/// The index of the end that fails, and why.
+/// Index of the failed end and the reason.
 pub fn trim(
     mesh: &TetMesh,
     neighbours: &[[u32; 4]],
@@ -75,13 +75,13 @@ pub fn trim(
     }
     let trimmed = finish(mesh, &points, &alive, ends, &surfaces)?;
     match frozen.iter().find(|&&v| trimmed.renumbered[v as usize] == u32::MAX) {
-        // A cut plane reaches into another vessel's cap.
+        // A cut plane intersects another vessel's cap.
         Some(&lost) => Err((taker(mesh, &surfaces, lost), FlattenFailure::LeavesVessel)),
         None => Ok(trimmed),
     }
 }
 
-/// The last end that took a tetrahedron at a vertex: it left nothing there.
+/// Last end that removed a tetrahedron at a vertex which then had none left.
 fn taker(mesh: &TetMesh, surfaces: &[(Region, Flat)], vertex: u32) -> usize {
     let took = |(region, flat): &(Region, Flat)| {
         region.tets.iter().zip(&flat.removed).any(|(&t, &gone)| gone && mesh.tets[t as usize].contains(&vertex))
@@ -89,7 +89,7 @@ fn taker(mesh: &TetMesh, surfaces: &[(Region, Flat)], vertex: u32) -> usize {
     surfaces.iter().rposition(took).unwrap_or(0)
 }
 
-/// For each end the tetrahedron whose centroid is nearest to a point of the axis in the tip.
+/// For each end, the tetrahedron with its centroid nearest to an axis point in the tip.
 fn seeds(mesh: &TetMesh, ends: &[CutEnd], options: &TrimOptions) -> Vec<Option<u32>> {
     let h = options.edge;
     let ball = |e: &CutEnd| {
@@ -117,7 +117,7 @@ fn seeds(mesh: &TetMesh, ends: &[CutEnd], options: &TrimOptions) -> Vec<Option<u
     best.into_iter().map(|b| b.1).collect()
 }
 
-/// Cuts at several heights and with several limits on steepness; the first good end surface, else the best.
+/// Cuts at several heights and slope limits. Returns the first good end surface, or else the best.
 fn best_attempt(region: &Region, points: &[Point3], options: &TrimOptions, r: f64) -> Result<Flat, FlattenFailure> {
     let h = options.edge;
     let depth = options.depth * r + h;
@@ -145,8 +145,8 @@ fn best_attempt(region: &Region, points: &[Point3], options: &TrimOptions, r: f6
     best.map(|b| b.1).ok_or(failure)
 }
 
-/// How good an end surface is: the worst triangle, less what the rim strays from one height and from one sense of
-/// rotation about the axis.
+/// Score of an end surface: its worst triangle, minus penalties for rim deviations from one height and one direction of
+/// rotation.
 fn score(region: &Region, points: &[Point3], flat: &Flat, h: f64) -> f64 {
     let at = |v: u32| points[region.vertices[v as usize] as usize];
     let worst = flat.triangles.iter().map(|t| triangle_ratio(&t.map(at))).fold(1.0, f64::min);
@@ -164,7 +164,7 @@ fn score(region: &Region, points: &[Point3], flat: &Flat, h: f64) -> f64 {
     worst - 0.1 * (high - low - 1.5 * h).max(0.0) / h - 0.5 * backwards as f64
 }
 
-/// Relaxes an end surface; taken back when it does not stay flat.
+/// Relaxes an end surface; reverts if it does not stay flat.
 fn relax(region: &Region, flat: &Flat, points: &mut [Point3], frozen: &[u32], end: &CutEnd) {
     let mut moved: Vec<u32> = flat.triangles.iter().flatten().map(|&v| region.vertices[v as usize]).collect();
     moved.sort_unstable();
@@ -180,7 +180,7 @@ fn relax(region: &Region, flat: &Flat, points: &mut [Point3], frozen: &[u32], en
     }
 }
 
-/// Whether every tetrahedron that stays at the end surface is positive, by the exact predicate.
+/// True if every remaining tetrahedron at the end surface is positive, by the exact predicate.
 fn all_positive(region: &Region, flat: &Flat, points: &[Point3]) -> bool {
     let at = |v: u32| &points[region.vertices[v as usize] as usize];
     flat.triangles.iter().flatten().flat_map(|&v| region.star(v)).filter(|&&t| !flat.removed[t as usize]).all(|&t| {
@@ -189,7 +189,7 @@ fn all_positive(region: &Region, flat: &Flat, points: &[Point3]) -> bool {
     })
 }
 
-/// The end surface in global vertices, renumbered.
+/// End surface in renumbered global vertices.
 fn global_surface(region: &Region, flat: &Flat, end: &CutEnd, number: impl Fn(u32) -> u32) -> EndSurface {
     let global = |v: u32| number(region.vertices[v as usize]);
     let mut rim: Vec<u32> = flat.rim.iter().map(|&v| global(v)).collect();
@@ -216,7 +216,7 @@ fn finish(
     let mut out = Vec::with_capacity(ends.len());
     for (i, ((region, flat), end)) in surfaces.iter().zip(ends).enumerate() {
         let surface = global_surface(region, flat, end, number);
-        // A later end may have taken a vertex of an earlier one away.
+        // A later end may have removed a vertex of an earlier one.
         if surface.triangles.iter().flatten().any(|&v| v == u32::MAX) || surface.check(&kept).is_err() {
             return Err((i, FlattenFailure::NotADisc));
         }

@@ -1,4 +1,4 @@
-//! Trimming on tubes filled with a lattice.
+//! Tests of trimming on tubes filled with a lattice.
 
 use super::trim::{TrimOptions, Trimmed, trim};
 use crate::block::fixtures::{
@@ -16,7 +16,7 @@ fn options(edge: f64, relax: bool) -> TrimOptions {
     TrimOptions { edge, relax, depth: 2.0 }
 }
 
-/// Whether the wall was a manifold before trimming (a staircase need not be), and the outcome.
+/// Trims a tube. Also returns true if the wall was a manifold before (a staircase need not be).
 fn trim_tube(seed: u64, rho: f64, noise: f64, relax: bool) -> (bool, Result<Trimmed, (usize, FlattenFailure)>) {
     let axis = direction(seed);
     let r = 1.0;
@@ -51,7 +51,7 @@ fn ends_of_tubes_at_all_angles_become_flat_discs() {
         }
     }
     assert!(manifolds > 10, "{manifolds}");
-    // A staircase of cubes is far rougher than a contoured wall.
+    // A staircase of cubes is much rougher than a contoured wall.
     assert!(failures <= 3, "{failures} of 60 failed");
 }
 
@@ -81,7 +81,7 @@ fn relaxing_evens_the_rim_and_keeps_shapes() {
 
 #[test]
 fn a_plane_trims_only_the_tip_of_its_own_vessel() {
-    // Two parallel vessels joined at the bottom; the plane of the first one crosses the second too.
+    // Two parallel vessels joined at the bottom; the plane of the first intersects the second, too.
     let p = |x: f64, z: f64| Point3::new(x, 0.1, z);
     let tube = |a, b| Tube { a, b, ra: 1.0, rb: 1.0 };
     let tubes = [tube(p(0.0, 0.0), p(0.0, 9.0)), tube(p(0.0, 0.0), p(4.0, 0.0)), tube(p(4.0, 0.0), p(4.0, 9.0))];

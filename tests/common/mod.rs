@@ -1,4 +1,4 @@
-//! What the integration tests share.
+//! Shared parts of the integration tests.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 pub mod oracle;
@@ -10,10 +10,10 @@ use anastomesh::io::{NetworkOptions, read_network};
 use anastomesh::network::{MeshPlan, Meshed, RunError, Skeleton, clean, mesh_network};
 use std::path::{Path, PathBuf};
 
-/// The folder of real networks and surfaces beside the checkout, which a user's clone does not have.
+/// Folder of real networks and surfaces beside the checkout, which a user's clone does not have.
 ///
-/// `None`, with a note, when it is absent; a panic instead when `ANASTOMESH_REQUIRE_SHARED` is set, so that a run which
-/// ought to have the data cannot pass by skipping.
+/// Returns `None` with a note if it is missing. Panics instead if `ANASTOMESH_REQUIRE_SHARED` is set, so that a run
+/// with required data cannot pass by skipping.
 pub fn shared() -> Option<PathBuf> {
     let dir = std::env::var_os("ANASTOMESH_SHARED")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
@@ -25,18 +25,18 @@ pub fn shared() -> Option<PathBuf> {
     None
 }
 
-/// A file of the repository's fixtures.
+/// File of the repository's fixtures.
 pub fn fixture(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
 }
 
-/// A network of a file, cleaned.
+/// Cleaned network of a file.
 pub fn network(path: &Path) -> Skeleton {
     let file = read_network(path, &NetworkOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     clean(&file.skeleton).unwrap_or_else(|e| panic!("{}: {e}", path.display())).0
 }
 
-/// The mesh of a network; a panic with the list of blocks when one of them fails.
+/// Mesh of a network; panics with a list of the failed blocks.
 pub fn mesh(network: &Skeleton, rho: f64) -> Meshed {
     let mut plan = MeshPlan::default();
     plan.rho = rho;

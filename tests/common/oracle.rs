@@ -1,12 +1,12 @@
-//! Programs of others that tests compare with, and random numbers for their inputs.
+//! Reference programs for comparisons, and random numbers for their inputs.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
 
-/// The program of `tests/oracles/NAME.cpp`, built when it is not yet; none, with a note, where CGAL or a compiler is
-/// missing, unless `ANASTOMESH_REQUIRE_ORACLES` is set.
+/// Program of `tests/oracles/NAME.cpp`, built on demand. `None` with a note without CGAL or a compiler, unless
+/// `ANASTOMESH_REQUIRE_ORACLES` is set.
 pub fn cgal(name: &str) -> Option<PathBuf> {
     static BUILDING: Mutex<()> = Mutex::new(());
     let _building = BUILDING.lock();
@@ -17,7 +17,7 @@ pub fn cgal(name: &str) -> Option<PathBuf> {
         return Some(program);
     }
     let mut compile = Command::new("g++");
-    // Other processes may build it at the same time: it comes into its place whole.
+    // Other processes may build it at the same time, so it is renamed atomically.
     let mine = program.with_extension(std::process::id().to_string());
     compile.args(["-std=c++17", "-O1", "-w", "-o"]).arg(&mine).arg(&source).args(["-lgmp", "-lmpfr"]);
     let built = compile.stderr(Stdio::null()).status().is_ok_and(|status| status.success());
@@ -28,7 +28,7 @@ pub fn cgal(name: &str) -> Option<PathBuf> {
     done.then_some(program)
 }
 
-/// The program `tetgen`; none, with a note, where it is missing, unless `ANASTOMESH_REQUIRE_ORACLES` is set.
+/// Program `tetgen`; `None` with a note if missing, unless `ANASTOMESH_REQUIRE_ORACLES` is set.
 pub fn tetgen() -> Option<PathBuf> {
     let there = Command::new("tetgen").arg("-h").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
     if !there {
@@ -37,12 +37,13 @@ pub fn tetgen() -> Option<PathBuf> {
     there.then(|| PathBuf::from("tetgen"))
 }
 
-fn missing(what: &str) {
+/// Notes a missing program, which skips a comparison. Panics when `ANASTOMESH_REQUIRE_ORACLES` is set.
+pub fn missing(what: &str) {
     assert!(std::env::var_os("ANASTOMESH_REQUIRE_ORACLES").is_none(), "{what}");
     eprintln!("skipped: {what}");
 }
 
-/// What a program prints when it is given this on its standard input.
+/// Output of a program for this standard input.
 pub fn answer(program: &Path, input: String) -> String {
     let mut child =
         Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the oracle runs");
@@ -54,11 +55,11 @@ pub fn answer(program: &Path, input: String) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The generator `SplitMix64`.
+/// `SplitMix64` generator.
 pub struct Random(pub u64);
 
 impl Random {
-    /// The next 64 bits.
+    /// Next 64 bits.
     pub fn word(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -67,13 +68,13 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// In [0, 1).
+    /// Uniform number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.word() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 
-/// A program of `OpenFOAM`; none, with a note, where it is missing, unless `ANASTOMESH_REQUIRE_ORACLES` is set.
+/// Program of `OpenFOAM`; `None` with a note if missing, unless `ANASTOMESH_REQUIRE_ORACLES` is set.
 pub fn openfoam(program: &str) -> Option<Command> {
     let there = |command: &mut Command| command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
     if !there(Command::new(program).arg("-help")) {
@@ -81,7 +82,7 @@ pub fn openfoam(program: &str) -> Option<Command> {
         return None;
     }
     let mut command = Command::new(program);
-    // Debian's finds its own files by this alone.
+    // Debian's version needs this to find its own files.
     let debian = Path::new("/usr/share/openfoam");
     if std::env::var_os("WM_PROJECT_DIR").is_none() && debian.is_dir() {
         command.env("WM_PROJECT_DIR", debian);

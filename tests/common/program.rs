@@ -1,4 +1,4 @@
-//! The program, run as a person runs it, and what it answers.
+//! Runs the program like a user, and reads its output.
 
 use serde_json::Value;
 use std::fs;
@@ -13,12 +13,12 @@ pub const BAD_INPUT: i32 = 3;
 pub const STAGE_FAILED: i32 = 4;
 pub const STOPPED: i32 = 130;
 
-/// The program, with nothing said to it yet.
+/// Command without arguments.
 pub fn program() -> Command {
     Command::new(env!("CARGO_BIN_EXE_anastomesh"))
 }
 
-/// What a verb answers to these paths and options.
+/// Runs a command with these paths and options.
 pub fn run(verb: &str, paths: &[&Path], options: &[&str]) -> Output {
     program().arg(verb).args(paths).args(options).output().expect("the program runs")
 }
@@ -28,12 +28,12 @@ pub fn mesh(network: &Path, out: &Path, options: &[&str]) -> Output {
     run("mesh", &[network, Path::new("--output"), out], options)
 }
 
-/// Fills a surface.
+/// Tetrahedralizes a surface.
 pub fn fill(surface: &Path, out: &Path, options: &[&str]) -> Output {
     run("tetrahedralize", &[surface, Path::new("--output"), out], options)
 }
 
-/// A good vessel, and a fork with a hair so thin that its wall cannot be stored. As VTP: the others keep their radius there.
+/// A good vessel, and a bifurcation with a hair too thin to store its wall. As VTP, so that others keep their radius.
 pub const HOPELESS: &str = r#"<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="6" NumberOfLines="4">
 <CellData><DataArray type="Float64" Name="EdgeRadius" format="ascii">1 1 1 1e-3</DataArray></CellData>
 <Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
@@ -55,7 +55,7 @@ pub fn assert_code(output: &Output, expected: i32) {
     assert_eq!(output.status.code(), Some(expected), "{out}\n{}", stderr(output));
 }
 
-/// Holds the exit code and that the message has these words.
+/// Asserts the exit code and words of the message.
 #[track_caller]
 pub fn assert_says(output: &Output, code: i32, words: &[&str]) {
     assert_code(output, code);
@@ -65,7 +65,7 @@ pub fn assert_says(output: &Output, code: i32, words: &[&str]) {
     }
 }
 
-/// One message, that names the path and holds all of `needles`.
+/// Asserts a single message with the path and all of `needles`.
 #[track_caller]
 pub fn assert_message(output: &Output, path: &Path, needles: &[&str]) {
     let said = stderr(output);
@@ -77,7 +77,7 @@ pub fn assert_message(output: &Output, path: &Path, needles: &[&str]) {
     assert!(output.stdout.is_empty(), "{}", stdout(output));
 }
 
-/// What it prints with `--json`.
+/// Parses the `--json` output.
 #[track_caller]
 pub fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}\n{}", stdout(output), stderr(output)))
@@ -87,7 +87,7 @@ pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 
-/// Names of what lies in a folder.
+/// Names of the files in a folder.
 pub fn entries(folder: &Path) -> Vec<String> {
     let list = fs::read_dir(folder).expect("a folder");
     let mut names: Vec<String> =
@@ -96,7 +96,7 @@ pub fn entries(folder: &Path) -> Vec<String> {
     names
 }
 
-/// `tetrahedralize`, not yet run.
+/// Prepared `tetrahedralize` command.
 pub fn command(input: &Path, out: Option<&Path>, options: &[&str]) -> Command {
     let mut command = program();
     command.arg("tetrahedralize").arg(input);
@@ -107,7 +107,7 @@ pub fn command(input: &Path, out: Option<&Path>, options: &[&str]) -> Command {
     command
 }
 
-/// The report of a run that ends well.
+/// Report of a successful run.
 #[track_caller]
 pub fn report(input: &Path, out: &Path, options: &[&str]) -> Value {
     let mut all = vec!["--json"];

@@ -1,4 +1,4 @@
-//! Surfaces and complexes that tests fill, and files of them.
+//! Surfaces and complexes for tests, and their files.
 
 use anastomesh::Point3;
 use anastomesh::TriMesh;
@@ -8,7 +8,7 @@ use std::fs;
 use std::path::PathBuf;
 use tempfile::TempDir;
 
-/// The quadrilaterals of a box whose corner `i` has x, y, z from the bits of `i`, outwards.
+/// Quadrilaterals of a box, oriented outwards; corner `i` has x, y, z from the bits of `i`.
 pub const SIDES: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
 pub fn corners(low: f64, high: f64) -> Vec<Point3> {
@@ -16,13 +16,13 @@ pub fn corners(low: f64, high: f64) -> Vec<Point3> {
     (0..8).map(|i: usize| Point3::new(end(i & 1), end((i >> 1) & 1), end(i >> 2))).collect()
 }
 
-/// The unit cube.
+/// Unit cube.
 pub fn cube() -> TriMesh {
     let triangles = SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     TriMesh { points: corners(0.0, 1.0), triangles }
 }
 
-/// A sphere of so many rings, as a surface with some more triangles.
+/// Sphere with this number of rings.
 pub fn sphere(rings: u32) -> TriMesh {
     let around = 2 * rings;
     let mut mesh = TriMesh::default();
@@ -60,7 +60,7 @@ pub fn text(folder: &TempDir, name: &str, content: &str) -> PathBuf {
     path
 }
 
-/// Points as a section of TetGen's files, counted from `first`.
+/// Points as a section of TetGen files, counted from `first`.
 pub fn node_list(points: &[Point3], first: usize) -> String {
     let mut out = format!("{} 3 0 0\n", points.len());
     for (i, p) in points.iter().enumerate() {
@@ -69,7 +69,7 @@ pub fn node_list(points: &[Point3], first: usize) -> String {
     out
 }
 
-/// The cube with six square facets, as a `.smesh` counted from 1; facet `i` has the marker 10 + i.
+/// Cube with six square facets as a `.smesh`, counted from 1; facet `i` has marker 10 + i.
 pub fn cube_smesh() -> String {
     let mut out = node_list(&cube().points, 1) + "6 1\n";
     for (i, side) in SIDES.iter().enumerate() {
@@ -79,8 +79,8 @@ pub fn cube_smesh() -> String {
     out + "0\n0\n"
 }
 
-/// A box of 2 × 1 × 1 with a wall across it, in which there is a window with a mullion; regions on both sides, which the
-/// window joins when it is open.
+/// Box of 2 × 1 × 1 with a dividing wall that has a window with a mullion. The regions on both sides are connected if
+/// the window is open.
 pub fn rooms(window_is_open: bool) -> String {
     let mut points = Vec::new();
     for x in [0.0, 1.0, 2.0] {

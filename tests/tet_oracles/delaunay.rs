@@ -1,5 +1,5 @@
-//! Delaunay tetrahedralizations: the set of tetrahedra is CGAL's, also where points are cospherical, for CGAL perturbs
-//! them in the same way. The convex hull has CGAL's and TetGen's volume, and as many faces as TetGen's.
+//! Delaunay tetrahedralizations: the set of tetrahedra equals CGAL's, even for cospherical points, as CGAL uses the
+//! same perturbation. The convex hull has the volume of CGAL's and TetGen's, and TetGen's face count.
 
 use super::oracle::{self, Random};
 use super::{recorded, tetgen};
@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 const FILE: &str = "delaunay.txt";
 const HULLS: &str = "hull.txt";
 
-/// Tetrahedra with ascending vertices, in ascending order, and the volume of all.
+/// Tetrahedra with ascending vertices, in ascending order, and their total volume.
 #[derive(Debug, PartialEq)]
 struct Answer {
     volume: f64,
@@ -47,7 +47,7 @@ impl Answer {
         Some(Self { volume, tets: lines.map(tet).collect() })
     }
 
-    /// Number of tetrahedra and a hash of their vertices (FNV-1a).
+    /// Number of tetrahedra and an FNV-1a hash of their vertices.
     fn digest(&self) -> String {
         let step =
             |h: u64, v: u32| v.to_le_bytes().iter().fold(h, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
@@ -72,7 +72,7 @@ fn compare(case: &str, points: &[Point3]) {
     assert!((ours.volume - volume).abs() <= 1e-12 * volume, "{case}: {} {volume}", ours.volume);
 }
 
-/// Number of triangles and volume of the convex hull, from the tetrahedra in it.
+/// Number of triangles and volume of the convex hull, from its tetrahedra.
 type Hull = (usize, f64);
 
 fn our_hull(points: &[Point3]) -> Hull {
@@ -133,7 +133,7 @@ fn grid(n: i32, step: f64) -> Vec<Point3> {
 fn random_points() {
     compare("cube-30", &random(30, 1, in_cube));
     compare("cube-3000", &random(3000, 2, in_cube));
-    // Flat by ten thousand, and dense by ten thousand round one corner.
+    // Flattened by a factor of ten thousand, and concentrated by that factor around one corner.
     compare("slab-1000", &random(1000, 3, |r| Point3::new(r.unit(), r.unit(), 1e-4 * r.unit())));
     compare("corner-1000", &random(1000, 4, |r| in_cube(r).map(|x| x.powi(8))));
     compare("far-1000", &random(1000, 5, |r| in_cube(r).map(|x| 1e7 + x)));
@@ -165,7 +165,7 @@ fn convex_hulls() {
     compare_hulls("grid-8", &grid(8, 1.0));
 }
 
-/// A whole set as it was recorded, of the smallest case.
+/// A complete recorded set, of the smallest case.
 #[test]
 fn the_set_of_tetrahedra() {
     let points = random(30, 1, in_cube);

@@ -1,4 +1,4 @@
-//! Piecewise linear complexes: volume, faces and regions are TetGen's, which with -Y keeps the facets as they are.
+//! Piecewise linear complexes: volume, faces and regions equal TetGen's, which keeps the facets with -Y.
 
 use super::tetgen::{points_section, volume};
 use super::{recorded, tetgen};
@@ -8,10 +8,10 @@ use std::fmt::Write as _;
 
 const FILE: &str = "plc.txt";
 
-/// What is compared. Tetrahedra are not: there are many ways to fill a complex.
+/// Compared values, without tetrahedra, as a complex can be filled in many ways.
 #[derive(Debug)]
 struct Filled {
-    /// Faces that lie in a facet.
+    /// Number of faces in facets.
     faces: usize,
     regions: usize,
     volume: f64,
@@ -63,7 +63,7 @@ fn add(plc: &mut Plc, points: &[Point3], triangles: &[[u32; 3]]) {
     plc.triangles.extend(triangles.iter().map(|t| t.map(|v| v + first)));
 }
 
-/// A box, twelve triangles.
+/// Box of twelve triangles.
 fn add_box(plc: &mut Plc, low: Point3, size: Vec3) {
     let corner =
         |i: u32| low + Vec3::new(size.x * f64::from(i & 1), size.y * f64::from(i >> 1 & 1), size.z * f64::from(i >> 2));
@@ -72,7 +72,7 @@ fn add_box(plc: &mut Plc, low: Point3, size: Vec3) {
     add(plc, &(0..8).map(corner).collect::<Vec<_>>(), &halves);
 }
 
-/// A torus of `n` × `m` quadrilaterals round an axis, its tube along a unit circle.
+/// Torus of `n` × `m` quadrilaterals around an axis, its tube along a unit circle.
 fn add_torus(plc: &mut Plc, [n, m]: [u32; 2], tube: f64, place: impl Fn(Point3) -> Point3) {
     let turn = |i: u32, n: u32| (f64::from(i) / f64::from(n) * std::f64::consts::TAU).sin_cos();
     let at = |k: u32| {
@@ -85,7 +85,7 @@ fn add_torus(plc: &mut Plc, [n, m]: [u32; 2], tube: f64, place: impl Fn(Point3) 
     add(plc, &(0..n * m).map(at).collect::<Vec<_>>(), &triangles);
 }
 
-/// Boxes in a row that share the walls between them.
+/// Row of boxes with shared walls.
 fn partitioned(cells: u32) -> Plc {
     let mut plc = Plc::default();
     for i in 0..=cells {

@@ -1,5 +1,5 @@
-//! Recorded answers: a line for each case, its name first. With `ANASTOMESH_RECORD_ORACLES` set, tests write what the
-//! programs answer instead of comparing with it.
+//! Recorded answers, one line per case that starts with its name. With `ANASTOMESH_RECORD_ORACLES` set, tests record
+//! the programs' answers instead of comparing them.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -8,19 +8,19 @@ fn path(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/oracle").join(file)
 }
 
-/// Whether answers are to be written.
+/// True in recording mode.
 pub fn recording() -> bool {
     std::env::var_os("ANASTOMESH_RECORD_ORACLES").is_some()
 }
 
-/// The recorded line of a case, without its name.
+/// Recorded line of a case, without its name.
 pub fn line(file: &str, case: &str) -> String {
     let text = std::fs::read_to_string(path(file)).unwrap_or_else(|e| panic!("{file}: {e}"));
     let of_case = |line: &str| line.strip_prefix(case)?.strip_prefix(' ').map(str::to_owned);
     text.lines().find_map(of_case).unwrap_or_else(|| panic!("{file} has no answer for {case}"))
 }
 
-/// Puts a case's line in place of what was recorded.
+/// Replaces the recorded line of a case.
 pub fn record(file: &str, case: &str, line: &str) {
     static WRITING: Mutex<()> = Mutex::new(());
     let _writing = WRITING.lock();

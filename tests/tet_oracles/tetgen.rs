@@ -1,4 +1,4 @@
-//! TetGen, run on a file in a folder of its own.
+//! Runs TetGen on a file in a separate folder.
 
 use super::oracle;
 use anastomesh::{Point3, TetMesh};
@@ -6,17 +6,17 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What TetGen writes.
+/// Output of TetGen.
 pub struct Output {
-    /// The tetrahedra are turned the other way than ours.
+    /// Tetrahedra, with the opposite orientation of ours.
     pub mesh: TetMesh,
     /// Number of faces on the boundary or in facets.
     pub faces: usize,
-    /// Number of different attributes of tetrahedra.
+    /// Number of distinct attributes of tetrahedra.
     pub regions: usize,
 }
 
-/// The output for an input of the kind `poly` or `node`; none where TetGen is missing.
+/// Output for a `poly` or `node` input; `None` without TetGen.
 pub fn run(switches: &str, kind: &str, input: String) -> Option<Output> {
     let program = oracle::tetgen()?;
     let folder = tempfile::tempdir().expect("a folder");
@@ -41,7 +41,7 @@ fn rows(path: &Path) -> Vec<Vec<f64>> {
     lines.map(|l| l.split_whitespace().map(|w| w.parse().expect("a number")).collect()).collect()
 }
 
-/// The section of points that the files begin with.
+/// Point section at the start of the files.
 pub fn points_section(points: &[Point3]) -> String {
     let mut text = format!("{} 3 0 0\n", points.len());
     for (i, p) in points.iter().enumerate() {
@@ -50,7 +50,7 @@ pub fn points_section(points: &[Point3]) -> String {
     text
 }
 
-/// The volume of all tetrahedra, whichever way they are turned.
+/// Total volume of the tetrahedra, for any orientation.
 pub fn volume(mesh: &TetMesh) -> f64 {
     let of_tet = |t: &[u32; 4]| {
         let [a, b, c, d] = t.map(|v| mesh.points[v as usize]);

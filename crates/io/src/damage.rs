@@ -1,9 +1,9 @@
-//! Damage to files, for the tests of readers.
+//! Random file damage, for tests of readers.
 
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// Bytes that are replaced by others, and where the file is cut off.
+/// Replacements of bytes, and an optional truncation.
 #[derive(Clone, Debug)]
 pub(super) struct Damage {
     changes: Vec<(Index, Vec<u8>)>,
@@ -22,7 +22,7 @@ pub(super) fn damage() -> impl Strategy<Value = Damage> {
 }
 
 impl Damage {
-    /// What is left of a file.
+    /// Applies the damage to a file.
     pub(super) fn done_to(&self, bytes: &[u8]) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
         for (at, replacement) in &self.changes {

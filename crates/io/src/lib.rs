@@ -31,3 +31,8 @@ pub use file::{ensure_text_writable, write_bytes, write_text};
 pub use network::{NetworkArray, NetworkFile, NetworkFileError, NetworkOptions, read_network, write_network};
 pub use surface::{SurfaceFileError, read_surface, write_boundary, write_surface};
 pub use volume::{MeshFile, MeshFileError, MeshNotes, read_mesh, write_mesh};
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,8 +1,8 @@
-//! Patches that a file gives a number but no name.
+//! Default names of patches that have only a number in their file.
 
 use anastomesh_mesh::{Patch, WALL};
 
-/// What a patch with this number is called in the meshes of networks.
+/// Default patch name of a number, as in meshes of networks.
 pub(super) fn usual_name(id: i32) -> String {
     match id {
         WALL => "wall".into(),
@@ -12,12 +12,12 @@ pub(super) fn usual_name(id: i32) -> String {
     }
 }
 
-/// The patches of boundary faces, given the number of each, under their usual names.
+/// Patches with default names for the patch numbers of boundary faces.
 pub(super) fn usual_patches(of_faces: &[i32]) -> Vec<Patch> {
     distinct(of_faces.to_vec()).into_iter().map(|id| Patch { id, name: usual_name(id), cap: None }).collect()
 }
 
-/// Numbers, ascending, each once.
+/// Distinct numbers in ascending order.
 pub(super) fn distinct(mut ids: Vec<i32>) -> Vec<i32> {
     ids.sort_unstable();
     ids.dedup();

@@ -1,15 +1,15 @@
-//! Words and numbers of text files, with the line that each stands in.
+//! Parsing of words and numbers in text files, with line numbers.
 
 use anastomesh_mesh::geometry::Point3;
 use std::fmt;
 
-/// Where something stands in a file.
+/// Position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Place {
-    /// In a line, numbered from 1.
+    /// Line number, from 1.
     Line(usize),
-    /// At a byte, numbered from 0.
+    /// Byte offset, from 0.
     Byte(usize),
 }
 
@@ -22,49 +22,49 @@ impl fmt::Display for Place {
     }
 }
 
-/// What can be wrong with the words of a text file. Lines are numbered from 1.
+/// Errors of a text file. Lines are numbered from 1.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TextFault {
-    /// Something else stands where a number has to be.
+    /// A word is not a number.
     #[error("line {line}: '{text}' stands where {what} has to be: correct it")]
     NotANumber {
         line: usize,
-        /// What had to be there.
+        /// Expected item.
         what: &'static str,
-        /// What is there.
+        /// Text found.
         text: String,
     },
-    /// A coordinate is infinite or not a number.
+    /// A coordinate is infinite or NaN.
     #[error("line {line}: {what} is '{text}'; it must be a finite number: correct it")]
     NotFinite {
         line: usize,
-        /// What the number is.
+        /// Name of the number.
         what: &'static str,
-        /// What is there.
+        /// Text found.
         text: String,
     },
-    /// A number is beyond what its place can hold.
+    /// A number is out of range.
     #[error("line {line}: {what} is {value}, which is too small or too large: correct it")]
     OutOfRange {
         line: usize,
-        /// What the number is.
+        /// Name of the number.
         what: &'static str,
-        /// The number.
+        /// Value found.
         value: i64,
     },
-    /// A count says more than the rest of the file can hold.
+    /// A count exceeds the rest of the file.
     #[error(
         "line {line}: {what} is {count}, more than the rest of the file can hold; \
          correct it, or write or copy the file again if it is cut short"
     )]
     CountTooLarge {
         line: usize,
-        /// What is counted.
+        /// Counted item.
         what: &'static str,
         count: i64,
     },
-    /// A line ends before everything is in it.
+    /// A line ends before it is complete.
     #[error("line {line} ends before {missing}: complete it")]
     LineTooShort { line: usize, missing: &'static str },
     /// The file ends before it is complete.
@@ -72,48 +72,48 @@ pub enum TextFault {
         "line {line}: the file ends before {missing}: a count in it is wrong, or it was not written or copied completely"
     )]
     CutShort {
-        /// The last line.
+        /// Last line.
         line: usize,
         missing: &'static str,
     },
-    /// There is more in the file than it says.
+    /// The file has more data than announced.
     #[error("line {line} lies behind all that the counts of the file announce: correct the counts or remove it")]
     Surplus { line: usize },
 }
 
-/// A place in a text.
+/// Cursor over the words of a text.
 #[derive(Clone, Debug)]
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
     at: usize,
     line: usize,
-    /// Whether `#` begins a comment.
+    /// True if `#` starts a comment.
     comments: bool,
 }
 
 impl<'a> Words<'a> {
-    /// The beginning of a text; a byte order mark is passed over.
+    /// Starts at the beginning of a text, after an optional byte order mark.
     pub(super) fn new(bytes: &'a [u8], comments: bool) -> Self {
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         Self { bytes, at: 0, line: 1, comments }
     }
 
-    /// A text that begins at a line of a longer one.
+    /// Starts at a given line of a longer text.
     pub(super) fn from_line(bytes: &'a [u8], line: usize) -> Self {
         Self { bytes, at: 0, line, comments: false }
     }
 
-    /// The line of the word that was read last.
+    /// Line of the last word read.
     pub(super) fn line(&self) -> usize {
         self.line
     }
 
-    /// How many bytes are left.
+    /// Number of remaining bytes.
     pub(super) fn rest(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    /// Passes over blanks and a comment, up to the end of the line.
+    /// Skips spaces and a comment up to the end of the line.
     fn skip_blanks(&mut self) {
         while let Some(&byte) = self.bytes.get(self.at) {
             if self.comments && byte == b'#' {
@@ -128,7 +128,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The next word of this line.
+    /// Takes the next word of the line.
     pub(super) fn word_here(&mut self) -> Option<&'a [u8]> {
         self.skip_blanks();
         let rest = &self.bytes[self.at..];
@@ -138,7 +138,7 @@ impl<'a> Words<'a> {
         (length > 0).then(|| &rest[..length])
     }
 
-    /// The next word, in this line or below.
+    /// Takes the next word of this or a later line.
     pub(super) fn word(&mut self) -> Option<&'a [u8]> {
         loop {
             if let Some(word) = self.word_here() {
@@ -150,7 +150,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Moves behind the end of the line; false at the end of the file.
+    /// Moves past the end of the line; returns false at the end of the file.
     fn newline(&mut self) -> bool {
         self.skip_blanks();
         let there = self.at < self.bytes.len();
@@ -161,28 +161,28 @@ impl<'a> Words<'a> {
         there
     }
 
-    /// Passes over the rest of the line.
+    /// Skips the rest of the line.
     pub(super) fn skip_line(&mut self) {
         while self.word_here().is_some() {}
         self.newline();
     }
 
-    /// The next word without moving to it.
+    /// Returns the next word without moving.
     pub(super) fn peek(&self) -> Option<&'a [u8]> {
         self.clone().word()
     }
 
-    /// Nothing may follow.
+    /// Checks that no word follows.
     pub(super) fn expect_end(&mut self) -> Result<(), TextFault> {
         if self.word().is_some() { Err(TextFault::Surplus { line: self.line }) } else { Ok(()) }
     }
 
-    /// The next word, which has to exist.
+    /// Takes the next word, which is required.
     pub(super) fn need(&mut self, what: &'static str) -> Result<&'a [u8], TextFault> {
         self.word().ok_or(TextFault::CutShort { line: self.line, missing: what })
     }
 
-    /// The next word of this line, which has to exist.
+    /// Takes the next word of the line, which is required.
     pub(super) fn need_here(&mut self, what: &'static str) -> Result<&'a [u8], TextFault> {
         match self.word_here() {
             Some(word) => Ok(word),
@@ -191,12 +191,12 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// What a word is as a number.
+    /// Parses a word as a number.
     pub(super) fn as_float(&self, word: &[u8], what: &'static str) -> Result<f64, TextFault> {
         std::str::from_utf8(word).ok().and_then(|w| w.parse().ok()).ok_or_else(|| self.not_a_number(word, what))
     }
 
-    /// What a word is as a finite number.
+    /// Parses a word as a finite number.
     pub(super) fn as_finite(&self, word: &[u8], what: &'static str) -> Result<f64, TextFault> {
         let value = self.as_float(word, what)?;
         if value.is_finite() {
@@ -205,7 +205,7 @@ impl<'a> Words<'a> {
         Err(TextFault::NotFinite { line: self.line, what, text: shown(word) })
     }
 
-    /// What a word is as an integer; some programs write `1.0`.
+    /// Parses a word as an integer; some programs write `1.0`.
     pub(super) fn as_integer(&self, word: &[u8], what: &'static str) -> Result<i64, TextFault> {
         if let Some(value) = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok()) {
             return Ok(value);
@@ -215,7 +215,7 @@ impl<'a> Words<'a> {
         if integral { Ok(value as i64) } else { Err(self.not_a_number(word, what)) }
     }
 
-    /// The word as a marker or label.
+    /// Parses a word as a marker or label.
     pub(super) fn as_marker(&self, word: &[u8], what: &'static str) -> Result<i32, TextFault> {
         let value = self.as_integer(word, what)?;
         i32::try_from(value).map_err(|_| TextFault::OutOfRange { line: self.line, what, value })
@@ -225,46 +225,46 @@ impl<'a> Words<'a> {
         TextFault::NotANumber { line: self.line, what, text: shown(word) }
     }
 
-    /// The next number of this line.
+    /// Takes the next number of the line.
     pub(super) fn float_here(&mut self, what: &'static str) -> Result<f64, TextFault> {
         let word = self.need_here(what)?;
         self.as_float(word, what)
     }
 
-    /// The next finite number of this line.
+    /// Takes the next finite number of the line.
     pub(super) fn finite_here(&mut self, what: &'static str) -> Result<f64, TextFault> {
         let word = self.need_here(what)?;
         self.as_finite(word, what)
     }
 
-    /// The next word of this line as a marker or label.
+    /// Takes the next marker or label of the line.
     pub(super) fn marker_here(&mut self, what: &'static str) -> Result<i32, TextFault> {
         let word = self.need_here(what)?;
         self.as_marker(word, what)
     }
 
-    /// The next word of this line as a count, as in [`Self::count`]; 0 at the end of the line.
+    /// Takes the next count of the line, as in [`Self::count`]; 0 at the end of the line.
     pub(super) fn count_here(&mut self, what: &'static str, least: usize) -> Result<usize, TextFault> {
         self.word_here().map_or(Ok(0), |word| self.as_count(word, what, least))
     }
 
-    /// The next word of this line as a number that says whether there is something; no at the end of the line.
+    /// Takes the next flag of the line; false at the end of the line.
     pub(super) fn flag_here(&mut self, what: &'static str) -> Result<bool, TextFault> {
         self.word_here().map_or(Ok(false), |word| Ok(self.as_integer(word, what)? != 0))
     }
 
-    /// The next number, in this line or below.
+    /// Takes the next number of this or a later line.
     pub(super) fn finite(&mut self, what: &'static str) -> Result<f64, TextFault> {
         let word = self.need(what)?;
         self.as_finite(word, what)
     }
 
-    /// The next three numbers.
+    /// Takes the next three numbers.
     pub(super) fn point(&mut self) -> Result<Point3, TextFault> {
         Ok(Point3::new(self.finite("coordinate x")?, self.finite("coordinate y")?, self.finite("coordinate z")?))
     }
 
-    /// The next three numbers of this line.
+    /// Takes the next three numbers of the line.
     pub(super) fn point_here(&mut self) -> Result<Point3, TextFault> {
         let mut point = Point3::origin();
         for (axis, what) in ["coordinate x", "coordinate y", "coordinate z"].into_iter().enumerate() {
@@ -273,26 +273,26 @@ impl<'a> Words<'a> {
         Ok(point)
     }
 
-    /// The next integer, in this line or below.
+    /// Takes the next integer of this or a later line.
     pub(super) fn integer(&mut self, what: &'static str) -> Result<i64, TextFault> {
         let word = self.need(what)?;
         self.as_integer(word, what)
     }
 
-    /// The next word as a count of things that take at least `least` bytes each: never more than the file can hold.
+    /// Takes the count of items with at least `least` bytes each. The count never exceeds the rest of the file.
     pub(super) fn count(&mut self, what: &'static str, least: usize) -> Result<usize, TextFault> {
         let word = self.need(what)?;
         self.as_count(word, what, least)
     }
 
-    /// A word as a count of things that take at least `least` bytes each.
+    /// Parses a word as the count of items with at least `least` bytes each.
     fn as_count(&self, word: &[u8], what: &'static str, least: usize) -> Result<usize, TextFault> {
         let count = self.as_integer(word, what)?;
         let line = self.line;
         if count < 0 {
             return Err(TextFault::OutOfRange { line, what, value: count });
         }
-        // The last thing needs no separator behind it; ids are u32.
+        // The last item needs no separator; ids are u32.
         let most = ((self.bytes.len() - self.at + 1) / least.max(1)).min(u32::MAX as usize - 1);
         if count as u64 > most as u64 {
             return Err(TextFault::CountTooLarge { line, what, count });
@@ -301,13 +301,13 @@ impl<'a> Words<'a> {
     }
 }
 
-/// The index of what is numbered from `first` on, if there are so many.
+/// Zero-based index of a number that counts from `first`, if it is below `count`.
 pub(super) fn from_first(number: i64, first: u32, count: usize) -> Option<u32> {
     let index = number.checked_sub(first.into()).and_then(|index| usize::try_from(index).ok());
     index.filter(|&index| index < count).map(|index| index as u32)
 }
 
-/// The beginning of a word, for a message.
+/// Start of a word, for a message.
 pub(super) fn shown(word: &[u8]) -> String {
     String::from_utf8_lossy(word).chars().take(40).collect()
 }

@@ -1,13 +1,13 @@
-//! Who is next to whom: face neighbours of tetrahedra, the boundary, edge neighbours of triangles, and what lies around
-//! a vertex. Flat arrays of `u32`; a counting sort by the smallest vertex stands in for a hash table.
+//! Adjacency: face neighbours of tetrahedra, the boundary, edge neighbours of triangles, and cells and vertices around
+//! a vertex. Flat arrays of `u32`; a counting sort by the smallest vertex replaces a hash table.
 
 use super::TET_FACES;
 use super::face_key;
 
-/// Stands for "nothing there" in neighbour arrays.
+/// Marks a missing neighbour.
 pub const NONE: u32 = u32::MAX;
 
-/// What lies around each of `n` items: the entries of item `i` are `items[offsets[i]..offsets[i + 1]]`, ascending.
+/// Items around each of `n` others: the entries of item `i` are `items[offsets[i]..offsets[i + 1]]`, ascending.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Incidence {
     offsets: Vec<u32>,
@@ -15,7 +15,7 @@ pub struct Incidence {
 }
 
 impl Incidence {
-    /// For each of `vertices` vertices, the cells (rows of `cells`) that contain it, in ascending order.
+    /// Cells (rows of `cells`) at each of `vertices` vertices, in ascending order.
     pub fn of_cells<const N: usize>(cells: &[[u32; N]], vertices: usize) -> Self {
         let mut offsets = vec![0_u32; vertices + 1];
         for &v in cells.iter().flatten() {
@@ -37,7 +37,7 @@ impl Incidence {
         Self { offsets, items }
     }
 
-    /// For each vertex, the vertices that share a cell with it, each once, in ascending order.
+    /// Distinct vertices that share a cell with each vertex, in ascending order.
     pub fn of_vertices<const N: usize>(cells: &[[u32; N]], vertices: usize) -> Self {
         let around = Self::of_cells(cells, vertices);
         let mut offsets = Vec::with_capacity(vertices + 1);
@@ -56,7 +56,7 @@ impl Incidence {
         Self { offsets, items }
     }
 
-    /// The entries of item `i`.
+    /// Entries of item `i`.
     #[inline]
     pub fn get(&self, i: u32) -> &[u32] {
         &self.items[self.offsets[i as usize] as usize..self.offsets[i as usize + 1] as usize]
@@ -66,10 +66,10 @@ impl Incidence {
 /// Sides of cells matched in pairs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matching<const SIDES: usize> {
-    /// For side `i` of a cell: `SIDES · neighbour + its side`, or `NONE` where no other cell has the side. Sides that
-    /// more than two cells have are `NONE` too and listed in `crowded`.
+    /// Neighbour of side `i` of a cell: `SIDES · neighbour + its side`, or `NONE` if no other cell has the side. Sides
+    /// of more than two cells are `NONE`, too, and listed in `crowded`.
     pub neighbors: Vec<[u32; SIDES]>,
-    /// Every side (`SIDES · cell + side`) that more than two cells have, in ascending order.
+    /// Sides (`SIDES · cell + side`) of more than two cells, in ascending order.
     pub crowded: Vec<u32>,
 }
 
@@ -79,7 +79,7 @@ pub type TetAdjacency = Matching<4>;
 /// Edge neighbours of triangles; edge `i` runs from vertex `i` to vertex `i + 1`.
 pub type TriAdjacency = Matching<3>;
 
-/// Matches the faces of tetrahedra over `vertices` vertices. Linear time, 24 bytes per face at the peak.
+/// Matches the faces of tetrahedra over `vertices` vertices. Linear time, at most 24 bytes per face.
 pub fn tet_adjacency(tets: &[[u32; 4]], vertices: usize) -> TetAdjacency {
     let numbered = is_scattered(tets, vertices).then(|| numbered_as_met(tets, vertices));
     let tets = numbered.as_deref().unwrap_or(tets);
@@ -90,7 +90,7 @@ pub fn tet_adjacency(tets: &[[u32; 4]], vertices: usize) -> TetAdjacency {
     })
 }
 
-/// Whether cells that follow each other have vertices with numbers far apart, going by a thousand of them.
+/// True if consecutive cells have distant vertex numbers, estimated from about 1000 samples.
 fn is_scattered(cells: &[[u32; 4]], vertices: usize) -> bool {
     const SAMPLE: usize = 1024;
     let pairs = || cells.windows(2).step_by((cells.len() / SAMPLE).max(1));
@@ -98,8 +98,7 @@ fn is_scattered(cells: &[[u32; 4]], vertices: usize) -> bool {
     apart / pairs().count().max(1) > (vertices / 32).max(SAMPLE)
 }
 
-/// The same cells, their vertices numbered in the order in which they come. Where numbers had nothing to do with place,
-/// all that looks up what belongs to a vertex is several times faster then.
+/// Copies cells with vertices numbered by first occurrence. Access is several times faster than with scattered numbers.
 fn numbered_as_met(cells: &[[u32; 4]], vertices: usize) -> Vec<[u32; 4]> {
     let mut number = vec![NONE; vertices];
     let mut met = 0;
@@ -155,10 +154,10 @@ fn match_sides<const SIDES: usize>(cells: usize, vertices: usize, key: impl Fn(u
     matching
 }
 
-/// The sides met so far that have the same smallest vertex, chained by their middle vertex: few have that in common.
+/// Sides met so far with a common smallest vertex, chained by their middle vertex, which few share.
 struct Bucket {
     sides: Vec<Side>,
-    /// For each vertex the newest side whose middle vertex it is.
+    /// Newest side with each vertex as middle vertex.
     newest: Vec<u32>,
 }
 
@@ -166,12 +165,12 @@ struct Side {
     middle: u32,
     last: u32,
     handle: u32,
-    /// The side before this one in its chain.
+    /// Preceding side in its chain.
     older: u32,
 }
 
 impl Bucket {
-    /// Adds a side and links it to the equal one met before, if there is one; lists what more than two cells have.
+    /// Adds a side and links it to an equal one met before; lists sides of more than two cells.
     fn link<const SIDES: usize>(&mut self, middle: u32, last: u32, handle: u32, matching: &mut Matching<SIDES>) {
         let older = self.newest[middle as usize];
         let (mut equal, mut count) = ([NONE; 2], 0);
@@ -211,7 +210,7 @@ impl Bucket {
 }
 
 impl TetAdjacency {
-    /// The faces (`4 · tet + face`) that only one tetrahedron has, in ascending order.
+    /// Faces (`4 · tet + face`) of only one tetrahedron, in ascending order.
     pub fn boundary(&self) -> impl Iterator<Item = u32> {
         let open = self.neighbors.iter().flatten().enumerate().filter(|&(_, &n)| n == NONE);
         open.map(|(handle, _)| handle as u32).filter(|handle| self.crowded.binary_search(handle).is_err())
@@ -224,13 +223,13 @@ pub fn face_vertices(tets: &[[u32; 4]], handle: u32) -> [u32; 3] {
     TET_FACES[(handle & 3) as usize].map(|i| tets[(handle >> 2) as usize][i])
 }
 
-/// The boundary faces of a mesh, oriented outwards, in ascending order of tetrahedron and face.
+/// Boundary faces of a mesh, oriented outwards, in ascending order of tetrahedron and face.
 pub fn boundary_faces(mesh: &super::TetMesh) -> Vec<[u32; 3]> {
     let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
     adjacency.boundary().map(|handle| face_vertices(&mesh.tets, handle)).collect()
 }
 
-/// For each of `vertices` vertices, whether one of `faces` has it.
+/// True for each of `vertices` vertices that occurs in `faces`.
 pub fn vertices_of<const N: usize>(faces: &[[u32; N]], vertices: usize) -> Vec<bool> {
     let mut on = vec![false; vertices];
     for &v in faces.iter().flatten() {
@@ -311,7 +310,7 @@ mod tests {
     }
 
     proptest! {
-        /// On arbitrary cells (manifold or not) the matching agrees with a map from faces to their cells.
+        /// On arbitrary cells (manifold or not), the matching agrees with a map from faces to their cells.
         #[test]
         fn matching_agrees_with_a_map(tets in prop::collection::vec(prop::sample::subsequence((0..9_u32).collect::<Vec<_>>(), 4), 1..30)) {
             let tets: Vec<[u32; 4]> = tets.iter().map(|t| [t[0], t[1], t[2], t[3]]).collect();

@@ -1,4 +1,4 @@
-//! Values beside a mesh: what is known at its points and in its cells, made when it is asked for.
+//! Values at the points and in the cells of a mesh, computed on demand.
 
 use crate::geometry::Point3;
 
@@ -6,23 +6,23 @@ use crate::geometry::Point3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
     pub name: &'static str,
-    /// Whether there is a value for each point, or else for each cell.
+    /// True for values at points, false for values in cells.
     pub at_points: bool,
-    /// Whether values are whole numbers, within 32 bits.
+    /// True for integer values within 32 bits.
     pub is_integer: bool,
 }
 
-/// Values that follow from where points and cells are.
+/// Values computed from the positions of points and cells.
 pub trait Beside: Sync {
-    /// What there is.
+    /// Available columns.
     fn columns(&self) -> &[Column];
 
-    /// A column of points: the values at these.
+    /// Values of a point column at these points.
     fn at_points(&self, column: usize, points: &[Point3]) -> Vec<f64>;
 
-    /// A column of cells: the values in these tetrahedra.
+    /// Values of a cell column in these tetrahedra.
     fn in_tets(&self, column: usize, tets: &[[Point3; 4]]) -> Vec<f64>;
 
-    /// A column of cells: the values in these faces.
+    /// Values of a cell column in these faces.
     fn in_faces(&self, column: usize, faces: &[[Point3; 3]]) -> Vec<f64>;
 }

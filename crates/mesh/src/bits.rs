@@ -1,18 +1,19 @@
-//! Sets of points of a mesh, a bit for each point.
+//! Bit sets of mesh points.
 
-/// A set of points: a bit for each.
+/// Set of points, one bit each.
 pub struct Bits {
     words: Vec<u64>,
     points: usize,
 }
 
 impl Bits {
-    /// An empty set of points below `points`.
+    /// Creates an empty set of points below `points`.
     pub fn new(points: usize) -> Self {
         Self { words: vec![0; points.div_ceil(64)], points }
     }
 
-    /// Puts a point in; false when there is no such point.
+    /// Inserts a point. Returns false if the point does not exist.
+    #[inline]
     pub fn insert(&mut self, v: u32) -> bool {
         let there = (v as usize) < self.points;
         if let Some(word) = self.words.get_mut(v as usize / 64).filter(|_| there) {
@@ -21,22 +22,23 @@ impl Bits {
         there
     }
 
-    /// Whether a point is in it.
+    /// True if the set contains a point.
+    #[inline]
     pub fn has(&self, v: u32) -> bool {
         self.words.get(v as usize / 64).is_some_and(|word| word >> (v % 64) & 1 == 1)
     }
 
-    /// How many points are in it.
+    /// Number of points in the set.
     pub fn count(&self) -> usize {
         self.words.iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// Takes all points out.
+    /// Removes all points.
     pub fn clear(&mut self) {
         self.words.fill(0);
     }
 
-    /// Puts in what is not in, and takes out what is.
+    /// Replaces the set by its complement.
     pub fn invert(&mut self) {
         self.words.iter_mut().for_each(|word| *word = !*word);
         if let Some(last) = self.words.last_mut().filter(|_| !self.points.is_multiple_of(64)) {
@@ -44,12 +46,12 @@ impl Bits {
         }
     }
 
-    /// Puts in all points of a set of the same size.
+    /// Adds all points of a set of the same size.
     pub fn unite(&mut self, other: &Self) {
         self.words.iter_mut().zip(&other.words).for_each(|(word, more)| *word |= more);
     }
 
-    /// The points in it, ascending.
+    /// Points of the set, ascending.
     pub fn ids(&self) -> Vec<u32> {
         let mut ids = Vec::with_capacity(self.count());
         for (i, &word) in self.words.iter().enumerate() {
@@ -62,7 +64,7 @@ impl Bits {
         ids
     }
 
-    /// How many points of the set come before those of each word.
+    /// Number of points of the set before each word.
     pub fn ranks(&self) -> Ranks<'_> {
         let mut sum = 0;
         let before = self.words.iter().map(|word| {
@@ -80,7 +82,8 @@ pub struct Ranks<'a> {
 }
 
 impl Ranks<'_> {
-    /// How many points of the set are below `v`: the index of `v` when it is in the set.
+    /// Number of points of the set below `v`, which is the index of a point in the set.
+    #[inline]
     pub fn rank(&self, v: u32) -> u32 {
         let (word, bit) = (v as usize / 64, v % 64);
         let here = self.words.get(word).map_or(0, |word| (word & ((1 << bit) - 1)).count_ones());

@@ -1,4 +1,4 @@
-//! The boundary of a mesh as a surface of its own, in passes: its points are numbered anew, all others left out.
+//! Boundary of a mesh as a separate surface, read in passes: its points are renumbered, all others left out.
 
 use super::bits::Bits;
 use super::source::{FacePiece, MeshSource, SourceCounts};
@@ -6,10 +6,10 @@ use super::{TriMesh, WALL};
 use crate::geometry::Point3;
 use std::io;
 
-/// Which faces of a boundary are meant.
+/// Part of a boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BoundaryPart {
-    /// All: the surface is closed.
+    /// All faces: the surface is closed.
     #[default]
     Whole,
     /// The wall alone: the surface is open at inlets and outlets.
@@ -22,7 +22,7 @@ impl BoundaryPart {
     }
 }
 
-/// The boundary of a mesh. Nothing but a bit for each point is held.
+/// Boundary of a mesh. Stores only one bit per point.
 pub struct BoundarySurface<'a> {
     mesh: &'a dyn MeshSource,
     part: BoundaryPart,
@@ -32,10 +32,10 @@ pub struct BoundarySurface<'a> {
 }
 
 impl<'a> BoundarySurface<'a> {
-    /// Counts it, in one pass over the boundary.
+    /// Counts its points and faces in one pass over the boundary.
     ///
     /// # Errors
-    /// What reading the mesh fails with; `InvalidData` when a face names a point that does not exist.
+    /// Errors of reading the mesh; `InvalidData` if a face refers to a missing point.
     pub fn new(mesh: &'a dyn MeshSource, part: BoundaryPart) -> io::Result<Self> {
         let (mut used, mut triangles) = (Bits::new(mesh.counts().points), 0);
         mesh.each_faces(|piece| {
@@ -53,20 +53,20 @@ impl<'a> BoundarySurface<'a> {
         Ok(Self { mesh, part, points: used.count(), used, triangles })
     }
 
-    /// The mesh that this is the boundary of.
+    /// Mesh with this boundary.
     pub fn mesh(&self) -> &'a dyn MeshSource {
         self.mesh
     }
 
-    /// How many points and faces there are; no tetrahedra.
+    /// Number of points and faces; no tetrahedra.
     pub fn counts(&self) -> SourceCounts {
         SourceCounts { points: self.points, tets: 0, boundary: self.triangles }
     }
 
-    /// Gives its points.
+    /// Passes on its points.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_points(&self, mut each: impl FnMut(&[Point3]) -> io::Result<()>) -> io::Result<()> {
         let mut before = 0;
         self.mesh.each_points(|points| {
@@ -76,10 +76,10 @@ impl<'a> BoundarySurface<'a> {
         })
     }
 
-    /// Gives its faces, in the numbers of its own points.
+    /// Passes on its faces, with its own point numbers.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_faces(&self, mut each: impl FnMut(&FacePiece) -> io::Result<()>) -> io::Result<()> {
         let ranks = self.used.ranks();
         self.mesh.each_faces(|piece| {
@@ -89,10 +89,10 @@ impl<'a> BoundarySurface<'a> {
         })
     }
 
-    /// Gives the corners of its faces.
+    /// Passes on the corners of its faces.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_corners(&self, mut each: impl FnMut(&[[Point3; 3]]) -> io::Result<()>) -> io::Result<()> {
         let read = |part| {
             let piece = self.mesh.boundary(part)?;
@@ -102,10 +102,10 @@ impl<'a> BoundarySurface<'a> {
         self.mesh.in_order(expected, read, |(count, _)| *count, |(_, corners)| each(corners))
     }
 
-    /// Puts it together in memory.
+    /// Loads the surface into memory.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     pub fn gather(&self) -> io::Result<TriMesh> {
         let mut mesh = TriMesh::default();
         self.each_points(|points| {
@@ -120,7 +120,7 @@ impl<'a> BoundarySurface<'a> {
     }
 }
 
-/// The faces of a piece that are meant, their patches and blocks.
+/// Chosen faces of a piece, with their patches and blocks.
 fn chosen(piece: &FacePiece, part: BoundaryPart) -> (Vec<[u32; 3]>, [Vec<i32>; 2]) {
     let at = |values: &[i32], i: usize| values.get(i).copied().unwrap_or(0);
     let mut out = (Vec::with_capacity(piece.faces.len()), [const { Vec::new() }; 2]);

@@ -1,22 +1,22 @@
-//! Bounds on the size and shape of tetrahedra: what can be asked of a mesh.
+//! Bounds on the size and shape of tetrahedra.
 
-/// The dihedral angle of the regular tetrahedron in degrees, acos(1/3): no tetrahedron's smallest is larger, so that bounds on
-/// the smallest have to be below.
+/// Dihedral angle of the regular tetrahedron in degrees, acos(1/3). No tetrahedron has a larger minimum, so bounds on
+/// the minimum must be below.
 pub const REGULAR_DIHEDRAL: f64 = 70.528_779_365_509_31;
 
-/// Bounds that all tetrahedra of a mesh are to keep; those that are none hold nothing back.
+/// Bounds for all tetrahedra of a mesh; `None` is no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Bounds {
-    /// Bound on the circumradius over the shortest edge.
+    /// Maximum circumradius over shortest edge.
     pub max_radius_edge: Option<f64>,
-    /// Bound on the smallest dihedral angle, in degrees, below `REGULAR_DIHEDRAL`.
+    /// Minimum dihedral angle, in degrees, below `REGULAR_DIHEDRAL`.
     pub min_dihedral: Option<f64>,
-    /// Bound on the volume.
+    /// Maximum volume.
     pub max_volume: Option<f64>,
 }
 
 impl Bounds {
-    /// The name and value of the first bound that no mesh can keep.
+    /// Name and value of the first bound that no mesh can meet.
     pub fn senseless(&self) -> Option<(&'static str, f64)> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let angle = |x: f64| (0.0..REGULAR_DIHEDRAL).contains(&x);

@@ -1,4 +1,4 @@
-//! Dihedral angles of a mesh of any size, in a histogram.
+//! Histogram of the dihedral angles of a mesh of any size.
 
 use super::quality::dihedral_angles;
 use super::source::MeshSource;
@@ -8,10 +8,10 @@ use std::io;
 
 /// Bins over 0 to 180 degrees.
 const BINS: usize = 36;
-/// Tetrahedra that are looked at, about: more do not change what is seen.
+/// Approximate number of tetrahedra sampled. More do not change the histogram visibly.
 const ENOUGH: usize = 2_000_000;
 
-/// How often dihedral angles occur. Of very large meshes parts are looked at, evenly over the mesh.
+/// Histogram of dihedral angles. Very large meshes are sampled by evenly spaced parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DihedralHistogram([u64; BINS]);
 
@@ -19,7 +19,7 @@ impl DihedralHistogram {
     /// Measures a mesh.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     pub fn of(mesh: &dyn MeshSource) -> io::Result<Self> {
         let stride = mesh.counts().tets.div_ceil(ENOUGH).clamp(1, mesh.parts().max(1) as usize);
         let parts: Vec<u32> = (0..mesh.parts()).step_by(stride).collect();
@@ -30,10 +30,10 @@ impl DihedralHistogram {
         counts.try_reduce(|| [0; BINS], |a, b| Ok(add(a, &b))).map(Self)
     }
 
-    /// Degrees that a bin holds.
+    /// Width of a bin in degrees.
     pub const WIDTH: f64 = 180.0 / BINS as f64;
 
-    /// How many angles are in each bin.
+    /// Number of angles in each bin.
     pub fn counts(&self) -> &[u64] {
         &self.0
     }

@@ -1,6 +1,6 @@
-//! All faces of a mesh that is read in parts: between which two tetrahedra each of them lies, or on which patch.
+//! All faces of a mesh that is read in parts, with the two tetrahedra of each, or its patch.
 //!
-//! Faces inside a part are paired when the part is read. Held are those between parts alone: some 50 bytes for each.
+//! Faces inside a part are paired when the part is read. Only faces between parts are stored: about 50 bytes each.
 
 use super::source::{FacePiece, MeshSource, miscounted};
 use super::{TET_FACES, face_key};
@@ -11,14 +11,14 @@ use std::io;
 pub struct InnerFace {
     /// The tetrahedra by their numbers in the whole mesh, the lower first.
     pub tets: [u32; 2],
-    /// Vertices; seen from the second tetrahedron they run counter-clockwise.
+    /// Vertices, counter-clockwise seen from the second tetrahedron.
     pub vertices: [u32; 3],
 }
 
 /// A face of the boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct OuterFace {
-    /// The tetrahedron under it, by its number in the whole mesh.
+    /// Its tetrahedron, by its number in the whole mesh.
     pub tet: u32,
     /// Its patch.
     pub patch: i32,
@@ -26,63 +26,63 @@ pub struct OuterFace {
     pub vertices: [u32; 3],
 }
 
-/// The faces that are numbered with a part.
+/// Faces numbered with a part.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PartFaces {
-    /// Those whose lower tetrahedron is in the part, ascending by their tetrahedra.
+    /// Faces with their lower tetrahedron in the part, ascending by tetrahedra.
     pub inner: Vec<InnerFace>,
-    /// Those of the boundary under which there is a tetrahedron of the part, ascending by it.
+    /// Boundary faces with their tetrahedron in the part, ascending by tetrahedron.
     pub outer: Vec<OuterFace>,
 }
 
-/// What gives the faces of each part of a mesh.
+/// Source of the faces of each part of a mesh.
 pub struct Faces<'a> {
     mesh: &'a dyn MeshSource,
     /// Number of the first tetrahedron of each part.
     first: Vec<u32>,
-    /// What faces lie on that are no pair within a part, by tetrahedron and vertices.
+    /// Opposite sides of faces that are no pair within a part, by tetrahedron and vertices.
     known: Vec<(u32, [u32; 3], Side)>,
 }
 
-/// What is on the other side of a face.
+/// Opposite side of a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Side {
     Tet(u32),
     Patch(i32),
 }
 
-/// A face that a part cannot place: by its vertices in ascending order, and what is on one of its sides.
+/// A face not paired within its part: its vertices in ascending order, and one of its sides.
 type Loose = ([u32; 3], Side);
 
-/// What a part says of its faces, its tetrahedra counted from 0.
+/// Faces of a part, with tetrahedra counted from 0.
 #[derive(Default)]
 struct Sorted {
     tets: Vec<[u32; 4]>,
-    /// Handles of faces between two tetrahedra: four times the tetrahedron, and the face.
+    /// Handles of faces between two tetrahedra: four times the tetrahedron, plus the face.
     pairs: Vec<[u32; 2]>,
     /// Handles of boundary faces, with their patches.
     labelled: Vec<(u32, i32)>,
-    /// Handles of faces that are neither.
+    /// Handles of other faces.
     open: Vec<u32>,
     /// Labels of the part without a face in it.
     strays: Vec<Loose>,
 }
 
 impl<'a> Faces<'a> {
-    /// Looks for the faces that parts have in common: reads tetrahedra and boundary once.
+    /// Finds the faces between parts: reads tetrahedra and boundary once.
     ///
     /// # Errors
-    /// What reading the mesh fails with; `InvalidData` where a face has more than two sides, or one side and no patch.
+    /// Errors of reading the mesh; `InvalidData` if a face has more than two sides, or one side and no patch.
     pub fn of(mesh: &'a dyn MeshSource) -> io::Result<Self> {
         Self::look(mesh, |sorted| (sorted.loose(), ()), |_, ()| Ok(()))
     }
 
-    /// Gives the faces of the boundary that parts have labels for themselves, in order, reading tetrahedra and boundary once.
-    /// Whether these are all: some labels may be in another part than their face.
+    /// Passes on the boundary faces labelled in their own part, in order, reading tetrahedra and boundary once. Returns
+    /// true if these are all: some labels may be in another part than their face.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with; `InvalidData` as [`of`](Self::of), and when the mesh does not hold as much
-    /// as it says.
+    /// Errors of reading the mesh or of `each`; `InvalidData` as [`of`](Self::of), and if the mesh contradicts its
+    /// counts.
     pub fn each_own(
         mesh: &'a dyn MeshSource,
         mut each: impl FnMut(&[OuterFace]) -> io::Result<()>,
@@ -95,7 +95,7 @@ impl<'a> Faces<'a> {
             |first, (pairs, mut faces)| {
                 inner += pairs;
                 outer += faces.len();
-                // Whoever writes has said how many there are before they come.
+                // Writers have announced the number of faces before.
                 if outer > counts.boundary {
                     return Err(miscounted());
                 }
@@ -113,8 +113,8 @@ impl<'a> Faces<'a> {
         Ok(apart == 0)
     }
 
-    /// Reads all parts for what they cannot place, and `each` is given the number of the first tetrahedron of each part and
-    /// what `take` has of it beside.
+    /// Reads all parts and collects their unpaired faces. `each` receives the number of the first tetrahedron of each
+    /// part and the additional result of `take`.
     fn look<T: Send>(
         mesh: &'a dyn MeshSource,
         take: impl Fn(&Sorted) -> (Vec<Loose>, T) + Sync,
@@ -139,18 +139,17 @@ impl<'a> Faces<'a> {
         Ok(Self { mesh, first, known: joined(&loose)? })
     }
 
-    /// What is on the other side of a face that its part cannot place; none where that has the lower tetrahedron, by which
-    /// alone a face between two parts is known.
+    /// Opposite side of a face not paired within its part. `None` if the lower tetrahedron, which stores it, is there.
     fn other_side(&self, sorted: &Sorted, first: u32, handle: u32) -> Option<Side> {
         let at = (first + (handle >> 2), face_key(face_of(&sorted.tets, handle)));
         let place = self.known.binary_search_by_key(&at, |&(tet, key, _)| (tet, key)).ok()?;
         Some(self.known[place].2)
     }
 
-    /// The faces of a part.
+    /// Faces of a part.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     pub fn of_part(&self, part: u32) -> io::Result<PartFaces> {
         let sorted = Sorted::read(self.mesh, part)?;
         let first = self.first[part as usize];
@@ -169,10 +168,10 @@ impl<'a> Faces<'a> {
         Ok(faces)
     }
 
-    /// Gives the faces of all parts, in order.
+    /// Passes on the faces of all parts, in order.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with; `InvalidData` when the mesh does not hold as much as it says.
+    /// Errors of reading the mesh or of `each`; `InvalidData` if the mesh contradicts its own counts.
     pub fn each(&self, mut each: impl FnMut(&PartFaces) -> io::Result<()>) -> io::Result<()> {
         let counts = self.mesh.counts();
         let (mut sides, mut labelled) = (0, 0);
@@ -181,7 +180,7 @@ impl<'a> Faces<'a> {
             |faces| {
                 sides += 2 * faces.inner.len() + faces.outer.len();
                 labelled += faces.outer.len();
-                // Whoever writes has said how many there are before they come.
+                // Writers have announced the number of faces before.
                 if sides > 4 * counts.tets || labelled > counts.boundary {
                     return Err(miscounted());
                 }
@@ -192,7 +191,7 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// What lies on both sides of each loose face; they ascend.
+/// Both sides of each unpaired face; the input is sorted.
 fn joined(loose: &[Loose]) -> io::Result<Vec<(u32, [u32; 3], Side)>> {
     let mut known = Vec::with_capacity(loose.len() / 2);
     for sides in loose.chunk_by(|a, b| a.0 == b.0) {
@@ -220,21 +219,21 @@ fn face_of(tets: &[[u32; 4]], handle: u32) -> [u32; 3] {
     TET_FACES[(handle & 3) as usize].map(|corner| tet[corner])
 }
 
-/// Vertices in ascending order and a handle, in one number that sorts by them.
+/// Vertices in ascending order and a handle, packed into one sortable number.
 fn packed([a, b, c]: [u32; 3], handle: u32) -> u128 {
     (u128::from(a) << 96) | (u128::from(b) << 64) | (u128::from(c) << 32) | u128::from(handle)
 }
 
-/// The bit of a handle that is the number of a label.
+/// Flag of a handle that is the index of a label.
 const LABEL: u32 = 1 << 31;
 
-/// The vertices of a packed side.
+/// Vertices of a packed side.
 fn vertices_of(side: u128) -> [u32; 3] {
     [96, 64, 32].map(|shift| (side >> shift) as u32)
 }
 
-/// Sides in buckets, those of the same face in the same one, and where each bucket ends: sorting a few at a time takes half as
-/// long as sorting all.
+/// Distributes sides to buckets, equal faces to one bucket. Returns the ends of the buckets, too. Sorting small buckets
+/// takes half as long as sorting all.
 fn buckets(sides: &[u128]) -> (Vec<u128>, Vec<u32>) {
     let bits = sides.len().max(8).ilog2() - 2;
     let bucket_of = |side: u128| {
@@ -262,7 +261,7 @@ impl Sorted {
     fn read(mesh: &dyn MeshSource, part: u32) -> io::Result<Self> {
         let tets = mesh.tets(part)?.tets.into_owned();
         let FacePiece { faces, patches, .. } = mesh.boundary(part)?;
-        // Handles have 31 bits: the last one tells labels from faces of tetrahedra.
+        // Handles have 31 bits: the last one marks labels.
         if tets.len() >= (LABEL / 4) as usize || faces.len() >= LABEL as usize {
             return Err(io::Error::new(io::ErrorKind::InvalidData, "a part of the mesh has more than 2^29 tetrahedra"));
         }
@@ -293,7 +292,7 @@ impl Sorted {
         Ok(sorted)
     }
 
-    /// The faces of the boundary that the part places itself, ascending by their tetrahedra.
+    /// Boundary faces labelled in the part itself, ascending by tetrahedra.
     fn outer(&self, first: u32) -> Vec<OuterFace> {
         let mut outer: Vec<OuterFace> =
             self.labelled.iter().map(|&(handle, patch)| self.outer_face(first, handle, patch)).collect();

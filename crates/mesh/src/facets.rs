@@ -1,8 +1,8 @@
-//! Polygons into triangles: a flat facet with holes, segments and points inside, by constrained Delaunay triangulation of
-//! its projection. No points are made.
+//! Triangulation of a flat facet with holes, segments and points inside, by constrained Delaunay triangulation of its
+//! projection. No points are added.
 //!
-//! A facet is projected along the axis that its normal is nearest to. That drops a coordinate and rounds nothing, so what
-//! holds of the projection is exact. A facet whose corners do not lie in one plane is triangulated all the same.
+//! A facet is projected along the axis nearest to its normal. That drops a coordinate and rounds nothing, so predicates
+//! on the projection are exact. A facet with corners off one plane is triangulated all the same.
 
 use crate::geometry::predicates::in_exact_range;
 use crate::geometry::{Point3, Vec3};
@@ -11,18 +11,18 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, PositionInTriangulation, T
 
 type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 
-/// Normals shorter than this share of the facet's squared extent say nothing about its plane.
+/// Length of normals, relative to the facet's squared extent, below which they do not define its plane.
 const NO_NORMAL: f64 = 1e-9;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FacetTriangles {
-    /// Triangles, turned as the facet's first polygon.
+    /// Triangles with the orientation of the facet's first polygon.
     pub triangles: Vec<[u32; 3]>,
     /// Segments of the facet that no triangle has, smaller point first, ascending: they stick out of it.
     pub segments: Vec<[u32; 2]>,
 }
 
-/// Why a facet has no triangulation. Ids are those of points.
+/// Reason why a facet has no triangulation. Ids are those of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FacetError {
@@ -37,25 +37,25 @@ pub enum FacetError {
         /// Ends of (a part of) the other.
         second: [u32; 2],
     },
-    /// Two of its points are at the same place, seen along the axis nearest to its normal.
+    /// Two of its points coincide, seen along the axis nearest to its normal.
     #[error("its points {} and {} are at the same place, or one above the other: keep one of them", points[0], points[1])]
     Coincident { points: [u32; 2] },
     /// It encloses nothing.
     #[error("it encloses no area: its corners lie on one line, or its polygons do not close")]
     NoArea,
-    /// A coordinate is not finite, or too large or too close to zero for exact arithmetic.
+    /// A coordinate is not finite, or out of range for exact arithmetic.
     #[error("the coordinates of its point {point} are not finite or out of the range of exact arithmetic")]
     OutOfRange { point: u32 },
-    /// A polygon names a point that does not exist.
+    /// A polygon refers to a missing point.
     #[error("it names the point {point}, which does not exist")]
     NoSuchPoint {
-        /// What it names.
+        /// Its index.
         point: u32,
     },
 }
 
 impl FacetError {
-    /// The same error, its points named as elsewhere.
+    /// Renames the points of the error.
     #[must_use]
     pub fn renamed(self, name: impl Fn(u32) -> u32) -> Self {
         match self {
@@ -82,9 +82,9 @@ impl spade::HasPosition for Vertex {
     }
 }
 
-/// Triangulates the area that `polygons` enclose: what cannot be reached from outside, nor from one of `holes`, without
-/// crossing a segment. A polygon of two corners is a segment, of one a point that the triangulation has to have.
-/// Corners are joined in a ring; a segment on which further points of the facet lie is split there.
+/// Triangulates the area enclosed by `polygons`: the part not reachable from outside or from one of `holes` without
+/// crossing a segment. A polygon with two corners is a segment, one with one corner a required point. Corners are
+/// joined in a ring; a segment with further points of the facet on it is split there.
 ///
 /// # Errors
 /// `FacetError`: segments cross, points coincide, or there is nothing inside.
@@ -123,11 +123,11 @@ pub fn triangulate(points: &[Point3], polygons: &[Vec<u32>], holes: &[Point3]) -
     Ok(result)
 }
 
-/// Looking along an axis.
+/// Projection along an axis.
 #[derive(Clone, Copy, Debug)]
 struct Projection {
     axis: usize,
-    /// Whether the facet's normal points against the axis.
+    /// True if the facet's normal points against the axis.
     turned: bool,
 }
 
@@ -139,7 +139,7 @@ impl Projection {
         let longest = |a: Vec3, b: Vec3| if b.norm() > a.norm() { b } else { a };
         let normals = polygons.iter().map(|ring| newell(points, ring));
         let mut normal = normals.clone().fold(Vec3::zeros(), longest);
-        // A polygon whose parts cancel, or segments that only together enclose something.
+        // A polygon whose parts cancel, or segments that enclose an area only together.
         if normal.norm() <= NO_NORMAL * extent * extent {
             let far = corners().map(|p| p - first).fold(Vec3::zeros(), longest);
             normal = corners().map(|p| far.cross(&(p - first))).fold(Vec3::zeros(), longest);
@@ -149,20 +149,20 @@ impl Projection {
         Self { axis, turned: own < 0.0 }
     }
 
-    /// Right-handed: what runs counter-clockwise here does so seen from the end of the axis.
+    /// Right-handed: orientation is that seen from the end of the axis.
     fn project(self, p: Point3) -> Point2<f64> {
         Point2::new(p[(self.axis + 1) % 3], p[(self.axis + 2) % 3])
     }
 }
 
-/// Twice the vector area of a polygon (Newell), from its first corner to keep what cancels small.
+/// Twice the vector area of a polygon (Newell), relative to its first corner to limit cancellation.
 fn newell(points: &[Point3], ring: &[u32]) -> Vec3 {
     let Some((&first, rest)) = ring.split_first() else { return Vec3::zeros() };
     let from = |v: u32| points[v as usize] - points[first as usize];
     rest.windows(2).map(|pair| from(pair[0]).cross(&from(pair[1]))).fold(Vec3::zeros(), |sum, n| sum + n)
 }
 
-/// Inserts each point once; returns them with their handles, ascending.
+/// Inserts each point once. Returns them with their handles, ascending.
 fn insert_points(
     cdt: &mut Cdt,
     points: &[Point3],
@@ -176,7 +176,7 @@ fn insert_points(
     for id in ids {
         let before = cdt.num_vertices();
         let position = plane.project(points[id as usize]);
-        // −0 and 0 are one place.
+        // −0 and 0 are equal.
         let position = Point2::new(position.x + 0.0, position.y + 0.0);
         if let Some(there) = vertex_at(cdt, position) {
             return Err(FacetError::Coincident { points: [there, id] });
@@ -190,7 +190,7 @@ fn insert_points(
     Ok(handles)
 }
 
-/// The point that is at a place already.
+/// Existing point at a position.
 fn vertex_at(cdt: &Cdt, position: Point2<f64>) -> Option<u32> {
     match cdt.locate(position) {
         PositionInTriangulation::OnVertex(v) => Some(cdt.vertex(v).data().id),
@@ -209,7 +209,7 @@ fn insert_segment(cdt: &mut Cdt, from: FixedVertexHandle, to: FixedVertexHandle)
     Err(FacetError::Crossing { first: [id(from), id(to)], second })
 }
 
-/// Which faces, by index, can be reached from outside or from a hole without crossing a segment.
+/// Marks the faces reachable from outside or from a hole without crossing a segment.
 fn outside(cdt: &Cdt, holes: &[Point2<f64>]) -> Vec<bool> {
     let mut outside = vec![false; cdt.num_all_faces()];
     let mut front: Vec<FixedFaceHandle<InnerTag>> = Vec::new();
@@ -284,7 +284,7 @@ mod tests {
         plane.iter().map(|&[x, y]| Point3::new(x, y, x / 2.0)).collect()
     }
 
-    /// The area in projection along z, positive when all triangles face upwards.
+    /// Area in projection along z, positive if all triangles face upwards.
     fn area(points: &[Point3], facet: &FacetTriangles) -> f64 {
         let areas = facet.triangles.iter().map(|t| {
             let [a, b, c] = t.map(|v| points[v as usize]);
@@ -315,7 +315,7 @@ mod tests {
         let holed = triangulate(&points, &rings, &[hole]).unwrap();
         assert_eq!(area(&points, &holed), 15.0);
         assert!(holed.segments.is_empty());
-        // Turned the other way, and given as segments one by one.
+        // Reversed, and given as single segments.
         let turned = triangulate(&points, &[vec![3, 2, 1, 0]], &[]).unwrap();
         assert_eq!(area(&points, &turned), -16.0);
         let pieces = [vec![0, 1], vec![1, 2], vec![2, 3], vec![3, 0]];
@@ -328,7 +328,7 @@ mod tests {
         let points = tilted(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0], [3.0, 3.0]]);
         let l = triangulate(&points, &[vec![0, 1, 2, 3, 4, 5], vec![6, 3]], &[]).unwrap();
         assert_eq!((area(&points, &l), l.segments), (3.0, vec![[3, 6]]));
-        // A corner named twice in a row, and the first once more at the end.
+        // A corner repeated in a row, and the first one repeated at the end.
         let same = triangulate(&points, &[vec![0, 1, 1, 2, 3, 4, 5, 0]], &[]).unwrap();
         assert_eq!(same.triangles, triangulate(&points, &[vec![0, 1, 2, 3, 4, 5]], &[]).unwrap().triangles);
         let segments = triangulate(&points, &[vec![0, 6], vec![3]], &[]).unwrap();

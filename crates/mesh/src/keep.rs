@@ -1,17 +1,17 @@
-//! What becomes of numbers when some things go: the others keep their order.
+//! Renumbering after removal: the remaining items keep their order.
 
 use super::TetMesh;
 
-/// New numbers for the things that stay.
+/// New numbers of the items that stay.
 #[derive(Clone, Debug)]
 pub struct Kept {
-    /// For each thing its new number, or `u32::MAX`.
+    /// New number of each item, or `u32::MAX`.
     pub number: Vec<u32>,
     count: u32,
 }
 
 impl Kept {
-    /// Those for which this holds, in their order.
+    /// Keeps the items marked true, in order.
     pub fn of(stays: impl IntoIterator<Item = bool>) -> Self {
         let mut count = 0;
         let mut number = |stays: bool| {
@@ -25,7 +25,7 @@ impl Kept {
         Self { number, count }
     }
 
-    /// Of so many points the first `fixed`, and all that a cell has.
+    /// Keeps the first `fixed` points, and all that occur in a cell.
     pub fn used<'a, const N: usize>(
         cells: impl IntoIterator<Item = &'a [u32; N]>,
         points: usize,
@@ -39,12 +39,12 @@ impl Kept {
         Self::of(used)
     }
 
-    /// A cell in the new numbers of its vertices.
+    /// A cell with its vertices renumbered.
     pub fn cell<const N: usize>(&self, cell: &[u32; N]) -> [u32; N] {
         cell.map(|v| self.number[v as usize])
     }
 
-    /// What stays of a list of properties of the things.
+    /// Properties of the items that stay.
     pub fn select<T: Copy>(&self, all: &[T]) -> Vec<T> {
         let mut kept = Vec::with_capacity(self.count as usize);
         kept.extend(all.iter().zip(&self.number).filter(|(_, n)| **n != u32::MAX).map(|(thing, _)| *thing));
@@ -53,7 +53,7 @@ impl Kept {
 }
 
 impl TetMesh {
-    /// Drops the points from `fixed` on that no tetrahedron has, keeping the order of the others.
+    /// Drops unused points from index `fixed` on, keeping the order of the others.
     pub fn drop_unused_points(&mut self, fixed: usize) {
         let used = Kept::used(&self.tets, self.points.len(), fixed);
         self.points = used.select(&self.points);

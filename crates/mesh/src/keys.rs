@@ -1,6 +1,6 @@
-//! Faces and cells by their vertices, whichever way they are turned.
+//! Keys of faces and cells by vertices, independent of orientation.
 
-/// The vertices of a face in ascending order: the same for both its sides.
+/// Vertices of a face in ascending order, equal for both its sides.
 #[inline]
 pub fn face_key([a, b, c]: [u32; 3]) -> [u32; 3] {
     let (a, b) = (a.min(b), a.max(b));
@@ -8,7 +8,8 @@ pub fn face_key([a, b, c]: [u32; 3]) -> [u32; 3] {
     [a.min(b), a.max(b), c]
 }
 
-/// The vertices of a tetrahedron in ascending order.
+/// Vertices of a tetrahedron in ascending order.
+#[inline]
 pub fn tet_key(mut tet: [u32; 4]) -> [u32; 4] {
     tet.sort_unstable();
     tet

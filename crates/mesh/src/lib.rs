@@ -153,3 +153,8 @@ pub struct Cap {
     /// Radius of the vessel there.
     pub radius: f64,
 }
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

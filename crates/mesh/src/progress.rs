@@ -1,50 +1,50 @@
-//! Floor 1: how whatever takes long tells how far it is, and is told to stop.
+//! Progress reports of long operations, and their cancellation.
 
 use std::io;
 
-/// What is being done. Not everything comes in every run.
+/// Stage of a run. A run may skip stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Stage {
-    /// The nodes of a network are moved apart (3.1); counted in iterations.
+    /// Moves the nodes of a network apart (3.1); counted in iterations.
     Move,
-    /// Nodes of valence above 3 are split (3.1), overlapping vessels are looked for.
+    /// Splits nodes of valence above 3 (3.1), searches for overlapping vessels.
     Prepare,
-    /// Vessels are cut, clusters formed (3.2.1).
+    /// Cuts vessels, forms clusters (3.2.1).
     Partition,
-    /// Clusters are meshed (3.2.2).
+    /// Meshes clusters (3.2.2).
     Clusters,
-    /// Connectors are meshed between the ends of their clusters (3.2.3).
+    /// Meshes connectors between the ends of their clusters (3.2.3).
     Connectors,
-    /// Clusters and connectors are meshed in one pass.
+    /// Meshes clusters and connectors in one pass.
     Blocks,
-    /// Blocks become one mesh.
+    /// Merges blocks into one mesh.
     Merge,
-    /// Joints are smoothed (3.2.4).
+    /// Smooths joints (3.2.4).
     Joints,
-    /// The mesh is verified.
+    /// Verifies the mesh.
     Check,
-    /// The mesh is written.
+    /// Writes the mesh.
     Write,
-    /// A surface or a complex is checked.
+    /// Checks a surface or a complex.
     Validate,
-    /// The Delaunay tetrahedralization of its points.
+    /// Computes the Delaunay tetrahedralization of its points.
     Delaunay,
-    /// Missing edges and triangles are recovered.
+    /// Recovers missing edges and triangles.
     Recover,
-    /// What lies outside goes.
+    /// Removes tetrahedra outside.
     Carve,
-    /// Points are put where tetrahedra are too large or badly shaped.
+    /// Inserts points where tetrahedra are too large or badly shaped.
     Refine,
-    /// Tetrahedra are improved.
+    /// Improves tetrahedra.
     Optimize,
-    /// The mesh is proved to be what was asked for.
+    /// Certifies the mesh against the input.
     Certify,
 }
 
 impl Stage {
-    /// Its name for people.
+    /// Human-readable name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Move => "move",
@@ -68,8 +68,8 @@ impl Stage {
     }
 }
 
-/// Listens to whatever takes long: tetrahedralizing a surface, moving the nodes of a network, meshing it. May be called
-/// from several threads. `()` listens to nothing.
+/// Progress listener of long operations: tetrahedralization, moving the nodes of a network, meshing. May be called from
+/// several threads. `()` ignores all reports.
 ///
 /// ```
 /// use anastomesh_mesh::progress::{Progress, Stage};
@@ -97,15 +97,14 @@ impl Stage {
 /// assert!(listener.is_cancelled());
 /// ```
 pub trait Progress: Sync {
-    /// So much of a stage is done, in units of its own, of `total` as far as that is known; 0 when it is not. A stage
-    /// begins with the first call that names it and is over when another one is named or `done` is `total`. Calls of
-    /// several threads may come in another order than that of their numbers.
+    /// Reports the progress of a stage in its own units; `total` is 0 if unknown. A stage begins with the first call
+    /// that names it and ends when another one is named or `done` is `total`. Threads may report out of order.
     fn at(&self, _stage: Stage, _done: u64, _total: u64) {}
 
-    /// Something that a person should read.
+    /// Passes on a message for the user.
     fn note(&self, _message: &str) {}
 
-    /// Asked often, from all threads: whether to stop. What was asked for then fails with its error `Cancelled`.
+    /// True to cancel; called often, from all threads. The operation then fails with its error `Cancelled`.
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -113,24 +112,24 @@ pub trait Progress: Sync {
 
 impl Progress for () {}
 
-/// A run was told to stop, where that is told by an [`io::Error`].
+/// Cancellation of a run, as the cause of an [`io::Error`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
 impl Cancelled {
-    /// Whether this is why something failed.
+    /// True if cancellation caused an error.
     pub fn is_in(error: &io::Error) -> bool {
         error.get_ref().is_some_and(<dyn std::error::Error + Send + Sync>::is::<Self>)
     }
 }
 
-/// Whether to go on.
+/// Returns an error if the run was cancelled.
 pub fn ask(progress: &dyn Progress) -> io::Result<()> {
     if progress.is_cancelled() { Err(io::Error::other(Cancelled)) } else { Ok(()) }
 }
 
-/// Says to stop once it has been asked so many times.
+/// Cancels after a given number of queries.
 #[doc(hidden)]
 #[derive(Debug)]
 pub struct StopsAfter {
@@ -143,7 +142,7 @@ impl StopsAfter {
         Self { times, asked: 0.into() }
     }
 
-    /// How often it has been asked.
+    /// Number of queries so far.
     pub fn asked(&self) -> usize {
         self.asked.load(std::sync::atomic::Ordering::Relaxed)
     }

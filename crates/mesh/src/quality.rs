@@ -9,10 +9,10 @@ pub const HISTOGRAM_BINS: usize = 20;
 /// The six edges of a tetrahedron, as pairs of its vertices.
 pub const TET_EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// Relative roundoff of squared cotangents of tetrahedra that are not all but flat, with a wide margin.
+/// Relative roundoff of squared cotangents, except for nearly flat tetrahedra, with a wide margin.
 const ROUNDOFF: f64 = 1e-9;
 
-/// Six times the signed volume, `det(b − a, c − a, d − a)` in floating point: its sign is a hint, not a proof.
+/// Six times the signed volume, `det(b − a, c − a, d − a)` in floating point, so its sign is not exact.
 #[inline]
 pub fn volume6(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     (b - a).cross(&(c - a)).dot(&(d - a))
@@ -24,10 +24,10 @@ pub fn radius_ratio(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     Spokes::new([a, b, c, d]).radius_ratio()
 }
 
-/// What ratio and angles are computed from: the edges from the first vertex, their cross products and six volumes.
+/// Common terms of ratio and angles: the edges from the first vertex, their cross products and six volumes.
 struct Spokes {
     edges: [Vec3; 3],
-    /// Of the second and third edge, of the third and first, of the first and second.
+    /// Of the second and third edge, the third and first, the first and second.
     crossed: [Vec3; 3],
     volume: f64,
 }
@@ -56,7 +56,7 @@ pub fn dihedral_angles(corners: [&Point3; 4]) -> [f64; 6] {
     dihedral_sides(corners).map(|[opposite, adjacent]| opposite.atan2(adjacent))
 }
 
-/// Opposite and adjacent side of right triangles that have the dihedral angles, in the order of `TET_EDGES`.
+/// Opposite and adjacent sides of right triangles with the dihedral angles, in the order of `TET_EDGES`.
 fn dihedral_sides(corners: [&Point3; 4]) -> [[f64; 2]; 6] {
     let [a, b, c, d] = corners;
     let normals = TET_FACES.map(|f| {
@@ -65,14 +65,14 @@ fn dihedral_sides(corners: [&Point3; 4]) -> [[f64; 2]; 6] {
     });
     let volume = volume6(a, b, c, d).abs();
     TET_EDGES.map(|[i, j]| {
-        // The faces at an edge are those opposite the two other vertices; |n₁ × n₂| = |edge| · 6V exactly in reals,
-        // and does not cancel when the angle is near 0 or π.
+        // The faces at an edge are opposite the two other vertices. |n₁ × n₂| = |edge| · 6V holds exactly in reals, and
+        // does not cancel at angles near 0 or π.
         let [k, l] = opposite_pair(i, j);
         [(corners[j] - corners[i]).norm() * volume, -normals[k].dot(&normals[l])]
     })
 }
 
-/// The two vertices of a tetrahedron that are neither `i` nor `j`, in ascending order.
+/// The two vertices of a tetrahedron other than `i` and `j`, in ascending order.
 #[inline]
 pub fn opposite_pair(i: usize, j: usize) -> [usize; 2] {
     match (i.min(j), i.max(j)) {
@@ -92,8 +92,8 @@ pub fn dihedral_range(corners: [&Point3; 4]) -> (f64, f64) {
     cotangents.angles()
 }
 
-/// The range of the cotangents of dihedral angles: on [0, π] they fall from ∞ to −∞, so the extreme angles can be told
-/// without computing any other.
+/// Range of the cotangents of dihedral angles. They fall from ∞ to −∞ on [0, π], so only the extreme angles are
+/// computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CotangentRange {
     low: f64,
@@ -109,14 +109,13 @@ impl Default for CotangentRange {
 impl CotangentRange {
     fn include(&mut self, corners: [&Point3; 4]) {
         for [opposite, adjacent] in dihedral_sides(corners) {
-            // Not a number for an edge without length or two faces without area; `min` and `max` pass it over.
+            // NaN for an edge of length 0 or two faces without area, which `min` and `max` ignore.
             let cotangent = adjacent / opposite;
             (self.low, self.high) = (self.low.min(cotangent), self.high.max(cotangent));
         }
     }
 
-    /// As [`Self::include`], for many tetrahedra few of which widen the range: squares without roots tell that most do
-    /// not.
+    /// As [`Self::include`], fast if few tetrahedra widen the range: comparing squares, without roots, rejects most.
     #[inline]
     fn include_if_wider(&mut self, corners: [&Point3; 4], spokes: &Spokes) {
         let ([u, v, w], [vw, wu, uv]) = (&spokes.edges, &spokes.crossed);
@@ -140,13 +139,13 @@ impl CotangentRange {
         }
     }
 
-    /// The smallest and the largest angle.
+    /// Smallest and largest angle.
     fn angles(self) -> (f64, f64) {
         (1.0_f64.atan2(self.high), 1.0_f64.atan2(self.low))
     }
 }
 
-/// Vector area of a triangle: along its normal, as long as its area.
+/// Vector area of a triangle: along its normal, with its area as length.
 #[inline]
 pub fn triangle_area_vector(a: &Point3, b: &Point3, c: &Point3) -> Vec3 {
     (b - a).cross(&(c - a)) * 0.5
@@ -204,12 +203,12 @@ impl TetQuality {
     }
 }
 
-/// Equal bins over [0, 1] of [`QualitySum`]; each of `TetQuality`'s holds as many of them.
+/// Number of equal bins over [0, 1] of [`QualitySum`], a multiple of those of `TetQuality`.
 pub const FINE_BINS: usize = 400;
 
 const PER_BIN: usize = FINE_BINS / HISTOGRAM_BINS;
 
-/// Shape of the tetrahedra of a piece of a mesh; pieces are added up.
+/// Shape of the tetrahedra of a piece of a mesh; pieces can be added.
 #[derive(Clone, Debug)]
 pub struct QualitySum {
     sum: f64,
@@ -227,12 +226,12 @@ impl Default for QualitySum {
 }
 
 impl QualitySum {
-    /// Adds a tetrahedron; its radius ratio.
+    /// Adds a tetrahedron. Returns its radius ratio.
     #[inline]
     pub fn include(&mut self, p: [&Point3; 4]) -> f64 {
         let spokes = Spokes::new(p);
         let q = spokes.radius_ratio();
-        // The fine bin lies in the coarse one, whatever rounding does.
+        // The fine bin lies in the coarse one despite rounding.
         let coarse = ((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1) * PER_BIN;
         let fine = ((q * FINE_BINS as f64) as usize).clamp(coarse, coarse + PER_BIN - 1);
         self.bins[fine] += 1;
@@ -242,8 +241,8 @@ impl QualitySum {
         q
     }
 
-    /// The shape of all that was added. The percentile is linear within a bin, and so right to a bin's width, 0.0025; all
-    /// else is exact, but for the order in which the mean is summed.
+    /// Shape of all added tetrahedra. The percentile is linear within a bin, so its error is at most a bin's width,
+    /// 0.0025. All else is exact, except for the order of summation of the mean.
     pub fn quality(&self) -> TetQuality {
         let tets: u64 = self.bins.iter().sum();
         let (low, high) = if tets == 0 { (0.0, 0.0) } else { self.dihedral.angles() };
@@ -262,7 +261,7 @@ impl QualitySum {
         }
     }
 
-    /// As [`percentile`], of values known to a bin.
+    /// As [`percentile`], for values known to a bin.
     fn percentile(&self, share: f64, tets: u64) -> f64 {
         let last = tets.saturating_sub(1);
         let rank = share * last as f64;
@@ -270,7 +269,7 @@ impl QualitySum {
         low + (self.value_at((rank as u64 + 1).min(last)) - low) * rank.fract()
     }
 
-    /// The value of a rank: those of a bin are taken as evenly spread, those of the first bin from the smallest.
+    /// Value of a rank. Values are assumed evenly spread in a bin, and from the smallest on in the first one.
     fn value_at(&self, rank: u64) -> f64 {
         let mut below = 0;
         for (i, &count) in self.bins.iter().enumerate().filter(|(_, count)| **count > 0) {
@@ -285,31 +284,31 @@ impl QualitySum {
     }
 }
 
-/// A [`QualitySum`] to be kept: some hundred bytes.
+/// Compact form of a [`QualitySum`]: some hundred bytes.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct QualityPiece {
     sum: f64,
     min: f64,
     /// Range of the cotangents of dihedral angles.
     cotangents: [f64; 2],
-    /// The bins up to the last that is not empty, seven bits in a byte, lowest first, the eighth set where more follow.
+    /// Bins up to the last non-empty one, seven bits per byte, lowest first, the eighth set if more follow.
     counts: Vec<u8>,
 }
 
 impl QualityPiece {
-    /// The smallest radius ratio.
+    /// Smallest radius ratio.
     pub fn min(&self) -> f64 {
         self.min
     }
 
-    /// The smallest dihedral angle in degrees.
+    /// Smallest dihedral angle in degrees.
     pub fn least_dihedral(&self) -> f64 {
         1.0_f64.atan2(self.cotangents[1]).to_degrees()
     }
 }
 
 impl QualitySum {
-    /// The sum in its small form.
+    /// Converts the sum to its compact form.
     pub fn piece(&self) -> QualityPiece {
         let Some(last) = self.bins.iter().rposition(|&count| count > 0) else { return QualityPiece::default() };
         let mut counts = Vec::with_capacity(last + 16);
@@ -321,13 +320,13 @@ impl QualitySum {
             }
             counts.push(left as u8);
         }
-        // Infinities, which not all formats know, as the largest numbers.
+        // Infinities, which not all formats support, become the largest numbers.
         let finite = |x: f64| x.clamp(f64::MIN, f64::MAX);
         let cotangents = [self.dihedral.low, self.dihedral.high].map(finite);
         QualityPiece { sum: self.sum, min: self.min, cotangents, counts }
     }
 
-    /// Adds a piece; says whether it could be read.
+    /// Adds a piece. Returns false if it is malformed.
     pub fn add_piece(&mut self, piece: &QualityPiece) -> bool {
         if piece.counts.is_empty() {
             return true;

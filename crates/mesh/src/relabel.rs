@@ -1,4 +1,4 @@
-//! A mesh some of whose patches are one.
+//! A mesh with merged patches.
 
 use super::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
 use super::{Patch, VolumeMesh};
@@ -11,12 +11,12 @@ use std::io;
 pub struct Relabelled<'a> {
     mesh: &'a dyn MeshSource,
     patches: Vec<Patch>,
-    /// The new patch of each old one that has one.
+    /// New patch of each replaced patch.
     ids: BTreeMap<i32, i32>,
 }
 
 impl<'a> Relabelled<'a> {
-    /// Gives the patches in `ids` the patch there; `patches`: all that are left, in ascending order of their id.
+    /// Replaces patches by `ids`; `patches` are all remaining ones, in ascending order of id.
     pub fn new(mesh: &'a dyn MeshSource, patches: Vec<Patch>, ids: BTreeMap<i32, i32>) -> Self {
         Self { mesh, patches, ids }
     }

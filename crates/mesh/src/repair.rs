@@ -1,7 +1,7 @@
-//! Repair of a triangle surface, as far as no choice has to be made: points at one place become one, triangles that are
-//! nothing or twice there go, and triangles are turned so that neighbours agree and the outside is in front.
+//! Repair of a triangle surface without ambiguous choices: merges points at equal positions, removes degenerate and
+//! duplicate triangles, and orients triangles consistently, with the outside in front.
 //!
-//! All of it is decided exactly. Holes are not filled and parts that meet are not parted.
+//! All decisions are exact. Holes are not filled, and intersecting parts are not separated.
 
 mod sheets;
 
@@ -12,54 +12,54 @@ use crate::geometry::place_key;
 use crate::geometry::predicates::{collinear, orient2d, orient3d};
 use crate::geometry::{Aabb, Bvh, Point3, Vec3};
 
-/// Triangles of a component that are tried before its place among the others is given up.
+/// Triangles of a component tried to find its nesting depth.
 const TRIES: usize = 32;
 
-/// What a repair did.
+/// Summary of a repair.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[non_exhaustive]
 pub struct RepairReport {
-    /// Points that were at the place of an earlier one.
+    /// Points at the position of an earlier one.
     pub merged_points: usize,
-    /// Triangles that had a vertex twice, perhaps after merging, or one that does not exist.
+    /// Triangles with a repeated vertex, perhaps after merging, or a missing one.
     pub collapsed_triangles: usize,
     /// Triangles with the vertices of an earlier one, which stays.
     pub duplicate_triangles: usize,
-    /// Triangles that lay back to back with another and went with it, because they enclosed nothing.
+    /// Triangles removed in pairs back to back, because they enclosed nothing.
     pub sheet_triangles: usize,
     /// Triangles without area whose longest edge was exchanged for the other diagonal.
     pub flat_triangles: usize,
-    /// Triangles that were turned over.
+    /// Triangles that were reversed.
     pub turned_triangles: usize,
-    /// Parts that hang together by edges of two triangles.
+    /// Components connected by edges of two triangles.
     pub components: usize,
-    /// Of these, those that cannot be oriented.
+    /// Components that cannot be oriented.
     pub not_orientable: usize,
 }
 
 impl RepairReport {
-    /// Whether anything was changed.
+    /// True if anything was changed.
     pub fn changed(&self) -> bool {
         let removed = self.collapsed_triangles + self.duplicate_triangles + self.sheet_triangles;
         self.merged_points + removed + self.flat_triangles + self.turned_triangles > 0
     }
 }
 
-/// A repaired surface, and where it comes from.
+/// A repaired surface, and its relation to the input.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Repaired {
     /// The surface.
     pub surface: TriMesh,
-    /// For each of its triangles the one of the input that it was.
+    /// Input triangle of each triangle.
     pub source: Vec<u32>,
-    /// For each point of the input the point that it became.
+    /// New index of each input point.
     pub point: Vec<u32>,
-    /// What was done.
+    /// Summary of changes.
     pub report: RepairReport,
 }
 
-/// Repairs a surface that is to bound a volume. Of triangles that are there twice one stays; where two lie back to back
-/// neither, unless the surface needs it to be closed. Coordinates that are not finite are left alone.
+/// Repairs a surface meant to bound a volume. One of several duplicate triangles stays. Of two back to back, none stays
+/// unless the surface needs it to be closed. Coordinates that are not finite are left unchanged.
 ///
 /// ```
 /// use anastomesh_mesh::{Point3, TriMesh, repair::repair};
@@ -74,8 +74,7 @@ pub fn repair(surface: &TriMesh) -> Repaired {
     repaired(surface, true)
 }
 
-/// Repairs facets, which may lie anywhere: as [`repair`], but one stays of all triangles that are there twice, whatever
-/// way they are turned.
+/// Repairs facets, which may lie anywhere: as [`repair`], but one of several duplicates stays in any orientation.
 pub fn repair_facets(surface: &TriMesh) -> Repaired {
     repaired(surface, false)
 }
@@ -113,7 +112,7 @@ fn merge_points(surface: &TriMesh) -> Repaired {
     r
 }
 
-/// Drops triangles that have a vertex twice, or the vertices of an earlier one; of those that bound a volume also sheets.
+/// Drops triangles with a repeated vertex or those of an earlier triangle; of bounding surfaces also sheets.
 fn drop_triangles(r: &mut Repaired, bounds: bool) {
     let triangles = std::mem::take(&mut r.surface.triangles);
     let broken = |t: &[u32; 3]| t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || t.contains(&NONE);
@@ -121,7 +120,7 @@ fn drop_triangles(r: &mut Repaired, bounds: bool) {
     order.retain(|(t, _)| !broken(t));
     r.report.collapsed_triangles = triangles.len() - order.len();
     order.sort_unstable();
-    // The first of each, and how many more there are where some of them is turned over.
+    // First copy of each, and the number of copies if some have opposite orientation.
     let mut first: Vec<(u32, usize)> = Vec::with_capacity(order.len());
     for run in order.chunk_by(|x, y| x.0 == y.0) {
         let turned = |&(_, i): &([u32; 3], u32)| turned_over(&triangles[i as usize], &triangles[run[0].1 as usize]);
@@ -142,8 +141,7 @@ fn drop_triangles(r: &mut Repaired, bounds: bool) {
     }
 }
 
-/// A triangle without area has a vertex on its longest edge: with the triangle behind that edge it makes a triangle
-/// with a vertex on an edge, which is cut in two there.
+/// Removes triangles without area. Their middle vertex splits the triangle behind the longest edge.
 fn flip_flat(r: &mut Repaired) {
     // Each round may make new flat triangles beside the old ones, in a strip of them.
     for _ in 0..TRIES {
@@ -169,7 +167,7 @@ fn flip_flat(r: &mut Repaired) {
             if d == m || busy[n] || busy[i as usize] {
                 continue;
             }
-            // Either way round: the neighbour may be turned the other way.
+            // Either orientation: the neighbour may be reversed.
             let same = s.triangles[n][j] == a;
             let pair = if same { [[a, m, d], [m, b, d]] } else { [[a, d, m], [m, d, b]] };
             s.triangles[i as usize] = pair[0];
@@ -188,14 +186,14 @@ fn flip_flat(r: &mut Repaired) {
     }
 }
 
-/// Which edge of three points on a line has the third between its ends.
+/// Edge of three collinear points that contains the third.
 fn longest_edge(t: [u32; 3], points: &[Point3]) -> usize {
     let length = |k: usize| (points[t[(k + 1) % 3] as usize] - points[t[k] as usize]).norm_squared();
     (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j))).unwrap_or(0)
 }
 
-/// Turns the triangles of each component alike, and each closed component so that its volume lies behind it, or before
-/// it where the component lies inside an odd number of others.
+/// Orients the triangles of each component consistently. A closed component gets its volume behind it, or in front of
+/// it if the component lies inside an odd number of others.
 fn orient(r: &mut Repaired) {
     let before = r.surface.triangles.clone();
     let parts = Parts::new(&mut r.surface, &mut r.report);
@@ -214,22 +212,22 @@ fn orient(r: &mut Repaired) {
         r.surface.triangles.iter().zip(&before).filter(|(now, then)| turned_over(now, then)).count();
 }
 
-/// Whether two triangles with the same vertices run in opposite directions.
+/// True if two triangles with the same vertices have opposite orientation.
 fn turned_over(t: &[u32; 3], u: &[u32; 3]) -> bool {
     let at = t.iter().position(|&v| v == u[0]).unwrap_or(0);
     t[(at + 1) % 3] != u[1]
 }
 
-/// Components of a surface that hang together by edges of two triangles.
+/// Components of a surface connected by edges of two triangles.
 struct Parts {
     /// Component of each triangle.
     of: Vec<u32>,
-    /// Whether each of its edges has two triangles that agree.
+    /// True if each of its edges has two triangles with consistent orientation.
     closed: Vec<bool>,
 }
 
 impl Parts {
-    /// Finds the components and turns their triangles alike: as the first triangle of each is.
+    /// Finds the components and orients their triangles like the first one of each.
     fn new(surface: &mut TriMesh, report: &mut RepairReport) -> Self {
         let edges = tri_adjacency(&surface.triangles, surface.points.len());
         let triangles = &mut surface.triangles;
@@ -237,7 +235,7 @@ impl Parts {
         let mut turned = vec![false; triangles.len()];
         let (mut closed, mut sound) = (Vec::new(), Vec::new());
         let mut stack = Vec::new();
-        // Ends of an edge as the triangles came.
+        // Ends of an edge in the input orientation.
         let ends = |t: &[u32; 3], i: usize| [t[i], t[(i + 1) % 3]];
         for start in 0..triangles.len() {
             if of[start] != NONE {
@@ -278,7 +276,7 @@ impl Parts {
         Self { of, closed }
     }
 
-    /// Signed volume of each component, as seen from its first point.
+    /// Signed volume of each component, relative to its first point.
     fn volumes(&self, surface: &TriMesh) -> Vec<f64> {
         let mut origin: Vec<Option<Point3>> = vec![None; self.closed.len()];
         let mut volume = vec![0.0; self.closed.len()];
@@ -290,7 +288,7 @@ impl Parts {
         volume
     }
 
-    /// In how many other closed components each component lies.
+    /// Number of other closed components around each component.
     fn depths(&self, surface: &TriMesh) -> Vec<usize> {
         let mut depths = vec![0; self.closed.len()];
         if self.closed.len() < 2 {
@@ -320,8 +318,8 @@ impl Parts {
         depths
     }
 
-    /// In how many other closed components a point lies: those that the ray from it along x crosses an odd number of
-    /// times. `None` when the ray grazes an edge.
+    /// Number of other closed components around a point: those that the ray along x crosses an odd number of times.
+    /// `None` if the ray grazes an edge.
     fn depth(&self, surface: &TriMesh, tree: &Bvh, own: u32, p: &Point3, far: f64) -> Option<usize> {
         let mut near = Vec::new();
         tree.query(&Aabb::of_points([p, &Point3::new(far.max(p.x), p.y, p.z)]), |i| near.push(i));
@@ -337,7 +335,7 @@ impl Parts {
     }
 }
 
-/// Whether the ray from `p` along x goes through a triangle; `None` when it meets its border.
+/// True if the ray from `p` along x crosses a triangle; `None` if it meets its border.
 fn crosses(surface: &TriMesh, triangle: u32, p: &Point3) -> Option<bool> {
     let [a, b, c] = surface.triangles[triangle as usize].map(|v| &surface.points[v as usize]);
     let flat = |q: &Point3| [q.y, q.z];
@@ -348,7 +346,7 @@ fn crosses(surface: &TriMesh, triangle: u32, p: &Point3) -> Option<bool> {
     if turns.contains(&0.0) {
         return None;
     }
-    // Seen against x, a triangle that runs counter-clockwise has p behind it when p has the smaller x.
+    // Seen against x, p lies behind a counter-clockwise triangle if p has the smaller x.
     let side = orient3d(a, b, c, p);
     if side == 0.0 { None } else { Some((side < 0.0) == (turns[0] > 0.0)) }
 }
@@ -407,7 +405,7 @@ mod tests {
         let n = s.triangles.len();
         let [a, b, c] = s.triangles[7];
         let twice = |s: &mut TriMesh, t: [u32; 3]| s.triangles.extend([t, [t[1], t[0], t[2]]]);
-        // One triangle of the surface with its back, and a fin that is there three times.
+        // One triangle of the surface with its reverse, and a fin of three copies.
         s.points.push(Point3::new(3.0, 3.0, 3.0));
         let tip = s.points.len() as u32 - 1;
         s.triangles.push([b, a, c]);

@@ -1,10 +1,10 @@
-//! Meshes for tests, made by formula.
+//! Analytic meshes for tests.
 
 use super::{TetMesh, TriMesh};
 use crate::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 
-/// The unit cube as n × n × n cells of six tetrahedra each (Kuhn's subdivision).
+/// Unit cube as n × n × n cells of six tetrahedra each (Kuhn's subdivision).
 pub fn cube_lattice(n: u32) -> TetMesh {
     let id = |x: u32, y: u32, z: u32| (z * (n + 1) + y) * (n + 1) + x;
     let mut mesh = TetMesh::default();
@@ -30,7 +30,7 @@ pub fn cube_lattice(n: u32) -> TetMesh {
     mesh
 }
 
-/// The unit sphere: an icosahedron whose triangles are cut in four `level` times.
+/// Unit sphere: an icosahedron with triangles split in four `level` times.
 pub fn sphere_surface(level: usize) -> TriMesh {
     let phi = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mut points: Vec<Point3> = Vec::new();
@@ -85,8 +85,8 @@ pub fn sphere_surface(level: usize) -> TriMesh {
     TriMesh { points, triangles }
 }
 
-/// A disc of three-cornered rings swept along z: a solid tube of radius 1 and height `layers · step`, `rings` rings of
-/// vertices around the axis, `6 · ring` of them in each.
+/// Solid tube of radius 1 and height `layers · step`: a disc of hexagonal rings swept along z. It has `rings` rings of
+/// vertices around the axis, with `6 · ring` vertices each.
 pub fn tube_lattice(rings: u32, layers: u32, step: f64) -> TetMesh {
     let mut mesh = TetMesh::default();
     let (disc, flat) = disc_lattice(rings);
@@ -137,7 +137,7 @@ fn disc_lattice(rings: u32) -> (Vec<Point3>, Vec<[u32; 3]>) {
     (points, triangles)
 }
 
-/// Moves the points for which `movable` is true by up to `size` in each coordinate, by a fixed pseudo-random sequence.
+/// Moves the points marked in `movable` by up to `size` in each coordinate, by a fixed pseudo-random sequence.
 pub fn perturb(points: &mut [Point3], movable: &[bool], size: f64, seed: u64) {
     let mut state = seed;
     let mut next = || {

@@ -1,14 +1,14 @@
-//! Taubin's smoothing of surfaces.
+//! Taubin smoothing of surfaces.
 
 use super::adjacency::Incidence;
 use crate::geometry::{Point3, Vec3};
 
-/// Taubin's λ|μ smoothing: a Laplacian step forwards and a slightly longer one backwards, which keeps sizes.
+/// Taubin λ|μ smoothing: a Laplacian step forwards and a slightly longer one backwards, which preserves sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taubin {
-    /// Factor of the step that smooths, in (0, 1).
+    /// Factor of the smoothing step, in (0, 1).
     pub lambda: f64,
-    /// Factor of the step that swells back, below −`lambda`.
+    /// Factor of the inflating step, below −`lambda`.
     pub mu: f64,
     /// Number of pairs of steps.
     pub iterations: usize,
@@ -21,8 +21,8 @@ impl Default for Taubin {
 }
 
 impl Taubin {
-    /// Smooths the points listed in `movable` towards the mean of their neighbours. All move at once: the order of the
-    /// list does not matter.
+    /// Smooths the points listed in `movable` towards the mean of their neighbours. All move at once, so the order of
+    /// the list does not matter.
     pub fn smooth_points(&self, points: &mut [Point3], neighbors: &Incidence, movable: &[u32]) {
         let mut moved = Vec::with_capacity(movable.len());
         for _ in 0..self.iterations {

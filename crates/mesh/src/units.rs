@@ -1,6 +1,6 @@
-//! Numbers as people read them: counts, sizes, times, places.
+//! Human-readable numbers: counts, sizes, times, positions.
 
-/// A count with its thousands apart.
+/// Formats a count with thousands separators.
 pub fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut out = String::new();
@@ -13,12 +13,12 @@ pub fn grouped(count: usize) -> String {
     out
 }
 
-/// A count and what is counted, whose plural has an s.
+/// Formats a count with its noun, whose plural ends in s.
 pub fn counted(count: usize, what: &str) -> String {
     format!("{} {what}{}", grouped(count), if count == 1 { "" } else { "s" })
 }
 
-/// Five significant digits, whatever the unit.
+/// Formats five significant digits, independent of the unit.
 pub fn digits(x: f64) -> String {
     let magnitude = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };
     if (-3.0..7.0).contains(&magnitude) {
@@ -28,13 +28,13 @@ pub fn digits(x: f64) -> String {
     }
 }
 
-/// The same without zeros at its end.
+/// Formats five significant digits without trailing zeros.
 pub fn number(x: f64) -> String {
     let text = digits(x);
     if text.contains('e') { text } else { short(&text) }
 }
 
-/// A place, as finely as it is needed to find it: seven digits of its largest coordinate. To be pasted after `--at` or `#at=`.
+/// Formats a position with seven digits of its largest coordinate, to be pasted after `--at` or `#at=`.
 pub fn place(at: [f64; 3]) -> String {
     let largest = at.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let magnitude = if largest > 0.0 { largest.log10().floor() } else { 0.0 };
@@ -45,13 +45,13 @@ pub fn place(at: [f64; 3]) -> String {
     at.map(|x| short(&format!("{x:.decimals$}"))).join(",")
 }
 
-/// A number without zeros at its end, and without a sign where nothing else is left.
+/// Removes trailing zeros of a number, and the sign of a resulting zero.
 fn short(number: &str) -> String {
     let text = if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number };
     if text == "-0" { "0".into() } else { text.into() }
 }
 
-/// A share of 1 as a percentage.
+/// Formats a fraction as a percentage.
 pub fn percent(share: f64) -> String {
     let value = 100.0 * share;
     if value == 0.0 || value >= 99.95 || (value - value.round()).abs() < 1e-9 {
@@ -61,7 +61,7 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// Two digits of a number, and how many there are in words.
+/// Formats two digits of a number, with its magnitude in words.
 pub fn rounded(number: f64) -> String {
     match number {
         n if n >= 1e9 => format!("{:.1} billion", n / 1e9),
@@ -70,7 +70,7 @@ pub fn rounded(number: f64) -> String {
     }
 }
 
-/// Bytes for people.
+/// Formats bytes.
 pub fn bytes_of(bytes: u64) -> String {
     match bytes as f64 {
         b if b >= 1e10 => format!("{:.0} GB", b / 1e9),
@@ -81,7 +81,7 @@ pub fn bytes_of(bytes: u64) -> String {
     }
 }
 
-/// A time for people.
+/// Formats a time.
 pub fn seconds_of(seconds: f64) -> String {
     match seconds {
         s if s >= 7200.0 => format!("{:.1} h", s / 3600.0),

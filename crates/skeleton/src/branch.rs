@@ -1,32 +1,32 @@
 //! Branches: maximal chains of edges through nodes of valence 2.
 //!
-//! Measured networks come as polylines whose edges are often shorter than their radius; what is cut into blocks is the
-//! branch as a whole, measured by arc length.
+//! Measured networks consist of polylines whose edges are often shorter than their radius. Cuts apply to the branch as
+//! a whole, measured by arc length.
 
 use super::{Adjacency, BranchId, EdgeId, NodeId, Skeleton};
 use anastomesh_mesh::geometry::{Point3, Tube};
 
 impl BranchId {
-    /// As an index into `Branches::list`.
+    /// Index into `Branches::list`.
     #[inline]
     pub fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A maximal chain of edges through nodes of valence 2. Its ends are nodes of another valence; a loop that leaves and
-/// returns to one junction has equal ends, and so has a ring without any junction.
+/// Maximal chain of edges through nodes of valence 2. Its ends are nodes of another valence. A loop that leaves and
+/// returns to one junction has equal ends, and so has a ring without junctions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
-    /// Nodes along the way, one more than edges.
+    /// Nodes in order, one more than edges.
     pub nodes: Vec<NodeId>,
-    /// Edges along the way.
+    /// Edges in order.
     pub edges: Vec<EdgeId>,
     /// Arc length from the start to each of `nodes`.
     pub arc: Vec<f64>,
 }
 
-/// A place on a branch.
+/// A position on a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// Index into `Branch::edges`.
@@ -36,7 +36,7 @@ pub struct Place {
 }
 
 impl Branch {
-    /// Length along the way.
+    /// Total arc length.
     pub fn length(&self) -> f64 {
         self.arc.last().copied().unwrap_or(0.0)
     }
@@ -46,7 +46,7 @@ impl Branch {
         [self.nodes[0], self.nodes[self.nodes.len() - 1]]
     }
 
-    /// Whether it returns to where it started.
+    /// True if it returns to its start.
     pub fn is_closed(&self) -> bool {
         let [a, b] = self.ends();
         a == b
@@ -67,8 +67,8 @@ impl Branch {
         (0..self.edges.len()).map(|i| self.tube(skeleton, i))
     }
 
-    /// Where the arc length `s` (clamped to the branch) lies; a node belongs to the edge that starts there, the last
-    /// one to the edge that ends there.
+    /// Position at arc length `s`, clamped to the branch. A node belongs to the edge that starts there, the last one to
+    /// the edge that ends there.
     pub fn locate(&self, s: f64) -> Place {
         let last = self.edges.len() - 1;
         let piece = self.arc[1..=last].partition_point(|&end| end <= s);
@@ -77,7 +77,7 @@ impl Branch {
         Place { piece, t }
     }
 
-    /// Point on the axis at arc length `s`.
+    /// Axis point at arc length `s`.
     pub fn point(&self, skeleton: &Skeleton, s: f64) -> Point3 {
         let place = self.locate(s);
         self.tube(skeleton, place.piece).point(place.t)
@@ -89,7 +89,7 @@ impl Branch {
         self.tube(skeleton, place.piece).radius(place.t)
     }
 
-    /// The plane across the vessel at arc length `s`; its axis is the direction of the edge there.
+    /// Plane across the vessel at arc length `s`; its axis is the direction of the edge there.
     pub fn section(&self, skeleton: &Skeleton, s: f64) -> anastomesh_mesh::geometry::Section {
         let place = self.locate(s);
         let tube = self.tube(skeleton, place.piece);
@@ -100,7 +100,7 @@ impl Branch {
         }
     }
 
-    /// Mean radius along the way, weighted by length.
+    /// Mean radius, weighted by length.
     pub fn mean_radius(&self, skeleton: &Skeleton) -> f64 {
         let (mut sum, mut length) = (0.0, 0.0);
         for tube in self.tubes(skeleton) {
@@ -116,7 +116,7 @@ impl Branch {
 pub struct Branches {
     /// Branches, by `BranchId`: those that start at junctions and terminals by their first node, then the rings.
     pub list: Vec<Branch>,
-    /// The branch of each edge and the edge's index in it.
+    /// Branch of each edge, and the edge's index in it.
     pub of_edge: Vec<(BranchId, u32)>,
 }
 

@@ -1,5 +1,4 @@
-//! All branches of a skeleton in three lists: for networks of millions of vessels, of which each branch is made when it is
-//! looked at.
+//! All branches of a skeleton in flat lists. In networks of millions of vessels, each branch is built only when used.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,15 +7,15 @@ use super::{Adjacency, Branch, EdgeId, NodeId, Skeleton};
 /// All branches, by `BranchId`: those that start at junctions and terminals by their first node, then the rings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Chains {
-    /// Where the edges of each begin; one more than there are branches.
+    /// Start of the edges of each branch, with an end marker.
     first: Vec<u32>,
-    /// Nodes along the way, of each branch one more than edges.
+    /// Nodes in order, one more per branch than edges.
     nodes: Vec<NodeId>,
     edges: Vec<EdgeId>,
 }
 
 impl Chains {
-    /// How many branches there are.
+    /// Number of branches.
     pub fn len(&self) -> usize {
         self.first.len() - 1
     }
@@ -59,7 +58,7 @@ impl Chains {
 impl Skeleton {
     /// All branches. Every edge belongs to exactly one.
     pub fn chains(&self, adjacency: &Adjacency) -> Chains {
-        // Rings come on top; of the others each has two ends.
+        // Every branch has two ends, except rings, which are not counted.
         let ends: usize = self.node_ids().map(|node| adjacency.valence(node)).filter(|&valence| valence != 2).sum();
         let mut first = Vec::with_capacity(ends.div_ceil(2) + 1);
         first.push(0);
@@ -91,7 +90,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Follows the chain that leaves `start` by `first` until it ends or closes, unless it has been followed.
+    /// Follows the chain that leaves `start` by `first` until it ends or closes, unless already visited.
     fn branch(&mut self, start: NodeId, first: EdgeId) {
         if self.seen[first.index()] {
             return;

@@ -1,10 +1,9 @@
-//! What every cleaned skeleton satisfies.
+//! Invariants of a cleaned skeleton.
 
 use super::{Edge, EdgeId, LARGEST, NodeId, Skeleton, SkeletonError};
 
 impl Skeleton {
-    /// Holds when ids exist, numbers are finite, radii positive, edges have a length, no edge is repeated and every
-    /// node has an edge.
+    /// Checks that ids exist, numbers are finite, radii positive, edges distinct and not empty, and nodes not isolated.
     ///
     /// # Errors
     /// The first violation.
@@ -30,7 +29,7 @@ impl Skeleton {
         Ok(())
     }
 
-    /// `seen` is scratch: the edge by which each node was reached, valid when that edge is at `node`.
+    /// Checks for repeated edges. `seen` is scratch: the edge to each visited node, valid if that edge is at `node`.
     fn check_repeats(&self, node: NodeId, edges: &[EdgeId], seen: &mut [EdgeId]) -> Result<(), SkeletonError> {
         for &id in edges {
             let other = self.edge(id).other(node);
@@ -43,7 +42,7 @@ impl Skeleton {
         Ok(())
     }
 
-    /// Holds when every number is one that can be computed with and every edge names existing nodes.
+    /// Checks that every number is usable and every edge refers to existing nodes.
     ///
     /// # Errors
     /// The first violation.

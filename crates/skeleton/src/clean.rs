@@ -1,37 +1,37 @@
-//! From a network as it was read to a skeleton that satisfies `Skeleton::check`.
+//! Cleaning: from an input network to a skeleton that satisfies `Skeleton::check`.
 
 use super::{Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError};
 use anastomesh_mesh::geometry::DisjointSets;
 use serde::Serialize;
 
-/// Edges shorter than this share of their radius have no direction worth the name (rounding of the coordinates decides
-/// it): their ends are merged.
+/// Maximum length of an edge to be contracted, relative to its radius. The rounding of coordinates determines the
+/// direction of such an edge.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// What cleaning did. Nodes and edges are numbered as in the input, from 0.
+/// Summary of cleaning. Nodes and edges are numbered as in the input, from 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CleanReport {
-    /// Nodes that lie exactly where an earlier node lies and were merged with it: (node, the earlier one).
+    /// Nodes exactly at an earlier node, merged with it: (node, the earlier one).
     pub coincident: Vec<(u32, u32)>,
     /// Edges without length, dropped: both ends are one node or lie at one point.
     pub zero_length: Vec<u32>,
     /// Edges shorter than a millionth of their radius, contracted to a point.
     pub contracted: Vec<u32>,
-    /// Edges that join the same two nodes as another one, dropped: (edge, the one that was kept: the thicker).
+    /// Edges between the nodes of another one, dropped: (edge, the one that was kept: the thicker).
     pub repeated: Vec<(u32, u32)>,
     /// Nodes without an edge, dropped.
     pub isolated: Vec<u32>,
-    /// Nodes inside a branch at which the radius jumped from one edge to the next; both ends were given the mean.
+    /// Nodes inside a branch with a radius jump between edges; both ends were given the mean.
     pub blended: Vec<u32>,
 }
 
 impl CleanReport {
-    /// Whether there was nothing to do.
+    /// True if nothing was changed.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// What was done, as a count and words for people; what was not done is left out.
+    /// Changes as counts with descriptions; only those that occurred.
     pub fn counts(&self) -> Vec<(usize, &'static str)> {
         let done = [
             (self.coincident.len(), "nodes at the place of another one merged"),
@@ -48,11 +48,10 @@ impl CleanReport {
 /// Merges nodes at identical positions, drops edges without length, repeated edges and nodes without edges, and makes
 /// the radius continuous along each branch.
 ///
-/// Merged nodes keep the largest radius; edges keep their own radii. Where edges of one branch have radii of their own
-/// (one per edge in the file), the radius would jump from edge to edge: at a node of valence 2 both sides get the mean.
-/// At junctions the jump stays: a thin side branch leaves a thick vessel with its own radius from the start, and the
-/// surface blends the two. Centrelines of which every line runs from the inlet to one outlet become one graph as far as
-/// their points coincide.
+/// Merged nodes keep the largest radius; edges keep their own radii. If the file has one radius per edge, the radius
+/// jumps between edges: at a node of valence 2 both sides get the mean. At junctions the jump stays: a thin side branch
+/// leaves a thick vessel with its own radius from the start, and the surface blends the two. Centrelines that all start
+/// at the inlet become one graph as far as their points coincide.
 ///
 /// ```
 /// use anastomesh_mesh::Point3;
@@ -68,7 +67,7 @@ impl CleanReport {
 /// ```
 ///
 /// # Errors
-/// When a number cannot be used, an edge names a node that does not exist, or no edge remains.
+/// If a number is unusable, an edge refers to a missing node, or no edge remains.
 pub fn clean(raw: &Skeleton) -> Result<(Skeleton, CleanReport), SkeletonError> {
     if raw.edges.is_empty() {
         return Err(SkeletonError::NoVessel { nodes: raw.nodes.len() });
@@ -85,7 +84,7 @@ pub fn clean(raw: &Skeleton) -> Result<(Skeleton, CleanReport), SkeletonError> {
     Ok((skeleton, report))
 }
 
-/// For each node the one that it becomes.
+/// Merged node of each node.
 fn merge_nodes(raw: &Skeleton, report: &mut CleanReport) -> Vec<u32> {
     let mut sets = DisjointSets::new(raw.nodes.len());
     // Adding 0 turns −0 into 0.
@@ -115,7 +114,7 @@ fn merge_nodes(raw: &Skeleton, report: &mut CleanReport) -> Vec<u32> {
     (0..raw.nodes.len() as u32).map(|i| sets.root(i)).collect()
 }
 
-/// The edges to keep, in ascending order.
+/// Edges to keep, in ascending order.
 fn keep_edges(raw: &Skeleton, merged: &[u32], report: &mut CleanReport) -> Vec<u32> {
     let ends = |id: u32| {
         let [a, b] = raw.edges[id as usize].nodes.map(|n| merged[n.index()]);
@@ -197,7 +196,7 @@ mod tests {
 
     #[test]
     fn overlapping_lines_become_one_graph() {
-        // Two lines from inlet 0: 0-1-2-3 and 4-5-6-7, the points 4, 5, 6 lie on 0, 1, 2.
+        // Two lines from inlet 0: 0-1-2-3 and 4-5-6-7, with points 4, 5, 6 at 0, 1, 2.
         let mut raw = skeleton(9, &[(0, 1), (1, 2), (2, 3), (4, 5), (5, 6), (6, 7), (7, 7)]);
         for (copy, of) in [(4, 0), (5, 1), (6, 2)] {
             raw.nodes[copy].position = raw.nodes[of].position;

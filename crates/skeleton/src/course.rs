@@ -1,9 +1,9 @@
-//! The axis of a branch by arc length, and its direction where a plane crosses it.
+//! Axis of a branch by arc length, and its direction at cut planes.
 
 use super::{Branch, Chains, Skeleton};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 
-/// Which way along a branch.
+/// Direction along a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// Towards larger arc lengths: out of the piece at side 0 of a cut.
@@ -13,7 +13,7 @@ pub enum Way {
 }
 
 impl Way {
-    /// The ways out of a piece of a branch, at its start and at its end.
+    /// Outward directions of a piece of a branch, at its start and at its end.
     pub const BOTH: [Self; 2] = [Self::Back, Self::Onward];
 
     /// +1 or −1.
@@ -24,7 +24,7 @@ impl Way {
         }
     }
 
-    /// The side of a cut whose cluster looks this way at its plane.
+    /// Side of a cut whose cluster has its plane in this direction.
     pub fn side(self) -> usize {
         match self {
             Way::Onward => 0,
@@ -32,7 +32,7 @@ impl Way {
         }
     }
 
-    /// Index of the end of a piece that lies this way.
+    /// Index of the end of a piece in this direction.
     pub fn end_index(self) -> usize {
         match self {
             Way::Onward => 1,
@@ -41,7 +41,7 @@ impl Way {
     }
 }
 
-/// The courses of all branches, each made when it is looked at.
+/// Courses of all branches, each built on access.
 #[derive(Clone, Copy)]
 pub struct Courses<'a> {
     pub skeleton: &'a Skeleton,
@@ -49,7 +49,7 @@ pub struct Courses<'a> {
 }
 
 impl<'a> Courses<'a> {
-    /// How many there are.
+    /// Number of courses.
     pub fn len(self) -> usize {
         self.chains.len()
     }
@@ -63,7 +63,7 @@ impl<'a> Courses<'a> {
     }
 }
 
-/// A branch with its geometry at hand.
+/// A branch with its geometry.
 pub struct Course {
     pub branch: Branch,
     /// Positions of `branch.nodes`.
@@ -87,8 +87,7 @@ impl Course {
         &self.branch.arc
     }
 
-    /// The edge on which `s` lies, a node counted to the edge before it (`Onward`, as a plane there ends that edge) or
-    /// after it (`Back`).
+    /// Edge at `s`. A node belongs to the edge before it (`Onward`: a plane there ends it) or after it (`Back`).
     fn edge_at(&self, s: f64, way: Way) -> usize {
         let inner = &self.arc()[1..self.radii.len()];
         match way {
@@ -102,22 +101,22 @@ impl Course {
         if end > start { ((s - start) / (end - start)).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// Point of the axis at arc length `s`.
+    /// Axis point at arc length `s`.
     pub fn point(&self, s: f64) -> Point3 {
         let i = self.edge_at(s, Way::Back);
         let t = self.parameter(i, s);
-        // The nodes themselves come out exactly.
+        // Nodes are reproduced exactly.
         if t >= 1.0 { self.points[i + 1] } else { self.points[i] + (self.points[i + 1] - self.points[i]) * t }
     }
 
-    /// Radius at arc length `s`; where it jumps at a node, that of the edge before the node (`Onward`) or after it.
+    /// Radius at arc length `s`. If it jumps at a node, that of the edge before the node (`Onward`) or after it.
     pub fn radius(&self, s: f64, way: Way) -> f64 {
         let i = self.edge_at(s, way);
         let [ra, rb] = self.radii[i];
         ra + (rb - ra) * self.parameter(i, s)
     }
 
-    /// Edges that have a part in (lo, hi).
+    /// Edges that overlap (lo, hi).
     fn edges_between(&self, lo: f64, hi: f64) -> std::ops::RangeInclusive<usize> {
         self.edge_at(lo, Way::Back)..=self.edge_at(hi, Way::Onward)
     }
@@ -137,18 +136,18 @@ impl Course {
         range
     }
 
-    /// Whether a node lies strictly between `lo` and `hi`.
+    /// True if a node lies strictly between `lo` and `hi`.
     pub fn has_node_between(&self, lo: f64, hi: f64) -> bool {
         self.edge_at(lo, Way::Back) < self.edge_at(hi, Way::Onward)
     }
 
-    /// Mean radius along the way.
+    /// Mean radius, weighted by length.
     pub fn mean_radius(&self) -> f64 {
         let sum: f64 = self.radii.iter().zip(self.arc().windows(2)).map(|(r, s)| (r[0] + r[1]) * (s[1] - s[0])).sum();
         0.5 * sum / self.length()
     }
 
-    /// The part of edge `i` in [lo, hi], if any.
+    /// Part of edge `i` in [lo, hi], if any.
     pub fn clipped(&self, i: usize, lo: f64, hi: f64) -> Option<Tube> {
         let (start, end) = (self.arc()[i], self.arc()[i + 1]);
         let (lo, hi) = (lo.max(start), hi.min(end));
@@ -163,12 +162,12 @@ impl Course {
         Some(Tube { a: whole.point(t), b: whole.point(u), ra: whole.radius(t), rb: whole.radius(u) })
     }
 
-    /// Length over which a vessel is made straight before an end plane: a radius, or less on a very short branch.
+    /// Length of the straight run before an end plane: a radius, or less on a very short branch.
     fn run_length(&self, s: f64, way: Way) -> f64 {
         self.radius(s, way).min(0.375 * self.length())
     }
 
-    /// Where the straight run begins that ends at the plane at `s`, looking `way`. Polylines have edges shorter than
+    /// Start of the straight run that ends at the plane at `s` in direction `way`. Polylines have edges shorter than
     /// their radius; a run of one radius makes the vessel cross the plane along the plane's axis.
     pub fn run_start(&self, s: f64, way: Way) -> f64 {
         let run = self.run_length(s, way);
@@ -181,7 +180,7 @@ impl Course {
             return node;
         }
         let target = (s - run * way.sign()).clamp(0.0, self.length());
-        // A node near the target saves a tiny edge.
+        // A node near the target avoids a tiny edge.
         let arc = self.arc();
         let after = arc.partition_point(|&x| x < target).min(arc.len() - 1);
         let before = after.saturating_sub(1);
@@ -189,7 +188,7 @@ impl Course {
         if (nearest - target).abs() <= 0.25 * run { nearest } else { target }
     }
 
-    /// Unit direction of the vessel where a plane looking `way` stands at `s`, in the direction of the look.
+    /// Unit direction of the vessel at a plane at `s`, pointing `way`.
     fn direction(&self, s: f64, way: Way) -> Vec3 {
         let chord = self.point(s) - self.point(self.run_start(s, way));
         chord.try_normalize(0.0).unwrap_or_else(|| {
@@ -198,19 +197,19 @@ impl Course {
         })
     }
 
-    /// The end plane at `s`, its axis pointing `way`.
+    /// End plane at `s`, its axis pointing `way`.
     pub fn section(&self, s: f64, way: Way) -> Section {
         Section { origin: self.point(s), axis: self.direction(s, way), radius: self.radius(s, way) }
     }
 
-    /// Unit direction of the axis at `s` over a radius to either side.
+    /// Unit direction of the axis at `s`, over a radius to either side.
     pub fn tangent(&self, s: f64) -> Vec3 {
         let run = self.run_length(s, Way::Back);
         let chord = self.point((s + run).min(self.length())) - self.point((s - run).max(0.0));
         chord.try_normalize(0.0).unwrap_or_else(|| self.direction(s, Way::Onward))
     }
 
-    /// Direction in which the branch leaves its end: the first one if `way` is `Onward`, else the last one.
+    /// Direction in which the branch leaves an end: the first one if `way` is `Onward`, else the last one.
     pub fn leaving(&self, way: Way, window: f64) -> Vec3 {
         let window = window.min(self.length());
         let (from, to) = match way {
@@ -234,9 +233,9 @@ impl Course {
         back.cross(&onward).norm().atan2(back.dot(&onward))
     }
 
-    /// Maximal parts of [lo, hi] that stay off every node where the vessel turns by more than `max_turn` over one
-    /// radius: by one radius or so, and further off sharp turns, whose two limbs are like branches at a junction
-    /// (equation 12 with equal radii is r tan(turn / 2)).
+    /// Maximal parts of [lo, hi] away from nodes where the vessel turns by more than `max_turn` over one radius. The
+    /// distance is about one radius, and larger at sharp turns. Their limbs are like branches at a junction, where
+    /// equation 12 with equal radii is r tan(turn / 2).
     pub fn straight_parts(&self, lo: f64, hi: f64, max_turn: f64) -> Vec<[f64; 2]> {
         let mut parts = Vec::new();
         let mut start = lo;
@@ -269,12 +268,12 @@ impl Course {
         parts
     }
 
-    /// The vessel in [lo, hi] as straight tubes; where an end is `flat`, the vessel runs straight into its plane.
+    /// The vessel in [lo, hi] as straight tubes; at a `flat` end, the vessel runs straight into its plane.
     pub fn tubes(&self, lo: f64, hi: f64, flat: [bool; 2]) -> Vec<Tube> {
         let mut from = if flat[0] { self.run_start(lo, Way::Back) } else { lo };
         let mut to = if flat[1] { self.run_start(hi, Way::Onward) } else { hi };
         if from > to {
-            // One of the runs lies in one edge and holds the start of the other, or both are that edge.
+            // One of the runs lies in one edge and contains the start of the other, or both are that edge.
             let within =
                 |run: f64, s: f64| self.edge_at(run.min(s), Way::Back) == self.edge_at(run.max(s), Way::Onward);
             match (within(from, lo), within(to, hi)) {

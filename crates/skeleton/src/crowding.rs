@@ -1,4 +1,4 @@
-//! Terminals that lie so close to each other that their caps cannot both be there.
+//! Terminals too close to each other for both caps.
 
 use super::{Adjacency, NodeId, Skeleton};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
@@ -7,30 +7,30 @@ use serde::Serialize;
 /// Two terminals closer than the sum of their radii.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CrowdedTerminals {
-    /// The two, in ascending order.
+    /// The two nodes, in ascending order.
     pub nodes: [NodeId; 2],
     /// Their distance.
     pub distance: f64,
-    /// The sum of their radii.
+    /// Sum of their radii.
     pub radii: f64,
 }
 
 impl Skeleton {
-    /// Pairs of terminals closer than the sum of their radii, in ascending order. Terminals at one point are one node
-    /// after cleaning.
+    /// Pairs of terminals closer than the sum of their radii, in ascending order. Cleaning merges terminals at one
+    /// point.
     pub fn crowded_terminals(&self, adjacency: &Adjacency) -> Vec<CrowdedTerminals> {
         self.crowded_among(&adjacency.terminals())
     }
 
-    /// The same among the given nodes, which are at different points.
+    /// Pairs among the given nodes, which must be at different points.
     pub fn crowded_among(&self, terminals: &[NodeId]) -> Vec<CrowdedTerminals> {
         let places: Vec<[f64; 3]> = terminals.iter().map(|&n| self.node(n).position.into()).collect();
-        // Only a tree of nothing, or of coordinates that are not numbers, cannot be built.
+        // Building fails only without points or with NaN coordinates.
         let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&places) else { return Vec::new() };
         let mut pairs = Vec::new();
         for (&a, place) in terminals.iter().zip(&places) {
             let own = self.node(a).radius;
-            // The thicker of two finds the thinner: their radii sum up to no more than twice its own.
+            // The thicker of two finds the thinner: the sum of radii is at most twice its own.
             let reach = 2.0 * own;
             for near in tree.query(place).within::<SquaredEuclidean<f64>>(reach * reach).unsorted().execute() {
                 let b = terminals[near.item as usize];
@@ -54,7 +54,7 @@ mod tests {
     use anastomesh_mesh::geometry::Point3;
     use proptest::prelude::*;
 
-    /// One vessel from each given terminal to a far place of its own.
+    /// One vessel from each given terminal to a distant point of its own.
     fn vessels(terminals: &[([f64; 3], f64)]) -> Skeleton {
         let mut skeleton = Skeleton::default();
         for (i, &(p, radius)) in terminals.iter().enumerate() {

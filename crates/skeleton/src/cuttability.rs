@@ -1,38 +1,38 @@
-//! Whether a branch may be cut, and where: equations 11 and 12 of the paper, measured along the branch, with room for a
-//! connector, and straight enough for it. What a report calls cuttable is what the partition decides.
+//! Cut conditions of a branch: equations 11 and 12 of the paper, measured along the branch, and a straight part that is
+//! long enough for a connector. Reports and the partition use the same conditions.
 
 use super::course::{Course, Courses, Way};
 use super::{Adjacency, NodeId, Skeleton};
 use anastomesh_mesh::geometry::Vec3;
 
-/// 2 ω of equation 11 with ω = 1.1: how far from a node a cut stays, in radii of the node; and, of an edge between two such
-/// nodes, its length in sums of their radii.
+/// 2 ω of equation 11 with ω = 1.1: minimum distance of a cut from a node, in radii of the node. Also the minimum
+/// length of an edge between two such nodes, in sums of their radii.
 pub const CUT_DISTANCE: f64 = 2.2;
 
-/// ω of equation 12. Walls are level sets of a convolution field, whose tubes fuse when they come closer than 1.1 sums of
-/// their radii: with the paper's 1.1 they do so at cuts.
+/// ω of equation 12. Walls are level sets of a convolution field, whose tubes fuse at distances below 1.1 sums of their
+/// radii. With the paper's 1.1 they would fuse at cuts.
 pub const ANGLE_MARGIN: f64 = 1.25;
 
-/// Room that a connector needs between its two planes, in radii.
+/// Minimum length of a connector between its two planes, in radii.
 pub const CONNECTOR_ROOM: f64 = 2.0;
 
-/// How much of equation 11's distance is counted in radii of the vessel itself, the rest in those of its neighbours.
+/// Fraction of equation 11's distance in radii of the vessel itself; the rest is in those of its neighbours.
 const OWN_SHARE: f64 = 0.6;
-/// Over how many radii of the node the direction of a branch is measured.
+/// Length over which the direction of a branch is measured, in radii of the node.
 const DIRECTION_WINDOW: f64 = 3.0;
-/// How much of the vessel a terminal keeps at least when its branch is cut, in radii.
+/// Minimum length that a terminal keeps when its branch is cut, in radii.
 const TERMINAL_KEEPS: f64 = 3.0;
 
-/// What a cut needs. Lengths are in radii of the vessel concerned.
+/// Requirements of a cut. Lengths are in radii of the vessel concerned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutRules {
-    /// Least distance of a cut plane from a junction, in radii of the node (2 ω of equation 11).
+    /// Minimum distance of a cut plane from a junction, in radii of the node (2 ω of equation 11).
     pub node_distance: f64,
     /// Margin factor on the angle condition (ω of equation 12).
     pub angle_margin: f64,
-    /// Room that a connector needs between its two planes.
+    /// Minimum length of a connector between its two planes.
     pub room: f64,
-    /// Largest turn, in radians, of a vessel over one radius inside a connector: bends are left to the clusters.
+    /// Maximum turn, in radians, of a vessel over one radius inside a connector. Bends are left to the clusters.
     pub max_turn: f64,
 }
 
@@ -48,33 +48,33 @@ impl Default for CutRules {
 }
 
 impl CutRules {
-    /// Room that a connector between planes at `lo` and `hi` needs.
+    /// Minimum length of a connector between planes at `lo` and `hi`.
     pub fn room_between(&self, course: &Course, lo: f64, hi: f64) -> f64 {
         self.room * 0.5 * (course.radius(lo, Way::Onward) + course.radius(hi, Way::Back))
     }
 
-    /// Whether a connector has this many times the room that it needs between planes at `lo` and `hi`.
+    /// True if a connector between planes at `lo` and `hi` has at least `times` its minimum length.
     pub fn fits(&self, course: &Course, [lo, hi]: [f64; 2], times: f64) -> bool {
         hi > lo && hi - lo >= times * self.room_between(course, lo, hi)
     }
 }
 
-/// Equation 12: how far from their node two vessels of the given radii that leave it along `u` and `v` are separate,
-/// measured along the first; 0 unless the angle is acute.
+/// Distance from the node at which two vessels along `u` and `v` are separate (equation 12), measured along the first.
+/// Zero unless the angle is acute.
 pub fn separation(u: &Vec3, v: &Vec3, radii: [f64; 2]) -> f64 {
     let lengths = u.norm() * v.norm();
     separation_at(u.dot(v) / lengths, u.cross(v).norm() / lengths, radii)
 }
 
-/// The same by cosine and sine of the angle: (r2 + r1 cos φ) / sin φ.
+/// Equation 12 by cosine and sine of the angle: (r2 + r1 cos φ) / sin φ.
 fn separation_at(cosine: f64, sine: f64, radii: [f64; 2]) -> f64 {
     if cosine <= 0.0 { 0.0 } else { (radii[1] + radii[0] * cosine) / sine }
 }
 
-/// Why a branch cannot be cut, whatever other vessels are near it.
+/// Reason why a branch cannot be cut, regardless of other vessels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Uncuttable {
-    /// Too short (equation 11, and room for a connector).
+    /// Too short (equation 11, and length of a connector).
     Length,
     /// Too short for the angle at which it leaves another branch (equation 12).
     Angle,
@@ -82,12 +82,12 @@ pub enum Uncuttable {
     Bend,
 }
 
-/// Where a branch may be cut.
+/// Part of a branch that may be cut.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutWindow {
-    /// Arc lengths between which planes may stand.
+    /// Arc lengths between which planes may lie.
     pub reach: [f64; 2],
-    /// The parts of it that are straight enough for a connector.
+    /// Subranges that are straight enough for a connector.
     pub straight: Vec<[f64; 2]>,
 }
 
@@ -95,12 +95,12 @@ pub struct CutWindow {
 pub enum BranchEnd {
     Junction,
     Terminal,
-    /// The node where a ring was opened: of valence 2.
+    /// Node where a ring was opened, of valence 2.
     Seam,
 }
 
 impl BranchEnd {
-    /// Of a branch that ends at a node.
+    /// Kind of end at a node.
     pub fn of(adjacency: &Adjacency, node: NodeId) -> Self {
         match adjacency.valence(node) {
             1 => Self::Terminal,
@@ -110,7 +110,7 @@ impl BranchEnd {
     }
 }
 
-/// The two ends of a branch leave a node with these directions and radii.
+/// Direction and radii of a branch that leaves a node.
 #[derive(Clone, Copy)]
 struct Leaving {
     branch: u32,
@@ -131,25 +131,25 @@ impl Leaving {
         Self { branch, way, direction: course.leaving(way, window), radius: course.radius(s, way), root_radius }
     }
 
-    /// Equation 12 beside another one.
+    /// Equation 12 relative to another branch.
     fn separation(&self, other: &Self) -> f64 {
         let sine = self.direction.cross(&other.direction).norm();
         separation_at(self.direction.dot(&other.direction), sine, [self.radius, other.radius])
     }
 }
 
-/// Says of each branch of a skeleton where it may be cut.
+/// Finds the part of each branch of a skeleton that may be cut.
 pub struct Cuttability<'a> {
     adjacency: &'a Adjacency,
     courses: Courses<'a>,
     rules: CutRules,
-    /// What leaves each node: a range of `leaving`.
+    /// Range of `leaving` of each node.
     first: Vec<u32>,
     leaving: Vec<Leaving>,
 }
 
 impl<'a> Cuttability<'a> {
-    /// `courses`: all branches of the skeleton.
+    /// Creates it from all branches of the skeleton, `courses`.
     pub fn new(adjacency: &'a Adjacency, courses: Courses<'a>, rules: CutRules) -> Self {
         let skeleton = courses.skeleton;
         let mut first = vec![0_u32; skeleton.nodes.len() + 1];
@@ -174,7 +174,7 @@ impl<'a> Cuttability<'a> {
         Self { adjacency, courses, rules, first, leaving }
     }
 
-    /// Where a branch may be cut, or why nowhere.
+    /// Part of a branch that may be cut, or the reason why there is none.
     pub fn window(&self, branch: u32) -> Result<CutWindow, Uncuttable> {
         let course = &self.courses.get(branch);
         let [[near0, angle0], [near1, angle1]] = [Way::Onward, Way::Back].map(|way| self.distances(branch, way));
@@ -191,7 +191,7 @@ impl<'a> Cuttability<'a> {
         }
     }
 
-    /// Least distances of a plane from the end of `branch` that leaves its node by `way`: by (11), and by (12).
+    /// Minimum distances of a plane from the end of `branch` that leaves its node by `way`: by (11), and by (12).
     fn distances(&self, branch: u32, way: Way) -> [f64; 2] {
         let node = self.courses.chains.ends(branch)[way.side()];
         let radius = self.courses.skeleton.node(node).radius;
@@ -207,7 +207,7 @@ impl<'a> Cuttability<'a> {
             angle = angle.max(own.separation(other));
             thickest = thickest.max(other.root_radius);
         }
-        // What has to be passed is the wall of the thickest neighbour; with equal radii that is equation 11.
+        // The cut must pass the wall of the thickest neighbour; with equal radii that is equation 11.
         let wall = (self.rules.node_distance - OWN_SHARE) * thickest + OWN_SHARE * own.root_radius;
         [wall.min(self.rules.node_distance * radius), self.rules.angle_margin * angle]
     }

@@ -1,4 +1,4 @@
-//! Nodes, edges, and the skeleton that they make.
+//! Nodes, edges, and skeletons.
 
 use anastomesh_mesh::geometry::{Point3, Tube};
 
@@ -21,8 +21,7 @@ pub struct Node {
     pub position: Point3,
     /// Radius of the vessel there.
     pub radius: f64,
-    /// Index of the node in the file that it was read from (0-based order of the points); for a node that a split
-    /// made, the node that was split.
+    /// Index of the node in its input file (0-based order of the points). After a split, that of the split node.
     pub original: u32,
 }
 
@@ -31,12 +30,11 @@ pub struct Node {
 pub struct Edge {
     /// Its two nodes.
     pub nodes: [NodeId; 2],
-    /// Radius of the vessel at either end. Equal to the nodes' radii when the input has only those; both equal to the
-    /// edge's own radius when the input has one per edge.
+    /// Radius of the vessel at either end: the nodes' radii, or the edge's own radius if the input has one per edge.
     pub radii: [f64; 2],
 }
 
-/// A vessel skeleton. Several components and loops are legal.
+/// A vessel skeleton. Several components and loops are valid.
 ///
 /// ```
 /// use anastomesh_mesh::Point3;
@@ -56,7 +54,7 @@ pub struct Skeleton {
 }
 
 impl Skeleton {
-    /// The straight piece of vessel that an edge stands for.
+    /// Straight piece of vessel of an edge.
     pub fn tube(&self, edge: EdgeId) -> Tube {
         let e = &self.edges[edge.0 as usize];
         Tube {

@@ -1,13 +1,13 @@
-//! What can be wrong with a skeleton.
+//! Errors of skeletons.
 
 use super::{EdgeId, NodeId};
 use anastomesh_mesh::geometry::Point3;
 
-/// Why a skeleton cannot be used.
+/// Reason why a skeleton is unusable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SkeletonError {
-    /// There is no edge, so there is no vessel.
+    /// No edge, so no vessel.
     #[error(
         "the network has {nodes} node(s) and no edge of a length above zero: there is no vessel to mesh; \
          it takes two nodes at different places and an edge between them"
@@ -16,17 +16,17 @@ pub enum SkeletonError {
         /// Number of nodes.
         nodes: usize,
     },
-    /// An edge names a node that does not exist.
+    /// An edge refers to a missing node.
     #[error("edge {} names node {}, but there are only {nodes} nodes (numbered from 0)", edge.0, node.0)]
     UnknownNode {
         /// The edge.
         edge: EdgeId,
-        /// What it names.
+        /// The missing node.
         node: NodeId,
         /// Number of nodes.
         nodes: usize,
     },
-    /// A coordinate is infinite or not a number, or too large to be computed with.
+    /// A coordinate is infinite, NaN, or too large for computation.
     #[error("node {original} has the position {position}: coordinates must be finite and below {LARGEST:e}")]
     BadPosition {
         /// The node, as numbered in the file (from 0).
@@ -34,7 +34,7 @@ pub enum SkeletonError {
         /// Its position.
         position: Point3,
     },
-    /// A radius is zero, negative, infinite or not a number.
+    /// A radius is zero, negative, infinite or NaN.
     #[error("node {original} has the radius {radius}: radii must be finite and above zero")]
     BadNodeRadius {
         /// The node, as numbered in the file (from 0).
@@ -42,7 +42,7 @@ pub enum SkeletonError {
         /// Its radius.
         radius: f64,
     },
-    /// A radius of an edge is zero, negative, infinite or not a number.
+    /// A radius of an edge is zero, negative, infinite or NaN.
     #[error("edge {} has the radius {radius}: radii must be finite and above zero", edge.0)]
     BadEdgeRadius {
         /// The edge.
@@ -56,7 +56,7 @@ pub enum SkeletonError {
         /// The edge.
         edge: EdgeId,
     },
-    /// Two edges join the same two nodes.
+    /// Two edges between the same two nodes.
     #[error("edges {} and {} join the same two nodes", edges[0].0, edges[1].0)]
     RepeatedEdge {
         /// The two edges.
@@ -70,5 +70,5 @@ pub enum SkeletonError {
     },
 }
 
-/// Coordinates stay below this, so that no product of five of them overflows in the predicates.
+/// Upper bound of coordinates, so that no product of five of them overflows in the predicates.
 pub const LARGEST: f64 = 1e50;

@@ -1,5 +1,4 @@
-//! Terminals lengthened by straight pieces, so that flow is developed before it leaves and what a solver is told there does not
-//! reach the vessels.
+//! Straight extension of terminals, so that outflow is fully developed and boundary conditions do not affect vessels.
 
 use super::{Edge, Node, NodeId, Skeleton};
 use rustc_hash::FxHashMap;
@@ -7,17 +6,17 @@ use rustc_hash::FxHashMap;
 /// A skeleton with longer terminals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extended {
-    /// The skeleton; a new end is called as the terminal was that it goes on from.
+    /// The skeleton; a new end has the original index of its terminal.
     pub skeleton: Skeleton,
-    /// Terminals that got less than was asked for, because another vessel is in the way, with how much in radii.
+    /// Terminals extended less than requested because of another vessel, with the extension in radii.
     pub cut_short: Vec<(NodeId, f64)>,
 }
 
-/// How often a piece that is in the way is halved before it is left out.
+/// Maximum halvings of an obstructed extension before it is left out.
 const HALVINGS: u32 = 3;
 
 impl Skeleton {
-    /// Goes on straight from terminals, by so many radii of each; 0 leaves it as it is. No piece overlaps another vessel.
+    /// Extends terminals by the given number of radii each; 0 changes nothing. No extension overlaps another vessel.
     pub fn extended(&self, radii: &FxHashMap<NodeId, f64>) -> Extended {
         let mut terminals: Vec<(NodeId, f64, u32)> = radii.iter().map(|(&node, &by)| (node, by, 0)).collect();
         terminals.sort_unstable_by_key(|(node, ..)| *node);
@@ -30,7 +29,7 @@ impl Skeleton {
             }
             in_the_way.sort_unstable();
             in_the_way.dedup();
-            // A piece of no length has no edge, so those that have are counted.
+            // Extensions of length 0 have no edge, so only the others are counted.
             let with_edge: Vec<usize> = (0..terminals.len()).filter(|&i| terminals[i].1 > 0.0).collect();
             if in_the_way.is_empty() {
                 let cut = terminals.iter().filter(|(.., halved)| *halved > 0);

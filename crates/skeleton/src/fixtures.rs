@@ -1,9 +1,9 @@
-//! Networks for the tests of all rooms.
+//! Networks for tests.
 
 use super::{Edge, Node, NodeId, Skeleton};
 use anastomesh_mesh::geometry::Vec3;
 
-/// A network whose vessels all have one radius.
+/// A network with one radius for all vessels.
 pub fn network(points: &[[f64; 3]], radius: f64, edges: &[(u32, u32)]) -> Skeleton {
     let node = |(i, &p): (usize, &[f64; 3])| Node { position: p.into(), radius, original: i as u32 };
     Skeleton {
@@ -12,7 +12,7 @@ pub fn network(points: &[[f64; 3]], radius: f64, edges: &[(u32, u32)]) -> Skelet
     }
 }
 
-/// A binary tree grown by a simple rule, with vessels that run into each other.
+/// A binary tree grown by a simple rule, with overlapping vessels.
 pub fn tangle(depth: u32, seed: u32) -> Skeleton {
     let mut state = seed.wrapping_mul(2_654_435_761).max(1);
     let mut random = move || {

@@ -1,9 +1,9 @@
-//! Who is joined to whom: adjacency, components, loops.
+//! Graph structure: adjacency, components, loops.
 
 use super::{Edge, EdgeId, NodeId, Skeleton};
 
 impl NodeId {
-    /// As an index into `Skeleton::nodes`.
+    /// Index into `Skeleton::nodes`.
     #[inline]
     pub fn index(self) -> usize {
         self.0 as usize
@@ -11,7 +11,7 @@ impl NodeId {
 }
 
 impl EdgeId {
-    /// As an index into `Skeleton::edges`.
+    /// Index into `Skeleton::edges`.
     #[inline]
     pub fn index(self) -> usize {
         self.0 as usize
@@ -19,13 +19,13 @@ impl EdgeId {
 }
 
 impl Edge {
-    /// The node at the other end; `node` must be one of the two.
+    /// Node at the other end; `node` must be one of the two.
     #[inline]
     pub fn other(&self, node: NodeId) -> NodeId {
         if self.nodes[0] == node { self.nodes[1] } else { self.nodes[0] }
     }
 
-    /// Which end (0 or 1) `node` is.
+    /// End (0 or 1) at `node`.
     #[inline]
     pub fn end(&self, node: NodeId) -> usize {
         usize::from(self.nodes[0] != node)
@@ -37,7 +37,7 @@ impl Edge {
     }
 }
 
-/// The edges at each node, in ascending order. An edge from a node to itself is listed twice.
+/// Edges at each node, in ascending order. An edge from a node to itself is listed twice.
 ///
 /// ```
 /// use anastomesh_mesh::Point3;
@@ -53,31 +53,31 @@ impl Edge {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Adjacency {
-    /// Where each node's edges start in `edges`; one more than there are nodes.
+    /// Start of each node's edges in `edges`, with an end marker.
     offsets: Vec<u32>,
     edges: Vec<EdgeId>,
 }
 
 impl Adjacency {
-    /// The edges at `node`.
+    /// Edges at `node`.
     #[inline]
     pub fn edges(&self, node: NodeId) -> &[EdgeId] {
         &self.edges[self.offsets[node.index()] as usize..self.offsets[node.index() + 1] as usize]
     }
 
-    /// How many edges end at `node`.
+    /// Number of edges at `node`.
     #[inline]
     pub fn valence(&self, node: NodeId) -> usize {
         self.edges(node).len()
     }
 
-    /// The nodes with one edge: terminals and roots, in ascending order.
+    /// Nodes with one edge: terminals and roots, in ascending order.
     pub fn terminals(&self) -> Vec<NodeId> {
         (0..self.offsets.len().saturating_sub(1) as u32).map(NodeId).filter(|&n| self.valence(n) == 1).collect()
     }
 }
 
-/// A connected piece of a skeleton.
+/// A connected component of a skeleton.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Component {
     /// Its nodes, in ascending order.
@@ -93,17 +93,17 @@ impl Component {
     }
 }
 
-/// The connected pieces, in the order of their smallest node.
+/// Connected components, in the order of their smallest node.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Components {
-    /// The pieces.
+    /// The components.
     pub list: Vec<Component>,
-    /// Index of each node's piece in `list`.
+    /// Index of each node's component in `list`.
     pub of_node: Vec<u32>,
 }
 
 impl Skeleton {
-    /// The edges at each node. Edges must name existing nodes (`check`).
+    /// Edges at each node. Edges must refer to existing nodes (`check`).
     pub fn adjacency(&self) -> Adjacency {
         let mut offsets = vec![0_u32; self.nodes.len() + 1];
         for node in self.edges.iter().flat_map(|e| e.nodes) {
@@ -124,7 +124,7 @@ impl Skeleton {
         Adjacency { offsets, edges }
     }
 
-    /// The connected pieces.
+    /// Connected components.
     pub fn components(&self, adjacency: &Adjacency) -> Components {
         const NONE: u32 = u32::MAX;
         let mut of_node = vec![NONE; self.nodes.len()];
@@ -179,7 +179,7 @@ impl Skeleton {
         (0..self.edges.len() as u32).map(EdgeId)
     }
 
-    /// Radius of the second thickest vessel at a node: that of the lumen which a thick side branch and its trunk share.
+    /// Radius of the second thickest vessel at a node: that of the lumen shared by a thick side branch and its trunk.
     pub fn shared_radius(&self, adjacency: &Adjacency, node: NodeId) -> f64 {
         let (mut first, mut second) = (0.0_f64, 0.0_f64);
         for &id in adjacency.edges(node) {
@@ -195,8 +195,8 @@ impl Skeleton {
         (self.node(b).position - self.node(a).position).norm()
     }
 
-    /// The inlet of each component: its terminal of largest radius (the smallest id among equals); none for a component
-    /// without terminals.
+    /// Inlet of each component: its terminal of largest radius (the smallest id among equals); `None` without
+    /// terminals.
     pub fn roots(&self, adjacency: &Adjacency, components: &Components) -> Vec<Option<NodeId>> {
         let mut roots: Vec<Option<NodeId>> = vec![None; components.list.len()];
         for node in adjacency.terminals() {

@@ -42,3 +42,8 @@ pub use metrics::paper_unit;
 pub use overlap::{JOINED, deepest_apart};
 pub use size_at::Leg;
 pub use walk::LocalDistances;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,12 +1,12 @@
-//! Whether a network was measured or grown, by the shape of its vessels.
+//! Classification of a network as measured or generated, by the shape of its vessels.
 
 use super::{Adjacency, Skeleton};
 
-/// A network is measured when its vessels have more inner points than this, on average: those that are grown have none.
+/// Minimum mean number of inner points per vessel of a measured network. Vessels of generated networks have none.
 const INNER_POINTS: f64 = 0.5;
 
 impl Skeleton {
-    /// Of each node, whether it has two vessels and the way turns back there: a terminal that two trees share.
+    /// True for each node with two vessels that turn back there: a terminal shared by two trees.
     pub fn folds(&self, adjacency: &Adjacency) -> Vec<bool> {
         let folds = self.node_ids().map(|n| match adjacency.edges(n) {
             &[e, f] => self.angle(n, [e, f]) < std::f64::consts::FRAC_PI_2,
@@ -15,8 +15,7 @@ impl Skeleton {
         folds.collect()
     }
 
-    /// Whether a network was measured rather than grown: its vessels are polylines. Nodes at which a vessel turns back do
-    /// not count.
+    /// True if a network was measured rather than generated: its vessels are polylines, without counting folds.
     pub fn is_measured(&self) -> bool {
         let adjacency = self.adjacency();
         let folds = self.folds(&adjacency);

@@ -1,9 +1,9 @@
-//! Where vessels run into each other.
+//! Overlaps of vessels.
 //!
-//! Two points of the skeleton overlap when their distance is below the sum of their radii, unless they are close along
-//! the skeleton: vessels always overlap near the junction or bend that joins them. Close means within 3 r of it on
-//! either side, so not more than 6 r apart along the skeleton, r being the larger of the two radii there (a thin vessel
-//! that leaves a thick one is inside it for a stretch that is measured by the thick one).
+//! Two points of the skeleton overlap if their distance is below the sum of their radii, unless they are close along
+//! the skeleton: vessels always overlap near the junction or bend that joins them. Close means within 3 r on either
+//! side, so at most 6 r apart along the skeleton. Here r is the larger of the two radii, since a thin vessel that
+//! leaves a thick one starts inside it.
 
 use super::walk::LocalDistances;
 use super::{Adjacency, EdgeId, NodeId, Skeleton};
@@ -11,23 +11,23 @@ use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, minimise_convex, point_
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Points closer than this along the skeleton, in radii, belong to one junction or bend.
+/// Distance along the skeleton, in radii, within which points belong to one junction or bend.
 pub const JOINED: f64 = 6.0;
 
-/// Pairs of edges that are looked at, at most: more than any network that is not one tangle has.
+/// Maximum pairs of edges tested, more than in any network that is not a single tangle.
 const MOST_PAIRS: usize = 100_000_000;
 
-/// Edges that are looked at at a time.
+/// Edges processed at a time.
 const AT_A_TIME: usize = 1 << 14;
 
-/// Two edges whose vessels overlap, and where they do so most.
+/// Two overlapping edges, and their deepest overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Overlap {
     /// The two edges, in ascending order.
     pub edges: [EdgeId; 2],
     /// The nodes of each edge.
     pub nodes: [[NodeId; 2]; 2],
-    /// The point on the axis of each at which they overlap most.
+    /// Axis points of the deepest overlap.
     #[serde(serialize_with = "as_arrays")]
     pub points: [Point3; 2],
     /// Distance of the two points.
@@ -40,22 +40,22 @@ fn as_arrays<S: serde::Serializer>(points: &[Point3; 2], serializer: S) -> Resul
     points.map(<[f64; 3]>::from).serialize(serializer)
 }
 
-/// The overlaps of a skeleton.
+/// Overlaps of a skeleton.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Overlaps {
-    /// Pairs of edges whose vessels overlap, in ascending order.
+    /// Pairs of overlapping edges, in ascending order.
     pub pairs: Vec<Overlap>,
-    /// Pairs of edges that share no node and whose tubes meet, however close they are along the skeleton: neighbours
-    /// along a polyline too. In ascending order.
+    /// Pairs of intersecting edges without a common node, however close they are along the skeleton, including
+    /// neighbours along a polyline. In ascending order.
     pub unconnected: Vec<[EdgeId; 2]>,
-    /// How many of them that are not joined by an edge either.
+    /// Number of these that are not joined by an edge either.
     pub far: usize,
-    /// False when there were so many pairs of edges close to each other that not all were looked at.
+    /// False if there were too many pairs of close edges to test all.
     pub complete: bool,
 }
 
 impl Overlap {
-    /// Whether the two edges share a node: vessels that leave a junction side by side.
+    /// True if the two edges share a node: vessels that leave a junction side by side.
     pub fn shares_node(&self) -> bool {
         self.nodes[0].iter().any(|n| self.nodes[1].contains(n))
     }
@@ -82,12 +82,12 @@ impl Skeleton {
         }
     }
 
-    /// Pairs of edges whose boxes overlap, ascending, and whether these are all.
+    /// Pairs of edges with overlapping boxes, ascending, and true if these are all.
     fn close_pairs(&self) -> (Vec<[EdgeId; 2]>, bool) {
         let tree = Bvh::of(self.edge_ids().map(|e| tube_box(&self.tube(e))).collect::<Vec<Aabb>>());
         let mut candidates: Vec<[EdgeId; 2]> = Vec::new();
         let mut complete = true;
-        // Adjacent edges that are short for their radius cannot overlap beyond 6 r: left out before they use memory.
+        // Adjacent edges short for their radius cannot overlap beyond 6 r. They are skipped to save memory.
         tree.self_pairs(|a, b| {
             let pair = [EdgeId(a), EdgeId(b)];
             if candidates.len() >= MOST_PAIRS {
@@ -100,7 +100,7 @@ impl Skeleton {
         (candidates, complete)
     }
 
-    /// Whether the edges share a node and are too short to be anything but neighbours.
+    /// True if the edges share a node and are too short to overlap beyond it.
     fn joined_by_a_short_way(&self, pair: [EdgeId; 2]) -> bool {
         let [e, f] = pair.map(|id| self.edge(id));
         let limit = JOINED * self.tube(pair[0]).min_radius().max(self.tube(pair[1]).min_radius());
@@ -180,11 +180,11 @@ fn tube_box(tube: &Tube) -> Aabb {
     ball(&tube.a, tube.ra).union(&ball(&tube.b, tube.rb))
 }
 
-/// Where two tubes overlap most among the points that are not joined by a short way; none when they do not.
+/// Deepest overlap of two tubes among points not close along the skeleton; `None` without overlap.
 ///
-/// They overlap when their distance is below `clearance` times the sum of their radii. `way[i][j]` is the distance along the skeleton from end i of `a` to end j of `b`. The way from s to t leads over one
-/// of the four pairs of ends, so "more than 6 r apart" is a set of linear conditions on (s, t): the places that count
-/// are a convex polygon, and the gap between the tubes is a convex function on it.
+/// They overlap if their distance is below `clearance` times the sum of their radii. `way[i][j]` is the distance along
+/// the skeleton from end i of `a` to end j of `b`. Each path from s to t passes one of four pairs of ends. So "more
+/// than 6 r apart" is a set of linear conditions. The admissible set is a convex polygon, and the gap is convex on it.
 pub fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: f64) -> Option<(f64, f64)> {
     let conditions = apart_conditions(a, b, way);
     let polygon = clip_square(&conditions)?;
@@ -204,7 +204,7 @@ pub fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: f64) -> 
     (best.0 < 0.0).then_some((best.1, best.2))
 }
 
-/// The conditions k0 + k1 s + k2 t > 0 under which s on `a` and t on `b` are more than 6 r apart along the skeleton.
+/// Conditions k0 + k1 s + k2 t > 0 for points to be more than 6 r apart along the skeleton.
 fn apart_conditions(a: &Tube, b: &Tube, way: [[f64; 2]; 2]) -> Vec<[f64; 3]> {
     let (la, lb) = (a.length(), b.length());
     let mut conditions = Vec::with_capacity(8);
@@ -224,7 +224,7 @@ fn apart_conditions(a: &Tube, b: &Tube, way: [[f64; 2]; 2]) -> Vec<[f64; 3]> {
     conditions
 }
 
-/// The part of the unit square where all conditions hold; none when it is empty.
+/// Part of the unit square where all conditions hold; `None` if it is empty.
 fn clip_square(conditions: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
     let mut polygon = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mut next = Vec::new();
@@ -250,7 +250,7 @@ fn clip_square(conditions: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
     Some(polygon)
 }
 
-/// The range of t in a convex polygon at `s`.
+/// Range of t in a convex polygon at `s`.
 fn t_range(polygon: &[[f64; 2]], s: f64) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut include = |t: f64| {
@@ -259,7 +259,7 @@ fn t_range(polygon: &[[f64; 2]], s: f64) -> (f64, f64) {
     };
     for (i, p) in polygon.iter().enumerate() {
         let q = &polygon[(i + 1) % polygon.len()];
-        // Exactly: a hair beside s, the edges of the polygon give the range.
+        // Compared exactly: just beside s, the edges of the polygon give the range.
         if p[0].total_cmp(&s).is_eq() {
             include(p[1]);
         }
@@ -268,7 +268,7 @@ fn t_range(polygon: &[[f64; 2]], s: f64) -> (f64, f64) {
         }
     }
     if low > high {
-        // Rounding put s a hair outside: the nearest corner.
+        // Rounding moved s slightly outside: use the nearest corner.
         let nearest = polygon.iter().min_by(|p, q| (p[0] - s).abs().total_cmp(&(q[0] - s).abs()));
         let t = nearest.map_or(0.0, |p| p[1]);
         return (t, t);
@@ -355,7 +355,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against sampled points and distances along the skeleton.
+        /// Agrees with sampled points and distances along the skeleton.
         #[test]
         fn agrees_with_sampling(
             points in prop::collection::vec(prop::array::uniform3(-8.0..8.0_f64), 8),

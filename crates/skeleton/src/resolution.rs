@@ -1,11 +1,11 @@
-//! How finely vessels are meshed unless something else is asked for.
+//! Default resolution of vessel meshes.
 
 /// Resolution ρ: voxels across the thinnest vessel of a cluster.
 pub const RHO: f64 = 3.0;
 
-/// Width κ of the convolution kernel, σ = κ r: wide enough that walls blend smoothly at forks, narrow enough that crotches
-/// take little of the lengths of vessels, and that parallel vessels stay apart from 1.07 sums of their radii on.
+/// Width κ of the convolution kernel, σ = κ r. Wide enough for smooth walls at forks, narrow enough for short crotches.
+/// Parallel vessels stay apart from 1.07 sums of their radii on.
 pub const KAPPA: f64 = 0.33;
 
-/// How far edges follow the radius of wider vessels: they grow with it to this power. 1: in proportion.
+/// Exponent of the growth of edges with the radius of wider vessels; 1 is proportional.
 pub const FOLLOW: f64 = 1.0;

@@ -1,4 +1,4 @@
-//! How long the edges of a mesh are asked to be at the nodes of a network, in those that the resolution gives.
+//! Edge lengths requested at the nodes of a network, relative to those of the resolution.
 
 use crate::NodeId;
 use anastomesh_mesh::geometry::{Point3, Vec3};
@@ -7,42 +7,42 @@ use std::fmt;
 use std::sync::Arc;
 use xxhash_rust::xxh3::Xxh3;
 
-/// Edges at forks are at least so many times as long as the resolution says.
+/// Minimum edge length at forks, relative to the resolution's.
 pub const LEAST_SIZE: f64 = 0.25;
 
-/// How long edges are, where they are not as the resolution says.
+/// Edge lengths that differ from the resolution's.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum SizeAt {
-    /// At every fork so many times as long, 0.25 to 1.
+    /// Factor at every fork, 0.25 to 1.
     Forks(f64),
-    /// As each node says: below 1 edges at a fork are shorter, above 1 tubes by template are stretched.
+    /// Factor per node: below 1 edges at a fork are shorter, above 1 template tubes are stretched.
     Nodes(NodeSizes),
 }
 
-/// A number for each node of a network, by [`super::Node::original`].
+/// A factor for each node of a network, by [`super::Node::original`].
 #[derive(Clone, PartialEq, Serialize)]
 pub struct NodeSizes {
-    /// What the array is called.
+    /// Name of the array.
     array: String,
     #[serde(skip)]
     values: Arc<[f64]>,
-    /// Of the values: what says which they are, in little room.
+    /// Hash of the values.
     digest: String,
 }
 
-/// A number that no length can be multiplied by.
+/// A value that is not usable as a factor.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("node {} has the value {value}: a finite number above zero is needed", node.0)]
 pub struct BadSize {
     /// The node, in the order of the file.
     pub node: NodeId,
-    /// What it has.
+    /// Its value.
     pub value: f64,
 }
 
 impl NodeSizes {
-    /// The values of an array, one for each node in the order of the file; nodes beyond them have 1.
+    /// Creates factors from an array, one per node in the order of the file; further nodes have 1.
     ///
     /// # Errors
     /// A value that is not a finite number above zero.
@@ -57,7 +57,7 @@ impl NodeSizes {
         Ok(Self { array: array.to_owned(), values: values.into(), digest: format!("{:032x}", hash.digest128()) })
     }
 
-    /// What the array is called.
+    /// Name of the array.
     pub fn array(&self) -> &str {
         &self.array
     }
@@ -68,14 +68,14 @@ impl NodeSizes {
 }
 
 impl fmt::Debug for NodeSizes {
-    // Plans are written into keys: the digest stands for the values.
+    // Cache keys contain plans in this form, so the hash stands for the values.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "NodeSizes({}, {})", self.array, self.digest)
     }
 }
 
 impl SizeAt {
-    /// What is asked for at a fork.
+    /// Factor requested at a fork.
     pub fn at_fork(&self, original: u32) -> f64 {
         match self {
             Self::Forks(factor) => *factor,
@@ -83,7 +83,7 @@ impl SizeAt {
         }
     }
 
-    /// What is asked for between two nodes of a vessel, at a share of the way; none where forks alone are spoken of.
+    /// Factor at a fraction of the way between two nodes of a vessel; `None` if only forks have one.
     pub fn between(&self, originals: [u32; 2], share: f64) -> Option<f64> {
         let Self::Nodes(sizes) = self else { return None };
         let [a, b] = originals.map(|original| sizes.of(original));
@@ -94,11 +94,11 @@ impl SizeAt {
 /// A fork with shorter edges.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FineFork {
-    /// Its node.
+    /// Position of its node.
     pub at: Point3,
-    /// How far from the node its vessels are one lumen.
+    /// Distance from the node within which its vessels are one lumen.
     pub within: f64,
-    /// How many times as long as elsewhere edges are there, [`LEAST_SIZE`] to 1.
+    /// Edge length relative to that elsewhere, [`LEAST_SIZE`] to 1.
     pub factor: f64,
 }
 
@@ -110,8 +110,8 @@ pub struct Leg {
 }
 
 impl FineFork {
-    /// Of a node and the vessels that leave it; none where edges are not to be shorter. Two vessels are apart from where
-    /// equation 12 has them apart.
+    /// Creates it from a node and its vessels; `None` if edges are not to be shorter. Equation 12 gives the distance
+    /// from which two vessels are separate.
     pub fn new(at: Point3, legs: &[Leg], factor: f64) -> Option<Self> {
         if legs.len() < 3 || factor >= 1.0 {
             return None;
@@ -125,7 +125,7 @@ impl FineFork {
     }
 }
 
-/// Crotches are looked for so far from their node, in radii of the widest vessel: vessels that leave side by side have none.
+/// Maximum distance of a crotch from its node, in radii of the widest vessel. Vessels side by side have no crotch.
 const LONGEST_CROTCH: f64 = 4.0;
 
 #[cfg(test)]
@@ -140,7 +140,7 @@ mod tests {
     fn forks_reach_as_far_as_their_crotch() {
         let fork = |y| FineFork::new(Point3::origin(), &[leg(-1.0, 0.0), leg(1.0, y), leg(1.0, -y)], 0.5);
         let within = |y| fork(y).expect("a fork").within;
-        // At right angles walls meet at the radius, at 60° at 1.73 of them.
+        // At right angles walls meet at 1 radius, at 60° at 1.73 radii.
         assert!((within(1.0) - 1.0).abs() < 1e-12);
         assert!((within((1.0_f64 / 3.0).sqrt()) - 3.0_f64.sqrt()).abs() < 1e-12);
         assert_eq!(within(1e-9), LONGEST_CROTCH);

@@ -3,7 +3,7 @@ use super::*;
 use anastomesh_mesh::geometry::Point3;
 use proptest::prelude::*;
 
-/// A skeleton with unit radii, nodes on a lattice that no two share.
+/// A skeleton with unit radii and distinct lattice points as nodes.
 pub(super) fn skeleton(nodes: u32, edges: &[(u32, u32)]) -> Skeleton {
     let position = |i: u32| Point3::new(f64::from(i % 7) * 3.0, f64::from(i / 7 % 7) * 4.0, f64::from(i / 49) * 5.0);
     Skeleton {

@@ -1,4 +1,4 @@
-//! Distances along the skeleton, near one place.
+//! Local distances along the skeleton.
 
 use super::{Adjacency, NodeId, Skeleton};
 use anastomesh_mesh::geometry::Total;
@@ -6,12 +6,11 @@ use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Distances along the skeleton from one node, as far as a limit (Dijkstra's algorithm). Keeps its memory between
-/// searches.
+/// Distances along the skeleton from one node up to a limit (Dijkstra's algorithm). Reuses its memory between searches.
 #[derive(Default)]
 pub struct LocalDistances {
     found: FxHashMap<NodeId, f64>,
-    /// The nearest comes first.
+    /// Nearest first.
     heap: BinaryHeap<Reverse<(Total, NodeId)>>,
 }
 

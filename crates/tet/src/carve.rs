@@ -1,4 +1,4 @@
-//! Carving: what lies outside of the recovered surface goes.
+//! Carving: removal of the tetrahedra outside the recovered surface.
 
 use super::complex::{Complex, NONE};
 use super::error::TetError;
@@ -12,14 +12,14 @@ const UNSEEN: u8 = 2;
 const OUTSIDE: u8 = 0;
 const INSIDE: u8 = 1;
 
-/// The side of each tetrahedron of a complex.
+/// Side of each tetrahedron of a complex.
 pub(super) struct Sides(Vec<u8>);
 
 impl Sides {
-    /// Finds them for a surface whose triangles are the frozen faces of `c`.
+    /// Finds the sides for a surface whose triangles are the frozen faces of `c`.
     ///
     /// # Errors
-    /// [`TetError::NotSeparating`] when a triangle of a closed surface has the same side on both sides;
+    /// [`TetError::NotSeparating`] if a triangle of a closed surface has the same side on both sides;
     /// [`TetError::NothingEnclosed`] and [`TetError::BadSeed`] for other complexes.
     pub(super) fn find(c: &Complex, surface: &TriMesh, kind: InputKind, holes: &[Point3]) -> Result<Self, TetError> {
         match kind {
@@ -29,24 +29,24 @@ impl Sides {
         .map(Self)
     }
 
-    /// Whether a tetrahedron is kept.
+    /// True if a tetrahedron is kept.
     pub(super) fn is_inside(&self, t: u32) -> bool {
         self.0[t as usize] == INSIDE
     }
 
-    /// Whether neither of the tetrahedra at a half-face is kept.
+    /// True if neither tetrahedron at a half-face is kept.
     pub(super) fn outside_of_both(&self, c: &Complex, half: u32) -> bool {
         !self.is_inside(half >> 2) && !self.is_inside(c.mate(half) >> 2)
     }
 
-    /// Whether there are triangles of the surface between two tetrahedra that are not kept.
+    /// True if a triangle of the surface lies between two tetrahedra that are not kept.
     pub(super) fn has_faces_outside(&self, c: &Complex) -> bool {
         let mut halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
         halves.any(|h| c.is_frozen(h) && self.outside_of_both(c, h))
     }
 }
 
-/// Keeps the tetrahedra inside the surface and drops the points that are neither the surface's nor in use.
+/// Keeps the tetrahedra inside the surface and drops points that are neither the surface's nor used.
 pub(super) fn carve(c: &Complex, surface: &TriMesh, sides: &Sides) -> Complex {
     let n = surface.points.len();
     let mut id = vec![NONE; c.points.len()];
@@ -70,13 +70,13 @@ pub(super) fn carve(c: &Complex, surface: &TriMesh, sides: &Sides) -> Complex {
     c.part(points, &id, |t| sides.is_inside(t))
 }
 
-/// Some ghost: it is outside.
+/// Any ghost, which is outside.
 fn infinity(c: &Complex) -> Option<u32> {
     (0..c.slots() as u32).find(|&t| c.is_alive(t) && c.is_ghost(t))
 }
 
-/// For every tetrahedron the parity of frozen faces on the way from infinity: crossing one changes sides, so shells may
-/// be nested, and it does not matter which way they are turned.
+/// Parity of the frozen faces between each tetrahedron and infinity. Crossing one changes sides, so shells may be
+/// nested and have any orientation.
 fn sides_by_parity(c: &Complex, surface: &TriMesh) -> Result<Vec<u8>, TetError> {
     let mut side = vec![UNSEEN; c.slots()];
     let mut stack = Vec::new();
@@ -104,13 +104,13 @@ fn sides_by_parity(c: &Complex, surface: &TriMesh) -> Result<Vec<u8>, TetError> 
     }
 }
 
-/// The triangle with the vertices of a half-face.
+/// Triangle with the vertices of a half-face.
 fn triangle_at(c: &Complex, surface: &TriMesh, half: u32) -> u32 {
     let f = c.face(half);
     surface.triangles.iter().position(|t| t.iter().all(|v| f.contains(v))).unwrap_or(0) as u32
 }
 
-/// For every tetrahedron whether it can be reached from infinity or from a hole without crossing a frozen face.
+/// Marks as outside each tetrahedron that is reachable from infinity or a hole without crossing a frozen face.
 fn sides_by_reach(c: &Complex, holes: &[Point3]) -> Result<Vec<u8>, TetError> {
     let mut side = vec![INSIDE; c.slots()];
     let mut stack: Vec<u32> = infinity(c).into_iter().collect();
@@ -136,8 +136,8 @@ fn sides_by_reach(c: &Complex, holes: &[Point3]) -> Result<Vec<u8>, TetError> {
     Ok(side)
 }
 
-/// Freezes the faces around the segments of a complex that are no edges of triangles, so that no improvement of the
-/// mesh removes them. Returns the faces, to be thawed by [`release_segments`].
+/// Freezes the faces around segments that are no edges of triangles, so that mesh improvement keeps them. Returns the
+/// faces, to be thawed by [`release_segments`].
 pub(super) fn hold_segments(c: &mut Complex, segments: &[[u32; 2]]) -> Vec<[u32; 3]> {
     let mut star = Star::default();
     let mut ring = super::star::EdgeRing::default();

@@ -1,9 +1,8 @@
-//! The tetrahedral complex: an array of tetrahedra, neighbours glued face to face.
+//! Tetrahedral complex: an array of tetrahedra, with neighbours connected face to face.
 //!
-//! A *half-face* `4 * tet + face` is face `face` of tetrahedron `tet` (opposite its vertex `face`); gluing pairs
-//! half-faces. *Ghost* tetrahedra, whose last vertex is [`GHOST`], stand on the outer side of every boundary face, so
-//! that each half-face has a mate. Around a convex hull as around a carved domain, ghosts are glued to each other
-//! across the boundary's edges.
+//! A *half-face* `4 * tet + face` is face `face` of tetrahedron `tet` (opposite its vertex `face`); mates are paired
+//! half-faces. *Ghost* tetrahedra, whose last vertex is [`GHOST`], lie on the outer side of every boundary face, so
+//! that each half-face has a mate. Around a hull or a carved domain, ghosts are connected across the boundary's edges.
 
 use anastomesh_mesh::adjacency::tet_adjacency;
 pub(crate) use anastomesh_mesh::face_key;
@@ -11,7 +10,7 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::{TET_FACES, TetMesh};
 
-/// The vertex at infinity, last vertex of every ghost tetrahedron.
+/// Vertex at infinity, last vertex of every ghost tetrahedron.
 pub const GHOST: u32 = u32::MAX;
 
 /// First vertex of a deleted tetrahedron.
@@ -28,7 +27,7 @@ pub const OTHERS: [[[usize; 2]; 4]; 4] = [
     [[2, 1], [0, 2], [1, 0], [0, 0]],
 ];
 
-/// Why arrays are not a complex.
+/// Violated invariant of a complex.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ComplexError {
@@ -46,13 +45,13 @@ pub enum ComplexError {
         tet: u32,
         vertices: [u32; 4],
     },
-    /// A face that more than two tetrahedra share, or two on the same side of it.
+    /// A face shared by more than two tetrahedra, or by two on the same side of it.
     #[error("face {face:?} is shared by more than two tetrahedra, or by two on the same side")]
     FaceNotConforming {
         /// Vertices of the face.
         face: [u32; 3],
     },
-    /// Half-faces that do not point at each other, or that are not the same face.
+    /// Half-faces that are not mutual mates, or that are different faces.
     #[error("face {face} of tetrahedron {tet} is not glued properly")]
     NotGlued {
         /// The tetrahedron.
@@ -60,13 +59,12 @@ pub enum ComplexError {
         /// Face of the tetrahedron.
         face: u32,
     },
-    /// The tetrahedron kept for a vertex does not contain it.
+    /// The tetrahedron stored for a vertex does not contain it.
     #[error("the tetrahedron kept for vertex {vertex} does not contain it")]
     BadVertexTet { vertex: u32 },
 }
 
-/// A tetrahedron: its vertices, and across each of them the half-face glued to the opposite face. One half of a cache
-/// line.
+/// A tetrahedron: its vertices, and the mate of the face opposite each vertex. Half a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Cell {
@@ -98,7 +96,7 @@ struct ReplaceScratch {
     slots: Vec<u32>,
 }
 
-/// A face on its way to being glued: its sorted vertices, whether it belongs to a new tetrahedron, its half-face.
+/// A face to be matched: its sorted vertices, true if it belongs to a new tetrahedron, its half-face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct FaceRecord {
     key: [u32; 3],
@@ -106,27 +104,27 @@ struct FaceRecord {
     half: u32,
 }
 
-/// The vertices of face `i` of a tetrahedron, counter-clockwise seen from outside.
+/// Vertices of face `i` of a tetrahedron, counter-clockwise seen from outside.
 #[inline]
 pub fn face_of(v: &[u32; 4], i: usize) -> [u32; 3] {
     TET_FACES[i].map(|k| v[k])
 }
 
 impl Complex {
-    /// A complex of points without tetrahedra.
+    /// Creates a complex of points without tetrahedra.
     pub fn new(points: Vec<Point3>) -> Self {
         let n = points.len();
         Self { points, vertex_tet: vec![NONE; n], ..Self::default() }
     }
 
-    /// Makes room for `tets` tetrahedra.
+    /// Reserves memory for `tets` tetrahedra.
     pub fn reserve(&mut self, tets: usize) {
         self.cells.reserve(tets);
         self.frozen.reserve(tets);
     }
 
-    /// A complex of glued cells, with the ghost vertex last where there is one, as [`Complex::sanity_check`] wants it.
-    /// The slots `free` hold no tetrahedra.
+    /// Creates a complex of connected cells that satisfies [`Complex::sanity_check`], with the ghost vertex last. The
+    /// slots `free` hold no tetrahedra.
     pub(super) fn from_cells(points: Vec<Point3>, cells: Vec<Cell>, free: Vec<u32>, vertex_tet: Vec<u32>) -> Self {
         let frozen = vec![0; cells.len()];
         let mut c = Self { points, cells, frozen, vertex_tet, free, scratch: ReplaceScratch::default() };
@@ -136,8 +134,8 @@ impl Complex {
         c
     }
 
-    /// Glues tetrahedra and closes their boundary with ghosts. The boundary may be any shape, also one that touches
-    /// itself in edges or vertices.
+    /// Connects tetrahedra and closes their boundary with ghosts. The boundary may be any shape, including one that
+    /// touches itself in edges or vertices.
     ///
     /// # Errors
     /// Indices out of range, tetrahedra that are not positive, faces that do not conform.
@@ -160,7 +158,7 @@ impl Complex {
         if self.orient(v) > 0.0 { Ok(()) } else { Err(ComplexError::NotPositive { tet, vertices: *v }) }
     }
 
-    /// Glues all faces that two tetrahedra share; returns the half-faces that are left over.
+    /// Connects all faces shared by two tetrahedra. Returns the other half-faces.
     fn glue_all(&mut self, tets: &[[u32; 4]]) -> Result<Vec<u32>, ComplexError> {
         let adjacency = tet_adjacency(tets, self.points.len());
         if let Some(&half) = adjacency.crowded.first() {
@@ -181,8 +179,8 @@ impl Complex {
         Ok(open)
     }
 
-    /// The part of the complex whose tetrahedra have `keep`, with the vertices `id[v]` (others are [`NONE`]) at
-    /// `points`; ghosts close it. Frozen faces stay frozen.
+    /// Extracts the tetrahedra with `keep`, with vertices renamed to `id[v]` (others are [`NONE`]) at `points`, and
+    /// closes them with ghosts. Frozen faces stay frozen.
     pub(super) fn part(&self, points: Vec<Point3>, id: &[u32], keep: impl Fn(u32) -> bool) -> Self {
         let mut part = Self::new(points);
         let mut new_tet = vec![NONE; self.slots()];
@@ -214,7 +212,7 @@ impl Complex {
         part
     }
 
-    /// Stands a ghost on each of the open half-faces and glues the ghosts to each other.
+    /// Adds a ghost on each open half-face and connects the ghosts to each other.
     fn add_ghosts(&mut self, open: &[u32]) {
         for &half in open {
             let [a, b, c] = self.face(half);
@@ -231,7 +229,7 @@ impl Complex {
         }
     }
 
-    /// Glues face `i` of a ghost to the ghost on the boundary face that ends the fan of tetrahedra around their edge.
+    /// Connects face `i` of a ghost to the ghost at the other end of the fan of tetrahedra around their edge.
     fn glue_ghost_edge(&mut self, half: u32, ghost: u32, i: u32) {
         let f = self.face(half);
         let edge = [f[(i as usize + 1) % 3], f[(i as usize + 2) % 3]];
@@ -256,66 +254,66 @@ impl Complex {
         }
     }
 
-    /// The real tetrahedra, in the order of their slots, and all points.
+    /// Returns the real tetrahedra in slot order, and all points.
     pub fn into_mesh(self) -> TetMesh {
         let tets = self.real_tets().map(|t| self.cells[t as usize].verts).collect();
         TetMesh { points: self.points, tets }
     }
 
-    /// As [`Complex::into_mesh`], without the points from `fixed` on that no tetrahedron has.
+    /// As [`Complex::into_mesh`], without unused points from index `fixed` on.
     pub fn into_compact_mesh(self, fixed: usize) -> TetMesh {
         let mut mesh = self.into_mesh();
         mesh.drop_unused_points(fixed);
         mesh
     }
 
-    /// Number of slots; tetrahedra are numbered below it, deleted ones included.
+    /// Number of slots. Tetrahedra are numbered below it, including deleted ones.
     pub fn slots(&self) -> usize {
         self.cells.len()
     }
 
-    /// Whether slot `t` holds a tetrahedron, real or ghost.
+    /// True if slot `t` holds a tetrahedron, real or ghost.
     #[inline]
     pub fn is_alive(&self, t: u32) -> bool {
         self.cells[t as usize].verts[0] != DEAD
     }
 
-    /// Whether `t` stands outside the boundary.
+    /// True if `t` is a ghost, outside the boundary.
     #[inline]
     pub fn is_ghost(&self, t: u32) -> bool {
         self.cells[t as usize].verts[3] == GHOST
     }
 
-    /// Whether `t` is alive and no ghost.
+    /// True if `t` is alive and no ghost.
     #[inline]
     pub fn is_real(&self, t: u32) -> bool {
         self.is_alive(t) && !self.is_ghost(t)
     }
 
-    /// The real tetrahedra in the order of their slots.
+    /// Real tetrahedra in slot order.
     pub fn real_tets(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.slots() as u32).filter(|&t| self.is_real(t))
     }
 
-    /// The four vertices of `t`.
+    /// Vertices of `t`.
     #[inline]
     pub fn verts(&self, t: u32) -> [u32; 4] {
         self.cells[t as usize].verts
     }
 
-    /// What a slot holds.
+    /// Content of a slot.
     #[inline]
     pub(super) fn cell(&self, t: u32) -> &Cell {
         &self.cells[t as usize]
     }
 
-    /// The half-face glued to `half`.
+    /// Half-face paired with `half`.
     #[inline]
     pub fn mate(&self, half: u32) -> u32 {
         self.cells[(half >> 2) as usize].mates[(half & 3) as usize]
     }
 
-    /// The tetrahedron across face `i` of `t`.
+    /// Tetrahedron across face `i` of `t`.
     #[inline]
     pub fn neighbor(&self, t: u32, i: usize) -> u32 {
         self.cells[t as usize].mates[i] >> 2
@@ -327,7 +325,7 @@ impl Complex {
         face_of(&self.cells[(half >> 2) as usize].verts, (half & 3) as usize)
     }
 
-    /// The vertex of the half-face's tetrahedron opposite to it.
+    /// Vertex of the half-face's tetrahedron opposite to it.
     #[inline]
     pub fn apex(&self, half: u32) -> u32 {
         self.cells[(half >> 2) as usize].verts[(half & 3) as usize]
@@ -339,19 +337,19 @@ impl Complex {
         self.cells[t as usize].verts.iter().position(|&x| x == v)
     }
 
-    /// A tetrahedron (perhaps a ghost) at vertex `v`; [`NONE`] when no tetrahedron has it.
+    /// A tetrahedron (perhaps a ghost) at vertex `v`; [`NONE`] if there is none.
     #[inline]
     pub fn vertex_tet(&self, v: u32) -> u32 {
         self.vertex_tet[v as usize]
     }
 
-    /// Whether the face may not be flipped away.
+    /// True if the face may not be flipped away.
     #[inline]
     pub fn is_frozen(&self, half: u32) -> bool {
         self.frozen[(half >> 2) as usize] & (1 << (half & 3)) != 0
     }
 
-    /// Freezes a face on both sides: no flip removes it.
+    /// Freezes a face on both sides, so that no flip removes it.
     pub fn freeze(&mut self, half: u32) {
         let mate = self.mate(half);
         for h in [half, mate] {
@@ -374,20 +372,20 @@ impl Complex {
         orient3d(a, b, c, d)
     }
 
-    /// Adds a point without a tetrahedron; returns its vertex.
+    /// Adds a point without a tetrahedron. Returns its vertex.
     pub fn add_point(&mut self, p: Point3) -> u32 {
         self.points.push(p);
         self.vertex_tet.push(NONE);
         self.points.len() as u32 - 1
     }
 
-    /// Takes back the point added last, which no tetrahedron may have.
+    /// Removes the last point, which no tetrahedron may use.
     pub(super) fn pop_point(&mut self) {
         self.points.pop();
         self.vertex_tet.pop();
     }
 
-    /// Takes a slot for a tetrahedron, unglued.
+    /// Allocates a slot for a tetrahedron without mates.
     #[inline]
     pub fn alloc(&mut self, v: [u32; 4]) -> u32 {
         let t = if let Some(t) = self.free.pop() {
@@ -412,25 +410,25 @@ impl Complex {
         }
     }
 
-    /// Deletes a tetrahedron. Its mates keep pointing at it until they are glued anew.
+    /// Deletes a tetrahedron. Its mates keep pointing at it until they are connected again.
     #[inline]
     pub fn free(&mut self, t: u32) {
         self.cells[t as usize].verts = [DEAD; 4];
         self.free.push(t);
     }
 
-    /// Glues two half-faces.
+    /// Makes two half-faces mates.
     #[inline]
     pub fn glue(&mut self, a: u32, b: u32) {
         self.cells[(a >> 2) as usize].mates[(a & 3) as usize] = b;
         self.cells[(b >> 2) as usize].mates[(b & 3) as usize] = a;
     }
 
-    /// Exchanges the tetrahedra `old` for others that fill the same room: the faces of `new` must match each other and
-    /// the boundary of `old`. Every local change is made through this. Frozen faces on the boundary stay frozen. The
-    /// slots of `new` are put into `created`. Returns false, and changes nothing, when the faces do not match.
+    /// Replaces the tetrahedra `old` by others that fill the same volume: the faces of `new` must match each other and
+    /// the boundary of `old`. Every local change goes through this function. Frozen faces on the boundary stay frozen.
+    /// `created` receives the slots of `new`. Returns false, and changes nothing, if the faces do not match.
     ///
-    /// Geometry is not looked at: the caller has made sure that each of `new` is positive.
+    /// Geometry is not checked: the caller ensures that each of `new` is positive.
     pub fn replace(&mut self, old: &[u32], new: &[[u32; 4]], created: &mut Vec<u32>) -> bool {
         let mut s = std::mem::take(&mut self.scratch);
         let fits = self.collect_faces(old, new, &mut s.faces);
@@ -497,11 +495,11 @@ impl Complex {
         created.extend_from_slice(&s.slots);
     }
 
-    /// Checks every invariant: gluing is mutual, glued faces are one face seen from both sides, every real tetrahedron
-    /// is positive by the exact predicate, ghosts stand on all boundary faces, vertices know a tetrahedron of theirs.
+    /// Checks every invariant: mates are mutual and have equal vertices, real tetrahedra are positive, ghosts cover all
+    /// boundary faces, vertices know one of their tetrahedra.
     ///
     /// # Errors
-    /// The first invariant that does not hold.
+    /// The first violated invariant.
     pub fn sanity_check(&self) -> Result<(), ComplexError> {
         for t in (0..self.slots() as u32).filter(|&t| self.is_alive(t)) {
             let vertices = self.verts(t);
@@ -536,7 +534,7 @@ impl Complex {
     }
 }
 
-/// Whether two faces are the same face with opposite rotation.
+/// True if two faces are the same face with opposite orientation.
 pub fn opposed(f: [u32; 3], g: [u32; 3]) -> bool {
     let back = [g[0], g[2], g[1]];
     f == back || f == [back[1], back[2], back[0]] || f == [back[2], back[0], back[1]]

@@ -1,4 +1,4 @@
-//! A complex that has all of the surface: Delaunay, then recovery in one way after the other.
+//! Conforming complex: Delaunay tetrahedralization, then boundary recovery by several strategies.
 
 use super::complex::Complex;
 use super::error::TetError;
@@ -14,16 +14,16 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::MIN_MAGNITUDE;
 
-/// Side of the lattice's cubes in mean edge lengths of the surface.
+/// Side of the lattice's cubes, in mean edge lengths of the surface.
 const CELL: f64 = 1.4;
 
-/// Distance of the lattice from the wall in mean edge lengths of the surface.
+/// Distance of the lattice from the wall, in mean edge lengths of the surface.
 const CLEARANCE: f64 = 0.45;
 
-/// Volume of the lattice's tetrahedra over the bound on volumes.
+/// Volume of the lattice's tetrahedra relative to the volume bound.
 const VOLUME_SHARE: f64 = 0.6;
 
-/// A failure whose cause may be the surface: then that is named instead.
+/// Replaces an error by the defect of the surface that may have caused it.
 pub(super) fn diagnosis(r: &Request, error: TetError) -> TetError {
     let checked = input::no_duplicate_points(&r.surface.points)
         .and_then(|()| input::no_duplicate_triangles(&r.surface.triangles))
@@ -32,7 +32,7 @@ pub(super) fn diagnosis(r: &Request, error: TetError) -> TetError {
     checked.err().unwrap_or(error)
 }
 
-/// A complex that has all of the surface: by flips and vertices off it, and where these leave something over exactly.
+/// Builds a complex with the whole surface: by flips and Steiner points, then by exact recovery of the rest.
 pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
     let surface = r.surface;
     r.watch.report(Stage::Delaunay, 0, 1)?;
@@ -46,14 +46,14 @@ pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetE
         Err(TetError::Cancelled) => return Err(TetError::Cancelled),
         Err(error) => return Err(diagnosis(r, error)),
     };
-    // Exact recovery takes for granted that the surface does not meet itself.
+    // Exact recovery requires a surface without self-intersections.
     contacts::no_contacts(surface, r.watch)?;
     contacts::no_points_in_triangles(surface)?;
     let missing = Missing { edges: &edges, triangles: &triangles };
     exactly(r, &points, &complex, missing)
 }
 
-/// Recovers what flips have left over, in one way after the other.
+/// Recovers the rest after flips, strategy by strategy.
 fn exactly(
     r: &Request,
     points: &[Point3],
@@ -82,18 +82,18 @@ fn exactly(
     again(third, || anew_in(rounded.unwrap_or(flat), &Way::LAST))
 }
 
-/// Whether flips have left more flat tetrahedra than edges: they have met with flat parts.
+/// True if flips have left more flat tetrahedra than edges, a sign of flat surface parts.
 fn has_flat(complex: &Complex, height: f64, edges: usize) -> bool {
     let flat = complex.real_tets().filter(|&t| !Rule::Thick(height).allows(complex, &complex.verts(t)));
     flat.take(edges + 1).count() > edges
 }
 
-/// Tries another way after an error that may be owed to the way.
+/// Tries another strategy after an error that may depend on the strategy.
 fn again<T>(result: Result<T, TetError>, other: impl FnOnce() -> Result<T, TetError>) -> Result<T, TetError> {
     if matches!(result, Err(TetError::Stuck { .. })) { other() } else { result }
 }
 
-/// Goes on in a complex that flips have left, in some ways.
+/// Continues exact recovery in the complex left by flips, with the given strategies.
 fn go_on(
     r: &Request,
     complex: &Complex,
@@ -107,7 +107,7 @@ fn go_on(
     Ok((complex, RecoverySummary { missing_edges, missing_triangles, steiner_points: before + exact.steiner_points }))
 }
 
-/// Begins anew, and makes nothing that is thinner than `flat`; then goes on in some ways.
+/// Restarts with flips that make nothing thinner than `flat`, then continues with the given strategies.
 fn anew(r: &Request, points: &[Point3], flat: f64, ways: &[Way]) -> Result<(Complex, RecoverySummary), TetError> {
     let mut complex = delaunay::delaunay_watched(points, r.watch)?;
     match recover::recover(&mut complex, r.surface, r.edges, Rule::Thick(flat), r.watch) {
@@ -120,7 +120,7 @@ fn anew(r: &Request, points: &[Point3], flat: f64, ways: &[Way]) -> Result<(Comp
     }
 }
 
-/// The surface's points, those inside, and at last eight around.
+/// Points of the surface, interior points, and eight points around them.
 fn points(r: &Request) -> Result<Vec<Point3>, TetError> {
     let surface = r.surface;
     let mut points = surface.points.clone();
@@ -128,13 +128,13 @@ fn points(r: &Request) -> Result<Vec<Point3>, TetError> {
         Some(inside) => points.extend(inside),
         None => points.extend(interior_points(surface, &for_volume(surface, r.interior, r.refinement))?),
     }
-    // The smaller the box, the smaller the bound on the roundoff in it; there is room to flip in for smooth walls.
+    // A smaller box has a smaller roundoff bound. Smooth walls still leave space for flips.
     let tight = matches!(r.interior, Interior::Graded { .. } | Interior::Local { .. });
     points.extend(if tight { box_around(&surface.points, 0.2) } else { box_corners(&surface.points) });
     Ok(points)
 }
 
-/// The interior asked for; a lattice whose size is left open gets tetrahedra within the bound on volumes.
+/// Interior as requested. A lattice without a given size gets tetrahedra within the volume bound.
 fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refinement>) -> Interior {
     let usual = CELL * surface.mean_edge();
     match (interior, refinement.and_then(|r| r.bounds.max_volume)) {
@@ -169,13 +169,12 @@ fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>
     }
 }
 
-/// Eight points well outside, so that the hull of all points is no part of the surface and all of the surface can be
-/// flipped to.
+/// Eight points well outside, so that the convex hull has no part of the surface and flips can recover all of it.
 pub(super) fn box_corners(points: &[Point3]) -> Vec<Point3> {
     box_around(points, 1.0)
 }
 
-/// The corners of a box that stands off by so many sizes of the points' own.
+/// Corners of a box with a margin of `share` times the size of the points.
 fn box_around(points: &[Point3], share: f64) -> Vec<Point3> {
     let Some(first) = points.first() else { return Vec::new() };
     let (mut low, mut high) = (*first, *first);
@@ -189,7 +188,7 @@ fn box_around(points: &[Point3], share: f64) -> Vec<Point3> {
     (0..8).map(|i: usize| Point3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[i >> 2].z)).collect()
 }
 
-/// A point given twice is a fault of the surface, or of the interior points.
+/// Attributes a duplicate point to the surface or to the interior points.
 fn name_interior(error: TetError, surface: usize, inner: usize) -> TetError {
     let given = |v: u32| (surface..inner).contains(&(v as usize));
     match error {

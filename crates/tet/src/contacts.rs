@@ -1,5 +1,4 @@
-//! Whether a surface meets itself: all pairs of triangles with overlapping boxes, tested exactly, until what is found
-//! is enough for an answer.
+//! Exact search for self-intersections: tests all pairs of triangles with overlapping boxes, up to a limit.
 
 use super::error::{Obstacle, Stuck, TetError};
 use super::input::Offenders;
@@ -9,17 +8,16 @@ use anastomesh_mesh::adjacency::vertices_of;
 use anastomesh_mesh::geometry::predicates::{collinear, orient2d, orient3d};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Contact, Point3, classify};
 
-/// Pairs tested after which counting ends once a pair has been found.
+/// Pairs tested after which counting ends if an intersection has been found.
 const ENOUGH: usize = 20_000_000;
 
-/// Pairs tested after which the search ends in any case: only triangles whose boxes all overlap come to so many.
+/// Pairs tested after which the search ends in any case. Only triangles with mutually overlapping boxes reach this.
 const MOST: usize = 2_000_000_000;
 
-/// Triangles between two reports.
+/// Triangles between two progress reports.
 const STEP: usize = 4096;
 
-/// Checks that no two triangles have more in common than the vertices they share by id. Triangles without area are
-/// left out.
+/// Checks that two triangles share only their common vertices by index. Triangles without area are left out.
 ///
 /// # Errors
 /// [`TetError::SelfIntersection`]; [`TetError::Cancelled`].
@@ -32,15 +30,15 @@ pub(super) fn no_contacts(surface: &TriMesh, watch: &Watch) -> Result<(), TetErr
     Err(TetError::SelfIntersection { pairs: found.named, count: found.count, complete })
 }
 
-/// The pairs of triangles that have more in common than that; not all where there are very many.
+/// Pairs of intersecting triangles; incomplete if there are very many.
 pub(super) fn contacts(surface: &TriMesh) -> Vec<[u32; 2]> {
     let mut found = Vec::new();
-    // Nobody watches, so nothing is cancelled.
+    // Without a watch, nothing is cancelled.
     let _ = each_contact(surface, &Watch::NOBODY, |pair| found.push(pair));
     found
 }
 
-/// Calls `found` for each such pair; whether these are all.
+/// Calls `found` for each intersecting pair. Returns true if the search was complete.
 fn each_contact(surface: &TriMesh, watch: &Watch, mut found: impl FnMut([u32; 2])) -> Result<bool, TetError> {
     let (points, triangles) = (&surface.points, &surface.triangles);
     let boxes = boxes_of(surface);
@@ -71,7 +69,7 @@ fn each_contact(surface: &TriMesh, watch: &Watch, mut found: impl FnMut([u32; 2]
     Ok(true)
 }
 
-/// Checks that no point that is none of a triangle's vertices lies in a triangle.
+/// Checks that no point lies in a triangle without being its vertex.
 ///
 /// # Errors
 /// [`TetError::EdgeMeets`], or [`TetError::Stuck`] with the triangle that has the point inside.
@@ -101,7 +99,7 @@ pub(super) fn no_points_in_triangles(surface: &TriMesh) -> Result<(), TetError> 
     Ok(())
 }
 
-/// The boxes of the triangles that have area.
+/// Bounding boxes of the triangles with area.
 fn boxes_of(surface: &TriMesh) -> Vec<Aabb> {
     let of_triangle = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| &surface.points[v as usize]);
@@ -110,7 +108,7 @@ fn boxes_of(surface: &TriMesh) -> Vec<Aabb> {
     surface.triangles.iter().map(of_triangle).collect()
 }
 
-/// Where in a triangle a point lies.
+/// Position of a point in a triangle.
 #[derive(Clone, Copy)]
 enum Place {
     Inside,
@@ -118,12 +116,12 @@ enum Place {
     Edge(usize),
 }
 
-/// Where in a triangle with area a point lies; none when it is not in the triangle. Exact.
+/// Exact position of a point in a triangle with area; `None` if it is outside.
 fn place_in([a, b, c]: [&Point3; 3], p: &Point3) -> Option<Place> {
     if orient3d(a, b, c, p) != 0.0 {
         return None;
     }
-    // In one of the coordinate planes the shadow has area, too.
+    // The projection to one of the coordinate planes has area, too.
     let shadows = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [a, b, c, p].map(|q| [q[i], q[j]]));
     let [a, b, c, p] = shadows.into_iter().find(|[a, b, c, _]| orient2d(*a, *b, *c) != 0.0)?;
     let turn = orient2d(a, b, c).signum();

@@ -1,4 +1,4 @@
-//! From a checked input to a certified mesh: a complex that has the surface, carving, improvement, certificate.
+//! Pipeline from a checked input to a certified mesh: conforming complex, carving, improvement, certificate.
 
 use super::carve::{self, Sides};
 use super::certify::{certify_facets, certify_left_out, certify_segments};
@@ -13,7 +13,7 @@ use super::regions::Regions;
 use super::request::{Filled, Request};
 use super::sized;
 
-/// Fills what the request describes, and proves it.
+/// Fills the requested volume and certifies the mesh.
 pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     sized::check(r.refinement, r.sizing, r.surface.points.len())?;
     let (complex, recovery) = conforming(r)?;
@@ -41,7 +41,7 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     Ok(Filled { mesh, places, left_out, regions, region_count, recovery, optimize, refine })
 }
 
-/// What of a complex is filled, and what of the input lies outside of that.
+/// Carves a complex. Returns the filled part and the parts of the input outside of it.
 fn carved(r: &Request, complex: &Complex) -> Result<(Complex, LeftOut), TetError> {
     let sides = Sides::find(complex, r.surface, r.kind, r.holes)?;
     r.watch.ask()?;
@@ -52,13 +52,13 @@ fn carved(r: &Request, complex: &Complex) -> Result<(Complex, LeftOut), TetError
     }
 }
 
-/// Region of each tetrahedron, where there is something to say, and the number of regions.
+/// Region of each tetrahedron, empty if there is only one unnamed region, and the number of regions.
 fn labels(r: &Request, carved: &Complex) -> Result<(Vec<i32>, usize), TetError> {
     let found = Regions::of(carved, r.regions)?;
     Ok((if found.matter() { found.ids(carved) } else { Vec::new() }, found.len()))
 }
 
-/// Improves the mesh; triangles stay, and segments that are held.
+/// Improves the mesh; triangles and held segments stay.
 fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError> {
     r.watch.report(Stage::Optimize, 0, 1)?;
     let options = OptimizeOptions { fixed_points: r.surface.points.len(), ..OptimizeOptions::of(r.effort) };

@@ -1,27 +1,27 @@
-//! Local changes of a complex: face removal (2-3 flip) and edge removal (3-2, 4-4, …), each proved valid by exact
-//! predicates before it is made. Frozen faces and the boundary are never touched.
+//! Local changes of a complex: face removal (2-3 flip) and edge removal (3-2, 4-4, …). Exact predicates validate each
+//! one first. Frozen faces and the boundary are never touched.
 
 use super::complex::Complex;
 use super::star::EdgeRing;
 
-/// Largest ring that edge removal triangulates.
+/// Maximum tetrahedra around an edge to remove.
 pub const MAX_RING: usize = 12;
 
-/// Why a flip was not made.
+/// Reason for a refused flip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// A frozen face, a boundary face or a boundary edge would go.
+    /// A frozen face, boundary face or boundary edge would be removed.
     Frozen,
     /// No arrangement of the new tetrahedra is valid (or good enough).
     NotValid,
-    /// More than the allowed tetrahedra stand around the edge.
+    /// Too many tetrahedra surround the edge.
     RingTooLarge,
     /// The tetrahedron does not have that edge or face.
     Missing,
 }
 
-/// Makes flips; keeps its buffers from one flip to the next.
+/// Plans and makes flips; reuses its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct Flipper {
     ring: EdgeRing,
@@ -34,16 +34,16 @@ pub struct Flipper {
 }
 
 impl Flipper {
-    /// Slots of the tetrahedra that the last successful flip created.
+    /// Slots of the tetrahedra created by the last flip.
     pub fn created(&self) -> &[u32] {
         &self.created
     }
 
-    /// Plans the 2-3 flip of a face, which exchanges it for the edge between the two apices, without making it; returns the smallest score of the three new tetrahedra.
-    /// `score` must be `None` for a tetrahedron that is not positive.
+    /// Plans the 2-3 flip of a face, which exchanges it for the edge between its two apices. Returns the smallest score
+    /// of the new tetrahedra. `score` must be `None` for a tetrahedron that is not positive.
     ///
     /// # Errors
-    /// [`Refusal::Frozen`] on a frozen or boundary face, [`Refusal::NotValid`] where the two tetrahedra are not convex.
+    /// [`Refusal::Frozen`] for a frozen or boundary face, [`Refusal::NotValid`] if the two tetrahedra are not convex.
     pub fn plan_face(
         &mut self,
         c: &Complex,
@@ -69,10 +69,9 @@ impl Flipper {
         Ok(worst)
     }
 
-    /// Plans the removal of edge `a, b` of tetrahedron `t` without making it: of all triangulations of the ring the
-    /// one whose worst tetrahedron scores best (Klincsek's dynamic programming; Shewchuk, 'Two discrete optimization
-    /// algorithms for the topological improvement of tetrahedral meshes', 2002). Returns that worst score. `score`
-    /// must be `None` for a tetrahedron that is not positive.
+    /// Plans the removal of edge `a, b` of tetrahedron `t`. Triangulates the ring by Klincsek's dynamic programming
+    /// (Shewchuk, 'Two discrete optimization algorithms for the topological improvement of tetrahedral meshes', 2002).
+    /// Returns the maximal worst score. `score` must be `None` for a tetrahedron that is not positive.
     ///
     /// # Errors
     /// See [`Refusal`].
@@ -170,21 +169,21 @@ impl Flipper {
         Ok(worst)
     }
 
-    /// The tetrahedra that the planned change would create.
+    /// Tetrahedra that the planned change would create.
     pub fn planned(&self) -> &[[u32; 4]] {
         &self.new
     }
 
-    /// The tetrahedra that the planned change would remove.
+    /// Tetrahedra that the planned change would remove.
     pub fn doomed(&self) -> &[u32] {
         &self.old
     }
 
-    /// Makes the change planned last; nothing may have changed since. New tetrahedra that are
-    /// all positive and fit the boundary of the old ones cover the same room once, so no edge can exist twice.
+    /// Makes the planned change; the complex must be unchanged since. New positive tetrahedra that fit the boundary of
+    /// the old ones cover the same volume once, so no edge can exist twice.
     ///
     /// # Errors
-    /// [`Refusal::NotValid`] when the new tetrahedra do not fit (the ring folds over itself); nothing is changed.
+    /// [`Refusal::NotValid`] if the new tetrahedra do not fit (the ring folds over itself); nothing is changed.
     pub fn commit(&mut self, c: &mut Complex) -> Result<(), Refusal> {
         let mut created = std::mem::take(&mut self.created);
         let done = c.replace(&self.old, &self.new, &mut created);
@@ -193,7 +192,7 @@ impl Flipper {
     }
 }
 
-/// The two tetrahedra that triangle `i, k, j` of the rim makes with the ends of the edge.
+/// The two tetrahedra between triangle `i, k, j` of the rim and the ends of the edge.
 fn wedge(ring: &EdgeRing, i: usize, k: usize, j: usize) -> [[u32; 4]; 2] {
     let (ri, rk, rj) = (ring.rim[i], ring.rim[k], ring.rim[j]);
     [[ri, rj, rk, ring.a], [ri, rk, rj, ring.b]]
@@ -217,7 +216,7 @@ mod tests {
         c
     }
 
-    /// For flips that have to be possible, not good.
+    /// Score of flips that must be possible, not good.
     fn valid(c: &Complex, v: &[u32; 4]) -> Option<f64> {
         (c.orient(v) > 0.0).then_some(1.0)
     }
@@ -275,7 +274,7 @@ mod tests {
 
     #[test]
     fn a_ring_that_is_not_convex_is_refused() {
-        // The rim's third point lies on the wrong side of the edge: the edge cannot be replaced by one triangle.
+        // The rim's third point lies on the wrong side of the edge, so no triangle can replace the edge.
         let points = vec![
             Point3::new(0.0, 0.0, -1.0),
             Point3::new(0.0, 0.0, 1.0),

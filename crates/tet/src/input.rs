@@ -1,5 +1,5 @@
-//! What an input must be before it is tetrahedralized. All of it is decided exactly, in time and memory linear in the
-//! input but for sorting; what only shows in space (parts that meet) is the business of [`super::contacts`].
+//! Validation of the input, in exact arithmetic, with linear time and memory except for sorting. Spatial defects
+//! (intersecting parts) are checked in [`super::contacts`].
 
 use super::certify::enclosed_volume;
 use super::error::{NAMED, TetError};
@@ -9,20 +9,20 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::place_key;
 use anastomesh_mesh::geometry::predicates::{MAX_MAGNITUDE, collinear, in_exact_range};
 
-/// The box around the input reaches three times as far, and has to be in the range of the predicates.
+/// Maximum coordinate. The box around the input is three times as large and must be in the range of the predicates.
 const LARGEST: f64 = MAX_MAGNITUDE / 4.0;
 
-/// The edges of a surface, and segments beside it.
+/// Edges of a surface, and additional segments.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SurfaceEdges {
-    /// Each edge once, smaller vertex first, in ascending order.
+    /// Distinct edges, smaller vertex first, in ascending order.
     pub edges: Vec<[u32; 2]>,
     /// `edges[offset[v]..offset[v + 1]]` have `v` as their smaller vertex.
     offset: Vec<u32>,
 }
 
 impl SurfaceEdges {
-    /// From edges in ascending order, each once.
+    /// Creates the table from distinct edges in ascending order.
     fn new(edges: Vec<[u32; 2]>, points: usize) -> Self {
         let mut offset = vec![0u32; points + 1];
         for e in &edges {
@@ -34,18 +34,18 @@ impl SurfaceEdges {
         Self { edges, offset }
     }
 
-    /// Where in `edges` those with the smaller vertex `v` are.
+    /// Range in `edges` of those with the smaller vertex `v`.
     pub fn range(&self, v: u32) -> Option<std::ops::Range<usize>> {
         let end = *self.offset.get((v as usize).saturating_add(1))?;
         Some(self.offset[v as usize] as usize..end as usize)
     }
 
-    /// Whether the surface has edge `a, b`.
+    /// True if the surface has edge `a, b`.
     pub fn contains(&self, a: u32, b: u32) -> bool {
         self.position(a, b).is_some()
     }
 
-    /// Where in `edges` edge `a, b` is.
+    /// Index in `edges` of edge `a, b`.
     pub fn position(&self, a: u32, b: u32) -> Option<usize> {
         let (a, b) = (a.min(b), a.max(b));
         let range = self.range(a)?;
@@ -54,7 +54,7 @@ impl SurfaceEdges {
     }
 }
 
-/// The first few offenders and the number of all.
+/// The first few offenders and their total number.
 #[derive(Debug, Default)]
 pub(super) struct Offenders<T = u32> {
     pub named: Vec<T>,
@@ -78,9 +78,8 @@ impl<T> FromIterator<T> for Offenders<T> {
     }
 }
 
-/// Checks the arrays of a surface and lists its edges, those of `segments` among them. Whether it meets itself is not
-/// looked at, nor whether points coincide; no triangle of a complex is there twice, and in a surface two at most, back
-/// to back.
+/// Checks the arrays of a surface and lists its edges, including `segments`. Self-intersections and coincident points
+/// are not checked. A general complex may have no triangle twice; a closed surface may have two back to back.
 pub(super) fn validate(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<SurfaceEdges, TetError> {
     check_arrays(surface)?;
     check_segments(segments, surface.points.len())?;
@@ -93,13 +92,13 @@ pub(super) fn validate(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind
     }
 }
 
-/// The short form takes surfaces that enclose a positive volume only.
+/// Checks that a surface encloses a positive volume, as the short form requires.
 pub(super) fn outward(surface: &TriMesh) -> Result<(), TetError> {
     let (volume, _) = enclosed_volume(surface);
     if volume < 0.0 { Err(TetError::InsideOut { volume }) } else { Ok(()) }
 }
 
-/// Checks that arrays are as long as they have to be.
+/// Checks the lengths of optional arrays.
 pub(super) fn check_lengths(plc: &Plc) -> Result<(), TetError> {
     let (found, expected) = (plc.markers.len(), plc.triangles.len());
     if found != 0 && found != expected {
@@ -167,13 +166,13 @@ fn check_segments(segments: &[[u32; 2]], points: usize) -> Result<(), TetError> 
     if found.count == 0 { Ok(()) } else { Err(TetError::BadSegment { segments: found.named, count: found.count }) }
 }
 
-/// The edge from a vertex of a triangle to the next, smaller vertex first, and whether that is its direction.
+/// Edge from a vertex of a triangle to the next, smaller vertex first, and true if that is its direction.
 fn edge_of(t: &[u32; 3], i: usize) -> ([u32; 2], bool) {
     let (a, b) = (t[i], t[(i + 1) % 3]);
     ([a.min(b), a.max(b)], a < b)
 }
 
-/// The sides of all triangles in ascending order: counted by their smaller vertex, of which few have the same.
+/// Sides of all triangles in ascending order, by a counting sort on the smaller vertex.
 fn sorted_sides(surface: &TriMesh) -> Vec<([u32; 2], bool)> {
     let sides = || surface.triangles.iter().flat_map(|t| (0..3).map(|i| edge_of(t, i)));
     let mut end = vec![0u32; surface.points.len() + 1];
@@ -198,7 +197,7 @@ fn sorted_sides(surface: &TriMesh) -> Vec<([u32; 2], bool)> {
     sorted
 }
 
-/// All edges and segments, each once.
+/// All distinct edges and segments.
 fn list_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> SurfaceEdges {
     let mut edges: Vec<[u32; 2]> = segments.iter().map(|e| [e[0].min(e[1]), e[0].max(e[1])]).collect();
     edges.extend(surface.triangles.iter().flat_map(|t| (0..3).map(|i| edge_of(t, i).0)));
@@ -207,7 +206,7 @@ fn list_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> SurfaceEdges {
     SurfaceEdges::new(edges, surface.points.len())
 }
 
-/// Pairs the edges; each must be run through once in each direction.
+/// Pairs the edges; each must occur once in each direction.
 fn list_closed_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> Result<SurfaceEdges, TetError> {
     let sides = sorted_sides(surface);
     let mut edges = Vec::with_capacity(sides.len() / 2 + segments.len());
@@ -245,7 +244,7 @@ fn list_closed_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> Result<Surface
     Ok(SurfaceEdges::new(edges, surface.points.len()))
 }
 
-/// Those of some edges that lie where another of them does, in ascending order.
+/// Edges that coincide with another of the given edges, in ascending order.
 fn twins(points: &[Point3], edges: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let placed = |&edge: &[u32; 2]| {
         let mut ends = edge.map(|v| place_key(&points[v as usize]));
@@ -260,13 +259,13 @@ fn twins(points: &[Point3], edges: &[[u32; 2]]) -> Vec<[u32; 2]> {
     found
 }
 
-/// The triangles that have one of some edges, which are in ascending order.
+/// Triangles with one of the given edges, which are in ascending order.
 fn triangles_at(surface: &TriMesh, edges: &[[u32; 2]]) -> Offenders {
     let has = |t: &[u32; 3]| (0..3).any(|i| edges.binary_search(&edge_of(t, i).0).is_ok());
     surface.triangles.iter().zip(0..).filter(|(t, _)| has(t)).map(|(_, i)| i).collect()
 }
 
-/// Checks that no point repeats another one, bit for bit but for the sign of zero.
+/// Checks that no two points have the same coordinates, regardless of the sign of zero.
 pub(super) fn no_duplicate_points(points: &[Point3]) -> Result<(), TetError> {
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     order.sort_unstable_by_key(|&i| (place_key(&points[i as usize]), i));

@@ -1,5 +1,4 @@
-//! Tests of what is said about inputs that cannot be used: the cause rather than its consequences, in the caller's
-//! numbers.
+//! Tests of messages about unusable input: they name the cause, not its consequences, in the caller's numbering.
 
 use super::*;
 use crate::names::Names;
@@ -25,7 +24,7 @@ fn triangles_that_are_there_twice_are_named_in_pairs() {
     assert_eq!(error(&s, InputKind::Plc).to_string(), "triangle 5 is there twice (also as 80)");
 }
 
-/// The surface with corners of its own for each triangle.
+/// The surface with separate corners for each triangle.
 fn soup(s: &TriMesh) -> TriMesh {
     TriMesh {
         points: s.triangles.iter().flatten().map(|&v| s.points[v as usize]).collect(),
@@ -40,11 +39,11 @@ fn corners_that_are_not_shared_are_told_from_holes() {
     let n = s.triangles.len();
     let found = error(&apart, InputKind::Closed);
     assert!(matches!(found, TetError::NotShared { count, edges, .. } if count == n && edges == 3 * n), "{found}");
-    // A last bit is a gap.
+    // A difference in the last bit is a gap.
     let mut gap = apart.clone();
     gap.points.iter_mut().enumerate().for_each(|(i, p)| p.x += 0.01 * i as f64);
     assert!(matches!(error(&gap, InputKind::Closed), TetError::Open { .. }));
-    // One crack along an edge, with both zeros; nothing beside it is named.
+    // A crack along one edge, with both zeros; only that is named.
     let mut crack = TriMesh { points: vec![], triangles: vec![[0, 2, 1], [0, 1, 3], [4, 2, 3], [2, 5, 3]] };
     for (x, y, z) in [(0., 0., 0.), (1., 0., 0.), (0., 1., 0.), (0., 0., 1.), (1., -0., 0.), (-0., 0., 0.)] {
         crack.points.push(anastomesh_mesh::geometry::Point3::new(x, y, z));
@@ -53,7 +52,7 @@ fn corners_that_are_not_shared_are_told_from_holes() {
     assert_eq!((triangles, edges), (vec![0, 1, 2, 3], 8));
 }
 
-/// Triangles two by two of one face; all counts from 10.
+/// Two triangles per face; all counts from 10.
 struct Halves;
 
 impl Names for Halves {

@@ -1,5 +1,5 @@
-//! Interior points: a body-centred cubic lattice, off the wall and jittered, so that one Delaunay run over surface and
-//! lattice leaves only the layer at the wall to improve. Away from the wall its cubes may grow.
+//! Interior points: a jittered body-centred cubic lattice away from the wall. After one Delaunay run over surface and
+//! lattice, only the layer at the wall needs improvement. Away from the wall its cubes may grow.
 
 mod local;
 
@@ -10,27 +10,26 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3, point_triangle};
 use rustc_hash::FxHashMap;
 
-/// Jitter of a lattice point, as a part of the cell.
+/// Jitter of a lattice point, relative to the cell.
 const JITTER: f64 = 0.02;
 
-/// Lattice indices stay below this magnitude, so that three of them pack into 63 bits.
+/// Upper bound of lattice indices, so that three of them pack into 63 bits.
 const MAX_INDEX: f64 = 1_000_000.0;
 
-/// Most points made: a cell far too small for its surface gives fewer.
+/// Maximum points made. A cell far too small for its surface gives fewer.
 const MAX_POINTS: usize = 50_000_000;
 
-/// Steps along the diagonals of the cubes from the outermost points of a lattice from which on its cubes are twice, four
-/// times and eight times as large.
+/// Steps along the cube diagonals from the outermost points at which cubes become two, four and eight times as large.
 const COARSER_AT: [u32; 3] = [3, 8, 16];
 
-/// Mean edge length at every vertex of a surface, evened out over its neighbours; 0 where there is none.
+/// Mean edge length at every vertex of a surface, smoothed over its neighbours; 0 without edges.
 fn edges_at_vertices(surface: &TriMesh) -> Vec<f64> {
     let n = surface.points.len();
     let mut sums = vec![(0.0, 0.0); n];
     for t in &surface.triangles {
         for k in 0..3 {
             let (a, b) = (t[k] as usize, t[(k + 1) % 3] as usize);
-            // Every edge lies in two triangles: its other end is counted there.
+            // Every edge lies in two triangles; the second one counts its other end.
             let slot = &mut sums[a];
             *slot = (slot.0 + (surface.points[a] - surface.points[b]).norm(), slot.1 + 1.0);
         }
@@ -54,7 +53,7 @@ struct Lattice {
 }
 
 impl Lattice {
-    /// The jittered place of a lattice point.
+    /// Jittered position of a lattice point.
     fn place(&self, index: [i64; 3]) -> Point3 {
         let base = self.origin + Vec3::new(index[0] as f64, index[1] as f64, index[2] as f64) * self.half;
         let h = hash(pack(index));
@@ -69,13 +68,13 @@ fn pack([i, j, k]: [i64; 3]) -> u64 {
 }
 
 /// Points of a body-centred cubic lattice with cubes of side `cell`, inside the closed `surface` and at least
-/// `clearance` from it. The same surface gives the same points. Inside is decided along one scan line per column; a
-/// line that grazes an edge may leave points out or take in points outside, which carving drops.
+/// `clearance` from it. The result is deterministic. One scan line per column decides which points are inside; a line
+/// that grazes an edge may give wrong points, which carving drops.
 pub fn lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
     sites(surface, cell, |_| Some(clearance)).map_or_else(Vec::new, |(lattice, columns)| columns.places(&lattice))
 }
 
-/// As [`lattice_points`], and away from the surface the lattice's cubes are twice, four times, .. as large.
+/// As [`lattice_points`], with cubes that grow by 2, 4, ... away from the surface.
 pub fn graded_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
     sites(surface, cell, |_| Some(clearance)).map_or_else(Vec::new, |(lattice, mut columns)| {
         columns.thin();
@@ -83,8 +82,8 @@ pub fn graded_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Ve
     })
 }
 
-/// The lattice, and which of its points are inside and off the wall, by the clearance from each triangle; none when the
-/// cell makes no sense. Triangles without a clearance are not looked at.
+/// Lattice and its points inside, off the wall by the clearance of each triangle; `None` if the cell is unusable.
+/// Triangles without a clearance are skipped.
 fn sites(surface: &TriMesh, cell: f64, clearance: impl Fn(&[u32; 3]) -> Option<f64>) -> Option<(Lattice, Columns)> {
     let first = surface.points.first()?;
     let (mut low, mut high) = (*first, *first);
@@ -103,7 +102,7 @@ fn sites(surface: &TriMesh, cell: f64, clearance: impl Fn(&[u32; 3]) -> Option<f
     Some((lattice, columns))
 }
 
-/// Where the columns of lattice points (along z) pass through the surface: packed column and height, sorted.
+/// Crossings of the lattice columns (along z) with the surface: packed column and height, sorted.
 fn column_crossings(surface: &TriMesh, lattice: &Lattice) -> Vec<(u64, f64)> {
     let mut crossings = Vec::new();
     for t in &surface.triangles {
@@ -136,7 +135,7 @@ fn column_crossings(surface: &TriMesh, lattice: &Lattice) -> Vec<(u64, f64)> {
     crossings
 }
 
-/// Takes out the points closer to a triangle than its clearance.
+/// Removes the points closer to a triangle than its clearance.
 fn clear_wall(
     surface: &TriMesh,
     lattice: &Lattice,
@@ -169,8 +168,8 @@ fn clear_wall(
     }
 }
 
-/// Lattice points by columns along z, one bit each: point (i, j, k) is bit `k >> 1` of column (i, j), whose indices k
-/// are all even or all odd as its i and j are.
+/// Lattice points by columns along z, one bit each: point (i, j, k) is bit `k >> 1` of column (i, j). Its indices k
+/// have the parity of i and j.
 struct Columns {
     list: Vec<Column>,
     index: FxHashMap<u64, u32>,
@@ -182,9 +181,9 @@ struct Columns {
 struct Column {
     i: i64,
     j: i64,
-    /// Number of its first word along z.
+    /// Index of its first word along z.
     first: i64,
-    /// Where its words are, and how many.
+    /// Position and number of its words.
     start: usize,
     words: usize,
 }
@@ -198,7 +197,7 @@ impl Column {
 }
 
 impl Columns {
-    /// The points between the first and the second, the third and the fourth, .. crossing of each column.
+    /// Points between the first and second, third and fourth, ... crossing of each column.
     fn between(crossings: &[(u64, f64)]) -> Self {
         let mut this = Self { list: Vec::new(), index: FxHashMap::default(), bits: Vec::new() };
         let mut count = 0;
@@ -206,7 +205,7 @@ impl Columns {
             let unpack = |shift: u32| ((crossed[0].0 >> shift) & 0x1f_ffff) as i64 - (1 << 20);
             let (i, j) = (unpack(0), unpack(21));
             let parity = i & 1;
-            // The points from one height to another, as bits: k = 2 n + parity.
+            // Range of bits between two heights: k = 2 n + parity.
             let run = |pair: &[(u64, f64)]| {
                 let [from, to] = [pair[0].1.ceil() as i64, pair[1].1.floor() as i64];
                 ((from - parity + 1) >> 1, (to - parity) >> 1)
@@ -233,7 +232,7 @@ impl Columns {
         self.index.get(&pack([i, j, 0])).map(|&c| self.list[c as usize])
     }
 
-    /// The points whose eight neighbours are all in `bits`.
+    /// Points with all eight neighbours in `bits`.
     fn eroded(&self, bits: &[u64]) -> Vec<u64> {
         let mut out = bits.to_vec();
         for column in &self.list {
@@ -255,7 +254,7 @@ impl Columns {
         out
     }
 
-    /// Keeps of what is so many steps off the rim only the points of lattices with larger cubes.
+    /// Thins points far from the rim to those of lattices with larger cubes.
     fn thin(&mut self) {
         let (mut deep, mut depth) = (self.bits.clone(), 0);
         for (level, at) in (1..).zip(COARSER_AT) {
@@ -293,14 +292,14 @@ impl Columns {
 }
 
 impl Column {
-    /// The points, as bits of each word, that belong to the lattice whose cubes are `2^level` times as large: those
-    /// whose indices are multiples of that, all three even ones or all three odd ones.
+    /// Bit mask of the points of the lattice with cubes `2^level` times as large: indices are multiples of that, all
+    /// three even or all three odd ones.
     fn points_of_level(&self, level: u32) -> u64 {
         let step = 1 << level;
         if self.i % step != 0 || self.j % step != 0 || (self.i ^ self.j) & step != 0 {
             return 0;
         }
-        // k = 2 n is a multiple of the step, an even one or an odd one.
+        // k = 2 n is a multiple of the step, an even or an odd one.
         let odd = u64::from(self.i & step != 0);
         (0..64).filter(|n| n % step as u64 == odd * (step as u64 / 2)).fold(0, |mask, n| mask | 1 << n)
     }

@@ -150,3 +150,8 @@ mod refined_tests;
 mod tests;
 #[cfg(test)]
 mod turned_tests;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

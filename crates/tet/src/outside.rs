@@ -1,5 +1,4 @@
-//! What of an input is no part of what is filled: triangles and segments with nothing around them but the outside, or
-//! holes.
+//! Parts of the input outside the filled volume: triangles and segments surrounded only by the outside or by holes.
 
 use super::carve::Sides;
 use super::complex::Complex;
@@ -10,10 +9,10 @@ use anastomesh_mesh::TriMesh;
 use std::borrow::Cow;
 
 impl LeftOut {
-    /// Finds what lies outside in a complex that has all of the input.
+    /// Finds the outside parts in a complex with all of the input.
     ///
     /// # Errors
-    /// [`TetError::NotRecovered`] when the complex lacks something.
+    /// [`TetError::NotRecovered`] if the complex lacks something.
     pub(super) fn find(c: &Complex, sides: &Sides, surface: &TriMesh, segments: &[[u32; 2]]) -> Result<Self, TetError> {
         let mut found = Self::default();
         let (mut lost_edges, mut lost_triangles) = (Vec::new(), Vec::new());
@@ -44,7 +43,7 @@ impl LeftOut {
         Err(TetError::NotRecovered { edges: lost_edges, triangles: lost_triangles })
     }
 
-    /// The error that it is where nothing may be left out.
+    /// Error for left-out parts where none are allowed.
     pub(super) fn as_error(&self) -> Option<TetError> {
         let (what, ids) = match (self.triangles.as_slice(), self.segments.as_slice()) {
             ([], []) => return None,
@@ -54,7 +53,7 @@ impl LeftOut {
         Some(TetError::Outside { what, ids: ids.iter().take(NAMED).copied().collect(), count: ids.len() })
     }
 
-    /// The surface without what is left out of it; all points stay.
+    /// Surface without the left-out parts; all points stay.
     pub(super) fn kept_surface<'a>(&self, surface: &'a TriMesh) -> Cow<'a, TriMesh> {
         if self.triangles.is_empty() {
             return Cow::Borrowed(surface);
@@ -64,7 +63,7 @@ impl LeftOut {
     }
 }
 
-/// The items but those with the ids in `dropped`, which are ascending.
+/// Items except those with the ascending ids in `dropped`.
 pub(super) fn without<T: Copy>(items: &[T], dropped: &[u32]) -> Vec<T> {
     let mut dropped = dropped.iter().copied().peekable();
     items.iter().zip(0_u32..).filter(|(_, i)| dropped.next_if_eq(i).is_none()).map(|(item, _)| *item).collect()

@@ -1,4 +1,4 @@
-//! Tests of triangles and segments outside of what is filled.
+//! Tests of triangles and segments outside the filled volume.
 
 use super::certify::{CertifyError, certify_left_out};
 use super::*;
@@ -22,8 +22,8 @@ fn add(plc: &mut Plc, corners: [[f64; 3]; 3]) {
     plc.triangles.push([n, n + 1, n + 2]);
 }
 
-/// A box of side 4 with a hole of side 1 in it. Triangle 0 lies outside, 25 in the hole, 26 hangs on an edge of the box
-/// outside, 27 lies in what is filled. Of the segments the first and the last lie outside.
+/// A box of side 4 with a hole of side 1 in it. Triangle 0 lies outside, 25 in the hole, 26 at an edge of the box
+/// outside, 27 in the filled volume. The first and last segment lie outside.
 fn with_things_outside() -> Plc {
     let mut plc = Plc::default();
     add(&mut plc, [[5.0, 0.0, 0.0], [6.0, 0.0, 0.0], [5.0, 1.0, 0.5]]);
@@ -100,7 +100,7 @@ fn pieces_are_left_out_under_the_number_of_the_whole() {
 #[test]
 fn what_cannot_be_recovered_in_pieces_is_none_of_the_mesh_outside() {
     let mut plc = with_things_outside();
-    // A diagonal of the hole: fine as it is, but not to be recovered once the walls of the hole are split.
+    // A diagonal of the hole: valid as it is, but not recoverable once the walls of the hole are split.
     plc.edges = vec![[11, 18]];
     let wanted = Refinement::default().max_radius_edge(1.4).max_volume(0.2);
     let made = tetrahedralizer().boundary(Boundary::Split).refine(Some(wanted)).run(&plc).unwrap();

@@ -1,9 +1,9 @@
-//! Telling a caller how far things are, and being told to stop.
+//! Progress reports and cancellation.
 
 use super::error::TetError;
 pub use anastomesh_mesh::progress::{Progress, Stage};
 
-/// Who watches a run. Long loops report to it every now and then, and end with [`TetError::Cancelled`] when told so.
+/// Observer of a run. Long loops report to it periodically, and end with [`TetError::Cancelled`] on request.
 #[derive(Clone, Copy, Default)]
 pub struct Watch<'a> {
     who: Option<&'a dyn Progress>,
@@ -13,20 +13,20 @@ pub struct Watch<'a> {
 impl<'a> Watch<'a> {
     pub const NOBODY: Watch<'static> = Watch { who: None, is_told: false };
 
-    /// Is told everything, and asked whether to stop.
+    /// Reports everything to `who`, and asks for cancellation.
     pub fn of(who: &'a dyn Progress) -> Self {
         Self { who: Some(who), is_told: true }
     }
 
-    /// Is asked, often, whether to stop, and told nothing: the run is a part of what it listens to.
+    /// Only asks for cancellation, without reports: the run is part of a larger one.
     pub fn asking(who: &'a dyn Progress) -> Self {
         Self { who: Some(who), is_told: false }
     }
 
-    /// Reports, then asks whether to go on.
+    /// Reports, then checks for cancellation.
     ///
     /// # Errors
-    /// [`TetError::Cancelled`] when the caller says so.
+    /// [`TetError::Cancelled`] if the caller cancels.
     #[inline]
     pub fn report(&self, stage: Stage, done: usize, total: usize) -> Result<(), TetError> {
         if let Some(who) = self.who.filter(|_| self.is_told) {
@@ -35,10 +35,10 @@ impl<'a> Watch<'a> {
         self.ask()
     }
 
-    /// Asks whether to go on.
+    /// Checks for cancellation.
     ///
     /// # Errors
-    /// [`TetError::Cancelled`] when the caller says so.
+    /// [`TetError::Cancelled`] if the caller cancels.
     #[inline]
     pub fn ask(&self) -> Result<(), TetError> {
         if self.who.is_some_and(Progress::is_cancelled) { Err(TetError::Cancelled) } else { Ok(()) }

@@ -1,4 +1,4 @@
-//! Tests of sizes, refinement and split surfaces, through the front door.
+//! Tests of sizes, refinement and split surfaces through the public interface.
 
 use super::tests::tube;
 use super::*;
@@ -35,7 +35,7 @@ fn a_function_of_the_place_sizes_the_inside() {
     assert!(q.mean > 0.8 && q.min > 0.1, "{q:?}");
 }
 
-/// What no mesh fulfils is aimed at as far as the boundary allows.
+/// Unattainable goals are approached as far as the boundary allows.
 #[test]
 fn any_angle_of_a_tetrahedron_may_be_asked_for() {
     let s = sphere_surface(2);
@@ -71,7 +71,7 @@ fn a_surface_that_may_be_split_is_split_to_size_with_a_map_of_its_pieces() {
     assert_eq!((t.origins.len(), t.face_markers.len()), (t.faces.len(), t.faces.len()));
     assert!(t.origins.iter().zip(&t.face_markers).all(|(&o, &m)| o as i32 == m));
     assert_eq!(t.mesh.points[..s.points.len()], s.points);
-    // The pieces of a triangle have its area together.
+    // The pieces of a triangle sum up to its area.
     let area = |points: &[Point3], t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| points[v as usize]);
         (b - a).cross(&(c - a)).norm()

@@ -8,7 +8,7 @@ use anastomesh_mesh::geometry::{Aabb, Bvh, Point3};
 
 const UNSEEN: u32 = u32::MAX;
 
-/// For each point the first tetrahedron, in the order of slots, that has it inside or on its boundary.
+/// First tetrahedron in slot order that contains each point, including its boundary.
 pub(super) fn tets_of_seeds(c: &Complex, seeds: &[Point3]) -> Vec<Option<u32>> {
     let mut found = vec![None; seeds.len()];
     if seeds.is_empty() {
@@ -31,7 +31,7 @@ pub(super) fn tets_of_seeds(c: &Complex, seeds: &[Point3]) -> Vec<Option<u32>> {
     found
 }
 
-/// Whether a point lies inside or on the boundary of a tetrahedron.
+/// True if a point lies inside or on the boundary of a tetrahedron.
 fn holds(c: &Complex, t: u32, p: &Point3) -> bool {
     (0..4).all(|i| {
         let [a, b, d] = c.face(4 * t + i).map(|v| &c.points[v as usize]);
@@ -41,17 +41,17 @@ fn holds(c: &Complex, t: u32, p: &Point3) -> bool {
 
 /// Connected parts of a carved complex.
 pub(super) struct Regions {
-    /// Region of each slot; regions are numbered in the order of their first slots.
+    /// Region of each slot, numbered in the order of first slots.
     of: Vec<u32>,
     /// Id of each region.
     ids: Vec<i32>,
-    /// The seed that lies in each region.
+    /// Seed in each region.
     seeds: Vec<Option<u32>>,
 }
 
 impl Regions {
-    /// Finds the regions of a carved complex and names them: by the first seed that lies in one, the others by the
-    /// smallest positive numbers that no seed has.
+    /// Finds the regions of a carved complex. Each takes the id of its first seed; the others take the smallest
+    /// positive ids that no seed has.
     ///
     /// # Errors
     /// [`TetError::BadSeed`] for a seed outside.
@@ -76,7 +76,7 @@ impl Regions {
         Ok(Self { of, ids, seeds: seed_of })
     }
 
-    /// Bound on the volume of each slot's tetrahedron, as the seeds of the regions have it.
+    /// Volume bound of each slot, from the seeds of the regions.
     pub(super) fn volume_bounds(&self, seeds: &[Region]) -> Vec<f64> {
         let bound = |region: u32| {
             let seed = self.seeds.get(region as usize).copied().flatten();
@@ -90,18 +90,18 @@ impl Regions {
         self.ids.len()
     }
 
-    /// Whether they say something: there are two or more, or a seed has given one an id.
+    /// True if there are several regions, or a seed names the only one.
     pub(super) fn matter(&self) -> bool {
         self.len() > 1 || self.seeds.iter().any(Option::is_some)
     }
 
-    /// Id of each real tetrahedron, in the order of slots.
+    /// Id of each real tetrahedron, in slot order.
     pub(super) fn ids(&self, c: &Complex) -> Vec<i32> {
         c.real_tets().map(|t| self.ids[self.of[t as usize] as usize]).collect()
     }
 }
 
-/// Region of each slot, and their number.
+/// Region of each slot, and the number of regions.
 fn flood(c: &Complex) -> (Vec<u32>, usize) {
     let mut of = vec![UNSEEN; c.slots()];
     let mut stack = Vec::new();

@@ -1,4 +1,4 @@
-//! What is asked of the tetrahedralizer, and what comes of it.
+//! Request to the tetrahedralizer, and its result.
 
 use super::certify::Place;
 use super::input::SurfaceEdges;
@@ -12,7 +12,7 @@ use super::refine::RefineReport;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::{TetMesh, TriMesh};
 
-/// A checked input and what is wanted of it.
+/// A checked input with its options.
 pub(super) struct Request<'a> {
     pub surface: &'a TriMesh,
     pub edges: &'a SurfaceEdges,
@@ -24,12 +24,12 @@ pub(super) struct Request<'a> {
     pub refinement: Option<&'a Refinement>,
     pub sizing: &'a Sizing,
     pub optimize: bool,
-    /// Whether the mesh is proved to fill the surface.
+    /// True if the mesh is to be certified against the surface.
     pub certify: bool,
     pub effort: Effort,
-    /// Whether triangles and segments outside are an error.
+    /// True if triangles and segments outside are an error.
     pub strict: bool,
-    /// Whether tetrahedra are told apart by regions.
+    /// True if tetrahedra are labelled by region.
     pub label: bool,
     pub watch: &'a Watch<'a>,
 }
@@ -37,11 +37,11 @@ pub(super) struct Request<'a> {
 /// A certified mesh.
 pub(super) struct Filled {
     pub mesh: TetMesh,
-    /// Where each triangle of the input that is not left out lies in it; empty without the certificate.
+    /// Position in the mesh of each input triangle that is not left out; empty without the certificate.
     pub places: Vec<Place>,
-    /// What of the input lies outside.
+    /// Parts of the input outside.
     pub left_out: LeftOut,
-    /// Region of each tetrahedron, where there is something to say.
+    /// Region of each tetrahedron, empty for a single unnamed region.
     pub regions: Vec<i32>,
     pub region_count: usize,
     pub recovery: RecoverySummary,

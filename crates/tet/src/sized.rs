@@ -1,4 +1,4 @@
-//! The size field and the goals of a run, from what was asked for.
+//! Size field and goals of a run, from its options.
 
 use super::complex::Complex;
 use super::error::TetError;
@@ -12,13 +12,13 @@ use super::request::Request;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 
-/// Clearance of interior points from the wall over the edge length wanted there.
+/// Clearance of interior points from the wall, relative to the edge length wanted there.
 const CLEARANCE: f64 = 0.45;
 
-/// Part of a bound on volumes that refinement aims at when vertices are moved afterwards.
+/// Fraction of a volume bound that refinement aims at if vertices are moved afterwards.
 const MARGIN: f64 = 0.7;
 
-/// Checks the numbers of a refinement and a sizing for a surface of so many points.
+/// Checks the values of a refinement and a sizing for a surface with `points` points.
 ///
 /// # Errors
 /// [`TetError::BadOption`].
@@ -42,7 +42,7 @@ pub(super) fn check(refinement: Option<&Refinement>, sizing: &Sizing, points: us
     }
 }
 
-/// The size field of a surface.
+/// Size field of a surface.
 pub(super) fn size_tree(surface: &TriMesh, sizing: &Sizing) -> Option<(SizeTree, Vec<f64>)> {
     let sizes = vertex_sizes(surface);
     let function;
@@ -59,7 +59,7 @@ pub(super) fn size_tree(surface: &TriMesh, sizing: &Sizing) -> Option<(SizeTree,
     Some((tree, sizes))
 }
 
-/// The interior points of a run whose sizes are asked for; none where the interior or the sizes say otherwise.
+/// Interior points of a run with a given sizing; `None` if interior or sizing exclude them.
 pub(super) fn sized_points(r: &Request) -> Option<Vec<Point3>> {
     let asked =
         !matches!(r.sizing, Sizing::Surface) && matches!(r.interior, Interior::Lattice { cell: None, clearance: None });
@@ -70,7 +70,7 @@ pub(super) fn sized_points(r: &Request) -> Option<Vec<Point3>> {
     Some(graded_points(r.surface, &sizes, &tree, CLEARANCE))
 }
 
-/// Splits what does not fulfil the goals of a run; segments must be held.
+/// Splits tetrahedra that violate the goals of a run; segments must be held.
 ///
 /// # Errors
 /// A seed outside; [`TetError::Cancelled`].
@@ -87,7 +87,7 @@ pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineR
     let bounded = r.regions.iter().any(|region| region.max_volume.is_some());
     let bounds = if bounded { Regions::of(carved, r.regions)?.volume_bounds(r.regions) } else { Vec::new() };
     if r.optimize {
-        // Moves make some larger again.
+        // Smoothing enlarges some of them again.
         goals.bounds.max_volume = goals.bounds.max_volume.map(|bound| MARGIN * bound);
     }
     let report = refine_complex(carved, &goals, bounds, |points| r.watch.report(Stage::Refine, points, 0).is_ok());
@@ -95,18 +95,18 @@ pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineR
     Ok(Some(report))
 }
 
-/// The goals of a refinement, without sizes.
+/// Goals of a refinement, without sizes.
 pub(super) fn goals(refinement: Option<&Refinement>) -> Goals<'static> {
     let Some(r) = refinement else { return Goals::default() };
     Goals { bounds: r.bounds, size: None, max_points: r.max_points }
 }
 
-/// The edge length of a regular tetrahedron of this volume.
+/// Edge length of a regular tetrahedron with this volume.
 pub(super) fn edge_of_volume(volume: f64) -> f64 {
     (8.485_281_374 * volume).cbrt()
 }
 
-/// The edge length wanted at a place: that of the field, or everywhere the surface's mean where there is none.
+/// Edge length wanted at a point: from the size field, or the surface's mean without one.
 pub(super) fn size_function(
     surface: &TriMesh,
     sizing: &Sizing,

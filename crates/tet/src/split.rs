@@ -1,9 +1,9 @@
-//! Meshes whose surface may be split ([`Boundary::Split`]): edges of the surface that are longer than wanted, and edges
-//! of triangles that a badly shaped tetrahedron stands on, are halved until the goals are met or nothing is gained. The
-//! pieces then are kept as any input is.
+//! Meshes with a split surface ([`Boundary::Split`]). Surface edges that are too long, and edges of triangles under
+//! badly shaped tetrahedra, are halved until the goals are met or nothing is gained. The pieces are kept like any
+//! input.
 //!
-//! A middle is rounded to f64, so the pieces of a triangle lie in its plane to rounding only; the result is certified
-//! against the pieces.
+//! Midpoints are rounded, so the pieces of a triangle are coplanar up to rounding. The certificate refers to the
+//! pieces.
 
 use super::builder::{Tetrahedralization, Tetrahedralizer};
 use super::complex::face_key;
@@ -19,20 +19,20 @@ use anastomesh_mesh::{TetMesh, TriMesh};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
-/// Times that the surface is split for the sake of shape.
+/// Maximum rounds of splitting for shape.
 const ROUNDS: usize = 3;
 
-/// Most triangles that the surface is split to.
+/// Maximum triangles of the split surface.
 const MAX_TRIANGLES: usize = 20_000_000;
 
-/// A surface on its way to being split.
+/// A surface being split.
 struct Pieces {
     plc: Plc,
-    /// The triangle of the input that each triangle is a piece of.
+    /// Input triangle of each piece.
     origin: Vec<u32>,
-    /// The segment of the input that each segment is a piece of.
+    /// Input segment of each piece.
     segment_origin: Vec<u32>,
-    /// The triangles at each edge; those that have been replaced since may be among them.
+    /// Triangles at each edge; may contain replaced ones.
     at_edge: FxHashMap<[u32; 2], Vec<u32>>,
     segments: FxHashMap<[u32; 2], u32>,
 }
@@ -67,7 +67,7 @@ impl Pieces {
         nalgebra::center(&self.plc.points[a as usize], &self.plc.points[b as usize])
     }
 
-    /// Halves an edge and the triangles at it. An edge too short to have a middle stays.
+    /// Halves an edge and its triangles. An edge too short to have a midpoint stays.
     fn halve(&mut self, e: [u32; 2]) -> bool {
         let middle = self.middle(e);
         let ends = e.map(|v| self.plc.points[v as usize]);
@@ -112,8 +112,8 @@ impl Pieces {
         true
     }
 
-    /// Halves edges until none is much longer than `size` wants it in its middle; the longest edge of a triangle goes
-    /// first, so that angles do not shrink.
+    /// Halves edges until none is much longer than `size` at its midpoint. The longest edge of a triangle goes first,
+    /// so that angles do not shrink.
     fn split_to(&mut self, size: &dyn Fn(&Point3) -> f64) {
         let mut due: Vec<u32> = (0..self.plc.triangles.len() as u32).collect();
         while !due.is_empty() {
@@ -136,7 +136,7 @@ impl Pieces {
         }
     }
 
-    /// Names what a run with the pieces names by the triangles and segments of the input.
+    /// Renames pieces to the triangles and segments of the input.
     fn name_origins(&self, done: &mut Tetrahedralization) {
         let left_out = &mut done.summary.left_out;
         done.origins = without(&self.origin, &left_out.triangles);
@@ -157,8 +157,8 @@ impl Pieces {
 }
 
 impl Tetrahedralizer {
-    /// A mesh of a checked complex whose triangles may be split. Where some cannot be recovered it is tried without
-    /// those outside of what is filled, of which nobody needs the pieces.
+    /// Meshes a checked complex with triangles that may be split. If some cannot be recovered, retries without those
+    /// outside the filled volume, whose pieces are not needed.
     ///
     /// # Errors
     /// As [`Tetrahedralizer::run`].
@@ -177,7 +177,7 @@ impl Tetrahedralizer {
         }
     }
 
-    /// A mesh of the complex without what lies outside.
+    /// Meshes the complex without its outside parts.
     fn run_without(&self, plc: &Plc, left_out: LeftOut) -> Result<Tetrahedralization, TetError> {
         let kept: Vec<u32> = without(&(0..plc.triangles.len() as u32).collect::<Vec<_>>(), &left_out.triangles);
         let inner = Plc {
@@ -205,7 +205,7 @@ impl Tetrahedralizer {
         }
         let keep = self.clone().boundary(Boundary::Keep);
         let keep = match sizing {
-            // The field of the input, also for its pieces.
+            // The size field of the input also applies to its pieces.
             Sizing::PerVertex(_) => {
                 let size = Arc::clone(&size);
                 keep.sizing(Sizing::Function(Arc::new(move |p: &Point3| size(p))))
@@ -227,8 +227,8 @@ impl Tetrahedralizer {
     }
 }
 
-/// The longest edges of the triangles on which tetrahedra stand that do not fulfil the goals, in ascending order; not
-/// those that are short beside the tetrahedron.
+/// Longest edges of triangles under tetrahedra that violate the goals, in ascending order, without edges that are short
+/// relative to the tetrahedron.
 fn to_split(mesh: &TetMesh, pieces: &Pieces, goals: &super::refine::Goals) -> Vec<[u32; 2]> {
     let mut triangle: FxHashMap<[u32; 3], u32> = FxHashMap::default();
     for (i, t) in pieces.plc.triangles.iter().enumerate() {

@@ -1,24 +1,24 @@
-//! Walks around an edge and around a vertex of a complex.
+//! Traversal of the tetrahedra around an edge and around a vertex.
 
 use super::complex::{Complex, GHOST, NONE, OTHERS};
 
-/// The ring of tetrahedra around an edge `a, b`: `tets[i]` has the vertices `a, b, rim[i], rim[i + 1]` in an even
-/// permutation, cyclically. Around a boundary edge two or more of the tetrahedra are ghosts.
+/// Ring of tetrahedra around an edge `a, b`: `tets[i]` has the vertices `a, b, rim[i], rim[i + 1]` in an even
+/// permutation, cyclically. Around a boundary edge at least two tetrahedra are ghosts.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeRing {
     /// First end of the edge.
     pub a: u32,
     /// Second end of the edge.
     pub b: u32,
-    /// The tetrahedra, in order.
+    /// Tetrahedra, in order.
     pub tets: Vec<u32>,
-    /// The vertices around the edge, as many as tetrahedra; may contain the ghost vertex.
+    /// Vertices around the edge, one per tetrahedron; may contain the ghost vertex.
     pub rim: Vec<u32>,
 }
 
 impl EdgeRing {
-    /// Walks around edge `a, b` of tetrahedron `t`. False when `t` does not have the edge, or when the ring has more
-    /// than `max` tetrahedra; the ring is then incomplete.
+    /// Collects the ring around edge `a, b` of tetrahedron `t`. Returns false if `t` does not have the edge, or if the
+    /// ring has more than `max` tetrahedra; the ring is then incomplete.
     pub fn collect(&mut self, c: &Complex, t: u32, a: u32, b: u32, max: usize) -> bool {
         self.a = a;
         self.b = b;
@@ -45,12 +45,12 @@ impl EdgeRing {
         self.tets.len()
     }
 
-    /// Whether the edge lies on the boundary.
+    /// True if the edge lies on the boundary.
     pub fn touches_ghost(&self) -> bool {
         self.rim.contains(&GHOST)
     }
 
-    /// The half-face `a, b, rim[i]` that lies between `tets[i]` and its predecessor, as a half-face of `tets[i]`.
+    /// Half-face `a, b, rim[i]` between `tets[i]` and its predecessor, as a half-face of `tets[i]`.
     pub fn spoke(&self, c: &Complex, i: usize) -> Option<u32> {
         let next = self.rim[(i + 1) % self.rim.len()];
         let t = self.tets[i];
@@ -58,26 +58,26 @@ impl EdgeRing {
     }
 }
 
-/// Tetrahedra around a vertex that are looked at before those around another one are looked at as well.
+/// Tetrahedra to visit around one vertex before those around another are visited in parallel.
 const LARGE: usize = 1024;
 
-/// Tetrahedra around a vertex; keeps its buffers from one walk to the next.
+/// Tetrahedra around a vertex; reuses its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct Star {
     walk: Walk,
-    /// A second one, beside the first.
+    /// Second traversal beside the first.
     other: Walk,
 }
 
 impl Star {
-    /// All tetrahedra at vertex `v`, ghosts included; empty when it has none.
+    /// All tetrahedra at vertex `v`, including ghosts; empty if it has none.
     pub fn around(&mut self, c: &Complex, v: u32) -> &[u32] {
         self.walk.start(c, v);
         while self.walk.next(c).is_some() {}
         &self.walk.tets
     }
 
-    /// The first tetrahedron at vertex `v`, in the order of [`Star::around`], of which there is something to say.
+    /// First result of `look` for the tetrahedra at vertex `v`, in the order of [`Star::around`].
     pub fn find<T>(&mut self, c: &Complex, v: u32, look: impl Fn(u32) -> Option<T>) -> Option<T> {
         self.walk.start(c, v);
         while let Some(t) = self.walk.next(c) {
@@ -100,8 +100,7 @@ impl Star {
         (0..4).find(|&i| !face.contains(&c.verts(t)[i])).map(|i| 4 * t + i as u32)
     }
 
-    /// A tetrahedron that both vertices have and that is looked for. A few vertices may have most of the complex around
-    /// them: there the tetrahedra around the other one are fewer.
+    /// A wanted tetrahedron at both vertices. A few vertices may have most of the complex around them.
     fn find_either(&mut self, c: &Complex, [a, b]: [u32; 2], wanted: impl Fn(u32) -> bool) -> Option<u32> {
         let Self { walk, other } = self;
         walk.start(c, a);
@@ -122,7 +121,7 @@ impl Star {
     }
 }
 
-/// A walk over the tetrahedra around a vertex, breadth first.
+/// Breadth-first traversal of the tetrahedra around a vertex.
 #[derive(Clone, Debug, Default)]
 struct Walk {
     vertex: u32,

@@ -1,13 +1,12 @@
-//! Which triangles and edges of a surface a complex has already.
+//! Search for the triangles and edges of a surface that a complex already has.
 
 use super::complex::Complex;
 use super::input::SurfaceEdges;
 use super::star::Star;
 use anastomesh_mesh::TriMesh;
 
-/// Freezes the triangles of the surface that are faces; returns the edges and the triangles that are missing, in
-/// ascending order. One pass over the faces of the complex: where a triangle is a face its edges are there as well, so
-/// only the edges of missing triangles and those of none are looked for.
+/// Freezes the triangles of the surface that are faces. Returns the missing edges and triangles, in ascending order.
+/// One pass over the faces finds the triangles. Edges of present triangles exist, so only the others are searched.
 pub(super) fn survey(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges) -> (Vec<[u32; 2]>, Vec<u32>) {
     let triangles = ByLowest::new(surface);
     let mut found = vec![false; surface.triangles.len()];
@@ -24,7 +23,7 @@ pub(super) fn survey(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges) -
         }
         for i in 0..4 {
             let half = 4 * t + i as u32;
-            // Of two mates the first is looked at, and only the face across from a vertex that is not the surface's.
+            // Only the first of two mates is tested, and only the face opposite a vertex off the surface.
             if half > cell.mates[i] || (others == 1 && cell.verts[i] < n) {
                 continue;
             }
@@ -91,7 +90,7 @@ impl ByLowest {
         Self { end, list }
     }
 
-    /// The triangles whose lowest vertex is that of a face of the surface's points.
+    /// Triangles with the same lowest vertex as a face of surface points.
     #[inline]
     fn at(&self, face: [u32; 3]) -> &[u32] {
         let v = lowest(&face);
@@ -106,7 +105,7 @@ mod tests {
     use anastomesh_mesh::TetMesh;
     use anastomesh_mesh::geometry::Point3;
 
-    /// Two tetrahedra on one face, and a surface of which the complex has all faces but those at the last point.
+    /// Two tetrahedra on one face, and a surface that lacks only the faces at its last point in the complex.
     #[test]
     fn what_is_missing_is_listed_and_the_rest_is_frozen() {
         let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
@@ -118,7 +117,7 @@ mod tests {
         let (lost_edges, lost) = survey(&mut c, &surface, &edges);
         assert_eq!((lost_edges, lost), (vec![[3, 4]], vec![2, 4]));
         let frozen = (0..8).filter(|&half| c.is_frozen(half)).count();
-        // The face between the two is frozen on both sides.
+        // The common face is frozen on both sides.
         assert_eq!(frozen, 4);
     }
 }

@@ -6,8 +6,8 @@ use anastomesh_mesh::quality::TetQuality;
 use anastomesh_mesh::shapes::sphere_surface;
 use proptest::prelude::*;
 
-/// A tube of radius 1 along z with flat caps: `n` points around, `rings` rings, caps fanned from a centre or, without
-/// one, triangulated as a strip of their ring alone (exactly coplanar and nearly cocircular).
+/// A tube of radius 1 along z with flat caps: `n` points around, `rings` rings. Caps are fans from a centre or, without
+/// one, a strip of their ring alone (exactly coplanar and nearly cocircular).
 pub(super) fn tube(n: u32, rings: u32, length: f64, centre: bool, direction: Vec3) -> TriMesh {
     let w = direction.normalize();
     let u = w.cross(&if w.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() }).normalize();
@@ -65,7 +65,7 @@ fn torus(n: u32, m: u32) -> TriMesh {
 }
 
 fn cube(n: u32) -> TriMesh {
-    // Faces of an n-grid; diagonals all one way, so neither Delaunay tie is favoured.
+    // Faces of an n-grid; all diagonals have one direction, so neither Delaunay tie is favoured.
     let mut s = TriMesh::default();
     let mut id = std::collections::BTreeMap::new();
     let mut vertex = |p: [u32; 3], s: &mut TriMesh| {
@@ -215,7 +215,7 @@ fn surfaces_that_meet_themselves_end_in_an_error() {
     let beside = joined(cube(2), &cube(2), 0.9, Vec3::new(2.0, 0.07, 0.11));
     let error = tetrahedralize(&beside, &TetOptions::default()).unwrap_err();
     assert!(matches!(error, TetError::SelfIntersection { .. }), "{error:?}");
-    // A point of one ball in the inside of a triangle of the other.
+    // A point of one ball inside a triangle of the other.
     let (a, b) = (sphere_surface(0), sphere_surface(1));
     let corner = |i: u32| a.points[i as usize].coords;
     let middle = a.triangles[0].map(corner).iter().sum::<Vec3>() / 3.0;
@@ -230,7 +230,7 @@ proptest! {
     fn deformed_spheres_are_filled(bumps in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, -0.4..0.4f64), 1..6)) {
         let mut s = sphere_surface(3);
         for p in &mut s.points {
-            // Star-shaped, so it cannot meet itself.
+            // Star-shaped, so it cannot intersect itself.
             let mut r = 1.0;
             for &(x, y, z, size) in &bumps {
                 r += size / bumps.len() as f64 * (4.0 * p.coords.dot(&Vec3::new(x, y, z))).sin();
@@ -336,7 +336,7 @@ fn a_graded_lattice_is_the_lattice_near_the_wall_and_thinner_inside() {
     assert_eq!(beyond(&all, 0.9), beyond(&graded, 0.9));
     assert!(graded.len() * 2 < all.len(), "{} of {}", graded.len(), all.len());
     assert!(graded.iter().all(|p| all.contains(p)));
-    // A step of the coarser lattices takes eight times as much room.
+    // A step of the coarser lattices takes eight times the volume.
     let within = |points: &[Point3], r: f64| points.len() - beyond(points, r);
     assert!(within(&graded, 0.7) * 7 < within(&all, 0.7) && within(&graded, 0.7) * 60 > within(&all, 0.7));
     let interior = Interior::Graded { cell: Some(cell), clearance: Some(clearance) };

@@ -1,4 +1,4 @@
-//! Surfaces with flat parts, turned in space: flat but for rounding.
+//! Rotated surfaces with flat parts, which are then flat up to rounding.
 
 use super::delaunay::hash;
 use super::*;
@@ -6,7 +6,7 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
-/// A stream of numbers from one.
+/// Random number generator.
 struct Coin(u64);
 
 impl Coin {
@@ -15,7 +15,7 @@ impl Coin {
         self.0
     }
 
-    /// From 0 to 1.
+    /// Uniform in 0 to 1.
     fn share(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -38,7 +38,7 @@ fn turned(mut s: TriMesh, coin: &mut Coin) -> TriMesh {
     s
 }
 
-/// A random triangulation of the convex polygon with these corners.
+/// Random triangulation of a convex polygon.
 fn triangulated(corners: &[u32], coin: &mut Coin, out: &mut Vec<[u32; 3]>) {
     let n = corners.len();
     if n >= 3 {
@@ -49,7 +49,7 @@ fn triangulated(corners: &[u32], coin: &mut Coin, out: &mut Vec<[u32; 3]>) {
     }
 }
 
-/// A plate over a convex polygon, above and below triangulated at random, each for itself.
+/// A plate over a convex polygon, with independent random triangulations at top and bottom.
 fn plate(n: u32, height: f64, coin: &mut Coin) -> TriMesh {
     let mut s = TriMesh::default();
     let mut angles: Vec<f64> = (0..n).map(|i| f64::from(i) + 0.9 * coin.share()).collect();
@@ -69,7 +69,7 @@ fn plate(n: u32, height: f64, coin: &mut Coin) -> TriMesh {
     s
 }
 
-/// A box whose faces are split in two and then each triangle in four, so many times: rows of points on straight lines.
+/// A box with each face split in two, then `times` times each triangle in four: rows of points on straight lines.
 fn rows(sides: [f64; 3], times: u32) -> TriMesh {
     let mut s = TriMesh::default();
     for k in 0..8_u32 {
@@ -85,7 +85,7 @@ fn rows(sides: [f64; 3], times: u32) -> TriMesh {
     s
 }
 
-/// Every triangle in four.
+/// Splits every triangle in four.
 fn split(s: &TriMesh) -> TriMesh {
     let mut out = TriMesh { points: s.points.clone(), triangles: Vec::new() };
     let mut middles = std::collections::BTreeMap::new();
@@ -102,7 +102,7 @@ fn split(s: &TriMesh) -> TriMesh {
     out
 }
 
-/// Fills a surface, unless it meets itself: then it has to be said so. Whether it was filled.
+/// Fills a surface, or asserts that its self-intersection is reported. Returns true if it was filled.
 fn fills(s: &TriMesh, what: &str) -> bool {
     let plc = Plc::from(s);
     let tetrahedralizer = Tetrahedralizer::new().interior(Interior::None).refine(None).optimize(false);
@@ -118,7 +118,7 @@ fn fills(s: &TriMesh, what: &str) -> bool {
     }
 }
 
-/// How many cases of each kind are tried; `TURNED_CASES=2000` for thousands.
+/// Number of cases of each kind; set by `TURNED_CASES=2000`.
 fn cases() -> u64 {
     std::env::var("TURNED_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(40)
 }
@@ -210,7 +210,7 @@ fn plates_of_needles_with_points_amid_their_edges_are_filled() {
     }
 }
 
-/// A plate whose upper side is flat but for noise, and has points inside.
+/// A plate with inner points and a top that is flat up to noise.
 #[test]
 fn nearly_flat_discs_are_filled() {
     for seed in 0..cases() {

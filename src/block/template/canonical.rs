@@ -1,6 +1,5 @@
-//! The straight tube of radius 1 that other tubes are images of: made once for each number of corners and each length, with
-//! the wall of a connector and points inside that stand in rings as those of the wall do, then improved as far as improvement
-//! goes, and kept.
+//! Straight template tube of radius 1, cached for each corner count and length. It has the wall of a connector and
+//! inner points in rings like those of the wall, and is then optimized.
 
 use crate::block::connector_surface::{ConnectorSurface, Division, connector_surface};
 use crate::block::corners::part_corners;
@@ -25,21 +24,22 @@ use rustc_hash::FxHashMap;
 use std::f64::consts::TAU;
 use std::sync::{Arc, LazyLock, OnceLock, PoisonError, RwLock};
 
-/// Lengths of templates, in radii, are powers of this: a tube is stretched or shrunk by half of the step at most.
+/// Ratio of consecutive template lengths, which are powers of it. A tube is stretched or shrunk by at most half a step.
 const STEP: f64 = 1.05;
 
-/// Rings of the wall are a little further from each other than triangles of equal sides have it: with the rings inside as far
-/// from each other, tetrahedra come out rounder.
+/// Density of wall rings, slightly below that of equilateral triangles. With equal spacing of inner rings, tetrahedra
+/// have better shapes.
 const DIVISION: Division = Division::Rings(0.8);
 
-/// No ring inside is nearer to a disc than this, in rows.
+/// Minimum distance of inner rings from a disc, in rows.
 const CLEAR: f64 = 0.3;
-/// Points in a ring inside for each of the wall and each share of its radius: they are a little further from each other.
+/// Density of inner ring points relative to the wall: their spacing is slightly larger.
 const SPARSER: f64 = 0.9;
-/// Side and clearance of the lattice that is tried, too, where discs have so many corners: of wide tubes it fills the core.
+/// Minimum corner count for a lattice attempt, and the lattice's cell size and clearance: it fills the core of wide
+/// tubes.
 const LATTICE: (u32, [f64; 2]) = (16, [1.2, 0.3]);
 
-/// How a template is improved: every tetrahedron, with everything there is.
+/// Optimizer options for templates: every tetrahedron with full effort.
 const HARD: OptimizeOptions = OptimizeOptions {
     fixed_points: 0,
     rounds: 12,
@@ -51,37 +51,37 @@ const HARD: OptimizeOptions = OptimizeOptions {
     effort: Effort::Full,
 };
 
-/// A tube of radius 1 along z from 0 to 1: its length is taken out.
+/// Tube of radius 1 along z from 0 to 1: the length is scaled out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
-    /// First the points of the discs at the two ends, then those of the wall, then those inside.
+    /// Points of the discs at both ends, then those of the wall, then inner ones.
     pub points: Vec<Point3>,
-    /// Points of each disc.
+    /// Number of points of each disc.
     pub disc: u32,
-    /// Triangles of the two discs, outwards.
+    /// Triangles of the two discs, facing outwards.
     pub ends: [Vec<[u32; 3]>; 2],
-    /// Triangles of the wall, outwards.
+    /// Triangles of the wall, facing outwards.
     pub wall: Vec<[u32; 3]>,
-    /// The tetrahedra.
+    /// Tetrahedra, those in layers first.
     pub tets: Vec<[u32; 4]>,
-    /// Rings between the rims.
+    /// Number of rings between the rims.
     pub rings: u32,
-    /// How many of the tetrahedra, the first ones, are in layers.
+    /// Number of tetrahedra in layers.
     pub layers: usize,
-    /// The smallest radius ratio of those, before the length was taken out.
+    /// Smallest radius ratio of those, at the original length.
     pub least: f64,
 }
 
-/// What a template is found by: the number of corners of its discs, the power of its length, which of its ends are caps, and
-/// its layers: how many, and the bits of growth and thickness; and the bits of how long edges are on its axis.
+/// Cache key: corner count, length exponent, cap flags, layers (count, bits of growth and thickness), bits of the core
+/// factor.
 type Key = (u32, i32, [bool; 2], Option<(u32, [u64; 2])>, u64);
-/// None: it cannot be made.
+/// Cached template; `None` if it cannot be made.
 type Kept = Arc<OnceLock<Option<Template>>>;
 
 static TEMPLATES: LazyLock<RwLock<FxHashMap<Key, Kept>>> = LazyLock::new(RwLock::default);
 
-/// The template of a length near to `length` radii, for discs that have so many corners. Ends that are caps are on the boundary
-/// of the whole. Of the parameters, ρ, core and layers count.
+/// Applies `then` to the template nearest to `length` radii for discs with this corner count. `caps` marks ends on the
+/// boundary of the whole mesh. Depends on ρ, core and layers of the parameters.
 pub fn with<R>(
     params: &BlockParams,
     corners: u32,
@@ -96,7 +96,7 @@ pub fn with<R>(
 }
 
 fn slot(key: Key) -> Kept {
-    // A thread that panicked left whole entries only.
+    // A panicked thread leaves only complete entries.
     if let Some(kept) = TEMPLATES.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
         return Arc::clone(kept);
     }
@@ -104,7 +104,7 @@ fn slot(key: Key) -> Kept {
 }
 
 impl Template {
-    /// The best of what the ways to place points inside give, improved.
+    /// Best template among the placements of inner points, optimized.
     fn best(params: &BlockParams, length: f64, caps: [bool; 2]) -> Option<Self> {
         let section = |z| Section { origin: Point3::new(0.0, 0.0, z), axis: Vec3::z(), radius: 1.0 };
         let cut =
@@ -130,7 +130,7 @@ impl Template {
     }
 }
 
-/// A straight tube, filled, under the numbers of a template.
+/// Filled straight tube with template numbering.
 struct Inside {
     mesh: TetMesh,
     disc: u32,
@@ -154,7 +154,7 @@ impl Inside {
         Ok(Some(Self { mesh, disc: tube.shared.len() as u32 / 2, ends, wall, layers: 0 }))
     }
 
-    /// With layers; none where they come out thinner than asked for.
+    /// Tube with layers; `None` if they are thinner than requested.
     fn layered(
         tube: &ConnectorSurface,
         path: &[Section],
@@ -184,14 +184,14 @@ impl Inside {
     }
 }
 
-/// The triangles of the two discs of a tube, and of its wall.
+/// Triangles of the two discs of a tube, and of its wall.
 fn faces(tube: &ConnectorSurface) -> ([Vec<[u32; 3]>; 2], Vec<[u32; 3]>) {
     let (discs, wall) = tube.surface.triangles.split_at(tube.end_triangles as usize);
     let (first, second) = discs.split_at(discs.len() / 2);
     ([first.to_vec(), second.to_vec()], wall.to_vec())
 }
 
-/// A tube filled in the best of all ways to place points inside, and improved.
+/// Fills a tube with the best placement of inner points, and optimizes it.
 fn core(surface: &TriMesh, inside: &Rings) -> Result<TetMesh, TetError> {
     let (corners, [cell, clearance]) = LATTICE;
     let lattice = (inside.corners >= corners).then_some(Interior::Local { cell: cell * inside.core, clearance });
@@ -207,30 +207,30 @@ fn core(surface: &TriMesh, inside: &Rings) -> Result<TetMesh, TetError> {
         }
     }
     let (_, mut mesh) = best?;
-    // What cannot be improved stays as it is.
+    // A failed optimization leaves the mesh unchanged.
     let _ = optimize(&mut mesh, &OptimizeOptions { fixed_points: surface.points.len(), ..HARD });
     Ok(mesh)
 }
 
-/// Points inside a tube along z, in rings round its axis.
+/// Inner points of a tube along z, in rings around its axis.
 struct Rings {
-    /// Points in each ring of the wall.
+    /// Number of points in each ring of the wall.
     corners: u32,
     length: f64,
-    /// Strips of the wall.
+    /// Number of strips of the wall.
     rows: u32,
     radius: f64,
-    /// How much longer than at the wall edges are on the axis; in between, in proportion.
+    /// Edge length on the axis relative to the wall; linear in between.
     core: f64,
 }
 
 impl Rings {
-    /// Rings each turned by half a step against the one before it, in as many rows as the wall has strips. Rings next to each
-    /// other across the tube stand at half a row from each other, beginning with that next to the wall (`shift`: from the first
-    /// row or half a row later).
+    /// Inner points in as many rows as the wall has strips. Each ring is rotated by half a step relative to the
+    /// previous one. Radially adjacent layers are offset by half a row; `shift` selects if the outermost layer starts
+    /// at the first row or half a row later.
     fn points(&self, shift: u32) -> Vec<Point3> {
         let Self { corners, length, rows, radius: wall, .. } = *self;
-        // Between that along the wall, which layers leave as it is, and that round it, which they shorten.
+        // Between the axial edge length, which layers keep, and the circumferential one, which they shorten.
         let edge = TAU * wall.sqrt() / f64::from(corners);
         let layers = (wall * self.steps() / (0.87 * edge)).round().max(1.0) as u32;
         let mut points = Vec::new();
@@ -255,18 +255,18 @@ impl Rings {
         points
     }
 
-    /// From the axis to the wall in edges, which grow inwards, over the same in edges as at the wall.
+    /// Number of edges from axis to wall, which grow inwards, relative to uniform edges.
     fn steps(&self) -> f64 {
         if self.core == 1.0 { 1.0 } else { self.core.ln() / (self.core - 1.0) }
     }
 
-    /// How much of the radius lies within this share of these edges.
+    /// Fraction of the radius within a fraction of these edges.
     fn share(&self, of_steps: f64) -> f64 {
         if self.core == 1.0 { of_steps } else { self.core * (1.0 - self.core.powf(-of_steps)) / (self.core - 1.0) }
     }
 }
 
-/// Mean and smallest radius ratio, the smallest counting as much as would lift all by a tenth of it.
+/// Mean radius ratio plus a tenth of the minimum.
 fn worth(mesh: &TetMesh) -> f64 {
     let ratios = radius_ratios(&mesh.points, &mesh.tets);
     let (sum, least) = ratios.fold((0.0, 1.0_f64), |(sum, least), r| (sum + r, least.min(r)));

@@ -1,9 +1,9 @@
-//! Tubes between two discs as images of templates.
+//! Template meshes for tubes between two discs.
 //!
-//! With edges that follow the radius every disc of one ρ has the same corners. Then a vessel between two discs is the image
-//! of a straight tube of radius 1 under the map that takes (radii along the axis, place in the disc in radii) to the vessel,
-//! and nothing has to be filled. A longer vessel is several images of one template, one after the other. Where taper, bend
-//! or twist spoil a tetrahedron there is no image, and the tube is made by itself.
+//! With edges proportional to the radius, all discs of one ρ have equal corner counts. A vessel between two discs is
+//! then the image of a straight tube of radius 1. The map takes the axial position in radii, and the position in the
+//! disc, to the vessel. No filling is needed; longer vessels use several images in sequence. If taper, bend or twist
+//! spoil a tetrahedron, the tube is meshed individually.
 
 mod canonical;
 #[cfg(test)]
@@ -17,35 +17,35 @@ use anastomesh_mesh::quality::radius_ratio;
 use anastomesh_mesh::{Kept, TetMesh};
 use canonical::Template;
 
-/// Longest template, in radii: discs inside a tube are flat, and their neighbours a little worse than others.
+/// Maximum template length, in radii. Inner discs are flat, and their neighbours slightly worse than others.
 const LONGEST: f64 = 12.0;
-/// Shortest, in radii.
+/// Minimum template length, in radii.
 const SHORTEST: f64 = 0.5;
-/// Most that a template is twisted, in radians for each radius of length, so that it ends in the frame of its second disc.
+/// Maximum twist, in radians per radius of length, to match the frame of the second disc.
 const TWIST: f64 = 0.1;
-/// Edges on the axis as long as those of the wall.
+/// Core factor for axis edges as long as those of the wall.
 const PLAIN: f64 = 1.0;
-/// Smallest radius ratio of an image's tetrahedra.
+/// Minimum radius ratio of an image's tetrahedra.
 const LEAST: f64 = 0.3;
 
-/// A tube filled with tetrahedra.
+/// Tube filled with tetrahedra.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilledTube {
     /// Points and tetrahedra; the points begin with those of the two discs.
     pub mesh: TetMesh,
-    /// Points of each disc.
+    /// Number of points of each disc.
     pub disc: u32,
-    /// Triangles of the two discs, outwards.
+    /// Triangles of the two discs, facing outwards.
     pub ends: [Vec<[u32; 3]>; 2],
-    /// Triangles of the wall, outwards.
+    /// Triangles of the wall, facing outwards.
     pub wall: Vec<[u32; 3]>,
-    /// Rings between the rims.
+    /// Number of rings between the rims.
     pub rings: u32,
 }
 
 impl FilledTube {
-    /// What a block keeps of it: points and tetrahedra; or, if it is to be hollow, points and its closed surface. The points
-    /// begin with those of the two discs.
+    /// Returns points and tetrahedra, or points and closed surface if `hollow`. The points begin with those of the two
+    /// discs.
     pub fn kept(self, hollow: bool) -> (TetMesh, Vec<[u32; 3]>) {
         if !hollow {
             return (self.mesh, Vec::new());
@@ -57,8 +57,8 @@ impl FilledTube {
     }
 }
 
-/// The tube along a path between the two discs that its sections give, of which some are caps; none where no template fits. Of the
-/// parameters, ρ, stretch, core and layers count.
+/// Tube along a path between the discs of its end sections; `caps` marks discs that are caps. Returns `None` if no
+/// template fits. Depends on ρ, stretch, core and layers of the parameters.
 pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: &BlockParams) -> Option<FilledTube> {
     let corners = discs[0].rim.len();
     if discs[1].rim.len() != corners || discs[0].points.len() != discs[1].points.len() {
@@ -70,7 +70,7 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: 
     if !(length.is_finite() && length >= SHORTEST && twist.abs() <= TWIST * length) {
         return None;
     }
-    // A short tube is stretched by what leaves it a radius of template.
+    // The stretch of a short tube is limited to leave one radius of template.
     let stretch = params.stretch.min(length).max(1.0);
     let pieces = (length / (LONGEST * stretch)).ceil();
     if pieces > 1.0 && caps != [false; 2] {
@@ -84,16 +84,16 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: 
         let params = BlockParams { core, ..*params };
         canonical::with(&params, corners as u32, length / (pieces * stretch), caps, image).flatten()
     };
-    // Where longer edges on the axis leave a tetrahedron that is worse than may be, those of the wall may do.
+    // If longer axis edges spoil a tetrahedron, uniform edges may work.
     of_core(params.core).or_else(|| if params.core == PLAIN { None } else { of_core(PLAIN) })
 }
 
-/// A template and the vessel that it is mapped to.
+/// Template and the vessel that is its image.
 struct Image<'a> {
     template: &'a Template,
     path: &'a AxisPath,
     discs: &'a [SharedDisc; 2],
-    /// Length of the path in radii up to each of its stations.
+    /// Length of the path in radii, up to each of its stations.
     radii: &'a [f64],
     twist: f64,
     stretch: f64,
@@ -118,8 +118,8 @@ impl Image<'_> {
         })
     }
 
-    /// The number of a point of the template in a piece of the tube: the points of the two discs come first, then for each
-    /// piece what it has alone, and the disc at its end unless it is the last.
+    /// Number of a template point in a piece of the tube. The two end discs come first. For each piece follow its inner
+    /// points, and the disc at its end unless it is the last.
     fn number(&self, piece: u32, v: u32) -> u32 {
         let Template { disc, points, .. } = self.template;
         let alone = points.len() as u32 - 2 * disc;
@@ -146,7 +146,7 @@ impl Image<'_> {
         out
     }
 
-    /// A point of the template in a piece of the tube.
+    /// Maps a template point to a piece of the tube.
     fn map(&self, piece: u32, p: &Point3) -> Point3 {
         let share = (f64::from(piece) + p.z) / f64::from(self.pieces);
         let place = self.path.at(self.path.arc_of(self.radii, share * self.radii[self.radii.len() - 1]));
@@ -159,7 +159,7 @@ impl Image<'_> {
         place.origin + (place.u * x + place.w * y) * place.radius
     }
 
-    /// Whether no tetrahedron is much worse than a template's are, once what is stretched is shrunk again along the axis.
+    /// True if no tetrahedron is much worse than in the template, after undoing the stretch along the axis.
     fn is_good(&self, mesh: &TetMesh) -> bool {
         let shrunk = |p: &[Point3; 4]| -> [Point3; 4] {
             let path = (p[0] - self.path.at(0.0).origin).norm();

@@ -11,7 +11,7 @@ fn section(z: f64, radius: f64) -> Section {
     Section { origin: Point3::new(1.0, 2.0, z), axis: Vec3::z(), radius }
 }
 
-/// Sections along an arc of a circle of this radius, from angle 0 to this one, in a plane in which frames do not turn.
+/// Sections along a circular arc with radius `bend`, from angle 0 to `angle`, in a plane in which frames do not rotate.
 fn arc(bend: f64, angle: f64) -> Vec<Section> {
     let at = |i: u32| angle * f64::from(i) / 12.0;
     let place = |t: f64| Section {
@@ -30,7 +30,7 @@ fn along(path: &[Section], params: &BlockParams) -> Option<FilledTube> {
     tube(path, &discs(path, params.rho), [false; 2], params)
 }
 
-/// The block that a connector along a path becomes, with its certificate.
+/// Block of a connector along a path, with its certificate.
 fn block(path: Vec<Section>, params: &BlockParams) -> Finished {
     let cut = Cut { branch: BranchId(0), sides: Cut::NOWHERE, path, size: None };
     let mesh: ConnectorMesh = mesh_free_connector(CutId(0), &cut, params).expect("a connector");
@@ -141,7 +141,7 @@ fn layers_are_rings_of_the_discs_and_as_thick_as_asked() {
         let rim = SharedDisc::new(&path[0], params.rho).expect("a disc").rim.len();
         let vertices = &made.joints[0].vertices;
         assert_eq!(vertices.len(), plain.disc as usize + rim * layers.count as usize);
-        // The first of the rim and its copies, by their distance from the axis.
+        // First rim vertex and its copies, by distance from the axis.
         let radius = |v: u32| (made.mesh.points[v as usize] - path[0].origin).norm();
         let copies = &vertices[plain.disc as usize..plain.disc as usize + layers.count as usize];
         for (&copy, depth) in copies.iter().zip(layers.depths()) {

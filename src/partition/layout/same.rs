@@ -1,4 +1,4 @@
-//! What two layouts of one skeleton have in common: a few cuts that are moved change a few clusters.
+//! Comparison of two layouts of one skeleton. Moving a few cuts changes only a few clusters.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{Layout, NONE, Placed};
 use crate::partition::parts::{ClusterId, CutId};
 
-/// Clusters and cuts that are made from the same in another layout, by the numbers that they have there.
+/// Indices, in another layout, of clusters and cuts with identical inputs.
 #[derive(Debug)]
 pub struct Same {
     pub clusters: Vec<Option<ClusterId>>,
@@ -14,13 +14,13 @@ pub struct Same {
 }
 
 impl Layout {
-    /// What of it was the same before. What is not found is no error: it counts as changed.
+    /// Returns the unchanged clusters and cuts. A missed match is harmless: it counts as changed.
     pub fn same_as(&self, before: &Self) -> Same {
         let counts = [self, before].map(|layout| [layout.clusters_len(), layout.cuts_len()]);
         if !Arc::ptr_eq(&self.skeleton, &before.skeleton) || self.overrun != before.overrun {
             return Same { clusters: vec![None; counts[0][0]], cuts: vec![None; counts[0][1]] };
         }
-        // Both are in the same order.
+        // Both layouts are sorted alike.
         let order = |i, j| self.cluster_place(i).partial_cmp(&before.cluster_place(j));
         let clusters = common([counts[0][0], counts[1][0]], order, |i, j| self.is_same_cluster(i, before, j));
         let place = |layout: &Self, i: usize| (layout.cuts[i].branch, layout.cuts[i].planes[0]);
@@ -32,14 +32,14 @@ impl Layout {
         }
     }
 
-    /// What clusters are ordered by: their lowest node; those without one come last, by branch and place.
+    /// Sort key of a cluster: its lowest node. Clusters without a node come last, by branch and position.
     fn cluster_place(&self, cluster: usize) -> (u32, u32, f64) {
         let node = self.nodes(ClusterId(cluster as u32)).first().map_or(NONE, |node| node.0);
         let first = self.pieces_of(cluster).first().filter(|_| node == NONE);
         first.map_or((node, 0, 0.0), |piece| (node, piece.branch, self.planes_of(piece)[0].unwrap_or(0.0)))
     }
 
-    /// Where a piece is cut off from the rest of its branch.
+    /// Cut planes at the ends of a piece.
     fn planes_of(&self, piece: &Placed) -> [Option<f64>; 2] {
         [0, 1].map(|end| (piece.cuts[end] != NONE).then(|| self.cuts[piece.cuts[end] as usize].planes[1 - end]))
     }
@@ -62,7 +62,7 @@ impl Layout {
     }
 }
 
-/// Walks along two ordered lists; for each of the first, which of the second is the same.
+/// Merges two ordered lists. Returns for each element of the first the matching index in the second.
 fn common(
     [own, other]: [usize; 2],
     order: impl Fn(usize, usize) -> Option<Ordering>,

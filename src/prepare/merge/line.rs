@@ -1,20 +1,20 @@
-//! Lines: branches, broken where they turn back upon themselves.
+//! Lines: branches, split where they reverse their direction.
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_skeleton::{Branch, EdgeId, NodeId, Skeleton};
 
-/// A line turns back where the ways that leave a node to both sides, seen a radius off, enclose less than 60 degrees: where
-/// two lines from one inlet meet in it, they are one branch that does so.
+/// Minimum cosine between the directions out of a node, at a distance of one radius, for a reversal (60°). Two lines
+/// that meet in their common inlet form one branch with a reversal.
 const TURNS_BACK: f64 = 0.5;
 
-/// A line, with what is asked of it at each of its nodes.
+/// Line with properties of its nodes.
 pub(super) struct Line {
     pub nodes: Vec<NodeId>,
     pub edges: Vec<EdgeId>,
     /// Arc length from the start.
     pub arc: Vec<f64>,
     pub radii: Vec<f64>,
-    /// Unit directions over a radius of the line; zero where there is none.
+    /// Unit tangents over a radius of the line; zero if undefined.
     pub tangents: Vec<Vec3>,
 }
 
@@ -28,7 +28,7 @@ impl Line {
     }
 }
 
-/// The lines of a branch.
+/// Splits a branch into lines.
 pub(super) fn lines_of(skeleton: &Skeleton, branch: &Branch) -> Vec<Line> {
     let radii = node_radii(skeleton, branch);
     let points: Vec<Point3> = branch.nodes.iter().map(|&n| skeleton.node(n).position).collect();
@@ -45,7 +45,7 @@ pub(super) fn lines_of(skeleton: &Skeleton, branch: &Branch) -> Vec<Line> {
     breaks.windows(2).map(piece).collect()
 }
 
-/// Radii along a branch: of its own edges, for at a branch point each vessel has its own.
+/// Radii along a branch, from its own edges: at a branch point each vessel has its own radius.
 fn node_radii(skeleton: &Skeleton, branch: &Branch) -> Vec<f64> {
     let tubes: Vec<_> = branch.tubes(skeleton).collect();
     let mut radii: Vec<f64> = tubes.iter().map(|t| t.ra).collect();
@@ -53,7 +53,7 @@ fn node_radii(skeleton: &Skeleton, branch: &Branch) -> Vec<f64> {
     radii
 }
 
-/// The nodes at which a polyline turns back, one for each turn: where it does so most.
+/// Nodes at which a polyline reverses, one per reversal: the sharpest.
 fn turns(points: &[Point3], arc: &[f64], radii: &[f64]) -> Vec<usize> {
     let (mut found, mut best): (Vec<usize>, Option<(f64, usize)>) = (Vec::new(), None);
     for i in 1..points.len().saturating_sub(1) {
@@ -78,7 +78,7 @@ fn tangents(points: &[Point3], arc: &[f64], radii: &[f64]) -> Vec<Vec3> {
     (0..points.len()).map(tangent).collect()
 }
 
-/// The last node that lies `reach` before node `i` and the first that lies as far behind it, or the ends.
+/// Last node at least `reach` before node `i` and first node as far behind it, or the ends.
 fn window(arc: &[f64], i: usize, reach: f64) -> [usize; 2] {
     let before = arc[..i].partition_point(|&s| s <= arc[i] - reach).saturating_sub(1);
     let after = i + arc[i..].partition_point(|&s| s < arc[i] + reach);

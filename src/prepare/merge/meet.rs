@@ -1,15 +1,15 @@
-//! Tips that lie at one place but for rounding: a line that was cut into tracts, each written with its own numbers.
+//! Tips that coincide within rounding: a line split into segments with separate numbering.
 
 use anastomesh_mesh::geometry::{Aabb, Bvh, DisjointSets};
 use anastomesh_skeleton::{Edge, NodeId, Skeleton, SkeletonError, clean};
 
-/// Tips as close as this, in radii of the thinner, are one place.
+/// Maximum distance of coinciding tips, in radii of the thinner one.
 const ONE_PLACE: f64 = 0.01;
 
-/// Pairs of tips at most: more than any network has that is not all in one place.
+/// Maximum number of tip pairs. Only networks with all tips in one place exceed it.
 const MOST_PAIRS: usize = 10_000_000;
 
-/// Makes them one, in pairs: of three and more at one place each meets the nearest to it in the order of their distance.
+/// Merges coinciding tips in pairs. Among three or more, pairs form in order of distance.
 pub(super) fn join(skeleton: &Skeleton) -> Result<(Skeleton, Vec<[u32; 2]>), SkeletonError> {
     let tips = skeleton.adjacency().terminals();
     let reach = |n: NodeId| ONE_PLACE * skeleton.node(n).radius;

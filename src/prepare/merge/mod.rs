@@ -1,10 +1,10 @@
-//! Lines of one vessel merged into one.
+//! Merging of duplicate lines of one vessel.
 //!
-//! Centrelines come as one line from the inlet to each outlet (VMTK), so that the trunk is there as often as it has
-//! outlets; networks that were put together have doubles. Two lines run together while each lies within the radius of the
-//! other and they have the same direction; they part where one leaves the tube of the other (Antiga, Steinman, 'Robust
-//! and objective decomposition and mapping of bifurcating vessels', IEEE Transactions on Medical Imaging 23, 2004). Of
-//! lines that run together the longest stays; the others begin where they part from it.
+//! VMTK centrelines run from the inlet to each outlet, so the trunk occurs once per outlet; assembled networks have
+//! duplicates, too. Two lines run together while each lies within the radius of the other, with the same direction.
+//! They separate where one leaves the tube of the other. (Antiga, Steinman, 'Robust and objective decomposition and
+//! mapping of bifurcating vessels', IEEE Transactions on Medical Imaging 23, 2004). The longest of them is kept; the
+//! others begin at their separation from it.
 
 mod line;
 mod meet;
@@ -17,48 +17,48 @@ use rayon::prelude::*;
 use runs::{Course, Foot, Kept, Run, runs};
 use serde::Serialize;
 
-/// A node within this share of a radius from the end of an edge is put there.
+/// Nodes closer to an edge's end than this fraction of a radius are moved to that end.
 const NEAR: f64 = 1e-3;
 
-/// A place at which a line leaves the tube of another one.
+/// Place at which a line leaves the tube of another one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Parting {
-    /// The last node of the line that lies within the other's tube: VMTK's branching point, to the length of an edge.
+    /// Last node of the line within the other's tube: VMTK's branching point, to within an edge length.
     pub leaves: u32,
-    /// The node at which it parts from the other one in the graph: where the trunk ends.
+    /// Node of separation in the graph, at the end of the trunk.
     pub branches: u32,
 }
 
-/// A stretch of a line that ran together with another one and was taken away.
+/// Removed part of a line that ran together with another one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Merged {
-    /// First and last node of the stretch.
+    /// First and last node of the part.
     pub nodes: [u32; 2],
-    /// Two nodes of the edge of the other line beside its first node.
+    /// Nodes of the other line's edge next to the first node.
     pub with: [u32; 2],
-    /// Length of the stretch, in the unit of the network.
+    /// Length of the part, in the unit of the network.
     pub length: f64,
-    /// Largest distance of the two lines over the stretch, in radii.
+    /// Maximum distance of the two lines over the part, in radii.
     pub apart: f64,
-    /// Where it parts from the other line: none where it ends with it.
+    /// Separations from the other line; empty if both end together.
     pub partings: Vec<Parting>,
 }
 
-/// What merging did.
+/// Report of the merge.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MergeReport {
-    /// Lines there were: branches, broken where they turn back.
+    /// Number of input lines: branches, split where they turn back.
     pub lines: usize,
-    /// Tips that lay at one place but for rounding and were made one.
+    /// Pairs of tips that coincided within rounding and were merged.
     pub met: Vec<[u32; 2]>,
-    /// Stretches that were taken away.
+    /// Removed parts.
     pub merged: Vec<Merged>,
-    /// Whether so many lines lay upon each other that the rest was left as it was.
+    /// True if the merge stopped early because too many lines overlap.
     pub gave_up: bool,
 }
 
-/// Merges lines that run together; `groups` says of the file's nodes which vessel their lines are drawn for, where it says
-/// so. The result satisfies `Skeleton::check`.
+/// Merges lines that run together. `groups` holds the vessel of each node's lines, if the file has them. The result
+/// satisfies `Skeleton::check`.
 pub(super) fn merge(
     skeleton: &Skeleton,
     groups: &[Option<LineGroup>],
@@ -69,7 +69,7 @@ pub(super) fn merge(
     let branches = skeleton.branches(&adjacency);
     let parts: Vec<Vec<Line>> = branches.list.par_iter().map(|b| lines_of(skeleton, b)).collect();
     let mut lines: Vec<Line> = parts.into_iter().flatten().collect();
-    // A stable sort: the earlier of equals comes first.
+    // Stable sort: of equal lines the earlier comes first.
     lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
     let mut report = MergeReport { lines: lines.len(), met, ..MergeReport::default() };
     let mut kept = Kept::new(skeleton, LineGroup::of_edges(skeleton, groups));
@@ -98,7 +98,7 @@ pub(super) fn merge(
     Ok((clean(&changes.applied())?.0, report))
 }
 
-/// A run in the words of the report.
+/// Converts a run to its report entry.
 fn told(skeleton: &Skeleton, line: &Line, feet: &[Option<Foot>], run: &Run) -> Merged {
     let name = |i: usize| skeleton.node(line.nodes[i]).original;
     let within = || (run.first..=run.last).filter_map(|i| feet[i].map(|f| (i, f)));
@@ -115,15 +115,15 @@ fn told(skeleton: &Skeleton, line: &Line, feet: &[Option<Foot>], run: &Run) -> M
     }
 }
 
-/// What becomes of the graph.
+/// Collected changes to the graph.
 struct Changes<'a> {
     skeleton: &'a Skeleton,
     gone: Vec<bool>,
-    /// Nodes to be put onto edges.
+    /// Nodes to insert into edges.
     feet: Vec<(EdgeId, f64, NodeId)>,
 }
 
-/// What a node became in the end. A node becomes another one only when that one is nothing else, so the ways end.
+/// Follows replacements of a node to the final one. Terminates, as only unreplaced nodes serve as targets.
 fn last(onto: &[NodeId], mut node: NodeId) -> NodeId {
     while onto[node.index()] != node {
         node = onto[node.index()];
@@ -136,7 +136,7 @@ impl<'a> Changes<'a> {
         Self { skeleton, gone: vec![false; skeleton.edges.len()], feet: Vec::new() }
     }
 
-    /// Takes a run away and joins the ends of its line to the line that it ran with, but for tips, which go with it.
+    /// Removes a run and joins the ends of its line to the other line, except tips, which are removed with it.
     fn apply(&mut self, line: &Line, feet: &[Option<Foot>], open: [bool; 2], run: &Run) {
         let tips = [open[0] && run.first == 0, open[1] && run.last == line.last()];
         for (at, tip) in [run.first, run.last].into_iter().zip(tips) {
@@ -149,7 +149,7 @@ impl<'a> Changes<'a> {
         }
     }
 
-    /// The graph without what is gone, edges split where nodes were put onto them.
+    /// Returns the graph without removed edges; edges are split at inserted nodes.
     fn applied(mut self) -> Skeleton {
         self.feet.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         let mut nodes: Vec<Node> = self.skeleton.nodes.clone();
@@ -160,7 +160,7 @@ impl<'a> Changes<'a> {
             let mut edge = *self.skeleton.edge(id);
             let tube = self.skeleton.tube(id);
             while let Some(&(_, t, node)) = feet.next_if(|f| f.0 == id) {
-                // A node at the end of an edge becomes that end.
+                // A node at the end of an edge is replaced by that end.
                 let off = [t * tube.length() / tube.ra, (1.0 - t) * tube.length() / tube.rb];
                 if let Some(end) = off.iter().position(|&off| off < NEAR) {
                     let [of, end] = [node, self.skeleton.edge(id).nodes[end]].map(|n| last(&onto, n));
@@ -185,7 +185,7 @@ impl<'a> Changes<'a> {
 mod tests {
     use super::*;
 
-    /// Two straight lines of 30 points beside each other, so many radii apart.
+    /// Two parallel straight lines of 30 points, `apart` radii apart.
     fn beside(apart: f64) -> Skeleton {
         let mut s = Skeleton::default();
         for line in 0..2 {

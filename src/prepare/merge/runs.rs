@@ -1,56 +1,56 @@
-//! Where a line runs together with those that are kept, and how much of it goes.
+//! Runs: parts of a line that coincide with kept lines and are removed.
 
 use super::line::Line;
 use anastomesh_mesh::geometry::{Aabb, Bvh, DisjointSets, Point3, Vec3, point_segment};
 use anastomesh_skeleton::{EdgeId, Kinship, LineGroup, NodeId, Skeleton};
 
-/// Vessels that enclose less than 45 degrees have the same direction.
+/// Cosine above which vessels have the same direction (45°).
 const SAME_WAY: f64 = 0.707;
-/// Lines as close as this, in radii, have one axis.
+/// Maximum distance of lines with a common axis, in radii.
 const SAME_AXIS: f64 = 0.1;
-/// How far upstream of where VMTK ends a vessel its two lines are looked at for one axis, in radii.
+/// Search distance upstream of VMTK's end of a vessel for a common axis, in radii.
 const UPSTREAM: f64 = 3.0;
-/// Runs shorter than this, in radii, that do not take a whole line are left: every fork begins so.
+/// Minimum length of a run that is not a whole line, in radii: every bifurcation begins with a short run.
 const SHORTEST: f64 = 1.0;
-/// Between nodes a line is looked at in steps of so many radii, and in so many at most.
+/// Sampling step of a line between nodes, in radii, and maximum number of steps.
 const STEP: f64 = 0.5;
 const MOST_STEPS: f64 = 64.0;
-/// Edges looked at, at most: more than any network has that is not all in one place.
+/// Maximum number of edge tests. Only networks with all lines in one place exceed it.
 const MOST_LOOKS: usize = 300_000_000;
 
-/// A place on a line that is kept.
+/// Position on a kept line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Foot {
     pub edge: EdgeId,
     /// Parameter in [0, 1] along the edge.
     pub t: f64,
-    /// Distance of the line that asked.
+    /// Distance from the queried line.
     pub distance: f64,
-    /// Whether the line of the foot ends there.
+    /// True if the line of the foot ends there.
     pub at_end: bool,
-    /// The connected piece of what is kept, when asked.
+    /// Connected component of the kept lines at the time of the query.
     pub piece: u32,
 }
 
-/// A stretch of a line that goes, by its first and last node.
+/// Removed part of a line, by its first and last node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run {
     pub first: usize,
     pub last: usize,
-    /// The nodes at which the line leaves the tube, where the run does not reach the line's end.
+    /// Nodes at which the line leaves the tube, for ends of the run inside the line.
     pub parts: [Option<usize>; 2],
 }
 
-/// The search for lines that are kept.
+/// Search structure for kept lines.
 pub(super) struct Kept<'a> {
     skeleton: &'a Skeleton,
     tree: Bvh,
     tangents: Vec<Vec3>,
-    /// The vessel that each edge is drawn for, where the file says so.
+    /// Vessel group of each edge, if the file has groups.
     groups: Vec<Option<LineGroup>>,
-    /// Whether an edge belongs to a line that is kept, and at which of its ends the line ends.
+    /// For each edge of a kept line: flags of the ends at which the line ends.
     state: Vec<Option<[bool; 2]>>,
-    /// Nodes that what is kept connects.
+    /// Connectivity of nodes through kept lines.
     pieces: DisjointSets,
     looks: usize,
 }
@@ -74,12 +74,12 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// Whether so many edges lay upon each other that the search was given up.
+    /// True if the search stopped because too many edges overlap.
     pub(super) fn gave_up(&self) -> bool {
         self.looks >= MOST_LOOKS
     }
 
-    /// Keeps a line but for its runs.
+    /// Keeps a line except for its runs.
     pub(super) fn keep(&mut self, line: &Line, runs: &[Run]) {
         let gone = |piece: usize| runs.iter().any(|r| r.first <= piece && piece < r.last);
         for (piece, &edge) in line.edges.iter().enumerate().filter(|(piece, _)| !gone(*piece)) {
@@ -92,9 +92,8 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// The place closest to a point of an edge of a line, on a line that is kept, runs the same way there and is within the
-    /// radius of this one as this is within that one's. Where the file says that both are one vessel, one of the two is
-    /// enough; where it says that they are two, they do not run together.
+    /// Returns the closest position on a kept line of similar direction. The distance must be below both radii. One
+    /// radius suffices if the file assigns both lines to one vessel. Lines of different vessels never match.
     fn foot(&mut self, point: &Point3, radius: f64, tangent: &Vec3, of: EdgeId) -> Option<Foot> {
         let Self { skeleton, tree, tangents, groups, state, pieces, looks } = self;
         let group = groups[of.index()];
@@ -113,7 +112,7 @@ impl<'a> Kept<'a> {
             let tube = skeleton.tube(EdgeId(id));
             let (t, distance) = point_segment(point, &tube.a, &tube.b);
             let at_end = t <= 0.0 && ends[0] || t >= 1.0 && ends[1];
-            // Where a line goes on, another one begins at its end: that is no double.
+            // A line that starts at the end of another continues it and is no duplicate.
             let key = |f: &Foot| (f.distance, f.edge.0);
             let foot = Foot { edge: EdgeId(id), t, distance, at_end: at_end && distance > 0.0, piece: 0 };
             let within = match kinship {
@@ -127,13 +126,13 @@ impl<'a> Kept<'a> {
         best.map(|foot| Foot { piece: pieces.root(skeleton.edge(foot.edge).nodes[0].0), ..foot })
     }
 
-    /// A node of a line is put onto one that is kept.
+    /// Attaches a node of a line to a kept line.
     pub(super) fn attach(&mut self, node: NodeId, foot: &Foot) {
         self.pieces.join(node.0, self.skeleton.edge(foot.edge).nodes[0].0);
     }
 
-    /// Of each edge of a line, whether the points between its nodes have feet too: the nodes of a short vessel between two
-    /// others always do.
+    /// For each edge of a line: true if the points between its nodes also have feet. The nodes alone do not suffice for
+    /// a short vessel between two others.
     pub(super) fn along(&mut self, line: &Line) -> Vec<bool> {
         let mut along = Vec::with_capacity(line.edges.len());
         for piece in 0..line.edges.len() {
@@ -150,7 +149,7 @@ impl<'a> Kept<'a> {
         along
     }
 
-    /// The feet of all nodes of a line.
+    /// Returns the feet of all nodes of a line.
     pub(super) fn feet(&mut self, line: &Line) -> Vec<Option<Foot>> {
         let feet = (0..line.nodes.len()).map(|i| {
             let point = self.skeleton.node(line.nodes[i]).position;
@@ -160,28 +159,28 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// A line and where it runs with others.
+/// Line and its relation to kept lines.
 pub(super) struct Course<'a> {
     pub line: &'a Line,
-    /// Of each node.
+    /// Foot of each node.
     pub feet: &'a [Option<Foot>],
-    /// Of each edge, whether it runs with others between its nodes.
+    /// For each edge: true if it coincides with kept lines between its nodes.
     pub along: &'a [bool],
-    /// Of each node.
+    /// Position of each node.
     pub points: &'a [Point3],
 }
 
-/// The stretches of a line that go. `open` says which of its ends are tips.
+/// Returns the parts of a line to remove. `open` marks the ends that are tips.
 pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<Run> {
     let Course { line, feet, along, .. } = course;
     let inside = |i: usize| feet[i].is_some_and(|f| !f.at_end);
     let mut together: Vec<[usize; 2]> = Vec::new();
     let piece = |i: usize| feet[i].map(|f| f.piece);
     for i in (0..feet.len()).filter(|&i| inside(i)) {
-        // Where noise lifts a line out of the tube for less than a radius it runs on.
+        // A run continues if noise lifts the line out of the tube for less than a radius.
         let on = |last: usize| if last + 1 == i { along[last] } else { line.arc[i] - line.arc[last] < line.radii[i] };
         match together.last_mut() {
-            // A line that leads from one piece of what is kept to another one connects them.
+            // A line between two components of the kept lines connects them.
             Some([_, last]) if piece(*last) == piece(i) && on(*last) => *last = i,
             _ => together.push([i, i]),
         }
@@ -189,7 +188,7 @@ pub(super) fn runs(course: &Course, open: [bool; 2]) -> Vec<Run> {
     together.iter().filter_map(|&ends| course.run(to_tips(line, ends, open), open)).collect()
 }
 
-/// A run that comes within a radius of a tip takes it along: lines of one vessel do not end at the very same place.
+/// Extends a run that comes within a radius of a tip to that tip: lines of one vessel end at different places.
 fn to_tips(line: &Line, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [usize; 2] {
     if first == last {
         return [first, last];
@@ -204,7 +203,7 @@ fn to_tips(line: &Line, [mut first, mut last]: [usize; 2], open: [bool; 2]) -> [
 }
 
 impl Course<'_> {
-    /// What of a run goes, once the places where the line parts are found.
+    /// Returns the removed part of a run, up to the points of separation.
     fn run(&self, [first, last]: [usize; 2], open: [bool; 2]) -> Option<Run> {
         let line = self.line;
         let radius = line.radii[first].max(line.radii[last]);
@@ -217,7 +216,7 @@ impl Course<'_> {
         Some(Run { first: from, last: to, parts: [(from > 0).then_some(first), (to < line.last()).then_some(last)] })
     }
 
-    /// Where a run ends at one side: where the two vessels part, or with the line. `at_end`: it reaches the line's end.
+    /// End of a run on one side: the point of separation, or the line's end if `at_end` is set.
     fn end(&self, exit: usize, start: usize, at_end: bool, open: bool) -> Option<usize> {
         let apart = || self.feet[exit].map_or(f64::INFINITY, |f| f.distance / self.line.radii[exit]);
         if at_end && (open || apart() <= SAME_AXIS) {
@@ -226,12 +225,11 @@ impl Course<'_> {
         self.parting(start, exit, at_end)
     }
 
-    /// Where the vessel of two lines ends of which one leaves the other's tube at the last of `[start, exit]`.
+    /// End of the common vessel of two lines, one of which leaves the other's tube at the end of `[start, exit]`.
     ///
-    /// Antiga and Steinman (2004) end a vessel where the inscribed sphere touches the point at which the line of one branch
-    /// leaves the tube of the other: one sphere upstream of it. Upstream of that, the last node counts at which the two
-    /// lines have one axis, so that no axis is bent; the closest, where there is none. A line that goes on beyond a branch
-    /// point (`inside`) has not left the tube yet.
+    /// Antiga and Steinman (2004) end a vessel one inscribed sphere upstream of the point where one line leaves the
+    /// tube of the other. Upstream of that sphere, the last node with a common axis counts, so that no axis bends; else
+    /// the closest node. A line that continues beyond a branch point (`inside`) has not left the tube yet.
     fn parting(&self, start: usize, exit: usize, inside: bool) -> Option<usize> {
         let Self { line, feet, points, .. } = self;
         let steps = start.abs_diff(exit);

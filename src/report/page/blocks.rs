@@ -1,4 +1,4 @@
-//! What a run did: sizes and times of blocks, retries, failures.
+//! Blocks of a run: sizes, times, retries, failures.
 
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
@@ -12,13 +12,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io;
 
-/// Items of a list that are spelt out.
+/// Maximum number of list items.
 const LISTED: usize = 50;
 
-/// Tetrahedra per block: how many blocks have less than 2, 4, 8, …
+/// Histogram of tetrahedra per block: number of blocks with less than 2, 4, 8, …
 ///
 /// # Errors
-/// What reading the mesh fails with.
+/// The mesh cannot be read.
 pub fn block_sizes(mesh: &dyn MeshSource) -> io::Result<Vec<u64>> {
     let mut sizes: BTreeMap<i32, u64> = BTreeMap::new();
     mesh.each_tet_labels(|piece| {
@@ -36,10 +36,10 @@ pub fn block_sizes(mesh: &dyn MeshSource) -> io::Result<Vec<u64>> {
     Ok(bins)
 }
 
-/// Where the blocks are that failed: the network with their vessels marked.
+/// Picture of the network with the vessels of failed blocks highlighted.
 ///
 /// # Errors
-/// When a picture cannot be compressed.
+/// A picture cannot be compressed.
 pub fn failed_blocks(network: &Skeleton, run: &RunReport) -> io::Result<Section> {
     let nodes: BTreeSet<u32> = run.failed.iter().flat_map(|failed| failed.nodes.iter().copied()).collect();
     let is_marked = |&id: &EdgeId| network.edge(id).nodes.iter().any(|&n| nodes.contains(&network.node(n).original));
@@ -48,7 +48,7 @@ pub fn failed_blocks(network: &Skeleton, run: &RunReport) -> io::Result<Section>
     Section::new("What is missing").pictures(&[picture], false)
 }
 
-/// Blocks, stages, retries and failures.
+/// Section on blocks, stages, retries and failures.
 pub fn run(run: &RunReport, sizes: &[u64]) -> Section {
     let (blocks, times) = (&run.blocks, &run.block_times);
     let seconds: f64 = run.stages.iter().map(|stage| stage.seconds).sum();
@@ -65,7 +65,7 @@ pub fn run(run: &RunReport, sizes: &[u64]) -> Section {
         ])
         .plots(&[
             powers("Sizes of blocks", "tetrahedra, 2 to the power of", sizes, 0.0),
-            // The first of them ends at a millisecond, or all but.
+            // The first bin ends just below one millisecond.
             powers("Times of blocks", "milliseconds, 2 to the power of", &times.histogram, -1.0),
         ])
         .table(&["stage", "wall time"], &stages);
@@ -73,7 +73,7 @@ pub fn run(run: &RunReport, sizes: &[u64]) -> Section {
     if trouble.is_empty() { section } else { section.list(&trouble) }
 }
 
-/// Bins whose borders double; where the first one begins.
+/// Histogram whose bin borders double, starting at `first`.
 fn powers(title: &str, axis: &str, counts: &[u64], first: f64) -> Panel {
     let mut panel = bars(title, [axis, "blocks (%)"], 1.0, counts.iter().copied());
     for point in &mut panel.series[0].points {

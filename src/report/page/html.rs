@@ -1,4 +1,4 @@
-//! The page itself: sections of escaped text.
+//! HTML page of sections with escaped text.
 
 use crate::picture::Image;
 use crate::report::plot::{Panel, svg};
@@ -9,7 +9,7 @@ use std::io;
 
 const STYLE: &str = include_str!("style.css");
 
-/// Text that means itself in HTML, in attributes as well.
+/// Escapes text for HTML, including attributes.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -19,7 +19,7 @@ pub fn escaped(text: &str) -> String {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            // Control characters have no place in a page.
+            // Control characters are not allowed in a page.
             c if c.is_control() && c != '\n' => out.push('\u{fffd}'),
             c => out.push(c),
         }
@@ -27,7 +27,7 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
-/// A part of a page under a heading.
+/// Part of a page under a heading.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
     title: &'static str,
@@ -39,13 +39,13 @@ impl Section {
         Self { title, body: String::new() }
     }
 
-    /// A paragraph.
+    /// Adds a paragraph.
     pub fn text(mut self, text: &str) -> Self {
         let _ = writeln!(self.body, "<p>{}</p>", escaped(text));
         self
     }
 
-    /// Text as a terminal shows it, folded away.
+    /// Adds terminal output in a collapsed block.
     pub fn folded(mut self, label: &str, text: &str) -> Self {
         let _ = writeln!(
             self.body,
@@ -56,7 +56,7 @@ impl Section {
         self
     }
 
-    /// Figures side by side, each with what it is.
+    /// Adds figures side by side, each with a label.
     pub fn tiles(mut self, tiles: &[(&str, String)]) -> Self {
         self.body.push_str("<dl class=\"tiles\">");
         for (what, value) in tiles {
@@ -66,7 +66,7 @@ impl Section {
         self
     }
 
-    /// A table; cells are text, those that are numbers stand to the right.
+    /// Adds a table of text cells; numbers are right-aligned.
     pub fn table(mut self, head: &[&str], rows: &[Vec<String>]) -> Self {
         self.body.push_str("<div class=\"wide\"><table><thead><tr>");
         for cell in head {
@@ -86,7 +86,7 @@ impl Section {
         self
     }
 
-    /// Plots.
+    /// Adds plots.
     pub fn plots(mut self, panels: &[Panel]) -> Self {
         if !panels.is_empty() {
             let drawn = svg(panels).replacen("<svg ", "<svg class=\"plot\" role=\"img\" ", 1);
@@ -95,10 +95,10 @@ impl Section {
         self
     }
 
-    /// Pictures side by side, each with what it shows; those that are aimed have a ring in the middle.
+    /// Adds captioned pictures side by side; with `aimed`, a ring marks the centre.
     ///
     /// # Errors
-    /// When a picture cannot be compressed, which memory alone can be the reason of.
+    /// A picture cannot be compressed, which happens only if memory is insufficient.
     pub fn pictures(mut self, pictures: &[(Image, String)], aimed: bool) -> io::Result<Self> {
         let class = if aimed { "pictures aimed" } else { "pictures" };
         let _ = writeln!(self.body, "<div class=\"{class}\">");
@@ -119,7 +119,7 @@ impl Section {
         Ok(self)
     }
 
-    /// A list whose items are good, bad or neither.
+    /// Adds a list whose items are good, bad or neutral.
     pub fn list(mut self, items: &[(Mark, String)]) -> Self {
         self.body.push_str("<ul class=\"lines\">");
         for (mark, text) in items {
@@ -140,21 +140,21 @@ impl Section {
     }
 }
 
-/// How an item of a list is marked.
+/// Mark of a list item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Good,
     Bad,
     Neither,
-    /// Belongs to the item above.
+    /// Continuation of the item above.
     Below,
 }
 
-/// A whole page.
+/// Complete page.
 #[derive(Clone, Debug)]
 pub struct Page {
     title: String,
-    /// Good, bad or undecided, and in words.
+    /// Verdict as mark and text.
     verdict: Option<(Mark, String)>,
     sections: Vec<Section>,
 }
@@ -164,14 +164,14 @@ impl Page {
         Self { title: title.to_string(), verdict, sections: Vec::new() }
     }
 
-    /// Adds a section, unless there is nothing in it.
+    /// Adds a section, unless it is empty.
     pub fn add(&mut self, section: Section) {
         if !section.is_empty() {
             self.sections.push(section);
         }
     }
 
-    /// The file.
+    /// Returns the HTML document.
     pub fn html(&self) -> String {
         let title = escaped(&self.title);
         let verdict = self.verdict.as_ref().map_or_else(String::new, |(mark, words)| {

@@ -1,4 +1,4 @@
-//! A report as one page that opens from a mail: text, tables, plots and pictures in a single file, nothing from a network.
+//! HTML report: text, tables, plots and pictures in one self-contained file.
 
 mod blocks;
 mod html;

@@ -1,4 +1,4 @@
-//! Networks: what overlaps, before refinement and after it.
+//! Networks: overlaps before and after refinement.
 
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
@@ -7,7 +7,7 @@ use crate::report::refine::{figures_table, panels};
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::io;
 
-/// How a refinement ended, for the head of a page.
+/// Verdict of a refinement for the page header.
 pub fn overlaps_left(report: &RefineReport) -> (Mark, String) {
     match report.result.overlaps {
         0 => (Mark::Good, "no vessels overlap".into()),
@@ -24,10 +24,10 @@ fn overlaps(network: &Skeleton) -> Vec<EdgeId> {
     edges
 }
 
-/// What refinement did: the network before and after it, figures, and their course (Fig. 11 of the paper).
+/// Result of a refinement: network before and after, figures, and their history (Fig. 11 of the paper).
 ///
 /// # Errors
-/// When a picture cannot be compressed.
+/// A picture cannot be compressed.
 pub fn refinement(report: &RefineReport, before: &Skeleton, after: &Skeleton) -> io::Result<Section> {
     let picture = |network, when: &str, pairs: usize| {
         let caption = format!("{when}: {pairs} pairs of edges overlap (red).");

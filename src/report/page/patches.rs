@@ -1,4 +1,4 @@
-//! Patches: names, places, areas, flows.
+//! Patches: names, positions, areas, flows.
 
 use super::html::Section;
 use crate::pipeline::{CapRow, Caps};
@@ -6,10 +6,10 @@ use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::Patch;
 use anastomesh_skeleton::NodeId;
 
-/// Rows of a table, at most.
+/// Maximum number of table rows.
 const LISTED: usize = 100;
 
-/// Inlets and outlets with what flows through them; nodes as the network's file calls them.
+/// Table of inlets and outlets with their flow; nodes have their names in the network file.
 pub fn terminals(caps: &Caps, names: &NodeNames) -> Section {
     let row = |row: &CapRow| {
         let [x, y, z]: [f64; 3] = row.cap.center.into();
@@ -30,7 +30,7 @@ pub fn terminals(caps: &Caps, names: &NodeNames) -> Section {
     more(Section::new("Inlets and outlets").table(&head, &rows), caps.rows.len())
 }
 
-/// The patches that a file names.
+/// Table of the patches that a file names.
 pub fn named_patches(patches: &[Patch]) -> Section {
     if patches.is_empty() {
         return Section::new("Patches");

@@ -1,4 +1,4 @@
-//! Pictures for a page: on nothing, so that they stand on light and dark.
+//! Pictures for a page, with a transparent background for light and dark themes.
 
 use crate::picture::{Background, Camera, Canvas, Colour, Cut, Direction, Image, MeshPicture, NetworkPicture, Plane};
 use anastomesh_mesh::check::{CheckReport, Offender, OffenderKind};
@@ -11,18 +11,18 @@ use super::places::extents;
 
 const SIZE: [usize; 2] = [720, 540];
 const SAMPLES: usize = 2;
-/// How much closer one looks where tetrahedra are to be seen, at least.
+/// Minimum zoom for close-ups of tetrahedra.
 const CLOSER: f64 = 3.0;
-/// Offenders that are shown, at most, and those among which they are chosen: of some beside each other one is enough.
+/// Maximum number of pictured offenders, and number of candidates: one of several neighbours is enough.
 const SHOWN: usize = 6;
 const CANDIDATES: usize = 24;
-/// How close to one that is shown, as a share of the picture, others are not shown.
+/// Minimum distance between pictured offenders, as a fraction of the picture.
 const BESIDE: f64 = 0.5;
 
-/// A mesh as a whole, its blocks where it has several, and some tetrahedra.
+/// Pictures of a mesh: the whole, its blocks if there are several, and some tetrahedra.
 ///
 /// # Errors
-/// What reading the mesh fails with.
+/// The mesh cannot be read.
 pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> {
     let outline = MeshPicture::outline(mesh)?;
     let size = SIZE.map(|n| n * SAMPLES);
@@ -32,7 +32,7 @@ pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> 
     if mesh.counts().tets == 0 {
         return Ok(pictures);
     }
-    // Where the thing itself is: the middle of its box may be nowhere near.
+    // A point of the object itself, as the centre of its box may be far away.
     let middle = camera.centre;
     let near = |a: &&Point3, b: &&Point3| (*a - middle).norm_squared().total_cmp(&(*b - middle).norm_squared());
     let Some(&place) = outline.points().iter().min_by(near) else { return Ok(pictures) };
@@ -47,7 +47,7 @@ pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> 
     Ok(pictures)
 }
 
-/// A network, some of whose edges are marked.
+/// Picture of a network with some edges highlighted.
 pub fn network_picture(network: &Skeleton, marked: &[EdgeId], caption: &str) -> (Image, String) {
     let mut picture = NetworkPicture::new(network, Colour::Radius, &[]);
     picture.mark(marked);
@@ -57,12 +57,12 @@ pub fn network_picture(network: &Skeleton, marked: &[EdgeId], caption: &str) -> 
     (canvas.finish(Background::None), caption.to_owned())
 }
 
-/// The first offenders of the lines that fail, where they are.
+/// Pictures of the first offenders of failed lines.
 ///
 /// # Errors
-/// What reading the mesh fails with.
+/// The mesh cannot be read.
 pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> {
-    // One of each line before the second of any.
+    // The first of each line comes before the second of any.
     let mut found: Vec<(usize, &Offender, &'static str, Point3)> = Vec::new();
     for line in check.failed() {
         let placed = line.offenders.iter().filter_map(|o| Some((o, Point3::from(o.position?))));
@@ -87,7 +87,7 @@ pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(
         let at = place.coords.dot(&camera.towards);
         let cut = match offender.kind {
             OffenderKind::Tet | OffenderKind::TetPair => Cut::Tets(Plane { normal: camera.towards, offset: at }),
-            // What stands before it is taken away.
+            // Everything in front of it is clipped.
             _ => Cut::Wall(Plane { normal: camera.towards, offset: at + 0.4 * extent }),
         };
         let image = draw(mesh, camera, Colour::Patch, Some(cut))?;

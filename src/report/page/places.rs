@@ -1,19 +1,19 @@
-//! How large the surroundings of a place are that show what it belongs to.
+//! Size of the region around a point that shows its context.
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;
 use std::collections::BinaryHeap;
 use std::io;
 
-/// Faces of the boundary that are seen about a place.
+/// Number of boundary faces visible around a point.
 const FACES: usize = 500;
 
-/// For each place the distance within which some hundred faces of the boundary begin; of a smaller mesh all.
+/// Distance from each point within which `FACES` boundary faces start, or all faces of a smaller mesh.
 ///
 /// # Errors
-/// What reading the mesh fails with.
+/// The mesh cannot be read.
 pub fn extents(mesh: &dyn MeshSource, places: &[Point3]) -> io::Result<Vec<f64>> {
-    // Distances of what is nearest so far, the largest on top. Bits of numbers that are not negative are in their order.
+    // Max-heaps of the smallest distances. Bits of non-negative floats sort like their values.
     let mut nearest: Vec<BinaryHeap<u64>> = vec![BinaryHeap::with_capacity(FACES + 1); places.len()];
     mesh.each_face_corners(|corners| {
         for [corner, ..] in corners {

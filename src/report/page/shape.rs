@@ -1,4 +1,4 @@
-//! How well tetrahedra are shaped, and how well the wall keeps to the radius.
+//! Quality of the tetrahedra, and radius error of the wall.
 
 use super::html::Section;
 use crate::fidelity::{Along, Fidelity};
@@ -32,7 +32,7 @@ pub fn quality(quality: &TetQuality, dihedral: &DihedralHistogram) -> Section {
         .plots(&[ratios, angles])
 }
 
-/// A histogram in percent.
+/// Histogram in percent.
 pub(super) fn bars(title: &str, axes: [&str; 2], width: f64, counts: impl Iterator<Item = u64> + Clone) -> Panel {
     let sum = counts.clone().sum::<u64>().max(1) as f64;
     let points = counts.enumerate().map(|(i, n)| [(i as f64 + 0.5) * width, 100.0 * n as f64 / sum]).collect();
@@ -45,7 +45,7 @@ pub(super) fn bars(title: &str, axes: [&str; 2], width: f64, counts: impl Iterat
     }
 }
 
-/// What the mesh keeps of the network: axis, wall along the vessels, lumen.
+/// Fidelity of the mesh to the network: axis, wall along the vessels, lumen.
 pub fn fidelity(fidelity: &Fidelity, along: &Along) -> Section {
     let line = |label: &str, k: usize| Series {
         label: label.into(),
@@ -63,7 +63,7 @@ pub fn fidelity(fidelity: &Fidelity, along: &Along) -> Section {
         ("axis off the given one, median", format!("{:.4} radii", axis.median)),
         ("99 %, at most", format!("{:.3}, {:.3} radii", axis.p99, axis.worst)),
     ];
-    // Beside vessels that were moved it would be taken for an error of the wall; the plot is of the vessels as they were meshed.
+    // Only for unmoved vessels: otherwise it would look like a wall error, as the plot uses the meshed vessels.
     if !fidelity.is_moved() {
         tiles.push(("wall off the radius, median", format!("{:.2} %", 100.0 * wall.median)));
         tiles.push(("99 %", format!("{:.1} %", 100.0 * wall.p99)));

@@ -1,4 +1,4 @@
-//! What a check found, line by line.
+//! Results of a validity check, line by line.
 
 use super::html::{Mark, Section};
 use super::pictures::offenders;
@@ -8,10 +8,10 @@ use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::units::grouped;
 use std::io;
 
-/// Offenders of a line that are spelt out.
+/// Maximum number of listed offenders per line.
 const LISTED: usize = 3;
 
-/// The verdict for the head of a page.
+/// Verdict for the page header.
 pub fn headline(check: &CheckReport) -> (Mark, String) {
     let mark = match check.verdict {
         Verdict::Valid => Mark::Good,
@@ -21,7 +21,7 @@ pub fn headline(check: &CheckReport) -> (Mark, String) {
     (mark, verdict(check.verdict).to_owned())
 }
 
-/// The sizes of what was checked.
+/// Sizes of the checked mesh.
 pub fn summary(check: &CheckReport) -> Section {
     let counts = &check.counts;
     let mut tiles = vec![
@@ -38,10 +38,10 @@ pub fn summary(check: &CheckReport) -> Section {
     Section::new("Summary").tiles(&tiles)
 }
 
-/// A line per line of the definition, and pictures of what breaks them.
+/// Result of each line of the validity definition, with pictures of violations.
 ///
 /// # Errors
-/// What reading the mesh fails with.
+/// The mesh cannot be read.
 pub fn validity(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Section> {
     let mut items = Vec::new();
     for line in &check.lines {

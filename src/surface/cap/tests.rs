@@ -4,7 +4,7 @@ use super::*;
 use crate::surface::{Finer, euler_characteristic, vessel_wall};
 use anastomesh_mesh::geometry::{Tube, self_intersections};
 
-/// Tubes that start in one node, each with a terminal at its end, and the ends.
+/// Tubes from a common node, each with a terminal at its end, and the ends.
 fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<Closing<'static>>) {
     let (mut tubes, mut ends) = (Vec::new(), Vec::new());
     for (i, &(to, ra, rb)) in arms.iter().enumerate() {

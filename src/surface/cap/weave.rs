@@ -1,25 +1,25 @@
-//! The strip between the ragged end of a wall and the ring of a cap.
+//! Strip between the ragged end of a wall and the ring of a cap.
 
 use crate::surface::strip::{Step, cheapest};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// How far, in steps of the upper loop, the first rung may be from the nearest one.
+/// Maximum offset of the first rung from the nearest upper vertex, in steps of the upper loop.
 const SPREAD: usize = 2;
-/// Badness of a triangle that is turned over.
+/// Cost of an inverted triangle.
 const INVERTED: f64 = 1e6;
 
-/// The strip between two closed loops, both counter-clockwise about the `axis` through `center`; where the upper loop is
-/// further along the axis, triangles look away from it. Empty when a loop has less than three points.
+/// Returns the strip between two closed loops, both counter-clockwise about the `axis` through `center`. Triangles face
+/// away from the axis if the upper loop is further along it. Empty if a loop has fewer than three points.
 pub(crate) fn weave(low: &[Point3], high: &[Point3], center: &Point3, axis: &Vec3) -> Vec<Step> {
     let (n, m) = (low.len(), high.len());
     if n < 3 || m < 3 {
         return Vec::new();
     }
-    // Some rung starts at low[0]: try the upper points nearest to it.
+    // Some rung starts at low[0]: try the nearest upper points.
     let distance = |j: usize| (high[j] - low[0]).norm_squared();
     let nearest = (0..m).min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
     let spread = SPREAD.min((m - 1) / 2);
-    // Every triangle is wanted once for each first rung.
+    // Each triangle is needed once per first rung, so all costs are computed beforehand.
     let of = |step: Step| badness(step, low, high, center, axis);
     let along_low: Vec<f64> =
         (0..n * m).map(|k| of(Step::Low { from: k / m, to: (k / m + 1) % n, apex: k % m })).collect();
@@ -41,8 +41,8 @@ pub(crate) fn weave(low: &[Point3], high: &[Point3], center: &Point3, axis: &Vec
     best.map_or_else(Vec::new, |(_, steps)| steps)
 }
 
-/// One for an equilateral triangle, large for slivers and for those whose loop edge runs backwards round the axis:
-/// the strip's outside is that of the tangent times `rise`, the way from the lower loop to the upper one.
+/// Cost of a triangle: 1 if equilateral, large for slivers and for triangles whose loop edge runs backwards. The
+/// outward normal is the tangent times `rise`, the vector from the lower to the upper loop.
 fn badness(step: Step, low: &[Point3], high: &[Point3], center: &Point3, axis: &Vec3) -> f64 {
     let [a, b, c] = step.triangle(low, high);
     let rise = match step {

@@ -1,32 +1,31 @@
-//! Crotches: where two vessels part at a small angle, a grid that is too coarse for the gap between them leaves a web from
-//! wall to wall, which takes away some of their lengths. Such edges are split, and what is put amid them goes down to the
-//! bottom of the crotch.
+//! Removes webs in crotches. If two vessels diverge at a small angle, a coarse grid leaves a web across their gap. The
+//! web shortens the visible vessels. Its edges are split, and the new vertices move down to the bottom of the crotch.
 
 use super::{Criterion, Level, MAX_STEP, Relaxation, largest_cosine};
 use crate::surface::halfedge::HalfEdges;
 use anastomesh_mesh::geometry::{Aabb, Point3, Vec3, self_intersections};
 
-/// How often what is left is looked at: each time halves the edges of a web, and evens out the triangles beside it.
+/// Maximum passes. Each pass halves the edges of a web and relaxes the adjacent triangles.
 const PASSES: usize = 2;
-/// Rounds of evening out in each.
+/// Relaxation rounds per pass.
 const ROUNDS: usize = 2;
-/// An edge of a web leans by this (a cosine) towards the normals at both of its ends, out of the walls.
+/// Minimum cosine between a web edge and the normals at its ends, pointing out of the walls.
 const LEAN: f64 = 0.35;
-/// Its middle lies so far outside, in radii.
+/// Minimum distance of the edge's middle outside the wall, in radii.
 const OUTSIDE: f64 = 0.06;
-/// It is as long as this, in edge lengths aimed at.
+/// Minimum length of a web edge, in target edge lengths.
 const SHORTEST: f64 = 0.5;
-/// The edge length to aim at beside the new vertex, in lengths of the edge that was split.
+/// Target edge length next to the new vertex, relative to the split edge.
 const SHRINK: f64 = 0.8;
-/// Newton steps from a web to the bottom: each goes half an edge length at most.
+/// Newton steps from a web to the bottom. Each step is at most half an edge length.
 const STEPS: usize = 4;
-/// Triangles at the bottom look outwards by this (a cosine), and their smallest angles are over 25°.
+/// Minimum cosine between bottom triangles and the normal, and maximum cosine of their angles (25°).
 const OUTWARDS: f64 = 0.2;
 const SLIMMEST: f64 = 0.906;
-/// When all is done, no angle near an opened crotch is below 20°.
+/// Maximum cosine of the angles near an opened crotch after all passes (20°).
 const SLIMMEST_AT_LAST: f64 = 0.9396;
 
-/// What can be gone back to.
+/// Saved state for a rollback.
 struct Before {
     surface: HalfEdges,
     sizes: Vec<f64>,
@@ -34,8 +33,8 @@ struct Before {
 }
 
 impl<L: Level> Relaxation<'_, L> {
-    /// Takes webs away, and then does `finish`; where there are none, or what comes out is worse than a web, that is all
-    /// that is done. For whole surfaces.
+    /// Opens crotches and then runs `finish`. If the result is not sound, the original state is restored and only
+    /// `finish` runs. For whole surfaces.
     pub(super) fn open_crotches(&mut self, finish: impl Fn(&mut Self)) {
         let first = self.surface.points.len();
         let mut before = None;
@@ -58,7 +57,7 @@ impl<L: Level> Relaxation<'_, L> {
         }
     }
 
-    /// Splits the edges of webs; whether there were any.
+    /// Splits the edges of webs; returns true if any existed.
     fn split_webs(&mut self, before: &mut Option<Before>) -> bool {
         let mut any = false;
         for i in 0..self.half_count() {
@@ -87,7 +86,7 @@ impl<L: Level> Relaxation<'_, L> {
         self.normals = before.normals;
     }
 
-    /// Whether triangles at the vertices from `first` on, and at their neighbours, are well shaped and do not meet others.
+    /// True if triangles near the vertices from `first` on are well shaped and have no overlaps.
     fn is_sound_since(&self, first: usize) -> bool {
         let s = &*self.surface;
         let new = (first as u32..s.points.len() as u32).filter(|&v| s.has_vertex(v));
@@ -106,8 +105,8 @@ impl<L: Level> Relaxation<'_, L> {
         self_intersections(&mesh.points, &triangles).is_empty()
     }
 
-    /// Where the middle of an edge goes, and the normal of the level there: as deep as the four triangles that it will have are
-    /// well shaped and look outwards.
+    /// Returns the target point of an edge's middle and the level normal there. The point is the deepest for which all
+    /// four new triangles are well shaped and face outwards.
     fn bottom(&mut self, h: u32, size: f64) -> Option<(Point3, Vec3)> {
         let s = &*self.surface;
         let quad = [s.from(h), s.apex(s.twin(h)), s.to(h), s.apex(h)].map(|v| s.points[v as usize]);
@@ -144,7 +143,7 @@ impl<L: Level> Relaxation<'_, L> {
     }
 }
 
-/// Whether a triangle is well shaped and looks the way of the normal.
+/// True if a triangle is well shaped and faces along the normal.
 fn is_sound(a: &Point3, b: &Point3, c: &Point3, normal: &Vec3) -> bool {
     let area = (b - a).cross(&(c - a));
     area.dot(normal) > OUTWARDS * area.norm() && largest_cosine(a, b, c) < SLIMMEST

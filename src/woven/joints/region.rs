@@ -1,4 +1,4 @@
-//! The tetrahedra of one joint, taken out of the whole mesh, worked on, and put back.
+//! Extracts the tetrahedra of one joint from the whole mesh and writes them back.
 
 use anastomesh_mesh::tet_key;
 use rustc_hash::FxHashMap;
@@ -7,32 +7,31 @@ use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
 use anastomesh_mesh::quality::radius_ratio;
 
-/// Improves the inside of a mesh whose first so many points, and whose boundary faces, stay. All points keep their
-/// index; new ones may be appended. False when the mesh could not be improved and is unchanged.
+/// Optimizes the inside of a mesh. The given number of leading points and all boundary faces are fixed. Points keep
+/// their index; new ones may be appended. Returns false if the mesh is unchanged because it could not be optimized.
 ///
-/// The tetrahedralizer's optimiser is such a function; it is passed in because the stitching does not know it.
+/// The tetrahedralizer's optimizer is such a function; as a parameter it keeps this module independent of it.
 pub type Improve<'a> = dyn Fn(&mut TetMesh, usize) -> bool + Sync + 'a;
 
-/// A part of a mesh with its own numbering: first the points that the inside's improvement may not move, then the
-/// inner ones.
+/// Part of a mesh with its own numbering: points that the optimization must not move, then inner points.
 pub(super) struct Region {
     pub mesh: TetMesh,
-    /// The first so many points are not inner points.
+    /// Number of leading points that are not inner points.
     pub fixed: usize,
-    /// Points that lie on the wall and are free to move along it.
+    /// Points on the wall that are free to move along it.
     pub on_wall: Vec<bool>,
-    /// Boundary faces of the region; around a point of `on_wall` these are the faces of the wall.
+    /// Boundary faces of the region; around a point of `on_wall` these are faces of the wall.
     pub faces: Vec<[u32; 3]>,
     blocks: Vec<i32>,
-    /// Index in the whole mesh of each point.
+    /// Index of each point in the whole mesh.
     global: Vec<u32>,
-    /// The tetrahedra in the whole mesh, ascending.
+    /// Indices of the tetrahedra in the whole mesh, ascending.
     slots: Vec<u32>,
 }
 
 impl Region {
-    /// Takes out the tetrahedra `tets`. `degree` counts the tetrahedra around each vertex of the whole: a vertex whose
-    /// tetrahedra are not all in the region is shared with the rest and stays.
+    /// Extracts the tetrahedra `tets`. `degree` counts the tetrahedra around each vertex of the whole mesh: vertices
+    /// with tetrahedra outside the region are shared and fixed.
     pub fn new(whole: &TetMesh, tet_block: &[i32], tets: &[u32], degree: &[u32], frozen: &[bool]) -> Self {
         let corners: Vec<[u32; 4]> = tets.iter().map(|&t| whole.tets[t as usize]).collect();
         let mut vertices: Vec<u32> = corners.iter().flatten().copied().collect();
@@ -43,7 +42,7 @@ impl Region {
         for &v in first_faces.iter().flatten() {
             on_boundary[v as usize] = true;
         }
-        // Boundary points first; the order is stable otherwise.
+        // Boundary points first; otherwise the order is stable.
         let mut order: Vec<usize> = (0..counted.len()).collect();
         order.sort_by_key(|&i| !on_boundary[i] && !frozen[counted[i].0 as usize]);
         let mut place = vec![0_u32; order.len()];
@@ -76,7 +75,7 @@ impl Region {
         self.mesh.tets.iter().map(ratio).fold(f64::INFINITY, f64::min)
     }
 
-    /// Improves the inside and keeps the blocks up.
+    /// Optimizes the inside and updates the blocks.
     pub fn improve(&mut self, improve: &Improve) -> bool {
         let before = self.mesh.tets.clone();
         if !improve(&mut self.mesh, self.fixed) {
@@ -87,7 +86,7 @@ impl Region {
         true
     }
 
-    /// Puts the region back: into the slots it came from, then at the end; slots left over are added to `gaps`.
+    /// Writes the region back to its original slots, then to the end; unused slots are added to `gaps`.
     pub fn write_back(self, whole: &mut TetMesh, tet_block: &mut Vec<i32>, gaps: &mut Vec<u32>) {
         let mut global = self.global;
         for (i, p) in self.mesh.points.iter().enumerate() {
@@ -112,14 +111,14 @@ impl Region {
     }
 }
 
-/// Tetrahedra renumbered by `local`, and their boundary faces.
+/// Tetrahedra renumbered by `local`, with their boundary faces.
 fn boundary(corners: &[[u32; 4]], local: impl Fn(u32) -> u32, points: usize) -> (Vec<[u32; 4]>, Vec<[u32; 3]>) {
     let tets: Vec<[u32; 4]> = corners.iter().map(|t| t.map(&local)).collect();
     let faces = tet_adjacency(&tets, points).boundary().map(|handle| face_vertices(&tets, handle)).collect();
     (tets, faces)
 }
 
-/// Blocks of the tetrahedra of `after`, from those of the tetrahedra `before`.
+/// Blocks of the tetrahedra `after`, derived from those of `before`.
 fn blocks_after(before: &[[u32; 4]], blocks: &[i32], after: &TetMesh) -> Vec<i32> {
     let mut names = blocks.to_vec();
     names.sort_unstable();

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 const LAYERS: u32 = 18;
 const STEP: f64 = 0.3;
 
-/// A tube of three blocks with joints at layers 6 and 6 + `gap`, whose vertices near the joints are shaken.
+/// Tube of three blocks with joints at layers 6 and 6 + `gap`, with random displacements near the joints.
 struct Shaken {
     mesh: TetMesh,
     blocks: Vec<i32>,
@@ -44,8 +44,8 @@ fn all_positive(mesh: &TetMesh) -> bool {
     })
 }
 
-/// Moves the vertices that are not fixed towards the mean of their neighbours, in full, by half or by a quarter, as far as
-/// no tetrahedron around inverts and the worst of them does not get worse.
+/// Moves free vertices towards the mean of their neighbours, fully, by half or by a quarter. No tetrahedron may invert,
+/// and the worst must not degrade.
 fn laplacian(mesh: &mut TetMesh, fixed: usize) -> bool {
     let around = Incidence::of_cells(&mesh.tets, mesh.points.len());
     let neighbors = Incidence::of_vertices(&mesh.tets, mesh.points.len());
@@ -152,7 +152,7 @@ fn owners_are_disjoint_and_meet_half_way() {
 
 #[test]
 fn new_tetrahedra_take_the_block_of_their_surroundings() {
-    // Splits every tetrahedron in four: each quarter has to get the block of the whole.
+    // Splits every tetrahedron in four: each quarter must get the block of the whole.
     let split = |mesh: &mut TetMesh, _: usize| {
         for [a, b, c, d] in std::mem::take(&mut mesh.tets) {
             let sum =

@@ -1,5 +1,5 @@
-//! Moves of wall vertices: Taubin's, and a search along the wall that lifts the worst tetrahedron. Each is guarded by
-//! the exact predicate.
+//! Moves of wall vertices: Taubin smoothing, and a search along the wall that improves the worst tetrahedron. Exact
+//! predicates guard each move.
 
 use super::region::Region;
 use anastomesh_mesh::adjacency::Incidence;
@@ -7,14 +7,14 @@ use anastomesh_mesh::geometry::{Point3, Vec3, predicates::orient3d};
 use anastomesh_mesh::quality::{radius_ratio, triangle_area_vector};
 use anastomesh_mesh::smooth::Taubin;
 
-/// Rounds of the search along the wall; its step halves in a round that finds nothing.
+/// Rounds of the search along the wall; the step is halved after a round without success.
 const SEARCH_ROUNDS: usize = 10;
-/// How far a vertex may come off its tangent plane in Taubin's steps, in mean edge lengths.
+/// Maximum distance of a vertex from its tangent plane in Taubin smoothing, in mean edge lengths.
 const OFF_WALL: f64 = 0.25;
-/// How far a vertex may go along the wall in one search, in mean edge lengths.
+/// Maximum move of a vertex along the wall in one search, in mean edge lengths.
 const ALONG_WALL: f64 = 0.5;
 
-/// Who is around the vertices of a region's wall.
+/// Incidences of a region's wall vertices.
 pub(super) struct Walls {
     tets: Incidence,
     faces: Incidence,
@@ -22,15 +22,15 @@ pub(super) struct Walls {
     movable: Vec<u32>,
 }
 
-/// The surroundings of one wall vertex.
+/// Neighbourhood of one wall vertex.
 struct Fan<'a> {
     region: &'a Region,
     vertex: u32,
     tets: &'a [u32],
     faces: &'a [u32],
-    /// Sum of the area vectors of its wall faces, at unit length.
+    /// Unit normal: normalized sum of the area vectors of its wall faces.
     normal: Vec3,
-    /// Mean distance of its neighbours on the wall.
+    /// Mean distance to its neighbours on the wall.
     edge: f64,
 }
 
@@ -45,7 +45,7 @@ impl Walls {
         }
     }
 
-    /// Taubin's steps for all movable wall vertices; each then goes as far towards its goal as the guard allows.
+    /// Taubin smoothing of all movable wall vertices; each moves as far as the guards permit.
     pub fn taubin(&mut self, region: &mut Region, taubin: &Taubin, good: f64) -> usize {
         let good = good.max(region.worst());
         let mut goals = region.mesh.points.clone();
@@ -72,7 +72,7 @@ impl Walls {
         moves
     }
 
-    /// Moves wall vertices along the wall to lift tetrahedra whose radius ratio is below `below`, in ascending order.
+    /// Improves tetrahedra with a radius ratio less than `below` by moving wall vertices along the wall, in order.
     pub fn lift(&mut self, region: &mut Region, below: f64) -> usize {
         let mut moves = 0;
         for &v in &self.movable {
@@ -116,7 +116,7 @@ impl Fan<'_> {
         cell.map(|v| if v == self.vertex { *p } else { self.region.mesh.points[v as usize] })
     }
 
-    /// Smallest radius ratio around with the vertex at `p`, or anything up to `floor` when it is not above.
+    /// Smallest radius ratio around the vertex placed at `p`; stops early at any value up to `floor`.
     fn worst(&self, p: &Point3, floor: f64) -> f64 {
         let mut worst = f64::INFINITY;
         for &t in self.tets {
@@ -129,7 +129,7 @@ impl Fan<'_> {
         worst
     }
 
-    /// Whether every tetrahedron around is positive and no wall face looks inwards with the vertex at `p`.
+    /// True if, with the vertex at `p`, adjacent tetrahedra are positive and no wall face is inverted.
     fn is_sound(&self, p: &Point3) -> bool {
         let positive = self.tets.iter().all(|&t| {
             let [a, b, c, d] = self.corners(&self.region.mesh.tets[t as usize], p);
@@ -142,7 +142,7 @@ impl Fan<'_> {
             })
     }
 
-    /// A step whose part along the normal is at most `OFF_WALL` edges, and the other at most `ALONG_WALL`.
+    /// Limits a step to `OFF_WALL` edges along the normal and `ALONG_WALL` edges tangentially.
     fn held_to_wall(&self, step: Vec3) -> Vec3 {
         let off = self.normal.dot(&step);
         let along = step - self.normal * off;
@@ -151,7 +151,7 @@ impl Fan<'_> {
             + along * limit(along.norm(), ALONG_WALL * self.edge)
     }
 
-    /// The best place found along the wall, and the worst radius ratio there.
+    /// Best position found along the wall, and the worst radius ratio there.
     fn search(&self, start: Point3, before: f64) -> (Point3, f64) {
         let i = self.normal.iamin();
         let mut e = Vec3::zeros();

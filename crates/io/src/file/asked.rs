@@ -1,9 +1,9 @@
-//! A stream that ends when the run is to end.
+//! Cancellable output stream.
 
 use anastomesh_mesh::progress::{Progress, ask};
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// Asks before each piece of a file whether to go on; where not, the file does not appear.
+/// Checks for cancellation before each write; a cancelled file does not appear.
 pub struct Asked<'a, W> {
     pub out: W,
     pub progress: &'a dyn Progress,

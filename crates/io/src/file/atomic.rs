@@ -1,4 +1,4 @@
-//! Files that appear at their path whole or not at all.
+//! Atomic files: a file appears at its path completely or not at all.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
@@ -8,23 +8,23 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// A file under a temporary name in the folder of its target; `commit` moves it there, dropping it removes it.
+/// File under a temporary name in the target's folder; `commit` moves it there, dropping it removes it.
 #[derive(Debug)]
 pub struct AtomicFile {
     file: Option<BufWriter<File>>,
-    /// Says that the temporary file is in use.
+    /// Lock that marks the temporary file as in use.
     lock: Option<File>,
     temporary: PathBuf,
     target: PathBuf,
-    /// Bytes since the disk was last told to begin.
+    /// Bytes written since the last background flush.
     waiting: usize,
     flusher: Option<Flusher>,
 }
 
-/// After so many bytes the disk begins to write, while the program goes on: else all of it waits for the end.
+/// Bytes after which a background flush starts, so that the final flush is short.
 const BEGIN_AFTER: usize = 256 << 20;
 
-/// Makes a file's bytes reach the disk while more are written.
+/// Background thread that flushes a file's data while more is written.
 #[derive(Debug)]
 struct Flusher {
     begin: SyncSender<()>,
@@ -39,7 +39,7 @@ impl Flusher {
         Ok(Self { begin, thread })
     }
 
-    /// Waits for the disk. What it reports here it will not report again.
+    /// Waits for the disk. Errors reported here are not reported again.
     fn finish(self) -> io::Result<()> {
         drop(self.begin);
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the thread that waits for the disk failed")))
@@ -47,7 +47,7 @@ impl Flusher {
 }
 
 impl AtomicFile {
-    /// Opens a new temporary file beside `target`.
+    /// Creates a temporary file next to `target`.
     pub fn create(target: &Path) -> io::Result<Self> {
         if target.is_dir() {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
@@ -65,28 +65,28 @@ impl AtomicFile {
         })
     }
 
-    /// Writes out what is buffered: afterwards no full disk can be in the way of `commit`.
+    /// Flushes all buffers, so that a full disk can no longer make `commit` fail.
     pub fn complete(&mut self) -> io::Result<()> {
         if let Some(file) = self.file.take() {
             let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
             self.flusher.take().map_or(Ok(()), Flusher::finish)?;
-            // Without this a crash of the machine could leave the new name on an empty file.
+            // Otherwise a crash of the machine could leave an empty file under the new name.
             file.sync_data()?;
         }
         Ok(())
     }
 
-    /// Writes out what is buffered and moves the file to its target, replacing what was there.
+    /// Flushes the file and moves it to its target, replacing an earlier file.
     pub fn commit(mut self) -> io::Result<()> {
         self.complete()?;
-        // Windows moves no file that is open.
+        // Windows cannot move an open file.
         drop(self.lock.take());
         fs::rename(&self.temporary, &self.target)?;
         self.temporary = PathBuf::new();
         Ok(())
     }
 
-    /// Makes the disk begin; it may be busy with what it was told before.
+    /// Starts a background flush, unless one is in progress.
     fn begin(&mut self) -> io::Result<()> {
         if self.flusher.is_none() {
             self.flusher = Some(Flusher::new(self.open()?.get_ref())?);
@@ -102,7 +102,7 @@ impl AtomicFile {
     }
 }
 
-/// Makes something under a hidden name beside `target` that nothing has yet.
+/// Creates something under a new hidden name next to `target`.
 pub fn make_hidden<T>(target: &Path, kind: &str, make: impl Fn(&Path) -> io::Result<T>) -> io::Result<(PathBuf, T)> {
     let name = target.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
     let mut attempt = 0_u32;
@@ -119,15 +119,15 @@ pub fn make_hidden<T>(target: &Path, kind: &str, make: impl Fn(&Path) -> io::Res
     }
 }
 
-/// Locks a file or folder as long as it is in use. Where that is not possible nobody can take it for left over, either.
+/// Locks a file or folder while it is in use. If locking fails, it cannot be detected as stale either.
 pub fn locked(opened: io::Result<File>) -> Option<File> {
     opened.ok().filter(|file| file.try_lock().is_ok())
 }
 
-/// What is younger is never taken for left over: its run may not have locked it yet.
+/// Minimum age of stale files: the run of a younger file may not have locked it yet.
 const SETTLED: Duration = Duration::from_secs(10);
 
-/// Removes what runs that were killed have left under hidden names beside `target`: nobody holds its lock.
+/// Removes stale files of killed runs under hidden names next to `target`, which nobody locks.
 pub fn remove_left(target: &Path, kind: &str, remove: impl Fn(&Path)) {
     let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -138,7 +138,7 @@ pub fn remove_left(target: &Path, kind: &str, remove: impl Fn(&Path)) {
     }
 }
 
-/// Whether a name is one that [`make_hidden`] gives.
+/// True for a name created by [`make_hidden`].
 pub fn is_hidden_name(hidden: &OsStr, name: &str, kind: &str) -> bool {
     let rest = |hidden: &str| -> Option<bool> {
         let numbers = hidden.strip_prefix('.')?.strip_prefix(name)?.strip_prefix('.')?.strip_suffix(kind)?;
@@ -181,7 +181,7 @@ impl Drop for AtomicFile {
     fn drop(&mut self) {
         if !self.temporary.as_os_str().is_empty() {
             drop((self.file.take(), self.lock.take()));
-            // Nothing can be done about a failure here, and the target is untouched.
+            // Failures are ignored, and the target is unchanged.
             let _ = fs::remove_file(&self.temporary);
         }
     }
@@ -222,7 +222,7 @@ mod tests {
         for name in names.into_iter().chain([".out.vtu.7-0.part"]) {
             File::create(path(name)).unwrap().set_modified(long_ago).unwrap();
         }
-        // One is young, one is held.
+        // One file is young, one is locked.
         let young = path(".out.vtu.8-0.part");
         File::create(&young).unwrap();
         let held = locked(File::open(path(".out.vtu.7-0.part"))).unwrap();

@@ -1,81 +1,81 @@
-//! What can go wrong between a path and its bytes, whatever the format.
+//! Errors of file access for all formats.
 
 use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a file could not be read or written; `F` tells what can be wrong with the content of its format.
+/// Errors of reading and writing a file; `F` is the content error of the format.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError<F: Error + 'static> {
-    /// No format has this extension.
+    /// The extension is unknown.
     #[error("{}: the extension names no {kind} (known: {known})", path.display())]
     UnknownFormat {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What was looked for, such as a known mesh format.
+        /// Kind of format that was expected, such as a known mesh format.
         kind: &'static str,
-        /// The extensions that are known.
+        /// Known extensions.
         known: &'static str,
     },
-    /// The operating system refused to read.
+    /// The operating system reported a read error.
     #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its reason.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The operating system refused to write.
+    /// The operating system reported a write error.
     #[error("{}: cannot be written: {source}; {}", path.display(), advice(source))]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its reason.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// There is nothing in it.
+    /// The file is empty.
     #[error("{}: the file is empty: write or copy it again", path.display())]
     Empty {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// What is in the file is not what its format asks for.
+    /// The contents violate the format.
     #[error("{}: {fault}", path.display())]
     Content {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Content error.
         #[source]
         fault: F,
     },
-    /// A mesh that was to be written is no mesh: a cell names a point that does not exist.
+    /// A mesh to write is invalid: a cell refers to a missing point.
     #[error("{}: not written: cell {cell} of the mesh names a point that does not exist", path.display())]
     BadMesh {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The first such cell.
+        /// First invalid cell.
         cell: usize,
     },
 }
 
 impl<F: Error> FileError<F> {
-    /// Tells of a path that it could not be read.
+    /// Creates a read error for a path.
     pub fn read(path: &Path) -> impl FnOnce(io::Error) -> Self {
         |source| Self::Read { path: path.to_path_buf(), source }
     }
 
-    /// Tells of a path that it could not be written.
+    /// Creates a write error for a path.
     pub fn write(path: &Path) -> impl FnOnce(io::Error) -> Self {
         |source| Self::Write { path: path.to_path_buf(), source }
     }
 
-    /// Tells of a path what is wrong with its content.
+    /// Creates a content error for a path.
     pub fn content<G: Into<F>>(path: &Path) -> impl FnOnce(G) -> Self {
         |fault| Self::Content { path: path.to_path_buf(), fault: fault.into() }
     }
 
-    /// The same of a format among others.
+    /// Converts to the error of a more general format.
     pub fn widen<G: Error + From<F>>(self) -> FileError<G> {
         match self {
             Self::UnknownFormat { path, kind, known } => FileError::UnknownFormat { path, kind, known },
@@ -88,14 +88,14 @@ impl<F: Error> FileError<F> {
     }
 }
 
-/// What to do when a file cannot be written.
+/// Advice for a write error.
 fn advice(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "the disk is full: free space or name a file on another disk; an earlier file of this name is as it was"
         }
         io::ErrorKind::AlreadyExists => "name another file",
-        // Not the file is at fault, but the mesh.
+        // The mesh is at fault, not the file.
         io::ErrorKind::InvalidData | io::ErrorKind::Other => "an earlier file of this name is as it was",
         _ => "name a file in a folder that exists and can be written to",
     }

@@ -1,26 +1,26 @@
-//! A folder of files that appears whole or not at all.
+//! Atomic folders: a folder of files appears completely or not at all.
 
 use super::atomic::{AtomicFile, locked, make_hidden, remove_left};
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
-/// A folder under a temporary name beside its target; `commit` moves it there, dropping it removes it.
+/// Folder under a temporary name next to its target; `commit` moves it there, dropping it removes it.
 #[derive(Debug)]
 pub struct AtomicFolder {
     temporary: PathBuf,
-    /// Says that the temporary folder is in use.
+    /// Lock that marks the temporary folder as in use.
     lock: Option<File>,
     target: PathBuf,
     ours: Ours,
 }
 
-/// Whether a file is one that a writer makes, by its path within the folder, its parts joined by `/`.
+/// Predicate for files of a writer, by their path within the folder with `/` as separator.
 pub type Ours = fn(&str) -> bool;
 
 impl AtomicFolder {
-    /// Makes sure that the folder can be made or replaced: what is there is at most what an earlier run has written. The
-    /// results of a solver, say, are never removed.
+    /// Checks that the folder can be created or replaced: it contains only files of earlier runs. Other files, such as
+    /// solver results, are never removed.
     pub fn ensure_replaceable(target: &Path, ours: Ours) -> io::Result<()> {
         let taken = |text: String| Err(io::Error::new(io::ErrorKind::AlreadyExists, text));
         match fs::metadata(target) {
@@ -37,7 +37,7 @@ impl AtomicFolder {
         }
     }
 
-    /// Makes a new temporary folder.
+    /// Creates a new temporary folder.
     pub fn create(target: &Path, ours: Ours) -> io::Result<Self> {
         Self::ensure_replaceable(target, ours)?;
         remove_left(target, "part", |left| remove_ours(left, |name| ours(name) || is_part(name)));
@@ -45,22 +45,22 @@ impl AtomicFolder {
         Ok(Self { lock: locked(File::open(&temporary)), temporary, target: target.to_path_buf(), ours })
     }
 
-    /// A new file of the folder, by its path in it.
+    /// Creates a file in the folder.
     pub fn file(&self, name: &str) -> io::Result<AtomicFile> {
         AtomicFile::create(&self.place(name)?)
     }
 
-    /// A new file of the folder whose bytes the disk is not waited for: of a format that tells when some are missing.
+    /// Creates a file without waiting for the disk, for formats that detect missing data.
     pub fn quick_file(&self, name: &str) -> io::Result<BufWriter<File>> {
         Ok(BufWriter::with_capacity(1 << 18, File::create(self.place(name)?)?))
     }
 
-    /// Puts a small file into the folder. The disk is not waited for: with thousands of them that would take minutes.
+    /// Writes a small file without waiting for the disk, which would take minutes for thousands of files.
     pub fn put(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
         fs::write(self.place(name)?, bytes)
     }
 
-    /// Puts a file that is there into the folder under another name, too.
+    /// Copies a file of the folder to another name.
     pub fn copy(&self, name: &str, to: &str) -> io::Result<()> {
         fs::copy(self.temporary.join(name), self.place(to)?).map(drop)
     }
@@ -74,15 +74,15 @@ impl AtomicFolder {
         Ok(path)
     }
 
-    /// Moves the folder to its target, replacing what was there. When that fails all is as before.
+    /// Moves the folder to its target and replaces an earlier one. On failure the target is unchanged.
     pub fn commit(mut self) -> io::Result<()> {
         Self::ensure_replaceable(&self.target, self.ours)?;
         let earlier = self.set_aside()?;
-        // Windows moves no folder that is open.
+        // Windows cannot move an open folder.
         drop(self.lock.take());
         let moved = fs::rename(&self.temporary, &self.target);
         match (&earlier, &moved) {
-            // Of the way back nothing can be asked more than to be tried.
+            // Restoring the old folder is best effort.
             (Some(old), Err(_)) => drop(fs::rename(old, &self.target)),
             (Some(old), Ok(())) => remove_ours(old, self.ours),
             (None, _) => {}
@@ -93,12 +93,12 @@ impl AtomicFolder {
         moved
     }
 
-    /// Moves what is at the target out of the way.
+    /// Moves an existing target aside.
     fn set_aside(&self) -> io::Result<Option<PathBuf>> {
         if !self.target.exists() {
             return Ok(None);
         }
-        // An empty folder takes the place that the earlier one is moved to.
+        // An empty folder reserves the name to which the old one is moved.
         let (old, ()) = make_hidden(&self.target, "old", |old| fs::create_dir(old))?;
         match fs::rename(&self.target, &old) {
             Ok(()) => Ok(Some(old)),
@@ -118,7 +118,7 @@ impl Drop for AtomicFolder {
     }
 }
 
-/// All files below a folder, with their names as [`Ours`] has them.
+/// All files below a folder, with names as in [`Ours`].
 fn files_in(folder: &Path) -> io::Result<Vec<(String, PathBuf)>> {
     let (mut found, mut pending) = (Vec::new(), vec![(String::new(), folder.to_path_buf())]);
     while let Some((name, folder)) = pending.pop() {
@@ -130,7 +130,7 @@ fn files_in(folder: &Path) -> io::Result<Vec<(String, PathBuf)>> {
             } else {
                 format!("{name}/{}", own.to_string_lossy())
             };
-            // Links are files, wherever they lead.
+            // Symbolic links count as files.
             if entry.file_type()?.is_dir() {
                 pending.push((name, entry.path()));
             } else {
@@ -141,14 +141,14 @@ fn files_in(folder: &Path) -> io::Result<Vec<(String, PathBuf)>> {
     Ok(found)
 }
 
-/// Whether a name is that of a file that was not completed.
+/// True for the name of an incomplete file.
 fn is_part(name: &str) -> bool {
     name.rsplit('/')
         .next()
         .is_some_and(|own| own.starts_with('.') && Path::new(own).extension().is_some_and(|e| e == "part"))
 }
 
-/// Removes a folder's own files and what folders are empty then. Nothing can be done about a failure here.
+/// Removes a writer's files and the folders that become empty. Failures are ignored.
 fn remove_ours(folder: &Path, ours: impl Fn(&str) -> bool) {
     let files = files_in(folder).unwrap_or_default();
     let mut folders: Vec<&Path> = vec![folder];

@@ -1,4 +1,4 @@
-//! Between a path and its bytes, whatever the format: what can go wrong, and files that appear whole or not at all.
+//! File access for all formats: errors, and atomic writing.
 
 mod asked;
 mod atomic;

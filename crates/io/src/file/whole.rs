@@ -1,4 +1,4 @@
-//! Whole files: read, written so that they appear complete or not at all, and known by their extension.
+//! Reading and atomic writing of whole files, and file extensions.
 
 use super::asked::Asked;
 use super::atomic::AtomicFile;
@@ -8,7 +8,7 @@ use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The bytes of a file that is not empty.
+/// Reads a non-empty file.
 pub fn read_bytes<F: Error>(path: &Path) -> Result<Vec<u8>, FileError<F>> {
     if path.is_dir() {
         return Err(FileError::read(path)(io::ErrorKind::IsADirectory.into()));
@@ -20,41 +20,41 @@ pub fn read_bytes<F: Error>(path: &Path) -> Result<Vec<u8>, FileError<F>> {
     Ok(bytes)
 }
 
-/// Writes a file that appears whole or not at all.
+/// Writes a file atomically.
 pub fn write_whole(path: &Path, write: impl FnOnce(&mut AtomicFile) -> io::Result<()>) -> io::Result<()> {
     let mut file = AtomicFile::create(path)?;
     write(&mut file)?;
     file.commit()
 }
 
-/// Writes a text file: whole or not at all.
+/// Writes a text file atomically.
 ///
 /// # Errors
-/// What the operating system reports.
+/// The operating system reports an error.
 pub fn write_text(path: &Path, text: &str) -> io::Result<()> {
     write_bytes(path, text.as_bytes())
 }
 
-/// Writes a file of these bytes: whole or not at all.
+/// Writes a file with these bytes atomically.
 ///
 /// # Errors
-/// What the operating system reports.
+/// The operating system reports an error.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_whole(path, |file| file.write_all(bytes))
 }
 
-/// Makes sure that a text file can be written, and leaves nothing behind.
+/// Checks that a text file can be written, without side effects.
 ///
 /// # Errors
-/// What the operating system reports.
+/// The operating system reports an error.
 pub fn ensure_text_writable(path: &Path) -> io::Result<()> {
     AtomicFile::create(path).map(drop)
 }
 
-/// A file's path, and what writes what it holds.
+/// Path of a file and the function that writes its contents.
 pub type Writing<'a> = (PathBuf, &'a dyn Fn(&mut dyn Write) -> io::Result<()>);
 
-/// Writes several files that belong together: each is complete before the first of them appears, in the order given.
+/// Writes a set of files: all are complete before the first one appears, in the given order.
 pub fn write_all_whole<F: Error>(files: &[Writing], progress: &dyn Progress) -> Result<(), FileError<F>> {
     let mut complete = Vec::with_capacity(files.len());
     for (path, write) in files {
@@ -72,7 +72,7 @@ pub fn write_all_whole<F: Error>(files: &[Writing], progress: &dyn Progress) -> 
     Ok(())
 }
 
-/// Makes sure that every cell names existing points.
+/// Checks that all cells refer to existing points.
 pub fn ensure_sound<F: Error, const N: usize>(
     path: &Path,
     cells: &[[u32; N]],
@@ -84,17 +84,17 @@ pub fn ensure_sound<F: Error, const N: usize>(
     }
 }
 
-/// The first cell that names a point that does not exist.
+/// First cell that refers to a missing point.
 pub fn unsound<const N: usize>(cells: &[[u32; N]], points: usize) -> Option<usize> {
     cells.iter().position(|cell| cell.iter().any(|&v| v as usize >= points))
 }
 
-/// The extension of a path in lower case.
+/// Extension of a path in lower case.
 pub fn extension(path: &Path) -> String {
     path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
-/// The format that a path asks for by its extension.
+/// Format of a path, by its extension.
 pub fn by_extension<T: Copy>(path: &Path, formats: &[(&str, T)]) -> Option<T> {
     let extension = extension(path);
     formats.iter().find(|(known, _)| *known == extension).map(|&(_, format)| format)

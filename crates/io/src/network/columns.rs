@@ -1,22 +1,22 @@
-//! What a file says of its nodes or edges under names: numbers, short lists of them, or words.
+//! Named attributes of nodes or edges: numbers, short lists of numbers, or text.
 //!
-//! Values are kept with the row that has them, so that memory grows with the file, whatever names it makes up.
+//! Values are stored sparsely with their rows, so that memory is bounded by the file size for any number of names.
 
 use super::radii::plain;
 use rustc_hash::FxHashMap;
 
-/// A value under a name.
+/// Attribute value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
     Number(f64),
-    /// At most four are kept: one more than a position has.
+    /// At most four numbers: one more than a position has.
     List(Vec<f64>),
-    /// Anything else; the beginning of it.
+    /// Any other text, truncated.
     Text(String),
 }
 
 impl Value {
-    /// What a text holds: a number, or a list such as `1 2 3`, `(1, 2, 3)` or `[1;2]`, or words.
+    /// Parses a text: a number, a list such as `1 2 3`, `(1, 2, 3)` or `[1;2]`, or text.
     pub(super) fn of(text: &str) -> Self {
         let text = text.trim();
         if let Ok(number) = text.parse() {
@@ -41,7 +41,7 @@ pub(super) struct Columns {
     values: Vec<Vec<(u32, Value)>>,
 }
 
-/// A value that is no number where one is needed.
+/// Value that is not a number where one is needed.
 #[derive(Debug)]
 pub(super) struct NoNumber {
     pub row: u32,
@@ -49,7 +49,7 @@ pub(super) struct NoNumber {
 }
 
 impl Columns {
-    /// Sets what a row has under a name; what it had before is replaced.
+    /// Sets the value of a row under a name, and replaces an earlier value.
     pub(super) fn set(&mut self, row: u32, name: &str, value: Value) {
         let at = self.index.get(name).copied().unwrap_or_else(|| {
             self.index.insert(name.to_owned(), self.names.len());
@@ -60,17 +60,17 @@ impl Columns {
         self.values[at].push((row, value));
     }
 
-    /// The names, in the order in which they first came.
+    /// Attribute names in order of first occurrence.
     pub(super) fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The first name that fits, in lower case with letters and digits only, one of `wanted`; the earlier of these first.
+    /// Finds the first of `wanted` that equals a name reduced to lower case letters and digits.
     pub(super) fn find(&self, wanted: &[&str]) -> Option<&str> {
         wanted.iter().find_map(|w| self.names.iter().find(|name| plain(name) == *w)).map(String::as_str)
     }
 
-    /// The values under a name, one per row; none where a row has none.
+    /// Values under a name, one per row; `None` for rows without a value.
     pub(super) fn values(&self, name: &str, rows: usize) -> Vec<Option<&Value>> {
         let mut dense = vec![None; rows];
         for (row, value) in self.index.get(name).map(|&at| self.values[at].as_slice()).unwrap_or_default() {
@@ -81,7 +81,7 @@ impl Columns {
         dense
     }
 
-    /// The numbers under a name, one per row; not a number where a row has none.
+    /// Numbers under a name, one per row; NaN for rows without a value.
     pub(super) fn numbers(&self, name: &str, rows: usize) -> Result<Vec<f64>, NoNumber> {
         let number = |(row, value): (usize, Option<&Value>)| match value {
             None => Ok(f64::NAN),

@@ -1,60 +1,59 @@
-//! What a network file holds, how it is read, and what goes into it beside the network.
+//! Network file contents, reader options, and additional arrays.
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_skeleton::{LineGroup, NodeId, Skeleton};
 use serde::Serialize;
 use std::fmt;
 
-/// How to read a network.
+/// Options for reading a network.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NetworkOptions {
-    /// Name of the array (on points, cells or both) that holds the radius; by default it is found by its name.
+    /// Name of the radius array (on points, cells or both); detected by its name if `None`.
     pub radius_array: Option<String>,
-    /// What the file calls radii are diameters. Without this, only arrays with such a name are halved.
+    /// Treat all radii as diameters. Otherwise only arrays with such a name are halved.
     pub diameters: bool,
-    /// Radii are multiplied by this, as when they are in another unit than the positions.
+    /// Factor on radii, for a unit that differs from that of the positions.
     pub radius_scale: Option<f64>,
-    /// Positions and radii are multiplied by this, as from micrometres to metres by 1e-6.
+    /// Factor on positions and radii, such as 1e-6 from micrometres to metres.
     pub scale: Option<f64>,
-    /// Name of an array on the nodes whose numbers are to be kept beside the network.
+    /// Name of a node array whose values are kept with the network.
     pub node_array: Option<String>,
-    /// Read radii that cannot be used (zero, negative, infinite, no number) as they stand, for `prepare` to fill; by
-    /// default they are an error.
+    /// Keep unusable radii (zero, negative, infinite, NaN) for `prepare` to replace. By default they are an error.
     pub any_radii: bool,
 }
 
-/// A network as it stands in its file: `skeleton::clean` makes it usable.
+/// Network as stored in its file; `skeleton::clean` makes it usable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NetworkFile {
-    /// Nodes in the file's order, edges in the order of its lines.
+    /// Nodes in the file's order, and edges in the order of its lines.
     pub skeleton: Skeleton,
-    /// What the reader decided.
+    /// Notes on decisions of the reader.
     pub notes: Vec<NetworkNote>,
-    /// What the file calls its nodes.
+    /// Node names in the file.
     pub names: NodeNames,
-    /// Nodes that the file says to be where its trees begin, in its order.
+    /// Nodes that the file declares as roots, in its order.
     pub roots: Vec<NodeId>,
-    /// Of each node, the vessel that its line is drawn for; empty where the file says nothing of it.
+    /// Vessel of each node's line; empty if the file does not have this information.
     pub groups: Vec<Option<LineGroup>>,
-    /// The numbers of the array that was asked for, one per node; else empty.
+    /// Values of the requested node array, one per node; else empty.
     pub node_values: Vec<f64>,
 }
 
-/// What a file calls its nodes.
+/// Node names of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NodeNames {
-    /// Nothing: their order from 0 is their name.
+    /// No names: nodes are numbered from 0.
     #[default]
     Order,
-    /// By numbers of its own.
+    /// Numeric ids.
     Ids(Vec<i64>),
-    /// By words.
+    /// Text names.
     Words(Vec<String>),
 }
 
 impl NodeNames {
-    /// The node that has a name, if there is one.
+    /// Finds the node with a name.
     pub fn find(&self, name: &str, nodes: usize) -> Option<NodeId> {
         let at = match self {
             Self::Order => name.parse().ok().filter(|&at| at < nodes),
@@ -64,7 +63,7 @@ impl NodeNames {
         at.map(|at| NodeId(at as u32))
     }
 
-    /// What a node is called.
+    /// Name of a node.
     pub fn of(&self, node: NodeId) -> String {
         let named = match self {
             Self::Order => None,
@@ -75,76 +74,76 @@ impl NodeNames {
     }
 }
 
-/// A decision of a reader that its user should know.
+/// Decision of a reader that the user should know.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "note", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum NetworkNote {
-    /// Node radii come from this array on the points.
+    /// Node radii come from this point array.
     NodeRadii {
-        /// The array.
+        /// Array name.
         array: String,
     },
-    /// Each line has its own radius, from this array on the cells; node radii serve for the nodes alone.
+    /// Each line has its own radius, from this cell array; node radii are used for nodes only.
     EdgeRadii {
-        /// The array.
+        /// Array name.
         array: String,
     },
-    /// There are no radii on the points: a node's radius is that of its thickest edge.
+    /// There are no point radii: a node has the radius of its thickest edge.
     NodeRadiiFromEdges,
-    /// The array holds diameters, by its name: its values were halved.
+    /// The array name indicates diameters: the values were halved.
     Halved {
-        /// The array.
+        /// Array name.
         array: String,
     },
-    /// Other arrays could be radii too and were not used.
+    /// Other arrays are possible radii and were not used.
     NotUsed {
-        /// The arrays.
+        /// Array names.
         arrays: Vec<String>,
     },
-    /// Lines say which vessel they are drawn for, in arrays `GroupIds` and `Blanking`.
+    /// The arrays `GroupIds` and `Blanking` assign lines to vessels.
     Grouped {
-        /// How many vessels they are, without the insides of branchings.
+        /// Number of vessels, excluding the interiors of branchings.
         vessels: usize,
     },
-    /// Cells that are no lines were ignored.
+    /// Cells other than lines were ignored.
     OtherCells {
-        /// How many.
+        /// Number of ignored cells.
         count: usize,
     },
-    /// There are no coordinates z: all nodes lie at z = 0.
+    /// There are no z coordinates: all nodes have z = 0.
     Planar,
-    /// All radii were halved, as was asked for.
+    /// All radii were halved on request.
     Diameters,
-    /// Positions were multiplied by one number, radii by another.
+    /// Positions and radii were scaled.
     Scaled {
-        /// Factor of the positions.
+        /// Factor on positions.
         positions: f64,
-        /// Factor of the radii.
+        /// Factor on radii.
         radii: f64,
     },
-    /// The unit of lengths in the file, and that in which they go on.
+    /// Length units of the file and of the result.
     Unit {
-        /// In the file.
+        /// Unit in the file.
         from: &'static str,
-        /// From here on.
+        /// Unit of the result.
         to: &'static str,
     },
     /// Edges were read from a second file.
     EdgesFrom {
-        /// Its name.
+        /// File name.
         file: String,
     },
-    /// Vessels that meet at a joint end at different places: a short vessel was put between them.
+    /// Vessels of a joint end at different places and were connected by short vessels.
     Bridged {
-        /// How many of them.
+        /// Number of added vessels.
         count: usize,
     },
-    /// Vessels are so thick or so thin beside the network that radii and positions may be in different units.
+    /// The radii are so large or small relative to the network that units may be inconsistent.
     OutOfProportion {
         /// Largest radius.
         radius: f64,
-        /// Diagonal of the box around the network.
+        /// Diagonal of the network's bounding box.
         extent: f64,
     },
 }
@@ -188,7 +187,7 @@ impl fmt::Display for NetworkNote {
     }
 }
 
-/// Values that go with the nodes or the edges.
+/// Values of nodes or edges.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NetworkArray {
     /// Integers, one per node.
@@ -197,8 +196,8 @@ pub enum NetworkArray {
     NodeVectors(&'static str, Vec<[f64; 3]>),
 }
 
-/// The arrays that a refined network carries: `OriginalNode`, the node of the input that each node was, and
-/// `Displacement`, how it moved from `origin`.
+/// Additional arrays of a refined network: `OriginalNode`, the input node of each node, and `Displacement`, its
+/// displacement from `origin`.
 ///
 /// ```
 /// use anastomesh_io::network::refinement_arrays;

@@ -1,4 +1,4 @@
-//! Why a network could not be read or written.
+//! Errors of reading and writing networks.
 
 use super::amira::AmiraError;
 use super::csv::CsvError;
@@ -14,93 +14,93 @@ use crate::file::FileError;
 use anastomesh_skeleton::{NodeId, SkeletonError};
 use std::path::PathBuf;
 
-/// The extensions that are known, for messages.
+/// Known extensions, for messages.
 pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .am, .csv, .graphml, .gxl, .net, .json, .npyd, .in";
 
-/// Why a network could not be read or written.
+/// Errors of reading and writing a network file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum NetworkFileError {
-    /// The file has no known extension, cannot be read, is empty or holds no network.
+    /// The extension is unknown, or the file cannot be read, is empty or is not a network.
     #[error(transparent)]
     File(#[from] FileError<NetworkFault>),
-    /// It is a directory.
+    /// The path is a directory.
     #[error("{}: is a directory; name a network file ({KNOWN})", path.display())]
     Directory {
-        /// The directory.
+        /// Path of the directory.
         path: PathBuf,
     },
-    /// Networks are not written in this format.
+    /// The format cannot be written.
     #[error("{}: networks are written as .vtp or .npyd; name a file with one of these extensions", path.display())]
     NotWritten {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// SWC holds trees only.
+    /// SWC files can contain trees only.
     #[error("{}: several vessels lead to node {}: only trees are written as .swc; name a .vtp file", path.display(), node.0)]
     NotATree {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The node, numbered from 0.
+        /// Node with several incoming edges, numbered from 0.
         node: NodeId,
     },
-    /// The operating system refused to write.
+    /// The operating system reported a write error.
     #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its reason.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 }
 
-/// Why the content of a file is no network.
+/// Errors of the contents of a network file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum NetworkFault {
-    /// It is no usable SWC file.
+    /// The SWC file is invalid.
     #[error(transparent)]
     Swc(#[from] SwcError),
-    /// It is no usable VTP file.
+    /// The VTP file is invalid.
     #[error(transparent)]
     Vtp(#[from] VtpError),
-    /// It is no usable legacy VTK file.
+    /// The legacy VTK file is invalid.
     #[error(transparent)]
     Vtk(#[from] VtkLegacyError),
-    /// It is no usable spatial graph of Amira.
+    /// The Amira spatial graph is invalid.
     #[error(transparent)]
     Amira(#[from] AmiraError),
-    /// The tables are no usable network.
+    /// The tables are invalid.
     #[error(transparent)]
     Csv(#[from] CsvError),
-    /// It is no usable GraphML or GXL file.
+    /// The GraphML or GXL file is invalid.
     #[error(transparent)]
     GraphXml(#[from] GraphXmlError),
-    /// It is no usable Pajek file.
+    /// The Pajek file is invalid.
     #[error(transparent)]
     Pajek(#[from] PajekError),
-    /// It is no usable node-link data.
+    /// The node-link data are invalid.
     #[error(transparent)]
     Json(#[from] JsonError),
-    /// It is no usable folder of arrays.
+    /// The array folder is invalid.
     #[error(transparent)]
     Npy(#[from] NpyNetworkError),
-    /// Networks of this format are several files.
+    /// The format consists of several files.
     #[error("a network of this format is a folder: name its path")]
     SeveralFiles,
-    /// It is no usable input of a one-dimensional solver.
+    /// The input of the one-dimensional solver is invalid.
     #[error(transparent)]
     Sv1d(#[from] Sv1dError),
-    /// Files of its format have no numbers of nodes under names of their own.
+    /// The format has no named node arrays.
     #[error(
         "it has no array '{wanted}', as files of its format have none on nodes that are found by a name: \
          write the network as .vtp, .vtk, .csv, .graphml or .json"
     )]
     NoNodeArrays {
-        /// What was asked for.
+        /// Requested name.
         wanted: String,
     },
-    /// A number in it cannot be used.
+    /// A number is unusable.
     #[error("{0}; correct the file, or let `anastomesh prepare` fill radii that cannot be used")]
     Numbers(#[from] SkeletonError),
 }

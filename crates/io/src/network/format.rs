@@ -1,10 +1,10 @@
-//! Which formats of networks there are, and which of them a path asks for.
+//! Network formats and their file extensions.
 
 use super::error::{KNOWN, NetworkFileError};
 use crate::file::{FileError, by_extension};
 use std::path::Path;
 
-/// A format of network files.
+/// Format of network files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NetworkFormat {
@@ -12,25 +12,25 @@ pub enum NetworkFormat {
     Swc,
     /// VTK poly data with lines: `.vtp`.
     Vtp,
-    /// VTK's legacy format with lines: `.vtk`.
+    /// Legacy VTK format with lines: `.vtk`.
     Vtk,
-    /// A spatial graph of Amira or Avizo, as text: `.am`.
+    /// ASCII spatial graph of Amira or Avizo: `.am`.
     Amira,
     /// Tables of nodes and edges: `.csv`.
     Csv,
     /// GraphML or GXL: `.graphml`, `.gxl`, `.xml`.
     GraphXml,
-    /// Pajek's lists: `.net`.
+    /// Pajek lists: `.net`.
     Pajek,
     /// Node-link data of NetworkX: `.json`.
     Json,
-    /// Arrays of `NumPy`, a folder: `.npyd`.
+    /// Folder of `NumPy` arrays: `.npyd`.
     Npy,
     /// Input of SimVascular's one-dimensional solver: `.in`.
     Sv1d,
 }
 
-/// Extensions, in lower case.
+/// Extensions in lower case.
 const EXTENSIONS: [(&str, NetworkFormat); 13] = [
     ("swc", NetworkFormat::Swc),
     ("vtp", NetworkFormat::Vtp),
@@ -48,10 +48,10 @@ const EXTENSIONS: [(&str, NetworkFormat); 13] = [
 ];
 
 impl NetworkFormat {
-    /// The format that a file name asks for by its extension.
+    /// Format of a file name, by its extension.
     ///
     /// # Errors
-    /// `UnknownFormat` when no format has the extension.
+    /// `UnknownFormat` if no format has the extension.
     pub fn of(path: &Path) -> Result<Self, NetworkFileError> {
         let (kind, known) = ("known network format", KNOWN);
         let unknown = || FileError::UnknownFormat { path: path.to_path_buf(), kind, known };

@@ -1,4 +1,4 @@
-//! Graphs whose nodes have names and whose edges name two of them: what GraphML, JSON, Pajek and tables have in common.
+//! Graphs with named nodes, and edges that refer to names: the common part of GraphML, JSON, Pajek and tables.
 
 use super::columns::{Columns, NoNumber, Value};
 use super::content::{NetworkFile, NetworkNote, NetworkOptions, NodeNames};
@@ -8,16 +8,16 @@ use anastomesh_mesh::geometry::Point3;
 use rustc_hash::FxHashMap;
 use std::fmt;
 
-/// Where something stands in a file: a line, a byte, or an entry of a list.
+/// Position in a file: a line, a byte, or a list entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GraphPlace {
-    /// A line, from 1.
+    /// Line number, from 1.
     Line(usize),
-    /// A byte, from 0.
+    /// Byte offset, from 0.
     Byte(usize),
-    /// A node of the list of nodes, from 0.
+    /// Index in the list of nodes, from 0.
     Node(usize),
-    /// An edge of the list of edges, from 0.
+    /// Index in the list of edges, from 0.
     Edge(usize),
 }
 
@@ -32,7 +32,7 @@ impl fmt::Display for GraphPlace {
     }
 }
 
-/// Why a graph is no usable network.
+/// Errors of a graph.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GraphFault {
@@ -42,10 +42,10 @@ pub enum GraphFault {
     /// There are no edges.
     #[error("there is no edge in the file ({nodes} nodes): a network needs vessels")]
     NoEdges { nodes: usize },
-    /// Two nodes have one name.
+    /// Two nodes have an equal name.
     #[error("{place}: node '{name}' is there already, at {first}; names must differ")]
     RepeatedNode { place: GraphPlace, name: String, first: GraphPlace },
-    /// An edge names a node that does not exist.
+    /// An edge refers to a missing node.
     #[error("{place}: an edge ends at node '{name}', which is not in the file: correct it")]
     UnknownNode { place: GraphPlace, name: String },
     /// No positions are known.
@@ -54,51 +54,51 @@ pub enum GraphFault {
         if available.is_empty() { "none".to_owned() } else { available.join(", ") }
     )]
     NoPositions {
-        /// The attributes of nodes.
+        /// Names of the node attributes.
         available: Vec<String>,
     },
     /// A node has no position.
     #[error("{place}: node '{name}' has no {what}: complete it")]
     NoPosition { place: GraphPlace, name: String, what: String },
-    /// A value is no number.
+    /// A value is not a number.
     #[error("{place}: {what} is '{text}', which is no number: correct it")]
     NotANumber { place: GraphPlace, what: String, text: String },
-    /// No attribute can be taken for the radius.
+    /// No attribute is usable as radius.
     #[error(transparent)]
     Radius(#[from] RadiusFault),
-    /// There are no numbers of nodes under the name that was asked for.
+    /// The requested node array is not usable.
     #[error(transparent)]
     NodeArray(#[from] NodeArrayFault),
-    /// There are more nodes or edges than can be numbered.
+    /// The number of nodes or edges exceeds the index range.
     #[error("there are more nodes than can be numbered ({})", u32::MAX)]
     TooMany,
 }
 
-/// A graph as its file tells it.
+/// Graph as stored in its file.
 #[derive(Debug, Default)]
 pub(super) struct Graph {
     names: Vec<String>,
     index: FxHashMap<String, u32>,
-    /// Where each node stands.
+    /// Position of each node in the file.
     nodes_at: Vec<GraphPlace>,
-    /// What is said of nodes.
+    /// Attributes of nodes.
     pub nodes: Columns,
     ends: Vec<[String; 2]>,
     edges_at: Vec<GraphPlace>,
-    /// What is said of edges.
+    /// Attributes of edges.
     pub edges: Columns,
 }
 
-/// Names of the attributes that are a coordinate.
+/// Names of coordinate attributes.
 const X: &[&str] = &["x", "posx", "xpos", "px", "coordx", "xcoord", "xcoordinate", "positionx", "vx", "x0"];
 const Y: &[&str] = &["y", "posy", "ypos", "py", "coordy", "ycoord", "ycoordinate", "positiony", "vy", "y0"];
 const Z: &[&str] = &["z", "posz", "zpos", "pz", "coordz", "zcoord", "zcoordinate", "positionz", "vz", "z0"];
-/// Names of attributes that are a position.
+/// Names of position attributes.
 const POSITION: &[&str] =
     &["position", "pos", "coords", "coordinates", "coord", "coordinate", "xyz", "point", "vcoords"];
 
 impl Graph {
-    /// Adds a node; its row.
+    /// Adds a node and returns its row.
     pub(super) fn node(&mut self, name: &str, place: GraphPlace) -> Result<u32, GraphFault> {
         let row = self.names.len() as u32;
         if row == u32::MAX {
@@ -114,7 +114,7 @@ impl Graph {
         Ok(row)
     }
 
-    /// Adds an edge between two nodes, which may come later; its row.
+    /// Adds an edge between two nodes, which may be added later, and returns its row.
     pub(super) fn edge(&mut self, ends: [&str; 2], place: GraphPlace) -> Result<u32, GraphFault> {
         let row = self.ends.len() as u32;
         if row == u32::MAX {
@@ -125,7 +125,7 @@ impl Graph {
         Ok(row)
     }
 
-    /// The graph as a network.
+    /// Converts the graph to a network.
     pub(super) fn into_network(self, options: &NetworkOptions) -> Result<NetworkFile, GraphFault> {
         if self.names.is_empty() {
             return Err(GraphFault::NoNodes);
@@ -165,7 +165,7 @@ impl Graph {
         Ok(network)
     }
 
-    /// The nodes of all edges.
+    /// Nodes of all edges.
     fn path(&self) -> Result<Vec<u32>, GraphFault> {
         let mut path = Vec::with_capacity(2 * self.ends.len());
         for (ends, &place) in self.ends.iter().zip(&self.edges_at) {
@@ -225,7 +225,7 @@ impl Graph {
 
 struct Positions {
     points: Vec<Point3>,
-    /// Whether no node has a coordinate z.
+    /// True if no node has a z coordinate.
     planar: bool,
 }
 
@@ -233,7 +233,7 @@ fn no_number(bad: &NoNumber, what: &str, places: &[GraphPlace]) -> GraphFault {
     GraphFault::NotANumber { place: places[bad.row as usize], what: short(what), text: bad.text.clone() }
 }
 
-/// The beginning of a name, for a message.
+/// Start of a name, for a message.
 fn short(name: &str) -> String {
     name.chars().take(40).collect()
 }

@@ -1,4 +1,4 @@
-//! One network in every format, what each says when something is wrong, and damage to all.
+//! Tests of one network in every format, of error messages, and of damaged files.
 
 use super::graph::{GraphFault, GraphPlace};
 use super::*;
@@ -29,7 +29,7 @@ fn read(bytes: &[u8], format: NetworkFormat) -> Result<NetworkFile, String> {
     read_network_from(bytes, format, &NetworkOptions::default()).map_err(|e| e.to_string())
 }
 
-/// The places and radii of the ends of each edge, in units of a millionth, sorted.
+/// Positions and radii of the ends of each edge, in units of a millionth, sorted.
 fn vessels(skeleton: &Skeleton) -> Vec<[[i64; 4]; 2]> {
     let end = |edge: &Edge, k: usize| {
         let p = skeleton.node(edge.nodes[k]).position;
@@ -46,7 +46,7 @@ fn the_same_network_in_every_format() {
     let [a, b, c, d] = [[0, 0, 0, 2 * M], [0, 0, 10 * M, 2 * M], [0, 5 * M, 20 * M, 1_500_000], [0, -5 * M, 20 * M, M]];
     for (name, bytes, format) in ALL {
         let file = read(bytes, *format).unwrap_or_else(|e| panic!("{name}: {e}"));
-        // Amira's edges have both their ends, so that one point is there twice until the network is cleaned.
+        // Amira's edges contain both their ends, so one point occurs twice until the network is cleaned.
         let (skeleton, _) = clean(&file.skeleton).unwrap();
         assert_eq!(vessels(&skeleton), [[a, b], [b, d], [b, c]], "{name}");
         assert_eq!(skeleton.nodes.len(), 4, "{name}");
@@ -66,7 +66,7 @@ fn lengths_are_multiplied_as_asked() {
         NetworkOptions { scale: Some(10.0), radius_scale: Some(2.0), diameters: true, ..NetworkOptions::default() };
     for (name, bytes, format) in ALL {
         let network = read_network_from(bytes, *format, &options).unwrap();
-        // The fork in binary has diameters by name, which are not halved twice.
+        // The binary fork has diameters by name, which are not halved twice.
         let thickest = network.skeleton.edges.iter().flat_map(|e| e.radii).fold(0.0, f64::max);
         let expected = if *name == "fork_51.vtk" { 40.0 } else { 20.0 };
         assert!((thickest - expected).abs() < 1e-9, "{name}: {thickest}");
@@ -91,7 +91,7 @@ fn radii_in_another_unit_are_named() {
     );
 }
 
-/// What a format says when a piece of its fixture is replaced.
+/// Error message of a format after a replacement in its fixture.
 fn fault(bytes: &[u8], format: NetworkFormat, from: &str, to: &str) -> String {
     let text = String::from_utf8_lossy(bytes);
     assert!(text.contains(from), "{from}");
@@ -115,7 +115,7 @@ fn numbers_of_nodes_come_from_every_format_that_has_them() {
         let said = asked("nothing of the kind").unwrap_err();
         assert!(said.contains("no array 'nothing of the kind' on the nodes; there are: "), "{name}: {said}");
         let there = said.rsplit(": ").next().unwrap_or_default().split(", ").filter(|name| *name != "none");
-        // Vectors and words are none; a format may have its numbers on edges alone.
+        // Vectors and words are not accepted; a format may have numbers on edges only.
         let files: Vec<NetworkFile> = there.clone().filter_map(|name| asked(name).ok()).collect();
         assert_eq!(files.is_empty(), there.count() == 0, "{name}");
         for file in files {

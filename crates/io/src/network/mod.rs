@@ -1,4 +1,4 @@
-//! Networks in files: a folder for each format, and which of them a path asks for.
+//! Network files: one module per format, and format detection by extension.
 
 mod amira;
 mod columns;

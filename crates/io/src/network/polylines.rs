@@ -1,22 +1,20 @@
-//! Polylines over points become nodes and edges, with the radii that the file has: for nodes, for lines, or for each point
-//! of each line.
+//! Conversion of polylines to nodes and edges. Radii belong to nodes, to lines, or to each point of each line.
 
 use super::content::{NetworkFile, NetworkNote};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_skeleton::{Edge, LineGroup, Node, NodeId, Skeleton};
 
-/// Vessels as lines through points.
+/// Vessels as polylines.
 #[derive(Debug, Default)]
 pub(super) struct Polylines {
     pub points: Vec<Point3>,
-    /// Where each line ends in `path`, ascending.
+    /// End offset of each line in `path`, ascending.
     pub ends: Vec<usize>,
-    /// The points of all lines, one line after the other; each exists.
+    /// Valid point indices of all lines, one line after the other.
     pub path: Vec<u32>,
 }
 
-/// The radii that a file has; where there are several, those of `corners` go before those of `lines`, and these before those
-/// of `nodes`.
+/// Radii of a file. If several exist, `corners` has priority over `lines`, and `lines` over `nodes`.
 #[derive(Debug, Default)]
 pub(super) struct Radii {
     /// One per point.
@@ -27,17 +25,17 @@ pub(super) struct Radii {
     pub corners: Option<Vec<f64>>,
 }
 
-/// A line that names a point that does not exist.
+/// Line that refers to a missing point.
 #[derive(Debug)]
 pub(super) struct Astray {
-    /// The line, from 0.
+    /// Line index, from 0.
     pub line: usize,
-    /// What it names.
+    /// Invalid point index.
     pub point: i64,
 }
 
 impl Polylines {
-    /// Lines whose points are looked at first.
+    /// Creates polylines after a check of the point indices.
     pub(super) fn checked(points: Vec<Point3>, ends: Vec<usize>, connectivity: &[i64]) -> Result<Self, Astray> {
         let mut path = Vec::with_capacity(connectivity.len());
         let mut start = 0;
@@ -53,14 +51,13 @@ impl Polylines {
         Ok(Self { points, ends, path })
     }
 
-    /// Whether what this adds to a network can be numbered.
+    /// True if the network can hold these polylines without index overflow.
     pub(super) fn fits(&self, skeleton: &Skeleton) -> bool {
         let most = u32::MAX as usize;
         skeleton.nodes.len() + self.points.len() < most && skeleton.edges.len() + self.path.len() < most
     }
 
-    /// The groups of the points, by those of the lines and whether these are blanked: of points on lines of several
-    /// groups, none.
+    /// Groups of the points, from the group and blanking of their lines. `None` for points on lines of several groups.
     pub(super) fn groups(&self, of_lines: &[[i64; 2]]) -> Vec<Option<LineGroup>> {
         let mut seen: Vec<Option<Option<LineGroup>>> = vec![None; self.points.len()];
         let mut start = 0;
@@ -75,7 +72,7 @@ impl Polylines {
         seen.into_iter().map(Option::flatten).collect()
     }
 
-    /// Adds nodes and edges to a network.
+    /// Appends nodes and edges to a network.
     pub(super) fn append_to(&self, skeleton: &mut Skeleton, radii: &Radii) {
         let (base, first_edge) = (skeleton.nodes.len(), skeleton.edges.len());
         for (i, &position) in self.points.iter().enumerate() {
@@ -101,7 +98,7 @@ impl Polylines {
     }
 }
 
-/// Points on no line get any legal radius: cleaning drops them.
+/// Sets node radii from edges. Points on no line keep any radius, as cleaning removes them.
 fn node_radii_from_edges(nodes: &mut [Node], base: usize, edges: &[Edge]) {
     for edge in edges {
         for (id, radius) in edge.nodes.into_iter().zip(edge.radii) {
@@ -114,7 +111,7 @@ fn node_radii_from_edges(nodes: &mut [Node], base: usize, edges: &[Edge]) {
     }
 }
 
-/// Tells which vessels the lines of a network are drawn for, if its file says so of any.
+/// Notes the number of vessels if the file assigns lines to vessels.
 pub(super) fn tell_groups(network: &mut NetworkFile) {
     let mut vessels: Vec<i64> = network.groups.iter().flatten().filter(|g| !g.blanked).map(|g| g.group).collect();
     vessels.sort_unstable();

@@ -1,65 +1,65 @@
-//! Which arrays hold the radii, by their names or by the caller's choice.
+//! Selection of radius arrays, by name or by the caller's choice.
 
 use super::content::{NetworkNote, NetworkOptions};
 
 /// Name of the cell array with the radii at both ends of each line.
 pub(super) const END_RADII: &str = "EndRadii";
 
-/// Names of VMTK's cell arrays with the vessel that each line is drawn for.
+/// Names of VMTK's cell arrays that assign lines to vessels.
 pub(super) const GROUPS: [&str; 2] = ["GroupIds", "Blanking"];
 
-/// Why no array can be taken for the radius.
+/// Reasons for a missing radius array.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RadiusFault {
-    /// No array is known as a radius.
+    /// No array name indicates a radius.
     #[error(
         "no array on nodes or vessels is named like a radius; there are: {}; choose with --radius-array",
         list(available)
     )]
     NoRadius {
-        /// Names of the arrays there are.
+        /// Names of the existing arrays.
         available: Vec<String>,
     },
-    /// The array that was asked for does not exist.
+    /// The requested array does not exist.
     #[error("there is no array '{wanted}' on nodes or vessels; there are: {}", list(available))]
     UnknownArray {
-        /// What was asked for.
+        /// Requested name.
         wanted: String,
-        /// Names of the arrays there are.
+        /// Names of the existing arrays.
         available: Vec<String>,
     },
 }
 
-/// Why there are no numbers of nodes.
+/// Reasons for missing node values.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NodeArrayFault {
-    /// There is no such array.
+    /// The array does not exist.
     #[error("there is no array '{wanted}' on the nodes; there are: {}", list(available))]
     Unknown {
-        /// What was asked for.
+        /// Requested name.
         wanted: String,
-        /// Names of the arrays there are.
+        /// Names of the existing arrays.
         available: Vec<String>,
     },
-    /// The array has several numbers for each node.
+    /// The array has several components.
     #[error("array '{array}' has {components} numbers for each node: one is needed")]
     Components {
         array: String,
-        /// How many.
+        /// Number of components.
         components: usize,
     },
 }
 
-/// The array on the nodes that was asked for, among those that there are; none when none was.
+/// Finds the requested node array among the existing ones; `None` if none was requested.
 pub(super) fn node_array(names: &[String], options: &NetworkOptions) -> Result<Option<String>, NodeArrayFault> {
     let Some(wanted) = &options.node_array else { return Ok(None) };
     let unknown = || NodeArrayFault::Unknown { wanted: wanted.clone(), available: names.to_vec() };
     named(names, wanted).map(Some).ok_or_else(unknown)
 }
 
-/// Names as a list for people; the first of them where there are very many.
+/// Names as a readable list, truncated if very long.
 fn list(names: &[String]) -> String {
     const SHOWN: usize = 40;
     let more = if names.len() > SHOWN { format!(" and {} more", names.len() - SHOWN) } else { String::new() };
@@ -67,19 +67,19 @@ fn list(names: &[String]) -> String {
     if names.is_empty() { "none".to_owned() } else { shown.join(", ") + &more }
 }
 
-/// Which arrays hold the radius.
+/// Selected radius arrays.
 pub(super) struct Choice {
     pub points: Option<String>,
     pub cells: Option<String>,
     unused: Vec<String>,
-    /// Whether the arrays were found by their names.
+    /// True if the arrays were detected by their names.
     pub by_name: bool,
-    /// Whether all of them hold diameters, as the caller says.
+    /// True if the caller declares all of them as diameters.
     diameters: bool,
 }
 
 impl Choice {
-    /// Chooses among the arrays with these names on points and on cells.
+    /// Selects among the point and cell arrays with these names.
     pub(super) fn of(points: &[String], cells: &[String], options: &NetworkOptions) -> Result<Self, RadiusFault> {
         let diameters = options.diameters;
         let available = || points.iter().chain(cells).cloned().collect();
@@ -106,12 +106,12 @@ impl Choice {
         Ok(Self { unused, ..choice })
     }
 
-    /// Whether the values of an array are halved here: by its name, unless all radii are halved anyway.
+    /// True if the values of an array are halved here: by its name, unless all radii are halved anyway.
     pub(super) fn halves(&self, array: &str) -> bool {
         is_diameter(array) && !self.diameters
     }
 
-    /// The values of an array as radii.
+    /// Converts the values of an array to radii.
     pub(super) fn radii(&self, array: &str, mut values: Vec<f64>) -> Vec<f64> {
         if self.halves(array) {
             for value in &mut values {
@@ -121,7 +121,7 @@ impl Choice {
         values
     }
 
-    /// What the caller should know of the choice.
+    /// Notes on the selection.
     pub(super) fn notes(&self) -> Vec<NetworkNote> {
         let mut notes = Vec::new();
         let halved = |array: &String, notes: &mut Vec<_>| {
@@ -149,17 +149,17 @@ impl Choice {
     }
 }
 
-/// A name as it is compared: lower case, letters and digits only.
+/// Normalized name for comparisons: lower case letters and digits only.
 pub(super) fn plain(name: &str) -> String {
     name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }
 
-/// Whether an array holds diameters, by its name.
+/// True if the name indicates diameters.
 fn is_diameter(name: &str) -> bool {
     plain(name).contains("diam")
 }
 
-/// How well a name fits a radius: smaller is better.
+/// Rank of a name as radius array: smaller is better.
 fn rank(name: &str) -> Option<usize> {
     const KNOWN: [&str; 12] = [
         "radius",
@@ -173,14 +173,14 @@ fn rank(name: &str) -> Option<usize> {
         "avgradiusavg",
         "rad",
         "r",
-        // Amira's word for the distance from the axis to the wall.
+        // Amira's name of the distance from the axis to the wall.
         "thickness",
     ];
     let plain = plain(name);
     if let Some(rank) = KNOWN.iter().position(|&k| k == plain) {
         return Some(rank);
     }
-    // How much a radius spreads is no radius.
+    // Standard deviations and errors of radii are not radii.
     if ["std", "stdev", "variance", "error"].iter().any(|end| plain.ends_with(end)) {
         return None;
     }
@@ -190,12 +190,12 @@ fn rank(name: &str) -> Option<usize> {
     plain.contains("diam").then_some(KNOWN.len() + 1)
 }
 
-/// The name that fits a radius best; the first among equals.
+/// Best ranked name; the first among equals.
 fn best(names: &[String]) -> Option<String> {
     names.iter().filter_map(|n| rank(n).map(|r| (r, n))).min_by_key(|(r, _)| *r).map(|(_, n)| n.clone())
 }
 
-/// The array of this name, or else the first that differs from it only by case.
+/// Finds the array with this name, or else the first that differs only in case.
 fn named(names: &[String], wanted: &str) -> Option<String> {
     let exact = names.iter().find(|n| *n == wanted);
     exact.or_else(|| names.iter().find(|n| n.eq_ignore_ascii_case(wanted))).cloned()

@@ -1,4 +1,4 @@
-//! Reads a network in any format.
+//! Reader for all network formats.
 
 use super::content::{NetworkFile, NetworkNote, NetworkOptions};
 use super::error::{NetworkFault, NetworkFileError};
@@ -9,8 +9,8 @@ use crate::file::{FileError, read_bytes};
 use crate::npy::Arrays;
 use std::path::Path;
 
-/// Reads a network file; the extension gives the format. A table of nodes or edges is read together with the other one,
-/// found beside it by its name.
+/// Reads a network file in the format of its extension. A node or edge table is read together with its partner, which
+/// is located by name.
 ///
 /// ```
 /// use anastomesh_io::{NetworkOptions, read_network};
@@ -21,7 +21,7 @@ use std::path::Path;
 /// ```
 ///
 /// # Errors
-/// When the file cannot be read, or is no usable network.
+/// The file cannot be read, or is not a valid network.
 pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile, NetworkFileError> {
     let format = NetworkFormat::of(path);
     if path.is_dir() && !matches!(format, Ok(NetworkFormat::Npy)) {
@@ -39,7 +39,7 @@ pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile
     Ok(read_network_from(&read_bytes(path)?, format, options).map_err(FileError::content(path))?)
 }
 
-/// Reads two tables; `other` holds the edges, or else the nodes.
+/// Reads two tables; `other` contains edges if `has_edges`, else nodes.
 fn read_tables(
     path: &Path,
     other: &Path,
@@ -55,7 +55,7 @@ fn read_tables(
     Ok(network)
 }
 
-/// Reads a network from the bytes of a file. Both tables of nodes and edges can stand in one, an empty line between them.
+/// Reads a network from the bytes of a file. Node and edge tables may share one file, separated by an empty line.
 ///
 /// ```
 /// use anastomesh_io::NetworkOptions;
@@ -68,7 +68,7 @@ fn read_tables(
 /// ```
 ///
 /// # Errors
-/// When the bytes are no usable network.
+/// The bytes are not a valid network.
 pub fn read_network_from(
     bytes: &[u8],
     format: NetworkFormat,
@@ -89,15 +89,15 @@ pub fn read_network_from(
     finished(network, options)
 }
 
-/// Reads a network from the bytes of the files of a folder `.npyd`.
+/// Reads a network from the bytes of the files in a folder `.npyd`.
 ///
 /// # Errors
-/// When they are no usable network.
+/// The files are not a valid network.
 pub fn read_network_arrays(files: &[(&str, &[u8])], options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
     finished(npy::read(&Arrays::of(files), options)?, options)
 }
 
-/// What holds for every format: lengths multiplied as asked for, numbers that can be used.
+/// Common final steps: scales lengths as requested and checks all numbers.
 fn finished(mut network: NetworkFile, options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
     if let Some(wanted) = options.node_array.as_ref().filter(|_| network.node_values.is_empty()) {
         return Err(NetworkFault::NoNodeArrays { wanted: wanted.clone() });

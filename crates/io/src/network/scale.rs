@@ -1,14 +1,14 @@
-//! Lengths in other units than those of the file.
+//! Conversion of length units.
 
 use super::content::{NetworkFile, NetworkNote, NetworkOptions};
 use anastomesh_mesh::geometry::Aabb;
 
-/// Radii beyond this share of the extent of their network are in another unit than it.
+/// Maximum radius relative to the network extent. A larger one indicates inconsistent units.
 const THICKEST: f64 = 1.0;
-/// Networks have at most some thousand radii of their thickest vessel from end to end.
+/// Minimum of the largest radius relative to the network extent. Real networks span at most some thousand radii.
 const THINNEST: f64 = 1e-5;
 
-/// Multiplies positions and radii as the options say, and tells so.
+/// Scales positions and radii according to the options, and adds a note.
 pub(super) fn scale(network: &mut NetworkFile, options: &NetworkOptions) {
     let positions = options.scale.unwrap_or(1.0);
     let radii = positions * options.radius_scale.unwrap_or(1.0);
@@ -29,7 +29,7 @@ pub(super) fn scale(network: &mut NetworkFile, options: &NetworkOptions) {
     network.notes.extend(out_of_proportion(network));
 }
 
-/// Whether radii and positions may be in different units.
+/// Note on radii and positions that may have different units.
 fn out_of_proportion(network: &NetworkFile) -> Option<NetworkNote> {
     let extent = Aabb::of_points(network.skeleton.nodes.iter().map(|n| &n.position)).diagonal();
     let radii = network.skeleton.edges.iter().flat_map(|e| e.radii);

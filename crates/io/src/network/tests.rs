@@ -33,7 +33,7 @@ fn the_fixture_is_the_same_in_both_formats() {
     let (clean, report) = anastomesh_skeleton::clean(&a).unwrap();
     assert_eq!(clean, a);
     assert!(report.is_empty());
-    // Vessels stay clear of each other, and Murray's law holds at each junction.
+    // Vessels do not overlap, and Murray's law holds at each junction.
     let adjacency = a.adjacency();
     let overlaps = a.overlaps(&adjacency);
     assert!(overlaps.pairs.is_empty() && overlaps.unconnected.is_empty());
@@ -53,7 +53,7 @@ fn swc_with_every_liberty() {
     assert_eq!(s.edges[0].nodes.map(|n| n.0), [1, 0]);
     assert_eq!(s.edges[0].radii, [1.0, 0.5]);
     assert_eq!(s.components(&s.adjacency()).list.len(), 2);
-    // Carriage returns alone, a byte order mark, and a comment that is not UTF-8.
+    // Lines that end with a carriage return only, a byte order mark, and a comment that is not UTF-8.
     let old = b"\xef\xbb\xbf# 5 \xb5m\r1 1 0 0 0 1 -1\r2 1 1 0 0 1 1\r";
     assert_eq!(read(old, NetworkFormat::Swc).unwrap().skeleton.edges.len(), 1);
 }

@@ -1,4 +1,4 @@
-//! Writes a network in any format.
+//! Writer for all network formats.
 
 use super::content::NetworkArray;
 use super::error::NetworkFileError;
@@ -9,10 +9,10 @@ use anastomesh_skeleton::Skeleton;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes a network to a `.vtp` file or a folder `.npyd`: whole or not at all.
+/// Writes a network to a `.vtp` file or a folder `.npyd`, atomically.
 ///
-/// Points carry `Radius`, lines (one per edge) `EdgeRadius`, the mean of the radii at their ends, and `EndRadii`, both of
-/// them; the reader prefers the latter.
+/// Points have `Radius`. Lines (one per edge) have `EdgeRadius`, the mean radius of their ends, and `EndRadii`, both
+/// radii. The reader prefers `EndRadii`.
 ///
 /// ```
 /// use anastomesh_io::{NetworkOptions, read_network, write_network};
@@ -26,7 +26,7 @@ use std::path::Path;
 /// ```
 ///
 /// # Errors
-/// When the name has another extension, or the file cannot be written.
+/// The extension is not supported, or the file cannot be written.
 pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> Result<(), NetworkFileError> {
     if is(path, NetworkFormat::Npy) {
         return npy::write(path, skeleton, arrays).map_err(|source| unwritten(path, source));
@@ -35,8 +35,8 @@ pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) 
     write(path, |file| file.write_all(&vtp::bytes_of(skeleton, arrays)?))
 }
 
-/// Writes a tree whose edges lead away from its root, by the extension of the name: `.vtp` (as `write_network`), or
-/// `.swc`, which keeps the radii of the nodes but not those of the edges. Whole or not at all.
+/// Writes a tree whose edges lead away from its root, atomically. Extension `.swc` keeps node radii but no edge radii;
+/// others are as in `write_network`.
 ///
 /// ```
 /// use anastomesh_io::network::write_tree;
@@ -49,7 +49,7 @@ pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) 
 /// ```
 ///
 /// # Errors
-/// When the name has another extension, the file cannot be written, or two edges of an SWC file lead to one node.
+/// The extension is not supported, the file cannot be written, or two edges of an SWC file lead to one node.
 pub fn write_tree(path: &Path, tree: &Skeleton, arrays: &[NetworkArray]) -> Result<(), NetworkFileError> {
     if !is(path, NetworkFormat::Swc) {
         return write_network(path, tree, arrays);
@@ -59,10 +59,10 @@ pub fn write_tree(path: &Path, tree: &Skeleton, arrays: &[NetworkArray]) -> Resu
     write(path, |file| swc::write(file, tree, &parents))
 }
 
-/// Checks, before any work, that a network can be written to a path.
+/// Checks in advance that a network can be written to a path.
 ///
 /// # Errors
-/// When the name has another extension than `.vtp` or `.npyd`, or its folder does not exist.
+/// The extension is neither `.vtp` nor `.npyd`, or the parent folder does not exist.
 pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
     if is(path, NetworkFormat::Npy) {
         return npy::ensure_writable(path).map_err(|source| unwritten(path, source));
@@ -71,10 +71,10 @@ pub fn ensure_network_writable(path: &Path) -> Result<(), NetworkFileError> {
     ensure_folder(path)
 }
 
-/// Checks, before any work, that a tree can be written to a path.
+/// Checks in advance that a tree can be written to a path.
 ///
 /// # Errors
-/// When the name has another extension than `.vtp`, `.npyd` or `.swc`, or its folder does not exist.
+/// The extension is neither `.vtp`, `.npyd` nor `.swc`, or the parent folder does not exist.
 pub fn ensure_tree_writable(path: &Path) -> Result<(), NetworkFileError> {
     if is(path, NetworkFormat::Swc) { ensure_folder(path) } else { ensure_network_writable(path) }
 }
@@ -95,7 +95,7 @@ fn ensure_vtp(path: &Path) -> Result<(), NetworkFileError> {
     if is(path, NetworkFormat::Vtp) { Ok(()) } else { Err(NetworkFileError::NotWritten { path: path.to_path_buf() }) }
 }
 
-/// Checks that a file can be made at a path.
+/// Checks that a file can be created at a path.
 fn ensure_folder(path: &Path) -> Result<(), NetworkFileError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() || !folder.is_dir() {

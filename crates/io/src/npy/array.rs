@@ -1,19 +1,19 @@
-//! An array as numbers in rows.
+//! Decoding of an array to rows of numbers.
 
 use super::error::NpyFault;
 use super::header::Header;
 
-/// An array as it stands in its file, whose length is that of its header.
+/// Undecoded array, with a length that matches its header.
 #[derive(Clone, Debug)]
 pub(super) struct Array<'a> {
     header: Header,
     kind: Kind,
-    /// Whether the first byte of an item is the highest.
+    /// True for big-endian items.
     big: bool,
     data: &'a [u8],
 }
 
-/// What an item is.
+/// Type of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     F4,
@@ -45,7 +45,7 @@ impl Kind {
         })
     }
 
-    /// Bytes of an item.
+    /// Bytes per item.
     fn width(self) -> usize {
         match self {
             Self::I1 | Self::U1 => 1,
@@ -57,7 +57,7 @@ impl Kind {
 }
 
 impl<'a> Array<'a> {
-    /// Reads the header, and holds what it says against the length of the file.
+    /// Reads the header and checks it against the length of the file.
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, NpyFault> {
         let (header, data) = Header::read(bytes)?;
         let wanted = "integers or floats of 32 or 64 bits";
@@ -74,7 +74,7 @@ impl<'a> Array<'a> {
         Ok(Self { header, kind, big: order == '>', data })
     }
 
-    /// Number of rows; columns are `N`. An array of one dimension is one column.
+    /// Number of rows with `N` columns. A one-dimensional array is one column.
     fn rows<const N: usize>(&self) -> Result<usize, NpyFault> {
         match self.header.shape[..] {
             [rows] if N == 1 => Ok(rows),
@@ -86,12 +86,12 @@ impl<'a> Array<'a> {
         }
     }
 
-    /// Number of columns, 1 where there is one dimension.
+    /// Number of columns; 1 for a one-dimensional array.
     pub(super) fn columns(&self) -> usize {
         self.header.shape.get(1).copied().unwrap_or(1)
     }
 
-    /// The items as floats, in rows.
+    /// Decodes the items as rows of floats.
     pub(super) fn floats<const N: usize>(&self) -> Result<Vec<[f64; N]>, NpyFault> {
         let rows = self.rows::<N>()?;
         let values = match self.kind {
@@ -102,13 +102,13 @@ impl<'a> Array<'a> {
         Ok(self.in_rows(rows, &values))
     }
 
-    /// The items as integers, in rows.
+    /// Decodes the items as rows of integers.
     pub(super) fn ints<const N: usize>(&self) -> Result<Vec<[i64; N]>, NpyFault> {
         let rows = self.rows::<N>()?;
         Ok(self.in_rows(rows, &self.integers()?))
     }
 
-    /// Those that are beyond what an `i64` can hold become its largest, which names nothing.
+    /// Decodes integers. Values beyond `i64` become its maximum, which is no valid index.
     fn integers(&self) -> Result<Vec<i64>, NpyFault> {
         Ok(match self.kind {
             Kind::I1 => self.items(|b| i8::from_le_bytes(b).into()),

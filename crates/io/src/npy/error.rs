@@ -1,119 +1,119 @@
-//! What can be wrong with arrays.
+//! Errors of arrays.
 
-/// What is wrong in a folder of arrays, and with which of them.
+/// Error of an array folder, with the affected file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {fault}")]
 pub struct NpyError {
-    /// The file in the folder.
+    /// File in the folder.
     pub file: String,
-    /// What is wrong.
+    /// Fault of the file.
     pub fault: NpyFault,
 }
 
-/// What is wrong with an array. Rows count from 0.
+/// Fault of an array. Rows count from 0.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NpyFault {
-    /// The array that has to be there is not.
+    /// A required array is missing.
     #[error("is missing: write it with numpy.save")]
     Missing,
-    /// It does not begin as such files do.
+    /// The file is not an array.
     #[error("is no .npy file: write it with numpy.save")]
     NotNpy,
-    /// A later version of the format.
+    /// The format version is not supported.
     #[error("has version {major} of the format; 1, 2 and 3 are read")]
     Version {
-        /// The version.
+        /// Major version.
         major: u8,
     },
-    /// The header is cut off or says something else than it has to.
+    /// The header is truncated or malformed.
     #[error("its header cannot be read ({what}): write it again with numpy.save")]
     Header {
-        /// What is wrong.
+        /// Fault of the header.
         what: &'static str,
     },
-    /// The items are no numbers of the kind that is needed.
+    /// The item type is not suitable.
     #[error("its items are of type '{found}', and {wanted} are needed: convert it with astype")]
     Type {
-        /// What they are, as `NumPy` has it.
+        /// Type found, in `NumPy` notation.
         found: String,
-        /// What is needed.
+        /// Expected type.
         wanted: &'static str,
     },
-    /// It has not as many columns as is needed.
+    /// The number of columns is wrong.
     #[error("has the shape {}, and {wanted} is needed", shown(found))]
     Shape {
-        /// What it has.
+        /// Shape found.
         found: Vec<usize>,
-        /// What is needed.
+        /// Expected shape.
         wanted: String,
     },
-    /// Not as many bytes as shape and type say.
+    /// The number of bytes does not match shape and type.
     #[error("its shape and type announce {announced} bytes, it has {found}: it was not written or copied completely")]
     Length {
-        /// As many as they say; as many as can be said where there are more.
+        /// Announced number of bytes, saturated on overflow.
         announced: u64,
-        /// As many as there are.
+        /// Number of bytes found.
         found: u64,
     },
-    /// Not as many rows as another array.
+    /// The number of rows differs from another array.
     #[error("has {found} rows, and {of} has {wanted}: there has to be one for each")]
     Rows {
-        /// How many rows.
+        /// Number of rows found.
         found: usize,
-        /// The other array.
+        /// Name of the other array.
         of: &'static str,
-        /// How many that one has.
+        /// Number of rows of the other array.
         wanted: usize,
     },
-    /// More rows than can be numbered.
+    /// The number of rows exceeds the index range.
     #[error("has {found} rows, more than can be numbered with 32 bits")]
     TooMany {
-        /// How many rows.
+        /// Number of rows found.
         found: usize,
     },
-    /// A row names something that does not exist.
+    /// A row refers to a missing element.
     #[error("row {row} names {index}, but {of} has {count} rows, the first is 0")]
     Index {
-        /// The first such row.
+        /// First such row.
         row: usize,
-        /// What it names.
+        /// Invalid index.
         index: i64,
-        /// The array that is meant.
+        /// Array to which it refers.
         of: &'static str,
-        /// How many rows that one has.
+        /// Number of rows of that array.
         count: usize,
     },
-    /// A number that is infinite or none.
+    /// A number is infinite or NaN.
     #[error("row {row} has a number that is infinite or not a number: correct it")]
     NotFinite {
-        /// The first such row.
+        /// First such row.
         row: usize,
     },
-    /// A label that is none.
+    /// A label is not a 32-bit integer.
     #[error("row {row} has {value}, and an integer of 32 bits is needed")]
     NoLabel {
-        /// The first such row.
+        /// First such row.
         row: usize,
-        /// What it has.
+        /// Value found.
         value: String,
     },
-    /// What stands beside the arrays is no JSON, or other than it has to be.
+    /// The additional JSON file is invalid.
     #[error("cannot be read: {reason}; write the mesh again, or remove this file")]
     Json {
-        /// What is wrong.
+        /// Reason of the failure.
         reason: String,
     },
 }
 
 impl NpyFault {
-    /// The same with the file that it is about.
+    /// Adds the file name.
     pub fn of(self, file: impl Into<String>) -> NpyError {
         NpyError { file: file.into(), fault: self }
     }
 }
 
-/// A shape as Python has it.
+/// Shape in Python notation.
 fn shown(shape: &[usize]) -> String {
     match shape {
         [one] => format!("({one},)"),

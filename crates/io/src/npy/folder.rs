@@ -1,4 +1,4 @@
-//! The arrays of a folder, by name.
+//! Arrays of a folder, by name.
 
 use super::array::Array;
 use super::error::{NpyError, NpyFault};
@@ -9,21 +9,21 @@ use std::error::Error;
 use std::io;
 use std::path::Path;
 
-/// The extension of such a folder.
+/// Extension of array folders.
 const EXTENSION: &str = "npyd";
 
-/// Files of a folder as they are; what is no array that somebody asks for is not read.
+/// Undecoded files of a folder; only requested arrays are read.
 #[derive(Clone, Debug, Default)]
 pub struct Arrays {
     files: BTreeMap<String, Vec<u8>>,
 }
 
-/// Whether a path is called like a folder of arrays.
+/// True if a path has the extension of an array folder.
 pub fn is_folder(path: &Path) -> bool {
     crate::file::extension(path) == EXTENSION
 }
 
-/// Whether a folder of arrays has one of this name.
+/// True if an array folder has an array of this name.
 pub fn holds(folder: &Path, array: &str) -> bool {
     is_folder(folder) && folder.join(file(array)).is_file()
 }
@@ -33,17 +33,17 @@ fn file(name: &str) -> String {
 }
 
 impl Arrays {
-    /// Files by their names, wherever they come from.
+    /// Files by name, from any source.
     pub fn of(files: &[(&str, &[u8])]) -> Self {
         Self { files: files.iter().map(|&(name, bytes)| (name.to_owned(), bytes.to_vec())).collect() }
     }
 
-    /// Reads those of the named arrays that are there, and one other file.
+    /// Reads the existing ones of the named arrays, and one other file.
     ///
     /// # Errors
-    /// `Read` with the system's reason.
+    /// `Read` with the error of the operating system.
     pub fn read<F: Error>(folder: &Path, names: &[&str], other: Option<&str>) -> Result<Self, FileError<F>> {
-        // Of a folder that does not exist this tells why.
+        // Gives the reason if the folder does not exist.
         std::fs::read_dir(folder).map_err(FileError::read(folder))?;
         let mut files = BTreeMap::new();
         for name in names.iter().map(|name| file(name)).chain(other.map(ToOwned::to_owned)) {
@@ -56,17 +56,17 @@ impl Arrays {
         Ok(Self { files })
     }
 
-    /// A file that is no array, where it is there.
+    /// Contents of a file that is not an array, if it exists.
     pub fn other(&self, name: &str) -> Option<&[u8]> {
         self.files.get(name).map(Vec::as_slice)
     }
 
-    /// Whether an array is there.
+    /// True if an array exists.
     pub fn has(&self, name: &str) -> bool {
         self.files.contains_key(&file(name))
     }
 
-    /// An array that may be missing, and is empty then.
+    /// Reads an optional array, which is empty if missing.
     pub fn if_there<T>(
         &self,
         name: &str,
@@ -75,12 +75,12 @@ impl Arrays {
         if self.has(name) { read(self, name) } else { Ok(Vec::new()) }
     }
 
-    /// The names among these that are there.
+    /// Existing ones of these names.
     pub fn present(&self, names: &[&str]) -> Vec<String> {
         names.iter().filter(|name| self.has(name)).map(ToString::to_string).collect()
     }
 
-    /// The columns of an array that is there.
+    /// Number of columns of an existing array.
     pub fn columns(&self, name: &str) -> Result<usize, NpyError> {
         Ok(self.array(name)?.columns())
     }
@@ -90,17 +90,17 @@ impl Arrays {
         Array::read(bytes).map_err(|fault| fault.of(file(name)))
     }
 
-    /// An array of floats.
+    /// Reads an array of floats.
     pub fn floats<const N: usize>(&self, name: &str) -> Result<Vec<[f64; N]>, NpyError> {
         self.array(name)?.floats().map_err(|fault| fault.of(file(name)))
     }
 
-    /// An array of one float each, whatever they are.
+    /// Reads an array with one float per row, without checks.
     pub fn values(&self, name: &str) -> Result<Vec<f64>, NpyError> {
         Ok(self.floats::<1>(name)?.into_iter().flatten().collect())
     }
 
-    /// An array of points, whose coordinates are finite.
+    /// Reads an array of points with finite coordinates.
     pub fn points(&self, name: &str) -> Result<Vec<Point3>, NpyError> {
         let rows = self.floats::<3>(name)?;
         if rows.len() >= u32::MAX as usize {
@@ -112,7 +112,7 @@ impl Arrays {
         }
     }
 
-    /// An array of rows that name those of another one, which has so many.
+    /// Reads an array of row indices into another array with `count` rows.
     pub fn indices<const N: usize>(
         &self,
         name: &str,
@@ -131,7 +131,7 @@ impl Arrays {
         }
     }
 
-    /// An array of one label for each row of another one; none where it is not there.
+    /// Reads an array of labels for the rows of another array; `None` if missing.
     pub fn labels(&self, name: &str, (of, wanted): (&'static str, usize)) -> Result<Option<Vec<i32>>, NpyError> {
         if !self.has(name) {
             return Ok(None);
@@ -146,7 +146,7 @@ impl Arrays {
     }
 }
 
-/// Makes sure that an array has as many rows as another one.
+/// Checks that an array has as many rows as another one.
 pub fn ensure_rows(name: &str, found: usize, (of, wanted): (&'static str, usize)) -> Result<(), NpyError> {
     if found == wanted { Ok(()) } else { Err(NpyFault::Rows { found, of, wanted }.of(file(name))) }
 }

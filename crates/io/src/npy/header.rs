@@ -1,21 +1,21 @@
-//! The header of an array: a dictionary as Python writes it, with the type of the items, their order and the shape.
+//! Array header: a Python dictionary with item type, order and shape.
 
 use super::error::NpyFault;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// What the header says.
+/// Parsed header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Header {
-    /// The type of an item, such as `<f8`.
+    /// Item type, such as `<f8`.
     pub descr: String,
-    /// Whether the first index runs fastest.
+    /// True if the first index varies fastest.
     pub fortran: bool,
     pub shape: Vec<usize>,
 }
 
 impl Header {
-    /// Reads it; returns what stands behind it, too.
+    /// Reads the header and returns it with the remaining bytes.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, &[u8]), NpyFault> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(NpyFault::NotNpy)?;
         let cut_off = NpyFault::Header { what: "it is cut off" };
@@ -59,7 +59,7 @@ impl Header {
     }
 }
 
-/// What is left of the text.
+/// Remaining text.
 struct Words<'a>(&'a str);
 
 impl<'a> Words<'a> {
@@ -73,7 +73,7 @@ impl<'a> Words<'a> {
         if self.skip(mark) { Ok(()) } else { Err(otherwise) }
     }
 
-    /// A text in quotes; those that are needed here hold no backslash.
+    /// Parses a quoted text; the required ones contain no backslash.
     fn quoted(&mut self) -> Option<&'a str> {
         let text = self.0.trim_start();
         let quote = text.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
@@ -92,7 +92,7 @@ impl<'a> Words<'a> {
         Some(value)
     }
 
-    /// A tuple of counts.
+    /// Parses a tuple of counts.
     fn counts(&mut self) -> Result<Vec<usize>, &'static str> {
         self.expect('(', "the shape is no tuple")?;
         let mut counts = Vec::new();

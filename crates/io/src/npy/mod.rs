@@ -1,5 +1,5 @@
-//! `NumPy`'s arrays: a folder `.npyd` with a `.npy` file for each, which programs map into memory as they are. What the arrays are
-//! called says what the folder holds: a mesh, a network or a complex of triangles; each family has a reader of its own.
+//! `NumPy` arrays: a folder `.npyd` with one memory-mappable `.npy` file per array. The array names tell meshes,
+//! networks and triangle complexes apart, each with its own reader.
 
 mod array;
 mod error;

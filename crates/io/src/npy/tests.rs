@@ -1,4 +1,4 @@
-//! Arrays of every kind and order come back; what is wrong is named.
+//! Tests of round trips for every type and order, and of errors.
 
 use super::folder::Arrays;
 use super::{NpyError, NpyFault, write_array};

@@ -1,13 +1,13 @@
-//! Writes arrays.
+//! Writer of arrays.
 
 use std::io::{self, Write};
 
-/// A number that stands in an array.
+/// Number type of an array.
 pub trait Item: Copy {
-    /// What `NumPy` calls its type.
+    /// `NumPy` name of the type.
     const DESCR: &'static str;
 
-    /// Writes its bytes, the lowest first.
+    /// Writes the bytes in little-endian order.
     fn put(self, out: &mut impl Write) -> io::Result<()>;
 }
 
@@ -35,14 +35,14 @@ impl Item for u32 {
     }
 }
 
-/// Bytes before the text of the header: what the file is, its version, and the length of the text.
+/// Bytes before the header text: magic number, version, and length of the text.
 const BEFORE: usize = 10;
 
-/// What stands before the items: so many rows of so many columns; with one column there is one dimension.
+/// Writes the header of an array with these rows and columns; one column gives one dimension.
 pub fn head<T: Item>(out: &mut impl Write, rows: usize, columns: usize) -> io::Result<()> {
     let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
     let mut text = format!("{{'descr': '{}', 'fortran_order': False, 'shape': {shape}, }}", T::DESCR);
-    // Items begin at a multiple of 64, so that they can be mapped; the line ends in a newline.
+    // Items start at a multiple of 64 bytes, so that they can be memory-mapped; the header ends with a line break.
     let padding = (BEFORE + text.len() + 1).next_multiple_of(64) - BEFORE - text.len() - 1;
     text.extend(std::iter::repeat_n(' ', padding));
     text.push('\n');

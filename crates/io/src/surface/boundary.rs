@@ -1,5 +1,4 @@
-//! Boundaries of meshes in files of surfaces, written in passes: in the formats that surfaces are read from, and in those of
-//! pictures and printers.
+//! Multi-pass writer of mesh boundaries: surface formats, and formats for rendering and 3D printing.
 
 use super::error::SurfaceFileError;
 use super::{glb, obj, off, ply, stl, three_mf};
@@ -10,7 +9,7 @@ use anastomesh_mesh::progress::Progress;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
-/// A format to which boundaries are written.
+/// Output format of boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundaryFormat {
     /// `.stl`, binary.
@@ -29,7 +28,7 @@ pub enum BoundaryFormat {
     Vtp,
 }
 
-/// Extensions, in lower case.
+/// Extensions in lower case.
 const EXTENSIONS: [(&str, BoundaryFormat); 7] = [
     ("stl", BoundaryFormat::Stl),
     ("ply", BoundaryFormat::Ply),
@@ -41,10 +40,10 @@ const EXTENSIONS: [(&str, BoundaryFormat); 7] = [
 ];
 
 impl BoundaryFormat {
-    /// The format that a file name asks for by its extension.
+    /// Format of a file name, by its extension.
     ///
     /// # Errors
-    /// `UnknownFormat` when no format has the extension.
+    /// `UnknownFormat` if no format has the extension.
     pub fn of(path: &Path) -> Result<Self, SurfaceFileError> {
         let (kind, known) = ("format of surfaces that is known here", ".stl, .ply, .obj, .off, .glb, .3mf, .vtp");
         let unknown = || FileError::UnknownFormat { path: path.to_path_buf(), kind, known };
@@ -52,7 +51,7 @@ impl BoundaryFormat {
     }
 }
 
-/// Makes sure, before any work is done, that a boundary can be written to `path`. Leaves nothing behind.
+/// Checks in advance that a boundary can be written to `path`, without side effects.
 ///
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
@@ -61,8 +60,7 @@ pub fn ensure_boundary_writable(path: &Path) -> Result<(), SurfaceFileError> {
     AtomicFile::create(path).map(drop).map_err(FileError::write(path))
 }
 
-/// Writes a boundary to a file, in the format that its extension names. The file appears whole or not at all. STL and GLB
-/// round coordinates to 32 bits.
+/// Writes a boundary atomically, in the format of the file extension. STL and GLB round coordinates to 32 bits.
 ///
 /// ```
 /// use anastomesh_io::{BoundaryPart, BoundarySurface, MeshNotes, read_surface, write_boundary};
@@ -90,10 +88,10 @@ pub fn write_boundary(path: &Path, surface: &BoundarySurface, notes: &MeshNotes)
     write_boundary_watched(path, surface, notes, &())
 }
 
-/// As [`write_boundary`]. Ends, and leaves nothing, when it is told to.
+/// Writes a boundary like [`write_boundary`], with cancellation. A cancelled file does not appear.
 ///
 /// # Errors
-/// As there.
+/// See [`write_boundary`].
 pub fn write_boundary_watched(
     path: &Path,
     surface: &BoundarySurface,

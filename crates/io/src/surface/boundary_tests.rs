@@ -1,4 +1,4 @@
-//! What is written of a boundary is read as the surface that it is, in every format that is read.
+//! Tests that written boundaries are read back unchanged, in every readable format.
 
 use super::*;
 use crate::surface::{SurfaceFormat, read_content_from, read_surface_from};
@@ -26,7 +26,7 @@ fn surfaces_come_back() {
         ] {
             assert_eq!(read_surface_from(&bytes_of(format, &surface), read).unwrap(), expected, "{format:?}");
         }
-        // Points of STL are numbered as they come, and have 32 bits.
+        // STL points are numbered in order of occurrence and have 32 bits.
         let stl = read_content_from(&bytes_of(BoundaryFormat::Stl, &surface), SurfaceFormat::Stl).unwrap().mesh;
         let corners = |mesh: &TriMesh| -> Vec<[[f32; 3]; 3]> {
             let at = |v: u32| <[f64; 3]>::from(mesh.points[v as usize].coords).map(|x| x as f32);
@@ -53,7 +53,7 @@ fn glb_says_where_its_bytes_are() {
     let expected = surface.gather().unwrap();
     let corners: Vec<u32> = (0..3).map(|i| word(first + 4 * i) as u32).collect();
     assert_eq!(corners, expected.triangles[0]);
-    // Coordinates count from where the node is.
+    // Coordinates are relative to the node.
     let x = f32::from_le_bytes(bytes[body..body + 4].try_into().unwrap());
     let from = text["nodes"][0]["translation"][0].as_f64().unwrap();
     assert!((f64::from(x) + from - expected.points[0].x).abs() < 1e-6);

@@ -1,11 +1,11 @@
-//! What a surface file holds: the surface, and how the file counts.
+//! Contents of a surface file: the surface and the numbering of the file.
 
 use anastomesh_mesh::TriMesh;
 
-/// Bytes of a triangle of a binary STL file.
+/// Bytes per triangle in a binary STL file.
 const RECORD: u64 = 50;
 
-/// A surface as it was read, with what its file says beside it.
+/// Surface from a file, with additional information.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceContent {
@@ -13,28 +13,27 @@ pub struct SurfaceContent {
     pub mesh: TriMesh,
     /// Number of the first face and the first point in the file: 1 in OBJ, else 0.
     pub first: u32,
-    /// The face that each triangle is a piece of, counted from 0; empty when each is the face of the same number.
+    /// Original face of each triangle, from 0; empty if triangles and faces coincide.
     pub face_of: Vec<u32>,
-    /// Where points are joined (STL): the first of the corners that each is, counted from 0 through all faces. Otherwise
-    /// empty.
+    /// First corner at each point, counted from 0 through all faces, if corners were merged (STL); otherwise empty.
     pub corner_of: Vec<u32>,
-    /// What a reader should know about the file, although it could be read.
+    /// Anomalies of the file that did not prevent reading.
     pub notes: Vec<SurfaceNote>,
 }
 
-/// What is odd about a file that could be read all the same.
+/// Anomaly of a readable file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceNote {
-    /// Bytes that its count of triangles does not cover.
+    /// The file is longer than its triangle count implies.
     #[error(
         "what follows the last of its {triangles} triangles is not read: {bytes} bytes{}",
         if *bytes < RECORD { "" } else { ", room for more triangles, so that its count may be wrong" }
     )]
     Surplus {
-        /// How many bytes.
+        /// Number of surplus bytes.
         bytes: u64,
-        /// How many triangles are announced.
+        /// Announced number of triangles.
         triangles: usize,
     },
 }

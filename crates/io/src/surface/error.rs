@@ -1,111 +1,109 @@
-//! What can be wrong with a surface file. The formats are words or bytes in the same few structures, and so their faults
-//! are the same.
+//! Errors of surface files, shared by all formats, as these have similar structures.
 
 use crate::file::FileError;
 use crate::npy::NpyError;
 use crate::text::{Place, TextFault, shown};
 use anastomesh_mesh::facets::FacetError;
 
-/// Why a surface file could not be read or written.
+/// Errors of reading and writing a surface file.
 pub type SurfaceFileError = FileError<SurfaceFault>;
 
-/// Why the content of a file is no triangle surface. Faces are numbered as the format numbers points: from 1 in OBJ, else
-/// from 0.
+/// Content errors of a surface file. Faces are numbered like points in the format: from 1 in OBJ, else from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceFault {
-    /// Its words are not those of the format.
+    /// A word is invalid.
     #[error(transparent)]
     Text(#[from] TextFault),
-    /// An array is missing or wrong.
+    /// An array is missing or invalid.
     #[error(transparent)]
     Npy(#[from] NpyError),
-    /// A face has too few corners, or in a format that knows only triangles too many.
+    /// A face has too few corners, or too many in a triangle-only format.
     #[error("{place}: face {face} has {corners} corners, which make no triangle: correct or remove it")]
     NotATriangle {
         /// The first such face.
         face: usize,
-        /// How many corners it has.
+        /// Number of corners.
         corners: i64,
-        /// Where it stands.
+        /// Position in the file.
         place: Place,
     },
-    /// A face with more than three corners has no triangulation.
+    /// A polygonal face cannot be triangulated.
     #[error("{place}: face {face} cannot be cut into triangles: {fault}")]
     Polygon {
         /// The first such face.
         face: usize,
-        /// Where it stands.
+        /// Position in the file.
         place: Place,
-        /// Why.
+        /// Reason of the failure.
         #[source]
         fault: FacetError,
     },
-    /// A face names a point that does not exist.
+    /// A face refers to a missing point.
     #[error("{place}: face {face} names the point {index}, but there are {points} points, the first is {first}")]
     BadIndex {
         /// The first such face.
         face: usize,
-        /// What it names.
+        /// Invalid index.
         index: i64,
-        /// How many points there are.
+        /// Number of points.
         points: usize,
-        /// The number of the first point in this format.
+        /// Number of the first point in this format.
         first: u32,
-        /// Where it stands.
+        /// Position in the file.
         place: Place,
     },
-    /// A coordinate of a binary file is infinite or not a number.
+    /// A coordinate of a binary file is infinite or NaN.
     #[error("byte {byte}: point {point} has a coordinate that is infinite or not a number: correct it")]
     NotFinite {
         /// The first such point.
         point: usize,
-        /// Where it stands.
+        /// Byte offset.
         byte: usize,
     },
-    /// The file is of a kind of the format that is not read.
+    /// The variant of the format is not supported.
     #[error("{place}: '{found}' is a variant that is not read: save it as {instead}")]
     Variant {
-        /// What is there.
+        /// Text found.
         found: String,
-        /// Where it stands.
+        /// Position in the file.
         place: Place,
-        /// What would be read.
+        /// Supported variant.
         instead: &'static str,
     },
-    /// A word of the format is missing.
+    /// A required word is missing.
     #[error("{place}: '{found}' stands where {expected} has to be: correct it, or give the file its right extension")]
     Unexpected {
-        /// What is there.
+        /// Text found.
         found: String,
-        /// What had to be there.
+        /// Expected word.
         expected: &'static str,
-        /// Where it stands.
+        /// Position in the file.
         place: Place,
     },
-    /// Something that every such file has is not there.
+    /// A required part is missing.
     #[error("{what} is missing: write the file again")]
     Missing { what: &'static str },
-    /// A binary file does not have the length that its counts say.
+    /// The length of a binary file differs from its counts.
     #[error(
         "the counts of the file announce at least {announced} bytes, it has {found}: \
          it was not written or copied completely, or its counts are wrong"
     )]
     Length {
         announced: u64,
-        /// How long it is.
+        /// Length found, in bytes.
         found: u64,
     },
-    /// There are no faces.
+    /// The file has no faces.
     #[error("there is no face in it, only {points} points: a surface is needed")]
     NoFaces {
-        /// How many points there are.
+        /// Number of points.
         points: usize,
     },
 }
 
 impl SurfaceFault {
-    /// A word stands where something else has to be.
+    /// Error of an unexpected word.
     pub(super) fn unexpected(found: &[u8], expected: &'static str, place: Place) -> Self {
         Self::Unexpected { found: shown(found), expected, place }
     }

@@ -1,4 +1,4 @@
-//! Faces on their way from a file to triangles.
+//! Conversion of polygonal faces to triangles.
 
 use super::content::SurfaceContent;
 use super::error::SurfaceFault;
@@ -7,46 +7,46 @@ use crate::text::from_first;
 use anastomesh_mesh::facets;
 use anastomesh_mesh::geometry::Point3;
 
-/// The faces that were read so far, and the corners of the one that is being read.
+/// Completed faces, and the corners of the current face.
 #[derive(Debug)]
 pub(super) struct Faces {
-    /// How many points there will be.
+    /// Number of points.
     points: usize,
-    /// The number of the first point, and of the first face, in the file.
+    /// Number of the first point, and of the first face, in the file.
     first: u32,
     triangles: Vec<[u32; 3]>,
     polygons: Vec<Polygon>,
     open: Vec<u32>,
 }
 
-/// A face with more than three corners.
+/// Face with more than three corners.
 #[derive(Debug)]
 struct Polygon {
-    /// Triangles before it.
+    /// Number of triangles before it.
     before: usize,
-    /// Its number among the faces.
+    /// Face index.
     face: usize,
     corners: Vec<u32>,
     place: Place,
 }
 
 impl Faces {
-    /// No faces yet, with room for some; `points` will be there, numbered from `first`.
+    /// Creates an empty list with capacity for `room` faces; `points` are numbered from `first`.
     pub(super) fn new(points: usize, first: u32, room: usize) -> Self {
         Self { points, first, triangles: Vec::with_capacity(room), polygons: Vec::new(), open: Vec::new() }
     }
 
-    /// How many faces are complete.
+    /// Number of complete faces.
     fn count(&self) -> usize {
         self.triangles.len() + self.polygons.len()
     }
 
-    /// The number in the file of the face that is being read.
+    /// Number of the current face in the file.
     pub(super) fn number(&self) -> usize {
         self.count() + self.first as usize
     }
 
-    /// A corner of the face that is being read, as numbered in the file.
+    /// Adds a corner to the current face, as numbered in the file.
     pub(super) fn corner(&mut self, named: i64, place: Place) -> Result<(), SurfaceFault> {
         let (points, first) = (self.points, self.first);
         let bad = || SurfaceFault::BadIndex { face: self.number(), index: named, points, first, place };
@@ -55,7 +55,7 @@ impl Faces {
         Ok(())
     }
 
-    /// The face that is being read is complete.
+    /// Completes the current face.
     pub(super) fn end_face(&mut self, place: Place) -> Result<(), SurfaceFault> {
         let (face, number) = (self.count(), self.number());
         match *self.open.as_slice() {
@@ -74,7 +74,7 @@ impl Faces {
         Ok(())
     }
 
-    /// The triangles, those of polygons in their place.
+    /// Converts all faces to triangles; those of polygons are in place.
     pub(super) fn into_surface(self, points: Vec<Point3>) -> Result<SurfaceContent, SurfaceFault> {
         let first = self.first;
         let mut content = SurfaceContent { first, ..SurfaceContent::default() };
@@ -101,7 +101,7 @@ impl Faces {
     }
 }
 
-/// Triangles with the faces that they are pieces of.
+/// Triangles with their original faces.
 struct Pieces {
     content: SurfaceContent,
     face: u32,

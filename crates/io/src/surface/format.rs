@@ -1,24 +1,24 @@
-//! Which formats of surfaces there are, and which of them a path asks for.
+//! Surface formats and their file extensions.
 
 use super::error::SurfaceFileError;
 use crate::file::{FileError, by_extension};
 use std::path::Path;
 
-/// A format of surface files.
+/// Format of surface files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SurfaceFormat {
-    /// Geomview's object file format, `.off`; colours, normals and texture coordinates are passed over.
+    /// Geomview object file format, `.off`; colours, normals and texture coordinates are ignored.
     Off,
-    /// Polygon file format, `.ply`: text, or binary of either byte order.
+    /// Polygon file format, `.ply`: text, or binary in either byte order.
     Ply,
-    /// Stereolithography, `.stl`: text or binary. It has no common vertices: corners at the same place become one.
+    /// Stereolithography, `.stl`: text or binary. Equal corners are merged, as it has no shared vertices.
     Stl,
-    /// Wavefront, `.obj`: vertices and faces; everything else is passed over.
+    /// Wavefront, `.obj`: vertices and faces; everything else is ignored.
     Obj,
 }
 
-/// Extensions, in lower case.
+/// Extensions in lower case.
 const EXTENSIONS: [(&str, SurfaceFormat); 4] = [
     ("off", SurfaceFormat::Off),
     ("ply", SurfaceFormat::Ply),
@@ -27,10 +27,10 @@ const EXTENSIONS: [(&str, SurfaceFormat); 4] = [
 ];
 
 impl SurfaceFormat {
-    /// The format that a file name asks for by its extension.
+    /// Format of a file name, by its extension.
     ///
     /// # Errors
-    /// `UnknownFormat` when no format has the extension.
+    /// `UnknownFormat` if no format has the extension.
     pub fn of(path: &Path) -> Result<Self, SurfaceFileError> {
         let (kind, known) = ("format that is known here", ".off, .ply, .stl, .obj");
         let unknown = || FileError::UnknownFormat { path: path.to_path_buf(), kind, known };

@@ -1,7 +1,7 @@
-//! GLB, the binary form of glTF 2.0: a scene of one mesh, for pictures and the web.
+//! GLB, the binary form of glTF 2.0: a scene with one mesh, for viewers and the web.
 //!
-//! A head of 12 bytes; a chunk of JSON, which says what is where; a chunk of bytes: coordinates (3 × f32), then corners
-//! (3 × u32). Coordinates count from the middle of the surface, where the node is, so that 32 bits are enough for them.
+//! Layout: a header of 12 bytes, a JSON chunk, and a binary chunk with coordinates (3 × f32) and corners (3 × u32).
+//! Coordinates are relative to the centre of the surface, the position of the node, so that 32 bits suffice.
 
 use anastomesh_mesh::boundary::BoundarySurface;
 use anastomesh_mesh::geometry::{Aabb, Point3};

@@ -1,4 +1,4 @@
-//! Triangle surfaces in files: a file or folder for each format, and which of them a path asks for.
+//! Triangle surface files: one module per format, and format detection by extension.
 
 mod boundary;
 mod content;

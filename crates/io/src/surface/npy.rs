@@ -1,4 +1,4 @@
-//! A complex of triangles as arrays: what bounds a volume, and all else that a tetrahedralizer takes.
+//! Triangle complexes as arrays: the input of a tetrahedralizer.
 
 use super::error::SurfaceFileError;
 use crate::file::FileError;
@@ -7,47 +7,47 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 use std::path::Path;
 
-/// The arrays that are read.
+/// Arrays to read.
 const ARRAYS: [&str; 6] = ["points", "triangles", "markers", "segments", "holes", "regions"];
 
-/// A complex as it was read.
+/// Complex from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArrayComplex {
-    /// `points` (n, 3) and `triangles` (m, 3); there may be no triangles.
+    /// `points` (n, 3) and optional `triangles` (m, 3).
     pub mesh: TriMesh,
-    /// `markers` (m): of each triangle; empty where they are not there.
+    /// `markers` (m) of the triangles; empty if missing.
     pub markers: Vec<i32>,
     /// `segments` (k, 2).
     pub segments: Vec<[u32; 2]>,
-    /// `holes` (h, 3): a point in each.
+    /// `holes` (h, 3): a point in each hole.
     pub holes: Vec<Point3>,
     /// `regions` (r, 5).
     pub regions: Vec<ArrayRegion>,
 }
 
-/// A row of `regions`: a point in it, its number, and the bound on its volumes.
+/// Row of `regions`: a point, the region's number, and its volume bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArrayRegion {
-    /// A point in it.
+    /// Point in the region.
     pub point: Point3,
-    /// What its tetrahedra are labelled with.
+    /// Label of its tetrahedra.
     pub id: i32,
-    /// Bound on the volume of its tetrahedra; none where the array has none, or 0 or less.
+    /// Maximum volume of its tetrahedra; `None` if missing or not positive.
     pub max_volume: Option<f64>,
 }
 
 /// Reads a folder `.npyd`.
 ///
 /// # Errors
-/// `Read` with the system's reason, or `Content` with the array and row that is wrong.
+/// `Read` with the error of the operating system, or `Content` with the array and row at fault.
 pub fn read_complex(folder: &Path) -> Result<ArrayComplex, SurfaceFileError> {
     complex_of(&Arrays::read(folder, &ARRAYS, None)?).map_err(FileError::content(folder))
 }
 
-/// Reads a complex from the bytes of the files of a folder.
+/// Reads a complex from the bytes of the files in a folder.
 ///
 /// # Errors
-/// The array and the row that is wrong.
+/// Returns the array and row at fault.
 pub fn read_complex_arrays(files: &[(&str, &[u8])]) -> Result<ArrayComplex, NpyError> {
     complex_of(&Arrays::of(files))
 }

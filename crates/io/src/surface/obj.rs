@@ -1,4 +1,4 @@
-//! OBJ: lines `v x y z` and `f v/vt/vn …`; a negative index counts back from the last vertex so far.
+//! OBJ format: lines `v x y z` and `f v/vt/vn …`; negative indices count back from the last vertex so far.
 
 use super::content::SurfaceContent;
 use super::error::SurfaceFault;
@@ -13,7 +13,7 @@ use std::io::{self, Write};
 /// Parses a file.
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut words = Words::new(bytes, true);
-    // Vertices may come after the faces that name them: corners are compared with their number in the end.
+    // Vertices may follow the faces that refer to them, so corners are checked at the end.
     let mut reader = Reader { points: Vec::new(), faces: Faces::new(u32::MAX as usize - 1, 1, 0), ahead: None };
     while let Some(keyword) = words.word() {
         match keyword {
@@ -34,7 +34,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     reader.finish()
 }
 
-/// A face that names a vertex which has not come yet.
+/// Face with a reference to a later vertex.
 struct Ahead {
     index: i64,
     face: usize,
@@ -44,7 +44,7 @@ struct Ahead {
 struct Reader {
     points: Vec<Point3>,
     faces: Faces,
-    /// The face that names the vertex furthest ahead.
+    /// Face with the reference to the highest later vertex.
     ahead: Option<Ahead>,
 }
 

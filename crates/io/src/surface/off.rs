@@ -1,4 +1,4 @@
-//! OFF: counts, then one point a line, then one face a line.
+//! OFF format: counts, then one point per line, then one face per line.
 
 use super::content::SurfaceContent;
 use super::error::SurfaceFault;
@@ -9,15 +9,15 @@ use anastomesh_mesh::boundary::BoundarySurface;
 use anastomesh_mesh::geometry::Point3;
 use std::io::{self, Write};
 
-/// Parses a file. The position stands first in a line of whatever variant, so colours, normals and texture coordinates
-/// behind it are passed over.
+/// Parses a file. In every variant the position comes first in a line, so colours, normals and texture coordinates
+/// after it are ignored.
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut words = Words::new(bytes, true);
     read_keyword(&mut words)?;
     // "0 0 0\n"
     let points = words.count("the count of points", 6)?;
     let faces = words.count("the count of faces", 6)?;
-    // The count of edges, which nobody needs and some leave out.
+    // Ignores the count of edges, which some programs omit.
     words.skip_line();
     let mut positions = Vec::with_capacity(points);
     for _ in 0..points {
@@ -39,7 +39,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     list.into_surface(positions)
 }
 
-/// Passes over the keyword, which may be missing.
+/// Skips the optional keyword.
 fn read_keyword(words: &mut Words) -> Result<(), SurfaceFault> {
     let first = words.peek().unwrap_or_default();
     if first.first().is_some_and(u8::is_ascii_digit) && !first.ends_with(b"OFF") {
@@ -47,7 +47,7 @@ fn read_keyword(words: &mut Words) -> Result<(), SurfaceFault> {
     }
     let keyword = words.need("the keyword OFF")?;
     let place = Place::Line(words.line());
-    // Case counts in the prefix: `N` announces normals, `n` another dimension.
+    // Case matters in the prefix: `N` announces normals, `n` another dimension.
     let kind = if keyword.eq_ignore_ascii_case(b"OFF") { Some(&b""[..]) } else { keyword.strip_suffix(b"OFF") };
     let Some(kind) = kind else {
         return Err(SurfaceFault::unexpected(keyword, "the keyword OFF", place));

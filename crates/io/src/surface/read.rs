@@ -1,4 +1,4 @@
-//! Reads a surface in any format.
+//! Reader for all surface formats.
 
 use super::content::SurfaceContent;
 use super::error::{SurfaceFault, SurfaceFileError};
@@ -8,9 +8,9 @@ use crate::file::{FileError, read_bytes};
 use anastomesh_mesh::TriMesh;
 use std::path::Path;
 
-/// Reads a surface from a file, in the format that its extension names. Triangles and points keep their order; nothing
-/// is joined, dropped or turned over (only STL, which stores no common points, has its equal corners joined). A face with
-/// more than three corners becomes triangles in its place.
+/// Reads a surface file in the format of its extension. Points and triangles keep order and orientation; nothing is
+/// merged or dropped. Only STL, which has no shared points, has its equal corners merged. Faces with more than three
+/// corners are triangulated in place.
 ///
 /// ```
 /// let torus = anastomesh_io::read_surface("../../fixtures/torus.off".as_ref())?;
@@ -19,15 +19,15 @@ use std::path::Path;
 /// ```
 ///
 /// # Errors
-/// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
+/// `UnknownFormat`, `Read` with the error of the operating system, `Empty`, or `Content` with the fault.
 pub fn read_surface(path: &Path) -> Result<TriMesh, SurfaceFileError> {
     Ok(read_content_as(path, SurfaceFormat::of(path)?)?.mesh)
 }
 
-/// As [`read_surface`] in this format, whatever the extension, with what the file says beside the surface.
+/// Reads a surface like [`read_surface`], in this format and with additional information of the file.
 ///
 /// # Errors
-/// As [`read_surface`].
+/// See [`read_surface`].
 pub fn read_content_as(path: &Path, format: SurfaceFormat) -> Result<SurfaceContent, SurfaceFileError> {
     read_content_from(&read_bytes(path)?, format).map_err(FileError::content(path))
 }
@@ -43,15 +43,15 @@ pub fn read_content_as(path: &Path, format: SurfaceFormat) -> Result<SurfaceCont
 /// ```
 ///
 /// # Errors
-/// When the bytes are no such file, or it is incomplete.
+/// The bytes violate the format, or are incomplete.
 pub fn read_surface_from(bytes: &[u8], format: SurfaceFormat) -> Result<TriMesh, SurfaceFault> {
     Ok(read_content_from(bytes, format)?.mesh)
 }
 
-/// As [`read_surface_from`], with what the file says beside the surface.
+/// Reads a surface like [`read_surface_from`], with additional information of the file.
 ///
 /// # Errors
-/// As [`read_surface_from`].
+/// See [`read_surface_from`].
 pub fn read_content_from(bytes: &[u8], format: SurfaceFormat) -> Result<SurfaceContent, SurfaceFault> {
     let content = match format {
         SurfaceFormat::Off => off::read(bytes)?,

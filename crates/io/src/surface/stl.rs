@@ -1,4 +1,4 @@
-//! STL: triangles that each bring their own corners; corners at the same place become one point.
+//! STL format: triangles with individual corners; equal corners are merged to points.
 
 use super::content::{SurfaceContent, SurfaceNote};
 use super::error::SurfaceFault;
@@ -10,14 +10,14 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 use std::io::{self, Write};
 
-/// Bytes before the first triangle of a binary file: 80 of any kind and a count.
+/// Header size of a binary file: 80 arbitrary bytes and a count.
 const HEAD: usize = 84;
-/// Bytes of a triangle: normal, three corners and two of any kind.
+/// Bytes per triangle: normal, three corners and two arbitrary bytes.
 const RECORD: usize = 50;
 
-/// Parses a file, text or binary.
+/// Parses a text or binary file.
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
-    // Binary files may begin with the word of text files: their length tells them, or a zero that text never has.
+    // Binary files may start with the keyword of text files; a matching length or a zero byte identifies them.
     let announced = announced_length(bytes);
     let begins_as_text = bytes.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
     if announced == Some(bytes.len() as u64) || !begins_as_text || bytes[..bytes.len().min(HEAD)].contains(&0) {
@@ -27,24 +27,23 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     }
 }
 
-/// How long a binary file is by its count.
+/// Length of a binary file according to its count.
 fn announced_length(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(80..HEAD)?.try_into().map(u32::from_le_bytes).ok()?;
     Some(HEAD as u64 + RECORD as u64 * u64::from(count))
 }
 
-/// Joins corners.
+/// Merges equal corners.
 #[derive(Default)]
 struct Joiner {
     mesh: TriMesh,
-    /// The first corner at each point.
+    /// First corner at each point.
     corner_of: Vec<u32>,
     known: FxHashMap<[u64; 3], u32>,
 }
 
 impl Joiner {
-    /// Index of the point at the place of a corner of the next triangle. Only equal coordinates are one place (−0
-    /// equals 0).
+    /// Index of the point at a corner of the next triangle. Only equal coordinates are merged (−0 equals 0).
     fn index(&mut self, p: Point3, corner: usize) -> u32 {
         let p = p.map(|x| x + 0.0);
         let Self { mesh: TriMesh { points, triangles }, corner_of, known } = self;
@@ -63,8 +62,7 @@ impl Joiner {
 fn read_binary(bytes: &[u8], announced: Option<u64>) -> Result<SurfaceContent, SurfaceFault> {
     let (announced, found) = (announced.unwrap_or(HEAD as u64), bytes.len() as u64);
     let surplus = found.checked_sub(announced);
-    // No triangles, but something behind them: the count was never written. Three corners a triangle have to fit into
-    // u32 ids.
+    // No triangles but further data: the count was never written. Three corners per triangle must fit into u32 ids.
     let none = announced == HEAD as u64 && surplus != Some(0);
     let Some(surplus) = surplus.filter(|_| !none && announced / RECORD as u64 <= u64::from(u32::MAX / 3)) else {
         return Err(SurfaceFault::Length { announced, found });
@@ -90,13 +88,13 @@ fn read_binary(bytes: &[u8], announced: Option<u64>) -> Result<SurfaceContent, S
     Ok(SurfaceContent { notes, ..joiner.into_content() })
 }
 
-/// Text: every line begins with a keyword. Normals are passed over: they say nothing that the corners do not, and some
-/// programs write `nan`.
+/// Reads text, in which every line starts with a keyword. Normals are ignored: they are redundant, and some programs
+/// write `nan`.
 fn read_text(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut words = Words::new(bytes, false);
     let mut joiner = Joiner::default();
     let mut triangle = [0; 3];
-    // Corners of the loop that is open.
+    // Corners of the open loop.
     let mut corners: Option<usize> = None;
     let mut open = false;
     while let Some(word) = words.word() {
@@ -132,14 +130,14 @@ fn read_text(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     Ok(joiner.into_content())
 }
 
-/// Writes binary when no coordinate loses a bit by it, otherwise text.
+/// Writes binary if all coordinates are exact in 32 bits, otherwise text.
 pub(super) fn write(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
     let exact = |x: &f64| f64::from(*x as f32) == *x;
     let few = u32::try_from(mesh.triangles.len()).is_ok();
     if few && mesh.points.iter().all(|p| p.iter().all(exact)) { write_binary(out, mesh) } else { write_text(out, mesh) }
 }
 
-/// The unit normal of a triangle; zero when it has none.
+/// Unit normal of a triangle; zero if degenerate.
 fn normal([a, b, c]: [Point3; 3]) -> Vec3 {
     let cross = (b - a).cross(&(c - a));
     let length = cross.norm();
@@ -154,7 +152,7 @@ fn write_binary(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a boundary in binary, its coordinates rounded to 32 bits.
+/// Writes a boundary in binary, with coordinates rounded to 32 bits.
 pub(super) fn write_boundary(out: &mut impl Write, surface: &BoundarySurface) -> io::Result<()> {
     let Ok(count) = u32::try_from(surface.counts().boundary) else {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "STL cannot count so many triangles; write PLY"));
@@ -165,7 +163,7 @@ pub(super) fn write_boundary(out: &mut impl Write, surface: &BoundarySurface) ->
     })
 }
 
-/// What stands before the triangles of a binary file.
+/// Header of a binary file.
 fn head(count: u32) -> [u8; HEAD] {
     let mut head = [b' '; HEAD];
     head[..10].copy_from_slice(b"anastomesh");
@@ -173,7 +171,7 @@ fn head(count: u32) -> [u8; HEAD] {
     head
 }
 
-/// A triangle of a binary file.
+/// Record of a triangle in a binary file.
 fn record(corners: [Point3; 3]) -> [u8; RECORD] {
     let mut record = [0; RECORD];
     let (floats, _) = record.as_chunks_mut::<4>();

@@ -1,4 +1,4 @@
-//! Every format: what is written comes back, files by other hands are read, and no file makes a panic.
+//! Tests of all surface formats: round trips, files of other programs, and damaged files.
 
 use super::content::SurfaceNote;
 use super::error::SurfaceFault;
@@ -21,7 +21,7 @@ const FORMATS: [(SurfaceFormat, &str); 4] = [
     (SurfaceFormat::Obj, "obj"),
 ];
 
-/// A tetrahedron's surface as every hand-written file of this module has it.
+/// Surface of a tetrahedron, as in all hand-written files of this module.
 fn corner() -> TriMesh {
     let points =
         vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0), Point3::new(0.0, 0.0, 1.0)];
@@ -38,7 +38,7 @@ fn written(mesh: &TriMesh, format: SurfaceFormat) -> Vec<u8> {
     bytes
 }
 
-/// Triangles by the coordinates of their corners: what remains of a surface in STL.
+/// Corner coordinates of the triangles: the information that STL preserves.
 fn places(mesh: &TriMesh) -> Vec<[Point3; 3]> {
     mesh.triangles.iter().map(|t| t.map(|v| mesh.points[v as usize])).collect()
 }
@@ -69,7 +69,7 @@ fn stl_is_binary_when_nothing_is_lost() {
     let bytes = written(&mesh, SurfaceFormat::Stl);
     assert_eq!(bytes.len(), 84 + 50 * 4);
     assert_eq!(places(&read_surface_from(&bytes, SurfaceFormat::Stl).unwrap()), places(&mesh));
-    // Programs write what they like into the head.
+    // Programs write arbitrary text into the header.
     let mut solid = bytes.clone();
     solid[..6].copy_from_slice(b"solid ");
     assert_eq!(read_surface_from(&solid, SurfaceFormat::Stl).unwrap().triangles.len(), 4);
@@ -94,7 +94,7 @@ fn what_follows_the_last_triangle_of_binary_stl_is_counted() {
         assert_eq!(content.notes[0].to_string().contains("its count may be wrong"), surplus >= 50);
         assert_eq!(read_surface_from(&longer, SurfaceFormat::Stl), Ok(content.mesh));
     }
-    // A count that was never written is a fault.
+    // A count that was never written is an error.
     let mut unwritten = whole;
     unwritten[80..84].fill(0);
     assert_eq!(read(&unwritten), Err(SurfaceFault::Length { announced: 84, found: 284 }));
@@ -161,7 +161,7 @@ fn off_with_faults() {
     assert_eq!(fault("OFF\n1 0 0\n0 0 0\n"), SurfaceFault::NoFaces { points: 1 });
 }
 
-/// The same surface in the three encodings, with elements and properties that nobody needs.
+/// A surface in the three encodings, with irrelevant elements and properties.
 fn ply(encoding: &str) -> Vec<u8> {
     let mut bytes = format!(
         "ply\r\nformat {encoding} 1.0\ncomment made by hand\nelement camera 2\nproperty short id\n\
@@ -234,7 +234,7 @@ fn ply_with_faults() {
     assert!(matches!(fault("end_header", "end"), SurfaceFault::Unexpected { .. }));
     let mut bytes = ply("binary_little_endian");
     let end = bytes.len();
-    // The last face's count: 1 byte of tag, 12 of indices and 2 of the count from the end.
+    // Count of the last face: before 12 bytes of indices and 1 byte of tag, and itself 2 bytes wide.
     bytes[end - 15] = 2;
     let fault = read_surface_from(&bytes, SurfaceFormat::Ply).unwrap_err();
     assert!(matches!(fault, SurfaceFault::NotATriangle { face: 3, corners: 2, place: Place::Byte(_) }), "{fault}");
@@ -247,7 +247,7 @@ fn polygons_become_triangles_in_their_place() {
     let from_off = read(&off, SurfaceFormat::Off).unwrap();
     assert_eq!(from_off.triangles.len(), 6);
     assert_eq!((from_off.triangles[0], from_off.triangles[3]), ([0, 1, 4], [1, 2, 4]));
-    // Turned as the polygon: downwards.
+    // Same orientation as the polygon: downwards.
     for t in &from_off.triangles[1..3] {
         let [a, b, c] = t.map(|v| from_off.points[v as usize]);
         assert!((b - a).cross(&(c - a)).z < 0.0);
@@ -315,7 +315,7 @@ fn files_that_are_none() {
     assert!(matches!(write_surface(&path("no/folder.off"), &corner()), Err(FileError::Write { .. })));
 }
 
-/// A sound file of each kind.
+/// A valid file of each kind.
 fn sound_files() -> Vec<(SurfaceFormat, Vec<u8>)> {
     let mesh = sphere_surface(1);
     let mut files: Vec<_> = FORMATS.into_iter().map(|(format, _)| (format, written(&mesh, format))).collect();
@@ -329,7 +329,7 @@ fn sound_files() -> Vec<(SurfaceFormat, Vec<u8>)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Whatever befalls a file, it is read or refused; what is read is sound.
+    /// Damaged files are read or rejected; meshes from them are valid.
     #[test]
     fn damaged_files_make_no_panic(which in 0..10_usize, damage in damage()) {
         let (format, bytes) = sound_files().swap_remove(which);

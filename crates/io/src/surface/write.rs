@@ -1,4 +1,4 @@
-//! Writes a surface in any format.
+//! Writer for all surface formats.
 
 use super::error::SurfaceFileError;
 use super::format::SurfaceFormat;
@@ -8,9 +8,8 @@ use anastomesh_mesh::TriMesh;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes a surface to a file, in the format that its extension names; the file appears whole or not at all. Every
-/// coordinate comes back bit for bit: PLY is written in binary with doubles, and STL in binary only when every
-/// coordinate fits into the 32-bit floats of that variant, otherwise as text.
+/// Writes a surface atomically, in the format of the file extension. Coordinates are preserved bit for bit: PLY is
+/// binary with doubles. STL is binary only if all coordinates are exact in 32 bits, otherwise text.
 ///
 /// ```
 /// use anastomesh_io::{read_surface, write_surface};
@@ -24,14 +23,14 @@ use std::path::Path;
 /// ```
 ///
 /// # Errors
-/// `UnknownFormat`, `BadMesh` when a triangle names a point that does not exist, or `Write` with the reason.
+/// `UnknownFormat`, `BadMesh` if a triangle refers to a missing point, or `Write` with the reason.
 pub fn write_surface(path: &Path, mesh: &TriMesh) -> Result<(), SurfaceFileError> {
     let format = SurfaceFormat::of(path)?;
     ensure_sound(path, &mesh.triangles, mesh.points.len())?;
     write_whole(path, |file| write_format(file, format, mesh)).map_err(FileError::write(path))
 }
 
-/// Writes a surface whose triangles name existing points.
+/// Writes a surface with valid point indices.
 pub(super) fn write_format(out: &mut impl Write, format: SurfaceFormat, mesh: &TriMesh) -> io::Result<()> {
     match format {
         SurfaceFormat::Off => off::write(out, mesh),

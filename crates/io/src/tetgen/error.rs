@@ -1,41 +1,40 @@
-//! What can be wrong with `TetGen`'s files.
+//! Errors of `TetGen` files.
 
 use crate::file::FileError;
 use crate::text::TextFault;
 
-/// Why a file of `TetGen`'s could not be read or written.
+/// Errors of reading and writing `TetGen` files.
 pub type TetgenFileError = FileError<TetgenFault>;
 
-/// Why the content of a file is not what `TetGen`'s format asks for. Facets are numbered as points are, from
-/// 0 or 1.
+/// Content errors of a `TetGen` file. Facets are numbered like points, from 0 or 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TetgenFault {
-    /// Its words are not those of the format.
+    /// A word is invalid.
     #[error(transparent)]
     Text(#[from] TextFault),
-    /// Points are not in space.
+    /// The points are not three-dimensional.
     #[error("line {line}: the points have the dimension {dimension}; it has to be 3")]
     Dimension { line: usize, dimension: i64 },
-    /// The numbers of the points do not run on from 0 or 1.
+    /// The points are not numbered consecutively from 0 or 1.
     #[error(
         "line {line}: the point has the number {found} instead of {expected}; points are numbered from 0 or from 1"
     )]
     BadNumber {
         line: usize,
-        /// Its number.
+        /// Number found.
         found: i64,
-        /// The number it had to have.
+        /// Expected number.
         expected: i64,
     },
-    /// A polygon names a point that does not exist.
+    /// A polygon refers to a missing point.
     #[error("line {line}: facet {facet} names the point {index}, but there are {points} points, the first is {first}")]
     BadIndex {
         line: usize,
         facet: usize,
-        /// What it names.
+        /// Invalid index.
         index: i64,
-        /// How many points there are.
+        /// Number of points.
         points: usize,
         /// Number of the first point.
         first: u32,
@@ -43,29 +42,29 @@ pub enum TetgenFault {
     /// A polygon has no corners, or a facet no polygons.
     #[error("line {line}: facet {facet} has nothing in it: remove it")]
     EmptyFacet { line: usize, facet: usize },
-    /// A tetrahedron or face of a mesh names a point that does not exist.
+    /// A tetrahedron or face of a mesh refers to a missing point.
     #[error("line {line}: {kind} {cell} names the point {index}, but there are {points} points, the first is {first}")]
     BadCell {
         line: usize,
-        /// What names it.
+        /// Kind of the cell.
         kind: &'static str,
-        /// Its number, from 0.
+        /// Cell index, from 0.
         cell: usize,
-        /// What it names.
+        /// Invalid index.
         index: i64,
-        /// How many points there are.
+        /// Number of points.
         points: usize,
         /// Number of the first point.
         first: u32,
     },
-    /// Tetrahedra have more points than their corners.
+    /// The tetrahedra have additional points besides their corners.
     #[error("line {line}: tetrahedra have {corners} points; only those of 4 are read: write the mesh without -o2")]
     Order {
         line: usize,
-        /// How many points they have.
+        /// Number of points per tetrahedron.
         corners: i64,
     },
-    /// There are no points, neither here nor in the file beside.
+    /// There are no points, neither in this file nor in the `.node` file.
     #[error("there are no points in it: is it the right file?")]
     NoPoints,
 }

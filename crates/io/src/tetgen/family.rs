@@ -1,4 +1,4 @@
-//! Writes a tetrahedral mesh as `TetGen` does: one file for points, tetrahedra, faces, edges and neighbours each.
+//! Writer of `TetGen` file families: separate files for points, tetrahedra, faces, edges and neighbours.
 
 use super::error::TetgenFileError;
 use crate::file::{Writing, ensure_sound, extension, write_all_whole};
@@ -10,20 +10,20 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Which faces or edges are written.
+/// Selection of faces or edges to write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Extent {
-    /// None: there is no such file.
+    /// None: the file is not written.
     Nothing,
-    /// Those of the boundary.
+    /// Boundary only.
     #[default]
     Boundary,
-    /// All; those inside have the marker 0.
+    /// All; inner ones have marker 0.
     All,
 }
 
-/// The files of a mesh (tetrahedra positive, as those of `TetGen` are): `.node`, `.ele`, and as asked `.face`, `.edge`, `.neigh`.
+/// File family of a mesh with positive tetrahedra: `.node`, `.ele`, and optional `.face`, `.edge`, `.neigh`.
 ///
 /// ```
 /// use anastomesh_io::tetgen::{Extent, MeshFamily};
@@ -52,12 +52,12 @@ pub struct MeshFamily<'a> {
 }
 
 impl<'a> MeshFamily<'a> {
-    /// The paths that the files of a mesh may have: all of which [`Self::write`] may replace.
+    /// Possible paths of a mesh's files, which [`Self::write`] may replace.
     pub fn paths(base: &Path) -> [PathBuf; 5] {
         ["node", "face", "edge", "neigh", "ele"].map(|kind| member(base, kind))
     }
 
-    /// All five files of a mesh, numbered from 0. Its boundary is found, and has the marker 1.
+    /// All five files of a mesh, numbered from 0. The boundary is computed and has marker 1.
     pub fn new(mesh: &'a TetMesh) -> Self {
         Self {
             mesh,
@@ -79,83 +79,83 @@ impl<'a> MeshFamily<'a> {
         Self::new(&volume.mesh).boundary(&volume.boundary, &volume.boundary_patch).regions(&volume.tet_block)
     }
 
-    /// The faces that are the boundary, with the marker of each (0 where there are fewer). They are written as they
-    /// run here, outwards as a rule (`TetGen` itself writes them inwards).
+    /// Sets the boundary faces and their markers (0 if missing). Faces keep their orientation, usually outwards
+    /// (`TetGen` itself writes them inwards).
     #[must_use]
     pub fn boundary(mut self, faces: &'a [[u32; 3]], markers: &'a [i32]) -> Self {
         self.boundary = Some((faces, markers));
         self
     }
 
-    /// The marker of each point (0 where there are fewer). Without this it is that of the first face of the boundary
-    /// with the point, and 0 inside.
+    /// Sets the markers of the points (0 if missing). The default is the marker of the first boundary face at the
+    /// point, and 0 inside.
     #[must_use]
     pub fn point_markers(mut self, markers: &'a [i32]) -> Self {
         self.point_markers = Some(markers);
         self
     }
 
-    /// Edges that are listed whether or not a face has them, with the marker −1, as `TetGen` gives to segments.
+    /// Adds edges with marker −1, as `TetGen` does for segments, whether or not faces contain them.
     #[must_use]
     pub fn segments(mut self, segments: &'a [[u32; 2]]) -> Self {
         self.segments = segments;
         self
     }
 
-    /// The attribute of each tetrahedron (0 where there are fewer).
+    /// Sets the attributes of the tetrahedra (0 if missing).
     #[must_use]
     pub fn regions(mut self, regions: &'a [i32]) -> Self {
         self.regions = Some(regions);
         self
     }
 
-    /// Which faces are written.
+    /// Selects the faces to write.
     #[must_use]
     pub fn faces(mut self, extent: Extent) -> Self {
         self.faces = extent;
         self
     }
 
-    /// Which edges are written.
+    /// Selects the edges to write.
     #[must_use]
     pub fn edges(mut self, extent: Extent) -> Self {
         self.edges = extent;
         self
     }
 
-    /// Whether the neighbours are written.
+    /// Enables or disables the neighbour file.
     #[must_use]
     pub fn neighbors(mut self, written: bool) -> Self {
         self.neighbors = written;
         self
     }
 
-    /// The number of the first item of each file: 0 or 1.
+    /// Sets the number of the first item in each file: 0 or 1.
     #[must_use]
     pub fn first_number(mut self, first: u32) -> Self {
         self.first = first.min(1);
         self
     }
 
-    /// The attributes of the points, so many of each point one after another; points without get 0.
+    /// Sets the point attributes, `each` values per point; missing ones are 0.
     #[must_use]
     pub fn point_attributes(mut self, attributes: &'a [f64], each: usize) -> Self {
         self.point_attributes = (attributes, each);
         self
     }
 
-    /// Who is asked whether to stop.
+    /// Sets the cancellation source.
     #[must_use]
     pub fn progress(mut self, progress: &'a dyn Progress) -> Self {
         self.progress = progress;
         self
     }
 
-    /// Writes the files `base.node` and so on; `base` may have the extension of any of them. They appear whole or not
-    /// at all, `.ele` last, when all of them are complete. Returns their paths in this order.
+    /// Writes the files `base.node` and so on, atomically; `base` may have any of their extensions. They appear once
+    /// all are complete, `.ele` last. Returns their paths in this order.
     ///
     /// # Errors
-    /// `BadMesh` when a cell names a point that does not exist, or `Write` with the reason.
+    /// `BadMesh` if a cell refers to a missing point, or `Write` with the reason.
     pub fn write(&self, base: &Path) -> Result<Vec<PathBuf>, TetgenFileError> {
         let points = self.mesh.points.len();
         ensure_sound(base, &self.mesh.tets, points)?;
@@ -183,7 +183,7 @@ impl<'a> MeshFamily<'a> {
         Ok(files.into_iter().map(|(path, _)| path).collect())
     }
 
-    /// The boundary that was given, or the faces of one tetrahedron only, marked 1.
+    /// Given boundary, or all faces with one adjacent tetrahedron, with marker 1.
     fn listed(&self) -> (Cow<'a, [[u32; 3]]>, Cow<'a, [i32]>) {
         if let Some((faces, markers)) = self.boundary {
             return (faces.into(), markers.into());
@@ -193,7 +193,7 @@ impl<'a> MeshFamily<'a> {
         (faces.into(), markers.into())
     }
 
-    /// The faces of the mesh for which `wanted` (their neighbour's handle, their own) holds, outwards.
+    /// Faces of the mesh selected by `wanted` (neighbour's handle, own handle), oriented outwards.
     fn mesh_faces(&self, wanted: impl Fn(u32, u32) -> bool) -> impl Iterator<Item = [u32; 3]> {
         let TetMesh { points, tets } = self.mesh;
         let neighbors = tet_adjacency(tets, points.len()).neighbors;
@@ -243,7 +243,7 @@ impl<'a> MeshFamily<'a> {
         for (i, &face) in boundary.faces.iter().enumerate() {
             marker_of.entry(sorted(face)).or_insert(boundary.marker(i));
         }
-        // `NONE` is above every handle, so each pair of sides counts once.
+        // `NONE` exceeds every handle, so each pair of sides counts once.
         let faces: Vec<[u32; 3]> = self.mesh_faces(|neighbor, handle| neighbor > handle).collect();
         self.write_face_list(out, &faces, |_, face| marker_of.get(&sorted(face)).copied().unwrap_or(0))
     }
@@ -274,7 +274,7 @@ impl<'a> MeshFamily<'a> {
         Ok(())
     }
 
-    /// Neighbour `i` lies beyond the face opposite corner `i`; −1 is outside.
+    /// Writes the neighbours: neighbour `i` is opposite corner `i`; −1 is outside.
     fn write_neighbors(&self, out: &mut dyn Write) -> io::Result<()> {
         let neighbors = tet_adjacency(&self.mesh.tets, self.mesh.points.len()).neighbors;
         writeln!(out, "{} 4", neighbors.len())?;
@@ -291,7 +291,7 @@ impl<'a> MeshFamily<'a> {
     }
 }
 
-/// Marked faces.
+/// Faces with markers.
 #[derive(Clone, Copy)]
 struct Boundary<'a> {
     faces: &'a [[u32; 3]],
@@ -305,7 +305,7 @@ impl Boundary<'_> {
 
     fn point_markers(&self, points: usize) -> Vec<i32> {
         let mut markers = vec![0; points];
-        // Backwards, so that the first face has the last word.
+        // Backwards, so that the first face has priority.
         for (i, face) in self.faces.iter().enumerate().rev() {
             for &v in face {
                 markers[v as usize] = self.marker(i);
@@ -314,7 +314,7 @@ impl Boundary<'_> {
         markers
     }
 
-    /// Edges `(a, b, marker)` with `a < b` in ascending order; the first face with an edge marks it.
+    /// Edges `(a, b, marker)` with `a < b` in ascending order, marked by the first face with the edge.
     fn edges(&self, segments: &[[u32; 2]]) -> Vec<(u32, u32, i32)> {
         let mut edges: Vec<(u32, u32, i32)> = Vec::with_capacity(3 * self.faces.len() + segments.len());
         for (i, &[a, b, c]) in self.faces.iter().enumerate() {
@@ -322,14 +322,14 @@ impl Boundary<'_> {
             edges.extend([(a, b), (b, c), (c, a)].map(|(a, b)| (a.min(b), a.max(b), marker)));
         }
         edges.extend(segments.iter().map(|&[a, b]| (a.min(b), a.max(b), -1)));
-        // Stable: the first face stays first.
+        // Stable sort: the first face stays first.
         edges.sort_by_key(|&(a, b, _)| (a, b));
         edges.dedup_by_key(|&mut (a, b, _)| (a, b));
         edges
     }
 }
 
-/// All edges of a mesh in ascending order, with the markers of those that have one.
+/// All edges of a mesh in ascending order, with their markers if they have one.
 fn with_inner_edges(mesh: &TetMesh, marked: &[(u32, u32, i32)]) -> Vec<(u32, u32, i32)> {
     let around = Incidence::of_vertices(&mesh.tets, mesh.points.len());
     let mut marked = marked.iter().peekable();
@@ -344,18 +344,18 @@ fn with_inner_edges(mesh: &TetMesh, marked: &[(u32, u32, i32)]) -> Vec<(u32, u32
     edges
 }
 
-/// The corners of a face in ascending order: the same for both of its sides.
+/// Sorted corners of a face, equal for both of its sides.
 pub(super) fn sorted(mut face: [u32; 3]) -> [u32; 3] {
     face.sort_unstable();
     face
 }
 
-/// The path of one file of the family.
+/// Path of one file of the family.
 pub(super) fn member(base: &Path, kind: &str) -> PathBuf {
     if matches!(extension(base).as_str(), "node" | "ele" | "face" | "edge" | "neigh") {
         return base.with_extension(kind);
     }
-    // What looks like an extension may belong to the name, as in `mesh.1`.
+    // An apparent extension may be part of the name, as in `mesh.1`.
     let mut name = base.as_os_str().to_os_string();
     name.push(".");
     name.push(kind);

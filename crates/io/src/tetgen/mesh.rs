@@ -1,4 +1,4 @@
-//! Reads the tetrahedral mesh of a family of files: `.node`, `.ele` and, where it is there, `.face`.
+//! Reader of tetrahedral meshes in file families: `.node`, `.ele` and optional `.face`.
 
 use super::error::{TetgenFault, TetgenFileError};
 use super::family::{member, sorted};
@@ -11,14 +11,14 @@ use anastomesh_mesh::{TetMesh, VolumeMesh};
 use rustc_hash::FxHashMap;
 use std::path::Path;
 
-/// Reads a mesh from the files `base.node`, `base.ele` and `base.face`; `base` may have the extension of any of them.
+/// Reads a mesh from the files `base.node`, `base.ele` and `base.face`; `base` may have any of these extensions.
 ///
-/// The first attribute of a tetrahedron becomes its block where it is an integer, else 0. Faces with a marker become the
-/// boundary, those with the marker 0 only where they are on it; each runs outwards (a face inside as it does in the
-/// file). Without a `.face` file the boundary is empty.
+/// The first attribute of a tetrahedron becomes its block if it is an integer, else 0. Faces with a marker form the
+/// boundary, those with marker 0 only if they lie on it. Boundary faces are oriented outwards; inner faces keep their
+/// orientation. Without a `.face` file the boundary is empty.
 ///
 /// # Errors
-/// `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
+/// `Read` with the error of the operating system, `Empty`, or `Content` with the fault.
 pub fn read_mesh(base: &Path) -> Result<VolumeMesh, TetgenFileError> {
     let nodes = read_nodes(&member(base, "node"))?;
     let path = member(base, "ele");
@@ -32,10 +32,10 @@ pub fn read_mesh(base: &Path) -> Result<VolumeMesh, TetgenFileError> {
     Ok(assemble(nodes, cells, listed))
 }
 
-/// Reads a mesh as [`crate::read_mesh`] does, from the bytes of the files; no bytes stand for a `.face` file that is not there.
+/// Reads a mesh like [`crate::read_mesh`] from the bytes of the files. `face` is empty if there is no `.face` file.
 ///
 /// # Errors
-/// What is wrong with one of them.
+/// Returns the fault of one of the files.
 pub fn read_mesh_from(node: &[u8], ele: &[u8], face: &[u8]) -> Result<VolumeMesh, TetgenFault> {
     let nodes = Nodes::parse(node)?;
     let cells = tets(ele, &nodes)?;
@@ -49,10 +49,10 @@ fn assemble(nodes: Nodes, (tets, tet_block): Cells, listed: Vec<([u32; 3], i32)>
     volume
 }
 
-/// Tetrahedra and the block of each.
+/// Tetrahedra with their blocks.
 type Cells = (Vec<[u32; 4]>, Vec<i32>);
 
-/// `<count> <points each> <attributes>`, then `<number> <points> <attributes>`.
+/// Parses `<count> <points each> <attributes>`, then `<number> <points> <attributes>`.
 fn tets(bytes: &[u8], nodes: &Nodes) -> Result<Cells, TetgenFault> {
     let mut words = Words::new(bytes, true);
     // "0 0 0 0 0\n"
@@ -82,7 +82,7 @@ fn block(words: &mut Words) -> Result<i32, TextFault> {
     Ok(if integral { value as i32 } else { 0 })
 }
 
-/// `<count> <markers 0 or 1>`, then `<number> <points> <marker>`.
+/// Parses `<count> <markers 0 or 1>`, then `<number> <points> <marker>`.
 fn face_list(bytes: &[u8], nodes: &Nodes) -> Result<Vec<([u32; 3], i32)>, TetgenFault> {
     let mut words = Words::new(bytes, true);
     // "0 0 0 0\n"
@@ -99,7 +99,7 @@ fn face_list(bytes: &[u8], nodes: &Nodes) -> Result<Vec<([u32; 3], i32)>, Tetgen
     Ok(faces)
 }
 
-/// The number of a cell, which may be any, and its corners.
+/// Parses the number of a cell, which is arbitrary, and its corners.
 fn corners_of<const N: usize>(
     words: &mut Words,
     nodes: &Nodes,

@@ -1,6 +1,5 @@
-//! `TetGen`'s text formats, as its manual describes them (version 1.5, section 5): points (`.node`), piecewise linear
-//! complexes (`.poly`, `.smesh`), and the family of files of a tetrahedral mesh (`.node`, `.ele`, `.face`, `.edge`,
-//! `.neigh`).
+//! `TetGen` text formats (manual of version 1.5, section 5): points (`.node`), piecewise linear complexes (`.poly`,
+//! `.smesh`), and file families of tetrahedral meshes (`.node`, `.ele`, `.face`, `.edge`, `.neigh`).
 
 mod error;
 mod family;

@@ -1,4 +1,4 @@
-//! Lists of points: `<count> <dimension> <attributes> <markers 0 or 1>`, then `<number> <x> <y> <z> <attributes> <marker>`.
+//! Point lists: `<count> <dimension> <attributes> <markers 0 or 1>`, then `<number> <x> <y> <z> <attributes> <marker>`.
 
 use super::error::{TetgenFault, TetgenFileError};
 use crate::file::{FileError, extension, read_bytes};
@@ -6,7 +6,7 @@ use crate::text::Words;
 use anastomesh_mesh::geometry::Point3;
 use std::path::Path;
 
-/// The points of a `.node` file.
+/// Points of a `.node` file.
 ///
 /// ```
 /// let nodes = anastomesh_io::tetgen::Nodes::parse(b"2 3 0 0\n1 0 0 0\n2 1 0 0\n")?;
@@ -17,11 +17,11 @@ use std::path::Path;
 pub struct Nodes {
     /// Positions.
     pub points: Vec<Point3>,
-    /// Attributes of all points, those of one after those of another.
+    /// Attributes of all points, point by point.
     pub attributes: Vec<f64>,
-    /// How many attributes a point has.
+    /// Number of attributes per point.
     pub attribute_count: usize,
-    /// Boundary marker of each point; empty when the file has none.
+    /// Boundary marker of each point; empty if the file has none.
     pub markers: Vec<i32>,
     /// Number of the first point: 0 or 1.
     pub first: u32,
@@ -31,7 +31,7 @@ impl Nodes {
     /// Parses the bytes of a `.node` file.
     ///
     /// # Errors
-    /// When the bytes are no such file, or it is incomplete, or without points.
+    /// The bytes violate the format, are incomplete, or contain no points.
     pub fn parse(bytes: &[u8]) -> Result<Self, TetgenFault> {
         let mut words = Words::new(bytes, true);
         let nodes = parse(&mut words)?;
@@ -43,7 +43,7 @@ impl Nodes {
 /// Reads the points of a `.node` file.
 ///
 /// # Errors
-/// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
+/// `UnknownFormat`, `Read` with the error of the operating system, `Empty`, or `Content` with the fault.
 pub fn read_nodes(path: &Path) -> Result<Nodes, TetgenFileError> {
     if extension(path) != "node" {
         let path = path.to_path_buf();
@@ -52,15 +52,15 @@ pub fn read_nodes(path: &Path) -> Result<Nodes, TetgenFileError> {
     read_nodes_as(path)
 }
 
-/// As [`read_nodes`], whatever the extension.
+/// Reads points like [`read_nodes`], with any extension.
 ///
 /// # Errors
-/// As [`read_nodes`].
+/// See [`read_nodes`].
 pub fn read_nodes_as(path: &Path) -> Result<Nodes, TetgenFileError> {
     Nodes::parse(&read_bytes(path)?).map_err(FileError::content(path))
 }
 
-/// Parses the list; it may be empty.
+/// Parses the list, which may be empty.
 pub(super) fn parse(words: &mut Words) -> Result<Nodes, TetgenFault> {
     // "0 0 0 0\n"
     let count = words.count("the count of points", 8)?;

@@ -1,4 +1,4 @@
-//! Reads piecewise linear complexes.
+//! Reader of piecewise linear complexes.
 
 use super::error::{TetgenFault, TetgenFileError};
 use super::nodes::{self, Nodes, read_nodes};
@@ -8,11 +8,11 @@ use crate::text::{TextFault, Words, from_first};
 use anastomesh_mesh::geometry::Point3;
 use std::path::Path;
 
-/// Reads a piecewise linear complex from a `.poly` or `.smesh` file. When it says that there are no points, they are
-/// read from the `.node` file beside it.
+/// Reads a piecewise linear complex from a `.poly` or `.smesh` file. If it has no points, they are read from the
+/// `.node` file beside it.
 ///
 /// # Errors
-/// As [`read_nodes`].
+/// See [`read_nodes`].
 pub fn read_plc(path: &Path) -> Result<Plc, TetgenFileError> {
     let format = match extension(path).as_str() {
         "poly" => PlcFormat::Poly,
@@ -25,10 +25,10 @@ pub fn read_plc(path: &Path) -> Result<Plc, TetgenFileError> {
     read_plc_as(path, format)
 }
 
-/// As [`read_plc`], in this format whatever the extension.
+/// Reads a complex like [`read_plc`], in this format.
 ///
 /// # Errors
-/// As [`read_nodes`].
+/// See [`read_nodes`].
 pub fn read_plc_as(path: &Path, format: PlcFormat) -> Result<Plc, TetgenFileError> {
     let bytes = read_bytes(path)?;
     let mut words = Words::new(&bytes, true);
@@ -42,10 +42,10 @@ pub fn read_plc_as(path: &Path, format: PlcFormat) -> Result<Plc, TetgenFileErro
 }
 
 impl Plc {
-    /// Parses the bytes of a file that has its points in it.
+    /// Parses the bytes of a file that contains its points.
     ///
     /// # Errors
-    /// When the bytes are no such file, or it is incomplete, or without points.
+    /// The bytes violate the format, are incomplete, or contain no points.
     pub fn parse(bytes: &[u8], format: PlcFormat) -> Result<Self, TetgenFault> {
         let mut words = Words::new(bytes, true);
         let nodes = nodes::parse(&mut words)?;
@@ -53,7 +53,7 @@ impl Plc {
     }
 }
 
-/// Parses what follows the points.
+/// Parses the part after the points.
 fn parse(words: &mut Words, nodes: Nodes, format: PlcFormat) -> Result<Plc, TetgenFault> {
     if nodes.points.is_empty() {
         return Err(TetgenFault::NoPoints);
@@ -87,12 +87,12 @@ struct FacetReader<'w, 'a> {
 }
 
 impl FacetReader<'_, '_> {
-    /// The number of a facet in the file: they count as points do.
+    /// Number of a facet in the file, counted like points.
     fn number(&self, facet: usize) -> usize {
         facet + self.first as usize
     }
 
-    /// `<polygons> [holes] [marker]`, then the polygons, then the holes.
+    /// Parses `<polygons> [holes] [marker]`, then the polygons, then the holes.
     fn poly_facet(&mut self, facet: usize) -> Result<Facet, TetgenFault> {
         let words = &mut *self.words;
         // "1 0\n", "0 0 0 0\n"
@@ -117,7 +117,7 @@ impl FacetReader<'_, '_> {
         Ok(read)
     }
 
-    /// `<corners> <corner> … [marker]`.
+    /// Parses `<corners> <corner> … [marker]`.
     fn smesh_facet(&mut self, facet: usize) -> Result<Facet, TetgenFault> {
         let polygon = self.polygon(facet)?;
         let marker = self.marker()?;
@@ -125,7 +125,7 @@ impl FacetReader<'_, '_> {
         Ok(Facet { polygons: vec![polygon], holes: Vec::new(), marker })
     }
 
-    /// The marker of a facet, where facets have one; it may be left out.
+    /// Parses the optional marker of a facet, if facets have one.
     fn marker(&mut self) -> Result<i32, TetgenFault> {
         match self.words.word_here() {
             Some(word) if self.marked => Ok(self.words.as_marker(word, "a facet's marker")?),
@@ -133,7 +133,7 @@ impl FacetReader<'_, '_> {
         }
     }
 
-    /// `<corners> <corner> …`; long ones may go on in the next line.
+    /// Parses `<corners> <corner> …`, which may continue on the next line.
     fn polygon(&mut self, facet: usize) -> Result<Vec<u32>, TetgenFault> {
         let count = self.words.count("a polygon's count of corners", 2)?;
         if count == 0 {
@@ -153,13 +153,13 @@ impl FacetReader<'_, '_> {
     }
 }
 
-/// `<count>`, then `<number> <x> <y> <z>`; the list may be missing at the end of the file.
+/// Parses `<count>`, then `<number> <x> <y> <z>`; the list may be missing at the end of the file.
 fn holes(words: &mut Words) -> Result<Vec<Point3>, TextFault> {
     list(words, "the count of holes", Words::point_here)
 }
 
-/// `<count>`, then `<number> <x> <y> <z> <attribute> <largest volume>`; the list may be missing. Where only one number
-/// stands it is both: so does Debian's `TetGen` 1.5.
+/// Parses `<count>`, then `<number> <x> <y> <z> <attribute> <largest volume>`; the list may be missing. A single number
+/// is both attribute and volume, as in Debian's `TetGen` 1.5.
 fn regions(words: &mut Words) -> Result<Vec<Region>, TextFault> {
     list(words, "the count of regions", |words| {
         let point = words.point_here()?;

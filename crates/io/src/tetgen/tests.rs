@@ -1,4 +1,4 @@
-//! Files as the manual describes them are read; the family that is written says what the mesh says.
+//! Tests of reading files according to the manual, and of written file families.
 
 use super::*;
 use crate::damage::damage;
@@ -16,7 +16,7 @@ use std::path::Path;
 const NODE: &str = "# four points\n4 3 2 1\n\n1 0 0 0  0.5 7  -1\n2 1 0 0  1.5 8  0\n3 0 1 0 2.5 9 3 # here\n\
     4 0 0 1 3.5 nan 4\n";
 
-/// A cube with a square window in its lid, numbered from 1, and a region.
+/// A cube with a square window in its lid, numbered from 1, with a region.
 const POLY: &str = "8 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n\
     3 1\n1 0 -7 # floor\n4 1 2 3\n 4\n3 1 2 # lid\n4 5 6 7 8\n2 5 7\n1 6\n1 0.5 0.6 1\n1\n4 1 2 6 5\n\
     1\n1 0.5 0.5 0.5\n2\n1 0.1 0.1 0.1 10 0.25\n2 0.2 0.1 0.1 20 -1\n";
@@ -97,7 +97,7 @@ fn points_in_the_file_beside() {
     assert!(matches!(read_nodes(&path("a.poly")), Err(FileError::UnknownFormat { .. })));
 }
 
-/// The rows of a file that was written, without its head.
+/// Rows of a written file, without its header.
 fn rows(path: &Path) -> Vec<Vec<i64>> {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
@@ -130,7 +130,7 @@ fn the_family_of_a_labelled_mesh() {
         assert_eq!(row[1..5], tet.map(|v| i64::from(v) + 1));
         assert_eq!(row[5], i64::from(*block));
     }
-    // A neighbour has all corners but the one opposite to which it lies.
+    // A neighbour shares all corners except the one opposite the face.
     let tets = &volume.mesh.tets;
     for row in rows(&written[3]) {
         for side in 0..4 {
@@ -161,7 +161,7 @@ fn all_faces_and_edges_of_a_lattice() {
     let open =
         tet_adjacency(&mesh.tets, mesh.points.len()).neighbors.iter().flatten().filter(|&&n| n == u32::MAX).count();
     assert_eq!(outer.0, open);
-    // Euler: the cube is one ball, its boundary one sphere.
+    // Euler characteristic: the cube is one ball, its boundary one sphere.
     let points = mesh.points.len() as i64;
     assert_eq!(points - edges.len() as i64 + faces.len() as i64 - mesh.tets.len() as i64, 1);
     let keys: BTreeSet<_> = edges.iter().map(|row| (row[1], row[2])).collect();
@@ -180,7 +180,7 @@ fn what_is_written_is_read() {
         let rows = |volume: &VolumeMesh| -> BTreeSet<([u32; 3], i32)> {
             volume.boundary.iter().copied().zip(volume.boundary_patch.iter().copied()).collect()
         };
-        // Corners may run from another one on.
+        // Cyclic permutations of corners are allowed.
         let turned = |rows: BTreeSet<([u32; 3], i32)>| -> BTreeSet<([u32; 3], i32)> {
             let least = |[a, b, c]: [u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap();
             rows.into_iter().map(|(face, patch)| (least(face), patch)).collect()
@@ -228,7 +228,7 @@ fn meshes_that_are_none_are_not_written() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Whatever befalls a file, it is read or refused; what is read is sound.
+    /// Damaged files are read or rejected; meshes from them are valid.
     #[test]
     fn damaged_files_make_no_panic(which in 0..3_usize, damage in damage()) {
         let bytes = damage.done_to([NODE, POLY, SMESH][which].as_bytes());

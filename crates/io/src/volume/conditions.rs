@@ -1,43 +1,44 @@
-//! What flows through a mesh and what it is let out against: for formats that are whole cases of a solver.
+//! Flow conditions for formats that are complete solver cases.
 
 use anastomesh_mesh::{Cap, Patch};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// What a solver has to know beside the mesh, in units that fit the mesh's: SI where that is in metres.
+/// Flow data of a solver, in units consistent with the mesh: SI for a mesh in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flow {
     /// Mass per volume.
     pub density: f64,
     /// Dynamic viscosity.
     pub viscosity: f64,
-    /// By patch.
+    /// Conditions by patch.
     pub caps: BTreeMap<i32, CapFlow>,
 }
 
-/// What goes through a cap.
+/// Conditions at a cap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CapFlow {
-    /// Volume per time into the mesh at an inlet, out of it at an outlet.
+    /// Volume flow rate into the mesh at an inlet, out of it at an outlet.
     pub flow: f64,
-    /// Pressure per flow beyond an outlet.
+    /// Pressure per flow rate beyond an outlet.
     pub resistance: f64,
 }
 
-/// Blood, in SI units.
+/// Density of blood, kg/m³.
 pub const BLOOD_DENSITY: f64 = 1060.0;
+/// Dynamic viscosity of blood, Pa·s.
 pub const BLOOD_VISCOSITY: f64 = 3.5e-3;
 
-/// The Reynolds number, of mean velocity and diameter, at an inlet whose flow nobody has given: of creeping flow, whatever the
-/// unit of length.
+/// Default Reynolds number (mean velocity, diameter) of inlets without a given flow: creeping flow for any unit of
+/// length.
 pub const USUAL_REYNOLDS: f64 = 1.0;
 
-/// The flow that has this Reynolds number in a round vessel: ρ (Q / πr²) 2r / μ.
+/// Flow rate for this Reynolds number in a round vessel: ρ (Q / πr²) 2r / μ.
 pub fn flow_of_reynolds(reynolds: f64, radius: f64, density: f64, viscosity: f64) -> f64 {
     reynolds * PI * radius * viscosity / (2.0 * density)
 }
 
-/// What a patch is, by its name.
+/// Role of a patch, by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     Wall,
@@ -55,14 +56,14 @@ impl Role {
     }
 }
 
-/// A name that is a word in every dictionary, and the name of a file.
+/// Sanitizes a name for use as a dictionary word and file name.
 pub(super) fn plain(name: &str) -> String {
     let breaks = |c: char| c.is_whitespace() || c.is_control() || "\"'/\\;:{}()[]<>&|*?$#".contains(c);
     name.chars().map(|c| if breaks(c) { '_' } else { c }).collect()
 }
 
 impl Flow {
-    /// Blood that creeps through the inlets: for a mesh without a network. An inlet of unknown radius gets no flow.
+    /// Default creeping blood flow, for a mesh without a network. Inlets of unknown radius have no flow.
     pub(super) fn usual(patches: &[Patch]) -> Self {
         let inlets = patches.iter().filter(|patch| patch.is_inlet());
         let flow = |cap: &Cap| flow_of_reynolds(USUAL_REYNOLDS, cap.radius, BLOOD_DENSITY, BLOOD_VISCOSITY);
@@ -71,7 +72,7 @@ impl Flow {
         Self { density: BLOOD_DENSITY, viscosity: BLOOD_VISCOSITY, caps }
     }
 
-    /// What goes through a patch; nothing through those that are not known.
+    /// Conditions at a patch; no flow if unknown.
     pub(super) fn at(&self, patch: &Patch) -> CapFlow {
         self.caps.get(&patch.id).copied().unwrap_or_default()
     }

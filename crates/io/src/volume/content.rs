@@ -1,44 +1,44 @@
-//! What a mesh file holds beside the mesh.
+//! Contents of a mesh file besides the mesh.
 
 use super::conditions::Flow;
 use anastomesh_mesh::check::Expectation;
 use anastomesh_mesh::{Patch, VolumeMesh};
 use std::borrow::Cow;
 
-/// What a mesh file says beside the mesh itself.
+/// Additional information in a mesh file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshNotes {
-    /// What a check has to find.
+    /// Expected results of a check.
     pub expectation: Option<Expectation>,
-    /// The program that made the mesh and its version.
+    /// Program and version that created the mesh.
     pub generator: String,
-    /// The options it was made with.
+    /// Options of the program run.
     pub options: String,
-    /// Whether the blocks of the tetrahedra are regions, which a format that groups cells is to keep apart.
+    /// True if the blocks are regions, which a format with cell groups keeps separate.
     pub regions: bool,
-    /// What flows through the mesh, for formats that are cases of a solver.
+    /// Flow through the mesh, for formats that are solver cases.
     pub flow: Option<Flow>,
 }
 
 impl MeshNotes {
-    /// What flows through the mesh; where nobody has said, blood that creeps.
+    /// Flow through the mesh; the default is creeping blood flow.
     pub(super) fn flow_of(&self, patches: &[Patch]) -> Cow<'_, Flow> {
         self.flow.as_ref().map_or_else(|| Cow::Owned(Flow::usual(patches)), Cow::Borrowed)
     }
 }
 
-/// A mesh as it was read from a file.
+/// Mesh from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshFile {
-    /// The mesh. Boundary and patches are empty when the file labels no boundary.
+    /// Mesh; boundary and patches are empty if the file has no boundary labels.
     pub volume: VolumeMesh,
-    /// Whether the file labels a boundary.
+    /// True if the file has boundary labels.
     pub labelled: bool,
-    /// What else the file says.
+    /// Additional information of the file.
     pub notes: MeshNotes,
 }
 
-/// A mesh from a format that has no place for notes.
+/// Mesh from a format without notes.
 impl From<VolumeMesh> for MeshFile {
     fn from(volume: VolumeMesh) -> Self {
         let labelled = !volume.boundary.is_empty();

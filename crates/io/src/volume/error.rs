@@ -1,4 +1,4 @@
-//! Why a mesh file could not be read or written.
+//! Errors of reading and writing mesh files.
 
 use super::medit::MeditFault;
 use super::msh::MshFault;
@@ -8,35 +8,35 @@ use crate::file::FileError;
 use crate::npy::NpyError;
 use crate::tetgen::TetgenFault;
 
-/// Why a mesh file could not be read or written.
+/// Errors of reading and writing a mesh file.
 pub type MeshFileError = FileError<MeshFault>;
 
-/// Why the content of a file is no mesh.
+/// Content errors of a mesh file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshFault {
-    /// It is no unstructured grid of VTK's.
+    /// The VTK unstructured grid is invalid.
     #[error(transparent)]
     Vtu(#[from] VtuFault),
-    /// It is no unstructured grid of VTK's in pieces.
+    /// The VTK unstructured grid in pieces is invalid.
     #[error(transparent)]
     Pvtu(#[from] PvtuFault),
-    /// It is no mesh of Gmsh's.
+    /// The Gmsh mesh is invalid.
     #[error(transparent)]
     Msh(#[from] MshFault),
-    /// It is no mesh of Medit's.
+    /// The Medit mesh is invalid.
     #[error(transparent)]
     Medit(#[from] MeditFault),
-    /// It is no mesh of `TetGen`'s.
+    /// The `TetGen` mesh is invalid.
     #[error(transparent)]
     Tetgen(#[from] TetgenFault),
-    /// Arrays are missing or wrong.
+    /// Arrays are missing or invalid.
     #[error(transparent)]
     Npy(#[from] NpyError),
-    /// Meshes of this format are written alone.
+    /// The format can be written only.
     #[error("cases of solvers are written, not read: name the same mesh as .vtu or .msh")]
     NotRead,
-    /// The format spreads a mesh over several files.
+    /// The format consists of several files.
     #[error("a mesh of this format is several files: name the path of its .ele or .pvtu file, or of its folder .npyd")]
     SeveralFiles,
 }

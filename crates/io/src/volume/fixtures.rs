@@ -1,4 +1,4 @@
-//! Meshes for the tests of all formats.
+//! Meshes for tests of all formats.
 
 use super::content::MeshNotes;
 use anastomesh_mesh::adjacency::boundary_faces;
@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::io;
 use std::ops::Range;
 
-/// A tube with its foot labelled as inlet; every second tetrahedron is in block 1.
+/// Tube with its foot labelled as inlet; every second tetrahedron is in block 1.
 pub fn labelled_tube(layers: u32) -> (VolumeMesh, MeshNotes) {
     let mesh = tube_lattice(3, layers, 0.3);
     let boundary = boundary_faces(&mesh);
@@ -38,7 +38,7 @@ pub fn labelled_tube(layers: u32) -> (VolumeMesh, MeshNotes) {
     (volume, notes)
 }
 
-/// A mesh in memory that pretends not to be: it is given in pieces of these sizes, over and over again.
+/// Mesh in memory, served in parts of these sizes, repeated cyclically.
 pub(super) struct Cut<'a> {
     pub volume: &'a VolumeMesh,
     pub sizes: &'a [usize],
@@ -56,13 +56,13 @@ impl Cut<'_> {
         ranges
     }
 
-    /// Of so many things those of a part; the last parts may have none.
+    /// Items of a part among `count`; the last parts may be empty.
     fn range(&self, count: usize, part: u32) -> Range<usize> {
         self.ranges(count).get(part as usize).cloned().unwrap_or(count..count)
     }
 }
 
-/// What of a list is there: it may be empty.
+/// Available part of a list, possibly empty.
 fn known(values: &[i32], range: Range<usize>) -> Cow<'_, [i32]> {
     values.get(range).unwrap_or_default().into()
 }

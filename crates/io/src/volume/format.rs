@@ -1,34 +1,34 @@
-//! Which formats of volume meshes there are, and which of them a path asks for.
+//! Volume mesh formats and their file extensions.
 
 use super::error::MeshFileError;
 use crate::file::{FileError, by_extension};
 use std::path::Path;
 
-/// A format of mesh files.
+/// Format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MeshFormat {
     /// VTK unstructured grid, `.vtu`.
     Vtu,
-    /// VTK unstructured grid in pieces, `.pvtu` and a folder beside it.
+    /// VTK unstructured grid in pieces: `.pvtu` and a folder beside it.
     Pvtu,
     /// Gmsh 4.1, `.msh`.
     Msh,
     /// Gmsh 2.2 as text, `.msh2`, which more programs read.
     Msh2,
-    /// Medit's text format, `.mesh`.
+    /// Medit text format, `.mesh`.
     Medit,
-    /// A case for `OpenFOAM`, a folder; `.foam`.
+    /// `OpenFOAM` case, a folder; `.foam`.
     OpenFoam,
-    /// The `mesh-complete` folder of `SimVascular` and `svMultiPhysics`; `.svmesh`.
+    /// `mesh-complete` folder of `SimVascular` and `svMultiPhysics`; `.svmesh`.
     SimVascular,
-    /// Arrays of `NumPy`, a folder; `.npyd`.
+    /// Folder of `NumPy` arrays; `.npyd`.
     Npy,
-    /// `TetGen`'s family of files, named by its `.ele` or `.node`.
+    /// `TetGen` file family, identified by its `.ele` or `.node`.
     Tetgen,
 }
 
-/// Extensions, in lower case.
+/// Extensions in lower case.
 const EXTENSIONS: [(&str, MeshFormat); 10] = [
     ("vtu", MeshFormat::Vtu),
     ("pvtu", MeshFormat::Pvtu),
@@ -42,7 +42,7 @@ const EXTENSIONS: [(&str, MeshFormat); 10] = [
     ("node", MeshFormat::Tetgen),
 ];
 
-/// What formats are called where the extension does not tell.
+/// Format names for explicit selection.
 const NAMES: [(&str, MeshFormat); 9] = [
     ("vtu", MeshFormat::Vtu),
     ("pvtu", MeshFormat::Pvtu),
@@ -56,20 +56,20 @@ const NAMES: [(&str, MeshFormat); 9] = [
 ];
 
 impl MeshFormat {
-    /// The names of all formats, for those who choose one.
+    /// Names of all formats.
     pub fn names() -> impl Iterator<Item = &'static str> {
         NAMES.into_iter().map(|(name, _)| name)
     }
 
-    /// The format of a name.
+    /// Format with this name.
     pub fn named(name: &str) -> Option<Self> {
         NAMES.into_iter().find(|(known, _)| *known == name).map(|(_, format)| format)
     }
 
-    /// The format that a file name asks for by its extension.
+    /// Format of a file name, by its extension.
     ///
     /// # Errors
-    /// `UnknownFormat` when no format has the extension.
+    /// `UnknownFormat` if no format has the extension.
     pub fn of(path: &Path) -> Result<Self, MeshFileError> {
         by_extension(path, &EXTENSIONS).ok_or_else(|| FileError::UnknownFormat {
             path: path.to_path_buf(),
@@ -78,22 +78,22 @@ impl MeshFormat {
         })
     }
 
-    /// Whether it is one of VTK's unstructured grids.
+    /// True for VTK unstructured grids.
     pub fn is_grid(self) -> bool {
         matches!(self, Self::Vtu | Self::Pvtu)
     }
 
-    /// Whether it has a place for values at points and in cells.
+    /// True if the format can store values at points and in cells.
     pub fn holds_values(self) -> bool {
         self.is_grid() || matches!(self, Self::Msh | Self::Msh2 | Self::Npy)
     }
 
-    /// Whether a mesh is a folder.
+    /// True if a mesh is a folder.
     pub(super) fn is_folder(self) -> bool {
         matches!(self, Self::OpenFoam | Self::SimVascular | Self::Npy)
     }
 
-    /// Whether a mesh can be written without being held in memory as a whole.
+    /// True if a mesh can be written without being held in memory.
     pub fn is_written_in_passes(self) -> bool {
         self != Self::Tetgen
     }

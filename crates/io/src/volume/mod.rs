@@ -1,6 +1,6 @@
-//! Tetrahedral volume meshes in files: a folder for each format, and which of them a path asks for.
+//! Tetrahedral volume mesh files: one module per format, and format detection by extension.
 //!
-//! A format has its faults in `error`, and `read` and `write` that know bytes and streams but neither of the other formats.
+//! Each format has its errors in `error`, and `read` and `write` on bytes and streams, independent of other formats.
 
 mod conditions;
 mod content;

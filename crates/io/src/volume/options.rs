@@ -1,34 +1,34 @@
-//! What can be chosen beside the format when a mesh is written.
+//! Options of writing a mesh.
 
 use super::format::MeshFormat;
 use anastomesh_mesh::beside::Beside;
 use std::path::{Path, PathBuf};
 
-/// How a mesh is written; each format takes what concerns it.
+/// Options of writing a mesh; each format uses those that apply.
 #[derive(Clone, Copy, Default)]
 pub struct WriteOptions<'a> {
-    /// The format, if not that of the extension.
+    /// Mesh format; that of the extension if `None`.
     pub format: Option<MeshFormat>,
-    /// How many bytes of a mesh in pieces are held at a time, about; other formats take less.
+    /// Approximate memory for a mesh in pieces, in bytes; other formats need less.
     pub memory: Option<usize>,
-    /// How VTK's files are written.
+    /// Options of VTK files.
     pub grid: GridOptions,
-    /// Values beside the mesh that files of VTK and Gmsh are to have.
+    /// Additional values for VTK and Gmsh files.
     pub values: Option<&'a dyn Beside>,
 }
 
-/// How VTK's files are written.
+/// Options of VTK files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GridOptions {
-    /// Coordinates are rounded to 32 bits.
+    /// Round coordinates to 32 bits.
     pub float32: bool,
-    /// Tetrahedra are the only cells; the boundary goes into a file of its own.
+    /// Write tetrahedra only; the boundary goes to a separate file.
     pub tets_alone: bool,
-    /// Arrays stand in the file as they are instead of compressed.
+    /// Write raw instead of compressed arrays.
     pub raw: bool,
 }
 
-/// Where the boundary goes that a grid of tetrahedra alone leaves out.
+/// Path of the separate boundary file of a tetrahedra-only grid.
 pub(super) fn boundary_beside(path: &Path) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
     name.push("_boundary.vtp");

@@ -1,4 +1,4 @@
-//! Reads a mesh in any format.
+//! Reader for all mesh formats.
 
 use super::content::MeshFile;
 use super::error::{MeshFault, MeshFileError};
@@ -9,10 +9,10 @@ use crate::tetgen;
 use std::io;
 use std::path::Path;
 
-/// Reads a mesh from a file (or several: `.pvtu`, `.ele`), in the format that its extension names.
+/// Reads a mesh from a file (or several: `.pvtu`, `.ele`) in the format of its extension.
 ///
 /// # Errors
-/// `UnknownFormat`, `Read` with the system's reason, `Empty`, or `Content` with what is wrong.
+/// `UnknownFormat`, `Read` with the error of the operating system, `Empty`, or `Content` with the fault.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
     if path.is_dir() && !MeshFormat::of(path).is_ok_and(MeshFormat::is_folder) {
         return Err(FileError::read(path)(io::ErrorKind::IsADirectory.into()));
@@ -29,11 +29,11 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshFileError> {
 /// Reads a mesh from the bytes of a file.
 ///
 /// # Errors
-/// When the bytes are no such file, or it is incomplete.
+/// The bytes violate the format, or are incomplete.
 pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, MeshFault> {
     match format {
         MeshFormat::Vtu => Ok(vtu::read(bytes)?),
-        // The file itself says which version it is.
+        // The file contains its version.
         MeshFormat::Msh | MeshFormat::Msh2 => Ok(msh::read(bytes)?),
         MeshFormat::Medit => Ok(medit::read(bytes)?.into()),
         MeshFormat::OpenFoam | MeshFormat::SimVascular => Err(MeshFault::NotRead),

@@ -1,5 +1,4 @@
-//! Every format reads what it writes; what is written does not depend on how a mesh is read, and a disk that is full is
-//! an error.
+//! Tests of round trips in every format, of independence from the parts of the source, and of full disks.
 
 use super::content::MeshNotes;
 use super::fixtures::{Cut, labelled_tube};
@@ -24,7 +23,7 @@ fn bytes_of(format: MeshFormat, mesh: &dyn MeshSource, notes: &MeshNotes) -> Vec
     bytes
 }
 
-/// A tube with some patches, names of which there are more and fewer than patches that have faces.
+/// A tube with several patches; some patch names are missing, others are unused.
 fn tube(layers: u32) -> (VolumeMesh, MeshNotes) {
     let (mut volume, notes) = labelled_tube(layers);
     for (i, patch) in volume.boundary_patch.iter_mut().enumerate() {
@@ -43,7 +42,7 @@ fn same_bytes(volume: &VolumeMesh, notes: &MeshNotes, sizes: &[usize]) {
 
 #[test]
 fn pieces_make_no_difference() {
-    // Enough layers for several compressed blocks and waves of them.
+    // Enough layers for several compressed blocks and waves.
     for (layers, sizes) in [(1, [1]), (40, [1]), (200, [7]), (3000, [1000])] {
         let (volume, notes) = tube(layers);
         same_bytes(&volume, &notes, &sizes);
@@ -80,7 +79,7 @@ proptest! {
     }
 }
 
-/// A source that gives another number of points than it says.
+/// Source with a wrong number of points.
 struct Liar<'a>(Cut<'a>, usize);
 
 impl MeshSource for Liar<'_> {
@@ -117,7 +116,7 @@ fn a_source_that_lies_is_found_out() {
     }
 }
 
-/// A disk with so much room.
+/// Disk with limited space.
 struct Disk {
     bytes: Cursor<Vec<u8>>,
     room: u64,
@@ -160,7 +159,7 @@ fn a_full_disk_is_an_error_wherever_it_happens() {
     }
 }
 
-/// A source that cannot be read to its end.
+/// Source that fails before its end.
 struct Broken<'a>(&'a VolumeMesh);
 
 impl MeshSource for Broken<'_> {

@@ -1,4 +1,4 @@
-//! Writes a mesh in any format.
+//! Writer for all mesh formats.
 
 use super::content::MeshNotes;
 use super::error::MeshFileError;
@@ -14,8 +14,8 @@ use anastomesh_mesh::source::{MeshSource, gather};
 use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
 
-/// Makes sure, before any work is done, that a mesh can be written to `path`: the format is known, and a file can be
-/// made in its folder. Leaves nothing behind.
+/// Checks in advance that a mesh can be written to `path`: the format is known, and a file can be created in its
+/// folder. Has no side effects.
 ///
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
@@ -23,7 +23,7 @@ pub fn ensure_writable(path: &Path) -> Result<(), MeshFileError> {
     ensure_writable_as(MeshFormat::of(path)?, path)
 }
 
-/// As [`ensure_writable`], whatever the extension says.
+/// Checks like [`ensure_writable`], for this format.
 ///
 /// # Errors
 /// `Write` with the reason.
@@ -39,8 +39,8 @@ pub fn ensure_writable_as(format: MeshFormat, path: &Path) -> Result<(), MeshFil
     .map_err(FileError::write(path))
 }
 
-/// Writes a mesh to a file, in the format that its extension names. The file appears whole or not at all. The bytes depend
-/// on the mesh and the notes alone. No format but `TetGen`'s holds a mesh that is read in passes: see the writers of each.
+/// Writes a mesh atomically, in the format of the file extension. The bytes depend only on the mesh and the notes. All
+/// formats except `TetGen`'s stream multi-pass sources; see the writer of each.
 ///
 /// ```
 /// use anastomesh_io::{MeshNotes, read_mesh, write_mesh};
@@ -62,7 +62,7 @@ pub fn write_mesh(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> Resu
     write_mesh_with(&WriteOptions::default(), path, mesh, notes, &())
 }
 
-/// As [`write_mesh`], as the options say. Ends, and leaves nothing, when it is told to.
+/// Writes a mesh like [`write_mesh`], with options and cancellation. A cancelled file does not appear.
 ///
 /// # Errors
 /// `UnknownFormat`, or `Write` with the reason.
@@ -105,7 +105,7 @@ pub fn write_mesh_with(
     }
 }
 
-/// The boundary beside a grid of tetrahedra alone, which only has to be put in its place when the grid is.
+/// Boundary file beside a tetrahedra-only grid, complete except for its move to the target.
 fn complete_boundary(
     path: &Path,
     mesh: &dyn MeshSource,
@@ -124,7 +124,7 @@ fn complete_boundary(
     make().map_err(FileError::write(&beside))
 }
 
-/// The neighbours of tetrahedra are not found in passes: this format holds the mesh in memory.
+/// Writes a `TetGen` family, which needs the mesh in memory, as neighbours are not found in passes.
 fn write_family(path: &Path, mesh: &dyn MeshSource, progress: &dyn Progress) -> Result<(), MeshFileError> {
     let gathered;
     let volume = if let Some(volume) = mesh.whole() {
@@ -143,7 +143,7 @@ fn write_family(path: &Path, mesh: &dyn MeshSource, progress: &dyn Progress) -> 
     }
 }
 
-/// Writes a mesh to a stream, such as standard output; the file is put together in memory first.
+/// Writes a mesh to a stream, such as standard output; the file is first built in memory.
 ///
 /// ```
 /// use anastomesh_io::MeshNotes;
@@ -160,7 +160,7 @@ fn write_family(path: &Path, mesh: &dyn MeshSource, progress: &dyn Progress) -> 
 /// ```
 ///
 /// # Errors
-/// What the stream reports.
+/// The stream fails.
 pub fn write_mesh_to(
     out: &mut impl Write,
     format: MeshFormat,
@@ -172,7 +172,7 @@ pub fn write_mesh_to(
     out.write_all(bytes.get_ref())
 }
 
-/// Writes a mesh in a format that is one file.
+/// Writes a mesh in a single-file format.
 pub(super) fn write_format(
     out: &mut (impl Write + Seek),
     format: MeshFormat,

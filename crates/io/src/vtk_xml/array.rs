@@ -1,11 +1,11 @@
-//! Arrays as they come out of a file: widened to 64 bits.
+//! Decoded arrays, widened to 64 bits.
 
-/// The values of an array.
+/// Values of an array.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Of a floating-point array.
+    /// Values of a floating-point array.
     Float(Vec<f64>),
-    /// Of an integer array; a string array holds bytes, each string ended by 0.
+    /// Values of an integer array; string arrays contain bytes, with 0 after each string.
     Int(Vec<i64>),
 }
 
@@ -26,7 +26,7 @@ impl DataArray {
         }
     }
 
-    /// The values as floating-point numbers.
+    /// Converts the values to floating-point numbers.
     pub fn into_floats(self) -> Vec<f64> {
         match self.values {
             Values::Float(v) => v,
@@ -34,7 +34,7 @@ impl DataArray {
         }
     }
 
-    /// The values as integers; none when the array is a floating-point one.
+    /// Returns the integer values; `None` for a floating-point array.
     pub fn into_ints(self) -> Option<Vec<i64>> {
         match self.values {
             Values::Float(_) => None,
@@ -42,7 +42,7 @@ impl DataArray {
         }
     }
 
-    /// The strings of a string array; none when the array is a floating-point one.
+    /// Returns the strings of a string array; `None` for a floating-point array.
     pub fn into_strings(self) -> Option<Vec<String>> {
         let bytes: Vec<u8> = self.into_ints()?.into_iter().map(|x| x as u8).collect();
         let mut strings: Vec<String> =

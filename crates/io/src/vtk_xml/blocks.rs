@@ -1,31 +1,31 @@
-//! The values of one array on their way into a VTK XML file: collected into blocks, compressed in parallel where they are to
-//! be, a wave of blocks at a time, so that memory does not grow with the mesh.
+//! Blockwise writer of VTK XML arrays. Blocks are compressed in parallel, one wave at a time, so memory does not grow
+//! with the mesh.
 
 use anastomesh_mesh::source::miscounted;
 use flate2::{Compression, write::ZlibEncoder};
 use rayon::prelude::*;
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// Values in a compressed block: a multiple of 3, so that no point straddles two waves.
+/// Values per compressed block: a multiple of 3, so that no point spans two waves.
 const BLOCK: usize = 98_304;
 
-/// Bytes below which values are laid out by one thread.
+/// Minimum bytes for parallel conversion of values.
 const SERIAL: usize = 1 << 16;
 
-/// How an array's bytes stand in a file.
+/// Array encoding in a file.
 #[derive(Clone, Copy, Debug)]
 pub enum Packing {
-    /// As they are, with their number in front.
+    /// Raw bytes after their number.
     Raw,
-    /// In blocks compressed with zlib, with the number and sizes of the blocks in front.
+    /// Zlib-compressed blocks after their number and sizes.
     Zlib(Compression),
 }
 
-/// Writes an array, its sizes in front. `fill` has to give `values` values of `width`
-/// bytes. The bytes depend on the values alone: neither on how they are pushed nor on the number of threads.
+/// Writes an array after its sizes. `fill` must provide `values` values of `width` bytes. The bytes depend on the
+/// values only, not on push sizes or the number of threads.
 ///
 /// # Errors
-/// What `out` or `fill` fails with; `InvalidData` when there are more or fewer values than were announced.
+/// `out` or `fill` fails; `InvalidData` if the number of values differs from the announced one.
 pub fn write_blocks(
     out: &mut (impl Write + Seek),
     values: usize,
@@ -53,7 +53,7 @@ pub fn write_blocks(
     Ok(())
 }
 
-/// Room that is written to later.
+/// Writes spaces to be overwritten later.
 pub fn write_spaces(out: &mut impl Write, count: usize) -> io::Result<()> {
     let spaces = [b' '; 256];
     let mut left = count;
@@ -65,31 +65,31 @@ pub fn write_spaces(out: &mut impl Write, count: usize) -> io::Result<()> {
     Ok(())
 }
 
-/// Takes the values of one array.
+/// Collector of the values of one array.
 pub struct Blocks<'a> {
     out: &'a mut dyn Write,
     packing: Packing,
     /// Bytes in a full block.
     block: usize,
-    /// The bytes of the wave under way, of which the first `filled` are known.
+    /// Current wave, of which the first `filled` bytes are set.
     wave: Vec<u8>,
     filled: usize,
-    /// Bytes that are still to come.
+    /// Number of remaining bytes.
     left: usize,
-    /// Number of blocks, bytes of a full one, bytes of the last if it is not full, then their compressed sizes.
+    /// Number of blocks, bytes of a full one, bytes of a partial last one, then their compressed sizes.
     sizes: Vec<u64>,
 }
 
 impl<'a> Blocks<'a> {
     fn new(out: &'a mut dyn Write, values: usize, width: usize, packing: Packing) -> Self {
         let (block, total) = (BLOCK * width, values * width);
-        // Enough for every thread to have some, few enough to stay small.
+        // Enough blocks for every thread, and few enough to limit memory.
         let wave = block * (4 * rayon::current_num_threads()).clamp(8, 64);
         let sizes = vec![values.div_ceil(BLOCK) as u64, block as u64, (total % block) as u64];
         Self { out, packing, block, wave: vec![0; wave.min(total)], filled: 0, left: total, sizes }
     }
 
-    /// Takes the bytes of `count` items, `item(i)` for each.
+    /// Appends `count` items, where `item(i)` gives the bytes of each.
     pub fn push<const W: usize>(&mut self, count: usize, item: impl Fn(usize) -> [u8; W] + Sync) -> io::Result<()> {
         if count * W > self.left {
             return Err(miscounted());
@@ -109,7 +109,7 @@ impl<'a> Blocks<'a> {
         Ok(())
     }
 
-    /// Takes integers.
+    /// Appends integers.
     pub fn push_ints(&mut self, values: &[i32]) -> io::Result<()> {
         self.push(values.len(), |i| values[i].to_le_bytes())
     }

@@ -1,4 +1,4 @@
-//! From the text or bytes of a `DataArray` to its values.
+//! Decoding of a `DataArray` from text or bytes to values.
 
 use super::array::{DataArray, Values};
 use super::document::{Appended, ElementId, Layout, VtkXml};
@@ -8,13 +8,13 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::borrow::Cow;
 use std::io::Read;
 
-/// Padding is tolerated and not required: where a header ends inside a base64 stream differs between writers.
+/// Padding is optional: writers differ in where a header ends within a base64 stream.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// A type of values.
+/// Value type.
 #[derive(Clone, Copy)]
 enum Kind {
     I8,
@@ -52,10 +52,10 @@ impl Kind {
 }
 
 impl VtkXml<'_> {
-    /// Reads the array in a `DataArray` element.
+    /// Reads the array of a `DataArray` element.
     ///
     /// # Errors
-    /// When its type, encoding or bytes are not what VTK's format says, or cut short.
+    /// Type, encoding or bytes violate VTK's format, or the data are truncated.
     pub fn read(&self, element: ElementId) -> Result<DataArray, VtkError> {
         let attribute = |name| self.attribute(element, name).unwrap_or_default();
         let name = attribute("Name");
@@ -101,7 +101,7 @@ fn parse_ascii(array: &str, kind: Kind, text: &str) -> Result<Values, VtkError> 
     }
 }
 
-/// Interprets bytes as values of one kind.
+/// Converts bytes to values of one type.
 fn values_of(array: &str, kind: Kind, layout: Layout, bytes: &[u8]) -> Result<Values, VtkError> {
     macro_rules! numbers {
         ($number:ty, $wide:ty) => {{
@@ -144,7 +144,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The array's bytes, decoded and decompressed.
+    /// Decodes and decompresses the bytes of the array.
     fn read(&self) -> Result<Vec<u8>, VtkError> {
         let bytes = if self.base64 { Cow::Owned(self.without_space()) } else { Cow::Borrowed(self.bytes) };
         if bytes.is_empty() && self.base64 {
@@ -153,7 +153,7 @@ impl Source<'_> {
         if self.layout.zlib { self.read_compressed(&bytes) } else { self.read_plain(&bytes) }
     }
 
-    /// The base64 characters, up to the first byte that is none.
+    /// Base64 characters, up to the first other byte.
     fn without_space(&self) -> Vec<u8> {
         let is_base64 = |b: &u8| b.is_ascii_alphanumeric() || matches!(b, b'+' | b'/' | b'=');
         self.bytes.iter().copied().filter(|b| !b.is_ascii_whitespace()).take_while(is_base64).collect()
@@ -167,7 +167,7 @@ impl Source<'_> {
         if self.layout.wide_header { 8 } else { 4 }
     }
 
-    /// The first `count` lengths.
+    /// First `count` lengths.
     fn lengths(&self, bytes: &[u8], count: usize) -> Result<Vec<usize>, VtkError> {
         let size = self.word();
         let end = count.checked_mul(size).ok_or_else(|| self.cut_short())?;
@@ -179,7 +179,7 @@ impl Source<'_> {
         Ok(head.chunks_exact(size).map(|w| usize::try_from(number(w)).unwrap_or(usize::MAX)).collect())
     }
 
-    /// The first `count` bytes and how many of `bytes` they take when they are encoded on their own.
+    /// First `count` decoded bytes, and their encoded size if they are encoded separately.
     fn prefix<'b>(&self, bytes: &'b [u8], count: usize) -> Result<(Cow<'b, [u8]>, usize), VtkError> {
         let taken = if self.base64 { count.div_ceil(3).saturating_mul(4) } else { count };
         let part = bytes.get(..taken).ok_or_else(|| self.cut_short())?;
@@ -194,7 +194,7 @@ impl Source<'_> {
         Ok((Cow::Owned(decoded), taken))
     }
 
-    /// One length, then the data; in base64 both as one stream, or (some writers) each on its own.
+    /// Reads one length and the data; in base64 as one stream, or (some writers) separately.
     fn read_plain(&self, bytes: &[u8]) -> Result<Vec<u8>, VtkError> {
         let header = self.word();
         let length = self.lengths(bytes, 1)?[0];
@@ -208,8 +208,8 @@ impl Source<'_> {
         Ok(data)
     }
 
-    /// Number of blocks, size of a block, size of the last one if it is partial, compressed sizes; then the blocks. In
-    /// base64 header and blocks are encoded apart.
+    /// Reads block count, block size, size of a partial last block, compressed sizes, and the blocks. In base64, header
+    /// and blocks are encoded separately.
     fn read_compressed(&self, bytes: &[u8]) -> Result<Vec<u8>, VtkError> {
         let blocks = self.lengths(bytes, 1)?[0];
         if blocks == 0 {
@@ -232,8 +232,8 @@ impl Source<'_> {
         Ok(out)
     }
 
-    /// Decompresses one block, which must give exactly `expected` bytes. The buffer grows with what is there, so that a
-    /// false length in a damaged file allocates nothing.
+    /// Decompresses one block to exactly `expected` bytes. The buffer grows with the actual data, so a false length in
+    /// a damaged file allocates nothing.
     fn inflate(&self, part: &[u8], block: usize, expected: usize, out: &mut Vec<u8>) -> Result<(), VtkError> {
         let before = out.len();
         let limit = (expected as u64).saturating_add(1);

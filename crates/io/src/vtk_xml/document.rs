@@ -1,12 +1,12 @@
-//! The tree of elements of a VTK XML file.
+//! Element tree of a VTK XML file.
 //!
-//! Binary data after `<AppendedData encoding="raw">` is no XML: it is cut off before parsing.
+//! Binary data after `<AppendedData encoding="raw">` is not XML and is separated before parsing.
 
 use super::error::VtkError;
 use quick_xml::events::{BytesStart, Event};
 use std::borrow::Cow;
 
-/// Elements nested deeper than this are refused; VTK's own files have 5 levels.
+/// Maximum nesting depth; VTK's own files have 5 levels.
 const DEEPEST: usize = 64;
 
 /// Index of an element in its document.
@@ -21,20 +21,20 @@ struct Element<'a> {
     children: Vec<ElementId>,
 }
 
-/// How the file's binary data is laid out.
+/// Binary data layout of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub big_endian: bool,
-    /// Whether lengths take 8 bytes instead of 4.
+    /// True if lengths have 8 bytes instead of 4.
     pub wide_header: bool,
     pub zlib: bool,
 }
 
-/// The data at the end of the file, to which arrays refer by offsets.
+/// Data at the end of the file, to which arrays refer by offsets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Appended<'a> {
     pub bytes: &'a [u8],
-    /// Where they begin in the file.
+    /// Start in the file.
     start: usize,
     pub base64: bool,
 }
@@ -48,13 +48,13 @@ pub struct VtkXml<'a> {
 }
 
 impl<'a> VtkXml<'a> {
-    /// The element `VTKFile`.
+    /// Root element `VTKFile`.
     pub const ROOT: ElementId = ElementId(0);
 
     /// Parses a file of the given type (`PolyData`, `UnstructuredGrid`).
     ///
     /// # Errors
-    /// When the bytes are no such file, or cut short.
+    /// The bytes are not such a file, or are truncated.
     pub fn parse(bytes: &'a [u8], file_type: &'static str) -> Result<Self, VtkError> {
         let (head, tail) = split_appended(bytes);
         let head = std::str::from_utf8(head).map_err(|e| VtkError::NotText { byte: e.valid_up_to() })?;
@@ -69,7 +69,7 @@ impl<'a> VtkXml<'a> {
         Ok(document)
     }
 
-    /// The element of the file's type inside `VTKFile`.
+    /// Checks the root element and the file type.
     fn check_root(&self, file_type: &'static str) -> Result<(), VtkError> {
         let Some(root) = self.elements.first() else {
             return Err(VtkError::Empty);
@@ -106,29 +106,29 @@ impl<'a> VtkXml<'a> {
         })
     }
 
-    /// Where the appended data begin in the file, and whether they are compressed with zlib, if they are no text,
-    /// little-endian and with lengths of 8 bytes: such arrays can be read a block at a time.
+    /// Start of the appended data and its zlib flag. `None` unless it is raw and little-endian with 8-byte lengths,
+    /// which permits blockwise reads.
     pub fn packed_data(&self) -> Option<(usize, bool)> {
         let Layout { big_endian, wide_header, zlib } = self.layout;
         let appended = self.appended.filter(|appended| !appended.base64 && !big_endian && wide_header);
         appended.map(|appended| (appended.start, zlib))
     }
 
-    /// An element's name.
+    /// Name of an element.
     pub fn name(&self, element: ElementId) -> &str {
         &self.elements[element.0].name
     }
 
-    /// The value of an attribute.
+    /// Value of an attribute.
     pub fn attribute(&self, element: ElementId, name: &str) -> Option<&str> {
         let attributes = &self.elements[element.0].attributes;
         attributes.iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
     }
 
-    /// The value of an attribute that holds a count; 0 when it is absent.
+    /// Count in an attribute; 0 if it is missing.
     ///
     /// # Errors
-    /// When it is no such number.
+    /// The value is not a count.
     pub fn count(&self, element: ElementId, name: &'static str) -> Result<usize, VtkError> {
         match self.attribute(element, name) {
             None => Ok(0),
@@ -139,17 +139,17 @@ impl<'a> VtkXml<'a> {
         }
     }
 
-    /// An element's children of one name.
+    /// Children of an element with this name.
     pub fn children(&self, element: ElementId, name: &str) -> impl Iterator<Item = ElementId> {
         self.elements[element.0].children.iter().copied().filter(move |&c| self.name(c) == name)
     }
 
-    /// An element's first child of one name.
+    /// First child of an element with this name.
     pub fn child(&self, element: ElementId, name: &str) -> Option<ElementId> {
         self.children(element, name).next()
     }
 
-    /// The `DataArray` children of an element, with their names; unnamed ones have an empty name.
+    /// `DataArray` children of an element, with their names; empty if unnamed.
     pub fn arrays(&self, element: ElementId) -> impl Iterator<Item = (&str, ElementId)> {
         self.children(element, "DataArray")
             .chain(self.children(element, "Array"))
@@ -160,18 +160,18 @@ impl<'a> VtkXml<'a> {
         &self.elements[element.0].text
     }
 
-    /// How binary data is laid out.
+    /// Binary data layout.
     pub(super) fn layout(&self) -> Layout {
         self.layout
     }
 
-    /// The data at the end of the file.
+    /// Appended data at the end of the file.
     pub(super) fn appended(&self) -> Option<Appended<'a>> {
         self.appended
     }
 }
 
-/// Cuts the file at `<AppendedData`, if it has one.
+/// Splits the file at `<AppendedData`, if present.
 fn split_appended(bytes: &[u8]) -> (&[u8], Option<&[u8]>) {
     const TAG: &[u8] = b"<AppendedData";
     match bytes.windows(TAG.len()).position(|w| w == TAG) {
@@ -180,7 +180,7 @@ fn split_appended(bytes: &[u8]) -> (&[u8], Option<&[u8]>) {
     }
 }
 
-/// `tail` starts with `<AppendedData`, at byte `at` of the file; the data starts after the underscore that follows the tag.
+/// Parses appended data. `tail` starts with `<AppendedData` at byte `at` of the file; the data follow an underscore.
 fn parse_appended(tail: &[u8], at: usize) -> Result<Appended<'_>, VtkError> {
     let end = tail.iter().position(|&b| b == b'>').ok_or(VtkError::CutShort)?;
     let tag = std::str::from_utf8(&tail[..end]).map_err(|_| VtkError::BadAppendedData)?;
@@ -191,12 +191,12 @@ fn parse_appended(tail: &[u8], at: usize) -> Result<Appended<'_>, VtkError> {
     let after = tail[end + 1..].trim_ascii_start();
     match after.first() {
         Some(b'_') => Ok(Appended { bytes: &after[1..], start: at + tail.len() - after.len() + 1, base64 }),
-        // No underscore and no data: legal when no array refers to it.
+        // A missing underscore is legal if no array refers to the data.
         _ => Ok(Appended { bytes: &[], start: at + tail.len(), base64 }),
     }
 }
 
-/// Builds the tree. With `open_end`, the text ends inside elements because the rest of the file was cut off.
+/// Builds the tree. With `open_end`, the text ends inside elements because the rest was separated.
 fn parse_elements(text: &str, open_end: bool) -> Result<Vec<Element<'_>>, VtkError> {
     let mut reader = quick_xml::Reader::from_str(text);
     let mut elements: Vec<Element> = Vec::new();

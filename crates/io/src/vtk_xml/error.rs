@@ -1,125 +1,125 @@
-//! What can be wrong with a VTK XML file.
+//! Errors of VTK XML files.
 
-/// Why a VTK XML file could not be understood.
+/// Errors of a VTK XML file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VtkError {
-    /// There is no element in it.
+    /// The file has no element.
     #[error("there is no XML element in the file; is it a VTK file (.vtp, .vtu)?")]
     Empty,
-    /// The part that should be XML is not UTF-8 text.
+    /// The XML part is not UTF-8 text.
     #[error("no XML: byte {byte} is not text; is it a VTK file (.vtp, .vtu)?")]
     NotText {
-        /// Where.
+        /// Byte offset.
         byte: usize,
     },
-    /// The XML parser gave up.
+    /// The XML parser failed.
     #[error("no well-formed XML at byte {byte}: {source}; correct the file, or copy it again if it was cut short")]
     Xml {
-        /// Where.
+        /// Byte offset.
         byte: u64,
-        /// Why.
+        /// Error of the parser.
         source: quick_xml::Error,
     },
-    /// A tag's attributes cannot be read.
+    /// The attributes of a tag are malformed.
     #[error("the attributes of the tag before byte {byte} cannot be read: write them as name=\"value\"")]
     BadAttribute {
-        /// Where.
+        /// Byte offset.
         byte: u64,
     },
-    /// Elements are nested absurdly deep.
+    /// The nesting depth exceeds the limit.
     #[error("elements are nested deeper than any VTK file has them: save the file again")]
     TooDeep,
-    /// The file ends before it is complete.
+    /// The file is truncated.
     #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
     CutShort,
-    /// It is XML, but not VTK's.
+    /// The root element is not `VTKFile`.
     #[error("the outermost XML element is <{root}>, not <VTKFile>: give the file the extension of its format")]
     NotVtk {
-        /// The outermost element.
+        /// Name of the root element.
         root: String,
     },
-    /// It is a VTK file of another kind.
+    /// The file type is wrong.
     #[error("a VTK file of type '{found}', but '{wanted}' is needed here: name another file, or save this one as such")]
     WrongFileType {
         found: String,
-        /// What was expected.
+        /// Expected type.
         wanted: &'static str,
     },
-    /// An attribute of `VTKFile` has a value that is not supported.
+    /// An attribute of `VTKFile` has an unsupported value.
     #[error("{attribute}=\"{value}\" is not supported; save the file with zlib compression or none")]
     UnknownLayout { attribute: &'static str, value: String },
-    /// A number of points, cells, … is no number.
+    /// A count attribute is not a number.
     #[error("{attribute}=\"{value}\" is not a count: correct it")]
     BadCount { attribute: &'static str, value: String },
-    /// `AppendedData` has an encoding other than raw and base64.
+    /// `AppendedData` is neither raw nor base64.
     #[error("the encoding of <AppendedData> is neither raw nor base64: save the file with one of these")]
     BadAppendedData,
-    /// An array's type is unknown.
+    /// The type of an array is unknown.
     #[error("array '{array}' has the unknown type '{kind}': save it as Float64 or Int64")]
     UnknownType {
-        /// Name of the array.
+        /// Array name.
         array: String,
-        /// Its type.
+        /// Type name.
         kind: String,
     },
-    /// An array's format is unknown.
+    /// The format of an array is unknown.
     #[error("array '{array}' has the unknown format '{format}': save it as ascii, binary or appended")]
     UnknownFormat {
-        /// Name of the array.
+        /// Array name.
         array: String,
         format: String,
     },
-    /// An array's offset is missing, no number, or beyond the end of the appended data.
+    /// The offset of an array is missing, not a number, or beyond the appended data.
     #[error("the data of array '{array}' lies beyond the end of the file: write or copy it again")]
     BadOffset {
-        /// Name of the array.
+        /// Array name.
         array: String,
     },
-    /// An array's bytes are cut short.
+    /// The bytes of an array are truncated.
     #[error("the data of array '{array}' is cut short: write or copy it again")]
     ArrayCutShort {
-        /// Name of the array.
+        /// Array name.
         array: String,
     },
-    /// A value of an ascii array is no number of the array's type.
+    /// A value of an ascii array is not a number of its type.
     #[error("value {index} of array '{array}' is '{text}', not a number of its type: correct it")]
     BadNumber {
-        /// Name of the array.
+        /// Array name.
         array: String,
-        /// Which value (from 0).
+        /// Value index, from 0.
         index: usize,
-        /// What is there.
+        /// Text found.
         text: String,
     },
     /// Base64 text is malformed.
     #[error("the data of array '{array}' is not well-formed base64: write or copy it again")]
     BadBase64 {
-        /// Name of the array.
+        /// Array name.
         array: String,
     },
-    /// A compressed block does not decompress to the length that is announced.
+    /// The decompressed length of a block is wrong.
     #[error("block {block} of the compressed data of array '{array}' is damaged: write or copy it again")]
     BadZlib {
-        /// Name of the array.
+        /// Array name.
         array: String,
-        /// Which block (from 0).
+        /// Block index, from 0.
         block: usize,
     },
-    /// An array does not hold a whole number of values or tuples.
+    /// The array size is not a multiple of the value or tuple size.
     #[error("array '{array}' does not hold a whole number of values of {size} bytes: write or copy it again")]
     Ragged {
-        /// Name of the array.
+        /// Array name.
         array: String,
         /// Bytes per value.
         size: usize,
     },
-    /// An unsigned value does not fit.
+    /// An unsigned value is out of range.
     #[error("value {index} of array '{array}' is too large: correct it")]
     TooLarge {
-        /// Name of the array.
+        /// Array name.
         array: String,
-        /// Which value (from 0).
+        /// Value index, from 0.
         index: usize,
     },
 }

@@ -1,6 +1,6 @@
-//! VTK's XML files (VTP, VTU, PVTU): the tree of elements and the arrays in it, and arrays that are written and read
-//! a compressed block at a time. Nothing here panics or allocates more than a multiple of the file's size, whatever the
-//! bytes are.
+//! VTK XML files (VTP, VTU, PVTU): the element tree with its arrays, and blockwise reading and writing of compressed
+//! arrays. For arbitrary input bytes, this module never panics, and its allocations are bounded by a multiple of the
+//! file size.
 
 mod array;
 mod blocks;

@@ -1,5 +1,4 @@
-//! Arrays that stand in a file as they are or as blocks compressed with zlib, read a range at a time: the counterpart of
-//! `blocks`.
+//! Random access to raw or zlib-compressed arrays in a file, the counterpart of `blocks`.
 
 use flate2::read::ZlibDecoder;
 use rustc_hash::FxHashMap;
@@ -10,13 +9,13 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Values in a block of an array that stands in the file as it is.
+/// Values per block of a raw array.
 const RAW_BLOCK: u64 = 98_304;
 
-/// Blocks larger than that are not taken: they would have to be held as a whole.
+/// Maximum block size in bytes, as a block is held in memory as a whole.
 const LARGEST_BLOCK: u64 = 1 << 28;
 
-/// A file whose blocks are kept for a while once they have been decompressed.
+/// File with a cache of decompressed blocks.
 #[derive(Debug)]
 pub struct BlockFile {
     file: File,
@@ -24,7 +23,7 @@ pub struct BlockFile {
     kept: Mutex<Kept>,
 }
 
-/// Blocks by where they start in the file, the oldest first.
+/// Cached blocks by file offset, oldest first.
 #[derive(Debug)]
 struct Kept {
     blocks: FxHashMap<u64, Arc<Vec<u8>>>,
@@ -33,18 +32,18 @@ struct Kept {
     limit: usize,
 }
 
-/// Where the blocks of an array are.
+/// Locations of an array's blocks.
 #[derive(Clone, Debug)]
 pub struct PackedArray {
-    /// Where each block starts, and where the last one ends.
+    /// Start of each block, and end of the last one.
     starts: Vec<u64>,
-    /// Bytes of a block but the last, decompressed.
+    /// Decompressed bytes of each block except the last.
     block: u64,
-    /// Bytes of all blocks, decompressed.
+    /// Decompressed bytes of all blocks.
     bytes: u64,
-    /// Bytes of a value.
+    /// Bytes per value.
     width: u64,
-    /// Whether the blocks are compressed.
+    /// True if the blocks are compressed.
     zlib: bool,
 }
 
@@ -53,7 +52,7 @@ fn damaged(what: &'static str) -> io::Error {
 }
 
 impl BlockFile {
-    /// Opens a file; of its blocks about `limit` bytes are kept.
+    /// Opens a file with a block cache of about `limit` bytes.
     pub fn open(path: &Path, limit: usize) -> io::Result<Self> {
         let file = File::open(path)?;
         let length = file.metadata()?.len();
@@ -61,12 +60,12 @@ impl BlockFile {
         Ok(Self { file, length, kept: Mutex::new(kept) })
     }
 
-    /// Bytes of the file.
+    /// File size in bytes.
     pub fn length(&self) -> u64 {
         self.length
     }
 
-    /// The bytes of a range of the file.
+    /// Reads a range of the file.
     pub fn bytes(&self, range: Range<u64>) -> io::Result<Vec<u8>> {
         if range.start > range.end || range.end > self.length {
             return Err(io::ErrorKind::UnexpectedEof.into());
@@ -81,7 +80,7 @@ impl BlockFile {
         std::os::unix::fs::FileExt::read_exact_at(&self.file, bytes, offset)
     }
 
-    /// Without reads at a place, readers take turns.
+    /// Without positioned reads, readers are serialized.
     #[cfg(not(unix))]
     fn read_at(&self, bytes: &mut [u8], offset: u64) -> io::Result<()> {
         let _turn = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -90,7 +89,7 @@ impl BlockFile {
         file.read_exact(bytes)
     }
 
-    /// Finds the blocks of an array of `values` values of `width` bytes, by the little-endian 64-bit sizes in front of
+    /// Locates the blocks of an array of `values` values of `width` bytes, from the little-endian 64-bit sizes before
     /// them.
     pub fn array(&self, offset: u64, values: u64, width: u64, zlib: bool) -> io::Result<PackedArray> {
         let bytes = values.checked_mul(width).ok_or_else(|| damaged("an array is too long"))?;
@@ -113,7 +112,7 @@ impl BlockFile {
         let (sizes, _) = sizes.as_chunks::<8>();
         let mut starts = vec![table + 8 * count];
         for size in sizes.iter().map(|size| u64::from_le_bytes(*size)) {
-            // What cannot be compressed grows by less than that.
+            // Incompressible data grow by less than this.
             if size > 2 * block + 1024 {
                 return Err(damaged("a block of an array is larger than its values"));
             }
@@ -123,7 +122,7 @@ impl BlockFile {
         Ok(PackedArray { starts, block, bytes, width, zlib })
     }
 
-    /// An array of so many bytes, as the number in front of it says, too.
+    /// Locates a raw array, whose size must match the number before it.
     fn raw_array(&self, offset: u64, said: u64, bytes: u64, width: u64) -> io::Result<PackedArray> {
         if said != bytes {
             return Err(damaged("an array has another size than its values"));
@@ -145,7 +144,7 @@ impl BlockFile {
         Ok(out)
     }
 
-    /// The bytes of a range of values.
+    /// Reads a range of values.
     pub fn values(&self, array: &PackedArray, values: Range<u64>) -> io::Result<Vec<u8>> {
         let (mut start, end) = (values.start * array.width, values.end * array.width);
         if start > end || end > array.bytes {
@@ -173,7 +172,7 @@ impl BlockFile {
         Ok(block)
     }
 
-    /// A block, decompressed where it is compressed.
+    /// Reads and decompresses a block.
     pub fn block(&self, array: &PackedArray, index: u64) -> io::Result<Vec<u8>> {
         let i = index as usize;
         let packed = self.bytes(array.starts[i]..array.starts[i + 1])?;
@@ -182,7 +181,7 @@ impl BlockFile {
         }
         let expected = (array.bytes - index * array.block).min(array.block);
         let mut out = Vec::new();
-        // The buffer grows with what is there: a damaged file allocates no more.
+        // The buffer grows with the actual data, so a damaged file allocates no more.
         ZlibDecoder::new(&packed[..]).take(expected + 1).read_to_end(&mut out)?;
         if out.len() as u64 == expected {
             Ok(out)
@@ -198,7 +197,7 @@ impl PackedArray {
         self.starts.len() as u64 - 1
     }
 
-    /// Number of the first value of a block.
+    /// Index of the first value of a block.
     pub fn first_value(&self, block: u64) -> u64 {
         block * (self.block / self.width)
     }

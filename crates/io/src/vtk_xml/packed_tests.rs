@@ -3,7 +3,7 @@ use crate::vtk_xml::{Packing, write_blocks};
 use flate2::Compression;
 use std::io::{Cursor, Seek, SeekFrom, Write};
 
-/// Behind some other bytes, so many ascending 32-bit numbers.
+/// File with ascending 32-bit numbers after some other bytes.
 fn file_of(values: usize, packing: Packing) -> (tempfile::NamedTempFile, u64) {
     let mut bytes = Cursor::new(vec![0; 100]);
     bytes.seek(SeekFrom::End(0)).unwrap();
@@ -27,7 +27,7 @@ fn any_range_of_values_is_read() {
     ] {
         let (file, offset) = file_of(values, packing);
         let zlib = matches!(packing, Packing::Zlib(_));
-        // Room for one block at most.
+        // The cache holds at most one block.
         let blocks = BlockFile::open(file.path(), 500_000).unwrap();
         let array = blocks.array(offset, values as u64, 4, zlib).unwrap();
         assert_eq!(array.blocks(), values.div_ceil(98_304) as u64);

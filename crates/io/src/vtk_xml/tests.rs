@@ -7,7 +7,7 @@ use flate2::{Compression, write::ZlibEncoder};
 use proptest::prelude::*;
 use std::io::Write as _;
 
-/// How to write a test file.
+/// Variant of a test file.
 #[derive(Clone, Copy, Debug)]
 struct Style {
     big_endian: bool,
@@ -27,7 +27,7 @@ impl Style {
         }
     }
 
-    /// Header and data, with the length of the part that base64 encodes on its own.
+    /// Header and data, with the length of the part that base64 encodes separately.
     fn pack(self, data: &[u8]) -> (Vec<u8>, usize) {
         if !self.zlib {
             return ([self.length(data.len()), data.to_vec()].concat(), 0);

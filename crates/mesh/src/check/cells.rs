@@ -1,4 +1,4 @@
-//! Lines about points and tetrahedra.
+//! Conditions on points and tetrahedra.
 
 use super::result::{Line, LineResult, Offender, OffenderKind, Tally};
 use crate::TetMesh;
@@ -15,7 +15,7 @@ pub(super) fn centroid(points: &[Point3], ids: &[u32]) -> Point3 {
     Point3::from(sum / ids.len() as f64)
 }
 
-/// The mean of points.
+/// Mean of points.
 pub(super) fn middle<'a>(points: impl IntoIterator<Item = &'a Point3>) -> Point3 {
     let sum = |(sum, n), p: &Point3| (sum + p.coords, n + 1.0);
     let (sum, n): (crate::geometry::Vec3, f64) = points.into_iter().fold((crate::geometry::Vec3::zeros(), 0.0), sum);
@@ -71,7 +71,7 @@ fn no_repeated_vertex(mesh: &TetMesh) -> LineResult {
     tally.done()
 }
 
-/// Tetrahedra that are not positive.
+/// Finds tetrahedra that are not positive.
 fn positive_tets(mesh: &TetMesh) -> LineResult {
     let positive = |&[a, b, c, d]: &[u32; 4]| {
         let p = |v: u32| &mesh.points[v as usize];
@@ -92,8 +92,8 @@ fn positive_tets(mesh: &TetMesh) -> LineResult {
     tally.done()
 }
 
-/// Tetrahedra that repeat another. Two equal ones share all their faces, so only those whose neighbour has the same
-/// fourth vertex, and those at crowded faces, need a look.
+/// Finds duplicate tetrahedra. Two equal ones share all their faces, so only those with the same apex as a neighbour,
+/// and those at crowded faces, are compared.
 fn no_duplicate_tets(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     let mut suspects: Vec<u32> = adjacency.crowded.iter().map(|handle| handle / 4).collect();
     for (tet, row) in adjacency.neighbors.iter().enumerate() {
@@ -132,13 +132,13 @@ fn faces_shared_by_two(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     tally.done()
 }
 
-/// Whether two triangles with the same vertices run round them the same way.
+/// True if two triangles with the same vertices have the same orientation.
 pub(super) fn same_turn(a: [u32; 3], b: [u32; 3]) -> bool {
     a == b || a == [b[1], b[2], b[0]] || a == [b[2], b[0], b[1]]
 }
 
-/// Interior faces whose two tetrahedra lie on the same side: both see the face turn the same way from outside. (For
-/// positive tetrahedra this is the geometric statement.)
+/// Finds interior faces whose two tetrahedra lie on the same side: both see the face with the same orientation from
+/// outside. For positive tetrahedra, this is the geometric condition.
 fn opposite_sides(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
     let mut tally = Tally::new(Line::OppositeSides);
     for (handle, &neighbor) in adjacency.neighbors.as_flattened().iter().enumerate() {
@@ -182,7 +182,7 @@ fn no_unused_points(mesh: &TetMesh) -> LineResult {
     tally.done()
 }
 
-/// The lines about tetrahedra and the points that they use, of a mesh whose arrays are sound.
+/// Conditions on tetrahedra and their points, for a mesh with valid arrays.
 pub(super) fn lines(mesh: &TetMesh, adjacency: &TetAdjacency) -> [LineResult; 6] {
     [
         no_repeated_vertex(mesh),
@@ -194,7 +194,7 @@ pub(super) fn lines(mesh: &TetMesh, adjacency: &TetAdjacency) -> [LineResult; 6]
     ]
 }
 
-/// Number of components of tetrahedra joined by faces.
+/// Number of components of tetrahedra connected by faces.
 pub(super) fn component_count(adjacency: &TetAdjacency) -> usize {
     let n = adjacency.neighbors.len();
     let mut sets = DisjointSets::new(n);

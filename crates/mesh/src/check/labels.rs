@@ -1,4 +1,4 @@
-//! Lines about the labels of the boundary: wall and caps.
+//! Conditions on the boundary labels: wall and caps.
 
 use super::cells::{face_offender, same_turn};
 use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally};
@@ -11,16 +11,16 @@ use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
 use std::f64::consts::PI;
 
-/// How far, in radii, a cap's vertices may lie from its plane.
+/// Maximum distance of a cap's vertices from its plane, in radii.
 const FLATNESS: f64 = 1e-9;
-/// By which share of itself, at most, a coordinate moves when it is rounded to 32 bits: half a unit in the last place.
+/// Maximum relative change of a coordinate rounded to 32 bits: half a unit in the last place.
 const ROUNDED: f64 = 0.501 * f32::EPSILON as f64;
-/// How far, in radii, a cap's centre may lie from its node.
+/// Maximum distance of a cap's centre from its node, in radii.
 const OFF_CENTRE: f64 = 0.1;
-/// By which share a cap's area may differ from that of the disc.
+/// Maximum relative difference of a cap's area from that of the disc.
 const AREA: f64 = 0.05;
 
-/// The labelled triangles against the faces of the boundary.
+/// Compares the labelled triangles with the faces of the boundary.
 pub(super) fn labels_match(volume: &VolumeMesh, faces: &[[u32; 3]]) -> LineResult {
     let mut tally = Tally::new(Line::LabelsMatchBoundary);
     if volume.boundary == faces {
@@ -48,7 +48,7 @@ pub(super) fn labels_match(volume: &VolumeMesh, faces: &[[u32; 3]]) -> LineResul
     tally.done()
 }
 
-/// A labelled triangle that may name points that do not exist.
+/// Offender for a labelled triangle, which may refer to missing points.
 pub(super) fn face_at(points: &[Point3], face: [u32; 3]) -> Offender {
     if face.iter().all(|&v| (v as usize) < points.len()) {
         face_offender(points, face)
@@ -57,14 +57,14 @@ pub(super) fn face_at(points: &[Point3], face: [u32; 3]) -> Offender {
     }
 }
 
-/// The triangles' sorted vertices with their indices, ascending.
+/// Sorted vertices of the triangles with their indices, ascending.
 fn by_vertices(triangles: &[[u32; 3]]) -> Vec<([u32; 3], u32)> {
     let mut keys: Vec<_> = triangles.iter().map(|&t| face_key(t)).zip(0..).collect();
     keys.sort_unstable();
     keys
 }
 
-/// The lines about patches and caps; the labelled triangles must name points that exist.
+/// Conditions on patches and caps; the labelled triangles must refer to existing points.
 pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) -> Vec<LineResult> {
     if let Some(lines) = lines_without_caps(&volume.patches, expectation) {
         return lines;
@@ -75,8 +75,8 @@ pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) 
     lines
 }
 
-/// The lines about patches and caps where others have labelled the boundary: they name parts of it, but say of none what
-/// cap it is. So do outlets that are one patch.
+/// Conditions on patches and caps for boundaries labelled by others, without cap data. Likewise if all outlets are one
+/// patch.
 pub(super) fn lines_without_caps(patches: &[Patch], expectation: Option<&Expectation>) -> Option<Vec<LineResult>> {
     let no_caps = patches.iter().all(|patch| patch.cap.is_none());
     let grouped = patches.iter().any(|patch| patch.is_outlet() && patch.cap.is_none());
@@ -142,7 +142,7 @@ pub(super) fn own_patch(patches: &[Patch]) -> LineResult {
     tally.done()
 }
 
-/// Terminals without a cap, with several, and caps of nodes that are no terminals.
+/// Finds terminals with no cap or several, and caps of nodes that are no terminals.
 fn cap_per_terminal(patches: &[Patch], expected: &Expectation) -> LineResult {
     let mut caps: Vec<u32> = patches.iter().filter_map(|p| p.cap.map(|cap| cap.node)).collect();
     let mut terminals = expected.terminals.clone();
@@ -168,7 +168,7 @@ fn cap_per_terminal(patches: &[Patch], expected: &Expectation) -> LineResult {
     tally.done()
 }
 
-/// Shape of every cap.
+/// Checks the shape of every cap.
 fn cap_shapes(volume: &VolumeMesh) -> Vec<LineResult> {
     let mut tallies = SHAPE_LINES.map(Tally::new);
     let triangles = triangles_by_patch(volume);
@@ -183,11 +183,11 @@ fn cap_shapes(volume: &VolumeMesh) -> Vec<LineResult> {
     tallies.map(Tally::done).into()
 }
 
-/// The lines about the shape of a cap.
+/// Conditions on the shape of a cap.
 pub(super) const SHAPE_LINES: [Line; 5] =
     [Line::CapDisc, Line::CapFlat, Line::CapCentred, Line::CapArea, Line::CapNormal];
 
-/// Whether a cap with these triangles has the shape that each of `SHAPE_LINES` asks for.
+/// Result of each of `SHAPE_LINES` for a cap with these triangles.
 pub(super) fn cap_shape(points: &[Point3], cap: &Cap, triangles: &[[u32; 3]]) -> [bool; 5] {
     let shape = CapShape::measure(points, cap, triangles);
     let disc = PI * cap.radius * cap.radius;
@@ -200,7 +200,7 @@ pub(super) fn cap_shape(points: &[Point3], cap: &Cap, triangles: &[[u32; 3]]) ->
     ]
 }
 
-/// The triangles of each patch but the wall, in file order.
+/// Triangles of each patch except the wall, in file order.
 fn triangles_by_patch(volume: &VolumeMesh) -> FxHashMap<i32, Vec<[u32; 3]>> {
     let mut triangles: FxHashMap<i32, Vec<[u32; 3]>> = FxHashMap::default();
     for (&face, &id) in volume.boundary.iter().zip(&volume.boundary_patch) {
@@ -215,15 +215,15 @@ struct CapShape {
     area: f64,
     /// Distance of the disc's centroid from the node.
     off_centre: f64,
-    /// Largest distance of a vertex from the plane midway through the vertices, along the cap's normal.
+    /// Maximum distance of a vertex from the middle plane of the vertices, along the cap's normal.
     off_plane: f64,
-    /// How far rounding has moved a vertex along the normal, at most, where all coordinates are numbers of 32 bits: a file that
-    /// rounds them bends every cap that is not square to an axis. Coordinates of 64 bits owe nothing to it.
+    /// Maximum shift of a vertex along the normal by rounding, if all coordinates are 32-bit numbers. Such a file bends
+    /// every cap that is not perpendicular to an axis. Zero for 64-bit coordinates.
     rounding: f64,
     faces_outwards: bool,
 }
 
-/// How far a vertex moves along a normal when its coordinates are rounded to 32 bits; none where they have more.
+/// Maximum shift of a vertex along a normal by rounding to 32 bits; `None` for coordinates with more bits.
 fn moved_by_rounding(p: &Point3, normal: &Vec3) -> Option<f64> {
     let fits = p.coords.iter().all(|&x| f64::from(x as f32).to_bits() == x.to_bits());
     fits.then(|| ROUNDED * p.coords.abs().dot(&normal.abs()))
@@ -249,7 +249,7 @@ impl CapShape {
                 rounding = rounding.zip(moved_by_rounding(p, &cap.normal)).map(|(most, here)| most.max(here));
             }
         }
-        // A cap without triangles or area fails on every count.
+        // A cap without triangles or area fails every condition.
         Self {
             area,
             off_centre: (moment / area).norm(),
@@ -260,8 +260,8 @@ impl CapShape {
     }
 }
 
-/// Whether triangles form one disc: joined by edges, every edge in one triangle or two that run along it in opposite
-/// directions, one boundary loop, Euler number 1.
+/// True if triangles form one disc: connected by edges, every edge in one triangle or in two with opposite directions,
+/// one boundary loop, Euler number 1.
 pub(super) fn is_disc(triangles: &[[u32; 3]]) -> bool {
     let Ok(count) = u32::try_from(triangles.len()) else { return false };
     let mut directed: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
@@ -290,7 +290,7 @@ pub(super) fn is_disc(triangles: &[[u32; 3]]) -> bool {
     connected && vertices.len() + triangles.len() == edges + 1 && is_one_loop(&rim)
 }
 
-/// Whether directed edges, ascending, form one simple loop.
+/// True if ascending directed edges form one simple loop.
 fn is_one_loop(rim: &[[u32; 2]]) -> bool {
     let Some(&[start, mut at]) = rim.first() else { return false };
     let mut steps = 1;

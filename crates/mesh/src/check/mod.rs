@@ -1,9 +1,9 @@
-//! Whether a mesh is valid: every line of the definition, checked exactly.
+//! Validity check of a mesh: every condition of the definition, checked exactly.
 //!
-//! A mesh is valid when every tetrahedron is positive by the exact predicate; each interior face is shared by two
-//! tetrahedra on opposite sides; the boundary is a closed 2-manifold that does not meet itself; no point is duplicate or
-//! unused; there is one component per component of the skeleton, whose boundary has the genus that the skeleton's loops
-//! ask for; and every terminal has its flat cap while every other boundary face is wall.
+//! A mesh is valid if every tetrahedron is positive by the exact predicate. Each interior face is shared by two
+//! tetrahedra on opposite sides. The boundary is a closed 2-manifold without self-intersection. No point is duplicate
+//! or unused. There is one component per component of the skeleton, with a boundary of the genus given by the
+//! skeleton's loops. Every terminal has its flat cap, and every other boundary face is wall.
 
 mod cells;
 mod labels;
@@ -51,7 +51,7 @@ pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> C
     Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(None)
 }
 
-/// As [`check_volume`], for callers who have just called [`tet_adjacency`] on this mesh.
+/// As [`check_volume`], for callers that already have the result of [`tet_adjacency`] for this mesh.
 pub fn check_volume_with(
     volume: &VolumeMesh,
     adjacency: TetAdjacency,
@@ -60,7 +60,7 @@ pub fn check_volume_with(
     Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(Some(adjacency))
 }
 
-/// Checks a mesh without labels; the lines about labels are not checked.
+/// Checks a mesh without labels; conditions on labels are not checked.
 ///
 /// ```
 /// use anastomesh_mesh::check::{Line, Outcome, Verdict, check_tets};
@@ -99,7 +99,7 @@ impl Check<'_> {
         let mesh = self.mesh;
         let counts = Counts { points: mesh.points.len(), tets: mesh.tets.len(), ..Counts::default() };
         let mut lines = vec![cells::not_empty(mesh), cells::finite_points(mesh), cells::indices_in_range(mesh)];
-        // Without sound arrays nothing else has a meaning.
+        // All other conditions require valid arrays.
         if let Some(line) = first_failure(&lines) {
             let missing = Line::ALL.into_iter().filter(|l| lines.iter().all(|result| result.line != *l));
             let rest: Vec<LineResult> = missing.map(|l| LineResult::skipped(l, Skipped::Because(line))).collect();
@@ -139,7 +139,7 @@ impl Check<'_> {
         CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections)
     }
 
-    /// The genus is defined for closed manifolds alone: `open` is the line that says the boundary is none.
+    /// Checks the genus of closed manifolds; `open` is the condition by which the boundary is none.
     fn loops(&self, boundary: &Boundary, open: Option<Line>) -> LineResult {
         match (self.expectation, open) {
             (None, _) => LineResult::skipped(Line::Loops, Skipped::NoExpectation),

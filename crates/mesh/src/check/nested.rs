@@ -1,8 +1,8 @@
-//! Boundary surfaces that lie where the mesh already is: a piece of the mesh within another that it does not touch.
+//! Nested boundary surfaces: a piece of the mesh inside another without contact.
 //!
-//! The number of positive tetrahedra over a place is the sum of the winding numbers of the boundary surfaces round it, so
-//! it must be 0 or 1. Crossing a surface changes it by one; round a point of a surface the others must therefore wind
-//! 0 times when the surface faces outwards, and once when it faces into a cavity.
+//! The number of positive tetrahedra over a point is the sum of the winding numbers of all boundary surfaces. It must
+//! be 0 or 1, and crossing a surface changes it by one. Around a point of an outward surface, the others must therefore
+//! wind 0 times, and around a point of a cavity's surface once.
 
 use super::surfaces::Surfaces;
 use crate::geometry::{Aabb, Bvh, Point3, crossing};
@@ -10,7 +10,7 @@ use crate::geometry::{Aabb, Bvh, Point3, crossing};
 /// Relative roundoff of a term of [`Enclosed`], with a wide margin.
 const ROUNDOFF: f64 = 1e-14;
 
-/// The volume that a closed surface encloses, with its sign and what rounding may have done to it.
+/// Signed volume enclosed by a closed surface, with a bound on its rounding error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Enclosed {
     volume: f64,
@@ -38,13 +38,13 @@ impl Enclosed {
         self.doubt += other.doubt + ROUNDOFF * self.volume.abs();
     }
 
-    /// Whether the surface surely faces into what it encloses.
+    /// True if the surface certainly bounds a cavity.
     pub(super) fn is_cavity(&self) -> bool {
         self.volume < -self.doubt
     }
 }
 
-/// Whether a surface round a point of which the others wind `others` times lies where the mesh already is.
+/// True if a surface lies inside the mesh, given the winding number `others` of all others around it.
 pub(super) fn is_within(others: i64, enclosed: &Enclosed) -> bool {
     match others {
         ..=0 => false,
@@ -53,7 +53,7 @@ pub(super) fn is_within(others: i64, enclosed: &Enclosed) -> bool {
     }
 }
 
-/// The surfaces of a closed boundary that does not touch itself which lie within the mesh, ascending.
+/// Nested surfaces, ascending, of a closed boundary without self-contact.
 pub(super) fn nested_surfaces(points: &[Point3], faces: &[[u32; 3]], surfaces: &Surfaces) -> Vec<u32> {
     if surfaces.all.len() < 2 {
         return Vec::new();
@@ -76,7 +76,7 @@ pub(super) fn nested_surfaces(points: &[Point3], faces: &[[u32; 3]], surfaces: &
     (0..surfaces.all.len() as u32).filter(within).collect()
 }
 
-/// What each surface encloses.
+/// Signed volume enclosed by each surface.
 pub(super) fn enclosed(points: &[Point3], faces: &[[u32; 3]], surfaces: &Surfaces) -> Vec<Enclosed> {
     let mut enclosed = vec![Enclosed::default(); surfaces.all.len()];
     for face in faces {

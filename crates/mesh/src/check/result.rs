@@ -1,29 +1,29 @@
-//! What a check found: one entry per line of the definition of 'valid'.
+//! Result of a check: one entry per condition of the definition of 'valid'.
 
 use crate::geometry::Point3;
 use crate::quality::TetQuality;
 use serde::{Deserialize, Serialize};
 
-/// What a mesh has to be, known from the network it was made of.
+/// Requirements on a mesh, known from its network.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Expectation {
-    /// Number of independent loops of each component of the skeleton, in any order: as many components are expected, and
-    /// these are the genera of their boundaries.
+    /// Number of independent loops of each component of the skeleton, in any order. It sets the number of components
+    /// and the genera of their boundaries.
     pub loops: Vec<u32>,
-    /// Nodes that need a cap each (indices in the network as it was read), in any order.
+    /// Nodes that need a cap each (indices in the input network), in any order.
     pub terminals: Vec<u32>,
 }
 
-/// The lines of the definition of 'valid', in the order in which they are reported.
+/// Conditions of the definition of 'valid', in the order of reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Line {
     /// The mesh has tetrahedra.
     NotEmpty,
-    /// Every coordinate is finite and in the range in which the predicates are exact.
+    /// Every coordinate is finite and in the range of the exact predicates.
     FinitePoints,
-    /// Every tetrahedron names points that exist.
+    /// Every tetrahedron refers to existing points.
     IndicesInRange,
     /// The four vertices of a tetrahedron differ.
     NoRepeatedVertex,
@@ -39,15 +39,15 @@ pub enum Line {
     NoDuplicatePoints,
     /// Every point belongs to a tetrahedron.
     NoUnusedPoints,
-    /// Every boundary edge is in two boundary faces, which run along it in opposite directions.
+    /// Every boundary edge is in two boundary faces with opposite directions.
     BoundaryEdges,
-    /// The boundary faces round a vertex form a single fan.
+    /// The boundary faces around a vertex form a single fan.
     BoundaryFans,
-    /// The boundary does not meet itself, and no boundary surface lies within the mesh.
+    /// The boundary has no self-intersection, and no boundary surface lies inside the mesh.
     NoSelfIntersection,
-    /// As many components (tetrahedra joined by faces) as the skeleton has.
+    /// The number of components (tetrahedra connected by faces) equals the skeleton's.
     Components,
-    /// One boundary surface per component, of the genus that its loops ask for.
+    /// Every component has one boundary surface, of the genus given by its loops.
     Loops,
     /// The labelled triangles are the boundary faces, each once, oriented outwards.
     LabelsMatchBoundary,
@@ -59,18 +59,18 @@ pub enum Line {
     CapPerTerminal,
     /// Every cap is one disc: connected, with one boundary loop, Euler number 1.
     CapDisc,
-    /// Every cap is flat to 1e-9 of its radius; where all its coordinates are numbers of 32 bits, to their rounding.
+    /// Every cap is flat to 1e-9 of its radius, or to rounding if all its coordinates are 32-bit numbers.
     CapFlat,
     /// The centre of every cap is within 0.1 radii of its node.
     CapCentred,
     /// The area of every cap is within 5 % of πr².
     CapArea,
-    /// The triangles of every cap face the way its normal points.
+    /// The triangles of every cap face in the direction of its normal.
     CapNormal,
 }
 
 impl Line {
-    /// All lines in order.
+    /// All conditions in order.
     pub const ALL: [Self; 24] = [
         Self::NotEmpty,
         Self::FinitePoints,
@@ -98,12 +98,12 @@ impl Line {
         Self::CapNormal,
     ];
 
-    /// Whether it says something of a boundary that is not filled with tetrahedra.
+    /// True if the condition applies to a boundary that is not filled with tetrahedra.
     pub(super) fn concerns_surfaces(self) -> bool {
         self >= Self::BoundaryEdges || matches!(self, Self::FinitePoints | Self::NoDuplicatePoints)
     }
 
-    /// What holds when the line passes.
+    /// Statement that is true if the condition holds.
     pub fn statement(self) -> &'static str {
         match self {
             Self::NotEmpty => "the mesh has tetrahedra",
@@ -134,34 +134,34 @@ impl Line {
     }
 }
 
-/// Why a line was not checked.
+/// Reason why a condition was not checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Skipped {
-    /// The mesh labels no boundary.
+    /// The mesh has no boundary labels.
     NoLabels,
-    /// Nothing says what to expect.
+    /// No expectation is given.
     NoExpectation,
-    /// No patch says what cap it is.
+    /// No patch has cap data.
     NoCaps,
-    /// The line has no meaning while this one fails.
+    /// Meaningless while this condition fails.
     Because(Line),
 }
 
-/// How a line came out.
+/// Outcome of a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// It holds.
     Pass,
-    /// It does not.
+    /// It fails.
     Fail,
     /// It was not checked.
     NotChecked(Skipped),
 }
 
-/// What an offender's ids are.
+/// Kind of an offender's ids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OffenderKind {
@@ -181,14 +181,14 @@ pub enum OffenderKind {
     Node,
 }
 
-/// Something that breaks a line.
+/// An entity that violates a condition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Offender {
-    /// What the ids are.
+    /// Kind of the ids.
     pub kind: OffenderKind,
     /// Ids, counted from 0 in the order of the mesh (patches and nodes: their own ids).
     pub ids: Vec<i64>,
-    /// Where it is; none where there is no place.
+    /// Position, if it has one.
     pub position: Option<[f64; 3]>,
 }
 
@@ -199,22 +199,22 @@ impl Offender {
     }
 }
 
-/// Offenders that are kept per line.
+/// Maximum offenders kept per condition.
 pub const KEPT_OFFENDERS: usize = 10;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LineResult {
     pub line: Line,
-    /// How it came out.
+    /// Outcome of the condition.
     pub outcome: Outcome,
     /// Number of offenders.
     pub count: u64,
-    /// The first of them.
+    /// First offenders.
     pub offenders: Vec<Offender>,
-    /// For lines that compare: what was expected, ascending.
+    /// Expected values, ascending, for conditions that compare.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected: Option<Vec<u32>>,
-    /// For lines that compare: what was found, ascending.
+    /// Found values, ascending, for conditions that compare.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub found: Option<Vec<u32>>,
 }
@@ -229,7 +229,7 @@ impl LineResult {
     }
 }
 
-/// Collects the offenders of one line.
+/// Collects the offenders of one condition.
 #[derive(Debug)]
 pub(super) struct Tally(LineResult);
 
@@ -238,7 +238,7 @@ impl Tally {
         Self(LineResult { line, outcome: Outcome::Pass, count: 0, offenders: Vec::new(), expected: None, found: None })
     }
 
-    /// Counts an offender; the description is made only when it is kept.
+    /// Counts an offender; its description is made only if it is kept.
     pub(super) fn add(&mut self, offender: impl FnOnce() -> Offender) {
         self.0.count += 1;
         if self.0.offenders.len() < KEPT_OFFENDERS {
@@ -246,7 +246,7 @@ impl Tally {
         }
     }
 
-    /// Compares two ascending lists; fails when they differ.
+    /// Compares two ascending lists; fails if they differ.
     pub(super) fn compare(&mut self, expected: Vec<u32>, found: Vec<u32>) {
         if expected != found {
             self.0.outcome = Outcome::Fail;
@@ -262,7 +262,7 @@ impl Tally {
     }
 }
 
-/// Whether there are as many components as the skeleton has.
+/// Compares the number of components with the skeleton's.
 pub(super) fn components(expectation: Option<&Expectation>, found: usize) -> LineResult {
     let Some(expected) = expectation else {
         return LineResult::skipped(Line::Components, Skipped::NoExpectation);
@@ -272,7 +272,7 @@ pub(super) fn components(expectation: Option<&Expectation>, found: usize) -> Lin
     tally.done()
 }
 
-/// Sizes of what was checked.
+/// Sizes of the checked mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Counts {
     /// Number of points.
@@ -281,9 +281,9 @@ pub struct Counts {
     pub tets: usize,
     /// Number of boundary faces.
     pub boundary_faces: usize,
-    /// Number of components (tetrahedra joined by faces).
+    /// Number of components (tetrahedra connected by faces).
     pub components: usize,
-    /// Number of boundary surfaces (faces joined by vertices).
+    /// Number of boundary surfaces (faces connected by vertices).
     pub boundary_components: usize,
     /// Number of caps.
     pub caps: usize,
@@ -291,39 +291,39 @@ pub struct Counts {
     pub volume: f64,
 }
 
-/// The verdict over all lines.
+/// Verdict over all conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Every line was checked and holds.
+    /// Every condition was checked and holds.
     Valid,
-    /// Every line that could be checked holds, but not all could.
+    /// All checked conditions hold, but some could not be checked.
     NoFaultFound,
-    /// A line fails.
+    /// A condition fails.
     Invalid,
 }
 
-/// Two boundary faces that meet improperly.
+/// Two boundary faces that intersect improperly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Intersection {
-    /// Their vertices; the same face twice when it has no area.
+    /// Their vertices; the same face twice if it has no area.
     pub faces: [[u32; 3]; 2],
-    /// How they meet.
+    /// Kind of the intersection.
     pub kind: crate::geometry::Improper,
 }
 
-/// The result of a check.
+/// Result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CheckReport {
     /// The verdict.
     pub verdict: Verdict,
     /// Sizes.
     pub counts: Counts,
-    /// One entry per line of the definition, in order.
+    /// One entry per condition, in order.
     pub lines: Vec<LineResult>,
-    /// Shape of the tetrahedra; none when their points cannot be used.
+    /// Shape of the tetrahedra; `None` if their points are unusable.
     pub quality: Option<TetQuality>,
-    /// All pairs of boundary faces that meet improperly, ascending.
+    /// All pairs of boundary faces that intersect improperly, ascending.
     #[serde(skip)]
     pub intersections: Vec<Intersection>,
 }
@@ -346,17 +346,17 @@ impl CheckReport {
         Self { verdict, counts, lines, quality, intersections }
     }
 
-    /// Whether every line was checked and holds.
+    /// True if every condition was checked and holds.
     pub fn is_valid(&self) -> bool {
         self.verdict == Verdict::Valid
     }
 
-    /// The result of one line.
+    /// Result of one condition.
     pub fn line(&self, line: Line) -> Option<&LineResult> {
         self.lines.iter().find(|result| result.line == line)
     }
 
-    /// The lines that fail.
+    /// Failed conditions.
     pub fn failed(&self) -> impl Iterator<Item = &LineResult> {
         self.lines.iter().filter(|line| line.outcome == Outcome::Fail)
     }

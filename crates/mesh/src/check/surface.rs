@@ -1,4 +1,4 @@
-//! Lines about the boundary as a surface.
+//! Conditions on the boundary as a surface.
 
 use super::cells::{centroid, face_offender, point_offender};
 use super::nested::nested_surfaces;
@@ -8,7 +8,7 @@ use crate::adjacency::{NONE, TriAdjacency, tri_adjacency};
 use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, self_contacts};
 
-/// The boundary faces with their edges matched.
+/// Boundary faces with their edges matched.
 pub(super) struct Boundary<'a> {
     points: &'a [Point3],
     faces: &'a [[u32; 3]],
@@ -44,7 +44,7 @@ impl<'a> Boundary<'a> {
         let mut wrong: Vec<[u32; 2]> = Vec::new();
         for (handle, &other) in self.edges.neighbors.as_flattened().iter().enumerate() {
             let handle = handle as u32;
-            // Open and crowded edges have no partner; partners have to run the other way.
+            // Open and crowded edges have no partner; partners must have the opposite direction.
             if other == NONE || (handle < other && self.ends(handle) == self.ends(other)) {
                 wrong.push(self.undirected(handle));
             }
@@ -59,7 +59,7 @@ impl<'a> Boundary<'a> {
         tally.done()
     }
 
-    /// Vertices at which the boundary faces form more than one fan.
+    /// Finds vertices where the boundary faces form more than one fan.
     pub(super) fn single_fans(&self) -> LineResult {
         let mut corners = DisjointSets::new(3 * self.faces.len());
         let mut join = |a: u32, b: u32| {
@@ -111,7 +111,7 @@ impl<'a> Boundary<'a> {
         })
     }
 
-    /// Faces that meet improperly; when the boundary is closed and there are none, surfaces that lie within the mesh.
+    /// Finds faces that intersect improperly. If the boundary is closed and there are none, finds nested surfaces.
     pub(super) fn self_intersections(&self, closed: bool) -> (LineResult, Vec<Intersection>) {
         let mut tally = Tally::new(Line::NoSelfIntersection);
         let contacts = self_contacts(self.points, self.faces);
@@ -136,12 +136,12 @@ impl<'a> Boundary<'a> {
     }
 }
 
-/// Genus of a closed surface of this Euler number, 2 − 2 genus.
+/// Genus of a closed surface with this Euler number, 2 − 2 genus.
 pub(super) fn genus(euler: i64) -> u32 {
     (1 - euler.div_euclid(2)).max(0) as u32
 }
 
-/// Compares boundary surfaces, each given by its genus and a vertex, with the expected loops.
+/// Compares boundary surfaces, given by genus and a vertex, with the expected loops.
 pub(super) fn compare_loops(
     expected: &[u32],
     mut found: Vec<(u32, u32)>,

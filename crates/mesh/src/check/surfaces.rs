@@ -1,26 +1,26 @@
-//! The boundary surfaces of a mesh: faces joined by vertices.
+//! Boundary surfaces of a mesh: faces connected by vertices.
 
 use crate::adjacency::NONE;
 use crate::geometry::DisjointSets;
 
-/// The boundary surfaces: faces joined by vertices.
+/// Boundary surfaces: faces connected by vertices.
 pub(super) struct Surfaces {
     /// Surface of each vertex; `NONE` off the boundary.
     pub of: Vec<u32>,
-    /// Ascending by their smallest vertex.
+    /// Surfaces, ascending by smallest vertex.
     pub all: Vec<Surface>,
 }
 
 /// A boundary surface.
 pub(super) struct Surface {
-    /// Its smallest vertex.
+    /// Smallest vertex.
     pub vertex: u32,
     pub vertices: i64,
     pub faces: i64,
 }
 
 impl Surface {
-    /// Euler number of a closed one: 2 E = 3 F there.
+    /// Euler number of a closed surface, where 2 E = 3 F.
     pub(super) fn euler(&self) -> i64 {
         self.vertices - self.faces / 2
     }

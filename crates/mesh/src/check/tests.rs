@@ -1,4 +1,4 @@
-//! Every line fails on a mesh in which its fault was planted, and none on a sound one.
+//! Every condition fails on a mesh with its fault planted, and none on a valid one.
 
 use super::result::KEPT_OFFENDERS;
 use super::*;
@@ -9,7 +9,7 @@ use crate::{Cap, Patch, WALL};
 
 const HEIGHT: f64 = 2.5;
 
-/// A straight vessel of radius 1 with an inlet at its foot (node 7) and an outlet at its head (node 3).
+/// A straight vessel of radius 1 with an inlet at the bottom (node 7) and an outlet at the top (node 3).
 fn tube() -> (VolumeMesh, Expectation) {
     let mesh = tube_lattice(4, 10, HEIGHT / 10.0);
     let cap = |node, z, normal| Cap { node, center: Point3::new(0.0, 0.0, z), normal, radius: 1.0 };
@@ -42,7 +42,7 @@ fn failing(volume: &VolumeMesh, expectation: &Expectation) -> Vec<Line> {
     report.failed().map(|result| result.line).collect()
 }
 
-/// The lines that fail after a change to the sound tube.
+/// Conditions that fail after a change to the valid tube.
 fn planted(change: impl FnOnce(&mut VolumeMesh, &mut Expectation)) -> Vec<Line> {
     let (mut volume, mut expectation) = tube();
     change(&mut volume, &mut expectation);
@@ -51,7 +51,7 @@ fn planted(change: impl FnOnce(&mut VolumeMesh, &mut Expectation)) -> Vec<Line> 
     report.failed().map(|result| result.line).collect()
 }
 
-/// The lines about the mesh itself that fail, labels left aside.
+/// Conditions on the mesh itself that fail, without labels.
 fn planted_in_mesh(change: impl FnOnce(&mut TetMesh)) -> Vec<Line> {
     let mut mesh = cube_lattice(3);
     change(&mut mesh);
@@ -102,7 +102,7 @@ fn faults_of_tetrahedra() {
     let lines = planted_in_mesh(|m| m.tets.push([m.tets[20][1], m.tets[20][0], m.tets[20][2], m.tets[20][3]]));
     assert!(lines.contains(&Line::NoDuplicateTets));
     assert_eq!(planted_in_mesh(|m| m.tets[20].swap(0, 1)), [Line::PositiveTets, Line::OppositeSides]);
-    // A flat one: an inner point moved into the plane of a face opposite.
+    // A flat tetrahedron: an inner point moved into the plane of an opposite face.
     let lines = planted_in_mesh(|m| m.points[21] = m.points[22]);
     assert!(lines.contains(&Line::PositiveTets) && lines.contains(&Line::NoDuplicatePoints));
 }
@@ -123,7 +123,7 @@ fn faults_of_faces() {
         m.tets.push([a, b, c, m.points.len() as u32 - 1]);
     });
     assert!(lines.contains(&Line::FacesSharedByTwo));
-    // A second tetrahedron outside the boundary, folded to the inside: both on one side of the face.
+    // A second tetrahedron outside the boundary, folded inwards: both on one side of the face.
     let mut mesh = TetMesh {
         points: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.1, 0.1, 0.5]].map(Point3::from).into(),
         tets: vec![[0, 1, 2, 3], [0, 1, 2, 4]],
@@ -138,7 +138,7 @@ fn faults_of_faces() {
 #[test]
 fn faults_of_points() {
     assert_eq!(planted_in_mesh(|m| m.points.push(Point3::new(0.5, 0.25, 0.125))), [Line::NoUnusedPoints]);
-    // The first tetrahedron gets its own copy of a point of the boundary.
+    // The first tetrahedron gets its own copy of a boundary point.
     let lines = planted_in_mesh(|m| {
         m.points.push(m.points[0]);
         let at = m.tets[0].iter().position(|&v| v == 0).unwrap();
@@ -173,14 +173,14 @@ fn faults_of_the_boundary() {
         check_tets(&mesh, None).failed().map(|result| (result.line, result.count)).collect::<Vec<_>>()
     };
     assert_eq!(glued(Vec3::new(1.0, 1.0, 1.0)), [(Line::BoundaryFans, 1)]);
-    // The middle vertex of the edge keeps two fans, its ends have one each that is pinched into an edge of four faces.
+    // The middle vertex of the edge keeps two fans. Each end has one fan, pinched into an edge of four faces.
     assert!(glued(Vec3::new(1.0, 1.0, 0.0)).iter().any(|&(line, count)| line == Line::BoundaryEdges && count == 2));
     assert_eq!(glued(Vec3::new(1.0, 0.0, 0.0)), []);
 }
 
 #[test]
 fn faults_of_shape() {
-    // Another vessel that passes through, with points of its own.
+    // A second vessel that passes through, with separate points.
     let lines = planted_in_mesh(|m| append(m, &cube_lattice(2), Vec3::new(0.55, 0.45, 0.35)));
     assert_eq!(lines, [Line::NoSelfIntersection, Line::Components, Line::Loops]);
     // One beside it.
@@ -191,7 +191,7 @@ fn faults_of_shape() {
     assert_eq!(lines, [Line::NoSelfIntersection, Line::Components, Line::Loops]);
 }
 
-/// The middle column of cells taken out leaves a ring.
+/// Removing the middle column of cells leaves a ring.
 #[test]
 fn the_genus_is_compared_with_the_loops() {
     let mut mesh = cube_lattice(3);
@@ -207,7 +207,7 @@ fn the_genus_is_compared_with_the_loops() {
     assert_eq!(lines(vec![1, 0]), [(Line::Components, Some(vec![1])), (Line::Loops, Some(vec![1]))]);
 }
 
-/// A hollow in the middle is a second boundary surface of the same component.
+/// A cavity in the middle is a second boundary surface of the same component.
 #[test]
 fn a_cavity_fails() {
     let lines = planted_in_mesh(|m| {
@@ -271,7 +271,7 @@ fn faults_of_caps() {
     assert_eq!(bump, [Line::CapFlat]);
 }
 
-/// The tube somewhere else and askew, its coordinates as 32 bits keep them.
+/// The tube moved and rotated, with coordinates rounded to 32 bits.
 fn rounded(offset: f64) -> (VolumeMesh, Expectation) {
     let (mut volume, expectation) = tube();
     let turn = nalgebra::Rotation3::from_euler_angles(0.3, 0.7, 0.2);
@@ -293,18 +293,18 @@ fn caps_of_rounded_coordinates_are_flat_to_their_rounding() {
         assert_eq!(failing(&volume, &expectation), [], "{offset}");
         let head = volume.boundary.iter().zip(&volume.boundary_patch).find(|(_, id)| **id == 3).unwrap().0[0] as usize;
         let place = volume.mesh.points[head];
-        // What rounding does not explain, though it is a number of 32 bits.
+        // A shift beyond rounding, though a 32-bit number.
         let bump = 4.0 * f64::from(f32::EPSILON) * (1.0 + 4.0 * offset);
         volume.mesh.points[head] = (place + volume.patches[2].cap.unwrap().normal * bump).map(|x| f64::from(x as f32));
         assert_eq!(failing(&volume, &expectation), [Line::CapFlat], "{offset}");
-        // One coordinate of 64 bits, and nothing is owed to rounding.
+        // With one 64-bit coordinate, rounding is no excuse.
         volume.mesh.points[head] = place;
         volume.mesh.points[head].x += 1e-12 * (1.0 + offset);
         assert_eq!(failing(&volume, &expectation), [Line::CapFlat], "{offset}");
     }
 }
 
-/// A label moved from the cap's middle to the wall leaves a hole; one on the far side of the wall, a second piece.
+/// A label moved from the cap's middle to the wall leaves a hole; one on the far side of the wall makes a second piece.
 #[test]
 fn caps_that_are_no_discs() {
     let centre_face = |v: &VolumeMesh| {

@@ -1,14 +1,13 @@
-//! What a check found, for people; its JSON form is `CheckReport` itself.
+//! Text form of a check's result; its JSON form is `CheckReport` itself.
 
 use super::{CheckReport, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict};
 use crate::units::{digits, grouped, place};
 use std::fmt::{self, Write as _};
 
-/// Offenders of a line that are spelt out in a summary.
+/// Maximum offenders per condition in a summary.
 const SPELT_OUT: usize = 3;
 
-/// For people: a line per line of the definition, the first offenders below those that fail, sizes and shape, and the
-/// verdict at the end.
+/// Text report: one line per condition, the first offenders of failed ones, sizes and shape, and finally the verdict.
 impl fmt::Display for CheckReport {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         writeln!(out, "{}\n{}", conditions(self), sizes(self))?;
@@ -19,7 +18,7 @@ impl fmt::Display for CheckReport {
     }
 }
 
-/// How large a mesh is.
+/// Sizes of a mesh.
 pub fn sizes(check: &CheckReport) -> String {
     let counts = &check.counts;
     let tets = if counts.tets > 0 { format!("{} tetrahedra, ", grouped(counts.tets)) } else { String::new() };
@@ -32,14 +31,14 @@ pub fn sizes(check: &CheckReport) -> String {
     format!("{tets}{points} points, {faces} boundary faces, {caps} inlets and outlets{components}, volume {volume}")
 }
 
-/// How good its tetrahedra are.
+/// Quality of the tetrahedra.
 pub fn shape(check: &CheckReport) -> Option<String> {
     let q = check.quality.as_ref()?;
     let angles = format!("dihedral angles {:.0}° to {:.0}°", q.dihedral_min, q.dihedral_max);
     Some(format!("radius ratio {:.2} in the mean, {:.2} at least; {angles}", q.mean, q.min))
 }
 
-/// How many conditions hold; whether they are listed elsewhere.
+/// Number of conditions that hold. `listed` tells if they are listed elsewhere.
 pub fn tally(check: &CheckReport, listed: bool) -> String {
     let (all, failed) = (check.lines.len(), check.failed().count());
     let unchecked = check.lines.iter().filter(|line| matches!(line.outcome, Outcome::NotChecked(_))).count();
@@ -54,7 +53,7 @@ pub fn tally(check: &CheckReport, listed: bool) -> String {
     }
 }
 
-/// The conditions that do not hold, with the first offenders of each.
+/// Failed conditions, with the first offenders of each.
 pub fn faults(check: &CheckReport) -> String {
     let mut out = String::new();
     for failed in check.failed() {
@@ -81,7 +80,7 @@ pub fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-/// A line per line of the definition, with the first offenders.
+/// One line per condition, with the first offenders.
 pub fn conditions(check: &CheckReport) -> String {
     let mut out = String::new();
     for line in &check.lines {
@@ -111,7 +110,7 @@ pub fn reason(why: Skipped) -> String {
     }
 }
 
-/// How many offenders, or what was expected and what found.
+/// Number of offenders, or the expected and found values.
 pub fn extent(result: &LineResult) -> String {
     match (&result.expected, &result.found) {
         (Some(expected), Some(found)) => format!("expected {}, found {}", list(expected), list(found)),
@@ -119,7 +118,7 @@ pub fn extent(result: &LineResult) -> String {
     }
 }
 
-/// A list of numbers, in full when it is short.
+/// A list of numbers, shortened if long.
 fn list(numbers: &[u32]) -> String {
     const SHOWN: usize = 12;
     let shown: Vec<String> = numbers.iter().take(SHOWN).map(ToString::to_string).collect();

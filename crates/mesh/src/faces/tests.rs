@@ -6,7 +6,7 @@ use crate::source::{SourceCounts, TetPiece};
 use crate::{Patch, VolumeMesh};
 use std::borrow::Cow;
 
-/// A cube whose lower side is patch 3; in parts of so many tetrahedra and labelled faces, which do not belong to each other.
+/// A cube whose lower side is patch 3, in unrelated parts of a given number of tetrahedra and labelled faces.
 struct Cut(VolumeMesh, usize);
 
 impl Cut {

@@ -1,8 +1,8 @@
-//! Axis-aligned boxes.
+//! Axis-aligned bounding boxes.
 
 use super::Point3;
 
-/// An axis-aligned box; closed, so boxes that touch overlap.
+/// Axis-aligned bounding box; closed, so touching boxes overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Smallest coordinates.
@@ -12,13 +12,13 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box that holds nothing: it overlaps no box, and its union with a box is that box.
+    /// Empty box: it overlaps no box and is neutral in unions.
     pub const EMPTY: Self = Self {
         min: Point3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
         max: Point3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
     };
 
-    /// The smallest box that holds all points; `EMPTY` for none.
+    /// Bounding box of a set of points; `EMPTY` for none.
     pub fn of_points<'a>(points: impl IntoIterator<Item = &'a Point3>) -> Self {
         let mut aabb = Self::EMPTY;
         for p in points {
@@ -27,30 +27,34 @@ impl Aabb {
         aabb
     }
 
-    /// Grows the box so that it holds `p`.
+    /// Grows the box to contain `p`.
+    #[inline]
     pub fn include(&mut self, p: &Point3) {
         self.min = self.min.inf(p);
         self.max = self.max.sup(p);
     }
 
-    /// The smallest box that holds both.
+    /// Bounding box of both.
     #[must_use]
+    #[inline]
     pub fn union(&self, other: &Self) -> Self {
         Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
     }
 
     /// The box grown by `margin` on every side.
     #[must_use]
+    #[inline]
     pub fn grown(&self, margin: f64) -> Self {
         let m = super::Vec3::repeat(margin);
         Self { min: self.min - m, max: self.max + m }
     }
 
-    /// Whether the two boxes have a point in common.
+    /// True if the boxes have a point in common.
     #[inline]
     #[allow(clippy::needless_bitwise_bool)]
+    #[inline]
     pub fn overlaps(&self, other: &Self) -> bool {
-        // All six: branches that are taken as often as not cost more.
+        // Without short circuits: unpredictable branches cost more.
         (self.min.x <= other.max.x)
             & (other.min.x <= self.max.x)
             & (self.min.y <= other.max.y)
@@ -59,12 +63,13 @@ impl Aabb {
             & (other.min.z <= self.max.z)
     }
 
-    /// Twice the centre: enough to order boxes by.
+    /// Twice the centre, sufficient for sorting.
     pub(super) fn doubled_centre(&self) -> [f64; 3] {
         [self.min.x + self.max.x, self.min.y + self.max.y, self.min.z + self.max.z]
     }
 
     /// Length of the diagonal; 0 for the empty box.
+    #[inline]
     pub fn diagonal(&self) -> f64 {
         if self.min.x > self.max.x {
             return 0.0;

@@ -1,6 +1,7 @@
 //! Angles.
 
-/// An angle brought into (−π, π].
+/// Normalizes an angle to (−π, π].
+#[inline]
 pub fn turn(angle: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     let a = angle.rem_euclid(TAU);

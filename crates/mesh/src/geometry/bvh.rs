@@ -1,27 +1,27 @@
-//! A bounding volume hierarchy over axis-aligned boxes.
+//! Bounding volume hierarchy over axis-aligned boxes.
 //!
-//! The boxes are laid along the Hilbert curve of their centres (Kamel, Faloutsos, 'Hilbert R-tree', 1994) and the line is
-//! halved again and again: one sort builds the tree, and its depth is the logarithm of the number of boxes whatever the
-//! boxes are. All walks are iterative. The same boxes always give the same tree and the same order of answers.
+//! The boxes are sorted along the Hilbert curve of their centres (Kamel, Faloutsos, 'Hilbert R-tree', 1994), and the
+//! list is halved recursively. One sort builds the tree, and its depth is logarithmic for any boxes. All traversals are
+//! iterative. The tree and the order of results are deterministic.
 
 use super::hilbert::hilbert_keys;
 use super::{Aabb, Point3};
 
-/// Boxes in a leaf at most.
+/// Maximum boxes in a leaf.
 const LEAF: usize = 4;
 
-/// Deep enough for 2^32 boxes in any walk.
+/// Stack depth of a traversal, sufficient for 2^32 boxes.
 const STACK: usize = 128;
 
 #[derive(Clone, Copy, Debug)]
 struct BvhNode {
     aabb: Aabb,
-    /// A leaf's range in `items`; an inner node has `count` 0 and its right child at `first`, the left one follows it.
+    /// Start of a leaf's range in `items`. An inner node has `count` 0 and its right child here; the left one is next.
     first: u32,
     count: u32,
 }
 
-/// A search tree over boxes; boxes are named by their index in the slice that the tree was built from.
+/// Search tree over boxes, named by their index in the input slice.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     nodes: Vec<BvhNode>,
@@ -31,18 +31,18 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds the tree. Boxes must not hold NaN; `Aabb::EMPTY` is legal and never found.
+    /// Builds the tree. Boxes must not contain NaN; `Aabb::EMPTY` is valid and never found.
     pub fn new(boxes: &[Aabb]) -> Self {
         Self::of(boxes.to_vec())
     }
 
-    /// The same of boxes that nobody else needs: of millions they are held once.
+    /// Builds the tree and takes over the boxes, to avoid a copy of millions.
     pub fn of(mut boxes: Vec<Aabb>) -> Self {
         let items = along_hilbert_curve(&boxes);
         arrange(&mut boxes, &items);
         let mut nodes = Vec::with_capacity(boxes.len() / 2 + 1);
-        // Ranges still to be built, the left one on top so that a left child follows its parent; `parent` is set for
-        // right children, which tell the parent where they are.
+        // Stack of ranges to build, left ones on top so that a left child follows its parent. Right children have
+        // `parent` set and store their index in it.
         let mut pending: Vec<(usize, usize, Option<usize>)> = Vec::new();
         if !boxes.is_empty() {
             pending.push((0, boxes.len(), None));
@@ -73,7 +73,7 @@ impl Bvh {
         Self { nodes, items, boxes }
     }
 
-    /// The boxes in the order in which they were given.
+    /// Returns the boxes in input order.
     pub fn into_boxes(self) -> Vec<Aabb> {
         let Self { items, mut boxes, nodes } = self;
         drop(nodes);
@@ -85,12 +85,12 @@ impl Bvh {
         boxes
     }
 
-    /// The boxes' indices in the order in which the tree holds them: neighbours there are near each other.
+    /// Box indices in tree order, in which neighbours are close in space.
     pub fn order(&self) -> &[u32] {
         &self.items
     }
 
-    /// The box at a place of that order.
+    /// Box at a position of that order.
     pub fn box_at(&self, place: usize) -> &Aabb {
         &self.boxes[place]
     }
@@ -148,7 +148,7 @@ impl Bvh {
         }
     }
 
-    /// Calls `found(a, b)` once for every box `a` of this tree and box `b` of the other that overlap.
+    /// Calls `found(a, b)` once for every box `a` of this tree that overlaps a box `b` of the other.
     pub fn pairs(&self, other: &Self, mut found: impl FnMut(u32, u32)) {
         let mut pending: Vec<(u32, u32)> = Vec::new();
         if !self.nodes.is_empty() && !other.nodes.is_empty() {
@@ -169,7 +169,7 @@ impl Bvh {
         }
     }
 
-    /// Replaces a pair of nodes by pairs with the children of the larger one; false when both are leaves.
+    /// Replaces a pair of nodes by pairs with the children of the larger one. Returns false if both are leaves.
     #[allow(clippy::unused_self)]
     fn descend(&self, i: u32, a: &BvhNode, j: u32, b: &BvhNode, pending: &mut Vec<(u32, u32)>) -> bool {
         if a.count > 0 && b.count > 0 {
@@ -197,7 +197,7 @@ impl BvhNode {
     }
 }
 
-/// Puts in each place the box that was in the place named there, cycle by cycle.
+/// Permutes boxes in place, cycle by cycle: position `i` receives the box from position `from[i]`.
 fn arrange(boxes: &mut [Aabb], from: &[u32]) {
     let mut is_done = vec![false; boxes.len()];
     for start in 0..boxes.len() {
@@ -213,7 +213,7 @@ fn arrange(boxes: &mut [Aabb], from: &[u32]) {
     }
 }
 
-/// The boxes' indices in the order of the Hilbert keys of their centres; empty boxes, which have no centre, first.
+/// Box indices sorted by the Hilbert keys of their centres; empty boxes, without a centre, come first.
 fn along_hilbert_curve(boxes: &[Aabb]) -> Vec<u32> {
     let is_full = |b: &Aabb| b.min.x <= b.max.x;
     let mut order: Vec<(u64, u32)> = Vec::with_capacity(boxes.len());
@@ -233,7 +233,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn any_box() -> impl Strategy<Value = Aabb> {
-        // Small integers: many touching and equal boxes.
+        // Small integers give many touching and equal boxes.
         (prop::array::uniform3(-9_i8..9), prop::array::uniform3(0_i8..4)).prop_map(|(p, d)| {
             let at = |i: usize| f64::from(p[i]);
             let to = |i: usize| f64::from(p[i] + d[i]);

@@ -1,10 +1,10 @@
-//! The least value of a convex function of one variable.
+//! Minimization of a convex function of one variable.
 
-/// Value of a function, the place where it has it, and what comes along.
+/// Value of a function, its argument, and a payload.
 pub type Sample = (f64, f64, f64);
 
-/// Minimum of a convex function by golden section, to about 1e-9 of the range. Ends early when the function cannot be
-/// below `enough`, or cannot fall further: then the value is the least one seen.
+/// Minimum of a convex function by golden section, to about 1e-9 of the range. Stops early if the function cannot be
+/// below `enough` or cannot fall further; the value is then the least one seen.
 pub fn minimise_convex(at: impl Fn(f64) -> Sample, [low, high]: [f64; 2], enough: f64) -> Sample {
     let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
     let inner = [high - ratio * (high - low), low + ratio * (high - low)];
@@ -30,13 +30,13 @@ fn least(points: &[Sample; 4]) -> Sample {
     points.iter().copied().fold(points[0], |best, p| if p.0 < best.0 { p } else { best })
 }
 
-/// What a convex function is at least between the first and the last of four points, by the chords between them.
+/// Lower bound of a convex function between the first and last of four points, from its chords.
 fn lower_bound(&[a, b, c, d]: &[Sample; 4]) -> f64 {
     let slope = |p: Sample, q: Sample| if q.1 > p.1 { (q.0 - p.0) / (q.1 - p.1) } else { 0.0 };
     let (first, middle, last) = (slope(a, b), slope(b, c), slope(c, d));
     let before = b.0 - middle.max(0.0) * (b.1 - a.1);
     let after = c.0 + middle.min(0.0) * (d.1 - c.1);
-    // Between the inner two: above the chords on either side, prolonged.
+    // Between the inner two: above the extended chords on either side.
     let between = if first < 0.0 && last > 0.0 {
         let x = ((c.0 - b.0 - last * c.1 + first * b.1) / (first - last)).clamp(b.1, c.1);
         (b.0 + first * (x - b.1)).max(c.0 + last * (x - c.1))

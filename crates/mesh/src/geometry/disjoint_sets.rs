@@ -1,6 +1,6 @@
-//! Disjoint sets of numbers.
+//! Disjoint sets (union-find).
 
-/// A partition of `0..n` that becomes coarser by joining; the smallest member of a set is its root.
+/// Partition of `0..n` with union; the smallest member of a set is its root.
 #[derive(Clone, Debug)]
 pub struct DisjointSets(Vec<u32>);
 
@@ -9,19 +9,21 @@ impl DisjointSets {
         Self((0..n as u32).collect())
     }
 
-    /// Adds a number, alone in its set.
+    /// Adds a number in a set of its own.
+    #[inline]
     pub fn push(&mut self) -> u32 {
         let new = self.0.len() as u32;
         self.0.push(new);
         new
     }
 
-    /// How many numbers there are.
+    /// Number of elements.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// The smallest number in the set of `i`.
+    /// Smallest number in the set of `i`, with path compression.
+    #[inline]
     pub fn root(&mut self, mut i: u32) -> u32 {
         while self.0[i as usize] != i {
             let above = self.0[self.0[i as usize] as usize];
@@ -31,7 +33,8 @@ impl DisjointSets {
         i
     }
 
-    /// The same without shortening ways.
+    /// Smallest number in the set of `i`, without path compression.
+    #[inline]
     pub fn find(&self, mut i: u32) -> u32 {
         while self.0[i as usize] != i {
             i = self.0[i as usize];
@@ -40,20 +43,21 @@ impl DisjointSets {
     }
 
     /// Joins the sets of two numbers.
+    #[inline]
     pub fn join(&mut self, i: u32, j: u32) {
         let (i, j) = (self.root(i), self.root(j));
         self.0[i.max(j) as usize] = i.min(j);
     }
 
-    /// Makes every way one step long.
+    /// Makes every element point at its root.
     pub fn flatten(&mut self) {
         for i in 0..self.0.len() {
-            // What is above a number is smaller, so its way is short already.
+            // Parents are smaller, so their path is short already.
             self.0[i] = self.0[self.0[i] as usize];
         }
     }
 
-    /// For each number the number of its set; sets are counted by their roots.
+    /// Set index of each number; sets are numbered in the order of their roots.
     pub fn numbered(&mut self) -> Vec<u32> {
         self.flatten();
         let mut count = 0;

@@ -1,11 +1,11 @@
 //! Distances between points, segments, triangles and tapering tubes.
 //!
-//! Floating-point throughout: these measure, they decide no topology.
+//! All in floating point: these functions measure and decide no topology.
 
 use super::convex::minimise_convex;
 use super::{Point3, Tube};
 
-/// The closest points of two segments.
+/// Closest points of two segments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentPair {
     /// Parameter in [0, 1] on the first segment.
@@ -16,8 +16,8 @@ pub struct SegmentPair {
     pub distance: f64,
 }
 
-/// Parameter in [0, 1] of the point of segment `ab` that is closest to `p`, and its distance. A segment of length 0
-/// gives parameter 0.
+/// Parameter in [0, 1] of the point of segment `ab` closest to `p`, and its distance. Length 0 gives 0.
+#[inline]
 pub fn point_segment(p: &Point3, a: &Point3, b: &Point3) -> (f64, f64) {
     let d = b - a;
     let along = (p - a).dot(&d);
@@ -32,13 +32,12 @@ pub fn point_segment(p: &Point3, a: &Point3, b: &Point3) -> (f64, f64) {
     (t, (p - (a + d * t)).norm())
 }
 
-/// Closest points of the segments `a` and `b`. Parallel and degenerate segments are legal; among several closest pairs
-/// one is chosen.
+/// Closest points of the segments `a` and `b`. Parallel and degenerate segments are valid and give one closest pair.
 pub fn segment_segment(a: [&Point3; 2], b: [&Point3; 2]) -> SegmentPair {
     let (d, e, w) = (a[1] - a[0], b[1] - b[0], a[0] - b[0]);
     let (dd, de, ee) = (d.norm_squared(), d.dot(&e), e.norm_squared());
     let (dw, ew) = (d.dot(&w), e.dot(&w));
-    // The squared distance is convex in (s, t): its minimum is inside, or on one of the four sides of the square.
+    // The squared distance is convex in (s, t): its minimum is inside the square or on one of its four sides.
     let ends = [0.0, 1.0].map(|s: f64| {
         let (t, distance) = point_segment(&(a[0] + d * s), b[0], b[1]);
         SegmentPair { s, t, distance }
@@ -64,7 +63,7 @@ pub fn segment_segment(a: [&Point3; 2], b: [&Point3; 2]) -> SegmentPair {
     best
 }
 
-/// The point of triangle `abc` that is closest to `p`, and its distance. Degenerate triangles are legal.
+/// Point of triangle `abc` closest to `p`, and its distance. Degenerate triangles are valid.
 pub fn point_triangle(p: &Point3, [a, b, c]: [&Point3; 3]) -> (Point3, f64) {
     let (u, v, w) = (b - a, c - a, p - a);
     let (uu, uv, vv) = (u.norm_squared(), u.dot(&v), v.norm_squared());
@@ -85,26 +84,26 @@ pub fn point_triangle(p: &Point3, [a, b, c]: [&Point3; 3]) -> (Point3, f64) {
     best
 }
 
-/// Where two tubes come closest to each other, wall to wall.
+/// Closest approach of two tube walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TubePair {
     /// Parameter in [0, 1] on the first tube's axis.
     pub s: f64,
     /// Parameter in [0, 1] on the second tube's axis.
     pub t: f64,
-    /// Distance of the two axis points minus the sum of the radii there: negative where the tubes overlap.
+    /// Distance of the two axis points minus the sum of the radii there; negative if the tubes overlap.
     pub gap: f64,
 }
 
-/// Parameter and gap of the point of `tube` whose sphere comes closest to the point `p`: the minimum over t of
-/// |p − x(t)| − r(t). A taper moves it from the foot of the perpendicular towards the thick end.
+/// Parameter and gap of the sphere of `tube` closest to the point `p`: the minimum over t of |p − x(t)| − r(t). A taper
+/// moves it from the foot of the perpendicular towards the thick end.
 pub fn point_tube(p: &Point3, tube: &Tube) -> (f64, f64) {
     let d = tube.b - tube.a;
     let length = d.norm();
     let gap = |t: f64| (p - tube.point(t)).norm() - tube.radius(t);
     let slope = tube.rb - tube.ra;
     if length <= slope.abs() {
-        // One end's sphere holds all others.
+        // One end's sphere contains all others.
         let t = if slope > 0.0 { 1.0 } else { 0.0 };
         return (t, gap(t));
     }
@@ -117,8 +116,7 @@ pub fn point_tube(p: &Point3, tube: &Tube) -> (f64, f64) {
 }
 
 /// Smallest gap between two tubes: the minimum over (s, t) of |x(s) − y(t)| − r(s) − q(t), to about 1e-9 of the
-/// lengths. The function is convex (a norm less linear terms), so a search along one axis with the other one solved
-/// for finds it.
+/// lengths. The function is convex (a norm minus linear terms), so a search over s with t solved exactly finds it.
 pub fn tube_tube(a: &Tube, b: &Tube) -> TubePair {
     if (a.ra, b.ra) == (a.rb, b.rb) {
         let pair = segment_segment([&a.a, &a.b], [&b.a, &b.b]);

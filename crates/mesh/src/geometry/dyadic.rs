@@ -1,7 +1,7 @@
-//! Integers of a fixed number of 64-bit limbs in two's complement: enough to evaluate a determinant of dyadic numbers
-//! exactly. Arithmetic wraps; the caller chooses a width in which the results fit.
+//! Integers with a fixed number of 64-bit limbs in two's complement, for exact determinants of dyadic numbers.
+//! Arithmetic wraps; the caller chooses a sufficient width.
 
-/// An integer of `64 · N` bits, least significant limb first.
+/// Integer of `64 · N` bits, least significant limb first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Int<const N: usize>([u64; N]);
 
@@ -65,7 +65,7 @@ impl<const N: usize> Int<N> {
         Self(out)
     }
 
-    /// Times 2ᵏ.
+    /// Multiplies by 2ᵏ.
     pub(super) fn shl(&self, k: u32) -> Self {
         let (limbs, bits) = ((k / 64) as usize, k % 64);
         let mut out = [0; N];
@@ -83,19 +83,19 @@ impl<const N: usize> Int<N> {
         if self.0[N - 1] >> 63 == 1 { -1 } else { i32::from(self.0.iter().any(|&x| x != 0)) }
     }
 
-    /// Bits of the magnitude, but for one.
+    /// Number of bits of the magnitude, up to one.
     pub(super) fn bits(&self) -> u32 {
         let fill = if self.sign() < 0 { u64::MAX } else { 0 };
         let top = (0..N).rev().find(|&i| self.0[i] != fill);
         top.map_or(0, |i| 64 * i as u32 + 64 - (self.0[i] ^ fill).leading_zeros())
     }
 
-    /// The magnitude.
+    /// Absolute value.
     pub(super) fn abs(&self) -> Self {
         if self.sign() < 0 { Self::ZERO.sub(self) } else { *self }
     }
 
-    /// The number divided by a larger or equal one, both not negative, as a fraction of that many bits, rounded down.
+    /// Quotient by a larger or equal number, both non-negative, as a fraction with `bits` bits, rounded down.
     pub(super) fn fraction(&self, divisor: &Self, bits: u32) -> u128 {
         let mut rest = *self;
         let mut quotient = 0;
@@ -113,7 +113,7 @@ impl<const N: usize> Int<N> {
         quotient
     }
 
-    /// The same number in another width.
+    /// Converts to another width.
     #[inline]
     pub(super) fn resize<const M: usize>(&self) -> Int<M> {
         let fill = if self.0[N - 1] >> 63 == 1 { u64::MAX } else { 0 };
@@ -124,7 +124,7 @@ impl<const N: usize> Int<N> {
     }
 }
 
-/// A finite number as `m · 2ᵉ` with odd `m`; zero as `(0, i32::MAX)`.
+/// Decomposes a finite number into `m · 2ᵉ` with odd `m`; zero into `(0, i32::MAX)`.
 pub(super) fn decompose(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
     let exponent = ((bits >> 52) & 0x7ff) as i32;

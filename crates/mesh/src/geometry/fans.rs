@@ -1,21 +1,21 @@
-//! A proof, for most vertices of a smooth surface, that the triangles around do not meet but where they are joined.
+//! Proof, for most vertices of a smooth surface, that the adjacent triangles intersect only where connected.
 //!
-//! When a linear map to the plane turns all triangles of a vertex the same way round, and together once about it, their
-//! images overlap nowhere, and so do not they. The signs are those of the exact values: where rounding could change
-//! one, nothing is said.
+//! Suppose a linear map to the plane gives all triangles of a vertex one orientation, and together one turn around it.
+//! Then the images do not overlap, nor do the triangles. Signs are those of the exact values; doubtful signs prove
+//! nothing.
 
 use super::{Point3, Vec3};
 
-/// Relative bound on the rounding errors of a cross product of images, with a wide margin (they are below 30 units of
-/// 1.1e-16), and what keeps it clear of underflow.
+/// Relative error bound of a cross product of images, and an absolute bound against underflow. The margin is wide:
+/// errors are below 30 units of 1.1e-16.
 const RELATIVE: f64 = 1e-13;
 const ABSOLUTE: f64 = 1e-280;
 
-/// More triangles than that at one vertex are left to other tests.
+/// Maximum triangles at one vertex; larger fans are left to other tests.
 const MOST: usize = 16;
 
-/// For every vertex whether its triangles are proved to have nothing in common but the vertex and the edges along which
-/// they follow each other; none of them is without area then.
+/// True for vertices whose triangles provably share only the vertex and the edges between consecutive ones. None of
+/// these triangles is degenerate.
 pub(super) fn proved_fans(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<bool> {
     let mut offsets = vec![0_u32; points.len() + 1];
     for &v in triangles.iter().flatten() {
@@ -42,7 +42,7 @@ pub(super) fn proved_fans(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<bool
     offsets[..points.len()].iter().enumerate().map(proved).collect()
 }
 
-/// Whether each end of a triangle is the start of exactly one other, and the other way round.
+/// True if each end of a triangle is the start of exactly one other, and vice versa.
 fn is_closed(fan: &[[u32; 2]]) -> bool {
     if fan.len() < 3 || fan.len() > MOST {
         return false;
@@ -58,7 +58,7 @@ fn turns_once(points: &[Point3], p: &Point3, fan: &[[u32; 2]]) -> bool {
     let Some(normal) = sum.try_normalize(0.0) else { return false };
     let mut axis = Vec3::zeros();
     axis[normal.iamin()] = 1.0;
-    // Any two vectors will do; these make the images as large as the triangles.
+    // Any two vectors are valid; these make the images as large as the triangles.
     let e = normal.cross(&axis);
     let f = normal.cross(&e);
     let mut turns = 0;
@@ -66,7 +66,7 @@ fn turns_once(points: &[Point3], p: &Point3, fan: &[[u32; 2]]) -> bool {
         let image = |d: Vec3| (d.dot(&e), d.dot(&f), d.x.abs() + d.y.abs() + d.z.abs());
         let [(ax, ay, a), (bx, by, b)] = spokes(t).map(image);
         let cross = ax * by - ay * bx;
-        // Written so that what is not a number fails.
+        // Formulated so that NaN fails.
         let certain = cross > RELATIVE * (a * b) + ABSOLUTE
             && cross < f64::MAX
             && ay.abs() > RELATIVE * a + ABSOLUTE
@@ -86,7 +86,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// What is proved agrees with the exact test of every pair of triangles.
+        /// Proofs agree with the exact test of every pair of triangles.
         #[test]
         fn proved_fans_have_no_improper_contact(rim in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64, -0.3..0.3_f64), 3..9)) {
             let mut points = vec![Point3::origin()];

@@ -1,12 +1,12 @@
-//! Hilbert curve in three dimensions: an order in which neighbours in the list are neighbours in space.
+//! Hilbert curve in three dimensions, an order in which list neighbours are close in space.
 
 use super::Point3;
 
 /// Bits per axis of the keys of [`hilbert_keys`].
 const BITS: u32 = 20;
 
-/// `STEPS[3 · e + d][octant]`: place of the octant along the curve that enters its cube at corner `e` and leaves it along
-/// axis `d`, and above bit 3 the row of the curve within the octant (Hamilton, 'Compact Hilbert indices', 2006).
+/// `STEPS[3 · e + d][octant]`: position of the octant along the curve that enters its cube at corner `e` and leaves it
+/// along axis `d`. From bit 3 on: the row of the curve within the octant (Hamilton, 'Compact Hilbert indices', 2006).
 const STEPS: [[u8; 8]; 24] = steps();
 
 const fn steps() -> [[u8; 8]; 24] {
@@ -33,12 +33,12 @@ const fn rotate_right(bits: usize, by: usize) -> usize {
     ((bits >> by) | (bits << (3 - by))) & 7
 }
 
-/// Corner at which the curve enters the octant at this place.
+/// Corner at which the curve enters the octant at this position.
 const fn entry(place: usize) -> usize {
     if place == 0 { 0 } else { gray(2 * ((place - 1) / 2)) }
 }
 
-/// Axis along which the curve runs through the octant at this place.
+/// Axis along which the curve crosses the octant at this position.
 const fn direction(place: usize) -> usize {
     let odd = if place == 0 {
         0
@@ -68,7 +68,7 @@ pub fn hilbert_key([x, y, z]: [u32; 3], bits: u32) -> u64 {
     key
 }
 
-/// A grid of cubes over the bounding box of points.
+/// Grid of cubes over the bounding box of points.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     low: Point3,
@@ -77,7 +77,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid of 2^`bits` cells along the longest side of the box.
+    /// Creates a grid of 2^`bits` cells along the longest side of the box.
     pub fn new(points: impl IntoIterator<Item = Point3>, bits: u32) -> Self {
         let mut low = Point3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY);
         let mut high = -low;
@@ -90,7 +90,7 @@ impl Grid {
         Self { low, scale: if size > 0.0 { last / size } else { 0.0 }, last }
     }
 
-    /// The cell that holds the point, or the one nearest to it.
+    /// Cell that contains the point, or the nearest one.
     #[inline]
     pub fn cell(&self, p: &Point3) -> [u32; 3] {
         let cell = |v: f64| (v * self.scale).clamp(0.0, self.last) as u32;
@@ -98,7 +98,7 @@ impl Grid {
     }
 }
 
-/// The Hilbert keys of points, on a grid over their bounding box.
+/// Hilbert keys of points, on a grid over their bounding box.
 pub fn hilbert_keys(points: impl Iterator<Item = Point3> + Clone) -> impl Iterator<Item = u64> {
     let grid = Grid::new(points.clone(), BITS);
     points.map(move |p| hilbert_key(grid.cell(&p), BITS))

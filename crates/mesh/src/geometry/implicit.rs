@@ -1,29 +1,29 @@
-//! Points on segments and triangles that need not be representable, and exact predicates on them.
+//! Implicit points on segments and triangles, and exact predicates on them.
 //!
-//! The point `a + s · (b − a) + t · (c − a)` with floating-point `a`, `b`, `c` and dyadic `s`, `t` is a dyadic number in
-//! each coordinate: no division is needed (of the implicit points of Attene, 'Indirect predicates for geometric
-//! constructions', 2020, this is the kind without a denominator). Predicates try the rounded points first, with a bound
-//! of the error that counts the rounding, and evaluate integers otherwise.
+//! For floating-point `a`, `b`, `c` and dyadic `s`, `t`, the point `a + s · (b − a) + t · (c − a)` is dyadic. Among the
+//! implicit points of Attene, 'Indirect predicates for geometric constructions', 2020, this is the kind without a
+//! denominator. Predicates first use the rounded points, with an error bound that includes the rounding, and otherwise
+//! evaluate integers.
 
 use super::Point3;
 use super::dyadic::{Int, decompose};
 use super::predicates;
 use std::cmp::Ordering;
 
-/// The point `a + s · (b − a) + t · (c − a)`, exactly.
+/// The exact point `a + s · (b − a) + t · (c − a)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OnTriangle {
-    /// The corners `a, b, c`.
+    /// Corners `a, b, c`.
     pub corners: [Point3; 3],
-    /// `s` and `t`: together at most one, in units of 2⁻¹²⁰.
+    /// `s` and `t`, with sum at most 1, in units of 2⁻¹²⁰.
     pub weights: [u128; 2],
 }
 
 impl OnTriangle {
-    /// Bits of a weight behind the point.
+    /// Fractional bits of a weight.
     const BITS: u32 = 120;
 
-    /// The weight one.
+    /// The weight 1.
     pub const ONE: u128 = 1 << Self::BITS;
 
     /// The point `a + t · (b − a)`.
@@ -31,14 +31,14 @@ impl OnTriangle {
         Self { corners: [a, b, a], weights: [t, 0] }
     }
 
-    /// The point rounded, each coordinate to within `10 ε` times the largest of those of the corners.
+    /// Rounded point, each coordinate to within `10 ε` times the largest of those of the corners.
     pub fn rounded(&self) -> Point3 {
         let ([a, b, c], [s, t]) = (&self.corners, self.weights.map(|w| w as f64 / Self::ONE as f64));
         let at = |i: usize| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]);
         Point3::new(at(0), at(1), at(2))
     }
 
-    /// Bound of the error of [`OnTriangle::rounded`] along one axis.
+    /// Error bound of [`OnTriangle::rounded`] along one axis.
     #[inline]
     fn slack(&self, axis: usize) -> f64 {
         let [a, b, c] = &self.corners;
@@ -46,16 +46,16 @@ impl OnTriangle {
     }
 }
 
-/// A point of either kind.
+/// An explicit or implicit point.
 #[derive(Clone, Copy, Debug)]
 pub struct Site<'a> {
-    /// The point, rounded if it is implicit.
+    /// Coordinates, rounded for an implicit point.
     pub at: &'a Point3,
-    /// What an implicit point is.
+    /// Definition of an implicit point.
     pub on: Option<&'a OnTriangle>,
 }
 
-/// The widest of the errors along each axis.
+/// Maximum error of coordinate differences along each axis.
 #[inline]
 fn slack(sites: &[Site]) -> [f64; 3] {
     let mut s = [0.0; 3];
@@ -64,7 +64,7 @@ fn slack(sites: &[Site]) -> [f64; 3] {
             *x = on.slack(axis).max(*x);
         }
     }
-    // Differences of two.
+    // A difference has twice the error.
     s.map(|x| 2.0 * x)
 }
 
@@ -72,7 +72,7 @@ fn sign(x: f64) -> i32 {
     i32::from(x > 0.0) - i32::from(x < 0.0)
 }
 
-/// The sign of `det(p1 − p0, p2 − p0, p3 − p0)`, as [`predicates::orient3d`]. Exact.
+/// Exact sign of `det(p1 − p0, p2 − p0, p3 − p0)`, as [`predicates::orient3d`].
 #[inline]
 pub fn orient3d(p: [Site; 4]) -> i32 {
     if p.iter().all(|s| s.on.is_none()) {
@@ -94,7 +94,7 @@ pub fn orient3d(p: [Site; 4]) -> i32 {
     }
 }
 
-/// Whether all points lie on the plane of three corners, because of what they are.
+/// True if all points lie in the plane of three corners by definition.
 fn in_one_plane(sites: &[Site; 4]) -> bool {
     let mut corners = [Point3::origin(); 3];
     let mut count = 0;
@@ -113,7 +113,7 @@ fn in_one_plane(sites: &[Site; 4]) -> bool {
     true
 }
 
-/// Lexicographic order of the coordinates. Exact.
+/// Exact lexicographic comparison of the coordinates.
 pub fn compare(p: Site, q: Site) -> Ordering {
     for axis in 0..3 {
         let (x, y) = (p.at[axis], q.at[axis]);
@@ -130,11 +130,11 @@ pub fn compare(p: Site, q: Site) -> Ordering {
     Ordering::Equal
 }
 
-/// Coordinates fit in this many limbs: `predicates::in_exact_range` allows 386 bits, weights add 122.
+/// Limbs of a coordinate: `predicates::in_exact_range` allows 386 bits, weights add 122.
 const WIDE: usize = 8;
 
-/// Scale of a set of points: `2^exponent` divides their ends' coordinates, which are less than `2^top`, and `2^-fraction`
-/// their weights.
+/// Scale of a set of points. `2^exponent` divides the coordinates of their ends, which are less than `2^top`;
+/// `2^-fraction` divides their weights.
 struct Scale {
     exponent: i32,
     top: i32,
@@ -167,7 +167,7 @@ impl Scale {
         s
     }
 
-    /// Whether coordinates and differences of them fit in two limbs.
+    /// True if coordinates and their differences fit in two limbs.
     fn is_small(&self) -> bool {
         i64::from(self.top) - i64::from(self.exponent) + i64::from(self.fraction) < 124
     }
@@ -183,7 +183,7 @@ impl Scale {
         let [a, b, c] = on.corners.map(|p| self.integer(p[axis]));
         let mut x = a.shl(up);
         for (end, weight) in [b, c].iter().zip(on.weights) {
-            // As a multiple of the largest unit that all weights have.
+            // Multiple of the largest common unit of all weights.
             let multiple = weight >> (OnTriangle::BITS - up);
             if multiple != 0 {
                 x = x.add(&end.sub(&a).mul(&Int::unsigned(multiple)));
@@ -205,7 +205,7 @@ type Row = [Int<WIDE>; 3];
 fn orient3d_exact(p: &[Site; 4]) -> i32 {
     let ([_, b, c, d], bits) = rows(p);
     let rows = [b, c, d];
-    // Six products of three.
+    // Six products of three factors.
     match 3 * bits + 4 {
         0..192 => det3::<3>(&rows).sign(),
         192..256 => det3::<4>(&rows).sign(),
@@ -224,13 +224,13 @@ fn det3<const N: usize>(rows: &[Row; 3]) -> Int<N> {
     b[2].mul(&minor(&c, &d)).sub(&c[2].mul(&minor(&b, &d))).add(&d[2].mul(&minor(&b, &c)))
 }
 
-/// The rows of all sites from the first one, and the bits of the largest.
+/// Rows of all sites relative to the first one, and the bits of the largest entry.
 fn rows<const K: usize>(sites: &[Site; K]) -> ([Row; K], u32) {
     let scale = Scale::of(sites);
     if scale.is_small() { rows_in::<K, 2>(&scale, sites) } else { rows_in::<K, WIDE>(&scale, sites) }
 }
 
-/// The same, from coordinates of so many limbs.
+/// Rows as in [`rows`], from coordinates with `N` limbs.
 fn rows_in<const K: usize, const N: usize>(scale: &Scale, sites: &[Site; K]) -> ([Row; K], u32) {
     let at = sites.map(|s| -> [Int<N>; 3] { std::array::from_fn(|k| scale.coordinate(&s, k)) });
     let rows = at.map(|p| -> [Int<N>; 3] { std::array::from_fn(|k| p[k].sub(&at[0][k])) });
@@ -238,14 +238,13 @@ fn rows_in<const K: usize, const N: usize>(scale: &Scale, sites: &[Site; K]) -> 
     (rows.map(|row| row.map(|x| x.resize())), bits)
 }
 
-/// The determinant of [`orient3d`] of four rows.
+/// Determinant of [`orient3d`] for four rows.
 fn volume<const N: usize>(rows: &[Row], [a, b, c, d]: [usize; 4]) -> Int<N> {
     let from = |i: usize| -> Row { std::array::from_fn(|k| rows[i][k].sub(&rows[a][k])) };
     det3(&[from(b), from(c), from(d)])
 }
 
-/// The weights of the point in which the line through `p` and `q` crosses the plane of a triangle, if it does so inside
-/// the triangle; rounded down.
+/// Weights, rounded down, of the point where the line through `p` and `q` crosses a triangle, if it does.
 pub fn crossing([a, b, c]: [Site; 3], [p, q]: [Site; 2]) -> Option<[u128; 2]> {
     let (rows, bits) = rows(&[a, b, c, p, q]);
     // Three sums of six products of three differences.
@@ -263,8 +262,8 @@ fn weights<const N: usize>(rows: &[Row; 5]) -> Option<[u128; 2]> {
     inside.then(|| [y, z].map(|w| w.abs().fraction(&sum.abs(), OnTriangle::BITS)))
 }
 
-/// The `t` for which `p + t · (q − p)` lies in the plane of a triangle, which has `p` on one side and `q` on the other, or
-/// one of them in it; as a weight, rounded down.
+/// Weight `t`, rounded down, for which `p + t · (q − p)` lies in the plane of a triangle. `p` and `q` must lie on
+/// opposite sides, or one of them in the plane.
 pub fn parameter([a, b, c]: [Site; 3], [p, q]: [Site; 2]) -> Option<u128> {
     let (rows, bits) = rows(&[a, b, c, p, q]);
     match 3 * bits + 9 {

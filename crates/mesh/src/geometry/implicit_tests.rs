@@ -84,12 +84,12 @@ fn sample(scale: f64) -> impl Strategy<Value = Sample> {
     })
 }
 
-/// A part of what another weight leaves of one.
+/// A fraction `t` of the remaining weight `1 − s`.
 fn rest(t: u128, s: u128) -> u128 {
     (t >> 60) * ((OnTriangle::ONE - s) >> 60)
 }
 
-/// A weight as a number.
+/// Exact value of a weight.
 fn fraction(w: u128) -> BigRational {
     let part = |x: u128| exact((x & ((1 << 40) - 1)) as f64);
     let step = exact((1u64 << 40) as f64);
@@ -150,7 +150,7 @@ proptest! {
     }
 }
 
-/// Whether a weight is a number rounded down.
+/// True if a weight is a number rounded down.
 fn is_floor(w: u128, x: &BigRational) -> bool {
     fraction(w) <= *x && fraction(w + 1) > *x
 }

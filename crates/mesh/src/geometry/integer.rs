@@ -1,19 +1,19 @@
-//! Exact determinants in integers. The coordinates are multiples of one power of two; where their differences in that
-//! unit are below 2⁶¹, orientation fits into 192 bits and the in-sphere determinant into 320. That holds for nearly all
-//! points that lie near each other, and costs some ten nanoseconds where expansions cost microseconds.
+//! Exact determinants in integers. The coordinates are multiples of one power of two. If their differences in that unit
+//! are below 2⁶¹, orientation fits into 192 bits and the in-sphere determinant into 320. That holds for nearly all
+//! points close to each other, and costs about 10 ns, compared to microseconds for expansions.
 
 use super::Point3;
 
-/// Bound of the differences' magnitude: 2 to this.
+/// Maximum bits of a difference.
 const BITS: u32 = 61;
 
-/// Points relative to the last one of theirs, in integers, and the unit.
+/// Integer coordinates of points relative to the last one, and their unit.
 struct Differences<const K: usize> {
     rows: [[i64; 3]; K],
     unit: f64,
 }
 
-/// Exponent of the lowest bit of `x` that is set; `i32::MAX` for zero.
+/// Exponent of the lowest set bit of `x`; `i32::MAX` for zero.
 #[inline]
 fn lowest_bit(x: f64) -> i32 {
     let bits = x.to_bits();
@@ -22,13 +22,13 @@ fn lowest_bit(x: f64) -> i32 {
     if exponent == 0 { i32::MAX } else { exponent - 1075 + mantissa.trailing_zeros() as i32 }
 }
 
-/// The power of two; none outside the normal numbers.
+/// Power of two; `None` outside the normal numbers.
 fn power(exponent: i32) -> Option<f64> {
     (-1022..1024).contains(&exponent).then(|| f64::from_bits(((exponent + 1023) as u64) << 52))
 }
 
 impl<const K: usize> Differences<K> {
-    /// None when they are too large for the unit that all coordinates are multiples of. Coordinates are not subnormal.
+    /// Returns `None` if differences exceed the common unit of all coordinates too far. No coordinate is subnormal.
     fn new(p: [&Point3; K], origin: &Point3) -> Option<Self> {
         let coordinates = || p.iter().copied().chain([origin]).flat_map(|p| [p.x, p.y, p.z]);
         let exponent = coordinates().map(lowest_bit).min()?;
@@ -58,7 +58,7 @@ impl<const K: usize> Differences<K> {
     }
 }
 
-/// An integer of 192 bits.
+/// Integer of 192 bits.
 #[derive(Clone, Copy)]
 struct Triple {
     high: i128,
@@ -68,7 +68,7 @@ struct Triple {
 impl Triple {
     #[inline]
     fn product(a: i64, b: i128) -> Self {
-        // Of `b` the lower half has no sign.
+        // The lower half of `b` is unsigned.
         let low = i128::from(a) * i128::from(b as u64);
         let high = i128::from(a) * (b >> 64);
         Self { high: high + (low >> 64), low: low as u64 }
@@ -80,7 +80,7 @@ impl Triple {
         Self { high: self.high + other.high + i128::from(carry), low }
     }
 
-    /// The magnitude in limbs, least significant first, and whether the number is negative.
+    /// Magnitude in limbs, least significant first, and true for a negative number.
     #[inline]
     fn magnitude(self) -> ([u64; 3], bool) {
         let (mut low, mut high) = (self.low, self.high.cast_unsigned());
@@ -91,7 +91,7 @@ impl Triple {
         ([low, high as u64, (high >> 64) as u64], self.high < 0)
     }
 
-    /// Rounded, limb by limb of the magnitude, so that the sign is exact.
+    /// Rounds limb by limb of the magnitude, so that the sign is exact.
     fn to_f64(self) -> f64 {
         let (limbs, negative) = self.magnitude();
         let value = limbs.iter().rev().fold(0.0, |sum, &limb| sum * 18_446_744_073_709_551_616.0 + limb as f64);
@@ -104,26 +104,26 @@ fn minor(p: [i64; 3], q: [i64; 3], i: usize, j: usize) -> i128 {
     i128::from(p[i]) * i128::from(q[j]) - i128::from(p[j]) * i128::from(q[i])
 }
 
-/// The minors of two rows, of the columns but the first, the second, the third.
+/// Minors of two rows, without the first, second and third column.
 #[inline]
 fn minors(p: [i64; 3], q: [i64; 3]) -> [i128; 3] {
     [minor(p, q, 1, 2), minor(p, q, 2, 0), minor(p, q, 0, 1)]
 }
 
-/// The determinant of a row and the minors of two others.
+/// Determinant of a row and the minors of two others.
 #[inline]
 fn det(p: [i64; 3], m: [i128; 3]) -> Triple {
     Triple::product(p[0], m[0]).plus(Triple::product(p[1], m[1])).plus(Triple::product(p[2], m[2]))
 }
 
-/// The determinant of `a − d, b − d, c − d`, rounded, its sign exact; none where the numbers are too large.
+/// Rounded determinant of `a − d, b − d, c − d` with exact sign; `None` if the numbers are too large.
 pub(super) fn orient3d([a, b, c]: [&Point3; 3], d: &Point3) -> Option<f64> {
     let Differences { rows: [p, q, r], unit } = Differences::new([a, b, c], d)?;
     Some(det(p, minors(q, r)).to_f64() * unit * unit * unit)
 }
 
-/// The sign of the in-sphere determinant: 1 when `e` lies inside the sphere of the positive tetrahedron `a, b, c, d`.
-/// None where the numbers are too large.
+/// Sign of the in-sphere determinant: 1 if `e` lies inside the circumsphere of the positive tetrahedron `a, b, c, d`.
+/// `None` if the numbers are too large.
 pub(super) fn insphere(p: [&Point3; 4], e: &Point3) -> Option<f64> {
     let [a, b, c, d] = Differences::new(p, e)?.rows;
     let (ab, cd) = (minors(a, b), minors(c, d));
@@ -160,7 +160,7 @@ fn accumulate(sum: &mut [u64; 5], w: Triple, lift: i128, negate: bool) {
         }
         product[i + 3] = carry as u64;
     }
-    // Subtracting is adding the complement and one.
+    // Subtraction adds the complement and one.
     let mut carry = u128::from(negative);
     for (limb, x) in sum.iter_mut().zip(product) {
         let term = u128::from(*limb) + u128::from(if negative { !x } else { x }) + carry;

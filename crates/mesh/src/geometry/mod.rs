@@ -1,4 +1,4 @@
-//! Floor 1: points, tubes and cross-sections; predicates, intersections, distances and search trees.
+//! Geometry: points, tubes and cross-sections; predicates, intersections, distances and search trees.
 
 mod aabb;
 mod angle;
@@ -32,8 +32,8 @@ pub use total::Total;
 pub use tri_tri::{Contact, Improper, Triangle, classify, classify_triangles, self_contacts, self_intersections};
 pub use tube::{Section, Tube};
 
-/// A point in space; the unit is the network's.
+/// Point in space, in the unit of the network.
 pub type Point3 = nalgebra::Point3<f64>;
 
-/// A displacement or direction.
+/// Displacement or direction.
 pub type Vec3 = nalgebra::Vector3<f64>;

@@ -2,8 +2,9 @@
 
 use super::Vec3;
 
-/// The unit normal of a triangle, towards the side from which it runs counter-clockwise; zero where it has no area. Of
-/// the two shorter sides: less roundoff where the triangle is a needle.
+/// Unit normal of a triangle, towards the side that sees it counter-clockwise; zero for a degenerate one. Uses the two
+/// shorter sides, which reduces roundoff for needles.
+#[inline]
 pub fn unit_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
     let (ab, bc, ca) = (b - a, c - b, a - c);
     let [x, y, z] = [ab, bc, ca].map(|v| v.norm_squared());

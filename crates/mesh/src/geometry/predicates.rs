@@ -1,26 +1,26 @@
-//! Exact geometric predicates: an inline error filter first; when it is not sure, integers where the numbers fit, else
-//! Shewchuk's adaptive expansions (`robust`). The only user of `robust`.
+//! Exact geometric predicates: an inline error filter first, then integers if the numbers fit, else Shewchuk's adaptive
+//! expansions (`robust`). The only user of `robust`.
 //!
-//! Signs are exact for coordinates that [`in_exact_range`] accepts: expansions must neither overflow nor underflow.
+//! Signs are exact for coordinates accepted by [`in_exact_range`]: expansions must neither overflow nor underflow.
 
 use super::{Point3, integer};
 use robust::{Coord, Coord3D};
 
-/// Smallest magnitude of a coordinate other than zero. The fifth powers of differences of such numbers, and their
-/// roundoff, stay clear of underflow.
+/// Smallest magnitude of a non-zero coordinate. Fifth powers of differences and their roundoff do not underflow.
 pub const MIN_MAGNITUDE: f64 = 1e-42;
 
-/// Largest magnitude of a coordinate; fifth powers of differences stay clear of overflow.
+/// Largest magnitude of a coordinate. Fifth powers of differences do not overflow.
 pub const MAX_MAGNITUDE: f64 = 1e58;
 
-/// Bound of the roundoff of the `orient3d` determinant, relative to the product of the largest differences: Shewchuk's
-/// (7 + 56ε)ε times the six products of the permanent, rounded up.
+/// Roundoff bound of the `orient3d` determinant, relative to the product of the largest differences: Shewchuk's (7 +
+/// 56ε)ε times the six products of the permanent, rounded up.
 pub const ORIENT3D_BOUND: f64 = 5e-15;
 
-/// The same for `insphere`: (16 + 224ε)ε times 24 products times the largest lift, rounded up.
+/// Roundoff bound of the `insphere` determinant: (16 + 224ε)ε times 24 products times the largest lift, rounded up.
 pub const INSPHERE_BOUND: f64 = 4.5e-14;
 
-/// Whether the predicates are exact on points with this coordinate.
+/// True if the predicates are exact on points with this coordinate.
+#[inline]
 pub fn in_exact_range(x: f64) -> bool {
     let m = x.abs();
     m == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&m)
@@ -31,8 +31,8 @@ fn coord3(p: &Point3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
 }
 
-/// Positive, zero or negative with `det(b − a, c − a, d − a)`: positive when `a, b, c` run counter-clockwise seen from
-/// `d`. The magnitude is an estimate of the determinant.
+/// Orientation of a tetrahedron, with the sign of `det(b − a, c − a, d − a)`: positive if `a, b, c` are
+/// counter-clockwise seen from `d`. The magnitude estimates the determinant.
 #[inline]
 pub fn orient3d(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     let (bx, by, bz) = (b.x - a.x, b.y - a.y, b.z - a.z);
@@ -47,13 +47,13 @@ pub fn orient3d(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
 
 #[cold]
 fn orient3d_exact(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
-    // `robust` is positive when d lies below abc: the opposite sign.
+    // `robust` is positive if d lies below abc: the opposite sign.
     let expanded = || -robust::orient3d(coord3(a), coord3(b), coord3(c), coord3(d));
     integer::orient3d([b, c, d], a).unwrap_or_else(expanded)
 }
 
-/// Positive when `e` lies inside the sphere through the positive tetrahedron `a, b, c, d`, negative outside, zero on
-/// it. The sign flips for a negative tetrahedron.
+/// In-sphere test: positive if `e` lies inside the circumsphere of the positive tetrahedron `a, b, c, d`, negative
+/// outside, zero on it. The sign flips for a negative tetrahedron.
 #[inline]
 pub fn insphere(a: &Point3, b: &Point3, c: &Point3, d: &Point3, e: &Point3) -> f64 {
     let (ax, ay, az) = (a.x - e.x, a.y - e.y, a.z - e.z);
@@ -78,7 +78,7 @@ pub fn insphere(a: &Point3, b: &Point3, c: &Point3, d: &Point3, e: &Point3) -> f
     if det.abs() > INSPHERE_BOUND * mx * my * mz * ml { det } else { insphere_exact(a, b, c, d, e) }
 }
 
-/// Bound of the roundoff of [`insphere`]'s determinant of these points, evaluated in floating point as there.
+/// Roundoff bound of the floating-point determinant of [`insphere`] for these points.
 #[inline]
 pub fn insphere_bound(p: [&Point3; 4], e: &Point3) -> f64 {
     let [a, b, c, d] = p.map(|p| p - e);
@@ -94,14 +94,15 @@ pub fn insphere_exact(a: &Point3, b: &Point3, c: &Point3, d: &Point3, e: &Point3
     integer::insphere([a, b, c, d], e).unwrap_or_else(expanded)
 }
 
-/// Positive when the points of the plane `a, b, c` run counter-clockwise, zero when they are collinear.
+/// Orientation in the plane: positive if `a, b, c` are counter-clockwise, zero if collinear.
 #[inline]
 pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     let at = |p: [f64; 2]| Coord { x: p[0], y: p[1] };
     robust::orient2d(at(a), at(b), at(c))
 }
 
-/// Whether three points of space lie on one line: their shadows on all three coordinate planes do.
+/// True if three points in space are collinear: their projections on all three coordinate planes are.
+#[inline]
 pub fn collinear(a: &Point3, b: &Point3, c: &Point3) -> bool {
     [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| orient2d([a[i], a[j]], [b[i], b[j]], [c[i], c[j]]) == 0.0)
 }
@@ -160,7 +161,7 @@ mod tests {
         -sign(&det(&rows))
     }
 
-    /// Coordinates on a coarse grid, on it but for a few ulps, or anywhere: degenerate, nearly so, or neither.
+    /// Coordinates on a coarse grid, a few ulps off it, or anywhere: degenerate, nearly so, or neither.
     fn coordinate() -> impl Strategy<Value = f64> {
         prop_oneof![
             (-4i32..4).prop_map(f64::from),

@@ -1,14 +1,14 @@
-//! Winding numbers, counted along a ray.
+//! Winding numbers by ray crossing.
 
 use super::Point3;
 use super::predicates::{orient2d, orient3d};
 
-/// How a triangle takes part in the winding number of a closed surface round `p`: 1 when the ray from `p` along x leaves
-/// through it (it runs counter-clockwise seen from where the ray goes), −1 when it enters, 0 when it passes by. None when
-/// `p` lies on the triangle. The sum over a closed surface is its winding number.
+/// Contribution of a triangle to the winding number of a closed surface around `p`: 1 if the ray from `p` along x
+/// leaves through it (counter-clockwise seen from ahead), −1 if it enters, 0 if it misses. `None` if `p` lies on the
+/// triangle. The sum over a closed surface is its winding number.
 ///
-/// Exact for coordinates in the range of the predicates: the ray is taken as moved by (ε, ε²) in y and z, so that it never
-/// meets an edge.
+/// Exact for coordinates in the range of the predicates. The ray is perturbed symbolically by (ε, ε²) in y and z, so
+/// that it never meets an edge.
 pub fn crossing(p: &Point3, [a, b, c]: [&Point3; 3]) -> Option<i32> {
     let turns = [passes(a, b, p), passes(b, c, p), passes(c, a, p)];
     let turn = turns[0];
@@ -23,8 +23,7 @@ pub fn crossing(p: &Point3, [a, b, c]: [&Point3; 3]) -> Option<i32> {
     Some(if ahead { turn } else { 0 })
 }
 
-/// On which side of the edge from `a` to `b` the moved ray passes, seen against x: 1 to the left; 0 when the edge is
-/// parallel to the ray.
+/// Side of the edge from `a` to `b` on which the perturbed ray passes, seen against x: 1 to the left, 0 if parallel.
 fn passes(a: &Point3, b: &Point3, p: &Point3) -> i32 {
     let flat = |p: &Point3| [p.y, p.z];
     let turn = orient2d(flat(a), flat(b), flat(p));
@@ -46,7 +45,7 @@ mod tests {
         Point3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64)
     }
 
-    /// The unit cube, turned outwards.
+    /// Unit cube with outward faces.
     const CUBE: [[usize; 3]; 12] = [
         [0, 2, 1],
         [1, 2, 3],
@@ -77,7 +76,7 @@ mod tests {
             if inside || outside {
                 assert_eq!(winding(&p), Some(i32::from(inside)), "{p}");
             } else {
-                // On the surface: one of the triangles may say so.
+                // On the surface, one of the triangles may report it.
                 assert!(matches!(winding(&p), None | Some(0 | 1)));
             }
         }

@@ -1,8 +1,8 @@
-//! Floating-point numbers in an order, for heaps and keys.
+//! Floating-point numbers with a total order, for heaps and keys.
 
 use std::cmp::Ordering;
 
-/// A number that is ordered as `f64::total_cmp` orders it.
+/// Number ordered by `f64::total_cmp`.
 #[derive(Clone, Copy, Debug)]
 pub struct Total(pub f64);
 

@@ -1,56 +1,56 @@
 //! Exact intersection of triangles of a mesh.
 //!
-//! Two triangles of a sound surface have nothing in common but the vertices they share. The intersection of two
-//! triangles is convex, and each of its corners lies on exactly one feature (vertex, edge or inside) of either triangle;
-//! such a pair of features is a *hit*. The hits are found with exact predicates alone, and their number tells the rest:
-//! none, a point, a segment, or an area.
+//! Two triangles of a valid surface share only their common vertices and the edge between them. The intersection of two
+//! triangles is convex, and each of its corners lies on exactly one feature (vertex, edge or inside) of either
+//! triangle. Such a pair of features is a *hit*. Exact predicates find the hits, and their number tells the kind of
+//! intersection: none, a point, a segment, or an area.
 
 use super::fans::proved_fans;
 use super::predicates::{ORIENT3D_BOUND, collinear, orient2d, orient3d};
 use super::{Aabb, Bvh, Point3};
 use rayon::prelude::*;
 
-/// How two triangles lie to each other.
+/// Relation of two triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
-    /// They have no point in common.
+    /// No point in common.
     Apart,
-    /// They have the vertices in common that they share by id (and the edge between two such), and nothing else.
+    /// Only vertices shared by id in common, and the edge between two such.
     Neighbours,
-    /// They meet as no two triangles of a sound surface do.
+    /// An intersection that no valid surface has.
     Improper(Improper),
 }
 
-/// How two triangles meet that should not.
+/// Kind of an improper intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Improper {
-    /// Two vertices with different ids at the same point, and nothing more.
+    /// Only two vertices with different ids at one point.
     CoincidentPoint,
-    /// A vertex on an edge, and nothing more.
+    /// Only a vertex on an edge.
     VertexOnEdge,
-    /// A vertex inside the other triangle, and nothing more.
+    /// Only a vertex inside the other triangle.
     VertexOnFace,
-    /// Two edges that cross in a point, and nothing more.
+    /// Only two edges that cross in a point.
     EdgeOnEdge,
     /// A segment in common.
     Crossing,
     /// An area in common.
     CoplanarOverlap,
-    /// One vertex is shared by id, and a segment from there is in common.
+    /// One vertex shared by id, and a segment from there in common.
     BeyondSharedVertex,
-    /// Two vertices are shared by id, and the triangles lie in one plane on the same side of their edge.
+    /// Two vertices shared by id; the triangles lie in one plane on one side of their edge.
     Folded,
-    /// The same three vertices.
+    /// Three equal vertices.
     SameVertices,
-    /// One of the triangles has no area.
+    /// A triangle without area.
     Degenerate,
 }
 
-/// The corners of the intersection of two triangles, as a set of pairs of features: bit 7 i + j stands for feature i of
-/// the first and j of the second; features 0 to 2 are the vertices, 3 to 5 the edges (3 + i runs from vertex i to vertex
-/// i + 1), 6 the inside.
+/// Corners of the intersection of two triangles, as a set of feature pairs. Bit 7 i + j stands for feature i of the
+/// first and j of the second. Features 0 to 2 are the vertices, 3 to 5 the edges, 6 the inside. Edge 3 + i starts at
+/// vertex i.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Hits(u64);
 
@@ -65,7 +65,7 @@ impl Hits {
         self.0.count_ones()
     }
 
-    /// What a single hit is called.
+    /// Kind of a single hit.
     fn point_contact(self) -> Improper {
         let bit = self.0.trailing_zeros() as usize;
         match (bit / 7, bit % 7) {
@@ -80,9 +80,9 @@ impl Hits {
 /// A triangle with the ids of its vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle<'a> {
-    /// Ids of the vertices: by them neighbours are recognised.
+    /// Ids of the vertices, which identify neighbours.
     pub ids: [u32; 3],
-    /// Where the vertices are.
+    /// Positions of the vertices.
     pub corners: [&'a Point3; 3],
 }
 
@@ -91,19 +91,19 @@ impl<'a> Triangle<'a> {
         Self { ids, corners: ids.map(|v| &points[v as usize]) }
     }
 
-    /// On which side of the plane of this triangle a point lies: the sign of `orient3d`.
+    /// Side of this triangle's plane on which a point lies: the sign of `orient3d`.
     fn side(&self, p: &Point3) -> i8 {
         let [a, b, c] = self.corners;
         sign(orient3d(a, b, c, p))
     }
 
-    /// The sides of the three vertices of another triangle; a vertex of both is on the plane.
+    /// Sides of the vertices of another triangle; shared vertices are on the plane.
     fn sides(&self, other: &Self) -> [i8; 3] {
         std::array::from_fn(|i| if self.ids.contains(&other.ids[i]) { 0 } else { self.side(other.corners[i]) })
     }
 
-    /// Whether another triangle lies strictly on one side of the plane of this one, as far as rounding lets be seen:
-    /// three times `orient3d` and its filter, with one normal.
+    /// True if another triangle lies strictly on one side of this one's plane, beyond rounding errors: three filtered
+    /// `orient3d` with one normal.
     fn clearly_beside(&self, other: &Self) -> bool {
         let [a, b, c] = self.corners;
         let (b, c) = (b - a, c - a);
@@ -125,13 +125,13 @@ impl<'a> Triangle<'a> {
     }
 }
 
-/// How triangles `a` and `b` (vertex ids) lie to each other. Exact for finite coordinates in the range of the
-/// predicates; symmetric in `a` and `b`.
+/// Relation of triangles `a` and `b` (vertex ids). Exact for finite coordinates in the range of the predicates;
+/// symmetric in `a` and `b`.
 pub fn classify(points: &[Point3], a: [u32; 3], b: [u32; 3]) -> Contact {
     classify_triangles(Triangle::new(points, a), Triangle::new(points, b))
 }
 
-/// As [`classify`], for triangles whose vertices need not stand in one array; equal ids must have equal positions.
+/// As [`classify`], for triangles with vertices in separate arrays; equal ids must have equal positions.
 pub fn classify_triangles(p: Triangle, q: Triangle) -> Contact {
     let (a, b) = (p.ids, q.ids);
     let shared = a.iter().filter(|v| b.contains(v)).count() as u32;
@@ -153,7 +153,7 @@ pub fn classify_triangles(p: Triangle, q: Triangle) -> Contact {
     let hits = match (q_sides == [0; 3], p_sides == [0; 3]) {
         (false, false) => Some(hits_across(&p, &q, p_sides, q_sides)),
         (true, true) => hits_in_plane(&p, &q),
-        // The plane of a triangle without area is no plane: everything is on it.
+        // A degenerate triangle has no plane, so every point counts as on it.
         _ => None,
     };
     let Some(hits) = hits else { return Contact::Improper(Improper::Degenerate) };
@@ -168,14 +168,14 @@ pub fn classify_triangles(p: Triangle, q: Triangle) -> Contact {
     Contact::Improper(improper)
 }
 
-/// Whether the vertices that are not shared lie strictly on one side: then there is nothing beyond what is shared.
+/// True if the vertices that are not shared lie strictly on one side, so that nothing else is in common.
 fn separated(sides: [i8; 3], shared: u32) -> bool {
     let count = |s: i8| sides.iter().filter(|&&side| side == s).count() as u32;
     count(1) == 3 - shared || count(-1) == 3 - shared
 }
 
-/// Hits of two triangles whose planes cross: each corner of the intersection is where a vertex or an edge of one meets
-/// the plane of the other.
+/// Hits of two triangles in different planes: at each corner of the intersection, a vertex or edge of one meets the
+/// other's plane.
 fn hits_across(p: &Triangle, q: &Triangle, p_sides: [i8; 3], q_sides: [i8; 3]) -> Hits {
     let mut hits = Hits::default();
     half_across(p, q, p_sides, |of_p, of_q| hits.add(of_p, of_q));
@@ -198,13 +198,13 @@ fn half_across(p: &Triangle, q: &Triangle, p_sides: [i8; 3], mut hit: impl FnMut
     }
 }
 
-/// The feature of `q` at which the line through `a` and `b`, which lie strictly on either side, goes through it.
+/// Feature of `q` pierced by the line through `a` and `b`, which lie strictly on either side.
 fn pierced_feature(q: &Triangle, a: &Point3, b: &Point3) -> Option<usize> {
     let turn = |j: usize| sign(orient3d(a, b, q.corners[j], q.corners[(j + 1) % 3]));
     feature_of_turns([turn(0), turn(1), turn(2)])
 }
 
-/// The feature of `q` at which a point of its plane lies; none outside.
+/// Feature of `q` that contains a point of its plane; `None` outside.
 fn feature_at(q: &Triangle, id: u32, point: &Point3) -> Option<usize> {
     if let Some(j) = q.index_of(id) {
         return Some(j);
@@ -218,7 +218,7 @@ fn feature_in(q: &Triangle, axes: [usize; 2], point: &Point3) -> Option<usize> {
     feature_of_turns([turn(0), turn(1), turn(2)])
 }
 
-/// The feature of a triangle in which a point of its plane lies, from the side of the point at each edge.
+/// Feature of a triangle that contains a point of its plane, from the side of the point at each edge.
 fn feature_of_turns(turns: [i8; 3]) -> Option<usize> {
     if turns.contains(&1) && turns.contains(&-1) {
         return None;
@@ -236,7 +236,7 @@ fn feature_of_turns(turns: [i8; 3]) -> Option<usize> {
     }
 }
 
-/// Hits of two triangles in one plane; none when one has no area.
+/// Hits of two coplanar triangles; `None` if one has no area.
 fn hits_in_plane(p: &Triangle, q: &Triangle) -> Option<Hits> {
     let axes = projection(q)?;
     projection(p)?;
@@ -259,7 +259,7 @@ fn hits_in_plane(p: &Triangle, q: &Triangle) -> Option<Hits> {
     Some(hits)
 }
 
-/// Whether edge `i` of `p` and edge `j` of `q`, in one plane, cross inside both.
+/// True if edge `i` of `p` and edge `j` of `q`, in one plane, cross inside both.
 fn edges_cross(p: &Triangle, i: usize, q: &Triangle, j: usize, axes: [usize; 2]) -> bool {
     let (i2, j2) = ((i + 1) % 3, (j + 1) % 3);
     if [p.ids[i], p.ids[i2]].iter().any(|v| *v == q.ids[j] || *v == q.ids[j2]) {
@@ -270,7 +270,7 @@ fn edges_cross(p: &Triangle, i: usize, q: &Triangle, j: usize, axes: [usize; 2])
     opposite(turn2(axes, a, b, c), turn2(axes, a, b, d)) && opposite(turn2(axes, c, d, a), turn2(axes, c, d, b))
 }
 
-/// Two coordinates in which the triangle has an area; none when it has none.
+/// Two coordinates in which the triangle has area; `None` if it has none.
 fn projection(t: &Triangle) -> Option<[usize; 2]> {
     let [a, b, c] = t.corners;
     [[0, 1], [1, 2], [2, 0]].into_iter().find(|&axes| turn2(axes, a, b, c) != 0)
@@ -284,16 +284,16 @@ fn sign(x: f64) -> i8 {
     i8::from(x > 0.0) - i8::from(x < 0.0)
 }
 
-/// Pairs tested at a time.
+/// Pairs tested per batch.
 const BATCH: usize = 1 << 16;
 
-/// Pairs that a thread tests at least.
+/// Minimum pairs per thread.
 const SHARE: usize = 1 << 12;
 
-/// Every pair `(i, j)`, i < j, of triangles that meet improperly, and `(i, i)` for every triangle without area, which is
-/// left out of the pairs; ascending. Coordinates must be finite.
+/// All pairs `(i, j)`, i < j, of triangles that intersect improperly, ascending. A triangle without area gives only
+/// `(i, i)`. Coordinates must be finite.
 ///
-/// Neighbours are recognised by the ids of their vertices. The answer does not depend on the number of threads.
+/// Neighbours are identified by the ids of their vertices. The result does not depend on the number of threads.
 pub fn self_intersections(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32)> {
     self_contacts(points, triangles).into_iter().map(|(i, j, _)| (i, j)).collect()
 }
@@ -302,7 +302,7 @@ pub fn self_intersections(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32
 pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32, Improper)> {
     let mut found: Vec<(u32, u32, Improper)> = Vec::new();
     let mut boxes = Vec::with_capacity(triangles.len());
-    // On a smooth surface nearly all vertices: then neighbours there need no look.
+    // On a smooth surface nearly all vertices are proved, and neighbours there need no test.
     let proved = proved_fans(points, triangles);
     let proved_or_none = |v: u32| if proved[v as usize] { v } else { u32::MAX };
     let known: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(proved_or_none)).collect();
@@ -331,7 +331,7 @@ pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32
     found
 }
 
-/// Whether two triangles have a number in common that is not the largest; without branches, which could not be foretold.
+/// True if two triangles have a common number other than the largest. Branch-free, since branches were unpredictable.
 #[inline]
 #[allow(clippy::needless_bitwise_bool)]
 fn have_common(a: [u32; 3], b: [u32; 3]) -> bool {
@@ -344,7 +344,7 @@ fn test_pairs(points: &[Point3], triangles: &[[u32; 3]], pairs: &[(u32, u32)], f
         Contact::Improper(kind) => Some((i, j, kind)),
         Contact::Apart | Contact::Neighbours => None,
     };
-    // Few pairs are no work for a pool, which would have its own ideas of what to do next.
+    // Few pairs are tested without the thread pool, which could start unrelated work.
     if pairs.len() < SHARE {
         found.extend(pairs.iter().filter_map(test));
     } else {

@@ -1,4 +1,4 @@
-//! Against an oracle in rational arithmetic that clips one triangle by the other.
+//! Tests against a rational oracle that clips one triangle by the other.
 
 use super::*;
 use num_rational::Ratio;
@@ -27,7 +27,7 @@ fn is_zero(a: &V) -> bool {
     a.iter().all(|x| *x == Q::from_integer(0))
 }
 
-/// The part of a convex polygon (or segment, or point) where `height` ≥ 0.
+/// Part of a convex polygon (or segment, or point) with `height` ≥ 0.
 fn clip(polygon: &[V], height: impl Fn(&V) -> Q) -> Vec<V> {
     let zero = Q::from_integer(0);
     let mut kept = Vec::new();
@@ -45,13 +45,13 @@ fn clip(polygon: &[V], height: impl Fn(&V) -> Q) -> Vec<V> {
     kept
 }
 
-/// Where a point of the triangle lies: 0 at a vertex, 1 on an edge, 2 inside.
+/// Position of a point of the triangle: 0 at a vertex, 1 on an edge, 2 inside.
 fn depth(t: &[V; 3], p: &V) -> usize {
     let on = (0..3).filter(|&j| is_zero(&cross(&sub(&t[(j + 1) % 3], &t[j]), &sub(p, &t[j])))).count();
     2 - on
 }
 
-/// What `classify` has to say, from the intersection itself.
+/// Expected result of `classify`, from the intersection itself.
 fn oracle(points: &[Point3], a: [u32; 3], b: [u32; 3]) -> Contact {
     let (p, q) = (a.map(|v| rational(&points[v as usize])), b.map(|v| rational(&points[v as usize])));
     let n = cross(&sub(&q[1], &q[0]), &sub(&q[2], &q[0]));
@@ -97,7 +97,7 @@ fn degenerate(points: &[Point3], t: [u32; 3]) -> bool {
     collinear(&points[t[0] as usize], &points[t[1] as usize], &points[t[2] as usize])
 }
 
-/// A second triangle that shares none, one, two or three ids with `[0, 1, 2]`.
+/// A second triangle that shares 0, 1, 2 or 3 ids with `[0, 1, 2]`.
 fn second() -> impl Strategy<Value = [u32; 3]> {
     prop::sample::select(vec![[3, 4, 5], [0, 3, 4], [3, 1, 4], [3, 4, 2], [1, 0, 3], [2, 1, 3], [0, 3, 2], [2, 0, 1]])
 }
@@ -114,7 +114,7 @@ proptest! {
         let mut first = [0, 1, 2];
         prop_assume!(!degenerate(&points, first) && !degenerate(&points, second));
         let expected = oracle(&points, first, second);
-        // Scaling by a power of two and turning the first triangle change nothing.
+        // Scaling by a power of two and rotating the first triangle change nothing.
         let points: Vec<Point3> = points.iter().map(|p| p * 2.0_f64.powi(scale)).collect();
         first.rotate_left(turn);
         prop_assert_eq!(classify(&points, first, second), expected);
@@ -178,7 +178,7 @@ fn each_kind_is_named() {
     assert_eq!(improper([3, 4, 5], [[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [3.0, 1.0, 0.0]]), Improper::Degenerate);
 }
 
-/// A hair's breadth decides: the vertex lies on the plane, or one unit in the last place above it.
+/// The last bit decides: the vertex lies on the plane, or one unit in the last place above it.
 #[test]
 fn nothing_is_rounded() {
     let touch = |z: f64| {

@@ -1,8 +1,8 @@
-//! Straight tapering pieces of vessel and the planes across them.
+//! Straight tapering vessel pieces and planes across them.
 
 use super::{Point3, Vec3};
 
-/// A straight piece of vessel: an axis from `a` to `b` with radius `ra` at `a` and `rb` at `b`, linear in between.
+/// Straight piece of vessel: an axis from `a` to `b` with radius `ra` at `a` and `rb` at `b`, linear in between.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Tube {
     /// Start of the axis.
@@ -17,35 +17,40 @@ pub struct Tube {
 
 impl Tube {
     /// Length of the axis.
+    #[inline]
     pub fn length(&self) -> f64 {
         (self.b - self.a).norm()
     }
 
     /// Axis point at parameter `t` in [0, 1].
+    #[inline]
     pub fn point(&self, t: f64) -> Point3 {
         self.a + (self.b - self.a) * t
     }
 
     /// Radius at parameter `t` in [0, 1].
+    #[inline]
     pub fn radius(&self, t: f64) -> f64 {
         self.ra + (self.rb - self.ra) * t
     }
 
-    /// The smaller of the two radii.
+    /// Smaller of the two radii.
+    #[inline]
     pub fn min_radius(&self) -> f64 {
         self.ra.min(self.rb)
     }
 
-    /// The larger of the two radii.
+    /// Larger of the two radii.
+    #[inline]
     pub fn max_radius(&self) -> f64 {
         self.ra.max(self.rb)
     }
 }
 
-/// A plane across a vessel.
+/// Plane across a vessel.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Section {
-    /// Where the vessel's axis meets the plane.
+    /// Intersection of the vessel's axis with the plane.
     pub origin: Point3,
     /// Unit normal of the plane: the direction of the vessel there.
     pub axis: Vec3,
@@ -54,9 +59,9 @@ pub struct Section {
 }
 
 impl Section {
-    /// Two unit vectors that span the plane; `(u, w, axis)` is right-handed and depends on `axis` alone: it is the frame of
-    /// the coordinates, turned the shortest way from z to the axis. Where a vessel bends it turns little about the axis, but
-    /// near −z, where no frame can be without a jump.
+    /// Two unit vectors that span the plane; `(u, w, axis)` is right-handed and depends on `axis` alone. It is the
+    /// coordinate frame, rotated the shortest way from z to the axis. Along a bend it rotates little about the axis,
+    /// except near −z, where any frame has a jump.
     pub fn frame(&self) -> (Vec3, Vec3) {
         let n = self.axis;
         let turned = Vec3::x() - (Vec3::z() + n) * (n.x / (1.0 + n.z));
@@ -66,6 +71,7 @@ impl Section {
     }
 
     /// Signed distance of `p` from the plane, positive on the side to which `axis` points.
+    #[inline]
     pub fn height(&self, p: &Point3) -> f64 {
         (p - self.origin).dot(&self.axis)
     }

@@ -1,23 +1,23 @@
-//! Two triangles back to back are a sheet that encloses nothing: both go, unless the surface needs one of them to be
-//! closed.
+//! Sheets: two triangles back to back that enclose nothing. Both are removed, unless one is needed to close the
+//! surface.
 //!
-//! A closed surface has an even number of triangles at each edge. So where a sheet is alone with other triangles at an
-//! edge, their number decides, and then perhaps that of the next sheet; sheets that no edge decides are one side of a
-//! surface whose every triangle has its back: kept when they are closed among themselves.
+//! A closed surface has an even number of triangles at each edge. If a sheet is alone with other triangles at an edge,
+//! their number decides, and then perhaps the next sheet. Undecided sheets form a surface in which every triangle has a
+//! reverse; they are kept if closed among themselves.
 
 use rustc_hash::FxHashMap;
 
-/// What stands at an edge that a sheet has.
+/// Triangles at an edge of a sheet.
 #[derive(Default)]
 struct Edge {
-    /// Triangles that stay there.
+    /// Triangles that stay.
     kept: usize,
-    /// Sheets that are not decided.
+    /// Undecided sheets.
     open: Vec<u32>,
 }
 
-/// For each of some triangles, no two of which have the same vertices, whether it stays: all but `sheets` do, of those
-/// the ones that close the surface. Where nothing would be left all stay.
+/// Marks the triangles that stay: all except `sheets`, and the sheets that close the surface. If nothing would be left,
+/// all stay. No two triangles may have the same vertices.
 pub(super) fn kept(triangles: &[[u32; 3]], sheets: &[u32]) -> Vec<bool> {
     let mut keep = vec![true; triangles.len()];
     if sheets.is_empty() {
@@ -64,7 +64,7 @@ impl<'a> Sheets<'a> {
         edges_of(self.triangles[sheet as usize]).into_iter().filter_map(|e| self.edges.get(&e))
     }
 
-    /// Whether a sheet stays as its edges have it: some edge, at which no other sheet is open, decides.
+    /// Decision of an edge without other open sheets, if the sheet has one.
     fn verdict(&self, sheet: u32) -> Option<bool> {
         self.edges(sheet).find(|edge| edge.open.len() == 1).map(|edge| edge.kept % 2 == 1)
     }
@@ -82,7 +82,7 @@ impl<'a> Sheets<'a> {
         self.edges(sheet).any(|edge| edge.open.contains(&sheet))
     }
 
-    /// Decides what some edge decides, until there is no more of that.
+    /// Decides sheets by edges as long as possible.
     fn decide_by_edges(&mut self, sheets: &[u32], keep: &mut [bool]) {
         let mut due: Vec<u32> = sheets.iter().rev().copied().collect();
         while let Some(s) = due.pop() {
@@ -96,7 +96,7 @@ impl<'a> Sheets<'a> {
         }
     }
 
-    /// Decides the others, those that hang together alike.
+    /// Decides the others, connected ones alike.
     fn decide_the_rest(&mut self, sheets: &[u32], keep: &mut [bool]) {
         for &start in sheets {
             if !self.is_open(start) {
@@ -112,7 +112,7 @@ impl<'a> Sheets<'a> {
         }
     }
 
-    /// The open sheets that hang together with one.
+    /// Open sheets connected to a sheet.
     fn part(&self, start: u32) -> Vec<u32> {
         let mut part = vec![start];
         let mut known: rustc_hash::FxHashSet<u32> = part.iter().copied().collect();
@@ -130,7 +130,7 @@ impl<'a> Sheets<'a> {
 mod tests {
     use super::*;
 
-    /// The sides of a tetrahedron and some more triangles.
+    /// Sides of a tetrahedron and some more triangles.
     const CLOSED: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
     fn with(more: &[[u32; 3]]) -> Vec<[u32; 3]> {
@@ -143,16 +143,16 @@ mod tests {
             assert_eq!(kept(&CLOSED, &[sheet]), [true; 4]);
         }
         assert_eq!(kept(&CLOSED, &[0, 2]), [true; 4]);
-        // Every triangle has its back.
+        // Every triangle has its reverse.
         assert_eq!(kept(&CLOSED, &[0, 1, 2, 3]), [true; 4]);
     }
 
     #[test]
     fn what_encloses_nothing_goes() {
-        // A fin of two triangles, one of them with an edge at the surface; and one that hangs at nothing.
+        // A fin of two triangles, one with an edge at the surface, and an unconnected one.
         let fin = with(&[[0, 1, 4], [1, 5, 4], [7, 8, 9]]);
         assert_eq!(kept(&fin, &[4, 5, 6]), [true, true, true, true, false, false, false]);
-        // All of it with its back.
+        // All with their reverse.
         assert_eq!(kept(&fin, &[0, 1, 2, 3, 4, 5, 6]), [true, true, true, true, false, false, false]);
         // The wall between two tetrahedra.
         let two = with(&[[0, 4, 1], [1, 4, 2], [2, 4, 0]]);

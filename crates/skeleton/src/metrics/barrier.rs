@@ -1,16 +1,16 @@
-//! The barrier potential of the paper (equations 1 to 6).
+//! Barrier potential of the paper (equations 1 to 6).
 
 use super::super::{EdgeId, Skeleton};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Tube, Vec3};
 use rayon::prelude::*;
 
-/// The median radius of the network that the paper's rates were found with, in its unit of length (voxels of 22.7 µm).
+/// Median radius of the network behind the paper's rates, in its unit of length (voxels of 22.7 µm).
 const MEDIAN_RADIUS: f64 = 0.448;
-/// What keeps the kernel finite at distance 0, in that unit squared.
+/// Regularization of the kernel at distance 0, in that unit squared.
 const EPSILON: f64 = 1e-5;
-/// Panels of the quadrature along one edge, at most.
+/// Maximum panels of the quadrature along one edge.
 const MOST_PANELS: usize = 12;
-/// Nodes and weights of Gauss and Legendre's rule with 6 points on [0, 1].
+/// Nodes and weights of the 6-point Gauss–Legendre rule on [0, 1].
 const GAUSS: [(f64, f64); 6] = [
     (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
     (0.169_395_306_766_867_74, 0.180_380_786_524_069_3),
@@ -20,19 +20,19 @@ const GAUSS: [(f64, f64); 6] = [
     (0.966_234_757_101_576, 0.085_662_246_189_585_17),
 ];
 
-/// The potential of a pair and its derivatives by the ends of the first and of the second edge.
+/// Potential of a pair, and its derivatives by the ends of the first and second edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairGradient {
     pub potential: f64,
-    /// Its derivatives by a, b of the first tube, then of the second.
+    /// Derivatives by a, b of the first tube, then of the second.
     pub by_end: [Vec3; 4],
 }
 
-/// The barrier's kernel: K(d, h) = 3 B(2 d / h) / (2 (d / unit)² + ε), B the cubic B-spline; h is `support` times the
-/// sum of the radii.
+/// Kernel of the barrier: K(d, h) = 3 B(2 d / h) / (2 (d / unit)² + ε). B is the cubic B-spline, h is `support` times
+/// the sum of the radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barrier {
-    /// Distance at which the kernel ends, in sums of the two radii.
+    /// Support of the kernel, in sums of the two radii.
     pub support: f64,
     /// The paper's unit of length in the unit of the skeleton.
     pub unit: f64,
@@ -44,7 +44,7 @@ impl Default for Barrier {
     }
 }
 
-/// The cubic B-spline and its derivative; 0 from 2 on.
+/// Cubic B-spline and its derivative; 0 from 2 on.
 fn spline(x: f64) -> (f64, f64) {
     if x < 1.0 {
         (2.0 / 3.0 - x * x + 0.5 * x * x * x, -2.0 * x + 1.5 * x * x)
@@ -56,7 +56,7 @@ fn spline(x: f64) -> (f64, f64) {
     }
 }
 
-/// The unit of length in which the paper's rates are meant: the one in which the median radius of an edge is 0.448.
+/// Unit of length of the paper's rates: the one in which the median radius of an edge is 0.448.
 pub fn paper_unit(skeleton: &Skeleton) -> f64 {
     let mut radii: Vec<f64> = skeleton.edges.iter().map(super::super::Edge::mean_radius).collect();
     if radii.is_empty() {
@@ -68,7 +68,7 @@ pub fn paper_unit(skeleton: &Skeleton) -> f64 {
 }
 
 impl Barrier {
-    /// The kernel and its derivative by the distance.
+    /// Kernel and its derivative by the distance.
     fn kernel(&self, d: f64, h: f64) -> (f64, f64) {
         let (b, slope) = spline(2.0 * d / h);
         let below = 2.0 * (d / self.unit).powi(2) + EPSILON;
@@ -76,10 +76,10 @@ impl Barrier {
         (value, 6.0 * slope / (h * below) - value * 4.0 * d / (self.unit * self.unit * below))
     }
 
-    /// The double integral (5) over two tubes and its gradient; none when they are too far from each other.
+    /// Double integral (5) over two tubes and its gradient; `None` if they are too far from each other.
     ///
-    /// Only the parts that can be within the support of each other are integrated, in panels no longer than half of the
-    /// support, six points each.
+    /// Only the parts within the support of each other are integrated, in panels of at most half of it, with six
+    /// points.
     pub fn pair(&self, a: &Tube, b: &Tube) -> Option<PairGradient> {
         let reach = self.support * (a.max_radius() + b.max_radius());
         let on_a = within(a, b, reach)?;
@@ -116,7 +116,7 @@ impl Barrier {
         (sum.potential > 0.0).then_some(sum)
     }
 
-    /// The potential (6) of a skeleton, each pair once.
+    /// Potential (6) of a skeleton, with each pair once.
     pub fn potential(mut self, skeleton: &Skeleton) -> f64 {
         if self.unit <= 0.0 {
             self.unit = paper_unit(skeleton);
@@ -149,14 +149,14 @@ impl Barrier {
     }
 }
 
-/// A range of parameters on `a` outside of which it is further than `reach` from `b`'s axis; none when all of it is.
+/// Range of parameters on `a` outside of which it is further than `reach` from `b`'s axis; `None` if all of it is.
 fn within(a: &Tube, b: &Tube, reach: f64) -> Option<[f64; 2]> {
     let (d, e, w) = (a.b - a.a, b.b - b.a, a.a - b.a);
     let length = e.norm();
     let mut range = [0.0_f64, 1.0_f64];
     if length > 0.0 {
         let axis = e / length;
-        // Between the planes across b's ends, each moved out by the reach.
+        // Between the planes across b's ends, each moved outwards by the reach.
         let (along, slope) = (w.dot(&axis), d.dot(&axis));
         if slope.abs() > 1e-12 * length {
             let [s, t] = [(-reach - along) / slope, (length + reach - along) / slope];
@@ -232,7 +232,7 @@ mod tests {
             );
             let (a, b) = tubes(&ends);
             let apart = anastomesh_mesh::geometry::segment_segment([&a.a, &a.b], [&b.a, &b.b]).distance;
-            // Close to an intersection the rule does not resolve the kernel, which then only has to point away.
+            // Close to an intersection the rule does not resolve the kernel, which then only needs the right direction.
             prop_assume!(apart > 0.5 && a.length() > 0.5 && b.length() > 0.5);
             let Some(pair) = BARRIER.pair(&a, &b) else { return Ok(()) };
             let scale = pair.by_end.iter().map(Vec3::norm).fold(0.0, f64::max);

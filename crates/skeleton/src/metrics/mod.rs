@@ -1,4 +1,4 @@
-//! How well a skeleton can be meshed: the figures of the paper's Fig. 11, and those that decide whether it is cut.
+//! Meshability of a skeleton: the figures of the paper's Fig. 11, and those that decide if it is cut.
 
 mod barrier;
 
@@ -11,33 +11,32 @@ use super::{Adjacency, EdgeId, NodeId, Skeleton};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Least angle between vessels at a node that the paper counts (Fig. 11), in radians.
+/// Angle between vessels at a node below which the paper counts them as narrow (Fig. 11), in radians.
 pub const NARROW: f64 = std::f64::consts::PI / 10.0;
 
-/// Least angle between the two vessels of a node of valence 2 that is no fold, in radians.
+/// Angle between the two vessels of a node of valence 2 below which it is a fold, in radians.
 pub const FOLD: f64 = std::f64::consts::PI / 6.0;
 
-/// A count and what it is counted of.
+/// A count and its total.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
-    /// How many.
+    /// The count.
     pub count: usize,
-    /// Of how many.
+    /// The total.
     pub of: usize,
 }
 
 impl Share {
-    /// In percent; 0 of nothing.
+    /// Percentage; 0 for an empty total.
     pub fn percent(self) -> f64 {
         if self.of == 0 { 0.0 } else { 100.0 * self.count as f64 / self.of as f64 }
     }
 }
 
-/// What is measured of a skeleton besides its overlaps. All of it is free of units.
+/// Dimensionless measures of a skeleton besides its overlaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
-    /// Barrier potential (equations 1 to 6) over all pairs of edges that share no node, each pair once, in units of
-    /// 1 / (sum of the radii)².
+    /// Barrier potential (equations 1 to 6) over all pairs of edges without a common node, in 1 / (sum of the radii)².
     pub barrier: f64,
     /// Edges shorter than 2 radii (the larger of the edge's two).
     pub shorter_than_2: Share,
@@ -47,14 +46,13 @@ pub struct Metrics {
     pub shorter_than_3: Share,
     /// Pairs of edges that leave a node at less than π/10.
     pub narrow: Share,
-    /// Nodes of valence 2 at which the vessel turns back on itself: less than 30 degrees between its two edges.
+    /// Nodes of valence 2 where the vessel turns back: less than 30 degrees between its two edges.
     pub folds: Share,
     /// Edges that satisfy equation 11.
     pub long_enough: Share,
-    /// Edges longer than what equation 12 asks at their two ends.
+    /// Edges longer than the lengths required by equation 12 at their two ends.
     pub open_enough: Share,
-    /// Inner branches (no end is a terminal) that have a straight place for a cut by equations 11 and 12, as the partition
-    /// decides it.
+    /// Inner branches (no end is a terminal) with a straight part for a cut by equations 11 and 12.
     pub cuttable: Share,
 }
 
@@ -68,7 +66,7 @@ impl Skeleton {
         m
     }
 
-    /// Inner branches, and those of them that the partition may cut.
+    /// Inner branches, and those that the partition may cut.
     fn cuttable(&self, adjacency: &Adjacency) -> Share {
         let chains = self.chains(adjacency);
         let cuttability = Cuttability::new(adjacency, Courses { skeleton: self, chains: &chains }, CutRules::default());
@@ -97,7 +95,7 @@ impl Skeleton {
         }
     }
 
-    /// What equation 12 asks at one end of an edge: the largest over the other edges of the node.
+    /// Length required by equation 12 at one end of an edge: the largest over the other edges of the node.
     fn separation_at(&self, adjacency: &Adjacency, edge: EdgeId, node: NodeId) -> f64 {
         let away = |e: EdgeId| self.node(self.edge(e).other(node)).position - self.node(node).position;
         let radius = |e: EdgeId| self.edge(e).radii[self.edge(e).end(node)];

@@ -1,31 +1,31 @@
-//! Where a new point lies: against the faces and against the sphere of a tetrahedron, from one evaluation.
+//! Position of a new point relative to the faces and the circumsphere of a tetrahedron, from one evaluation.
 //!
-//! With the new point as origin, the determinants of three vertices each are the point's unscaled barycentric
-//! coordinates, and their sum weighted with the vertices' squared distances is the in-sphere determinant. The roundoff
-//! of all is bounded once, for the whole box of points; only what this static bound leaves open is looked at again.
+//! With the new point as origin, the determinants of three vertices each are its unscaled barycentric coordinates.
+//! Their sum, weighted with the squared distances of the vertices, is the in-sphere determinant. One static bound
+//! covers the roundoff of all, for the whole bounding box; only undecided cases are evaluated again.
 
 use super::perturb;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::{INSPHERE_BOUND, ORIENT3D_BOUND, insphere_bound};
 use std::ops::{Add, Mul, Sub};
 
-/// A point, and its number in the cavity being dug. One half of a cache line.
+/// A point and its number in the current cavity. Half a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Site {
     pub(super) at: Point3,
-    /// The insertion that numbered it last.
+    /// Last insertion that numbered it.
     pub(super) stamp: u32,
     /// Its number among the vertices of that insertion's cavity.
     pub(super) local: u32,
 }
 
-/// Roundoff of the determinants, whichever of the points they are taken of.
+/// Static roundoff bounds of the determinants for a set of points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    /// Of an orientation.
+    /// Bound for an orientation.
     pub(super) orient: f64,
-    /// Of an in-sphere determinant.
+    /// Bound for an in-sphere determinant.
     pub(super) sphere: f64,
 }
 
@@ -37,27 +37,27 @@ impl Bounds {
             low = low.inf(p);
             high = high.sup(p);
         }
-        // Subtraction rounds monotonically: no difference of two coordinates exceeds the rounded one of the box.
+        // Subtraction rounds monotonically, so no coordinate difference exceeds the rounded size of the box.
         let size = high - low;
         let volume = size.x * size.y * size.z;
         Self { orient: ORIENT3D_BOUND * volume, sphere: INSPHERE_BOUND * volume * size.norm_squared() }
     }
 }
 
-/// A point seen from a positive tetrahedron.
+/// Determinants of a point with respect to a positive tetrahedron.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
-    /// Per vertex the orientation of the tetrahedron that has the point in the vertex's stead.
+    /// Orientation of the tetrahedron with each vertex replaced by the point.
     pub(super) weights: [f64; 4],
-    /// The in-sphere determinant, positive inside.
+    /// In-sphere determinant, positive inside.
     pub(super) sphere: f64,
 }
 
 impl View {
-    /// The point `e` seen from the tetrahedron `a, b, c, d`.
+    /// Evaluates the point `e` against the tetrahedron `a, b, c, d`.
     #[inline]
     pub(super) fn new([a, b, c, d]: [&Point3; 4], e: &Point3) -> Self {
-        // The vertices by twos, so that all is done by twos: a with c, b with d.
+        // Vertices in pairs, for two-lane arithmetic: a with c, b with d.
         let [[px, py, pz], [qx, qy, qz]] = [[a, c], [b, d]]
             .map(|[p, q]| [Two(p.x - e.x, q.x - e.x), Two(p.y - e.y, q.y - e.y), Two(p.z - e.z, q.z - e.z)]);
         let (rx, ry, rz) = (px.swap(), py.swap(), pz.swap());
@@ -74,7 +74,7 @@ impl View {
     }
 }
 
-/// Two numbers that the same is done with: one register.
+/// Two numbers in one register.
 #[derive(Clone, Copy)]
 struct Two(f64, f64);
 
@@ -112,14 +112,14 @@ impl Mul for Two {
     }
 }
 
-/// Whether `e` lies in the perturbed sphere of the positive tetrahedron `p`.
+/// True if `e` lies in the perturbed circumsphere of the positive tetrahedron `p`.
 #[inline]
 pub(super) fn in_sphere(p: [&Point3; 4], e: &Point3, bounds: &Bounds) -> bool {
     let det = View::new(p, e).sphere;
     if det.abs() > bounds.sphere { det > 0.0 } else { in_sphere_close(p, e, det) }
 }
 
-/// What the static bound leaves open: the bound of these very points, then exact arithmetic.
+/// Decides cases within the static bound: first by the bound of these points, then by exact arithmetic.
 #[inline(never)]
 fn in_sphere_close(p: [&Point3; 4], e: &Point3, det: f64) -> bool {
     if det.abs() > insphere_bound(p, e) { det > 0.0 } else { perturb::in_sphere_close(p, e) }

@@ -1,4 +1,4 @@
-//! One insertion: locate by walking, dig the cavity, fill it with the star of the new point.
+//! Insertion of one point: locate it by walking, dig the cavity, fill it with the star of the new point.
 
 use super::conflict::{Bounds, Site, View, in_sphere};
 use crate::complex::{Cell, GHOST, NONE, face_of};
@@ -6,13 +6,13 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use rustc_hash::FxHashMap;
 
-/// Cavities with at most this many vertices match the new tetrahedra through a square table.
+/// Maximum cavity vertices for which a square table matches the new tetrahedra.
 const TABLE: usize = 64;
 
-/// `BACK[i][k]`: which vertex of a tetrahedron stands at place `k` of its face `i` seen from inside.
+/// `BACK[i][k]`: the vertex of a tetrahedron at position `k` of its face `i` seen from inside.
 const BACK: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
-/// Marks of the cavity's search on a tetrahedron's first vertex: vertices have numbers far below.
+/// Search marks in a tetrahedron's first vertex; vertex numbers are far below.
 const INSIDE: u32 = 1 << 31;
 const OUTSIDE: u32 = 1 << 30;
 const MARKS: u32 = INSIDE | OUTSIDE;
@@ -24,8 +24,7 @@ struct Wall {
     face: [u32; 3],
 }
 
-/// The growing tetrahedralization and the buffers of its insertions. The ghost vertex has the number behind the last
-/// point's here, and a site at that place.
+/// The growing tetrahedralization and the insertion buffers. The ghost vertex and its site follow the last point.
 pub(super) struct Inserter {
     sites: Vec<Site>,
     cells: Vec<Cell>,
@@ -79,14 +78,14 @@ impl Inserter {
         &self.cells[t as usize]
     }
 
-    /// Begins with one positive tetrahedron and its four ghosts.
+    /// Starts with one positive tetrahedron and its four ghosts.
     pub(super) fn start(&mut self, v: [u32; 4]) {
         self.cells.push(Cell { verts: v, mates: [7, 11, 15, 19] });
         for i in 0..4 {
             let [a, b, c] = face_of(&v, i);
             self.cells.push(Cell { verts: [a, b, c, self.ghost], mates: [NONE, NONE, NONE, i as u32] });
         }
-        // Across from vertex k of ghost i stands the ghost that lacks that vertex.
+        // Opposite vertex k of ghost i lies the ghost without that vertex.
         for i in 0..4 {
             for k in 0..3 {
                 let lacks = self.cells[i + 1].verts[k];
@@ -100,7 +99,7 @@ impl Inserter {
     /// Inserts vertex `v`.
     ///
     /// # Errors
-    /// The vertex that stands at the same place already; nothing is changed.
+    /// An existing vertex at the same position; nothing is changed.
     pub(super) fn insert(&mut self, v: u32) -> Result<(), u32> {
         let p = *self.at(v);
         let first = self.locate(&p);
@@ -113,9 +112,9 @@ impl Inserter {
         Ok(())
     }
 
-    /// A tetrahedron in conflict with `p`: one whose sphere it is in for sure, one whose closure holds it, or a ghost
-    /// whose face sees it from outside. Where `p` is a vertex, one that has it. Visibility walks in regular
-    /// triangulations have no cycles (Edelsbrunner 1990), so exact tests suffice for an end.
+    /// Finds a tetrahedron in conflict with `p`: one with `p` certainly in its circumsphere, one whose closure contains
+    /// `p`, or a ghost whose face sees it from outside. If `p` is a vertex, returns a tetrahedron with it. Visibility
+    /// walks in regular triangulations have no cycles (Edelsbrunner 1990), so exact tests end.
     #[inline(never)]
     fn locate(&self, p: &Point3) -> u32 {
         let mut t = self.hint;
@@ -139,8 +138,7 @@ impl Inserter {
         }
     }
 
-    /// A face of the tetrahedron that has `p` strictly behind it, the one with the largest volume between; 4 when there
-    /// is none.
+    /// Face of the tetrahedron with `p` strictly behind it and the largest volume between; 4 if there is none.
     #[inline]
     fn exit(&self, v: &[u32; 4], view: &View, from: usize, p: &Point3) -> usize {
         let mut exit = 4;
@@ -153,7 +151,7 @@ impl Inserter {
         if exit == 4 { self.exit_close(v, view, from, p) } else { exit }
     }
 
-    /// As [`Self::exit`], where no face is clearly between.
+    /// As [`Self::exit`], for faces within the static bound.
     fn exit_close(&self, v: &[u32; 4], view: &View, from: usize, p: &Point3) -> usize {
         let q = self.corners(v);
         let behind = |&i: &usize| {
@@ -163,7 +161,7 @@ impl Inserter {
         (0..4).find(behind).unwrap_or(4)
     }
 
-    /// Whether `p` destroys a tetrahedron.
+    /// True if `p` destroys a tetrahedron.
     #[inline]
     fn in_conflict(&self, cell: &Cell, p: &Point3) -> bool {
         if cell.verts[3] == self.ghost {
@@ -179,13 +177,13 @@ impl Inserter {
         if side != 0.0 {
             return side > 0.0;
         }
-        // In the plane of a hull face the circle through it decides: the sphere of the tetrahedron behind it.
+        // In the plane of a hull face, its circumcircle decides, through the sphere of the tetrahedron behind.
         let mut behind = self.cell(cell.mates[3] >> 2).verts;
         behind[0] &= !MARKS;
         in_sphere(self.corners(&behind), p, &self.bounds)
     }
 
-    /// Collects the connected tetrahedra in conflict with `p`, and the walls around them.
+    /// Collects the connected tetrahedra in conflict with `p`, and the faces around them.
     #[inline(never)]
     fn dig(&mut self, first: u32, p: &Point3) {
         self.cavity.clear();
@@ -218,7 +216,7 @@ impl Inserter {
         }
     }
 
-    /// Replaces the cavity by the tetrahedra between `v` and its walls.
+    /// Replaces the cavity by tetrahedra that join `v` to its faces.
     #[inline(never)]
     fn fill(&mut self, v: u32) {
         self.now += 1;
@@ -232,7 +230,7 @@ impl Inserter {
         self.hint = self.created.last().copied().unwrap_or(self.hint);
     }
 
-    /// Finds a slot for each wall, the cavity's first.
+    /// Finds a slot for each face, first those of the cavity.
     fn take_slots(&mut self) {
         let needed = self.walls.len();
         std::mem::swap(&mut self.cavity, &mut self.created);
@@ -248,7 +246,7 @@ impl Inserter {
         }
     }
 
-    /// Numbers the vertices of the walls from 0; returns how many there are.
+    /// Numbers the vertices of the cavity's faces from 0. Returns their number.
     #[inline(never)]
     fn number_vertices(&mut self) -> usize {
         let mut count = 0u32;
@@ -265,8 +263,7 @@ impl Inserter {
         count as usize
     }
 
-    /// Stands a tetrahedron on each wall and glues them to each other: each edge of the walls is run through once in
-    /// each direction.
+    /// Builds a tetrahedron on each face and connects them. Each edge of the boundary occurs once in each direction.
     #[inline(never)]
     fn stand_by_table(&mut self, v: u32) {
         for (w, &t) in self.walls.iter().zip(&self.created) {
@@ -315,7 +312,7 @@ impl Inserter {
         self.pairs = pairs;
     }
 
-    /// Empties the slots that are free now and hold tetrahedra of the past, and lets go of what only insertion needs.
+    /// Clears the free slots, and drops the data needed only for insertion.
     fn without_past(mut self) -> Self {
         self.sites = Vec::new();
         for &t in &self.free {
@@ -324,7 +321,7 @@ impl Inserter {
         self
     }
 
-    /// The tetrahedra, vertex `v` having become `order[v]`, and the slots without one.
+    /// Returns the tetrahedra, with vertex `v` renamed to `order[v]`, and the empty slots.
     pub(super) fn into_cells(self, order: &[u32]) -> (Vec<Cell>, Vec<u32>) {
         let Self { mut cells, free, .. } = self.without_past();
         for v in cells.iter_mut().flat_map(|cell| &mut cell.verts) {
@@ -333,8 +330,8 @@ impl Inserter {
         (cells, free)
     }
 
-    /// The tetrahedra over the points in their original order, vertex `v` having become `order[v]`; the slots without
-    /// one; for each point a tetrahedron that has it.
+    /// Returns the tetrahedra over the points in original order, with vertex `v` renamed to `order[v]`, the empty
+    /// slots, and a tetrahedron at each point.
     pub(super) fn finish(self, order: &[u32]) -> (Vec<Cell>, Vec<u32>, Vec<u32>) {
         let Self { mut cells, free, ghost, .. } = self.without_past();
         let mut own = vec![NONE; order.len()];
@@ -356,8 +353,7 @@ impl Inserter {
     }
 }
 
-/// At which places of a new tetrahedron the vertices of its wall stand, and the new vertex: in their order, or with the
-/// ghost last.
+/// Positions of the vertices of a face and of the new vertex in a tetrahedron: in order, or with the ghost last.
 #[inline]
 fn turn_of(face: &[u32; 3], ghost: u32) -> [u32; 4] {
     if face[0] == ghost {
@@ -371,7 +367,7 @@ fn turn_of(face: &[u32; 3], ghost: u32) -> [u32; 4] {
     }
 }
 
-/// The tetrahedron on a wall.
+/// Tetrahedron on a cavity face.
 #[inline]
 fn placed(w: &Wall, v: u32, mates: [u32; 3], turn: [u32; 4]) -> Cell {
     let [a, b, c] = w.face;

@@ -1,36 +1,35 @@
-//! Two Delaunay tetrahedralizations on the two sides of a plane become one.
+//! Merging of two Delaunay tetrahedralizations on the two sides of a plane.
 //!
-//! A tetrahedron whose ball does not reach the plane is one of the whole set's, since no point of the other side can
-//! lie in it: it is *final*. Any tetrahedron of the whole set that is not final has vertices only of tetrahedra (or
-//! ghosts) that are not: a vertex whose star is final keeps it. So the Delaunay tetrahedralization of those vertices
-//! alone, a layer along the plane and few others, has all that is missing. There it lies outside the final part, whose
-//! boundary faces it has. The perturbed answer is unique, so both sides of each such face fit.
+//! A tetrahedron is *final* if its circumsphere does not reach the plane. No point of the other side can lie in it, so
+//! it belongs to the result. A vertex with a final star keeps it. So all other tetrahedra of the result have only
+//! vertices of tetrahedra or ghosts that are not final. These vertices form a layer along the plane with few others.
+//! Their Delaunay tetrahedralization contains everything missing, outside the boundary faces of the final part. The
+//! perturbed result is unique, so both sides of each such face fit.
 
 use crate::complex::{Cell, GHOST, NONE, face_key, face_of, opposed};
 use anastomesh_mesh::geometry::Point3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-/// A plane across an axis, between points on its lower side and points on or above it.
+/// A plane across an axis, with points below on its lower side and points on or above it on the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut {
     pub(super) axis: usize,
     pub(super) at: f64,
 }
 
-/// The tetrahedra of one side of a cut.
+/// Tetrahedra of one side of a cut.
 pub(super) struct Half {
     cells: Vec<Cell>,
-    /// Those that are not final, in ascending order.
+    /// Tetrahedra that are not final, in ascending order.
     open: Vec<u32>,
-    /// Per tetrahedron whether it is one of them.
+    /// True for tetrahedra that are not final.
     is_open: Vec<bool>,
 }
 
 impl Half {
-    /// Finds the tetrahedra on the lower or the upper side of a cut that are not final: from the ghosts inward, as
-    /// balls that reach a point of the plane are those of a tetrahedron and of all that one meets on the way from there
-    /// to the point.
+    /// Finds the tetrahedra on one side of a cut that are not final, by a search inward from the ghosts. If a
+    /// circumsphere reaches a point of the plane, so do those of all tetrahedra between its own and that point.
     pub(super) fn new(points: &[Point3], cells: Vec<Cell>, cut: Cut, lower: bool) -> Self {
         let is_final = |cell: &Cell| {
             let corners = cell.verts.map(|v| points.get(v as usize));
@@ -62,18 +61,17 @@ impl Half {
     }
 }
 
-/// Whether the ball of the positive tetrahedron `a, b, c, d` keeps to its side of the cut for sure. Roundoff makes the
-/// answer no more often than it need be, never yes.
+/// True if the circumsphere of the positive tetrahedron `a, b, c, d` certainly stays on its side of the cut. Roundoff
+/// may make the answer false, never true.
 ///
-/// With `a` as origin the centre is `n / 2v`, and the ball ends before the distance `h` of the plane when
-/// `n_y² + n_z² < 4 h v (h v − n_x)`.
+/// With `a` as origin the centre is `n / 2v`. The sphere ends before distance `h` if `n_y² + n_z² < 4 h v (h v − n_x)`.
 fn clear_of(cut: Cut, lower: bool, [a, b, c, d]: [&Point3; 4]) -> bool {
     let (b, c, d) = (b - a, c - a, d - a);
     let size = b.amax().max(c.amax()).max(d.amax());
     let (bc, cd, db) = (b.cross(&c), c.cross(&d), d.cross(&b));
     let volume = b.dot(&cd);
     let n = cd * b.norm_squared() + db * c.norm_squared() + bc * d.norm_squared();
-    // Each numerator is the sum of 18 products of four lengths at most, each with a dozen roundings; the volume of 6.
+    // Each numerator is the sum of 18 products of at most four lengths, each with a dozen roundings; the volume of 6.
     let slack = 1e-13 * (size * size) * (size * size);
     let volume = volume - 1e-14 * size * size * size;
     let to_plane = if lower { cut.at - a[cut.axis] } else { a[cut.axis] - cut.at };
@@ -85,12 +83,12 @@ fn clear_of(cut: Cut, lower: bool, [a, b, c, d]: [&Point3; 4]) -> bool {
     }
     let across = [1, 2].map(|i| n[(cut.axis + i) % 3].abs() + slack);
     let left = 4.0 * h * volume * room * (1.0 - 1e-14);
-    // Below that the squares may have lost digits to underflow.
+    // Below that, the squares may have lost digits to underflow.
     left > 1e-280 && left > across[0] * across[0] + across[1] * across[1]
 }
 
-/// The tetrahedra of both sides together. `tetrahedralize` gives those of a subset of the points. None when it cannot,
-/// or when the subset would be most of the points.
+/// Merges the tetrahedra of both sides. `tetrahedralize` handles a subset of the points. Returns `None` if that fails
+/// or if the subset would be most of the points.
 pub(super) fn merge(
     points: &[Point3],
     [low, high]: [Half; 2],
@@ -107,7 +105,7 @@ pub(super) fn merge(
     add_seam(&mut seam, &high, shift);
     let mut slots: Vec<u32> = low.open.iter().copied().chain(high.open.iter().map(|t| t + shift)).collect();
     let mut cells = low.cells;
-    // What becomes of a pointer at a slot that is not final, the seam says.
+    // The seam replaces pointers to slots that are not final.
     let shifted = |cell: &Cell| Cell { verts: cell.verts, mates: cell.mates.map(|mate| mate.wrapping_add(4 * shift)) };
     cells.par_extend(high.cells.par_iter().map(shifted));
     drop(high.cells);
@@ -116,7 +114,7 @@ pub(super) fn merge(
     Some(compact(cells, unused))
 }
 
-/// Moves the last tetrahedra into the slots that have none.
+/// Moves the last tetrahedra into the empty slots.
 pub(super) fn compact(mut cells: Vec<Cell>, mut free: Vec<u32>) -> Vec<Cell> {
     for &slot in &free {
         cells[slot as usize].verts = [NONE; 4];
@@ -138,7 +136,7 @@ pub(super) fn compact(mut cells: Vec<Cell>, mut free: Vec<u32>) -> Vec<Cell> {
     cells
 }
 
-/// The vertices of what is not final, in ascending order.
+/// Vertices of tetrahedra that are not final, in ascending order.
 fn open_vertices(points: usize, halves: [&Half; 2]) -> Vec<u32> {
     let mut open = vec![false; points];
     for half in halves {
@@ -151,11 +149,10 @@ fn open_vertices(points: usize, halves: [&Half; 2]) -> Vec<u32> {
     (0..).zip(open).filter(|&(_, open)| open).map(|(v, _)| v).collect()
 }
 
-/// The faces between what is final and what is not: for the sorted vertices, the half-face of the final tetrahedron and
-/// its vertices seen from there.
+/// Faces between final and other tetrahedra: sorted vertices to the final half-face and its vertices seen from there.
 type Seam = FxHashMap<[u32; 3], (u32, [u32; 3])>;
 
-/// Adds the seam of one side, whose tetrahedra are numbered from `shift` on.
+/// Adds the seam of one side, with tetrahedra numbered from `shift`.
 fn add_seam(seam: &mut Seam, half: &Half, shift: u32) {
     for mate in half.open.iter().flat_map(|&t| half.cells[t as usize].mates) {
         let t = (mate >> 2) as usize;
@@ -166,16 +163,16 @@ fn add_seam(seam: &mut Seam, half: &Half, shift: u32) {
     }
 }
 
-/// What of the tetrahedra of the open vertices lies outside the final part.
+/// Tetrahedra of the open vertices that lie outside the final part.
 struct Gap {
-    /// Those, in ascending order.
+    /// Indices of the tetrahedra, in ascending order.
     kept: Vec<u32>,
-    /// Per half-face on the seam the final half-face that is its mate.
+    /// Final half-face that is the mate of each half-face on the seam.
     seam: FxHashMap<u32, u32>,
 }
 
 impl Gap {
-    /// None when a face of the seam is missing, which cannot be.
+    /// Finds the tetrahedra outside the seam. `None` if a face of the seam is missing, which cannot happen.
     fn new(cells: &[Cell], seam: &Seam, points: usize) -> Option<Self> {
         let mut on_seam = vec![false; points];
         for &v in seam.keys().flatten() {
@@ -216,8 +213,8 @@ impl Gap {
         Some(Self { kept, seam: found })
     }
 
-    /// Puts what is kept into the slots, and behind the others when they are not enough, glued to each other and to the
-    /// final part. Returns the slots that are left.
+    /// Stores the kept tetrahedra in the slots, then after the others, and connects them to each other and to the final
+    /// part. Returns the remaining slots.
     fn fill(&self, between: &[Cell], cells: &mut Vec<Cell>, slots: &mut Vec<u32>) -> Vec<u32> {
         let unused = slots.split_off(slots.len().min(self.kept.len()));
         slots.extend(cells.len() as u32..(cells.len() + self.kept.len() - slots.len()) as u32);

@@ -1,10 +1,9 @@
 //! Delaunay tetrahedralization: incremental insertion along a Hilbert curve in random rounds (Amenta, Choi, Rote,
-//! 'Incremental constructions con BRIO', 2003), location by walking, Bowyer–Watson cavities, all decided exactly.
+//! 'Incremental constructions con BRIO', 2003), location by walking, Bowyer–Watson cavities, exact predicates.
 //!
-//! Cospherical points are decided by a symbolic perturbation of their lifts (Devillers, Teillaud, 'Perturbations and
-//! Delaunay triangulations in 3D', 2003), which depends on coordinates alone: the answer is unique, whatever the order
-//! of the points, and has no flat tetrahedra. Large sets are therefore cut in two, which are tetrahedralized in parallel
-//! and merged.
+//! A symbolic perturbation of the lifts decides cospherical points (Devillers, Teillaud, 'Perturbations and Delaunay
+//! triangulations in 3D', 2003). It depends on coordinates alone, so the result is unique for any order of the points,
+//! and has no flat tetrahedra. Large sets are therefore split in two, tetrahedralized in parallel and merged.
 
 mod conflict;
 mod insert;
@@ -23,8 +22,7 @@ use order::brio;
 pub(super) use order::hash;
 use sequence::insert_all;
 
-/// The Delaunay tetrahedralization of points, with ghosts around their convex hull. Vertices are numbered as the
-/// points are.
+/// Computes the Delaunay tetrahedralization of points, with ghosts around the hull. Vertices are numbered like points.
 ///
 /// # Errors
 /// [`TetError::Empty`], [`TetError::OutOfRange`], [`TetError::DuplicatePoints`], [`TetError::Flat`].
@@ -32,10 +30,10 @@ pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
     delaunay_watched(points, &Watch::NOBODY)
 }
 
-/// As [`delaunay`], watched.
+/// As [`delaunay`], with a watch.
 ///
 /// # Errors
-/// As there; [`TetError::Cancelled`] when the watch says so.
+/// As [`delaunay`]; [`TetError::Cancelled`] if the watch cancels.
 pub(super) fn delaunay_watched(points: &[Point3], watch: &Watch) -> Result<Complex, TetError> {
     validate(points)?;
     if points.len() >= parallel::SPLIT_FROM
@@ -53,7 +51,7 @@ fn validate(points: &[Point3]) -> Result<(), TetError> {
     if points.is_empty() {
         return Err(TetError::Empty { points: 0, triangles: 0 });
     }
-    // Half-faces are numbered 4 × tetrahedron + face in a `u32`; there are about seven tetrahedra to a point.
+    // Half-faces are numbered 4 × tetrahedron + face in a `u32`, with about seven tetrahedra per point.
     if points.len() > (u32::MAX / 64) as usize {
         return Err(TetError::TooLarge { points: points.len() });
     }

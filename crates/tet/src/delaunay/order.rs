@@ -1,24 +1,24 @@
-//! Order of insertion: random rounds, each along the Hilbert curve (Amenta, Choi, Rote, 'Incremental constructions con
+//! Insertion order: random rounds, each along the Hilbert curve (Amenta, Choi, Rote, 'Incremental constructions con
 //! BRIO', 2003).
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::hilbert::{Grid, hilbert_key};
 
-/// Logarithm of how many times as many points a round has as the one before.
+/// Binary logarithm of the growth factor between rounds.
 const GROWTH: u32 = 3;
 
-/// The points' ids, round by round, each round along the Hilbert curve. The first round has a few dozen points.
+/// Point indices, round by round, each round along the Hilbert curve. The first round has a few dozen points.
 pub(super) fn brio(points: &[Point3]) -> Vec<u32> {
     let rounds = Rounds::of(points.len());
     along_curve(points, |i| rounds.of_point(i))
 }
 
-/// The points' ids along the Hilbert curve.
+/// Point indices along the Hilbert curve.
 pub(super) fn hilbert(points: &[Point3]) -> Vec<u32> {
     along_curve(points, |_| 0)
 }
 
-/// As [`brio`], of as many points that are along the Hilbert curve already.
+/// As [`brio`], for a number of points already sorted along the Hilbert curve.
 pub(super) fn brio_of_sorted(count: usize) -> Vec<u32> {
     let rounds = Rounds::of(count);
     let mut first = vec![0; rounds.last as usize + 2];
@@ -37,7 +37,7 @@ pub(super) fn brio_of_sorted(count: usize) -> Vec<u32> {
     order
 }
 
-/// Which round a point comes in.
+/// Assignment of points to rounds.
 struct Rounds {
     last: u32,
 }
@@ -53,9 +53,9 @@ impl Rounds {
     }
 }
 
-/// Ids by round, then by place on the Hilbert curve.
+/// Indices sorted by round, then along the Hilbert curve.
 fn along_curve(points: &[Point3], round: impl Fn(u64) -> u32) -> Vec<u32> {
-    // Round, key and index in one word: the fewer points, the finer the grid.
+    // Round, key and index share one word: the fewer points, the finer the grid.
     let index_bits = usize::BITS - points.len().leading_zeros();
     let key_bits = ((64 - 5 - index_bits) / 3).min(20);
     let grid = Grid::new(points.iter().copied(), key_bits);
@@ -69,7 +69,7 @@ fn along_curve(points: &[Point3], round: impl Fn(u64) -> u32) -> Vec<u32> {
     order.into_iter().map(|word| (word & mask) as u32).collect()
 }
 
-/// A well-mixed function of an integer (splitmix64).
+/// Hash of an integer (splitmix64).
 pub(crate) fn hash(x: u64) -> u64 {
     let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,7 +1,6 @@
-//! Large sets: cut in two by a plane, tetrahedralized in parallel, merged.
+//! Parallel tetrahedralization of large sets: split by a plane, tetrahedralize both sides in parallel, merge.
 //!
-//! Where the cuts are depends on the points alone, never on the number of threads, and so do the numbers of the
-//! tetrahedra.
+//! The cuts and the numbering of the tetrahedra depend on the points alone, never on the number of threads.
 
 use super::merge::{Cut, Half, compact, merge};
 use super::order::hash;
@@ -12,25 +11,24 @@ use crate::progress::Watch;
 use anastomesh_mesh::geometry::Point3;
 use rayon::prelude::*;
 
-/// Sets of as many points are cut in two. Merging adds a seventh to the work, whether or not there are threads that
-/// share it; less than this takes two or three seconds in one piece.
+/// Minimum number of points for a split. Merging adds 1/7 to the work, even without threads to share it. Smaller sets
+/// take at most two or three seconds in one piece.
 pub(super) const SPLIT_FROM: usize = 1_200_000;
 
-/// Size of the sample that tells whether cutting is worth while.
+/// Size of the sample that decides if a split pays off.
 const SAMPLE: usize = 16_000;
 
-/// Largest part of the sample's tetrahedra that may reach across the cut. In space filled evenly it is a fifth; of
-/// points on a sphere, all do.
+/// Maximum fraction of the sample's tetrahedra that may reach across the cut. It is 0.2 in evenly filled space, 1 on a
+/// sphere.
 const CROSSING: f64 = 0.45;
 
-/// The tetrahedra of points, ghosts included, without unused slots, and for each point one that has it; none when they
-/// are better tetrahedralized at one piece, when something is wrong with them, or when the
-/// watch says to stop.
+/// Tetrahedralizes points in parts. Returns the tetrahedra with ghosts and without unused slots, and one tetrahedron at
+/// each point. Returns `None` if one piece is better, on errors, and if the watch cancels.
 pub(super) fn tetrahedralize(points: &[Point3], watch: &Watch) -> Option<(Vec<Cell>, Vec<u32>)> {
     in_parts(points, SPLIT_FROM, watch)
 }
 
-/// As [`tetrahedralize`], with a bound on the parts' size.
+/// As [`tetrahedralize`], with a bound on the size of parts.
 pub(super) fn in_parts(points: &[Point3], from: usize, watch: &Watch) -> Option<(Vec<Cell>, Vec<u32>)> {
     let order = hilbert(points);
     let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
@@ -49,7 +47,7 @@ fn rename(cells: &mut [Cell], names: &[u32]) {
     cells.par_iter_mut().for_each(|cell| cell.verts = cell.verts.map(named));
 }
 
-/// As [`in_parts`], of points along the Hilbert curve.
+/// As [`in_parts`], for points along the Hilbert curve.
 fn split(points: &[Point3], from: usize, watch: &Watch) -> Option<Vec<Cell>> {
     let cut = middle(points)?;
     if !worth_while(points, cut, watch) {
@@ -64,7 +62,7 @@ fn split(points: &[Point3], from: usize, watch: &Watch) -> Option<Vec<Cell>> {
     merge(points, halves, |ids| part(points, ids, from, watch))
 }
 
-/// The tetrahedra of some of the points.
+/// Tetrahedra of a subset of the points.
 fn part(points: &[Point3], ids: &[u32], from: usize, watch: &Watch) -> Option<Vec<Cell>> {
     let own: Vec<Point3> = ids.iter().map(|&i| points[i as usize]).collect();
     if own.len() >= from
@@ -83,7 +81,7 @@ fn part(points: &[Point3], ids: &[u32], from: usize, watch: &Watch) -> Option<Ve
     Some(compact(cells, free))
 }
 
-/// The plane that halves the points across the longest side of their box; none when most share a coordinate.
+/// Plane that halves the points across the longest side of their box. `None` if many share its coordinate.
 fn middle(points: &[Point3]) -> Option<Cut> {
     let first = points.first()?;
     let (low, high) = points.iter().fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
@@ -95,7 +93,7 @@ fn middle(points: &[Point3]) -> Option<Cut> {
     (4 * below > points.len()).then_some(Cut { axis, at })
 }
 
-/// Whether most of the tetrahedra of a sample keep to one side of the cut.
+/// True if most of the tetrahedra of a sample stay on one side of the cut.
 fn worth_while(points: &[Point3], cut: Cut, watch: &Watch) -> bool {
     let every = (points.len() / SAMPLE).max(1) as u64;
     let sample: Vec<Point3> =
@@ -110,7 +108,7 @@ fn worth_while(points: &[Point3], cut: Cut, watch: &Watch) -> bool {
     count - final_count as f64 <= CROSSING * count
 }
 
-/// For each point a tetrahedron that has it.
+/// A tetrahedron at each point.
 fn vertex_tets(cells: &[Cell], points: usize) -> Vec<u32> {
     let mut tets = vec![NONE; points];
     for (t, cell) in (0..).zip(cells) {

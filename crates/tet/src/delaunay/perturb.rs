@@ -1,4 +1,4 @@
-//! The in-sphere test without ties.
+//! In-sphere test without ties.
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::{insphere_exact, orient3d};
@@ -12,9 +12,9 @@ pub fn in_sphere_perturbed(p: [&Point3; 4], e: &Point3) -> bool {
     if s == 0.0 { tie(p, e) } else { s > 0.0 }
 }
 
-/// The in-sphere determinant is linear in the lifts; its coefficient of a point's lift is the orientation of the other
-/// four. The first that is not zero, from the largest perturbation down, decides. That of `e` never is zero, since
-/// `p` is positive, so the search ends there at the latest.
+/// Decides cospherical points. The in-sphere determinant is linear in the lifts; the coefficient of a point's lift is
+/// the orientation of the other four. The first non-zero one decides, from the largest perturbation down. That of `e`
+/// is never zero, since `p` is positive, so the search ends there at the latest.
 #[cold]
 fn tie(p: [&Point3; 4], e: &Point3) -> bool {
     let all = [p[0], p[1], p[2], p[3], e];
@@ -36,10 +36,9 @@ fn tie(p: [&Point3; 4], e: &Point3) -> bool {
     false
 }
 
-/// Whether `e` lies inside the sphere through the positive tetrahedron `p`. When all five lie on one sphere, the lift
-/// of each is raised by an infinitesimal, larger by orders of magnitude the later the point comes in lexicographic
-/// order; points must be distinct. Exact; for
-/// points whose determinant no filter tells from zero.
+/// True if `e` lies inside the circumsphere of the positive tetrahedron `p`. For cospherical points, each lift is
+/// raised by an infinitesimal, larger by orders of magnitude for later points in lexicographic order. Points must be
+/// distinct. Exact; meant for determinants that no filter separates from zero.
 pub(super) fn in_sphere_close(p: [&Point3; 4], e: &Point3) -> bool {
     let s = insphere_exact(p[0], p[1], p[2], p[3], e);
     if s == 0.0 { tie(p, e) } else { s > 0.0 }

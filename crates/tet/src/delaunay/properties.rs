@@ -1,5 +1,5 @@
-//! The Delaunay kernel against rational arithmetic, on points that are degenerate on purpose: on grids, spheres, lines
-//! and planes, given twice, and moved by single units in the last place.
+//! Delaunay kernel against rational arithmetic, on degenerate points: on grids, spheres, lines and planes, repeated,
+//! and moved by single units in the last place.
 
 use super::delaunay;
 use crate::complex::{Complex, GHOST};
@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 
 type Row = [BigRational; 3];
 
-/// Exact coordinates and what is decided by them.
+/// Exact coordinates, and predicates on them.
 struct Exact(Vec<Row>);
 
 impl Exact {
@@ -29,7 +29,7 @@ impl Exact {
         det(&self.from(a, b), &self.from(a, c), &self.from(a, d)).cmp(&zero())
     }
 
-    /// On which side of the sphere of the positive tetrahedron `t` the point `e` is: `Greater` inside.
+    /// Side of the circumsphere of the positive tetrahedron `t` on which point `e` lies: `Greater` inside.
     fn sphere(&self, t: [u32; 4], e: u32) -> Ordering {
         let [a, b, c, d] = t.map(|v| self.from(e, v));
         let lift = |p: &Row| p.iter().map(|x| x * x).fold(zero(), |s, x| s + x);
@@ -40,8 +40,8 @@ impl Exact {
         (p + q).cmp(&(r + s))
     }
 
-    /// As [`Exact::sphere`]; where the five lie on one sphere, as if the squared length of each point, by which the
-    /// paraboloid lifts it, were larger by an ε that is the larger the later the point comes in lexicographic order.
+    /// As [`Exact::sphere`], with ties broken by perturbation. The squared length of each point, by which the
+    /// paraboloid lifts it, grows by an ε that is larger for later points in lexicographic order.
     fn perturbed_sphere(&self, t: [u32; 4], e: u32) -> Ordering {
         let plain = self.sphere(t, e);
         if plain != Ordering::Equal {
@@ -55,7 +55,7 @@ impl Exact {
         all.into_iter().map(coefficient).find(|&o| o != Ordering::Equal).expect("that of the point itself")
     }
 
-    /// Dimension of the space that the points span; −1 for none.
+    /// Dimension of the affine hull of the points; −1 for none.
     fn rank(&self) -> i32 {
         let ids = || 0..self.0.len() as u32;
         let Some(b) = ids().find(|&v| self.0[v as usize] != self.0[0]) else {
@@ -79,8 +79,8 @@ fn det(p: &Row, q: &Row, r: &Row) -> BigRational {
     &p[0] * minor(1, 2) + &p[1] * minor(2, 0) + &p[2] * minor(0, 1)
 }
 
-/// That the complex is the Delaunay tetrahedralization of the perturbed points: each tetrahedron positive, the hull
-/// convex, and each face locally Delaunay, from which the rest follows (Delaunay's lemma).
+/// Asserts that the complex is the Delaunay tetrahedralization of the perturbed points: each tetrahedron positive, the
+/// hull convex, and each face locally Delaunay, which suffices (Delaunay's lemma).
 fn check(points: &[Point3], c: &Complex) {
     c.sanity_check().expect("a sound complex");
     let exact = Exact::new(points);
@@ -121,7 +121,7 @@ fn sorted_tets(c: &Complex, name: impl Fn(u32) -> u32) -> Vec<[u32; 4]> {
     tets
 }
 
-/// The kernel's answer is right, or the right error; the order of the points makes no difference.
+/// Asserts that the kernel returns the right result or error, for any order of the points.
 fn holds(points: &[Point3], turn: usize) {
     let repeated = (0..points.len()).filter(|&i| points[..i].contains(&points[i])).count();
     let rank = Exact::new(points).rank();
@@ -138,7 +138,7 @@ fn holds(points: &[Point3], turn: usize) {
     assert_eq!((rank, repeated), (3, 0));
     check(points, &c);
     let n = points.len();
-    // Backwards, from another point on.
+    // Reversed and rotated order.
     let name = |i: usize| (2 * n - 1 - i + turn) % n;
     let other: Vec<Point3> = (0..n).map(|i| points[name(i)]).collect();
     let again = delaunay(&other).expect("the same points");
@@ -149,13 +149,13 @@ fn nudged(x: f64, ulps: i32) -> f64 {
     (0..ulps.abs()).fold(x, |x, _| if ulps > 0 { x.next_up() } else { x.next_down() })
 }
 
-/// A point of a coarse grid, with a step that binary fractions hold or not, moved by a few units in the last place.
+/// A point of a coarse grid with an exact or inexact step, moved by a few units in the last place.
 fn grid_point(step: f64, ulps: i32) -> impl Strategy<Value = Point3> {
     let axis = move || (0i32..4, -ulps..=ulps).prop_map(move |(i, u)| nudged(f64::from(i + 1) * step, u));
     (axis(), axis(), axis()).prop_map(|(x, y, z)| Point3::new(x, y, z))
 }
 
-/// Integer points at the distance √(5² · 3²) from the origin, on a sphere exactly.
+/// Integer points at distance √(5² · 3²) from the origin, exactly cospherical.
 fn sphere_points() -> Vec<Point3> {
     let mut points = Vec::new();
     for x in -15i32..=15 {
@@ -209,7 +209,7 @@ proptest! {
             points.push(Point3::new(0.0, 0.0, 0.0));
         }
         holds(&points, turn);
-        // Scaled they lie there nearly.
+        // Scaled points are nearly cospherical.
         holds(&points.iter().map(|p| p * scale).collect::<Vec<_>>(), turn);
     }
 

@@ -1,4 +1,4 @@
-//! Points inserted one after the other.
+//! Sequential insertion of points.
 
 use super::insert::Inserter;
 use crate::error::{NAMED, TetError};
@@ -6,10 +6,10 @@ use crate::progress::Watch;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::{collinear, orient3d};
 
-/// Points between two questions whether to stop: some milliseconds.
+/// Points between two checks for cancellation: some milliseconds.
 const ASKED_EVERY: u32 = 1024;
 
-/// All points inserted in this order: vertex `v` of the inserter is the point `order[v]`.
+/// Inserts all points in the given order: vertex `v` of the inserter is the point `order[v]`.
 ///
 /// # Errors
 /// [`TetError::Flat`], [`TetError::DuplicatePoints`], [`TetError::Cancelled`].
@@ -40,7 +40,7 @@ pub(super) fn insert_all(points: &[Point3], order: &[u32], watch: &Watch) -> Res
     Ok(inserter)
 }
 
-/// Four points that span a positive tetrahedron, the first such in order.
+/// First four points in order that span a positive tetrahedron.
 fn seed_tet(p: &[Point3]) -> Option<[u32; 4]> {
     let b = (1..p.len()).find(|&i| p[i] != p[0])?;
     let c = (b + 1..p.len()).find(|&i| !collinear(&p[0], &p[b], &p[i]))?;

@@ -92,7 +92,7 @@ fn degenerate_inputs_are_typed_errors() {
 
 #[test]
 fn points_on_a_sphere_with_one_far_vertex() {
-    // A cavity with hundreds of walls: the centre of a sphere's points, inserted among them.
+    // A cavity with hundreds of faces: the centre of a sphere, inserted among its points.
     let mut points = vec![Point3::new(0.0, 0.0, 0.0)];
     for i in 0..400 {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 400.0;
@@ -104,7 +104,7 @@ fn points_on_a_sphere_with_one_far_vertex() {
     check_delaunay(&points, &c);
 }
 
-/// Whether all points lie in one plane, exactly: the vectors from the first span no volume, no three of them.
+/// True if all points are exactly coplanar: no three vectors from the first span a volume.
 fn are_coplanar(points: &[Point3]) -> bool {
     let Some((o, rest)) = points.split_first() else { return true };
     let flat = |i: usize, j: usize, k: usize| orient3d(o, &rest[i], &rest[j], &rest[k]) == 0.0;
@@ -159,8 +159,7 @@ fn random_points(count: usize) -> Vec<Point3> {
     (0..count as u64).map(|i| Point3::new(unit(3 * i), unit(3 * i + 1), unit(3 * i + 2))).collect()
 }
 
-/// In parts and merged, what comes out is the tetrahedralization in one piece, from any number of threads in the same
-/// order.
+/// Merged parts equal the tetrahedralization in one piece, in the same order for any number of threads.
 #[test]
 fn parts_merge_to_the_whole() {
     let grid =
@@ -187,7 +186,7 @@ fn parts_merge_to_the_whole() {
     }
 }
 
-/// Where nearly all tetrahedra cross the cut, nothing is cut.
+/// No split if nearly all tetrahedra cross the cut.
 #[test]
 fn points_on_a_sphere_stay_in_one_piece() {
     let points: Vec<Point3> = random_points(3000).iter().map(|p| p * 2.0 - nalgebra::Vector3::repeat(1.0)).collect();
@@ -195,7 +194,7 @@ fn points_on_a_sphere_stay_in_one_piece() {
     assert!(parallel::in_parts(&on_sphere, 1000, &Watch::NOBODY).is_none());
 }
 
-/// Far fewer points are inserted than there are, in one piece and in parts.
+/// Cancellation stops insertion early, in one piece and in parts.
 #[test]
 fn whoever_stops_it_is_heard() {
     let points = random_points(30_000);

@@ -1,5 +1,5 @@
-//! Lattices whose cubes are as large as the surface's triangles nearby: one lattice for each band of edge lengths, each
-//! kept where the nearest vertex of the surface has edges of its band.
+//! Lattices with cubes as large as the nearby triangles of the surface. Each band of edge lengths has its own lattice,
+//! kept where the nearest vertex of the surface has edges of that band.
 
 use super::{edges_at_vertices, graded_lattice_points, sites};
 use anastomesh_mesh::TriMesh;
@@ -7,17 +7,17 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rustc_hash::FxHashMap;
 
-/// Ratio of the edge lengths at the ends of a band, at most.
+/// Maximum ratio of the edge lengths at the ends of a band.
 const BAND: f64 = 1.4;
 
-/// Points of different lattices are at least so far apart, in cubes of the coarser one; those of one are 0.87 apart.
+/// Minimum distance of points of different lattices, in cubes of the coarser one. Within a lattice it is 0.87.
 const APART: f64 = 0.62;
 
 const MOST_BANDS: usize = 12;
 
-/// Points of body-centred cubic lattices inside the closed `surface`, with cubes of side `cell` and at least `clearance`
-/// from it, both in edge lengths of the surface nearby. Away from the surface cubes are twice, four times, .. as large.
-/// The same surface gives the same points.
+/// Points of body-centred cubic lattices inside the closed `surface`. Cubes have side `cell`, and points at least
+/// `clearance` from the surface, both in nearby edge lengths. Away from the surface cubes are 2, 4, ... times as large.
+/// The result is deterministic.
 pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
     let sizes = edges_at_vertices(surface);
     let Some(bands) = Bands::of(&sizes) else {
@@ -26,7 +26,7 @@ pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec
     };
     let band: Vec<usize> = sizes.iter().map(|&s| bands.of_size(s)).collect();
     let places: Vec<[f64; 3]> = surface.points.iter().map(|p| [p.x, p.y, p.z]).collect();
-    // Only a tree of nothing, or of coordinates that are not numbers, cannot be built.
+    // Building fails only without points or with NaN coordinates.
     let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&places) else { return Vec::new() };
     let size_of = |t: &[u32; 3]| t.iter().map(|&v| sizes[v as usize]).sum::<f64>() / 3.0;
     let mut taken = Taken::new(APART * cell * bands.middle(bands.count - 1));
@@ -48,7 +48,7 @@ pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec
     points
 }
 
-/// Edge lengths in bands of equal ratio.
+/// Bands of edge lengths with equal ratio.
 struct Bands {
     low: f64,
     ratio: f64,
@@ -56,7 +56,7 @@ struct Bands {
 }
 
 impl Bands {
-    /// None when all lengths are much the same.
+    /// Returns `None` if all lengths are similar.
     fn of(sizes: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = sizes.iter().copied().filter(|&s| s > 0.0).collect();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -75,13 +75,13 @@ impl Bands {
         (k.max(0.0) as usize).min(self.count - 1)
     }
 
-    /// The length in the middle of a band.
+    /// Length in the middle of a band.
     fn middle(&self, k: usize) -> f64 {
         self.low * self.ratio.powf(k as f64 + 0.5)
     }
 }
 
-/// Points that have been made, by cubes as wide as the largest distance that is asked for.
+/// Points made so far, in cubes as wide as the largest distance queried.
 struct Taken {
     side: f64,
     cubes: FxHashMap<[i64; 3], Vec<(Point3, usize)>>,
@@ -100,7 +100,7 @@ impl Taken {
         self.cubes.entry(self.cube(p)).or_default().push((*p, band));
     }
 
-    /// Whether no point of another band is nearer than `distance`.
+    /// True if no point of another band is closer than `distance`.
     fn is_free(&self, p: &Point3, distance: f64, band: usize) -> bool {
         let reach = Vec3::repeat(distance);
         let (low, high) = (self.cube(&(p - reach)), self.cube(&(p + reach)));
@@ -122,7 +122,7 @@ mod tests {
 
     const CORNERS: u32 = 12;
 
-    /// A horn: rings of as many points whose radius grows from 1, edges in proportion, closed by a vertex at either end.
+    /// A horn: rings of points with radius growing from 1 and edges in proportion, closed by a vertex at either end.
     fn horn(rings: u32, growth: f64) -> TriMesh {
         let (mut z, mut r) = (0.0, 1.0);
         let mut s = TriMesh::default();
@@ -155,13 +155,13 @@ mod tests {
         let (cell, clearance) = (1.35, 0.37);
         let s = horn(40, 1.05);
         let points = local_lattice_points(&s, cell, clearance);
-        // In a slice as long as it is wide there are about as many everywhere: 40 rings are 1.05⁴⁰ = 7 times as wide.
+        // Slices as long as wide have similar counts everywhere. 40 rings widen by 1.05⁴⁰ = 7.
         let radius = |z: f64| 1.0 + z * 0.05 / 0.45;
         let widest = radius(s.points[s.points.len() - 1].z);
         let in_slice = |r: f64| points.iter().filter(|p| (0.8..1.25).contains(&(radius(p.z) / r))).count() as f64;
         let (thin, thick) = (in_slice(1.3), in_slice(0.75 * widest));
         assert!(thin > 10.0 && (0.6..1.6).contains(&(thick / thin)), "{thin} {thick}");
-        // None are much nearer to each other than those of the lattice there.
+        // Distances are not much below those of the local lattice.
         for (i, p) in points.iter().enumerate() {
             let edge = 0.5 * radius(p.z);
             assert!(points[..i].iter().all(|q| (p - q).norm() > 0.5 * 0.87 * cell * edge * 0.8));

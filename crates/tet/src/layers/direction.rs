@@ -1,27 +1,27 @@
-//! The way in from each vertex of a wall.
+//! Inward direction at each vertex of a wall.
 
 use anastomesh_mesh::geometry::unit_normal;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// Steps towards the middle of the smallest cap that holds all normals at a vertex.
+/// Steps towards the centre of the smallest cap that contains all normals at a vertex.
 const STEPS: u32 = 40;
-/// Passes in which ways in are drawn towards those of their neighbours.
+/// Smoothing passes over the inward directions.
 const PASSES: usize = 3;
-/// A way in that is smoothed sees its triangles as well as this share of what the best one does.
+/// Minimum steepness of a smoothed direction, relative to that before.
 const KEEPS: f64 = 0.6;
 
-/// The way in at each vertex of a wall, and the triangles round each.
+/// Inward directions at the vertices of a wall, and the triangle normals around each.
 pub struct Directions {
-    /// Unit vectors into the volume; zero off the wall, and where no direction leads away from all triangles of a vertex.
+    /// Unit vectors into the volume; zero off the wall, and if no direction leads away from all triangles.
     pub ways: Vec<Vec3>,
-    /// For each vertex of the wall, normals of its triangles, outwards.
+    /// Outward normals of the triangles at each vertex of the wall.
     normals: Vec<Vec<Vec3>>,
 }
 
 impl Directions {
-    /// Of the triangles of a wall, seen from outside counter-clockwise. Each vertex's way in sees all of its triangles from
-    /// behind as steeply as can be: it is the middle of the smallest cap of the sphere that holds their normals, turned
-    /// round.
+    /// Computes directions from the triangles of a wall, counter-clockwise seen from outside. Each direction sees all
+    /// triangles of its vertex from behind as steeply as possible: it is the reversed centre of the smallest spherical
+    /// cap that contains their normals.
     pub fn new(points: &[Point3], wall: &[[u32; 3]]) -> Self {
         let mut normals: Vec<Vec<Vec3>> = vec![Vec::new(); points.len()];
         for triangle in wall {
@@ -35,8 +35,7 @@ impl Directions {
         Self { ways, normals }
     }
 
-    /// Draws ways in towards those of neighbours, but for vertices that are held, as far as each sees its triangles no worse than
-    /// it may.
+    /// Averages directions with those of neighbours, within the minimum steepness, except at held vertices.
     pub fn smooth(&mut self, wall: &[[u32; 3]], is_held: &[bool]) {
         for _ in 0..PASSES {
             let mut sums = vec![Vec3::zeros(); self.ways.len()];
@@ -56,13 +55,13 @@ impl Directions {
     }
 }
 
-/// The cosine of the angle between a way in and the flattest of the normals, turned round.
+/// Minimum cosine between an inward direction and the reversed normals.
 fn steepness(way: &Vec3, normals: &[Vec3]) -> f64 {
     normals.iter().map(|normal| -way.dot(normal)).fold(1.0, f64::min)
 }
 
-/// The way in at a vertex; zero where there is none. Steps towards whatever normal is furthest, shorter each time, end in the
-/// middle of the smallest ball that holds them all (Bădoiu, Clarkson 2003).
+/// Inward direction at a vertex; zero if there is none. Decreasing steps towards the furthest normal converge to the
+/// centre of the smallest enclosing ball (Bădoiu, Clarkson 2003).
 fn way_in(normals: &[Vec3]) -> Vec3 {
     let mut middle: Vec3 = -normals.iter().sum::<Vec3>() / normals.len().max(1) as f64;
     let mut best = (0.0, Vec3::zeros());

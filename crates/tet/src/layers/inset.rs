@@ -1,4 +1,4 @@
-//! The surface further in: places of its vertices that let every prism be positive and the surface be filled.
+//! Inner surface: vertex positions for which every prism is positive and the surface can be filled.
 
 use super::stack::{Numbers, Stack, toward};
 use crate::contacts::contacts;
@@ -6,52 +6,50 @@ use crate::error::{Obstacle, Stuck, TetError};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::{TetMesh, TriMesh};
 
-/// What a vertex keeps of its way in when it is in the way,
+/// Factor of the offset of an obstructing vertex.
 const DRAWN_BACK: f64 = 0.6;
-/// and what of it is so little that there is no layer at the vertex.
+/// Fraction of the offset below which a vertex gets no layer.
 const LEAST: f64 = 2e-3;
-/// Ways in of neighbours differ by this much of their distance at most, where one has been drawn back.
+/// Maximum difference of neighbouring offsets, relative to their distance, after a reduction.
 const GRADE: f64 = 0.5;
-/// The same where the surface does not meet itself and yet is not kept, which takes long to find out: one time after the other, then
-/// nothing.
+/// Successive factors of the offset if filling fails without self-intersection, a slow test. Zero after these.
 const STUCK: [f64; 3] = [0.5, 0.2, 0.2];
-/// Rounds after which what is in the way is drawn back on to the wall at once, and rounds at most.
+/// Round from which obstructing vertices return to the wall at once, and maximum rounds.
 const PATIENT: usize = 40;
 const ROUNDS: usize = 100;
 
-/// A surface and where its vertices would best be further in.
+/// A surface and the wanted inner positions of its vertices.
 pub struct Places<'a> {
     pub surface: &'a TriMesh,
-    /// Its triangles that have layers.
+    /// Triangles with layers.
     pub wall: &'a [[u32; 3]],
-    /// Vertices that also have triangles without.
+    /// True for vertices that also have triangles without layers.
     pub is_rim: Vec<bool>,
-    /// Where each vertex is wanted; vertices off the wall, too.
+    /// Wanted position of each vertex, including those off the wall.
     pub wanted: Vec<Point3>,
-    /// Vertices that may be nowhere else.
+    /// True for vertices that must be at their wanted position.
     pub is_held: Vec<bool>,
-    /// Whether the surface further in is likely to meet itself: that is asked first then, as filling it takes longer.
+    /// True if the inner surface probably intersects itself. This is tested first then, since filling takes longer.
     pub is_narrow: bool,
 }
 
 /// A mesh with layers.
 pub struct Inset {
-    /// The mesh; its points begin with the surface's, those off the wall being at their place further in.
+    /// The mesh. Its points begin with the surface's; those off the wall are at their inner position.
     pub mesh: TetMesh,
-    /// How many of its tetrahedra, the first ones, are those of layers.
+    /// Number of layer tetrahedra, which come first.
     pub of_layers: usize,
-    /// Which number each copy of a vertex has.
+    /// Indices of the copies of each vertex.
     pub numbers: Numbers,
-    /// How much of its way in each vertex has.
+    /// Fraction of its offset that each vertex has.
     pub shares: Vec<f64>,
 }
 
-/// Finds the places, fills what is inside, and puts the layers round it. Layers reach to these `depths`, as shares of the way
-/// in. The mesh that `fill` makes has to keep the surface, its points beginning with the surface's.
+/// Finds inner positions, fills the inner surface, and adds the layers around it. `depths` are fractions of the offset.
+/// The mesh made by `fill` must keep the surface, and its points must begin with the surface's.
 ///
 /// # Errors
-/// That of `fill`; [`TetError::Stuck`] with a triangle of the wall whose prism is turned over, and whose vertices may be nowhere
-/// else.
+/// Errors of `fill`; [`TetError::Stuck`] with a wall triangle whose prism is inverted and whose vertices cannot move.
 pub fn inset(
     places: &Places,
     depths: &[f64],
@@ -99,7 +97,7 @@ pub fn inset(
     }
 }
 
-/// The vertices of what could not be kept of a surface.
+/// Vertices of the parts of a surface that could not be recovered.
 fn stuck(error: &TetError, surface: &TriMesh) -> Vec<u32> {
     let of = |part: &Obstacle| match *part {
         Obstacle::Point(v) => vec![v],
@@ -118,11 +116,11 @@ fn stuck(error: &TetError, surface: &TriMesh) -> Vec<u32> {
     vertices.into_iter().filter(|&v| (v as usize) < surface.points.len()).collect()
 }
 
-/// How far in each vertex is.
+/// Current offset of each vertex.
 struct Ways<'a> {
     places: &'a Places<'a>,
     shares: Vec<f64>,
-    /// What a vertex keeps of its way in when it is in the way.
+    /// Factor of the offset of an obstructing vertex.
     drawn_back: f64,
 }
 
@@ -137,8 +135,7 @@ impl<'a> Ways<'a> {
         all.map(|((outer, wanted), &share)| toward(outer, wanted, share)).collect()
     }
 
-    /// Draws vertices back towards the wall, and those round them as far as neighbours may differ; whether there was any that
-    /// could be.
+    /// Reduces the offsets of vertices, and grades those around them. Returns false if none could be reduced.
     fn draw_back(&mut self, vertices: &[u32]) -> bool {
         let mut vertices = vertices.to_vec();
         vertices.sort_unstable();
@@ -158,7 +155,7 @@ impl<'a> Ways<'a> {
         any
     }
 
-    /// How far in a vertex is wanted.
+    /// Wanted offset of a vertex.
     fn length(&self, v: usize) -> f64 {
         (self.places.wanted[v] - self.places.surface.points[v]).norm()
     }
@@ -177,7 +174,7 @@ impl<'a> Ways<'a> {
     }
 }
 
-/// Lowers heights until those of neighbours differ by no more than this share of their distance.
+/// Lowers heights until neighbours differ by at most `grade` times their distance.
 pub(super) fn lower(heights: &mut [f64], points: &[Point3], triangles: &[[u32; 3]], grade: f64) {
     let mut changed = true;
     while changed {
@@ -187,7 +184,7 @@ pub(super) fn lower(heights: &mut [f64], points: &[Point3], triangles: &[[u32; 3
                 let step = grade * (points[x] - points[y]).norm();
                 for [low, high] in [[x, y], [y, x]] {
                     let most = heights[low] + step;
-                    // Rounding must not go on for ever.
+                    // Tolerance for rounding, to ensure termination.
                     if heights[high] > most * (1.0 + 1e-9) {
                         heights[high] = most;
                         changed = true;

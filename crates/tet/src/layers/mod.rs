@@ -1,13 +1,13 @@
-//! Layers of thin tetrahedra along a wall, for what is steep there (wall shear, concentrations).
+//! Boundary layers: thin tetrahedra along a wall for steep gradients (wall shear, concentrations).
 //!
-//! Each vertex of the wall has a place further in, so that a second surface of the same triangles stands inside the first
-//! (`inset`). That one is filled as any surface, and between the two each triangle of the wall is a prism, cut across into
-//! layers and each of these into three tetrahedra (`stack`). All prisms are positive by the exact predicate and what is inside
-//! is a mesh of an embedded surface, so the whole is one of the first surface: a map that nowhere turns over and is one to one
-//! on the boundary is so inside.
+//! Each vertex of the wall has an inner position, so that an inner surface of the same triangles lies inside the first
+//! (`inset`). The inner surface is filled as usual. Between the two, each triangle of the wall spans a prism, which is
+//! cut into layers of three tetrahedra each (`stack`). All prisms are positive by the exact predicate, and the inner
+//! mesh fills an embedded surface. So the whole fills the outer surface: a map without inversions that is one to one on
+//! the boundary is one to one inside.
 //!
-//! How far a place is in depends on what is asked for and on the room there is (`room`); where a prism turns over or the second
-//! surface meets itself, places draw back towards the wall (`inset`), at last on to it: there is no layer there then.
+//! The offset depends on the thickness asked for and on the clearance (`room`). If a prism is inverted or the inner
+//! surface intersects itself, positions move back towards the wall (`inset`). At offset zero there is no layer.
 
 mod direction;
 mod inset;

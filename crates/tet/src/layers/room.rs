@@ -1,13 +1,13 @@
-//! How much room there is inside a surface that is no vessel: half of the way across, from each of its vertices.
+//! Clearance inside a general surface: half of the width across, from each vertex.
 
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3};
 
-/// Length of the first step of a ray, in mean edge lengths of the surface, and how much longer each step is than the one before.
+/// Length of the first step of a ray, in mean edge lengths of the surface, and growth factor of the steps.
 const STEP: f64 = 2.0;
 const LONGER: f64 = 1.5;
 
-/// Half of the way from each vertex to the surface opposite, along these unit vectors; zero where the vector is.
+/// Half the distance from each vertex to the opposite surface, along unit vectors `ways`; zero where the vector is.
 pub(super) fn half_widths(surface: &TriMesh, ways: &[Vec3]) -> Vec<f64> {
     let corners = |t: &[u32; 3]| t.map(|v| &surface.points[v as usize]);
     let boxes: Vec<Aabb> = surface.triangles.iter().map(|t| Aabb::of_points(corners(t))).collect();
@@ -38,7 +38,7 @@ pub(super) fn half_widths(surface: &TriMesh, ways: &[Vec3]) -> Vec<f64> {
     (0..).zip(surface.points.iter().zip(ways)).map(half).collect()
 }
 
-/// How far along a ray a triangle is met, edges included (Möller, Trumbore 1997); with rounding: it is a length that is sought.
+/// Distance along a ray to a triangle, edges included (Möller, Trumbore 1997). Rounding is acceptable here.
 fn hit(from: &Point3, way: &Vec3, [a, b, c]: [&Point3; 3]) -> Option<f64> {
     let (u, v) = (b - a, c - a);
     let p = way.cross(&v);

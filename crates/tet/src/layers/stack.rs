@@ -1,19 +1,19 @@
-//! The prisms between a wall and its places further in, cut into layers of tetrahedra.
+//! Prisms between a wall and its inner positions, cut into layers of tetrahedra.
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::{TetMesh, TriMesh};
 
-/// Which number each copy of a vertex has: first the vertices of the surface, then the copies of each that has any, from the
-/// wall on. A vertex without copies is its own copy in each layer.
+/// Indices of the copies of vertices: first the vertices of the surface, then the copies of each, from the wall
+/// inwards. A vertex without copies is its own copy in each layer.
 #[derive(Clone, Debug)]
 pub struct Numbers {
-    /// How many vertices with copies come before it; none: it has none.
+    /// Number of preceding vertices with copies; `None` for vertices without.
     slot: Vec<Option<u32>>,
-    /// Vertices of the wall that a triangle off the wall has, too.
+    /// True for wall vertices that also have triangles off the wall.
     is_rim: Vec<bool>,
     layers: u32,
-    /// How many have copies.
+    /// Number of vertices with copies.
     copied: u32,
 }
 
@@ -29,7 +29,7 @@ impl Numbers {
         Self { slot, is_rim, layers, copied: next }
     }
 
-    /// A vertex's copy that many layers from the wall.
+    /// Copy of a vertex in a layer, counted from the wall.
     pub fn copy(&self, v: u32, layer: u32) -> u32 {
         match self.slot[v as usize] {
             Some(slot) if layer > 0 => self.slot.len() as u32 + slot * self.layers + layer - 1,
@@ -37,13 +37,13 @@ impl Numbers {
         }
     }
 
-    /// How many there are with all copies.
+    /// Number of vertices including all copies.
     pub fn len(&self) -> u32 {
         self.slot.len() as u32 + self.copied * self.layers
     }
 
-    /// The surface's vertices and their copies, each `depths[i]` of the way to its place further in; vertices without copies
-    /// at that place.
+    /// Positions of the surface's vertices and their copies, which lie at fraction `depths[i]` of the offset. Vertices
+    /// without copies are at their inner position.
     pub fn points(&self, outer: &[Point3], inner: &[Point3], depths: &[f64]) -> Vec<Point3> {
         let own =
             self.slot.iter().zip(outer.iter().zip(inner)).map(|(slot, (o, i))| if slot.is_some() { *o } else { *i });
@@ -51,13 +51,13 @@ impl Numbers {
         own.chain(both.flat_map(|(_, (o, i))| depths.iter().map(|&depth| toward(o, i, depth)))).collect()
     }
 
-    /// From which of two vertices the diagonals between their copies start at the wall: rims come first, so that no
-    /// tetrahedron has a face on the wall and one beside it.
+    /// Order of two vertices that decides the diagonal between their copies: rims come first, so that no tetrahedron
+    /// has a face on the wall and one beside it.
     fn rank(&self, v: u32) -> (bool, u32) {
         (!self.is_rim[v as usize], v)
     }
 
-    /// A flat disc that ends the wall, given as its triangles without layers: further in, with the layers round it.
+    /// A flat cap of the wall, given by its triangles without layers: the inner cap with the layers around it.
     pub fn disc(&self, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
         let inner = |v: u32| self.copy(v, self.layers);
         let mut out: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(inner)).collect();
@@ -79,8 +79,7 @@ impl Numbers {
         out
     }
 
-    /// The tetrahedra of a layer at a triangle of the wall that runs counter-clockwise seen from outside; fewer than three
-    /// where it has vertices without copies.
+    /// Tetrahedra of a layer at a wall triangle seen from outside. Vertices without copies leave fewer than three.
     fn prism(&self, triangle: [u32; 3], layer: u32) -> impl Iterator<Item = [u32; 4]> {
         let mut sorted = triangle;
         sorted.sort_unstable_by_key(|&v| self.rank(v));
@@ -94,18 +93,18 @@ impl Numbers {
     }
 }
 
-/// A surface, and the places of its vertices further in.
+/// A surface and the inner positions of its vertices.
 #[derive(Clone, Debug)]
 pub struct Stack<'a> {
-    /// Triangles that have layers, seen from outside.
+    /// Triangles with layers, seen from outside.
     wall: &'a [[u32; 3]],
     pub numbers: Numbers,
     points: Vec<Point3>,
 }
 
 impl<'a> Stack<'a> {
-    /// `wall`: the triangles of the surface that have layers, counter-clockwise seen from outside. Vertices whose place is where
-    /// they are have no copies, nor have those off the wall.
+    /// Creates the stack of `wall`, the surface triangles with layers, counter-clockwise seen from outside. Vertices
+    /// off the wall, or with zero offset, have no copies.
     pub fn new(outer: &[Point3], wall: &'a [[u32; 3]], is_rim: Vec<bool>, inner: &[Point3], depths: &[f64]) -> Self {
         let mut on_wall = vec![false; outer.len()];
         wall.iter().flatten().for_each(|&v| on_wall[v as usize] = true);
@@ -115,7 +114,7 @@ impl<'a> Stack<'a> {
         Self { wall, numbers, points }
     }
 
-    /// The triangles of the wall with a tetrahedron that is not positive.
+    /// Wall triangles with a tetrahedron that is not positive.
     pub fn turned(&self) -> Vec<[u32; 3]> {
         let is_turned = |triangle: &&[u32; 3]| {
             self.tets_at(**triangle).any(|tet| {
@@ -130,8 +129,9 @@ impl<'a> Stack<'a> {
         (0..self.numbers.layers).flat_map(move |layer| self.numbers.prism(triangle, layer))
     }
 
-    /// All layers and the mesh inside them, whose points begin with the places further in. Its points begin with the surface's:
-    /// those off the wall are at their place further in. The tetrahedra of the layers come first; how many they are.
+    /// Joins all layers with the `core` mesh inside, whose points begin with the inner positions. The result's points
+    /// begin with the surface's, those off the wall at their inner position. Returns the number of layer tetrahedra,
+    /// the first ones.
     pub fn around(self, core: &TetMesh) -> (TetMesh, usize) {
         let given = self.numbers.slot.len() as u32;
         let mut tets: Vec<[u32; 4]> = self.wall.iter().flat_map(|&triangle| self.tets_at(triangle)).collect();
@@ -144,12 +144,12 @@ impl<'a> Stack<'a> {
     }
 }
 
-/// The point a share of the way from one to another; bit for bit `to` at 1.
+/// Point at a fraction of the way between two points; exactly `to` at 1.
 pub fn toward(from: &Point3, to: &Point3, share: f64) -> Point3 {
     if share == 1.0 { *to } else { from + (to - from) * share }
 }
 
-/// Which vertices both triangles of the wall and others have.
+/// True for vertices of both wall triangles and others.
 pub fn rims(surface: &TriMesh, is_wall: impl Fn(usize) -> bool) -> Vec<bool> {
     let mut sides = vec![[false; 2]; surface.points.len()];
     for (i, triangle) in surface.triangles.iter().enumerate() {

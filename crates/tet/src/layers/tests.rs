@@ -12,7 +12,7 @@ fn layered(surface: &TriMesh, layers: Layers) -> Tetrahedralization {
     made
 }
 
-/// A box with one corner at `from`, its faces outwards.
+/// A box with one corner at `from` and outward faces.
 fn cuboid(from: Point3, size: Vec3) -> TriMesh {
     let corner = |i: usize| from + Vec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64).component_mul(&size);
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -82,7 +82,7 @@ fn a_sphere_has_all_its_layers_as_thick_as_asked() {
     let summary = made.summary.layers.expect("a summary");
     assert_eq!(summary.tets, 9 * sphere.triangles.len());
     assert_eq!((summary.thin, summary.without.len()), (0, 0));
-    // Radii of the copies of the first vertex: a sphere's half width is its radius.
+    // Radii of the copies of the first vertex. The half width of a sphere is its radius.
     let depths = THREE.depths();
     let n = sphere.points.len();
     for (copy, depth) in made.mesh.points[n..n + 3].iter().zip(depths) {
@@ -134,7 +134,7 @@ fn lumps_apart_are_regions_still() {
 
 #[test]
 fn a_vertex_from_which_nothing_leads_in_has_no_layer_and_is_named() {
-    // Two pyramids over one apex: what is inside lies on two sides of it.
+    // Two pyramids with a common apex: the inside lies on two sides of it.
     let square = |z: f64| [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point3::new(x, y, z));
     let mut surface = TriMesh { points: vec![Point3::origin()], triangles: Vec::new() };
     surface.points.extend(square(1.0).into_iter().chain(square(-1.0)));

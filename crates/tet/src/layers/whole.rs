@@ -15,28 +15,28 @@ use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
 use anastomesh_mesh::{TetMesh, TriMesh, face_key};
 use rustc_hash::FxHashMap;
 
-/// Thicknesses at neighbours differ by this much of their distance at most.
+/// Maximum difference of neighbouring thicknesses, relative to their distance.
 const GRADE: f64 = 0.3;
-/// Layers are called thin where they have less than this of what was asked for.
+/// Fraction of the thickness asked for below which layers count as thin.
 const THIN: f64 = 0.5;
 
-/// What became of layers along a surface.
+/// Summary of the layers along a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct LayerSummary {
-    /// How many tetrahedra of the mesh, the first ones, are those of layers.
+    /// Number of layer tetrahedra, which come first in the mesh.
     pub tets: usize,
-    /// Vertices where there was no room for half of the thickness asked for.
+    /// Vertices with less than half of the thickness asked for.
     pub thin: usize,
-    /// The vertex with the thinnest layers, and how much of what was asked for they are; none where all are as asked for.
+    /// Vertex with the thinnest layers and their fraction of the thickness asked for; `None` if all are complete.
     pub thinnest: Option<(u32, f64)>,
-    /// Vertices without layers: no way in leads away from all of their triangles, or what is there is too narrow.
+    /// Vertices without layers, since no direction leads away from all their triangles or the inside is too narrow.
     pub without: Vec<u32>,
 }
 
-/// Fills a closed surface as the request has it, with layers along it.
+/// Fills a closed surface as requested, with layers along it.
 pub fn layered(r: &Request, layers: &Layers) -> Result<(Filled, LayerSummary), TetError> {
-    // Without points inside: what is sought is which side of each triangle is filled, and whether that can be done.
+    // Without inner points: this only finds the filled side of each triangle and checks feasibility.
     let plain = fill(&Request { interior: &Interior::None, refinement: None, optimize: false, ..*r })?;
     let outward = |(t, place): (&[u32; 3], &Place)| if *place == Place::Reversed { [t[0], t[2], t[1]] } else { *t };
     let triangles = r.surface.triangles.iter().zip(&plain.places).map(outward).collect();
@@ -60,7 +60,7 @@ pub fn layered(r: &Request, layers: &Layers) -> Result<(Filled, LayerSummary), T
     Ok((Filled { mesh, places, regions, recovery, optimize, refine, ..plain }, summary))
 }
 
-/// Where the vertices of a surface are wanted further in, and how far in each was asked to be.
+/// Wanted inner positions of the vertices of a surface, and the offsets asked for.
 fn places<'a>(surface: &'a TriMesh, layers: &Layers) -> (Places<'a>, Vec<f64>) {
     let points = &surface.points;
     let ways = Directions::new(points, &surface.triangles).ways;
@@ -91,7 +91,7 @@ fn summary(asked: &[f64], reached: impl Fn(usize) -> f64, tets: usize, wall: &[[
     }
 }
 
-/// Region of each tetrahedron, as the plain mesh has them behind its faces.
+/// Region of each tetrahedron, taken from the plain mesh behind the same boundary faces.
 fn regions(mesh: &TetMesh, plain: &Filled) -> Vec<i32> {
     if plain.regions.is_empty() {
         return Vec::new();

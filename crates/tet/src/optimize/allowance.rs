@@ -1,23 +1,23 @@
-//! How good a tetrahedron can be that stands on a triangle which stays. On a needle none is good: the last pass of the
-//! thorough improvement weighs those there by what is possible, so that the others need not suffer with them.
+//! Attainable quality of a tetrahedron on a fixed triangle. No tetrahedron on a needle is good. The last pass of the
+//! thorough improvement weighs those by the attainable quality, so that their neighbours do not suffer.
 
 use crate::complex::{Complex, face_key};
 use anastomesh_mesh::geometry::Point3;
 use rustc_hash::FxHashMap;
 
-/// Needles are triangles with an angle whose sine is below this: 12 degrees.
+/// Sine of the angle below which a triangle counts as a needle: 12 degrees.
 const SHARP: f64 = 0.2079;
 
-/// Radius ratios that the triangles which stay allow, where that is below 1.
+/// Attainable radius ratios on fixed triangles, stored where below 1.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Allowance {
-    /// Whether a vertex has such a triangle.
+    /// True for vertices of such a triangle.
     marked: Vec<bool>,
     of_face: FxHashMap<[u32; 3], f64>,
 }
 
 impl Allowance {
-    /// Of all boundary and frozen faces of a complex.
+    /// Collects all boundary and frozen faces of a complex.
     pub fn of(c: &Complex) -> Self {
         let mut all = Self::default();
         for t in c.real_tets() {
@@ -38,31 +38,31 @@ impl Allowance {
         all
     }
 
-    /// Whether no triangle is a needle.
+    /// True if no triangle is a needle.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.marked.is_empty()
     }
 
-    /// Whether a vertex has a needle.
+    /// True if a vertex belongs to a needle.
     #[inline]
     pub fn has_needle(&self, v: u32) -> bool {
         self.marked.get(v as usize).copied().unwrap_or(false)
     }
 
-    /// The radius ratio that a tetrahedron can be wished to have of whose faces this alone may stay.
+    /// Attainable radius ratio of a tetrahedron on face `f`, with no other fixed face.
     #[inline]
     pub fn of_face(&self, f: [u32; 3]) -> f64 {
         if f.iter().all(|&v| self.has_needle(v)) { self.of_face.get(&face_key(f)).copied().unwrap_or(1.0) } else { 1.0 }
     }
 
-    /// The radius ratio of a tetrahedron as a part of what is allowed.
+    /// Radius ratio of a tetrahedron relative to the attainable one.
     #[inline]
     pub fn relative(&self, v: &[u32; 4], ratio: f64) -> f64 {
         if self.is_empty() { ratio } else { ratio / self.of_tet(v) }
     }
 
-    /// The radius ratio that a tetrahedron with these vertices can be wished to have.
+    /// Attainable radius ratio of a tetrahedron with these vertices.
     #[inline]
     pub fn of_tet(&self, v: &[u32; 4]) -> f64 {
         let marks = v.map(|w| self.has_needle(w));
@@ -76,8 +76,8 @@ impl Allowance {
     }
 }
 
-/// About the best radius ratio of a tetrahedron on a triangle: the triangle's own for needles, which half as much again
-/// is the most that there is; 1 for others.
+/// Approximate best radius ratio of a tetrahedron on a triangle. For needles, it is the triangle's own ratio; the true
+/// optimum is at most 1.5 times that. For other triangles, it is 1.
 fn allowed_on([a, b, c]: [&Point3; 3]) -> f64 {
     let (u, v, w) = (b - a, c - b, a - c);
     let (x, y, z) = (u.norm(), v.norm(), w.norm());
@@ -103,7 +103,7 @@ mod tests {
         for width in [1e-3, 1e-2, 0.1] {
             let [a, b, c] = base(width);
             let allowed = allowed_on([&a, &b, &c]);
-            // The best of many places for the fourth corner.
+            // Best of many positions of the fourth corner.
             let mut best = 0.0_f64;
             for i in 0..4000 {
                 let (y, z) = (f64::from(i % 40) / 30.0 - 0.2, f64::from(i / 40) / 60.0 + 0.01);

@@ -1,24 +1,24 @@
-//! For tetrahedra that neither moves nor flips can mend: a new vertex in a cavity around them, or the contraction of
-//! an edge that takes an inner vertex away.
+//! Repairs of tetrahedra that neither smoothing nor flips improve: a new vertex in a cavity around them, or the
+//! contraction of an edge to remove an inner vertex.
 
 use super::improver::Cavity;
 use super::{Effort, Improver};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::{TET_EDGES, radius_ratio};
 
-/// Tetrahedra that a cavity may hold.
+/// Maximum tetrahedra in a cavity.
 const MAX_CAVITY: usize = 40;
-/// Tetrahedra around an edge that a new vertex may split.
+/// Maximum tetrahedra around an edge that a new vertex may split.
 const MAX_RING: usize = 10;
-/// What an insertion or contraction must gain in the worst radius ratio, relative to the old one.
+/// Minimum factor by which an insertion or contraction must raise the worst radius ratio.
 const GAIN: f64 = 1.1;
-/// Rise of the worst radius ratio beside needles, relative to the old one, that may cost strain.
+/// Factor of the worst radius ratio beside needles above which a rise in strain is accepted.
 const LEAP: f64 = 3.0;
-/// Rounds over the stubborn tetrahedra.
+/// Maximum rounds over the stubborn tetrahedra.
 const ROUNDS: usize = 4;
 
 impl Improver<'_> {
-    /// Inserts and contracts vertices where tetrahedra are below the stubborn limit, the worst first.
+    /// Inserts and contracts vertices at tetrahedra below the stubborn limit, worst first.
     pub(super) fn treat_stubborn(&mut self) {
         for _ in 0..ROUNDS {
             let list = self.worst_first(self.options.stubborn_below);
@@ -76,12 +76,12 @@ impl Improver<'_> {
         false
     }
 
-    /// Contracts movable vertex `v` onto the neighbour where the worst radius ratio comes out best.
+    /// Contracts movable vertex `v` onto the neighbour with the best resulting worst radius ratio.
     fn contract(&mut self, v: u32) -> bool {
         let mut k = std::mem::take(&mut self.cavity);
         k.tets.clear();
         k.tets.extend_from_slice(self.star.around(&self.c, v));
-        // Full effort asks for less strain instead of a better worst, which may be past help.
+        // Full effort asks for less strain instead of a better worst ratio, which may be impossible.
         let floor = match self.options.effort {
             Effort::Quick | Effort::Fast => self.worst_of(&k.tets) * GAIN,
             Effort::Full => self.report.worst_before,
@@ -111,7 +111,7 @@ impl Improver<'_> {
         done
     }
 
-    /// Worst radius ratio around `w` if `v` is contracted onto it; anything up to `floor` when it is not above.
+    /// Worst radius ratio around `w` if `v` is contracted onto it. Any value up to `floor` means it is not above.
     fn worst_after_contraction(&self, star: &[u32], [v, w]: [u32; 2], floor: f64) -> f64 {
         let mut worst = f64::INFINITY;
         for &t in star {
@@ -138,7 +138,7 @@ impl Improver<'_> {
             if !k.ring.collect(&self.c, t, a, b, MAX_RING) {
                 continue;
             }
-            // Under an edge of the boundary, where needles can be all that is left at it.
+            // At a boundary edge, needles may leave no other choice.
             let under = k.ring.touches_ghost();
             if under && self.allowance.is_empty() {
                 continue;
@@ -169,8 +169,8 @@ impl Improver<'_> {
         done
     }
 
-    /// Tries a new vertex in ever more layers of tetrahedra around `t` and those below a radius ratio that are connected
-    /// to it: off a plane patch, where there is room, if they lie within it.
+    /// Tries a new vertex in growing layers of tetrahedra around `t` and the tetrahedra below a radius ratio connected
+    /// to it. If they all lie in a flat patch, the vertex goes off its plane.
     pub(super) fn insert_beside(&mut self, t: u32, below: f64, layers: usize) -> bool {
         let mut k = std::mem::take(&mut self.cavity);
         let mut done = false;
@@ -191,8 +191,8 @@ impl Improver<'_> {
         done
     }
 
-    /// Puts one vertex in the place of the two that `t` has off an edge of the boundary, if both may go: of the
-    /// tetrahedra around the edge those on the boundary remain.
+    /// Replaces the two vertices of `t` off a boundary edge by one, if both may go. Of the tetrahedra around the edge,
+    /// those on the boundary remain.
     pub(super) fn insert_for_both(&mut self, k: &mut Cavity, ends: impl Iterator<Item = u32>, t: u32) -> bool {
         let mut pair = [0; 2];
         for (slot, w) in pair.iter_mut().zip(ends) {
@@ -220,7 +220,7 @@ impl Improver<'_> {
         Point3::from(v.iter().map(|&w| self.c.points[w as usize].coords).sum::<Vec3>() / N as f64)
     }
 
-    /// Adds what is connected to tetrahedra and below a radius ratio.
+    /// Adds connected tetrahedra below a radius ratio.
     fn spread(&self, tets: &mut Vec<u32>, below: f64) {
         let mut head = 0;
         while let Some(&t) = tets.get(head).filter(|_| tets.len() < MAX_CAVITY) {
@@ -235,7 +235,7 @@ impl Improver<'_> {
         }
     }
 
-    /// Adds the neighbours of tetrahedra: those around a short edge alone leave no room between its ends.
+    /// Adds the neighbours of tetrahedra, since the ring of a short edge is too narrow.
     fn widen(&self, tets: &mut Vec<u32>) {
         for at in 0..tets.len() {
             for half in 4 * tets[at]..4 * tets[at] + 4 {
@@ -247,13 +247,13 @@ impl Improver<'_> {
         }
     }
 
-    /// The mean of the centres of tetrahedra.
+    /// Mean of the centres of tetrahedra.
     fn middle(&self, tets: &[u32]) -> Point3 {
         let sum: Vec3 = tets.iter().map(|&t| self.center(self.c.verts(t)).coords).sum();
         Point3::from(sum / tets.len().max(1) as f64)
     }
 
-    /// Grows the cavity `k.tets` around a new vertex near `p` as long as that helps, places the vertex, and makes the
+    /// Grows the cavity `k.tets` around a new vertex near `p` while that helps, and positions the vertex. Makes the
     /// exchange if the worst radius ratio rises.
     fn insert_in_cavity(&mut self, k: &mut Cavity, mut p: Point3, t: u32) -> bool {
         let floor = self.quality[t as usize] * GAIN;
@@ -275,7 +275,7 @@ impl Improver<'_> {
         self.movable.push(true);
         k.new.clear();
         k.new.extend(k.faces.iter().map(|&[a, b, c]| [vertex, a, b, c]));
-        // Beside needles a worst that rises so far outweighs more strain, which the rounds to come can ease.
+        // A large rise of the worst ratio beside needles outweighs more strain, which later rounds can reduce.
         let leap = !self.allowance.is_empty() && worst > LEAP * before;
         if (leap || self.eases(&k.tets, &k.new)) && self.exchange(k) {
             return true;
@@ -285,7 +285,7 @@ impl Improver<'_> {
         false
     }
 
-    /// Collects the outer faces of the cavity; false when there are too many tetrahedra or a frozen face inside.
+    /// Collects the outer faces of the cavity. Returns false if it has too many tetrahedra or a frozen face inside.
     fn outline(&self, k: &mut Cavity) -> bool {
         k.faces.clear();
         k.halves.clear();
@@ -302,7 +302,7 @@ impl Improver<'_> {
         k.tets.len() <= 2 * MAX_CAVITY
     }
 
-    /// Adds the tetrahedron behind the worst face, if there is one and the vertex sees its other faces better.
+    /// Adds the tetrahedron behind the worst face, if the vertex sees its other faces better.
     fn grow(&self, k: &mut Cavity, p: &Point3, worst: f64) -> bool {
         let ratio = |f: &[u32; 3]| {
             let [a, b, c] = f.map(|w| &self.c.points[w as usize]);
@@ -331,7 +331,7 @@ impl Improver<'_> {
         better
     }
 
-    /// Whether every vertex that the cavity swallows may go.
+    /// True if every vertex inside the cavity may be removed.
     fn keeps_all(&self, k: &Cavity) -> bool {
         let on_outline = |v: u32| k.faces.iter().any(|f| f.contains(&v));
         k.tets

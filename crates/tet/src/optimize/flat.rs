@@ -1,27 +1,26 @@
-//! The last resort for flat tetrahedra, which hurt every solver: whatever the purse of the thorough improvement says, each
-//! is taken out as long as that is possible. Recovery leaves them within patches that are plane but for the last bits.
-//! Those that are merely thin, and thinner than the triangles that stay call for, get a purse of their own.
+//! Removal of flat tetrahedra, which harm every solver. Each one is removed if possible, whatever the budget of the
+//! thorough improvement. Boundary recovery leaves them in patches that are flat up to rounding. Thin tetrahedra,
+//! thinner than their fixed triangles require, have a budget of their own.
 
 use super::Improver;
 use super::allowance::Allowance;
 
 /// Radius ratio below which a tetrahedron counts as flat.
 pub(super) const FLAT: f64 = 1e-9;
-/// Radius ratio below which it counts as thin, and the part of what its triangles allow below which they are not to blame.
+/// Radius ratio below which it counts as thin, and its maximum fraction of the attainable ratio.
 const THIN: f64 = 1e-3;
 const TO_BLAME: f64 = 0.1;
-/// Thin ones are tried once for so many tetrahedra of the mesh, or this many times where it is small.
+/// Maximum attempts on thin tetrahedra: one per 50 tetrahedra of the mesh, but at least 50.
 const MOST: (usize, usize) = (50, 50);
-/// Rounds over those that are left; what is around them may have changed.
+/// Maximum rounds over the remaining ones, since their surroundings may have changed.
 const ROUNDS: usize = 12;
-/// Size of the cavities that are reconnected, and steps of the search.
+/// Size of the cavities to reconnect, and steps of the search.
 const CAVITY: (usize, usize) = (20, 5000);
 /// Layers of tetrahedra around a flat one in which a vertex is tried.
 const LAYERS: usize = 3;
 
 impl Improver<'_> {
-    /// Takes flat and thin tetrahedra out, but for those of which the surface has all faces. Returns how many flat ones
-    /// are left.
+    /// Removes flat and thin tetrahedra, unless all faces are on the surface. Returns the number of flat ones left.
     pub(super) fn dissolve_flat(&mut self) -> usize {
         let list = self.worst_first(THIN);
         let none = list.is_empty();
@@ -52,17 +51,17 @@ impl Improver<'_> {
         left
     }
 
-    /// Whether an entry of a list still describes a tetrahedron, and that has a face that may go.
+    /// True if a list entry still describes its tetrahedron and one of its faces may be removed.
     fn is_loose(&self, (q, t): (f64, u32)) -> bool {
         let stays = |half: u32| self.c.is_frozen(half) || self.c.is_ghost(self.c.mate(half) >> 2);
         self.is_current((q, t)) && !(4 * t..4 * t + 4).all(stays)
     }
 
     fn dissolve(&mut self, t: u32) -> bool {
-        // What was searched in vain for less is searched for longer.
+        // Searches repeat with more steps than before.
         self.reconnection.forget();
         if self.treat_with_all(t) {
-            // A corner may have been moved alone.
+            // Only a corner may have moved.
             return true;
         }
         self.reconnection.forget();
@@ -84,8 +83,8 @@ mod tests {
     use anastomesh_mesh::geometry::Point3;
     use nalgebra::{Rotation3, Vector3};
 
-    /// The Delaunay tetrahedralization of a turned lattice, the eight corners of each cube of which lie on a sphere but for
-    /// rounding, and of points around it.
+    /// Delaunay tetrahedralization of a rotated lattice in a sphere of points. The eight corners of each cube are
+    /// cospherical up to rounding.
     fn turned_lattice(n: u32) -> Improver<'static> {
         let turn = Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(Vector3::new(1.0, 2.0, 3.0)), 0.7);
         let all = (0..n).flat_map(|i| (0..n).flat_map(move |j| (0..n).map(move |k| [i, j, k])));
@@ -117,7 +116,7 @@ mod tests {
 
     #[test]
     fn flat_ones_under_a_face_that_stays_go() {
-        // A square whose corners are plane but for rounding, and a triangle with a point in it; both under what is given.
+        // A square with corners coplanar up to rounding, and a triangle with a point in it; both under a given face.
         let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
         let square = vec![p(0., 0., 0.), p(1., 0., 1e-15), p(1., 1., 0.), p(0., 1., 1e-15), p(0.5, 0.5, -1.)];
         let triangle = vec![p(0., 0., 0.), p(3., 0., 0.), p(0., 3., 0.), p(1., 1., 1e-15), p(1., 1., -2.)];

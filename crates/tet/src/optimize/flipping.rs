@@ -1,15 +1,15 @@
-//! Changes of the connection: each bad tetrahedron loses the edge or the face whose removal helps most.
+//! Topological changes: each bad tetrahedron loses the edge or face whose removal helps most.
 
 use super::{Improver, score};
 use anastomesh_mesh::quality::TET_EDGES;
 
-/// Tetrahedra around an edge up to which its removal is tried.
+/// Maximum tetrahedra around an edge to remove.
 const MAX_RING: usize = 7;
-/// What a flip must gain in the worst radius ratio, relative to the old one: stops endless exchanges for nothing.
+/// Minimum factor by which a flip must raise the worst radius ratio. It prevents endless exchanges.
 const GAIN: f64 = 1.02;
-/// Rounds over the tetrahedra that are still bad, the new ones included.
+/// Rounds over the tetrahedra that are still bad, including new ones.
 const FLIP_ROUNDS: usize = 3;
-/// Rounds end when only one tetrahedron of so many that were tried has changed: the next would try the same in vain.
+/// Rounds end if at most one of this many tetrahedra changed; the next round would fail on the same ones.
 const YIELD: usize = 50;
 
 /// A face or an edge of a tetrahedron to remove.
@@ -20,14 +20,14 @@ enum Candidate {
 }
 
 impl Improver<'_> {
-    /// Removes faces and edges of tetrahedra below a radius ratio, the worst first; returns the number of changes.
+    /// Removes faces and edges of tetrahedra below a radius ratio, worst first. Returns the number of changes.
     pub(super) fn flip_below(&mut self, below: f64) -> usize {
         let mut total = 0;
         for _ in 0..FLIP_ROUNDS {
             let list = self.worst_first(below);
             let mut flips = 0;
             for &entry in &list {
-                // What an earlier change of this round has replaced is seen again in the next.
+                // Tetrahedra replaced earlier in this round are seen again in the next.
                 if self.is_current(entry) && self.spend() && self.flip_tet(entry.1) {
                     flips += 1;
                 }
@@ -43,7 +43,7 @@ impl Improver<'_> {
         total
     }
 
-    /// Makes the best of the ten removals of a tetrahedron's faces and edges, if it lifts the worst radius ratio.
+    /// Makes the best of the ten removals of a tetrahedron's faces and edges, if it raises the worst radius ratio.
     pub(super) fn flip_tet(&mut self, t: u32) -> bool {
         let floor = self.quality[t as usize] * GAIN;
         let mut best = (floor, None);
@@ -57,13 +57,13 @@ impl Improver<'_> {
             }
         }
         let Some(candidate) = best.1 else { return false };
-        // The plan made last may have been another: make it anew.
+        // The last plan may belong to another candidate, so plan again.
         self.plan(t, candidate, floor).is_some()
             && self.eases(self.flipper.doomed(), self.flipper.planned())
             && self.commit_flip()
     }
 
-    /// Plans a removal; returns the worst new radius ratio if it is above `floor`.
+    /// Plans a removal. Returns the worst new radius ratio if it is above `floor`.
     fn plan(&mut self, t: u32, candidate: Candidate, floor: f64) -> Option<f64> {
         let allowance = &self.allowance;
         let above = |c: &_, v: &_| score(c, v).map(|q| allowance.relative(v, q)).filter(|&q| q > floor);

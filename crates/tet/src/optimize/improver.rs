@@ -1,4 +1,4 @@
-//! The state of an improvement and its plan: which passes, in which order.
+//! State of an improvement, and the order of its passes.
 
 use super::allowance::Allowance;
 use super::options::{Effort, OptimizeOptions, OptimizeReport};
@@ -11,17 +11,17 @@ use crate::progress::Watch;
 use crate::star::{EdgeRing, Star};
 use anastomesh_mesh::quality::radius_ratio;
 
-/// Attempts between two questions whether to stop: some milliseconds.
+/// Attempts between two checks for cancellation: some milliseconds.
 const ASKED_EVERY: usize = 256;
 
-/// Stands for a radius ratio that is out of date.
+/// Marks a radius ratio that is out of date.
 pub(super) const STALE: f64 = f64::NAN;
 
 /// Buffers of the cavity operations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cavity {
     pub tets: Vec<u32>,
-    /// Faces of the cavity, turned inwards: (new vertex, face) is positive.
+    /// Faces of the cavity, oriented inwards: (new vertex, face) is positive.
     pub faces: Vec<[u32; 3]>,
     pub new: Vec<[u32; 4]>,
     pub created: Vec<u32>,
@@ -31,23 +31,23 @@ pub(super) struct Cavity {
     pub halves: Vec<u32>,
 }
 
-/// A complex under improvement, with the radius ratio of each tetrahedron at hand.
+/// A complex under improvement, with cached radius ratios.
 #[derive(Debug)]
 pub struct Improver<'a> {
     pub(super) c: Complex,
-    /// Radius ratio by slot; of no meaning for ghosts and dead slots, and `STALE` where it is out of date.
+    /// Radius ratio by slot; meaningless for ghosts and dead slots, `STALE` if out of date.
     pub(super) quality: Vec<f64>,
-    /// Whether a vertex may be moved or removed.
+    /// True for vertices that may be moved or removed.
     pub(super) movable: Vec<bool>,
-    /// Whether something around a vertex has changed since it was smoothed last.
+    /// True for vertices whose surroundings have changed since they were last smoothed.
     pub(super) stirred: Vec<bool>,
-    /// Whether a vertex was eased in vain, and nothing around it has changed since.
+    /// True for vertices that could not be eased, with unchanged surroundings since.
     pub(super) eased: Vec<bool>,
     pub(super) options: OptimizeOptions,
     pub(super) report: OptimizeReport,
-    /// Smoothing may not take the worst of a star below what it is or this, whichever is less.
+    /// Smoothing may not lower the worst ratio of a star below this, or below its old value if that is less.
     pub(super) guard: f64,
-    /// What triangles that stay allow; empty while that is not asked for.
+    /// Attainable ratios on fixed triangles; empty unless in use.
     pub(super) allowance: Allowance,
     /// Attempts left.
     pub(super) budget: usize,
@@ -56,18 +56,18 @@ pub struct Improver<'a> {
     pub(super) energy: StarEnergy,
     pub(super) cavity: Cavity,
     pub(super) reconnection: Reconnection,
-    /// Counts attempts made in vain.
+    /// Number of failed attempts.
     pub(super) epoch: u32,
-    /// The epoch in which something around a vertex changed last.
+    /// Epoch of the last change around each vertex.
     pub(super) changed: Vec<u32>,
-    /// The epoch after which a slot was tried in vain; 0: never.
+    /// Epoch after which each slot was tried without success; 0 if never.
     pub(super) tried: Vec<u32>,
     worst_first: Vec<(f64, u32)>,
     watch: Watch<'a>,
 }
 
 impl<'a> Improver<'a> {
-    /// Takes a complex to improve.
+    /// Creates an improver of a complex.
     pub fn new(c: Complex, options: &OptimizeOptions) -> Self {
         let mut improver = Self {
             movable: movable_vertices(&c, options.fixed_points),
@@ -96,7 +96,7 @@ impl<'a> Improver<'a> {
         improver
     }
 
-    /// Ends the passes early when the watch says so.
+    /// Lets the watch stop the passes early.
     pub fn watched(self, watch: Watch<'a>) -> Self {
         Self { watch, ..self }
     }
@@ -104,7 +104,7 @@ impl<'a> Improver<'a> {
     /// Runs all passes.
     pub fn run(&mut self) {
         match self.options.effort {
-            // Flips first: in stars that are connected well one round of smoothing goes as far as two before.
+            // Flips come first: in well-connected stars, one round of smoothing then gains as much as two.
             Effort::Quick => {
                 self.flip_below(self.options.flip_below);
                 self.smooth_and_flip();
@@ -143,12 +143,12 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// The improved complex and what was done to it.
+    /// Returns the improved complex and the report.
     pub fn finish(self) -> (Complex, OptimizeReport) {
         (self.c, self.report)
     }
 
-    /// Takes one attempt from the budget; false when none is left, as when the run is to stop.
+    /// Takes one attempt from the budget. Returns false if none is left or the run was cancelled.
     #[inline]
     pub(super) fn spend(&mut self) -> bool {
         if self.budget.is_multiple_of(ASKED_EVERY) && self.watch.ask().is_err() {
@@ -159,7 +159,7 @@ impl<'a> Improver<'a> {
         left
     }
 
-    /// Computes the radius ratio of every tetrahedron; returns the smallest.
+    /// Computes the radius ratio of every tetrahedron. Returns the smallest.
     fn measure(&mut self) -> f64 {
         let mut worst = f64::INFINITY;
         self.quality.resize(self.c.slots(), 0.0);
@@ -179,7 +179,7 @@ impl<'a> Improver<'a> {
         radius_ratio(a, b, c, d)
     }
 
-    /// Computes the radius ratio of these tetrahedra, which are new or changed very much, anew.
+    /// Updates the radius ratios of new or strongly changed tetrahedra.
     pub(super) fn remeasure(&mut self, tets: &[u32]) {
         self.remeasure_moved(tets);
         for &t in tets {
@@ -187,7 +187,7 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// The same where a vertex has moved so little that what was tried around it in vain still is.
+    /// Updates radius ratios after a vertex move too small to make failed attempts worth repeating.
     pub(super) fn remeasure_moved(&mut self, tets: &[u32]) {
         self.quality.resize(self.c.slots(), 0.0);
         self.stirred.resize(self.c.points.len(), true);
@@ -201,7 +201,7 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// Dates the last change around the vertices of a tetrahedron, once that matters.
+    /// Records the epoch of the last change at the vertices of a tetrahedron, for full effort.
     fn note_change(&mut self, t: u32) {
         if self.options.effort == Effort::Full {
             self.changed.resize(self.c.points.len(), 0);
@@ -211,7 +211,7 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// Computes the radius ratios that are out of date anew.
+    /// Updates the radius ratios that are out of date.
     pub(super) fn refresh(&mut self) {
         for t in 0..self.quality.len() as u32 {
             if self.quality[t as usize].is_nan() {
@@ -220,7 +220,7 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// The tetrahedra below a radius ratio, the worst first.
+    /// Tetrahedra below a radius ratio, worst first.
     pub(super) fn worst_first(&mut self, below: f64) -> Vec<(f64, u32)> {
         let mut list = std::mem::take(&mut self.worst_first);
         list.clear();
@@ -230,28 +230,28 @@ impl<'a> Improver<'a> {
         list
     }
 
-    /// Gives the list back, so that its room is used again.
+    /// Returns the list, so that its buffer is reused.
     pub(super) fn keep_list(&mut self, list: Vec<(f64, u32)>) {
         self.worst_first = list;
     }
 
-    /// Whether an entry of a list still describes the tetrahedron in its slot.
+    /// True if a list entry still describes the tetrahedron in its slot.
     #[inline]
     pub(super) fn is_current(&self, (q, t): (f64, u32)) -> bool {
         self.c.is_real(t) && self.quality[t as usize].to_bits() == q.to_bits()
     }
 
-    /// Strain of a tetrahedron of this radius ratio, beside what its triangles allow.
+    /// Strain of a tetrahedron with this radius ratio, relative to the attainable one.
     fn strain(&self, v: &[u32; 4], ratio: f64) -> f64 {
         strain(self.allowance.relative(v, ratio).min(1.0))
     }
 
-    /// Sum of the strain of tetrahedra.
+    /// Total strain of tetrahedra.
     pub(super) fn strain_of(&self, tets: &[u32]) -> f64 {
         tets.iter().map(|&t| self.strain(&self.c.verts(t), self.quality[t as usize])).sum()
     }
 
-    /// Whether exchanging `old` for `new` eases the mesh: the quick passes do not ask.
+    /// True if exchanging `old` for `new` lowers the strain. Always true for the quick passes.
     pub(super) fn eases(&self, old: &[u32], new: &[[u32; 4]]) -> bool {
         let ratio = |v: &[u32; 4]| {
             let [a, b, c, d] = v.map(|i| &self.c.points[i as usize]);
@@ -267,14 +267,14 @@ impl<'a> Improver<'a> {
         new.iter().fold(0.0, strain_with) < self.strain_of(old) - EASED
     }
 
-    /// Smallest radius ratio among tetrahedra, as a part of what is allowed.
+    /// Smallest radius ratio among tetrahedra, relative to the attainable one.
     pub(super) fn worst_of(&self, tets: &[u32]) -> f64 {
         let ratio = |&t: &u32| self.allowance.relative(&self.c.verts(t), self.quality[t as usize]);
         tets.iter().map(ratio).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// Vertices that are not fixed, are used, and lie neither on the boundary nor on a frozen face.
+/// Vertices that are used, not fixed, and neither on the boundary nor on a frozen face.
 fn movable_vertices(c: &Complex, fixed: usize) -> Vec<bool> {
     let mut movable: Vec<bool> = (0..c.points.len()).map(|v| v >= fixed && c.vertex_tet(v as u32) != NONE).collect();
     for t in c.real_tets() {

@@ -1,9 +1,9 @@
-//! Improvement of a tetrahedral mesh whose surface stays as it is: smoothing of the inner vertices, edge and face
-//! removal, insertion and contraction of vertices where those do not suffice. (Freitag, Ollivier-Gooch 1997;
-//! Klingner, Shewchuk, 'Aggressive tetrahedral mesh improvement', 2007.)
+//! Improvement of a tetrahedral mesh with a fixed surface: smoothing of inner vertices, edge and face removal, and
+//! insertion and contraction of vertices. (Freitag, Ollivier-Gooch 1997; Klingner, Shewchuk, 'Aggressive tetrahedral
+//! mesh improvement', 2007.)
 //!
-//! Every change keeps all tetrahedra positive by the exact predicate, and every change of the connection raises the
-//! worst radius ratio of the tetrahedra that it touches.
+//! Every change keeps all tetrahedra positive by the exact predicate. Every topological change raises the worst radius
+//! ratio of the tetrahedra that it touches.
 
 mod allowance;
 mod cavity;
@@ -26,11 +26,11 @@ use super::complex::{Complex, ComplexError};
 use super::progress::Watch;
 use anastomesh_mesh::TetMesh;
 
-/// Improves a mesh; its boundary faces and fixed points stay. Points that are not fixed may be moved, added, removed
-/// and renumbered (unless `keep_points` says otherwise); those that no tetrahedron uses are dropped.
+/// Improves a mesh; its boundary faces and fixed points stay. Other points may be moved, added, removed and renumbered,
+/// unless `keep_points` is set. Points without a tetrahedron are dropped.
 ///
 /// # Errors
-/// When the arrays are not a mesh of positive, conforming tetrahedra; the mesh is then unchanged.
+/// If the arrays are not a mesh of positive, conforming tetrahedra; the mesh is then unchanged.
 pub fn optimize(mesh: &mut TetMesh, options: &OptimizeOptions) -> Result<OptimizeReport, ComplexError> {
     let count = mesh.points.len();
     let mut complex = Complex::from_mesh(mesh.points.clone(), &mesh.tets)?;
@@ -41,8 +41,8 @@ pub fn optimize(mesh: &mut TetMesh, options: &OptimizeOptions) -> Result<Optimiz
     Ok(report)
 }
 
-/// Improves a complex in place, ghosts, frozen faces and all. Points that are no longer used stay in the list. Ends early,
-/// with what it has come to, when the watch says so.
+/// Improves a complex in place, including ghosts and frozen faces. Unused points stay in the list. Stops early, with a
+/// valid result, if the watch says so.
 pub fn optimize_complex(complex: &mut Complex, options: &OptimizeOptions, watch: &Watch) -> OptimizeReport {
     let mut improver = Improver::new(std::mem::take(complex), options).watched(*watch);
     improver.run();

@@ -1,36 +1,36 @@
-//! What to improve, how hard, and what was done.
+//! Options and report of mesh improvement.
 
-/// How hard an improvement tries.
+/// Effort of an improvement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
-    /// As `Fast`, with one round of smoothing: for Delaunay meshes of points that lie well.
+    /// `Fast` with one round of smoothing, for Delaunay meshes of well-placed points.
     Quick,
-    /// Smoothing and flips; insertion and contraction where a tetrahedron is very bad.
+    /// Smoothing and flips; insertion and contraction at very bad tetrahedra.
     #[default]
     Fast,
-    /// Then everything there is, small-polyhedron reconnection included, on each tetrahedron that is still bad.
+    /// All methods, including small-polyhedron reconnection, on each tetrahedron that is still bad.
     Full,
 }
 
-/// What to improve and how much work to spend.
+/// Targets and work limits of an improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OptimizeOptions {
-    /// The first so many points stay where they are, with index and bits. Points on the boundary or on a frozen face
-    /// stay too.
+    /// Number of leading points that keep their index and exact coordinates. Points on boundary or frozen faces stay,
+    /// too.
     pub fixed_points: usize,
     /// Rounds of smoothing followed by flips.
     pub rounds: usize,
-    /// Inner vertices are smoothed when a tetrahedron around them has a radius ratio below this.
+    /// Inner vertices are smoothed if a tetrahedron around them has a radius ratio below this.
     pub smooth_below: f64,
-    /// Flips are tried on tetrahedra whose radius ratio is below this.
+    /// Flips are tried on tetrahedra with a radius ratio below this.
     pub flip_below: f64,
-    /// Vertices are inserted and contracted where tetrahedra stay below this radius ratio.
+    /// Vertices are inserted and contracted at tetrahedra that stay below this radius ratio.
     pub stubborn_below: f64,
-    /// Every point keeps its index: none is removed, new ones come after all others.
+    /// True if every point keeps its index: none is removed, and new ones follow all others.
     pub keep_points: bool,
-    /// Upper limit of attempted changes, per tetrahedron of the mesh that comes in.
+    /// Maximum attempted changes per tetrahedron of the input mesh.
     pub attempts_per_tet: usize,
-    /// How hard to try below `stubborn_below`.
+    /// Effort below `stubborn_below`.
     pub effort: Effort,
 }
 
@@ -50,7 +50,7 @@ impl Default for OptimizeOptions {
 }
 
 impl OptimizeOptions {
-    /// What an effort comes to.
+    /// Options for an effort.
     pub fn of(effort: Effort) -> Self {
         match effort {
             // A second round adds 0.002 to the mean radius ratio for a third of the time.
@@ -60,16 +60,16 @@ impl OptimizeOptions {
         }
     }
 
-    /// For a mesh that is to be as good as its surface allows.
+    /// Options for the best mesh that the surface allows.
     pub fn full() -> Self {
         Self { smooth_below: 0.9, stubborn_below: 0.35, effort: Effort::Full, ..Self::default() }
     }
 }
 
-/// What was done.
+/// Report of an improvement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct OptimizeReport {
-    /// Steps of vertices.
+    /// Vertex moves.
     pub moved: usize,
     /// Faces and edges removed.
     pub flips: usize,
@@ -81,9 +81,8 @@ pub struct OptimizeReport {
     pub worst_before: f64,
     /// Smallest radius ratio after.
     pub worst_after: f64,
-    /// Tetrahedra of a radius ratio below 1e-9 that are left and have a face that is not the surface's; looked for where
-    /// the effort is full.
+    /// Remaining tetrahedra with a radius ratio below 1e-9 and a face off the surface; counted only with full effort.
     pub flat_left: usize,
-    /// The limit of attempts was reached: more could have been improved.
+    /// True if the attempt limit was reached, so that more improvement may be possible.
     pub budget_spent: bool,
 }

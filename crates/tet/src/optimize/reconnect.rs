@@ -1,10 +1,10 @@
 //! Small-polyhedron reconnection: the tetrahedra of a small cavity are exchanged for those with the least strain on the
-//! same vertices and the same boundary, found by branch and bound. (Marot, Remacle, 'Quality tetrahedral mesh generation
-//! with HXT', 2020; Liu, Chen, Zheng, 'Small polyhedron reconnection for mesh improvement', 2006.) It contains edge
-//! removal, multi-face removal and all their compositions within the cavity.
+//! same vertices and boundary, found by branch and bound. (Marot, Remacle, 'Quality tetrahedral mesh generation with
+//! HXT', 2020; Liu, Chen, Zheng, 'Small polyhedron reconnection for mesh improvement', 2006.) It includes edge removal,
+//! multi-face removal and all their compositions within the cavity.
 //!
-//! Positive tetrahedra whose faces match each other and the cavity's boundary cover the cavity once, so the search need
-//! not test for intersections; volume and enclosed vertices merely prune it.
+//! Positive tetrahedra whose faces match each other and the cavity's boundary cover the cavity once. So the search
+//! needs no intersection tests; volume and enclosed vertices merely prune it.
 
 use super::allowance::Allowance;
 use super::strain::{EASED, ratio_of_strain, strain};
@@ -14,14 +14,13 @@ use anastomesh_mesh::quality::radius_ratio;
 use rustc_hash::{FxHashSet, FxHasher};
 use std::hash::{Hash, Hasher};
 
-/// Vertices of a cavity.
+/// Maximum vertices of a cavity.
 const MAX_VERTICES: usize = 14;
-/// Faces on the front of the search.
+/// Maximum faces on the front of the search.
 const MAX_FRONT: usize = 64;
-/// The search ends when the strain has fallen to this part of what it was.
+/// The search ends once the strain has fallen to this fraction of its old value.
 const GOOD: f64 = 0.3;
-/// The part of the least strains of the front's faces that its tetrahedra will have, as a guess: most close two faces or
-/// fewer.
+/// Estimated strain of the front's tetrahedra over the summed least strains of its faces. Most close one or two faces.
 const SHARE: f64 = 0.4;
 
 const fn choose(n: usize, k: usize) -> usize {
@@ -36,39 +35,39 @@ const fn choose(n: usize, k: usize) -> usize {
 /// A tetrahedron of four local vertices in ascending order.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// Radius ratio, as a part of what is allowed; not a number where not yet known.
+    /// Radius ratio relative to the attainable one; NaN if unknown.
     ratio: f64,
-    /// Volume: its sign is exact, its size is what rounding leaves of it. Not a number where not yet known.
+    /// Volume with exact sign and rounded magnitude; NaN if unknown.
     volume: f64,
-    /// Strain, where the ratio is known.
+    /// Strain, if the ratio is known.
     strain: f64,
-    /// Vertices strictly inside; `UNKNOWN` until asked for.
+    /// Vertices strictly inside; `UNKNOWN` until computed.
     enclosed: u16,
 }
 
-/// Stands for a set of vertices that has not been found yet: no tetrahedron and no face goes with all vertices.
+/// Marks a vertex set not yet computed. No tetrahedron or face combines with all vertices.
 const UNKNOWN: u16 = u16::MAX;
 
 const NO_ENTRY: Entry = Entry { ratio: f64::NAN, volume: f64::NAN, strain: 0.0, enclosed: UNKNOWN };
 
-/// A face of the front, turned inwards: (v, f₀, f₁, f₂) is positive for v inside.
+/// A face of the front, oriented inwards: (v, f₀, f₁, f₂) is positive for v inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct FrontFace {
     v: [u8; 3],
-    /// Where it is in the table of faces, and the same face turned outwards.
+    /// Its index in the face table, and that of the face oriented outwards.
     at: [u16; 2],
-    /// Vertices with which it makes a tetrahedron above the floor.
+    /// Vertices that form a tetrahedron above the floor with it.
     mates: u16,
-    /// The strain of the best of these tetrahedra.
+    /// Least strain of these tetrahedra.
     least: f64,
 }
 
 impl FrontFace {
-    /// Not yet looked at.
+    /// Not yet computed.
     const NONE: Self = Self { v: [0; 3], at: [0; 2], mates: UNKNOWN, least: 0.0 };
 }
 
-/// Where the search takes place.
+/// Environment of the search.
 #[derive(Clone, Copy)]
 pub(super) struct Room<'a> {
     pub c: &'a Complex,
@@ -78,44 +77,44 @@ pub(super) struct Room<'a> {
 /// The search; keeps its buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Reconnection {
-    /// The tetrahedra of the cavity.
+    /// Tetrahedra of the cavity.
     pub tets: Vec<u32>,
     halves: Vec<u32>,
-    /// The vertices of the cavity.
+    /// Vertices of the cavity.
     pub vertices: Vec<u32>,
     table: Vec<Entry>,
-    /// Faces of three local vertices, of either orientation.
+    /// Faces of three local vertices, in both orientations.
     faces: Vec<FrontFace>,
     front: Vec<FrontFace>,
-    /// Place of each face of the table on the front, counted from 1; 0: not there.
+    /// Position of each table face on the front, counted from 1; 0 if absent.
     place: Vec<u8>,
     stack: Vec<[u8; 4]>,
     best: Vec<[u8; 4]>,
-    /// The tetrahedra that were found to take its place.
+    /// Replacement tetrahedra.
     pub new: Vec<[u32; 4]>,
-    /// Room for what they become.
+    /// Buffer for their slots.
     pub created: Vec<u32>,
-    /// Prints of the cavities that were searched.
+    /// Hashes of the cavities searched.
     searched: FxHashSet<u64>,
-    /// Radius ratio, as a part of what is allowed, that each new tetrahedron must exceed.
+    /// Radius ratio, relative to the attainable one, that each new tetrahedron must exceed.
     floor: f64,
-    /// Radius ratio that each new tetrahedron must have.
+    /// Minimum radius ratio of each new tetrahedron.
     least: f64,
-    /// Strain that the new tetrahedra must stay below together.
+    /// Upper bound on the total strain of the new tetrahedra.
     limit: f64,
-    /// Strain at which the search may end.
+    /// Total strain at which the search may end.
     enough: f64,
     nodes: usize,
-    /// Volume below which a difference is rounding.
+    /// Volume differences below this are rounding errors.
     slack: f64,
     volume: f64,
-    /// Vertices that no face of the cavity's boundary has.
+    /// Vertices inside the cavity, off its boundary.
     loose: u16,
 }
 
 impl Reconnection {
-    /// Looks for better tetrahedra in a cavity of up to `size` around `t`; false when none are found within `nodes` steps
-    /// of the search. None of them is below the radius ratio `least`.
+    /// Searches for better tetrahedra in a cavity of up to `size` around `t`. Returns false if none are found within
+    /// `nodes` steps. No new tetrahedron has a radius ratio below `least`.
     pub(super) fn find(
         &mut self,
         room: Room,
@@ -129,7 +128,7 @@ impl Reconnection {
         }
         self.limit = strain_of(&self.tets) - EASED;
         self.enough = self.limit * GOOD;
-        // A tetrahedron with more strain than all of the old ones is of no use.
+        // A tetrahedron with more strain than all old ones is of no use.
         self.floor = ratio_of_strain(self.limit) * 0.99;
         self.nodes = nodes;
         self.least = least;
@@ -139,8 +138,8 @@ impl Reconnection {
         !self.new.is_empty()
     }
 
-    /// Grows a cavity around `t`, always by the tetrahedron that shares most vertices with it, so that few vertices
-    /// have many tetrahedra. Frozen faces are not crossed.
+    /// Grows a cavity around `t`, always by the tetrahedron with most vertices in common, so that few vertices have
+    /// many tetrahedra. Frozen faces are not crossed.
     fn choose_cavity(&mut self, c: &Complex, t: u32, size: usize) {
         self.tets.clear();
         self.vertices.clear();
@@ -155,7 +154,7 @@ impl Reconnection {
                     if c.is_frozen(half) || c.is_ghost(n) || self.tets.contains(&n) {
                         continue;
                     }
-                    // A known apex first; then faces that the cavity has more of; then those near the start.
+                    // Ranked by a known apex, then by faces shared with the cavity, then by closeness to the start.
                     let known = usize::from(self.vertices.contains(&c.apex(mate)));
                     let shared = (4 * n..4 * n + 4).filter(|&h| self.tets.contains(&(c.mate(h) >> 2))).count();
                     let rank = (known * 8 + shared) * 64 + (63 - order.min(63));
@@ -178,8 +177,8 @@ impl Reconnection {
         }
     }
 
-    /// Whether the cavity, the very same tetrahedra in the same place, was searched before as thoroughly; what a search
-    /// finds is gone afterwards, so it was in vain. Many tetrahedra that are bad for the same reason grow the same cavity.
+    /// True if the same cavity, with the same coordinates, was searched with as many steps before. Successful searches
+    /// destroy their cavity, so that search failed. Bad tetrahedra with a common cause often grow the same cavity.
     fn is_known(&mut self, c: &Complex, nodes: usize) -> bool {
         let print = |&t: &u32| {
             let mut v = c.verts(t);
@@ -192,12 +191,12 @@ impl Reconnection {
         !self.searched.insert(self.tets.iter().map(print).fold(nodes as u64, u64::wrapping_add))
     }
 
-    /// Forgets which cavities were searched: what is wanted has changed.
+    /// Forgets the searched cavities, because the goal has changed.
     pub(super) fn forget(&mut self) {
         self.searched.clear();
     }
 
-    /// Makes the cavity's boundary the front; false when a frozen face lies inside.
+    /// Makes the cavity's boundary the front. Returns false if a frozen face lies inside.
     fn outline(&mut self, c: &Complex) -> bool {
         self.halves.clear();
         for &t in &self.tets {
@@ -216,8 +215,8 @@ impl Reconnection {
         self.vertices.iter().position(|&x| x == v).unwrap_or(0) as u8
     }
 
-    /// Where the tetrahedron of four local vertices is in the table, and whether it is turned over there; none when a
-    /// vertex is there twice. Its volume is known then.
+    /// Table index of the tetrahedron of four local vertices, and true if its orientation is reversed there. `None` if
+    /// a vertex occurs twice. Computes its volume.
     fn entry(&mut self, room: Room, v: [u8; 4]) -> Option<(usize, bool)> {
         let (sorted, odd) = sort4(v);
         let [i, j, k, l] = sorted.map(usize::from);
@@ -232,7 +231,7 @@ impl Reconnection {
         Some((at, odd))
     }
 
-    /// Whether the tetrahedron of four local vertices is positive.
+    /// True if the tetrahedron of four local vertices is positive.
     fn is_positive(&mut self, room: Room, v: [u8; 4]) -> bool {
         self.entry(room, v).is_some_and(|(at, odd)| {
             let volume = self.table[at].volume;
@@ -240,8 +239,7 @@ impl Reconnection {
         })
     }
 
-    /// The tetrahedron of four local vertices, if it is positive: radius ratio, as a part of what is allowed, volume and
-    /// strain. Most are asked for their sign alone, so the rest waits.
+    /// Table entry of four local vertices, if positive. Ratio and strain are computed lazily.
     fn tet(&mut self, room: Room, v: [u8; 4]) -> Option<Entry> {
         if !self.is_positive(room, v) {
             return None;
@@ -252,11 +250,11 @@ impl Reconnection {
             let [p, q, r, s] = w.map(|x| &room.c.points[x as usize]);
             let ratio = match radius_ratio(p, q, r, s).abs() {
                 ratio if ratio.is_nan() => 0.0,
-                // Only the sign counts where it is of no use.
+                // Below the minimum, only the sign matters.
                 ratio if ratio < self.least => f64::MIN_POSITIVE,
                 ratio => (ratio / room.allowance.of_tet(&w)).min(1.0),
             };
-            // Below the floor nobody asks how much it strains.
+            // Below the floor, the strain is never used.
             let strain = if ratio > self.floor { strain(ratio) } else { f64::INFINITY };
             self.table[at] = Entry { ratio, strain, ..self.table[at] };
         }
@@ -282,7 +280,7 @@ impl Reconnection {
             let [a, b, d] = room.c.face(self.halves[k]).map(|v| self.local(v));
             let face = self.front_face(room, [a, b, d]);
             least += face.least;
-            // The search would end where it begins.
+            // The search would end immediately.
             if SHARE * least >= self.limit {
                 return;
             }
@@ -291,7 +289,7 @@ impl Reconnection {
         self.branch(room, 0.0, self.volume);
     }
 
-    /// A face to be closed.
+    /// Front face of three local vertices.
     fn front_face(&mut self, room: Room, f: [u8; 3]) -> FrontFace {
         let place = face_index(f);
         let at = usize::from(place);
@@ -316,7 +314,7 @@ impl Reconnection {
         self.place[usize::from(face.at[0])] = self.front.len() as u8;
     }
 
-    /// Takes the face at `i` out of the front; the last one goes to its place.
+    /// Removes the face at `i` from the front; the last one takes its position.
     fn remove_front(&mut self, i: usize) -> FrontFace {
         let face = self.front.swap_remove(i);
         self.place[usize::from(face.at[0])] = 0;
@@ -336,18 +334,18 @@ impl Reconnection {
         }
     }
 
-    /// Vertices that are on the front; others are buried.
+    /// Vertices on the front; others are buried.
     fn live(&self) -> u16 {
         self.front.iter().flat_map(|f| f.v).fold(0, |m, v| m | 1 << v)
     }
 
-    /// Vertices that no face of the cavity's boundary has: they may be used from anywhere, or left out.
+    /// Vertices inside the cavity, off its boundary. They may be used from any face, or left out.
     fn loose_vertices(&self, c: &Complex) -> u16 {
         let on = |v: u32| self.halves.iter().any(|&h| c.face(h).contains(&v));
         self.vertices.iter().enumerate().filter(|x| !on(*x.1)).fold(0, |m, x| m | 1 << x.0)
     }
 
-    /// Closes the front with tetrahedra above the floor; depth is bounded by the volume and by the number of steps.
+    /// Closes the front with tetrahedra above the floor. Volume and number of steps bound the depth.
     fn branch(&mut self, room: Room, sum: f64, volume: f64) {
         if self.front.is_empty() {
             if sum < self.limit && volume.abs() <= self.slack * 1e3 {
@@ -398,19 +396,19 @@ impl Reconnection {
         }
     }
 
-    /// Puts tetrahedron (v, face `at`) into the room, goes on, and takes it out again.
+    /// Adds tetrahedron (v, face `at`), continues the search, and removes it again.
     fn take(&mut self, room: Room, at: usize, v: u8, sum: f64, volume: f64) {
         let [a, b, d] = self.front[at].v;
         if self.encloses(room, [v, a, b, d]) {
             return;
         }
         let size = self.tet(room, [v, a, b, d]).map_or(0.0, |t| t.volume);
-        // Where faces were taken out of the front, newest last, and how many were put in after them.
+        // Positions of faces removed from the front, newest last, and the order of removals and additions.
         let mut removed: [(usize, FrontFace); 4] = [(0, self.front[at]); 4];
         let mut order = [false; 4];
         let (mut steps, mut outs) = (1, 1);
         removed[0] = (at, self.remove_front(at));
-        // The other faces of the tetrahedron, turned inwards to what remains.
+        // The other faces of the tetrahedron, oriented towards the remaining cavity.
         let mut fits = true;
         for f in [[v, a, b], [v, b, d], [v, d, a]] {
             let place = face_index(f);
@@ -449,7 +447,7 @@ impl Reconnection {
         }
     }
 
-    /// Whether another vertex of the front lies strictly inside.
+    /// True if another vertex of the front lies strictly inside.
     fn encloses(&mut self, room: Room, v: [u8; 4]) -> bool {
         let Some((at, _)) = self.entry(room, v) else { return true };
         if self.table[at].enclosed == UNKNOWN {
@@ -468,13 +466,13 @@ impl Reconnection {
     }
 }
 
-/// Where a face of three local vertices is in the table of faces; the same face turned over is beside it.
+/// Index of a face of three local vertices in the face table. The reversed face is adjacent.
 fn face_index(f: [u8; 3]) -> u16 {
     let ([i, j, k], odd) = sort3(f);
     (2 * (choose(k as usize, 3) + choose(j as usize, 2) + i as usize) + usize::from(odd)) as u16
 }
 
-/// Sorts three; says whether the permutation is odd.
+/// Sorts three values. Returns true for an odd permutation.
 fn sort3(mut v: [u8; 3]) -> ([u8; 3], bool) {
     let mut odd = false;
     for (i, j) in [(0, 1), (1, 2), (0, 1)] {
@@ -486,7 +484,7 @@ fn sort3(mut v: [u8; 3]) -> ([u8; 3], bool) {
     (v, odd)
 }
 
-/// Sorts four; says whether the permutation is odd.
+/// Sorts four values. Returns true for an odd permutation.
 fn sort4(mut v: [u8; 4]) -> ([u8; 4], bool) {
     let mut odd = false;
     for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {

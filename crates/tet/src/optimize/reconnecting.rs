@@ -1,11 +1,11 @@
-//! Exchanges the tetrahedra of small cavities for better ones.
+//! Reconnection of small cavities within the improver.
 
 use super::Improver;
 use super::reconnect::{Reconnection, Room};
 
 impl Improver<'_> {
-    /// Reconnects a cavity of up to `size` tetrahedra around `t`; false when nothing better was found within `nodes`
-    /// steps of the search.
+    /// Reconnects a cavity of up to `size` tetrahedra around `t`. Returns false if nothing better was found within
+    /// `nodes` steps of the search.
     pub(super) fn reconnect(&mut self, t: u32, size: usize, nodes: usize) -> bool {
         let mut r = std::mem::take(&mut self.reconnection);
         let done = self.reconnect_with(&mut r, t, size, nodes);

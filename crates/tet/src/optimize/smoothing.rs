@@ -1,5 +1,5 @@
-//! Moves of inner vertices: Newton steps on the shape energy of the star, and a direct search that lifts its worst
-//! radius ratio.
+//! Smoothing of inner vertices: Newton steps on the shape energy of the star, and a direct search for the worst radius
+//! ratio.
 
 use super::Improver;
 use super::improver::STALE;
@@ -9,32 +9,32 @@ use anastomesh_mesh::geometry::{Point3, Vec3, predicates::orient3d};
 
 /// Newton steps per vertex and visit.
 const NEWTON_STEPS: usize = 2;
-/// Halvings of a step that does not lower the energy.
+/// Maximum halvings of a step that does not lower the energy.
 const HALVINGS: usize = 4;
-/// Relative fall of the energy below which a vertex counts as settled.
+/// Relative decrease of the energy below which a vertex has converged.
 const SETTLED: f64 = 1e-3;
-/// Relative fall of the energy from which the neighbours of a vertex are worth another visit.
+/// Relative decrease of the energy above which the neighbours of a vertex are visited again.
 const STIRRING: f64 = 1e-2;
-/// Radius ratio of a tetrahedron below which the thorough improvement leaves its vertices to the direct search.
+/// Radius ratio below which the thorough improvement leaves the vertices of a tetrahedron to the direct search.
 const HOPELESS: f64 = 0.15;
-/// Rounds of the direct search; its step halves in a round that finds nothing.
+/// Rounds of the direct search. Its step halves in a round that finds nothing.
 const SEARCH_ROUNDS: usize = 12;
 
-/// The thorough improvement ends by moving vertices of what is worst: one for so many tetrahedra, or this many where the
-/// mesh is small. On good surfaces that is all there are.
+/// Maximum vertices moved at the end of the thorough improvement: one per 20 tetrahedra, but at least 200. On good
+/// surfaces, that covers all.
 const MOST_EASED: (usize, usize) = (20, 200);
 
-/// A tetrahedron that is better by this factor than when it was listed was helped along with another: it is not due.
+/// Factor of improvement since listing above which a tetrahedron is skipped, since a neighbour's move helped it.
 const HELPED: f64 = 1.05;
 
-/// Fall of the strain below which a move is not worth making.
+/// Minimum decrease of the strain for a move.
 const LEAST_EASE: f64 = 0.002;
-/// Fall of the strain by a move from which it is worth trying again what was tried in vain around it.
+/// Decrease of the strain above which failed attempts around a move are worth repeating.
 const NEWS: f64 = 0.1;
 
 impl Improver<'_> {
-    /// Smooths every movable vertex around which a tetrahedron has a radius ratio below `below`; returns the number
-    /// of vertices moved. Vertices go in ascending order, each seeing where the ones before it have gone.
+    /// Smooths every movable vertex with an adjacent radius ratio below `below`. Returns the number of vertices moved.
+    /// Vertices are visited in ascending order (Gauss-Seidel).
     pub(super) fn smooth_stars_below(&mut self, below: f64) -> usize {
         self.stirred.resize(self.c.points.len(), true);
         self.eased.resize(self.c.points.len(), false);
@@ -57,7 +57,7 @@ impl Improver<'_> {
             if !due[v as usize] || !self.spend() {
                 continue;
             }
-            // The energy of a tetrahedron that is past help would drown that of the others.
+            // The energy of a hopeless tetrahedron would dominate that of the others.
             let past_help = strained.get(v as usize).is_some_and(|&s| s);
             moved += usize::from(if past_help { self.ease_once(v) } else { self.smooth_vertex(v) });
         }
@@ -66,7 +66,7 @@ impl Improver<'_> {
         moved
     }
 
-    /// Lowers the energy of a movable vertex's star; marks the qualities that are out of date then.
+    /// Lowers the energy of a movable vertex's star. Marks its cached ratios as out of date.
     fn smooth_vertex(&mut self, v: u32) -> bool {
         self.stirred[v as usize] = false;
         let tets = self.star.around(&self.c, v);
@@ -100,7 +100,7 @@ impl Improver<'_> {
         }
         let target = start + x;
         let lower = energy < before * (1.0 - SETTLED);
-        // Out of date is not a number, which `min` passes over.
+        // `min` ignores NaN, which marks ratios out of date.
         let worst = star.tets.iter().map(|&t| self.quality[t as usize]).fold(self.guard, f64::min);
         if lower && star.keeps_above(&x, &target, worst.max(self.report.worst_before)) && star.stays_positive(&target) {
             self.c.points[v as usize] = target;
@@ -110,7 +110,7 @@ impl Improver<'_> {
             if energy < before * (1.0 - STIRRING) {
                 for &t in &star.tets {
                     for w in self.c.verts(t) {
-                        // What the vertex itself did not reach now it would not reach later.
+                        // A later visit would not gain more for the vertex itself.
                         self.stirred[w as usize] |= w != v;
                         self.eased[w as usize] = false;
                     }
@@ -121,7 +121,7 @@ impl Improver<'_> {
         false
     }
 
-    /// For tetrahedra below a radius ratio, the worst first: moves their vertices to ease the star.
+    /// Moves vertices of tetrahedra below a radius ratio, worst first, to ease their stars.
     pub(super) fn ease_worst(&mut self, below: f64) -> usize {
         let list = self.worst_first(below);
         let mut lifted = 0;
@@ -145,12 +145,12 @@ impl Improver<'_> {
         lifted
     }
 
-    /// Lifts the worst radius ratio of a movable vertex's star by a direct search; keeps the cached qualities right.
+    /// Raises the worst radius ratio of a movable vertex's star by a direct search; updates the cached ratios.
     pub(super) fn lift_vertex(&mut self, v: u32) -> bool {
         self.seek(v, false)
     }
 
-    /// Moves a vertex so that the strain of its star falls, and its worst radius ratio does not.
+    /// Moves a vertex so that the strain of its star falls and its worst radius ratio does not.
     pub(super) fn ease_vertex(&mut self, v: u32) -> bool {
         if self.eased[v as usize] {
             return false;
@@ -192,7 +192,7 @@ impl Improver<'_> {
         false
     }
 
-    /// Tells the search what the tetrahedra of the star can be wished to have.
+    /// Passes the attainable ratios of the star's tetrahedra to the search.
     fn allow_in_star(&mut self) {
         if !self.allowance.is_empty() {
             self.energy.least = self.report.worst_before;
@@ -201,8 +201,7 @@ impl Improver<'_> {
         }
     }
 
-    /// Where a new vertex would do best inside a star-shaped room with these faces, starting from `p`, and the worst
-    /// radius ratio there.
+    /// Best position of a new vertex in a star-shaped cavity, searched from `p`, and the worst radius ratio there.
     pub(super) fn best_in_room(&mut self, p: Point3, faces: &[[u32; 3]]) -> (Point3, f64) {
         self.energy.faces.clear();
         self.energy.aim = Aim::Worst;
@@ -216,7 +215,7 @@ impl Improver<'_> {
         search(&self.energy, p, before)
     }
 
-    /// Whether all tetrahedra from a new vertex at `p` to these faces are positive.
+    /// True if all tetrahedra from a new vertex at `p` to these faces are positive.
     pub(super) fn sees(&self, p: &Point3, faces: &[[u32; 3]]) -> bool {
         faces.iter().all(|f| {
             let [a, b, c] = f.map(|w| &self.c.points[w as usize]);
@@ -224,15 +223,15 @@ impl Improver<'_> {
         })
     }
 
-    /// Radius ratio of a tetrahedron, if it is positive.
+    /// Radius ratio of a tetrahedron, if positive.
     #[inline]
     pub(super) fn score(&self, v: &[u32; 4]) -> Option<f64> {
         score(&self.c, v)
     }
 }
 
-/// Searches for a better place: along the axes and away from and towards the worst face,
-/// with a step that halves when nothing is found.
+/// Direct search for a better position: along the axes, and away from the worst face. The step halves if nothing is
+/// found.
 fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
     let reach = star.faces.iter().map(|f| (f[0] - start).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
     let (mut best, mut value) = (start, before);
@@ -259,7 +258,7 @@ fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
     (best, value)
 }
 
-/// Unit direction in which the worst tetrahedron of the star grows its height: away from its face.
+/// Unit direction in which the height of the star's worst tetrahedron grows: away from its face.
 fn steepest(star: &StarEnergy, p: &Point3) -> Option<Vec3> {
     let mut worst = (f64::INFINITY, 0);
     for i in 0..star.faces.len() {

@@ -1,4 +1,4 @@
-//! The star of an inner vertex, and how good it is where the vertex may go.
+//! Quality of an inner vertex's star as a function of the vertex position.
 
 use super::strain::strain;
 use crate::complex::Complex;
@@ -6,32 +6,32 @@ use anastomesh_mesh::geometry::{Point3, Vec3, predicates::orient3d};
 use anastomesh_mesh::quality::radius_ratio;
 use std::cell::Cell;
 
-/// The star of an inner vertex as a function of the vertex's displacement x: with Q the sum of squared edge lengths
-/// and V six times the volume, the energy is the sum of Q³ / (432 V²), that is 1 / (mean ratio)³, at least 1 each.
-/// Both Q and V are cheap polynomials in x.
+/// Star of an inner vertex as a function of the vertex's displacement x. Q is the sum of squared edge lengths, V six
+/// times the volume, both cheap polynomials in x. The energy is the sum of Q³ / (432 V²) = 1 / (mean ratio)³, at least
+/// 1 each.
 #[derive(Clone, Debug, Default)]
 pub struct StarEnergy {
     pub(super) cells: Vec<Summand>,
-    /// The faces opposite the vertex, seen from it in such order that (vertex, f₀, f₁, f₂) is positive.
+    /// Faces opposite the vertex, ordered so that (vertex, f₀, f₁, f₂) is positive.
     pub(super) faces: Vec<[Point3; 3]>,
-    /// The radius ratio that each of these tetrahedra can be wished to have; empty where that is 1 for all.
+    /// Attainable radius ratio of each tetrahedron; empty if all are 1.
     pub(super) allowed: Vec<f64>,
-    /// Where there is such, what falls below this counts as turned over.
+    /// Ratios below this count as inverted if `allowed` is set.
     pub(super) least: f64,
     pub(super) tets: Vec<u32>,
-    /// What the direct search looks for.
+    /// Objective of the direct search.
     pub(super) aim: Aim,
-    /// The face that turned the last place down: most places fail at the same one, which is asked first.
+    /// Face that rejected the last position. It is tested first, since most positions fail at the same one.
     pub(super) strict: Cell<usize>,
 }
 
-/// What a direct search makes as large as it can.
+/// Objective that the direct search maximizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Aim {
-    /// The worst radius ratio of the star.
+    /// Worst radius ratio of the star.
     #[default]
     Worst,
-    /// Less the strain of the star (see [`super::strain`]), with no radius ratio below this.
+    /// Negative strain of the star (see [`super::strain`]), with no radius ratio below this.
     Ease(f64),
 }
 
@@ -99,11 +99,11 @@ impl StarEnergy {
         sum
     }
 
-    /// The energy at displacement `x`, and Newton's step from there.
+    /// Energy at displacement `x`, and the Newton step from there.
     pub(super) fn newton_step(&self, x: &Vec3) -> (f64, Option<Vec3>) {
         let mut energy = 0.0;
         let mut gradient = Vec3::zeros();
-        // The upper triangle of the Hessian: xx, xy, xz, yy, yz, zz.
+        // Upper triangle of the Hessian: xx, xy, xz, yy, yz, zz.
         let mut hessian = [0.0; 6];
         for cell in &self.cells {
             let v = cell.volume(x);
@@ -126,9 +126,9 @@ impl StarEnergy {
         (energy, solve_symmetric(hessian, -gradient))
     }
 
-    /// Whether no radius ratio is below `least` at displacement `x`, where the vertex is at `p`. The energy e of a
-    /// tetrahedron bounds its radius ratio from below by 1 / e (Liu, Joe, 'Relationship between tetrahedron shape
-    /// measures', 1994), so most need no second look.
+    /// True if no radius ratio is below `least` at displacement `x`, where the vertex is at `p`. The radius ratio is at
+    /// least 1 / e, with e the energy of a tetrahedron (Liu, Joe, 'Relationship between tetrahedron shape measures',
+    /// 1994). So most ratios are not computed.
     pub(super) fn keeps_above(&self, x: &Vec3, p: &Point3, least: f64) -> bool {
         self.cells
             .iter()
@@ -140,7 +140,7 @@ impl StarEnergy {
         self.faces.iter().all(|[a, b, c]| orient3d(p, a, b, c) > 0.0)
     }
 
-    /// What is sought, with the star's vertex at `p`; anything up to `floor` if it is not above.
+    /// Objective with the star's vertex at `p`; any value up to `floor` if it is not above.
     pub(super) fn value(&self, p: &Point3, floor: f64) -> f64 {
         match self.aim {
             Aim::Worst => self.worst(p, floor),
@@ -148,7 +148,7 @@ impl StarEnergy {
         }
     }
 
-    /// Radius ratio of the tetrahedron on face `i` with the vertex at `p`, as a part of what is allowed.
+    /// Radius ratio of the tetrahedron on face `i` with the vertex at `p`, relative to the attainable one.
     #[inline]
     pub(super) fn ratio(&self, p: &Point3, i: usize) -> f64 {
         let [a, b, c] = &self.faces[i];
@@ -172,7 +172,7 @@ impl StarEnergy {
         worst
     }
 
-    /// The faces, the strictest one before all others.
+    /// Face indices, the strictest face first.
     pub(super) fn strictest_first(&self) -> impl Iterator<Item = usize> + use<> {
         let strict = self.strict.get();
         let known = (strict < self.faces.len()).then_some(strict);
@@ -200,7 +200,7 @@ impl StarEnergy {
     }
 }
 
-/// Solves a system with a positive definite matrix, given by its upper triangle row by row, through its cofactors.
+/// Solves a positive definite system, given by its upper triangle row by row, through its cofactors.
 fn solve_symmetric([xx, xy, xz, yy, yz, zz]: [f64; 6], b: Vec3) -> Option<Vec3> {
     let first = Vec3::new(yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
     let (cyy, cyz, czz) = (xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy);

@@ -6,7 +6,7 @@ use anastomesh_mesh::quality::TetQuality;
 use anastomesh_mesh::shapes::{cube_lattice, perturb, tube_lattice};
 use proptest::prelude::*;
 
-/// A mesh whose inner points are numbered last and shaken, and the number of its boundary points.
+/// A mesh with its inner points last and perturbed, and the number of its boundary points.
 fn shaken(mut mesh: TetMesh, size: f64, seed: u64) -> (TetMesh, usize) {
     let on = vertices_of(&boundary_faces(&mesh), mesh.points.len());
     let mut order: Vec<u32> = (0..mesh.points.len() as u32).collect();
@@ -21,7 +21,7 @@ fn shaken(mut mesh: TetMesh, size: f64, seed: u64) -> (TetMesh, usize) {
     }
     let fixed = on.iter().filter(|on| **on).count();
     let inner: Vec<bool> = (0..order.len()).map(|v| v >= fixed).collect();
-    // Shake each point as far as it can go without turning a tetrahedron over: halve its way until it fits.
+    // Halves each displacement until no tetrahedron is inverted.
     let rest = mesh.points.clone();
     perturb(&mut mesh.points, &inner, size, seed);
     for v in fixed..order.len() {
@@ -59,7 +59,7 @@ fn improve_with(mesh: &TetMesh, fixed: usize, effort: Effort) -> (TetMesh, Optim
     let mut improved = mesh.clone();
     let options = OptimizeOptions { fixed_points: fixed, ..OptimizeOptions::of(effort) };
     let report = optimize(&mut improved, &options).unwrap();
-    // Positive, conforming: or else it is not a complex.
+    // Fails unless the tetrahedra are positive and conforming.
     Complex::from_mesh(improved.points.clone(), &improved.tets).unwrap().sanity_check().unwrap();
     assert_eq!(improved.points[..fixed], mesh.points[..fixed]);
     assert_eq!(sorted_boundary(&improved), sorted_boundary(mesh));
@@ -100,8 +100,8 @@ fn full_effort_does_better() {
 
 #[test]
 fn a_cavity_is_reconnected() {
-    // Six tetrahedra around an edge that is far too short for its ring, and two of them cut by a face flip: neither
-    // edge removal nor a face flip alone undoes that.
+    // Six tetrahedra around an edge that is far too short for its ring, two of them cut by a face flip. Neither edge
+    // removal nor a face flip alone undoes that.
     let mut points = vec![[0.0, 0.0, -0.1], [0.0, 0.0, 0.1], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
     for i in 0..4 {
         let (sin, cos) = (std::f64::consts::FRAC_PI_2 * f64::from(i)).sin_cos();
@@ -127,8 +127,8 @@ fn a_cavity_is_reconnected() {
     assert!(after.min > 2.0 * before, "{before} {after:?}");
 }
 
-/// A flat lid whose middle is the short edge 0-1 between two needles, (0, 1, 2) and (0, 1, 5); under the edge stands
-/// tetrahedron 1, which has no needle.
+/// A flat lid with the short edge 0-1 in its middle, between needles (0, 1, 2) and (0, 1, 5). Tetrahedron 1 lies under
+/// the edge and has no needle.
 fn short_edge_under_a_lid() -> TetMesh {
     let mut points = vec![[0.0, -0.005, 0.0], [0.0, 0.005, 0.0]];
     for i in 0..6 {
@@ -140,7 +140,7 @@ fn short_edge_under_a_lid() -> TetMesh {
     let mut tets = vec![[0, 1, 2, 8], [0, 1, 8, 9], [0, 1, 9, 5]];
     tets.extend([[1, 2, 3, 8], [1, 3, 9, 8], [1, 3, 4, 9], [1, 4, 5, 9]]);
     tets.extend([[0, 2, 7, 8], [0, 7, 9, 8], [0, 7, 6, 9], [0, 6, 5, 9]]);
-    // What lies below: the outer faces of these, but for the lid, down to one point.
+    // Tetrahedra below: from the outer faces of the former, except the lid, to one point.
     for [p, q, r] in [[2, 3, 8], [3, 9, 8], [3, 4, 9], [4, 5, 9], [2, 7, 8], [7, 9, 8], [7, 6, 9], [6, 5, 9]] {
         tets.push([p, q, r, 10]);
     }
@@ -153,7 +153,7 @@ fn short_edge_under_a_lid() -> TetMesh {
     TetMesh { points, tets }
 }
 
-/// How many tetrahedra have edge 0-1, and the smallest dihedral angle of those that do not stand on its needles.
+/// Number of tetrahedra at edge 0-1, and the smallest dihedral angle of those off its needles.
 fn at_short_edge(mesh: &TetMesh) -> (usize, f64) {
     let has = |t: &[u32; 4], f: &[u32]| f.iter().all(|v| t.contains(v));
     let others = mesh.tets.iter().filter(|&t| !has(t, &[0, 1, 2]) && !has(t, &[0, 1, 5]));
@@ -180,7 +180,7 @@ fn only_needles_keep_tetrahedra_at_a_short_edge_of_the_surface() {
     let (count, least) = at_short_edge(&after);
     assert!(count == 2 && least > 10.0, "{count} {least}");
     assert_eq!(sorted_boundary(&mesh), sorted_boundary(&after));
-    // The thorough improvement comes to the same by itself, and those on the needles are not given up.
+    // The thorough improvement finds this result by itself, and keeps the tetrahedra on the needles.
     let (whole, _) = improve_with(&mesh, 10, Effort::Full);
     let (count, least) = at_short_edge(&whole);
     assert!(count == 2 && least > 10.0, "{count} {least}");
@@ -213,7 +213,7 @@ fn the_same_mesh_gives_the_same_mesh() {
 
 #[test]
 fn a_flat_sliver_under_the_surface_goes() {
-    // Four corners of a square, two of them a little higher: the upper diagonal is on the surface, the lower inside.
+    // Four corners of a square, two of them slightly higher: the upper diagonal is on the surface, the lower inside.
     let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 1e-9], [1.0, 1.0, 0.0], [0.0, 1.0, 1e-9], [0.5, 0.5, -1.0]];
     let points = points.map(anastomesh_mesh::geometry::Point3::from).to_vec();
     let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3], [0, 2, 1, 4], [0, 3, 2, 4]] };
@@ -286,11 +286,11 @@ fn strain_falls_as_shape_improves_and_can_be_turned_back() {
     for q in [1e-6, 1e-3, 0.01, 0.1, 0.3, 0.49, 0.6, 1.0] {
         let s = strain(q);
         assert!(s < last && s >= 0.0);
-        // What has more strain than this is worse.
+        // More strain means a lower ratio.
         assert!(ratio_of_strain(s) <= q + 1e-12, "{q}");
         last = s;
     }
-    // One that is very bad weighs more than several that are mediocre.
+    // One very bad tetrahedron weighs more than several mediocre ones.
     assert!(strain(0.013) > 2.0 * strain(0.08) + 2.0 * strain(0.2) && strain(0.01) > 6.0 * strain(0.2));
 }
 

@@ -1,36 +1,36 @@
-//! The thorough improvement: after the quick passes, every tetrahedron that is still bad is treated with all there is,
-//! the worst first, until nothing improves or what is left does not change any more, or is not worth it any more
-//! ([`Purse`]): what a surface of needles allows is never good, and could be tried for ever.
+//! Thorough improvement. After the quick passes, every tetrahedron that is still bad is treated with all methods, worst
+//! first. It stops when nothing improves, or when the cost exceeds the gain ([`Purse`]). Tetrahedra on surface needles
+//! never become good and could be tried forever.
 
 use super::Improver;
 use super::allowance::Allowance;
 
-/// Rounds over the tetrahedra that are still bad.
+/// Maximum rounds over the tetrahedra that are still bad.
 const ROUNDS: usize = 8;
-/// Sizes of the cavities that are reconnected, and steps of the search in each.
+/// Sizes of the cavities to reconnect, and steps of the search in each.
 const CAVITIES: [(usize, usize); 2] = [(8, 150), (20, 400)];
-/// Radius ratio below which a tetrahedron is spared by making those on needles worse.
+/// Radius ratio below which a tetrahedron is improved at the cost of those on needles.
 const VERY_BAD: f64 = 0.2;
 const LAST_ROUNDS: usize = 3;
-/// What moving must gain to count.
+/// Minimum factor of improvement by moves.
 const GAIN: f64 = 1.1;
-/// A round that mends fewer than one in so many is the last.
+/// Rounds end if at most one of this many tetrahedra improved.
 const WORTHWHILE: usize = 100;
-/// Every mesh is worth one attempt for so many of its tetrahedra, whatever comes of it.
+/// Tetrahedra per attempt that is made regardless of success.
 const FREE: usize = 200;
-/// After these, a round that takes away less than this part of the strain of what is bad is the last.
+/// Minimum fraction of the strain that a round must remove, once the free attempts are used up.
 const EASES: f64 = 0.25;
-/// No mesh is worth more than one attempt for so many of its tetrahedra, or this many where it is small.
+/// Maximum attempts: one per 4 tetrahedra, but at least 100.
 const MOST: (usize, usize) = (4, 100);
 
-/// What treating all that is bad may cost, counted in attempts (an attempt takes some 0.2 ms where it is in vain): those
-/// that are free, then as many as pay, and never more than the most.
+/// Budget for treating bad tetrahedra, in attempts. A failed attempt takes some 0.2 ms. The free attempts are followed
+/// by rounds that pay off, up to the maximum.
 #[derive(Debug)]
 struct Purse {
     free: usize,
     most: usize,
     spent: usize,
-    /// Strain of all that was bad before the last round.
+    /// Total strain of bad tetrahedra before the last round.
     strain: f64,
 }
 
@@ -39,7 +39,7 @@ impl Purse {
         Self { free: tets / FREE, most: (tets / MOST.0).max(MOST.1), spent: 0, strain: f64::INFINITY }
     }
 
-    /// Whether another round is worth making where what is bad has this strain now.
+    /// True if another round pays off, given the current strain of bad tetrahedra.
     fn goes_on(&mut self, strain: f64) -> bool {
         let pays = strain <= (1.0 - EASES) * self.strain;
         self.strain = strain;
@@ -53,8 +53,8 @@ impl Purse {
 }
 
 impl Improver<'_> {
-    /// Treats all tetrahedra below the stubborn limit, the worst first, but for those on needles that are about as good
-    /// as the needle allows.
+    /// Treats all tetrahedra below the stubborn limit, worst first, except those on needles close to the attainable
+    /// quality.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
         let mut purse = Purse::of(self.c.real_tets().count());
         for _ in 0..ROUNDS {
@@ -75,8 +75,8 @@ impl Improver<'_> {
         }
     }
 
-    /// Treats those of a list that are as they were, are wanted, and have changed since they were tried in vain. Returns
-    /// how many were tried and how many improved.
+    /// Treats the unchanged, wanted entries of a list whose surroundings have changed since a failed attempt. Returns
+    /// the numbers tried and improved.
     fn treat_each(
         &mut self,
         list: &[(f64, u32)],
@@ -101,7 +101,7 @@ impl Improver<'_> {
         (tried, changes)
     }
 
-    /// Treats what is still very bad but does not stand on a needle, even if those that do become worse.
+    /// Treats very bad tetrahedra off the needles, even if those on needles become worse.
     pub(super) fn spare_others(&mut self, allowance: Allowance) {
         if allowance.is_empty() {
             return;
@@ -110,7 +110,7 @@ impl Improver<'_> {
         self.reconnection.forget();
         let mut purse = Purse::of(self.c.real_tets().count());
         for _ in 0..LAST_ROUNDS {
-            // What was in vain need not be now; small moves, which count for no news, can decide.
+            // Retry all: small moves, which do not count as changes, may decide.
             self.tried.clear();
             let list = self.worst_first(self.options.stubborn_below);
             if !purse.goes_on(self.strain_of_list(&list)) {
@@ -130,14 +130,14 @@ impl Improver<'_> {
         list.iter().map(|&(_, t)| self.strain_of(&[t])).sum()
     }
 
-    /// Whether a tetrahedron is very bad, or at least bad beside a needle, but does not stand on one.
+    /// True if a tetrahedron off the needles is very bad, or bad beside a needle.
     fn is_spared(&self, t: u32) -> bool {
         let v = self.c.verts(t);
         (self.quality[t as usize] < VERY_BAD || v.iter().any(|&v| self.allowance.has_needle(v)))
             && self.allowance.of_tet(&v) >= 1.0
     }
 
-    /// Whether something around a tetrahedron has changed since it was tried in vain.
+    /// True if the surroundings of a tetrahedron have changed since it was tried without success.
     fn has_news(&self, t: u32) -> bool {
         let tried = self.tried.get(t as usize).copied().unwrap_or(0);
         tried == 0 || self.c.verts(t).iter().any(|&v| self.changed.get(v as usize).copied().unwrap_or(0) >= tried)

@@ -1,4 +1,4 @@
-//! Flips that clear their own way: an edge that cannot be removed has its ring made smaller first.
+//! Nested flips: if an edge cannot be removed, its ring is reduced first.
 
 use super::{Recovery, blocked};
 use crate::complex::{Complex, GHOST};
@@ -6,11 +6,11 @@ use crate::delaunay::hash;
 use crate::flips::{MAX_RING, Refusal};
 use crate::star::EdgeRing;
 
-/// Largest ring that is worked on.
+/// Maximum size of a ring to reduce.
 const LARGE_RING: usize = 4 * MAX_RING;
 
 impl Recovery<'_> {
-    /// Removes a face by a 2-3 flip, or else one of its edges at which the two tetrahedra are not convex.
+    /// Removes a face by a 2-3 flip. If its two tetrahedra are not convex, removes one of the reflex edges.
     pub(super) fn clear_face(&mut self, half: u32, depth: u32) -> bool {
         if self.c.is_frozen(half) {
             return false;
@@ -20,7 +20,7 @@ impl Recovery<'_> {
             Err(refusal) if blocked(refusal) => {
                 let f = self.c.face(half);
                 let (a, d) = (self.c.apex(half), self.c.apex(self.c.mate(half)));
-                // Reflex edges first; flat ones are in the way as well.
+                // Reflex edges and flat ones block the flip.
                 let reflex = |i: usize| !self.rule.allows(self.c, &[a, d, f[i], f[(i + 1) % 3]]);
                 let sides: [bool; 3] = std::array::from_fn(reflex);
                 let turn = self.round as usize;
@@ -36,8 +36,7 @@ impl Recovery<'_> {
         }
     }
 
-    /// Removes an edge; when its ring has no valid triangulation, the ring is reduced by flipping its spokes, to a
-    /// bounded depth.
+    /// Removes an edge. If its ring has no valid triangulation, its spokes are flipped first, to a bounded depth.
     pub(super) fn clear_edge(&mut self, t: u32, p: u32, q: u32, depth: u32) -> bool {
         if self.edges.contains(p, q) || self.budget == 0 {
             return false;
@@ -50,7 +49,7 @@ impl Recovery<'_> {
         }
         let mut ring = EdgeRing::default();
         let mut start = t;
-        // Each success makes the ring one smaller, so this ends.
+        // Terminates, since each success shrinks the ring by one.
         while ring.collect(self.c, start, p, q, LARGE_RING) && self.reduce_ring(&ring, depth) {
             let Some(next) = self.star.find_edge(self.c, p, q) else { return true };
             start = next;
@@ -64,8 +63,7 @@ impl Recovery<'_> {
         false
     }
 
-    /// Removes an edge by some valid triangulation of its ring; another one in each round, so that what was stuck in
-    /// one may come loose in the next.
+    /// Removes an edge by a valid triangulation of its ring, another one each round to release stuck edges.
     fn remove_edge(&mut self, t: u32, p: u32, q: u32) -> Result<(), Refusal> {
         let (round, salt) = (self.round, Self::salt(self.round));
         let rule = self.rule;
@@ -77,14 +75,14 @@ impl Recovery<'_> {
         self.flipper.commit(self.c)
     }
 
-    /// Exchanges a face for the edge between the two apices.
+    /// 2-3 flip: exchanges a face for the edge between its two apices.
     pub(super) fn flip_face(&mut self, half: u32) -> Result<(), Refusal> {
         let rule = self.rule;
         self.flipper.plan_face(self.c, half, |c, v| rule.allows(c, v).then_some(1.0))?;
         self.flipper.commit(self.c)
     }
 
-    /// Takes one spoke out of a ring.
+    /// Removes one spoke from a ring.
     fn reduce_ring(&mut self, ring: &EdgeRing, depth: u32) -> bool {
         for i in 0..ring.len() {
             if self.budget == 0 {
@@ -101,7 +99,7 @@ impl Recovery<'_> {
         }
         for i in 0..ring.len() {
             for end in [ring.a, ring.b] {
-                // The spoke's own edge at which its two tetrahedra are not convex keeps it from being flipped.
+                // A reflex edge of the spoke blocks its flip.
                 let (r, before) = (ring.rim[i], ring.rim[(i + ring.len() - 1) % ring.len()]);
                 let after = ring.rim[(i + 1) % ring.len()];
                 if [before, after, r].contains(&GHOST) {

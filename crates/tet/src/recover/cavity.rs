@@ -1,14 +1,14 @@
-//! A cavity that respects what is frozen, for a new vertex.
+//! Cavity for a new vertex that respects frozen faces.
 
 use crate::complex::{Complex, GHOST};
 use crate::input::SurfaceEdges;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::{insphere, orient3d};
 
-/// Largest cavity.
+/// Maximum tetrahedra in a cavity.
 pub(super) const MAX_CAVITY: usize = 64;
 
-/// Digs cavities for single points; keeps its buffers.
+/// Builds cavities for single points; reuses its buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cavity {
     tets: Vec<u32>,
@@ -17,9 +17,9 @@ pub(super) struct Cavity {
 }
 
 impl Cavity {
-    /// Inserts `p` in a cavity that holds at least `core`, tetrahedra whose common room `p` sees strictly inside. The
-    /// cavity does not cross frozen faces, keeps the edges of the surface and loses no vertex. Returns the new vertex,
-    /// or nothing when already the core does not allow that.
+    /// Inserts `p` in a cavity that contains at least `core`; `p` lies strictly inside the union of the core. The
+    /// cavity crosses no frozen face, keeps surface edges and loses no vertex. Returns the vertex, or `None` if the
+    /// core violates this.
     pub(super) fn insert(&mut self, c: &mut Complex, edges: &SurfaceEdges, core: &[u32], p: Point3) -> Option<u32> {
         self.dig(c, core, &p);
         while let Some(bad) = self.flaw(c, edges, core, &p) {
@@ -73,8 +73,8 @@ impl Cavity {
         }
     }
 
-    /// A tetrahedron that must leave the cavity: one with a wall that `p` does not see, or one that hides a vertex, an
-    /// edge of the surface or a frozen face inside the cavity.
+    /// Finds a tetrahedron that must leave the cavity: one with a face that `p` does not see, or one that encloses a
+    /// vertex, surface edge or frozen face.
     fn flaw(&self, c: &Complex, edges: &SurfaceEdges, core: &[u32], p: &Point3) -> Option<u32> {
         let mut walls: Vec<[u32; 3]> = Vec::new();
         for &x in &self.tets {
@@ -87,7 +87,7 @@ impl Cavity {
                     }
                     walls.push(f);
                 } else if c.is_frozen(half) {
-                    // The cavity has grown around the rim of what is recovered so far: keep the part on one side.
+                    // The cavity surrounds the rim of a recovered part, so only one side is kept.
                     return Some(if core.contains(&x) { c.mate(half) >> 2 } else { x });
                 }
             }
@@ -105,7 +105,7 @@ impl Cavity {
     }
 }
 
-/// Whether `p` lies strictly behind a face that runs counter-clockwise seen from its front.
+/// True if `p` lies strictly behind a face that is counter-clockwise seen from its front.
 fn sees(c: &Complex, f: &[u32; 3], p: &Point3) -> bool {
     if f.contains(&GHOST) {
         return false;

@@ -1,5 +1,4 @@
-//! Flat tetrahedra, which the Delaunay tetrahedralization has where points lie in one plane but for rounding, give way to
-//! thick ones.
+//! Removal of flat tetrahedra. The Delaunay tetrahedralization has them where points are coplanar up to rounding.
 
 use super::Recovery;
 use super::rule::Rule;
@@ -7,19 +6,19 @@ use crate::complex::Complex;
 use crate::input::SurfaceEdges;
 use anastomesh_mesh::TriMesh;
 
-/// Depth to which flips clear the way, for a flat tetrahedron.
+/// Maximum depth of nested flips for a flat tetrahedron.
 const DEPTH: u32 = 2;
 
-/// Flips tried for one.
+/// Maximum flips for one flat tetrahedron.
 const BUDGET: u32 = 100;
 
-/// Removes tetrahedra that are no thicker than a height, as far as flips can that keep what is there of a surface.
+/// Flips away tetrahedra no thicker than `height`, if possible without loss of recovered surface parts.
 pub(super) fn dissolve_flat(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges, height: f64) {
     Recovery::new(c, surface, edges, Rule::Thick(height)).dissolve();
 }
 
 impl Recovery<'_> {
-    /// Removes what the rule does not allow, as far as flips can.
+    /// Flips away tetrahedra that the rule forbids, if possible.
     pub(super) fn dissolve(&mut self) {
         if self.rule == Rule::Positive {
             return;

@@ -1,25 +1,25 @@
-//! What stands between the ends of a missing edge, or within a missing triangle. Exact.
+//! Exact crossings of a missing edge or triangle with the complex.
 
 use crate::complex::Complex;
 use crate::star::{EdgeRing, Star};
 use anastomesh_mesh::geometry::predicates::orient3d;
 
-/// What a segment meets first on leaving its start.
+/// First crossing of a segment after its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Crossing {
     /// The segment is an edge.
     Exists,
-    /// It crosses the inside of a face; half-face of the tetrahedron at the start.
+    /// Crosses the interior of a face; half-face of the tetrahedron at the start.
     Face(u32),
-    /// It crosses an edge: tetrahedron, both ends.
+    /// Crosses an edge: tetrahedron, both ends.
     Edge(u32, u32, u32),
-    /// It runs through a vertex.
+    /// Passes through a vertex.
     Vertex(u32),
     /// No tetrahedron at the start opens towards the end.
     Nothing,
 }
 
-/// Finds what the segment from `a` to `b` meets first.
+/// Finds the first crossing of the segment from `a` to `b`.
 pub(super) fn first_crossing(c: &Complex, star: &mut Star, a: u32, b: u32) -> Crossing {
     if star.find_edge(c, a, b).is_some() {
         return Crossing::Exists;
@@ -27,7 +27,7 @@ pub(super) fn first_crossing(c: &Complex, star: &mut Star, a: u32, b: u32) -> Cr
     star.find(c, a, |t| ahead(c, t, [a, b])).unwrap_or(Crossing::Nothing)
 }
 
-/// What the line from corner `a` of a tetrahedron to `b` meets on the other side of it.
+/// Crossing of the line from corner `a` of a tetrahedron to `b` with the opposite side.
 fn ahead(c: &Complex, t: u32, [a, b]: [u32; 2]) -> Option<Crossing> {
     let i = c.slot_of(t, a)?;
     if c.is_ghost(t) {
@@ -44,8 +44,8 @@ fn ahead(c: &Complex, t: u32, [a, b]: [u32; 2]) -> Option<Crossing> {
             return None;
         }
     }
-    // The line through a also points into the opposite cone: all signs are reversed there, so this is the right one
-    // unless two of them vanish, when the line runs along an edge at a.
+    // The opposite cone has all signs reversed, so this is the right cone. If two signs vanish, the line runs along an
+    // edge at `a`, and the direction decides.
     let zeros: Vec<usize> = (0..3).filter(|&k| s[k] == 0.0).collect();
     match zeros[..] {
         [] => Some(Crossing::Face(half)),
@@ -59,11 +59,11 @@ fn ahead(c: &Complex, t: u32, [a, b]: [u32; 2]) -> Option<Crossing> {
     }
 }
 
-/// Crossings listed for one segment at most.
+/// Maximum crossings listed for one segment.
 const FAR: usize = 64;
 
-/// All that the segment from `a` to `b` crosses between its ends, in order; ends early at a vertex, at a ghost, and
-/// after [`FAR`] crossings. Empty when the segment is an edge.
+/// Lists all crossings of the segment from `a` to `b` between its ends, in order. Stops early at a vertex, at a ghost,
+/// and after [`FAR`] crossings. Empty if the segment is an edge.
 pub(super) fn crossings(c: &Complex, star: &mut Star, ring: &mut EdgeRing, a: u32, b: u32, found: &mut Vec<Crossing>) {
     found.clear();
     let mut next = first_crossing(c, star, a, b);
@@ -83,7 +83,7 @@ pub(super) fn crossings(c: &Complex, star: &mut Star, ring: &mut EdgeRing, a: u3
     }
 }
 
-/// What the line from `a` to `b` meets after it has entered a tetrahedron through the inside of face `entry`.
+/// Next crossing of the line from `a` to `b` after it enters a tetrahedron through the interior of face `entry`.
 fn beyond_face(c: &Complex, entry: u32, a: u32, b: u32) -> Option<Crossing> {
     let t = entry >> 2;
     if c.is_ghost(t) || c.apex(entry) == b {
@@ -92,7 +92,7 @@ fn beyond_face(c: &Complex, entry: u32, a: u32, b: u32) -> Option<Crossing> {
     (4 * t..4 * t + 4).filter(|&half| half != entry).find_map(|half| through_face(c, half, [a, b]))
 }
 
-/// Where the line from `a` to `b` goes through a face that it does not lie in.
+/// Crossing of the line from `a` to `b` with a face that does not contain it.
 fn through_face(c: &Complex, half: u32, [a, b]: [u32; 2]) -> Option<Crossing> {
     let f = c.face(half);
     let at = |v: u32| &c.points[v as usize];
@@ -109,7 +109,7 @@ fn through_face(c: &Complex, half: u32, [a, b]: [u32; 2]) -> Option<Crossing> {
     }
 }
 
-/// What the line from `a` to `b` meets after it has crossed edge `p, q` of tetrahedron `t` between its ends.
+/// Next crossing of the line from `a` to `b` beyond the interior of edge `p, q` of tetrahedron `t`.
 fn beyond_edge(c: &Complex, ring: &mut EdgeRing, [t, p, q]: [u32; 3], a: u32, b: u32) -> Option<Crossing> {
     if !ring.collect(c, t, p, q, usize::MAX) || ring.touches_ghost() || ring.rim.contains(&b) {
         return None;
@@ -124,9 +124,9 @@ fn beyond_edge(c: &Complex, ring: &mut EdgeRing, [t, p, q]: [u32; 3], a: u32, b:
             let ends = [p, q].map(|x| c.slot_of(t, x).map(|k| 4 * t + k as u32));
             return ends.into_iter().flatten().find_map(|half| through_face(c, half, [a, b]));
         }
-        // Along the face p, q, u; its plane has u and b on the same side of p q when v sees them alike.
+        // Along the face p, q, u: in its plane, u and b lie on the same side of p q if v sees them alike.
         if low == 0.0 && (orient3d(pp, pq, at(v), pb) > 0.0) == (orient3d(pp, pq, at(v), at(u)) > 0.0) {
-            // v lies off the plane, which the line halves: sides in it are signs of orient3d with v.
+            // v lies off the plane that contains the line, so signs of orient3d with v give sides in the plane.
             let (su, sp) = (orient3d(pa, pb, at(u), at(v)), orient3d(pa, pb, pp, at(v)));
             if su == 0.0 {
                 return Some(Crossing::Vertex(u));
@@ -138,7 +138,7 @@ fn beyond_edge(c: &Complex, ring: &mut EdgeRing, [t, p, q]: [u32; 3], a: u32, b:
     None
 }
 
-/// The edge that pierces triangle `a, b, d` nearest to its edge `a, b`: a tetrahedron and both ends.
+/// Edge that pierces triangle `a, b, d` nearest to its edge `a, b`: a tetrahedron and both ends.
 pub(super) fn piercing_edge(
     c: &Complex,
     star: &mut Star,
@@ -157,8 +157,8 @@ pub(super) fn piercing_edge(
     })
 }
 
-/// All edges that go through the inside of triangle `a, b, d`, whose edges exist, as a tetrahedron and both ends; those
-/// nearest to its edges come first. At most [`FAR`].
+/// All edges that pierce triangle `a, b, d`, whose edges exist, as a tetrahedron and both ends. Those nearest to its
+/// edges come first. At most [`FAR`].
 pub(super) fn piercing_edges(
     c: &Complex,
     star: &mut Star,
@@ -195,7 +195,7 @@ pub(super) fn piercing_edges(
     }
 }
 
-/// Whether edge `p, q` goes through the inside of a triangle.
+/// True if edge `p, q` pierces the interior of a triangle.
 fn pierces(c: &Complex, [p, q]: [u32; 2], tri: [u32; 3]) -> bool {
     if tri.contains(&p) || tri.contains(&q) {
         return false;

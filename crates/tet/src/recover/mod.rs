@@ -1,10 +1,10 @@
-//! Recovery: every edge and triangle of the surface becomes an edge and face of the complex.
+//! Boundary recovery: every edge and triangle of the surface becomes an edge or face of the complex.
 //!
-//! What the Delaunay tetrahedralization already has is frozen first. Missing edges are then recovered by flipping away
-//! what crosses them, missing triangles by removing the edges that pierce them; where flips are stuck, a Steiner point
-//! off the surface gives them room. A [`rule`] says which tetrahedra flips may make; where it forbids flat ones, those of
-//! the Delaunay tetrahedralization are dissolved first ([`flat`]). Each tier has a work budget. What is left over goes to
-//! the caller's next tier.
+//! Parts present in the Delaunay tetrahedralization are frozen first. Missing edges are recovered by flipping away
+//! their crossings, missing triangles by removing the edges that pierce them. If flips are stuck, Steiner points off
+//! the surface enable more. A [`rule`] defines the tetrahedra that flips may make. If it forbids flat ones, those of
+//! the Delaunay tetrahedralization are dissolved first ([`flat`]). Each tier has a work budget; the next tier gets the
+//! rest.
 
 mod blocked;
 mod cavity;
@@ -28,40 +28,40 @@ use march::{Crossing, crossings, piercing_edges};
 pub(super) use rule::{Rule, flat_height, flat_height_in_single};
 pub(super) use turned::{lies_in_planes, lies_turned};
 
-/// Depth to which a flip that is blocked may clear its way by others.
+/// Maximum depth of nested flips.
 const DEPTH: u32 = 3;
 
-/// Flips tried for one edge or triangle before it is given up for the round.
+/// Maximum flips for one edge or triangle per round.
 const BUDGET: u32 = 400;
 
-/// Rounds of Steiner points at most.
+/// Maximum rounds of Steiner points.
 const ROUNDS: u32 = 8;
 
-/// A round that leaves more than this part of what was lost before it is the last one: the next tier does it better.
+/// Recovery stops after a round that leaves more than this fraction of the previous losses. The next tier does better.
 const WORTHWHILE: f64 = 0.75;
 
-/// Where flips alone leave more than this part of what is missing, and more than [`MANY`], Steiner points do not help.
+/// Steiner points do not help if flips leave more than this fraction of the missing parts, and more than [`MANY`].
 const HOPELESS: f64 = 0.2;
 
 /// See [`HOPELESS`].
 const MANY: usize = 100;
 
-/// So few lost edges and triangles are worth another round or two.
+/// Maximum lost edges and triangles for which slow progress is accepted in early rounds.
 const FEW: usize = 8;
 
-/// What recovery did.
+/// Counts of boundary recovery.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecoverySummary {
-    /// Edges that the Delaunay tetrahedralization lacked.
+    /// Edges missing in the Delaunay tetrahedralization.
     pub missing_edges: usize,
-    /// Triangles that it lacked.
+    /// Triangles missing in the Delaunay tetrahedralization.
     pub missing_triangles: usize,
     /// Steiner points added, on either side of the surface.
     pub steiner_points: usize,
 }
 
-/// Recovers all of the surface in `c`, whose first vertices are the surface's points, by flips that make such tetrahedra
-/// as `rule` allows; freezes its faces.
+/// Recovers the whole surface in `c`, whose first vertices are the surface's points, and freezes its faces. Flips make
+/// only tetrahedra that `rule` allows.
 pub(super) fn recover(
     c: &mut Complex,
     surface: &TriMesh,
@@ -121,7 +121,7 @@ struct Recovery<'a> {
     piercers: Vec<(u32, u32, u32)>,
     budget: u32,
     round: u32,
-    /// Proof that the surface meets itself.
+    /// Proof that the surface intersects itself.
     met: Option<TetError>,
 }
 
@@ -144,12 +144,12 @@ impl<'a> Recovery<'a> {
         }
     }
 
-    /// What makes the choices of this round.
+    /// Seed for the random choices of a round.
     fn salt(round: u32) -> u64 {
         4 * u64::from(round)
     }
 
-    /// Recovers edges; those that come loose are lost no longer. Whether the others were given up, since flips are in vain.
+    /// Recovers edges and removes them from `lost`. Returns true if it gave up because flips are hopeless.
     fn recover_edges(&mut self, lost: &mut Vec<[u32; 2]>) -> bool {
         let missing = lost.clone();
         let (mut tried, mut failed, mut in_vain) = (0, 0, false);
@@ -166,7 +166,7 @@ impl<'a> Recovery<'a> {
         in_vain
     }
 
-    /// Whether most of some edges lie in planes but for rounding.
+    /// True if most of the edges lie in planes up to rounding.
     fn is_turned(&self, edges: &[[u32; 2]]) -> bool {
         let points = &self.surface.points;
         let height = match self.rule {
@@ -176,7 +176,7 @@ impl<'a> Recovery<'a> {
         lies_turned(self.surface, edges, height) || lies_in_planes(self.surface, edges, height)
     }
 
-    /// Flips away what crosses an edge: the first crossing that gives way, from one end and then from the other.
+    /// Recovers an edge by flipping away its crossings, from alternate ends.
     fn recover_edge(&mut self, [a, b]: [u32; 2]) -> bool {
         self.budget = BUDGET;
         let mut way = std::mem::take(&mut self.way);
@@ -196,7 +196,7 @@ impl<'a> Recovery<'a> {
                 break false;
             }
             self.budget -= 1;
-            // What fails may have flipped something on its way: the crossings are listed anew in any case.
+            // A failed attempt may have flipped something, so crossings are listed again in any case.
             if self.clear(way[tried]) {
                 tried = 0;
                 std::mem::swap(&mut from, &mut to);
@@ -208,7 +208,7 @@ impl<'a> Recovery<'a> {
         done
     }
 
-    /// Flips a crossing away; false when it is stuck.
+    /// Flips a crossing away. Returns false if stuck.
     fn clear(&mut self, crossing: Crossing) -> bool {
         match crossing {
             Crossing::Face(half) => self.clear_face(half, DEPTH),
@@ -217,7 +217,7 @@ impl<'a> Recovery<'a> {
         }
     }
 
-    /// The part of the surface that is crossed: then the surface meets itself, and no flip can help.
+    /// Crossed part of the surface, if any. The surface then intersects itself, and no flip can help.
     fn obstacle(&self, crossing: Crossing) -> Option<Obstacle> {
         match crossing {
             Crossing::Face(half) if self.c.is_frozen(half) => Some(Obstacle::Triangle(self.c.face(half))),
@@ -258,7 +258,7 @@ impl<'a> Recovery<'a> {
     }
 }
 
-/// Whether trying something else may help.
+/// True if another attempt may help.
 fn blocked(refusal: Refusal) -> bool {
     matches!(refusal, Refusal::NotValid | Refusal::RingTooLarge)
 }

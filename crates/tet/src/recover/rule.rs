@@ -1,27 +1,27 @@
-//! Which tetrahedra flips may make.
+//! Rules for the tetrahedra that flips may make.
 
 use crate::complex::Complex;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// Flat parts of a surface that were turned are flat to this many units in the last place of the largest coordinate.
+/// Flatness tolerance of surface parts, in units in the last place of the largest coordinate. It covers rotated parts.
 const UNITS: f64 = 64.0;
 
-/// The same where coordinates were rounded to single precision: that is coarse enough to hurt parts that are thin.
+/// Flatness tolerance in single-precision units. They are coarse enough to affect thin parts.
 const SINGLE_UNITS: f64 = 4.0;
 
-/// Which tetrahedra flips may make.
+/// Rule for the tetrahedra that flips may make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rule {
-    /// All that are positive.
+    /// All positive tetrahedra.
     Positive,
-    /// Those whose least height is more than this, too. Where points lie in one plane but for rounding, the complex then
-    /// has no tetrahedra among them, as if they lay in it: what crosses an edge by a hair's breadth crosses the edge.
+    /// Positive tetrahedra with a minimum height above this value. Points that are coplanar up to rounding then span no
+    /// tetrahedra, as if exactly coplanar, so near misses of an edge count as crossings.
     Thick(f64),
 }
 
 impl Rule {
-    /// Whether a tetrahedron may be made.
+    /// True if a tetrahedron may be made.
     pub(crate) fn allows(self, c: &Complex, v: &[u32; 4]) -> bool {
         let corners @ [p, q, r, s] = v.map(|v| &c.points[v as usize]);
         let thick = |least| least_height(corners) > least;
@@ -29,12 +29,12 @@ impl Rule {
     }
 }
 
-/// What is thinner than this is flat but for rounding.
+/// Thickness below which a part counts as flat.
 pub(crate) fn flat_height(points: &[Point3]) -> f64 {
     UNITS * f64::EPSILON * largest(points)
 }
 
-/// The same where all coordinates have single precision.
+/// Thickness below which a part counts as flat, if all coordinates have single precision.
 pub(crate) fn flat_height_in_single(points: &[Point3]) -> Option<f64> {
     let single = points.iter().flat_map(|p| p.iter()).all(|&x| f64::from(x as f32) == x);
     single.then(|| SINGLE_UNITS * f64::from(f32::EPSILON) * largest(points))
@@ -44,7 +44,7 @@ fn largest(points: &[Point3]) -> f64 {
     points.iter().flat_map(|p| p.iter().map(|x| x.abs())).fold(0.0, f64::max)
 }
 
-/// The least height of a tetrahedron: six times its volume over twice the area of its largest face.
+/// Minimum height of a tetrahedron: six times its volume over twice the area of its largest face.
 pub(super) fn least_height(corners: [&Point3; 4]) -> f64 {
     let [a, b, c] = [1, 2, 3].map(|i| corners[i] - corners[0]);
     let faces: [Vec3; 4] = [a.cross(&b), b.cross(&c), c.cross(&a), (b - a).cross(&(c - a))];

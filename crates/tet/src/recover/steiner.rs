@@ -1,4 +1,4 @@
-//! Steiner points: a new vertex near what blocks an edge or a triangle that is missing.
+//! Steiner points near the obstacles of missing edges and triangles.
 
 use super::Recovery;
 use super::cavity::MAX_CAVITY;
@@ -7,8 +7,8 @@ use crate::delaunay::hash;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
 impl Recovery<'_> {
-    /// Puts a point near what blocks each of the lost edges, and each lost triangle that has its edges. Returns
-    /// the number of points.
+    /// Inserts a point near the obstacle of each lost edge, and of each lost triangle whose edges exist. Returns the
+    /// number of points.
     pub(super) fn add_steiner_points(&mut self, edges: &[[u32; 2]], triangles: &[u32], round: u32) -> usize {
         let mut added = 0;
         for &f in triangles {
@@ -42,8 +42,7 @@ impl Recovery<'_> {
         added
     }
 
-    /// Puts a point just off a face: it goes, and what takes its place can be flipped, even where all of its edges are
-    /// edges of the surface.
+    /// Inserts a point just off a face. Its replacements can be flipped, even if all its edges are surface edges.
     fn split_face(&mut self, half: u32, round: u32) -> bool {
         let other = self.c.mate(half) >> 2;
         if self.c.is_ghost(half >> 2) || self.c.is_ghost(other) || self.c.is_frozen(half) {
@@ -58,7 +57,7 @@ impl Recovery<'_> {
         })
     }
 
-    /// Puts a point just off an edge.
+    /// Inserts a point just off an edge.
     fn split_edge(&mut self, t: u32, p: u32, q: u32, round: u32) -> bool {
         if !self.ring.collect(self.c, t, p, q, MAX_CAVITY) || self.ring.touches_ghost() {
             return false;
@@ -72,8 +71,8 @@ impl Recovery<'_> {
         })
     }
 
-    /// Inserts a point into a tetrahedron at edge `p, q` of `t`: the largest one, since those that block are often
-    /// slivers, in which a point gives no room; `t` itself every third round.
+    /// Inserts a point into the largest tetrahedron at edge `p, q` of `t`, since obstacles are often slivers with
+    /// little room. Uses `t` itself every third round.
     fn make_room(&mut self, t: u32, p: u32, q: u32, round: u32) -> bool {
         let mut best = t;
         if round % 3 != 2 && self.ring.collect(self.c, t, p, q, MAX_CAVITY) && !self.ring.touches_ghost() {
@@ -88,7 +87,7 @@ impl Recovery<'_> {
         self.insert_in(best, round)
     }
 
-    /// Inserts a point somewhere inside `t`, other places in other rounds.
+    /// Inserts a point inside `t`, at another place each round.
     fn insert_in(&mut self, t: u32, round: u32) -> bool {
         if self.c.is_ghost(t) {
             return false;
@@ -97,7 +96,7 @@ impl Recovery<'_> {
         self.cavity.insert(self.c, self.edges, &[t], p).is_some()
     }
 
-    /// A point amid vertices, other places in other rounds.
+    /// Random convex combination of vertices, different in each round.
     fn blend(&self, vertices: &[u32], round: u32) -> Point3 {
         let mut sum = 0.0;
         let mut p = Vec3::zeros();

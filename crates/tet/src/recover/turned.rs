@@ -1,27 +1,26 @@
-//! Whether a surface has flat parts that are flat no longer, but for rounding: then flips are in vain, and what is missing
-//! is recovered as in the plane.
+//! Detection of surfaces with flat parts that rounding has perturbed, for example after a rotation. Flips fail there,
+//! and missing parts are recovered as in the plane.
 
 use super::rule::least_height;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use rustc_hash::FxHashMap;
 
-/// See [`lies_in_planes`].
+/// Minimum number of edges for [`lies_in_planes`].
 const MANY: usize = 2000;
 
-/// Whether more than three quarters of some edges lie between two triangles that are one plane to within a height, and not exactly.
+/// True if over 3/4 of the edges lie between two triangles that are coplanar within `height`, but not exactly.
 pub(crate) fn lies_turned(surface: &TriMesh, edges: &[[u32; 2]], height: f64) -> bool {
     most_lie_flat(surface, edges, height, |sign| sign != 0.0)
 }
 
-/// Whether edges are so many, and more than three quarters of them between two triangles that are one plane to within a
-/// height, that recovering them as in the plane is quickest, be the planes exact or not.
+/// True if recovery in planes is fastest: many edges, over 3/4 of them between two triangles that are coplanar within
+/// `height`, exactly or not.
 pub(crate) fn lies_in_planes(surface: &TriMesh, edges: &[[u32; 2]], height: f64) -> bool {
     edges.len() > MANY && most_lie_flat(surface, edges, height, |_| true)
 }
 
-/// Whether more than three quarters of some edges lie between two triangles that are one plane to within a height, and
-/// whose orientation is wanted.
+/// True if over 3/4 of the edges lie between triangles coplanar within `height` and with a `wanted` orientation.
 fn most_lie_flat(surface: &TriMesh, edges: &[[u32; 2]], height: f64, wanted: impl Fn(f64) -> bool) -> bool {
     let sorted = |a: u32, b: u32| [a.min(b), a.max(b)];
     let mut across: FxHashMap<[u32; 2], Vec<u32>> = edges.iter().map(|&[a, b]| (sorted(a, b), Vec::new())).collect();
@@ -45,7 +44,7 @@ mod tests {
     use super::*;
     use anastomesh_mesh::geometry::Point3;
 
-    /// Two triangles at a diagonal that is missing, one corner so high above the others' plane.
+    /// Two triangles at a missing diagonal, with one corner at `height` above the plane of the others.
     fn folded(height: f64) -> TriMesh {
         let points = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, height]];
         let points = points.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();

@@ -1,23 +1,23 @@
-//! When a tetrahedron is split.
+//! Criteria for splitting a tetrahedron.
 
 use anastomesh_mesh::Bounds;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::dihedral_range;
 
-/// Edges may be this much longer than the size wanted: those of the graded lattice are up to 1.9 times as long.
+/// Maximum edge length relative to the size wanted. Edges of the graded lattice are up to 1.9 times as long.
 const LONGER: f64 = 2.2;
 
-/// The volume of a regular tetrahedron is its edge to the third over this.
+/// Cubed edge length of a regular tetrahedron over its volume.
 const REGULAR: f64 = 8.485_281_374;
 
-/// What each tetrahedron has to fulfil, as far as the boundary allows.
+/// Targets for each tetrahedron, as far as the boundary allows.
 #[derive(Clone, Copy, Default)]
 pub struct Goals<'a> {
-    /// Bounds on its shape and volume.
+    /// Bounds on shape and volume.
     pub bounds: Bounds,
-    /// The edge length wanted at a place.
+    /// Edge length wanted at a point.
     pub size: Option<&'a dyn Fn(&Point3) -> f64>,
-    /// Most points that are added.
+    /// Maximum points added.
     pub max_points: Option<usize>,
 }
 
@@ -31,17 +31,17 @@ impl std::fmt::Debug for Goals<'_> {
     }
 }
 
-/// A tetrahedron that does not fulfil the goals.
+/// Violation of the goals by a tetrahedron.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
-    /// By how much: above 1, the larger the worse.
+    /// Ratio to the bound: above 1, larger is worse.
     pub excess: f64,
-    /// Edges that a new point may make have at least this length.
+    /// Minimum length of new edges.
     pub spacing: f64,
 }
 
 impl Goals<'_> {
-    /// What is wrong with a tetrahedron, if anything; `bound` is that on its volume from its region.
+    /// Worst violation of the goals, if any. `bound` limits the volume in the tetrahedron's region.
     pub fn fault(&self, p: [&Point3; 4], bound: f64) -> Option<Fault> {
         let edges = [p[1] - p[0], p[2] - p[0], p[3] - p[0], p[2] - p[1], p[3] - p[1], p[3] - p[2]].map(|e| e.norm());
         let longest = edges.iter().copied().fold(0.0, f64::max);
@@ -76,7 +76,7 @@ impl Goals<'_> {
     }
 }
 
-/// The centre of the sphere through four points; none where it is not finite.
+/// Circumcentre of four points; `None` if it is not finite.
 pub(super) fn circumcenter(p: [&Point3; 4]) -> Option<Point3> {
     let (u, v, w) = (p[1] - p[0], p[2] - p[0], p[3] - p[0]);
     let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));

@@ -1,7 +1,7 @@
-//! Delaunay refinement inside a boundary that stays: tetrahedra that do not fulfil the goals are split at their
-//! circumcentres, the worst first. (Ruppert 1995; Shewchuk, 'Tetrahedral mesh generation by Delaunay refinement',
-//! 1998.) Cavities never cross a frozen face. A point that would come closer to others than the fault that it mends
-//! calls for is not inserted, so the work ends, also where the input has small angles.
+//! Delaunay refinement inside a fixed boundary: tetrahedra that violate the goals are split at their circumcentres,
+//! worst first. (Ruppert 1995; Shewchuk, 'Tetrahedral mesh generation by Delaunay refinement', 1998.) Cavities never
+//! cross a frozen face. A point is rejected if it comes closer to others than the violation justifies. This ensures
+//! termination, even for input with small angles.
 
 use super::goals::{Fault, Goals, circumcenter};
 use crate::complex::Complex;
@@ -11,29 +11,29 @@ use anastomesh_mesh::quality::radius_ratio;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Largest cavity.
+/// Maximum tetrahedra in a cavity.
 const MAX_CAVITY: usize = 256;
-/// Times that a cavity is trimmed before its point is given up.
+/// Maximum trims of a cavity before its point is rejected.
 const MAX_TRIMS: usize = 24;
-/// Steps of a walk to a point.
+/// Maximum steps of a walk to a point.
 const MAX_STEPS: usize = 200;
-/// Radius ratio that a new tetrahedron on the boundary has to have, or else no less than the worst it replaces.
+/// Minimum radius ratio of a new tetrahedron on the boundary, unless the worst replaced one is lower.
 const AT_BOUNDARY: f64 = 0.25;
-/// The same for one inside.
+/// Minimum radius ratio of a new inner tetrahedron, unless the worst replaced one is lower.
 const INSIDE: f64 = 0.02;
 
-/// What refinement did.
+/// Report of a refinement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RefineReport {
     /// Points added.
     pub points: usize,
-    /// Tetrahedra that do not fulfil the goals, because of the boundary or of the limit of points.
+    /// Tetrahedra that still violate the goals, because of the boundary or the point limit.
     pub left: usize,
-    /// Whether the limit of points ended it.
+    /// True if the point limit ended the refinement.
     pub limit_reached: bool,
 }
 
-/// A tetrahedron to be split, by how bad it is.
+/// A tetrahedron to split, ordered by its violation.
 #[derive(Clone, Copy, Debug)]
 struct Task {
     excess: f64,
@@ -61,8 +61,8 @@ impl Ord for Task {
     }
 }
 
-/// Refines a carved complex in place. `bounds` are those on the volumes of the tetrahedra, by slot; it may be empty.
-/// `go_on` is asked every now and then, with the points added so far.
+/// Refines a carved complex in place. `bounds` are volume bounds of the tetrahedra, by slot; it may be empty. `go_on`
+/// is called periodically with the number of points added.
 pub fn refine_complex(
     c: &mut Complex,
     goals: &Goals,
@@ -118,7 +118,7 @@ struct Refiner<'a, 'g> {
     cavity: Vec<u32>,
     new: Vec<[u32; 4]>,
     created: Vec<u32>,
-    /// What has to leave the cavity.
+    /// Tetrahedra that must leave the cavity.
     flawed: Vec<u32>,
     /// Vertices of the cavity's faces.
     outline: Vec<u32>,
@@ -143,14 +143,14 @@ impl Refiner<'_, '_> {
         }
     }
 
-    /// Splits a tetrahedron that does not fulfil the goals; false when no place for a point is found.
+    /// Splits a tetrahedron that violates the goals. Returns false if no position for a point is found.
     fn split(&mut self, t: u32) -> bool {
         let Some(fault) = self.fault(t) else { return false };
         let p = self.corners(t);
         let sum: Vec3 = p.iter().map(|x| x.coords).sum();
         let middle = Point3::from(sum / 4.0);
         let Some(center) = circumcenter(p) else { return self.insert(t, middle, fault.spacing) };
-        // Where the circumcentre lies behind the boundary or too close to it, a place nearer may do.
+        // If the circumcentre is outside or too close to the boundary, a nearer position may do.
         [1.0, 0.5, 0.0].into_iter().any(|share| self.insert(t, middle + (center - middle) * share, fault.spacing))
     }
 
@@ -192,13 +192,13 @@ impl Refiner<'_, '_> {
         done
     }
 
-    /// The tetrahedron that holds `p`, on a way from `t` that crosses no frozen face.
+    /// Finds the tetrahedron that contains `p` by a walk from `t` that crosses no frozen face.
     fn walk(&self, mut t: u32, p: &Point3) -> Option<u32> {
         let mut from = u32::MAX;
         for step in 0..MAX_STEPS {
             let mut next = None;
             for i in 0..4 {
-                // Another order in each step: no walk goes round in circles for ever.
+                // The order changes with each step to prevent cycles.
                 let half = 4 * t + (i + step as u32) % 4;
                 if half == from {
                     continue;
@@ -229,7 +229,7 @@ impl Refiner<'_, '_> {
         self.cavity.push(t);
     }
 
-    /// The tetrahedra around `start` whose circumspheres hold `p`.
+    /// Collects the tetrahedra around `start` whose circumspheres contain `p`.
     fn dig(&mut self, start: u32, p: &Point3) {
         self.stamp.resize(self.c.slots(), 0);
         self.now += 1;
@@ -252,7 +252,7 @@ impl Refiner<'_, '_> {
         }
     }
 
-    /// Takes out of the cavity what hides a face, a vertex or a frozen face from `p`; false when `start` itself does.
+    /// Removes tetrahedra that hide a face, vertex or frozen face from `p`. Returns false if `start` is one.
     fn trim(&mut self, start: u32, p: &Point3) -> bool {
         for _ in 0..MAX_TRIMS {
             self.flawed.clear();
@@ -271,7 +271,7 @@ impl Refiner<'_, '_> {
         false
     }
 
-    /// Drops what is not connected to `start` within the cavity.
+    /// Drops the part of the cavity that is not connected to `start`.
     fn keep_connected(&mut self, start: u32) {
         let old = self.now;
         self.now += 1;
@@ -314,14 +314,14 @@ impl Refiner<'_, '_> {
             outline.sort_unstable();
             outline.dedup();
             let hidden = |t: u32| self.c.verts(t).iter().any(|v| outline.binary_search(v).is_err());
-            // One of the tetrahedra around a hidden vertex has to go, not `start` if possible.
+            // One of the tetrahedra around a hidden vertex must leave, not `start` if possible.
             let bad = self.cavity.iter().rev().copied().find(|&t| hidden(t));
             self.flawed.extend(bad);
         }
         self.outline = outline;
     }
 
-    /// Whether a point in the cavity makes neither short edges nor bad tetrahedra.
+    /// True if a point in the cavity makes neither short edges nor bad tetrahedra.
     fn is_worthwhile(&self, p: &Point3, spacing: f64) -> bool {
         let mut old = f64::INFINITY;
         for &t in &self.cavity {

@@ -1,5 +1,5 @@
-//! How fine the mesh is to be, where, and points that make it so: a size field over an octree, interior points on a
-//! graded body-centred lattice, and Delaunay refinement inside a frozen boundary.
+//! Mesh size control: a size field on an octree, interior points on a graded body-centred lattice, and Delaunay
+//! refinement inside a frozen boundary.
 
 mod goals;
 mod insert;

@@ -7,24 +7,24 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, point_triangle};
 use rustc_hash::FxHashSet;
 
-/// Jitter of a point, as a part of the side of the smallest cube at it.
+/// Jitter of a point, relative to the side of the smallest adjacent cube.
 const JITTER: f64 = 0.02;
 
-/// Most points that are made.
+/// Maximum points made.
 const MAX_POINTS: usize = 50_000_000;
 
-/// A place of the lattice in half sides of the finest cubes, packed, with the level of the finest cube there.
+/// Lattice position in half sides of the finest cubes, packed, with the level of the finest cube there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Site {
     key: u64,
-    /// Levels finer than this place's finest cube: small first.
+    /// Number of levels between the tree's finest and the finest cube here. Small values sort first.
     coarseness: u8,
-    /// 0: known to lie inside; 1: has to be tested.
+    /// 0: known to lie inside; 1: must be tested.
     unknown: u8,
 }
 
-/// Points inside the closed `surface`, spaced as `tree` says and at least `clearance` times the edge length there from
-/// the wall, where `sizes` are the edge lengths at the surface's vertices. The same surface gives the same points.
+/// Points inside the closed `surface` with the spacing of `tree`. They keep at least `clearance` times the local edge
+/// length from the wall; `sizes` are the edge lengths at the surface's vertices. The result is deterministic.
 pub fn graded_points(surface: &TriMesh, sizes: &[f64], tree: &SizeTree, clearance: f64) -> Vec<Point3> {
     let boxes: Vec<Aabb> =
         surface.triangles.iter().map(|t| Aabb::of_points(t.map(|v| &surface.points[v as usize]))).collect();
@@ -45,7 +45,7 @@ pub fn graded_points(surface: &TriMesh, sizes: &[f64], tree: &SizeTree, clearanc
     points
 }
 
-/// The jittered place of a site.
+/// Jittered position of a site.
 fn place(tree: &SizeTree, key: u64, side: f64) -> Point3 {
     let half = tree.side(tree.levels()) / 2.0;
     let part = |shift: u32| ((key >> shift) & 0x1f_ffff) as f64;
@@ -56,7 +56,7 @@ fn place(tree: &SizeTree, key: u64, side: f64) -> Point3 {
         + Vec3::new(coin(0), coin(21), coin(42)) * (JITTER * side)
 }
 
-/// The corners and centres of all leaves in or near the surface, sorted, several times where several leaves meet.
+/// Sorted corners and centres of all leaves in or near the surface, repeated where several leaves meet.
 fn sites(surface: &TriMesh, tree: &SizeTree, boxes: &[Aabb], wall: &Wall) -> Vec<Site> {
     let mut touched: FxHashSet<[i32; 3]> = FxHashSet::default();
     for aabb in boxes {
@@ -95,7 +95,7 @@ fn sites(surface: &TriMesh, tree: &SizeTree, boxes: &[Aabb], wall: &Wall) -> Vec
 
 fn push_leaf(tree: &SizeTree, level: usize, cube: [i32; 3], unknown: u8, sites: &mut Vec<Site>) {
     let coarseness = (tree.levels() - level) as u8;
-    // In half sides of the finest cubes a cube of this level is so wide:
+    // Width of a cube at this level, in half sides of the finest cubes.
     let width = 2_i64 << coarseness;
     let mut push = |offset: [i64; 3]| {
         let at: [i64; 3] = std::array::from_fn(|i| i64::from(cube[i]) * width + offset[i]);
@@ -110,7 +110,7 @@ fn push_leaf(tree: &SizeTree, level: usize, cube: [i32; 3], unknown: u8, sites: 
     }
 }
 
-/// The coarsest cubes that no triangle touches and that lie inside: those that are reached from the inner side.
+/// Coarsest cubes inside that no triangle touches.
 fn inner_cubes(surface: &TriMesh, tree: &SizeTree, wall: &Wall, touched: &FxHashSet<[i32; 3]>) -> Vec<[i32; 3]> {
     let high = surface.points.iter().fold(tree.origin, |m, p| m.sup(p));
     let last = tree.cube_at(&high, 0);
@@ -129,7 +129,7 @@ fn inner_cubes(surface: &TriMesh, tree: &SizeTree, wall: &Wall, touched: &FxHash
             if !in_box(&seed) || touched.contains(&seed) || seen.contains(&seed) {
                 continue;
             }
-            // One component of untouched cubes is all inside or all outside. Those outside are not walked.
+            // A component of untouched cubes is all inside or all outside. Outer ones are not traversed.
             let center = Vec3::new(f64::from(seed[0]), f64::from(seed[1]), f64::from(seed[2])).add_scalar(0.5);
             seen.insert(seed);
             if !wall.holds(&(tree.origin + center * tree.side)) {
@@ -152,7 +152,7 @@ fn inner_cubes(surface: &TriMesh, tree: &SizeTree, wall: &Wall, touched: &FxHash
     inner
 }
 
-/// The surface as a tree of boxes.
+/// The surface with a bounding volume hierarchy.
 struct Wall<'a> {
     surface: &'a TriMesh,
     sizes: &'a [f64],
@@ -161,8 +161,8 @@ struct Wall<'a> {
 }
 
 impl Wall<'_> {
-    /// Whether a point lies inside: a ray upwards meets an odd number of triangles. A ray that grazes an edge may leave
-    /// a point out or take one in from outside, which carving drops.
+    /// True if a point lies inside: a vertical ray meets an odd number of triangles. A ray that grazes an edge may give
+    /// a wrong result; carving drops such points.
     fn holds(&self, p: &Point3) -> bool {
         let mut top = *p;
         top.z = f64::INFINITY;
@@ -177,7 +177,7 @@ impl Wall<'_> {
         odd
     }
 
-    /// Whether a point at which the smallest cube has this side is far enough from the wall.
+    /// True if a point is far enough from the wall. `side` is that of its smallest cube.
     fn is_clear(&self, p: &Point3, side: f64) -> bool {
         let reach = self.clearance * 2.0 * side;
         let mut clear = true;
@@ -192,7 +192,7 @@ impl Wall<'_> {
         clear
     }
 
-    /// The edge length at a point of a triangle, between those at its corners.
+    /// Edge length at a point of a triangle, interpolated from its corners.
     fn size_on(&self, t: &[u32; 3], corners: &[Point3; 3], foot: &Point3) -> f64 {
         let [h0, h1, h2] = t.map(|v| self.sizes.get(v as usize).copied().unwrap_or(0.0));
         let [a, b, c] = corners.map(|p| p - foot);

@@ -1,27 +1,27 @@
-//! Edge lengths wanted at the vertices of a surface, and what else bounds them.
+//! Edge lengths wanted at the vertices of a surface, and further bounds on them.
 
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 
-/// The size at a vertex is at most this multiple of its shortest edge: tetrahedra at that edge have their other
-/// vertices near enough for a dihedral angle of some 15 degrees.
+/// Maximum size at a vertex, in lengths of its shortest edge. The other vertices of tetrahedra at that edge are then
+/// close enough for dihedral angles of about 15 degrees.
 const SHORTEST: f64 = 3.0;
 
-/// The size at a vertex is at least this part of the mean length of its edges, however short the shortest is.
+/// Minimum size at a vertex relative to the mean length of its edges, however short the shortest is.
 const LEAST: f64 = 1.0 / 32.0;
 
-/// When more than one vertex in so many has a much shorter edge than its mean, the surface is made of needles, which
-/// interior points cannot mend: the mean alone counts then.
+/// If more than one vertex in this many has an edge much shorter than the mean, the surface consists of needles.
+/// Interior points cannot repair these, so only the mean counts then.
 const NEEDLES: usize = 20;
 
-/// An upper bound on the length of edges, next to what the surface says.
+/// Upper bound on edge lengths, in addition to the surface's own.
 #[derive(Clone, Copy)]
 pub enum SizeLimit<'a> {
-    /// The same everywhere.
+    /// Constant bound.
     Constant(f64),
-    /// At each vertex of the surface.
+    /// Bound at each vertex of the surface.
     PerVertex(&'a [f64]),
-    /// A function of the place; called from one thread, for places in and near the surface's box.
+    /// Bound as a function of position; called from one thread, for points in and near the surface's bounding box.
     Function(&'a (dyn Fn(&Point3) -> f64 + 'a)),
 }
 
@@ -35,8 +35,8 @@ impl std::fmt::Debug for SizeLimit<'_> {
     }
 }
 
-/// The length of edges wanted at each vertex of a surface: the mean length of its edges there, less where one of them
-/// is very short. Vertices without edges get 0.
+/// Edge length wanted at each vertex of a surface: the mean length of its edges, or less if one of them is very short.
+/// Vertices without edges get 0.
 pub fn vertex_sizes(surface: &TriMesh) -> Vec<f64> {
     let n = surface.points.len();
     let (mut sum, mut count, mut least) = (vec![0.0_f64; n], vec![0_u32; n], vec![f64::INFINITY; n]);

@@ -4,7 +4,7 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::shapes::sphere_surface;
 
-/// A sphere whose points are drawn towards the north pole, so that triangles are fine there.
+/// A sphere with its points drawn towards the north pole, where triangles are fine.
 fn drawn_sphere(level: usize) -> TriMesh {
     let mut s = sphere_surface(level);
     for p in &mut s.points {
@@ -39,7 +39,7 @@ fn sizes_follow_the_surface_and_neighbours_differ_little() {
     for (p, h) in s.points.iter().zip(&sizes) {
         assert!(tree.size_at(p) <= 1.87 / 1.4 * h * 1.000_001);
     }
-    // Along a line sizes never jump by more than a factor of two.
+    // Along a line, sizes change by at most a factor of about 2.
     let at = |i: i32| tree.size_at(&Point3::new(0.01, 0.02, f64::from(i) * 1e-3));
     for i in -999..1000 {
         let ratio = at(i) / at(i - 1);
@@ -160,7 +160,7 @@ mod insertion {
                 }
             })
             .collect();
-        // The wall between the halves is frozen, as that between regions is.
+        // The wall between the halves is frozen, like one between regions.
         let wall: Vec<u32> = c
             .real_tets()
             .flat_map(|t| 4 * t..4 * t + 4)

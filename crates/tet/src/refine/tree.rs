@@ -1,30 +1,30 @@
-//! A size field as a graded octree: cubes that halve where edges are to be shorter, neighbours differing by one level
-//! at most, so that sizes grow slowly away from what is fine.
+//! Size field as a graded octree. Cubes are halved to shorten edges, and neighbours differ by at most one level, so
+//! that sizes grow slowly away from fine parts.
 
 use super::sizes::SizeLimit;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashSet;
 
-/// A cube is split when its side exceeds this multiple of the edge length wanted in it.
+/// Maximum side of a cube, in edge lengths wanted in it.
 const SPLIT_ABOVE: f64 = 1.87;
 
-/// Most cubes that are split; where more were needed the mesh stays coarser.
+/// Maximum split cubes; beyond it the mesh stays coarser.
 const MAX_SPLITS: usize = 4_000_000;
 
-/// Most levels below the coarsest.
+/// Maximum levels below the coarsest.
 const MAX_LEVEL: u32 = 12;
 
-/// Cube indices at the finest level stay below this.
+/// Upper bound of cube indices at the finest level.
 const MAX_INDEX: f64 = 1_000_000.0;
 
-/// How a size field is made of a surface.
+/// Options of a size field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeOptions {
-    /// Side of a cube over the edge length where the surface's edges have their mean length; sides are this times the
-    /// mean edge length, or a power of two of it.
+    /// Cube side relative to the edge length at mean surface edges. Sides are this times the mean, times a power of
+    /// two.
     pub cell: f64,
-    /// Whether cubes inside may become larger than those that the coarse parts of the surface ask for.
+    /// True if inner cubes may exceed the size asked for by the coarse parts of the surface.
     pub coarsen: bool,
 }
 
@@ -34,22 +34,22 @@ impl Default for TreeOptions {
     }
 }
 
-/// The octree. Levels count from the coarsest cubes; cube `[i, j, k]` of level `l` has its lowest corner at
+/// Octree of a size field. Levels count from the coarsest cubes. Cube `[i, j, k]` of level `l` has its lowest corner at
 /// `origin + [i, j, k] * side / 2^l`.
 #[derive(Clone, Debug)]
 pub struct SizeTree {
     pub(super) origin: Point3,
     pub(super) side: f64,
-    /// The cubes of each level that are split.
+    /// Split cubes of each level.
     split: Vec<FxHashSet<[i32; 3]>>,
     splits: usize,
-    /// Edge length wanted over side of the cube.
+    /// Edge length wanted, relative to the side of the cube.
     per_side: f64,
 }
 
 impl SizeTree {
-    /// The size field of a surface with edge lengths `sizes` at its vertices and further bounds; none for a surface
-    /// without extent or sizes that are not positive.
+    /// Builds the size field of a surface with edge lengths `sizes` at its vertices and further bounds. Returns `None`
+    /// for a surface without extent or with sizes that are not positive.
     pub fn new(surface: &TriMesh, sizes: &[f64], limits: &[SizeLimit], options: &TreeOptions) -> Option<Self> {
         let mut wanted = sizes.to_vec();
         for limit in limits {
@@ -67,7 +67,7 @@ impl SizeTree {
         }
         let (low, extent) = bounds(surface);
         let mut side = options.cell * reference;
-        // The coarsest cubes: as large as the coarse parts of the surface allow, or the whole where that is wanted.
+        // Coarsest cubes: as large as the coarse parts of the surface allow, or up to the whole if coarsening is on.
         let limit = if options.coarsen { extent } else { SPLIT_ABOVE / options.cell * options.cell * coarsest };
         while side * 2.0 <= limit && side < extent {
             side *= 2.0;
@@ -103,30 +103,30 @@ impl SizeTree {
         self.side / (1_u64 << level) as f64
     }
 
-    /// Number of levels that cubes can have.
+    /// Number of levels.
     pub fn levels(&self) -> usize {
         self.split.len()
     }
 
-    /// Whether a cube is split into eight.
+    /// True if a cube is split into eight.
     pub fn is_split(&self, level: usize, cube: [i32; 3]) -> bool {
         self.split.get(level).is_some_and(|s| s.contains(&cube))
     }
 
-    /// Whether all cubes have one size.
+    /// True if all cubes have one size.
     #[cfg(test)]
     pub fn is_uniform(&self) -> bool {
         self.splits == 0
     }
 
-    /// The cube of a level that holds a point.
+    /// Cube of a level that contains a point.
     pub fn cube_at(&self, p: &Point3, level: usize) -> [i32; 3] {
         let d = (p - self.origin) / self.side(level);
         // Saturates for points far outside.
         [d.x.floor() as i32, d.y.floor() as i32, d.z.floor() as i32]
     }
 
-    /// The edge length wanted at a place.
+    /// Edge length wanted at a point.
     pub fn size_at(&self, p: &Point3) -> f64 {
         let mut level = 0;
         while self.is_split(level, self.cube_at(p, level)) {
@@ -155,12 +155,12 @@ impl SizeTree {
         }
     }
 
-    /// Splits the cubes in the surface's box whose centre asks for it.
+    /// Splits the cubes in the surface's bounding box as the size function asks.
     fn split_by(&mut self, surface: &TriMesh, f: &dyn Fn(&Point3) -> f64) {
         let (_, extent) = bounds(surface);
         let high = surface.points.iter().fold(self.origin, |m, p| m.sup(p));
         let last = self.cube_at(&high, 0);
-        // Functions are looked at no more coarsely than this.
+        // Largest cube side at which one sample of the function suffices.
         let look = extent / 16.0;
         let mut stack: Vec<(usize, [i32; 3])> = Vec::new();
         for i in 0..=last[0] {
@@ -207,7 +207,7 @@ impl SizeTree {
         }
     }
 
-    /// Splits cubes until neighbours, across corners too, differ by one level at most.
+    /// Splits cubes until neighbours, including those across corners, differ by at most one level.
     fn balance(&mut self) {
         for level in (1..self.levels()).rev() {
             let cubes: Vec<[i32; 3]> = self.split[level].iter().copied().collect();
@@ -229,14 +229,14 @@ pub(super) fn children([i, j, k]: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
     (0..8).map(move |n| [2 * i + (n & 1), 2 * j + ((n >> 1) & 1), 2 * k + (n >> 2)])
 }
 
-/// The lowest corner of a surface's box and its longest side.
+/// Lowest corner of a surface's bounding box and its longest side.
 fn bounds(surface: &TriMesh) -> (Point3, f64) {
     let Some(first) = surface.points.first() else { return (Point3::origin(), 0.0) };
     let (low, high) = surface.points.iter().fold((*first, *first), |(l, h), p| (l.inf(p), h.sup(p)));
     (low, (high - low).max())
 }
 
-/// The edge length of the coarse parts of a surface: what nine tenths of its area are finer than.
+/// Edge length of the coarse parts of a surface: the 90th percentile by area.
 fn coarsest(surface: &TriMesh, sizes: &[f64]) -> f64 {
     let mut parts: Vec<(f64, f64)> = Vec::with_capacity(surface.triangles.len());
     for t in &surface.triangles {

@@ -1,4 +1,4 @@
-//! Amira's and Avizo's spatial graphs, as text: vertices, edges, and the points along each edge with their thickness.
+//! Spatial graphs of Amira and Avizo in ASCII: vertices, edges, and edge points with their thickness.
 
 mod error;
 mod read;

@@ -1,4 +1,4 @@
-//! Edges with the points along them become polylines.
+//! Reader that converts edges and their points to polylines.
 
 use super::error::AmiraError;
 use super::sections::{Array, Of, Sections};
@@ -16,7 +16,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
         let of_kind = sections.arrays.iter().filter(|a| a.of == of && a.components == 1);
         of_kind.map(|a| a.name.clone()).collect()
     };
-    // Radii along edges are those of nodes; an array on vertices alone leaves the points between without.
+    // Radii on edge points have priority; an array on vertices alone has no values for points between.
     let choice = Choice::of(&scalars(Of::Points), &scalars(Of::Edges), options)?;
     let values = |of: Of, name: Option<&str>| {
         let name = name?;
@@ -38,13 +38,13 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
     Ok(network)
 }
 
-/// Makes sure that an array has all its values.
+/// Checks that an array has all its values.
 fn full(sections: &Sections, array: &Array, found: usize) -> Result<(), AmiraError> {
     if found == sections.count(array.of) { Ok(()) } else { Err(AmiraError::Missing { what: "the data of the radius" }) }
 }
 
-/// The edges as lines: vertices are the first points, those along edges follow, but for the ends of each edge, which lie
-/// where its vertices do. With the radii along them.
+/// Edges as polylines, with the radii along them. Vertices are the first points. Edge points follow, except the ends of
+/// each edge, which coincide with its vertices.
 fn polylines(sections: &Sections, along: Option<&[f64]>) -> Result<(Polylines, Option<Vec<f64>>), AmiraError> {
     let places = |values: &[f64]| -> Vec<Point3> { values.as_chunks::<3>().0.iter().map(|&p| p.into()).collect() };
     let mut points = places(sections.find(Of::Vertices, "VertexCoordinates", 3)?);
@@ -82,7 +82,7 @@ fn polylines(sections: &Sections, along: Option<&[f64]>) -> Result<(Polylines, O
     Ok((Polylines { points, ends: line_ends, path }, corners))
 }
 
-/// The radii along one edge: at its first vertex, at the points that are kept, at its last vertex.
+/// Appends the radii along an edge: at its first vertex, at the kept points, and at its last vertex.
 fn add_corners(corners: &mut Vec<f64>, along: &[f64], kept: std::ops::Range<usize>) {
     // An edge without points has no radius.
     corners.push(along.first().copied().unwrap_or(f64::NAN));

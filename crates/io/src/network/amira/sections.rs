@@ -1,9 +1,9 @@
-//! What is declared at the head of a spatial graph, and the numbers below.
+//! Declarations and data sections of a spatial graph.
 
 use super::error::AmiraError;
 use crate::text::{TextFault, Words, shown};
 
-/// Of what an array has values.
+/// Element type of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Of {
     Vertices,
@@ -11,22 +11,22 @@ pub(super) enum Of {
     Points,
 }
 
-/// An array.
+/// Array with its values.
 pub(super) struct Array {
     pub of: Of,
     pub name: String,
-    /// Values for each.
+    /// Values per element.
     pub components: usize,
     pub values: Vec<f64>,
 }
 
-/// The arrays of a file.
+/// Arrays of a file.
 #[derive(Default)]
 pub(super) struct Sections {
-    /// Numbers of vertices, edges and points.
+    /// Number of vertices, edges and points.
     counts: [usize; 3],
     pub arrays: Vec<Array>,
-    /// The mark of each array.
+    /// Data mark of each array.
     marks: Vec<Vec<u8>>,
 }
 
@@ -55,19 +55,19 @@ impl Sections {
         Ok(sections)
     }
 
-    /// How many vertices, edges or points there are.
+    /// Number of vertices, edges or points.
     pub(super) fn count(&self, of: Of) -> usize {
         self.counts[of as usize]
     }
 
-    /// An array by its name, if it has so many values for each.
+    /// Finds an array by name and number of components.
     pub(super) fn find(&self, of: Of, name: &'static str, components: usize) -> Result<&[f64], AmiraError> {
         let found = self.arrays.iter().find(|a| a.of == of && a.name == name && a.components == components);
         let full = found.filter(|a| Some(a.values.len()) == self.count(of).checked_mul(components));
         full.map(|a| a.values.as_slice()).ok_or(AmiraError::Missing { what: name })
     }
 
-    /// `define VERTEX 148`; other things may be defined, too.
+    /// Parses `define VERTEX 148`; other definitions are ignored.
     fn define(&mut self, words: &mut Words) -> Result<(), AmiraError> {
         if let Some(of) = words.word_here().and_then(kind) {
             self.counts[of as usize] = words.count("a number of vertices, edges or points", 1)?;
@@ -76,12 +76,12 @@ impl Sections {
         Ok(())
     }
 
-    /// `{ float[3] VertexCoordinates } @1`
+    /// Parses `{ float[3] VertexCoordinates } @1`.
     fn declare(&mut self, of: Of, words: &mut Words) -> Result<(), AmiraError> {
         let line = words.line();
         let mut next = || words.word_here().ok_or(AmiraError::BadDeclaration { line });
         if next()? != b"{" {
-            // A group of parameters that is called so.
+            // A parameter group with this name.
             words.skip_line();
             return Ok(());
         }
@@ -99,13 +99,13 @@ impl Sections {
         Ok(())
     }
 
-    /// The numbers below a mark.
+    /// Reads the values below a mark.
     fn fill(&mut self, mark: &[u8], words: &mut Words) -> Result<(), AmiraError> {
         let line = words.line();
         let at = self.marks.iter().position(|m| m == mark);
         let at = at.ok_or_else(|| AmiraError::Undeclared { line, mark: shown(mark) })?;
         let count = self.counts[self.arrays[at].of as usize].saturating_mul(self.arrays[at].components);
-        // Each number takes a blank and a digit at least: no more are there than the file can hold.
+        // Each value takes at least a separator and a digit, which bounds the count by the file size.
         if count > words.rest() {
             return Err(TextFault::CutShort { line, missing: "all values of an array" }.into());
         }

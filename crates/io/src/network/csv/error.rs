@@ -1,13 +1,13 @@
-//! What can be wrong with tables of nodes and edges.
+//! Errors of node and edge tables.
 
 use crate::network::graph::GraphFault;
 
-/// Which of the two tables.
+/// Identifies one of the two tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Table {
-    /// That of nodes.
+    /// Node table.
     Nodes,
-    /// That of edges.
+    /// Edge table.
     Edges,
 }
 
@@ -20,7 +20,7 @@ impl std::fmt::Display for Table {
     }
 }
 
-/// Why tables are no usable network.
+/// Errors of tables.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CsvError {
@@ -29,26 +29,26 @@ pub enum CsvError {
     Row {
         line: usize,
         table: Table,
-        /// What is wrong with it.
+        /// Fault of the row.
         what: String,
     },
-    /// There is one table where two are needed.
+    /// One of the two tables is missing.
     #[error(
         "one table alone: nodes and edges are needed, in two files whose names differ by 'nodes' (or 'vertices') and \
          'edges', or in one file with an empty line between them"
     )]
     OneTable,
-    /// The edges name no nodes.
+    /// The columns with the ends of edges are missing.
     #[error(
         "no two columns say where edges begin and end (source and target, from and to, node1id and node2id, start and \
          end); there are: {}",
         available.join(", ")
     )]
     NoEnds {
-        /// The columns there are.
+        /// Column names found.
         available: Vec<String>,
     },
-    /// The tables are no network.
+    /// The tables are not a valid network.
     #[error(transparent)]
     Graph(#[from] GraphFault),
 }

@@ -1,4 +1,4 @@
-//! Tables of nodes and edges, with `;`, `,` or tabs between columns: two files, or one with an empty line between them.
+//! Node and edge tables with `;`, `,` or tab as delimiter, in two files or in one file with an empty line between.
 
 mod error;
 mod partner;

@@ -1,12 +1,12 @@
-//! The file with the other table, by its name.
+//! Locates the file with the other table by its name.
 
 use std::path::{Path, PathBuf};
 
-/// How names of tables of nodes tell that they are, and those of edges.
+/// Name parts that identify node tables and edge tables.
 const NODES: [&str; 5] = ["vertices", "nodes", "points", "vertex", "node"];
 const EDGES: [&str; 5] = ["edges", "links", "segments", "vessels", "edge"];
 
-/// The file with the other table beside a file, and whether that is the one with the edges.
+/// Returns the partner file of a table, with true if it is the edge table.
 pub(in crate::network) fn partner(path: &Path) -> Option<(PathBuf, bool)> {
     let name = path.file_name()?.to_str()?;
     other(path, name, &NODES, &EDGES)
@@ -14,7 +14,7 @@ pub(in crate::network) fn partner(path: &Path) -> Option<(PathBuf, bool)> {
         .or_else(|| other(path, name, &EDGES, &NODES).map(|p| (p, false)))
 }
 
-/// The first file there is whose name has one of `there` where this one has one of `here`.
+/// Finds the first existing file whose name replaces a word of `here` by one of `there`.
 fn other(path: &Path, name: &str, here: &[&str], there: &[&str]) -> Option<PathBuf> {
     let lower = name.to_ascii_lowercase();
     let (at, word) = here.iter().find_map(|word| lower.rfind(word).map(|at| (at, *word)))?;

@@ -1,4 +1,4 @@
-//! Reads a table of nodes and one of edges.
+//! Reader of a node table and an edge table.
 
 use super::error::{CsvError, Table};
 use crate::network::columns::Value;
@@ -6,9 +6,9 @@ use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::graph::{Graph, GraphPlace};
 use crate::network::radii::plain;
 
-/// Columns with the name of a node.
+/// Names of node id columns.
 const IDS: &[&str] = &["id", "nodeid", "node", "vertexid", "vertex", "name", "label", "index", ""];
-/// Columns with the nodes at both ends of an edge.
+/// Names of the column pairs with the ends of an edge.
 const ENDS: [[&str; 2]; 16] = [
     ["source", "target"],
     ["from", "to"],
@@ -28,22 +28,25 @@ const ENDS: [[&str; 2]; 16] = [
     ["in", "out"],
 ];
 
-/// Reads both tables from one file, an empty line between them.
+/// Reads both tables from one file, separated by an empty line.
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, CsvError> {
     let trimmed = bytes.trim_ascii_end();
     let mut begin = 0;
+    // Blank lines before the first table are no separator.
+    let mut in_table = false;
     for line in trimmed.split_inclusive(|&b| b == b'\n') {
         let end = begin + line.len();
-        // Blank lines before the first table part nothing.
-        if line.trim_ascii().is_empty() && !trimmed[..begin].trim_ascii().is_empty() {
+        let blank = line.trim_ascii().is_empty();
+        if blank && in_table {
             return tables((&trimmed[..begin], 0), (&trimmed[end..], lines(&trimmed[..end])), options);
         }
+        in_table |= !blank;
         begin = end;
     }
     Err(CsvError::OneTable)
 }
 
-/// Reads a table of nodes and one of edges from two files.
+/// Reads a node table and an edge table from two files.
 pub(in crate::network) fn read_tables(
     nodes: &[u8],
     edges: &[u8],
@@ -52,12 +55,12 @@ pub(in crate::network) fn read_tables(
     tables((nodes, 0), (edges, 0), options)
 }
 
-/// Number of lines of a text that ends with one.
+/// Number of lines of a text that ends with a line break.
 fn lines(text: &[u8]) -> usize {
     text.split(|&b| b == b'\n').count() - 1
 }
 
-/// Each table comes with the number of lines before it.
+/// Reads two tables, each with the number of lines before it.
 fn tables(nodes: (&[u8], usize), edges: (&[u8], usize), options: &NetworkOptions) -> Result<NetworkFile, CsvError> {
     let mut graph = Graph::default();
     add_nodes(&mut graph, nodes)?;
@@ -71,7 +74,7 @@ fn add_nodes(graph: &mut Graph, (bytes, before): (&[u8], usize)) -> Result<(), C
     while let Some(place) = rows.next()? {
         let row = match id {
             Some(id) => graph.node(rows.field(id), place)?,
-            // Without names nodes are called by their order.
+            // Without an id column, nodes are named by their order.
             None => graph.node(&(rows.count - 1).to_string(), place)?,
         };
         rows.each(|name, value| graph.nodes.set(row, name, value));
@@ -92,16 +95,16 @@ fn add_edges(graph: &mut Graph, (bytes, before): (&[u8], usize)) -> Result<(), C
     Ok(())
 }
 
-/// The rows of a table.
+/// Rows of a table.
 struct Rows<'a> {
     reader: csv::Reader<&'a [u8]>,
     table: Table,
-    /// Of the columns.
+    /// Column names.
     names: Vec<String>,
     record: csv::ByteRecord,
-    /// How many rows were read.
+    /// Number of rows read.
     count: usize,
-    /// Lines of the file before the table.
+    /// Number of lines before the table.
     before: usize,
 }
 
@@ -118,12 +121,12 @@ impl<'a> Rows<'a> {
         Ok(Self { reader, table, names, record: csv::ByteRecord::new(), count: 0, before })
     }
 
-    /// The first column with one of these names, in lower case with letters and digits only.
+    /// Finds the first column with one of these names, reduced to lower case letters and digits.
     fn column(&self, wanted: &[&str]) -> Option<usize> {
         wanted.iter().find_map(|w| self.names.iter().position(|name| plain(name) == *w))
     }
 
-    /// Goes to the next row and tells where it is.
+    /// Advances to the next row and returns its position.
     fn next(&mut self) -> Result<Option<GraphPlace>, CsvError> {
         let table = self.table;
         let there = self.reader.read_byte_record(&mut self.record);
@@ -139,7 +142,7 @@ impl<'a> Rows<'a> {
         self.record.get(column).and_then(|field| std::str::from_utf8(field).ok()).unwrap_or_default()
     }
 
-    /// Passes the values of this row on, with the names of their columns.
+    /// Calls `set` for each column name and value of the row.
     fn each(&self, mut set: impl FnMut(&str, Value)) {
         for (name, field) in self.names.iter().zip(&self.record) {
             set(name, Value::of(&String::from_utf8_lossy(field)));
@@ -147,7 +150,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// What is wrong with a row, its line counted from the beginning of the file.
+/// Error of a row, with its line counted from the start of the file.
 fn row_error(error: &csv::Error, table: Table, before: usize) -> CsvError {
     let line = before + error.position().map_or(1, |p| p.line() as usize);
     let what = match error.kind() {
@@ -159,7 +162,7 @@ fn row_error(error: &csv::Error, table: Table, before: usize) -> CsvError {
     CsvError::Row { line, table, what }
 }
 
-/// What stands between the columns: what there is most of in the first line.
+/// Detects the column delimiter: the most frequent candidate in the first line.
 fn delimiter(bytes: &[u8]) -> u8 {
     let head = bytes.split(|&b| b == b'\n').find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
     let times = |d: u8| head.unwrap_or_default().split(|&b| b == d).count();

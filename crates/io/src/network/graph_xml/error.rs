@@ -1,41 +1,41 @@
-//! What can be wrong with a graph in XML.
+//! Errors of XML graphs.
 
 use crate::network::graph::GraphFault;
 
-/// Why a GraphML or GXL file is no usable network.
+/// Errors of a GraphML or GXL file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GraphXmlError {
     /// The bytes are not text.
     #[error("no XML: byte {byte} is not text; is it a graph (.graphml, .gxl)?")]
     NotText {
-        /// Where.
+        /// Byte offset.
         byte: usize,
     },
-    /// The XML parser gave up.
+    /// The XML parser failed.
     #[error("no well-formed XML at byte {byte}: {source}; correct the file, or copy it again if it was cut short")]
     Xml {
-        /// Where.
+        /// Byte offset.
         byte: u64,
-        /// Why.
+        /// Error of the parser.
         source: quick_xml::Error,
     },
-    /// A tag's attributes cannot be read.
+    /// The attributes of a tag are malformed.
     #[error("byte {byte}: the attributes of the tag before it cannot be read: write them as name=\"value\"")]
     BadAttribute {
-        /// Where.
+        /// Byte offset.
         byte: usize,
     },
-    /// The outermost element is none of a graph.
+    /// The root element is not a graph.
     #[error("the outermost XML element is <{root}>, not <graphml> or <gxl>: give the file the extension of its format")]
     NotAGraph {
-        /// The outermost element.
+        /// Name of the root element.
         root: String,
     },
     /// An element lacks an attribute.
     #[error("byte {byte}: <{element}> has no attribute '{attribute}': complete it")]
     NoAttribute {
-        /// Where.
+        /// Byte offset.
         byte: usize,
         element: &'static str,
         attribute: &'static str,
@@ -43,10 +43,10 @@ pub enum GraphXmlError {
     /// The file ends inside an element.
     #[error("the file ends inside <{element}>: it was not written or copied completely; write or copy it again")]
     CutShort {
-        /// The innermost element that is open.
+        /// Innermost open element.
         element: String,
     },
-    /// The graph is no network.
+    /// The graph is not a valid network.
     #[error(transparent)]
     Graph(#[from] GraphFault),
 }

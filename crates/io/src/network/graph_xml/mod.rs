@@ -1,4 +1,4 @@
-//! Graphs in XML: GraphML, and GXL as OpenCCO writes it.
+//! XML graph formats: GraphML, and GXL as written by OpenCCO.
 
 mod error;
 mod read;

@@ -1,4 +1,4 @@
-//! Reads nodes, edges and what is said of them, one element after the other.
+//! Streaming reader of nodes, edges and their attributes.
 
 use super::error::GraphXmlError;
 use crate::network::columns::Value;
@@ -7,23 +7,23 @@ use crate::network::graph::{Graph, GraphPlace};
 use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
-/// What the elements inside belong to.
+/// Owner of the nested elements.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Owner {
     Node(u32),
     Edge(u32),
 }
 
-/// What is open, and what was found so far.
+/// Parser state: open elements and the graph so far.
 #[derive(Default)]
 struct Reading {
     graph: Graph,
-    /// Names of the elements that are open.
+    /// Names of the open elements.
     open: Vec<String>,
     owner: Option<(usize, Owner)>,
-    /// The attribute that is open: at which depth, its name, its text.
+    /// Open attribute: depth, name and text.
     value: Option<(usize, String, String)>,
-    /// GraphML: what the keys are called.
+    /// Names of GraphML keys.
     keys: FxHashMap<String, String>,
 }
 
@@ -91,7 +91,7 @@ impl Reading {
 
     fn text(&mut self, text: &str) {
         if let Some((_, _, whole)) = &mut self.value {
-            // Parts of a list stand in elements of their own.
+            // List items are separate elements.
             whole.push(' ');
             whole.push_str(text.trim());
         }
@@ -112,7 +112,7 @@ impl Reading {
     }
 }
 
-/// An attribute of a tag without the blanks around it, if it is there.
+/// Trimmed attribute of a tag, if present.
 fn attribute(tag: &BytesStart, byte: usize, name: &str) -> Result<Option<String>, GraphXmlError> {
     for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute.map_err(|_| GraphXmlError::BadAttribute { byte })?;
@@ -129,7 +129,7 @@ fn needed(tag: &BytesStart, byte: usize, element: &'static str, name: &'static s
     attribute(tag, byte, name)?.ok_or(GraphXmlError::NoAttribute { byte, element, attribute: name })
 }
 
-/// GraphML's name of an attribute of edges, or GXL's.
+/// Attribute of an edge under its GraphML name, else under its GXL name.
 fn either(tag: &BytesStart, byte: usize, [graphml, gxl]: [&'static str; 2]) -> Result<String, GraphXmlError> {
     match attribute(tag, byte, graphml)? {
         Some(value) => Ok(value),

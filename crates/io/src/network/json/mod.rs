@@ -1,4 +1,4 @@
-//! JSON as NetworkX writes it (node-link): a list of nodes with positions, a list of edges that name them.
+//! JSON in NetworkX's node-link format: a list of nodes with positions, and a list of edges between them.
 
 mod read;
 

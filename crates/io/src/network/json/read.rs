@@ -1,27 +1,27 @@
-//! Reads nodes and links.
+//! Reader of nodes and links.
 
 use crate::network::columns::Value;
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::graph::{Graph, GraphFault, GraphPlace};
 use serde_json::{Map, Value as Json};
 
-/// Why a JSON file is no usable network.
+/// Errors of a JSON network.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JsonError {
-    /// It is not well-formed.
+    /// The JSON is malformed.
     #[error("no well-formed JSON: {0}; correct the file, or copy it again if it was cut short")]
     Json(#[from] serde_json::Error),
     /// A list is missing.
     #[error("there is no list '{list}' in the outermost object: write the graph as node-link data")]
     NoList {
-        /// What is missing.
+        /// Name of the missing list.
         list: &'static str,
     },
-    /// An entry of a list is no object, or lacks a key.
+    /// An entry of a list is not an object, or lacks a key.
     #[error("{place}: '{key}' with a word or a number is needed: complete it")]
     NoKey { place: GraphPlace, key: &'static str },
-    /// The graph is no network.
+    /// The graph is not a valid network.
     #[error(transparent)]
     Graph(#[from] GraphFault),
 }
@@ -31,7 +31,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
     let whole: Json = serde_json::from_slice(bytes)?;
     let list = |names: &[&str]| names.iter().find_map(|name| whole.get(name)).and_then(Json::as_array);
     let nodes = list(&["nodes"]).ok_or(JsonError::NoList { list: "nodes" })?;
-    // Until version 3.4 NetworkX called them links.
+    // NetworkX called edges links before version 3.4.
     let edges = list(&["edges", "links"]).ok_or(JsonError::NoList { list: "edges" })?;
     let mut graph = Graph::default();
     for (at, node) in nodes.iter().enumerate() {
@@ -52,7 +52,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
     Ok(graph.into_network(options)?)
 }
 
-/// What an entry has under a key that names a node: a word, a number, or a list of these.
+/// Node name under a key of an entry: a word, a number, or a list of these.
 fn name(entry: &Json, key: &'static str, place: GraphPlace) -> Result<String, JsonError> {
     match entry.get(key) {
         Some(Json::String(word)) => Ok(word.clone()),
@@ -61,7 +61,7 @@ fn name(entry: &Json, key: &'static str, place: GraphPlace) -> Result<String, Js
     }
 }
 
-/// The attributes of an entry, but for those that name nodes.
+/// Attributes of an entry, except node names.
 fn attributes<'a>(entry: &'a Json, but: &'a [&str]) -> impl Iterator<Item = (&'a str, Value)> {
     let entries = entry.as_object().into_iter().flat_map(Map::iter);
     entries.filter(|(key, _)| !but.contains(&key.as_str())).filter_map(|(key, value)| {

@@ -1,4 +1,4 @@
-//! Reads nodes and edges.
+//! Reader of nodes and edges.
 
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::polylines::{Polylines, Radii};
@@ -6,7 +6,7 @@ use crate::network::radii::{Choice, RadiusFault};
 use crate::npy::{Arrays, NpyError, NpyFault, ensure_rows};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// The arrays that are read.
+/// Arrays to read.
 pub(in crate::network) const ARRAYS: [&str; 5] = [NODES, EDGES, RADII, EDGE_RADII, ROOTS];
 
 pub(super) const NODES: &str = "nodes";
@@ -15,19 +15,19 @@ pub(super) const RADII: &str = "radii";
 pub(super) const EDGE_RADII: &str = "edge_radii";
 const ROOTS: &str = "roots";
 
-/// Why arrays are no usable network.
+/// Errors of a network in arrays.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NpyNetworkError {
-    /// An array is missing or wrong.
+    /// An array is missing or invalid.
     #[error(transparent)]
     Array(#[from] NpyError),
-    /// No array can be taken for the radius.
+    /// No array is usable as radius.
     #[error(transparent)]
     Radius(#[from] RadiusFault),
 }
 
-/// `nodes` (n, 3), `edges` (m, 2), `radii` (n) or `edge_radii` (m) or (m, 2), one for each end, or both; `roots` (k) may be there.
+/// Reads `nodes` (n, 3), `edges` (m, 2), `radii` (n), `edge_radii` (m) or (m, 2), and optional `roots` (k).
 pub(in crate::network) fn read(arrays: &Arrays, options: &NetworkOptions) -> Result<NetworkFile, NpyNetworkError> {
     let points = arrays.points(NODES)?;
     let of_nodes = ("nodes.npy", points.len());

@@ -1,4 +1,4 @@
-//! Networks come back as they were; arrays that do not fit each other are named.
+//! Tests of round trips and of inconsistent arrays.
 
 use super::{read, write};
 use crate::network::content::{NetworkArray, NetworkOptions};
@@ -26,7 +26,7 @@ fn a_network_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("network.npyd");
     let arrays = [NetworkArray::NodeInts("OriginalNode", vec![0, 1, 2, 3])];
-    // Twice: the folder is replaced.
+    // Twice, to test the replacement of the folder.
     for _ in 0..2 {
         write(&path, &network, &arrays).unwrap();
     }

@@ -1,4 +1,4 @@
-//! Writes nodes and edges, and what refinement knows of each node.
+//! Writer of nodes and edges, and of refinement data per node.
 
 use super::read::{EDGE_RADII, EDGES, NODES, RADII};
 use crate::file::AtomicFolder;
@@ -8,7 +8,7 @@ use anastomesh_skeleton::{Edge, Node, Skeleton};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Files of the folder beside those of the network itself.
+/// Names of additional arrays, and their files in the folder.
 const BESIDE: [(&str, &str); 2] = [("OriginalNode", "original_node"), ("Displacement", "displacement")];
 
 fn is_ours(file: &str) -> bool {
@@ -16,12 +16,12 @@ fn is_ours(file: &str) -> bool {
     known.into_iter().any(|name| file.strip_suffix(".npy") == Some(name))
 }
 
-/// Makes sure that the folder can be made or replaced. Leaves nothing behind.
+/// Checks that the folder can be created or replaced, without side effects.
 pub(in crate::network) fn ensure_writable(path: &Path) -> io::Result<()> {
     AtomicFolder::create(path, is_ours).map(drop)
 }
 
-/// Writes a network, whole or not at all; radii of edges at both of their ends.
+/// Writes a network atomically, with edge radii at both ends.
 pub(in crate::network) fn write(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
     let Skeleton { nodes, edges, .. } = skeleton;

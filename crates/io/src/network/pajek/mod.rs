@@ -1,4 +1,4 @@
-//! Pajek's `.net`: vertices with coordinates and parameters, arcs and edges with theirs.
+//! Pajek format `.net`: vertices with coordinates and parameters, and arcs and edges with theirs.
 
 mod read;
 

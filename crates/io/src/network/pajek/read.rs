@@ -1,35 +1,35 @@
-//! Reads lines of vertices, arcs and edges.
+//! Reader of vertices, arcs and edges.
 
 use crate::network::columns::Value;
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::graph::{Graph, GraphFault, GraphPlace};
 
-/// Why a Pajek file is no usable network.
+/// Errors of a Pajek file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PajekError {
-    /// There is no section of vertices.
+    /// There is no vertex section.
     #[error("there is no line '*Vertices' in the file: is it a Pajek network?")]
     NoVertices,
-    /// A section of matrices and the like.
+    /// The section type is not supported, such as a matrix.
     #[error("line {line}: the section '{section}' cannot be read: save vertices, arcs and edges as lists")]
     UnknownSection { line: usize, section: String },
-    /// A line lacks numbers.
+    /// A line has too few numbers.
     #[error("line {line}: an edge needs the numbers of two vertices: complete it")]
     TooShort { line: usize },
-    /// The graph is no network.
+    /// The graph is not a valid network.
     #[error(transparent)]
     Graph(#[from] GraphFault),
 }
 
-/// The section that a line stands in.
+/// Section of the current line.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Section {
     Before,
     Vertices,
-    /// A vertex, another, the value of the line.
+    /// Two vertices and the value of the line per row.
     Edges,
-    /// A vertex and all that are joined to it.
+    /// A vertex and all its neighbours per row.
     Lists,
 }
 
@@ -84,7 +84,7 @@ fn section_of(word: &str, line: usize) -> Result<Section, PajekError> {
     }
 }
 
-/// Number, label, coordinates, perhaps a shape, then parameters, each after its name.
+/// Parses a vertex: number, label, coordinates, optional shape, then name-value parameters.
 fn vertex(graph: &mut Graph, words: &[&str], line: usize) -> Result<(), PajekError> {
     let row = graph.node(words[0], GraphPlace::Line(line))?;
     let rest = words.get(2..).unwrap_or_default();
@@ -95,7 +95,7 @@ fn vertex(graph: &mut Graph, words: &[&str], line: usize) -> Result<(), PajekErr
         found += 1;
     }
     let rest = &rest[found..];
-    // Parameters come by twos, so that an odd word in front is a shape.
+    // Parameters are pairs, so an odd leading word is a shape.
     for (name, value) in pairs(&rest[rest.len() % 2..]) {
         graph.nodes.set(row, name, value);
     }
@@ -109,12 +109,12 @@ fn ends<'a>(words: &'a [&str], line: usize) -> Result<[&'a str; 2], PajekError> 
     }
 }
 
-/// Names and the values after them.
+/// Pairs of names and values.
 fn pairs<'a>(words: &'a [&str]) -> impl Iterator<Item = (&'a str, Value)> {
     words.as_chunks::<2>().0.iter().map(|[name, value]| (*name, Value::of(value)))
 }
 
-/// The words of a line; those in quotes may hold blanks.
+/// Words of a line; quoted words may contain spaces.
 fn words(text: &str) -> Vec<&str> {
     let mut words = Vec::new();
     let mut rest = text.trim_start();

@@ -1,4 +1,4 @@
-//! The input of SimVascular's one-dimensional solver: nodes, segments with an area at either end, joints between segments.
+//! Input of SimVascular's one-dimensional solver: nodes, segments with end areas, and joints between segments.
 
 mod read;
 

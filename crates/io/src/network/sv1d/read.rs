@@ -1,4 +1,4 @@
-//! Reads nodes, segments and joints.
+//! Reader of nodes, segments and joints.
 
 use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions, NodeNames};
 use crate::network::polylines::{Polylines, Radii};
@@ -7,41 +7,41 @@ use anastomesh_mesh::geometry::Point3;
 use rustc_hash::FxHashMap;
 use std::f64::consts::PI;
 
-/// Why a solver's input is no usable network.
+/// Errors of a solver input.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Sv1dError {
-    /// A number is missing or wrong.
+    /// A number is missing or invalid.
     #[error(transparent)]
     Text(#[from] TextFault),
-    /// Two nodes, segments or lists have one name.
+    /// Two nodes, segments or lists have an equal name.
     #[error("line {line}: {what} '{name}' is there already: names must differ")]
     Repeated { line: usize, what: &'static str, name: String },
-    /// Something names what does not exist.
+    /// A reference has no target.
     #[error("line {line}: {what} '{name}' is not in the file: correct it")]
     Unknown { line: usize, what: &'static str, name: String },
-    /// A joint names a list of segments that does not exist or belongs to another joint.
+    /// A joint refers to a segment list that is missing or belongs to another joint.
     #[error("line {line}: there is no list of segments '{name}' for this joint alone: correct it")]
     NoList { line: usize, name: String },
-    /// An area is no area.
+    /// An area is not positive.
     #[error("line {line}: the area {area} cannot be that of a section: it must be above zero")]
     BadArea { line: usize, area: f64 },
     /// There are no segments.
     #[error("there is no SEGMENT in the file ({nodes} nodes): is it the input of a one-dimensional solver?")]
     NoSegments { nodes: usize },
-    /// There are more nodes than can be numbered.
+    /// The number of nodes exceeds the index range.
     #[error("there are more nodes than can be numbered ({})", u32::MAX)]
     TooMany,
 }
 
-/// A vessel between two nodes.
+/// Vessel between two nodes.
 #[derive(Clone, Copy)]
 struct Segment {
     ends: [u32; 2],
     radii: [f64; 2],
 }
 
-/// Segments that a list names, and where.
+/// Segment list with its line.
 struct List {
     line: usize,
     segments: Vec<i64>,
@@ -56,7 +56,7 @@ struct Input {
     index: FxHashMap<i64, usize>,
     inlets: FxHashMap<Vec<u8>, List>,
     outlets: FxHashMap<Vec<u8>, List>,
-    /// Line, names of the inlet list and of the outlet list.
+    /// Line, name of the inlet list and name of the outlet list.
     joints: Vec<(usize, Vec<u8>, Vec<u8>)>,
 }
 
@@ -84,7 +84,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
     input.into_network()
 }
 
-/// A name, a number of segments, and these.
+/// Parses a list: name, number of segments, and the segments.
 fn list(lists: &mut FxHashMap<Vec<u8>, List>, words: &mut Words) -> Result<(), Sv1dError> {
     let line = words.line();
     let name = words.need_here("the name of a list of segments")?.to_owned();
@@ -117,7 +117,7 @@ impl Input {
         Ok(())
     }
 
-    /// Name, number, length, number of elements, first and last node, area at either end, and what is no geometry.
+    /// Parses a segment: name, number, length, elements, end nodes, end areas, and non-geometric data.
     fn segment(&mut self, words: &mut Words, options: &NetworkOptions) -> Result<(), Sv1dError> {
         let line = words.line();
         words.need_here("the name of a segment")?;
@@ -171,8 +171,8 @@ impl Input {
         Ok(network)
     }
 
-    /// Vessels from where the first segment of a joint ends to where others begin, if that is elsewhere. Each list belongs to
-    /// one joint.
+    /// Short vessels from the end of a joint's first segment to the start of others, if these differ. Each list belongs
+    /// to one joint.
     fn bridges(&mut self) -> Result<Vec<Segment>, Sv1dError> {
         let mut bridges = Vec::new();
         for (line, inlet, outlet) in std::mem::take(&mut self.joints) {

@@ -1,4 +1,4 @@
-//! SWC: one node a row (id, type, x, y, z, radius, parent).
+//! SWC format: one node per row (id, type, x, y, z, radius, parent).
 
 mod error;
 mod read;

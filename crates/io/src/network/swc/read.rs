@@ -1,4 +1,4 @@
-//! Reads rows of nodes, in any order, with any ids.
+//! Reader of node rows, in any order and with any ids.
 
 use super::error::SwcError;
 use crate::network::content::{NetworkFile, NetworkOptions, NodeNames};
@@ -14,7 +14,7 @@ struct Row {
 
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, SwcError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    // Files from old Macs end their lines by a carriage return alone.
+    // Files from classic Mac OS end their lines with a carriage return only.
     let newline = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
     let mut rows: Vec<Row> = Vec::new();
     let mut nodes: Vec<Node> = Vec::new();
@@ -37,7 +37,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
         return Err(SwcError::NoNodes);
     }
     let edges = join_parents(&rows, &nodes, &index)?;
-    // A node alone is the root of nothing.
+    // An isolated node is not a root.
     let mut joined = vec![false; nodes.len()];
     edges.iter().flat_map(|edge| edge.nodes).for_each(|node| joined[node.index()] = true);
     let roots = (0..nodes.len() as u32).map(NodeId).filter(|n| rows[n.index()].parent == -1 && joined[n.index()]);
@@ -70,7 +70,7 @@ fn join_parents(rows: &[Row], nodes: &[Node], index: &FxHashMap<i64, u32>) -> Re
 fn parse_row(line: usize, data: &str, options: &NetworkOptions) -> Result<(Row, Node), SwcError> {
     let mut words = [""; 7];
     let mut found = 0;
-    // More columns than seven are legal; they hold other properties.
+    // More than seven columns are allowed; they hold other properties.
     for (slot, word) in words.iter_mut().zip(data.split_ascii_whitespace()) {
         *slot = word;
         found += 1;
@@ -105,7 +105,7 @@ fn number(line: usize, column: &'static str, text: &str) -> Result<f64, SwcError
     text.parse().map_err(|_| not_a_number(line, column, text))
 }
 
-/// Some programs write ids as `1.0`.
+/// Parses an integer id, which some programs write as `1.0`.
 fn integer(line: usize, column: &'static str, text: &str) -> Result<i64, SwcError> {
     if let Ok(value) = text.parse() {
         return Ok(value);

@@ -1,11 +1,11 @@
-//! Arrays of a legacy file, passed over when they come and decoded when they are asked for.
+//! Arrays of a legacy file, skipped while scanning and decoded on demand.
 
 use super::cursor::Cursor;
 use super::error::VtkLegacyError;
 use crate::text::Place;
 use crate::text::shown;
 
-/// A type of values.
+/// Value type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Bit,
@@ -29,7 +29,7 @@ impl Kind {
             "unsigned_char" => Self::U8,
             "short" => Self::I16,
             "unsigned_short" => Self::U16,
-            // VTK writes its own ids as int, however wide they are in memory.
+            // VTK writes ids as int, whatever their size in memory.
             "int" | "vtkidtype" => Self::I32,
             "unsigned_int" => Self::U32,
             "long" | "vtktypeint64" => Self::I64,
@@ -50,22 +50,22 @@ impl Kind {
     }
 }
 
-/// Values that lie in the file.
+/// Undecoded array in the file.
 #[derive(Clone, Debug)]
 pub(super) struct Array<'a> {
-    /// What the file calls it.
+    /// Name in the file.
     pub name: String,
     /// Number of values.
     pub count: usize,
     kind: Kind,
     bytes: &'a [u8],
-    /// Where they begin.
+    /// Position of its start.
     place: Place,
     binary: bool,
 }
 
 impl<'a> Array<'a> {
-    /// Takes an array of numbers.
+    /// Takes a numeric array.
     pub(super) fn take(
         cursor: &mut Cursor<'a>,
         name: &str,
@@ -88,7 +88,7 @@ impl<'a> Array<'a> {
         Ok(Self { name: name.to_owned(), count, kind, bytes, place, binary: cursor.binary })
     }
 
-    /// The values as floating-point numbers.
+    /// Decodes the values as floating-point numbers.
     pub(super) fn floats(&self) -> Result<Vec<f64>, VtkLegacyError> {
         if !self.binary {
             return self.parsed();
@@ -100,7 +100,7 @@ impl<'a> Array<'a> {
         })
     }
 
-    /// The values as integers.
+    /// Decodes the values as integers.
     pub(super) fn integers(&self) -> Result<Vec<i64>, VtkLegacyError> {
         if !self.binary {
             return self.parsed();
@@ -121,7 +121,7 @@ impl<'a> Array<'a> {
             Kind::U16 => self.words::<2>().map(|w| u16::from_be_bytes(w).into()).collect(),
             Kind::I32 => self.words::<4>().map(|w| i32::from_be_bytes(w).into()).collect(),
             Kind::U32 => self.words::<4>().map(|w| u32::from_be_bytes(w).into()).collect(),
-            // What lies above the largest of these names no point and is no count either.
+            // Values above the signed range are invalid as point index and as count.
             Kind::I64 | Kind::U64 => self.words::<8>().map(i64::from_be_bytes).collect(),
             Kind::F32 | Kind::F64 => Vec::new(),
         }
@@ -143,7 +143,7 @@ impl<'a> Array<'a> {
         words.map(number).collect()
     }
 
-    /// The line of a value of a text file.
+    /// Line of a value in a text file.
     fn place_of(&self, index: usize) -> Place {
         let Place::Line(mut line) = self.place else { return self.place };
         let (mut begun, mut inside) = (0, false);

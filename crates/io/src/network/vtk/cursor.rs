@@ -1,4 +1,4 @@
-//! A place in a legacy VTK file, of which lines of keywords are text whatever the arrays are.
+//! Cursor in a legacy VTK file, whose keyword lines are text even with binary arrays.
 
 use super::error::VtkLegacyError;
 use crate::text::Place;
@@ -7,7 +7,7 @@ use crate::text::shown;
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Whether arrays are binary.
+    /// True if arrays are binary.
     pub binary: bool,
 }
 
@@ -16,7 +16,7 @@ impl<'a> Cursor<'a> {
         Self { bytes: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), at: 0, binary: false }
     }
 
-    /// Where this is, for a message.
+    /// Current position, for a message.
     pub(super) fn place(&self) -> Place {
         self.place_of(self.at)
     }
@@ -28,7 +28,7 @@ impl<'a> Cursor<'a> {
         Place::Line(self.bytes[..at].split(|&b| b == b'\n').count())
     }
 
-    /// The rest of this line, and on to the next one; none at the end of the file.
+    /// Takes the rest of the line; `None` at the end of the file.
     pub(super) fn line(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         if rest.is_empty() {
@@ -39,7 +39,7 @@ impl<'a> Cursor<'a> {
         Some(rest[..length].trim_ascii_end())
     }
 
-    /// The next line that is not blank, as words, and where it begins.
+    /// Takes the next non-blank line as words, with its position.
     pub(super) fn keywords(&mut self) -> Option<(Place, Vec<String>)> {
         loop {
             let at = self.at;
@@ -52,23 +52,23 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Whether the next line that is not blank begins with a word.
+    /// True if the next non-blank line starts with a word.
     pub(super) fn next_is(&self, word: &[u8]) -> bool {
         let rest = self.bytes[self.at..].trim_ascii_start();
         rest.get(..word.len()).is_some_and(|w| w.eq_ignore_ascii_case(word))
             && rest.get(word.len()).is_none_or(u8::is_ascii_whitespace)
     }
 
-    /// Takes a number of bytes.
+    /// Takes `length` bytes.
     pub(super) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
         let taken = self.bytes[self.at..].get(..length)?;
         self.at += length;
         Some(taken)
     }
 
-    /// Takes a number of words, as one piece of text.
+    /// Takes `count` words as one slice.
     pub(super) fn take_words(&mut self, count: usize) -> Option<&'a [u8]> {
-        // A word and the blank before it.
+        // Each word has at least one byte and a separator.
         if count > self.bytes.len() - self.at {
             return None;
         }
@@ -92,19 +92,19 @@ impl<'a> Cursor<'a> {
         (left == 0).then(|| &self.bytes[start..end])
     }
 
-    /// Passes over a block that ends with a blank line.
+    /// Skips a block that ends with a blank line.
     pub(super) fn skip_block(&mut self) {
         while self.line().is_some_and(|line| !line.is_empty()) {}
     }
 
-    /// A fault of a line of keywords.
+    /// Error of a keyword line.
     pub(super) fn bad(place: Place, words: &[String], needed: &'static str) -> VtkLegacyError {
         let keyword = words.first().map(|w| shown(w.as_bytes())).unwrap_or_default();
         VtkLegacyError::BadKeyword { place, keyword, needed }
     }
 }
 
-/// A word of a line; what is no UTF-8 is replaced.
+/// Word of a line, with invalid UTF-8 replaced.
 fn shown_whole(word: &[u8]) -> String {
     String::from_utf8_lossy(word).into_owned()
 }

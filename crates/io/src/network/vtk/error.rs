@@ -1,85 +1,85 @@
-//! What can be wrong with a legacy VTK file.
+//! Errors of legacy VTK files.
 
 use crate::network::radii::{NodeArrayFault, RadiusFault};
 use crate::text::Place;
 
-/// Why a legacy VTK file is no usable network.
+/// Errors of a legacy VTK network.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VtkLegacyError {
-    /// The first line is not that of a legacy VTK file.
+    /// The first line does not identify a legacy VTK file.
     #[error("the first line is not '# vtk DataFile Version …': is it a legacy VTK file?")]
     NotVtk,
-    /// The third line says neither ASCII nor BINARY.
+    /// The third line is neither ASCII nor BINARY.
     #[error("line 3 says '{found}' where ASCII or BINARY has to be: correct it")]
     UnknownEncoding { found: String },
-    /// The dataset is of a kind that has no lines.
+    /// The dataset type has no lines.
     #[error("a dataset of kind '{found}': save lines as POLYDATA or UNSTRUCTURED_GRID")]
     WrongDataset { found: String },
-    /// A keyword that VTK's format does not have.
+    /// The keyword is unknown.
     #[error(
         "{place}: '{found}' is no keyword of a legacy VTK file: a count before it is wrong, or the file is damaged"
     )]
     UnknownKeyword { place: Place, found: String },
-    /// A line of keywords lacks something, or has something else in its place.
+    /// A keyword line is incomplete or malformed.
     #[error("{place}: {keyword} needs {needed}: correct the line")]
     BadKeyword {
         place: Place,
-        /// The keyword of the line.
+        /// Keyword of the line.
         keyword: String,
-        /// What it needs.
+        /// Missing part.
         needed: &'static str,
     },
-    /// A type of values that is not known.
+    /// The value type is unknown.
     #[error("{place}: values of type '{kind}' cannot be read; save the file with numbers")]
     UnknownType { place: Place, kind: String },
-    /// There are fewer values than announced.
+    /// The array is shorter than announced.
     #[error(
         "{place}: {array} is to have {count} values, more than the rest of the file holds; correct the count, or write \
          or copy the file again if it is cut short"
     )]
     CutShort {
         place: Place,
-        /// Which values.
+        /// Array name.
         array: String,
         count: usize,
     },
-    /// A word is no number.
+    /// A word is not a number.
     #[error("{place}: value {index} (from 0) of {array} is '{text}', which is no number of its type: correct it")]
     NotANumber {
         place: Place,
-        /// Which values.
+        /// Array name.
         array: String,
         index: usize,
         text: String,
     },
-    /// A list of cells does not hold what it says.
+    /// A cell list is inconsistent.
     #[error("{place}: cell {cell} (from 0) of {list} goes beyond its list, or offsets do not ascend: correct the list")]
     BadCells {
         place: Place,
-        /// The keyword of the list.
+        /// Keyword of the list.
         list: &'static str,
         cell: usize,
     },
-    /// A section that every such file has is missing.
+    /// A required section is missing.
     #[error("there is no section {section} in the file: a network has points and lines; was it written completely?")]
     MissingSection { section: &'static str },
-    /// An array has not as many values as there are points or cells.
+    /// The length of an array differs from the number of points or cells.
     #[error("array '{array}' has {found} values, but there are {expected} points or cells: correct the file")]
     WrongLength {
         array: String,
-        /// How many values it should have.
+        /// Expected number of values.
         expected: usize,
-        /// How many it has.
+        /// Number of values found.
         found: usize,
     },
-    /// A line names a point that does not exist.
+    /// A line refers to a missing point.
     #[error(
         "line cell {line} (from 0) names point {point}, but there are only {points} points (from 0): correct the list of cells"
     )]
     UnknownPoint {
         line: usize,
-        /// What it names.
+        /// Invalid point index.
         point: i64,
         /// Number of points.
         points: usize,
@@ -90,13 +90,13 @@ pub enum VtkLegacyError {
         /// Number of other cells.
         others: usize,
     },
-    /// No array can be taken for the radius.
+    /// No array is usable as radius.
     #[error(transparent)]
     Radius(#[from] RadiusFault),
-    /// There are no numbers of nodes under the name that was asked for.
+    /// The requested node array is not usable.
     #[error(transparent)]
     NodeArray(#[from] NodeArrayFault),
-    /// There are more points or edges than can be numbered.
+    /// The number of points or edges exceeds the index range.
     #[error("there are more points than can be numbered ({})", u32::MAX)]
     TooMany,
 }

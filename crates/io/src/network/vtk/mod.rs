@@ -1,4 +1,4 @@
-//! VTK's legacy files: poly data or an unstructured grid whose lines are vessels, as text or binary, of versions 2 to 5.1.
+//! Legacy VTK files, versions 2 to 5.1, text or binary: poly data or unstructured grids with vessels as lines.
 
 mod array;
 mod cursor;

@@ -1,4 +1,4 @@
-//! Lines and radii out of the sections of a legacy file.
+//! Extraction of lines and radii from the sections of a legacy file.
 
 use super::array::Array;
 use super::error::VtkLegacyError;
@@ -8,7 +8,7 @@ use crate::network::polylines::{Polylines, Radii, tell_groups};
 use crate::network::radii::{Choice, GROUPS, node_array};
 use anastomesh_mesh::geometry::Point3;
 
-/// Types of cells that are lines.
+/// Cell types of lines.
 const LINE_TYPES: [i64; 2] = [3, 4];
 
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtkLegacyError> {
@@ -51,7 +51,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
     Ok(network)
 }
 
-/// The values of the chosen array, one per point or cell; none when no array was chosen.
+/// Values of the chosen array, one per point or cell; `None` if no array was chosen.
 fn radii(
     choice: &Choice,
     arrays: &[Array],
@@ -62,7 +62,7 @@ fn radii(
     Ok(Some(choice.radii(&array.name, numbers(array, expected)?)))
 }
 
-/// The values of an array, of which there have to be so many.
+/// Values of an array with the expected length.
 fn numbers(array: &Array, expected: usize) -> Result<Vec<f64>, VtkLegacyError> {
     if array.count != expected {
         return Err(VtkLegacyError::WrongLength { array: array.name.clone(), expected, found: array.count });
@@ -70,7 +70,7 @@ fn numbers(array: &Array, expected: usize) -> Result<Vec<f64>, VtkLegacyError> {
     array.floats()
 }
 
-/// Group and blanking of each cell; none where the file does not have both, as integers.
+/// Group and blanking of each cell; `None` unless the file has both as integers.
 fn groups(arrays: &[Array], expected: usize) -> Result<Option<Vec<[i64; 2]>>, VtkLegacyError> {
     let find = |name| arrays.iter().find(|a: &&Array| a.name == name);
     let [Some(groups), Some(blanked)] = GROUPS.map(find) else { return Ok(None) };
@@ -83,12 +83,12 @@ fn groups(arrays: &[Array], expected: usize) -> Result<Option<Vec<[i64; 2]>>, Vt
     Ok(Some(groups.into_iter().zip(blanked).map(<[i64; 2]>::from).collect()))
 }
 
-/// The cells that are lines.
+/// Line cells.
 #[derive(Default)]
 struct Lines {
     ends: Vec<usize>,
     path: Vec<i64>,
-    /// Each one's place among all cells.
+    /// Index of each line among all cells.
     index: Vec<usize>,
     /// Number of all cells.
     count: usize,
@@ -110,7 +110,7 @@ impl Lines {
         Ok(lines)
     }
 
-    /// Adds those cells of a list that are lines.
+    /// Adds the line cells of a list.
     fn add(&mut self, list: &CellList, taken: impl Fn(usize) -> bool) -> Result<(), VtkLegacyError> {
         let points = list.points.integers()?;
         let offsets = list.offsets.as_ref().map(Array::integers).transpose()?;

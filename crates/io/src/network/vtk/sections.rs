@@ -1,4 +1,4 @@
-//! The sections of a legacy file, one keyword after the other.
+//! Sections of a legacy file, parsed keyword by keyword.
 
 use super::array::Array;
 use super::cursor::Cursor;
@@ -6,35 +6,35 @@ use super::error::VtkLegacyError;
 use crate::text::Place;
 use crate::text::shown;
 
-/// A list of cells of poly data, or all cells of an unstructured grid.
+/// Cell list of poly data, or all cells of an unstructured grid.
 pub(super) struct CellList<'a> {
-    /// Its keyword.
+    /// Keyword of the list.
     pub keyword: &'static str,
-    /// Where it begins.
+    /// Position of its start.
     pub place: Place,
-    /// For each cell where it begins in the points, and at last where all end (since version 5); without it each cell in
-    /// `points` is its number of points, then these.
+    /// Offsets of the cells in `points`, plus the total (since version 5). Without offsets, each cell in `points` is a
+    /// count followed by its points.
     pub offsets: Option<Array<'a>>,
     pub points: Array<'a>,
     /// Number of cells.
     pub count: usize,
 }
 
-/// What is there of a file.
+/// Sections of a file.
 #[derive(Default)]
 pub(super) struct Sections<'a> {
     pub points: Option<Array<'a>>,
-    /// In the order of the file.
+    /// Cell lists in file order.
     pub lists: Vec<CellList<'a>>,
-    /// The types of the cells of an unstructured grid.
+    /// Cell types of an unstructured grid.
     pub types: Option<Array<'a>>,
     pub point_data: Vec<Array<'a>>,
     pub cell_data: Vec<Array<'a>>,
-    /// Whether it is an unstructured grid.
+    /// True for an unstructured grid.
     pub grid: bool,
 }
 
-/// To whom the arrays of a section belong.
+/// Owner of the arrays in a section.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Owner {
     Dataset,
@@ -42,11 +42,11 @@ enum Owner {
     Cells,
 }
 
-/// The lists of cells that there are, in the order in which cell data run over them.
+/// Keywords of cell lists, in the order of cell data.
 pub(super) const LISTS: [&str; 5] = ["VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS", "CELLS"];
 
 impl<'a> Sections<'a> {
-    /// Finds the sections of a file.
+    /// Parses the sections of a file.
     pub(super) fn of(bytes: &'a [u8]) -> Result<Self, VtkLegacyError> {
         let mut cursor = Cursor::new(bytes);
         let first = cursor.line().unwrap_or_default();
@@ -84,7 +84,7 @@ impl<'a> Sections<'a> {
         Ok(sections)
     }
 
-    /// Keeps arrays of points and cells.
+    /// Stores arrays of points and cells.
     fn keep(&mut self, owner: Owner, arrays: Vec<Array<'a>>) {
         match owner {
             Owner::Points => self.point_data.extend(arrays),
@@ -94,14 +94,14 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// A line that begins a section.
+/// First line of a section.
 struct Head {
     place: Place,
     words: Vec<String>,
 }
 
 impl Head {
-    /// The word at a place of the line as a count.
+    /// Parses the word at a position of the line as a count.
     fn count(&self, at: usize, needed: &'static str) -> Result<usize, VtkLegacyError> {
         let count = self.words.get(at).and_then(|w| w.parse().ok());
         count.ok_or_else(|| Cursor::bad(self.place, &self.words, needed))
@@ -124,8 +124,7 @@ impl Head {
         Array::take(cursor, "POINTS", self.word(2, "a type of values")?, count.checked_mul(3))
     }
 
-    /// A list of cells, of which two numbers are told: since version 5 those of offsets and of points, before it those of
-    /// cells and of all integers.
+    /// Parses a cell list with its two counts: offsets and points since version 5, or cells and integers before.
     fn cells<'a>(&self, cursor: &mut Cursor<'a>, keyword: &'static str) -> Result<CellList<'a>, VtkLegacyError> {
         let first = self.count(1, "a number of cells")?;
         let second = self.count(2, "the number of cells and the size of the list")?;
@@ -147,7 +146,7 @@ impl Head {
         Ok(CellList { keyword, place, offsets: Some(offsets), points, count: first.saturating_sub(1) })
     }
 
-    /// The arrays of a section of attributes, for each of `count` points or cells.
+    /// Parses the arrays of an attribute section, for `count` points or cells.
     fn attributes<'a>(
         &self,
         cursor: &mut Cursor<'a>,
@@ -187,7 +186,7 @@ impl Head {
         Ok(vec![Array::take(cursor, &name, kind, width.and_then(|width| count.checked_mul(width)))?])
     }
 
-    /// Arrays that each say how many values they have.
+    /// Parses field arrays, which have individual lengths.
     fn field<'a>(&self, cursor: &mut Cursor<'a>) -> Result<Vec<Array<'a>>, VtkLegacyError> {
         const NEEDED: &str = "a name, a number of components, a number of tuples and a type of values";
         let number = self.count(2, "a name and a number of arrays")?;
@@ -206,7 +205,7 @@ impl Head {
             let count = width.checked_mul(tuples);
             if kind.eq_ignore_ascii_case("string") {
                 skip_strings(cursor, &name, count)?;
-                // Nothing that could be a radius: an array without values.
+                // Cannot be a radius: becomes an array without values.
                 arrays.push(Array::take(cursor, &name, "bit", Some(0))?);
             } else {
                 arrays.push(Array::take(cursor, &name, kind, count)?);
@@ -216,7 +215,7 @@ impl Head {
     }
 }
 
-/// Passes over strings: one a line, or each after its length.
+/// Skips strings: one per line in text files, length-prefixed in binary ones.
 fn skip_strings(cursor: &mut Cursor, name: &str, count: Option<usize>) -> Result<(), VtkLegacyError> {
     let count = count.unwrap_or(usize::MAX);
     let cut = VtkLegacyError::CutShort { place: cursor.place(), array: shown(name.as_bytes()), count };
@@ -229,7 +228,7 @@ fn skip_strings(cursor: &mut Cursor, name: &str, count: Option<usize>) -> Result
     Ok(())
 }
 
-/// The highest two bits of the first byte tell how many bytes the length has.
+/// The two highest bits of the first byte encode the size of the length.
 fn skip_string(cursor: &mut Cursor) -> Option<()> {
     let first = *cursor.take(1)?.first()?;
     let more = match first >> 6 {
@@ -243,7 +242,7 @@ fn skip_string(cursor: &mut Cursor) -> Option<()> {
     cursor.take(usize::try_from(length).ok()?).map(|_| ())
 }
 
-/// A name as its writer had it: blanks and the like are written as `%20`.
+/// Decodes a name, in which special characters are written as `%20`.
 fn plain_name(name: &str) -> String {
     let bytes = name.as_bytes();
     let mut plain = Vec::with_capacity(bytes.len());

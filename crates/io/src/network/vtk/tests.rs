@@ -63,7 +63,7 @@ fn a_binary_file_that_is_cut_has_its_byte() {
     let whole = read(BINARY, &NetworkOptions::default()).unwrap();
     for cut in 0..BINARY.len() {
         match read(&BINARY[..cut], &NetworkOptions::default()) {
-            // The last byte is a line's end.
+            // The last byte is a line break.
             Ok(network) => assert!(cut == BINARY.len() - 1 && network == whole, "{cut}"),
             Err(VtkLegacyError::CutShort { place, .. }) => {
                 assert!(matches!(place, Place::Byte(b) if b <= cut), "{cut}");

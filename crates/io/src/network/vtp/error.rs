@@ -1,37 +1,37 @@
-//! What can be wrong with a VTP file.
+//! Errors of VTP files.
 
 use crate::network::radii::{NodeArrayFault, RadiusFault};
 use crate::vtk_xml::VtkError;
 
-/// Why a VTP file is no usable network.
+/// Errors of a VTP network.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VtpError {
-    /// The file itself is damaged or of another kind.
+    /// The file is damaged or of another type.
     #[error(transparent)]
     File(#[from] VtkError),
-    /// An element that every VTP file has is missing.
+    /// A required element is missing.
     #[error("there is no <{element}> in the file: was it written completely?")]
     MissingElement { element: &'static str },
-    /// The points are no triples.
+    /// The points do not have three components.
     #[error("the points have {components} coordinates; three are needed")]
     BadPoints {
-        /// Number of coordinates of each.
+        /// Number of components.
         components: usize,
     },
-    /// An array has not as many values as there are points or cells.
+    /// The length of an array differs from the number of points or cells.
     #[error("array '{array}' has {found} values, but the file announces {expected}: was it written completely?")]
     WrongLength {
         array: String,
-        /// How many values it should have.
+        /// Expected number of values.
         expected: usize,
-        /// How many it has.
+        /// Number of values found.
         found: usize,
     },
-    /// Connectivity or offsets of the lines are no integers.
+    /// Connectivity or offsets of the lines are not integers.
     #[error("array '{array}' of the lines holds no integers: write it as Int64")]
     NotIntegers { array: &'static str },
-    /// The offsets of the lines do not ascend, or go beyond the connectivity.
+    /// The offsets of the lines are not ascending or exceed the connectivity.
     #[error(
         "line {line} (from 0) ends at offset {offset}, which is out of order or beyond the {length} indices there are: \
          correct the offsets"
@@ -42,13 +42,13 @@ pub enum VtpError {
         /// Number of indices.
         length: usize,
     },
-    /// A line names a point that does not exist.
+    /// A line refers to a missing point.
     #[error(
         "line {line} (from 0) names point {point}, but there are only {points} points (from 0): correct the connectivity"
     )]
     UnknownPoint {
         line: usize,
-        /// What it names.
+        /// Invalid point index.
         point: i64,
         /// Number of points.
         points: usize,
@@ -64,13 +64,13 @@ pub enum VtpError {
         /// Number of vertex cells.
         vertices: usize,
     },
-    /// No array can be taken for the radius.
+    /// No array is usable as radius.
     #[error(transparent)]
     Radius(#[from] RadiusFault),
-    /// There are no numbers of nodes under the name that was asked for.
+    /// The requested node array is not usable.
     #[error(transparent)]
     NodeArray(#[from] NodeArrayFault),
-    /// There are more points or edges than can be numbered.
+    /// The number of points or edges exceeds the index range.
     #[error("there are more points than can be numbered ({})", u32::MAX)]
     TooMany,
 }

@@ -1,4 +1,4 @@
-//! VTP: VTK poly data whose lines are vessels.
+//! VTP format: VTK poly data with vessels as lines.
 
 mod error;
 mod read;

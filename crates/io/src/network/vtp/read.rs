@@ -1,4 +1,4 @@
-//! Reads lines with radii.
+//! Reader of lines with radii.
 
 use super::error::VtpError;
 use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions};
@@ -36,7 +36,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
     Ok(network)
 }
 
-/// How many cells of each kind there are.
+/// Number of cells of each kind.
 #[derive(Default)]
 struct Others {
     lines: usize,
@@ -65,7 +65,7 @@ fn read_piece(
     if !polylines.fits(&network.skeleton) {
         return Err(VtpError::TooMany);
     }
-    // Cell data run over vertex cells first, then lines.
+    // Cell data cover vertex cells first, then lines.
     let of_lines = of_cells.map(|r| r[vertices..vertices + polylines.ends.len()].to_vec());
     let mut radii = Radii { nodes, lines: of_lines, corners: None };
     if let Some(ends) = end_radii {
@@ -83,7 +83,7 @@ fn read_piece(
     Ok(())
 }
 
-/// Radii along all lines: those of both ends where a line has two points, else what the line or its points have.
+/// Radii along all lines: both end radii if a line has two points, else those of the line or its points.
 fn corner_radii(polylines: &Polylines, ends: &[[f64; 2]], radii: &Radii) -> Vec<f64> {
     let mut corners = Vec::with_capacity(polylines.path.len());
     let mut start = 0;
@@ -100,8 +100,7 @@ fn corner_radii(polylines: &Polylines, ends: &[[f64; 2]], radii: &Radii) -> Vec<
     corners
 }
 
-/// The radii at both ends of each line, which our own files hold beside those of the lines; none when the caller chose
-/// another array.
+/// Radii at both ends of each line, as written by this program. `None` if the caller chose another array.
 fn read_end_radii(
     document: &VtkXml,
     piece: ElementId,
@@ -124,7 +123,7 @@ fn read_end_radii(
     Ok(Some(array.into_floats().as_chunks::<2>().0.to_vec()))
 }
 
-/// Group and blanking of each cell; none where the piece does not have both, as integers.
+/// Group and blanking of each cell; `None` unless the piece has both as integers.
 fn read_groups(document: &VtkXml, piece: ElementId, cells: usize) -> Result<Option<Vec<[i64; 2]>>, VtpError> {
     let Some(section) = document.child(piece, "CellData") else { return Ok(None) };
     let mut arrays = [Vec::new(), Vec::new()];
@@ -150,7 +149,7 @@ fn read_points(document: &VtkXml, piece: ElementId) -> Result<Vec<Point3>, VtpEr
         return if count == 0 { Ok(Vec::new()) } else { Err(missing) };
     };
     let array = document.read(element)?;
-    // Three is the default for points in some writers that leave the attribute out.
+    // Some writers omit the attribute; points then have three components.
     let stated = document.attribute(element, "NumberOfComponents").is_some();
     if stated && array.components != 3 {
         return Err(VtpError::BadPoints { components: array.components });
@@ -166,7 +165,7 @@ fn read_points(document: &VtkXml, piece: ElementId) -> Result<Vec<Point3>, VtpEr
     Ok(values.as_chunks::<3>().0.iter().map(|&p| Point3::from(p)).collect())
 }
 
-/// Where each line ends in the connectivity, and the connectivity.
+/// End offsets of the lines, and the connectivity.
 fn read_lines(document: &VtkXml, piece: ElementId) -> Result<(Vec<usize>, Vec<i64>), VtpError> {
     let count = document.count(piece, "NumberOfLines")?;
     let Some(section) = document.child(piece, "Lines").filter(|_| count > 0) else {
@@ -193,7 +192,7 @@ fn read_lines(document: &VtkXml, piece: ElementId) -> Result<(Vec<usize>, Vec<i6
     Ok((ends, connectivity))
 }
 
-/// The numbers of an array, one per point.
+/// Values of an array, one per point.
 fn read_node_values(document: &VtkXml, piece: ElementId, name: &str) -> Result<Vec<f64>, VtpError> {
     let expected = document.count(piece, "NumberOfPoints")?;
     let element = document.child(piece, "PointData").and_then(|s| document.arrays(s).find(|(n, _)| *n == name));
@@ -211,7 +210,7 @@ fn read_node_values(document: &VtkXml, piece: ElementId, name: &str) -> Result<V
     Ok(array.into_floats())
 }
 
-/// The radii in the chosen array, one per point or cell; none when no array was chosen.
+/// Radii of the chosen array, one per point or cell; `None` if no array was chosen.
 fn read_radii(
     document: &VtkXml,
     piece: ElementId,

@@ -1,4 +1,4 @@
-//! Writes lines with radii, and what refinement knows of each node.
+//! Writer of lines with radii, and of refinement data per node.
 
 use crate::network::content::NetworkArray;
 use crate::network::radii::END_RADII;
@@ -9,7 +9,7 @@ use flate2::{Compression, write::ZlibEncoder};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// The bytes of the file.
+/// File contents.
 pub(in crate::network) fn bytes_of(skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<Vec<u8>> {
     let (nodes, edges) = (&skeleton.nodes, &skeleton.edges);
     let mut text = String::from(
@@ -53,7 +53,7 @@ fn floats(text: &mut String, name: &str, components: usize, values: impl Iterato
     data_array(text, "Float64", name, components, &values.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
 }
 
-/// One array: base64 of the compressed bytes, in blocks of VTK's usual size.
+/// Appends an array: base64 of the compressed bytes, in blocks of VTK's default size.
 fn data_array(text: &mut String, kind: &str, name: &str, components: usize, bytes: &[u8]) -> io::Result<()> {
     const BLOCK: usize = 1 << 20;
     let blocks: Vec<Vec<u8>> = bytes

@@ -1,18 +1,18 @@
-//! The numbers behind the head of a PLY file.
+//! Data part of a PLY file.
 
 use super::head::{Element, Encoding, Head, Scalar};
 use crate::surface::error::SurfaceFault;
 use crate::text::Place;
 use crate::text::{TextFault, Words};
 
-/// The numbers behind the head.
+/// Cursor over the data.
 pub(super) enum Data<'a> {
     Text(Words<'a>),
     Binary { bytes: &'a [u8], at: usize, big: bool },
 }
 
 impl<'a> Data<'a> {
-    /// What follows the head.
+    /// Starts after the header.
     pub(super) fn new(bytes: &'a [u8], head: &Head) -> Self {
         if head.encoding == Encoding::Text {
             Self::Text(Words::from_line(&bytes[head.end..], head.line))
@@ -21,7 +21,7 @@ impl<'a> Data<'a> {
         }
     }
 
-    /// Where the next number stands.
+    /// Position of the next number.
     pub(super) fn place(&self) -> Place {
         match self {
             Self::Text(words) => Place::Line(words.line()),
@@ -29,7 +29,7 @@ impl<'a> Data<'a> {
         }
     }
 
-    /// Refuses an element that cannot fit into the rest of the file.
+    /// Rejects an element that exceeds the rest of the file.
     pub(super) fn ensure_room(&self, element: &Element) -> Result<(), SurfaceFault> {
         let (encoding, rest) = match self {
             Self::Text(words) => (Encoding::Text, words.rest() as u64 + 1),
@@ -50,7 +50,7 @@ impl<'a> Data<'a> {
         }
     }
 
-    /// The next number; integers of all types are exact in it.
+    /// Takes the next number; integers of all types are exact as `f64`.
     #[inline]
     fn number(&mut self, kind: Scalar) -> Result<f64, SurfaceFault> {
         match self {
@@ -69,7 +69,7 @@ impl<'a> Data<'a> {
         }
     }
 
-    /// The next number, which has to be an integer.
+    /// Takes the next number, which must be an integer.
     pub(super) fn integer(&mut self, kind: Scalar) -> Result<i64, SurfaceFault> {
         if let Self::Text(words) = self {
             return Ok(words.integer("an integer")?);
@@ -82,7 +82,7 @@ impl<'a> Data<'a> {
         Err(SurfaceFault::Unexpected { found: format!("{value:?}"), expected: "an integer", place })
     }
 
-    /// The next coordinate.
+    /// Takes the next coordinate.
     pub(super) fn coordinate(&mut self, kind: Scalar, point: usize) -> Result<f64, SurfaceFault> {
         if let Self::Text(words) = self {
             return Ok(words.finite("a coordinate")?);
@@ -101,7 +101,7 @@ impl<'a> Data<'a> {
         Err(SurfaceFault::Unexpected { found: count.to_string(), expected: "the count of a list", place })
     }
 
-    /// Passes over numbers.
+    /// Skips numbers.
     pub(super) fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), SurfaceFault> {
         match self {
             Self::Text(words) => {
@@ -120,11 +120,11 @@ impl<'a> Data<'a> {
         Ok(())
     }
 
-    /// Nothing may follow.
+    /// Checks that no data follow.
     pub(super) fn expect_end(&mut self) -> Result<(), SurfaceFault> {
         match self {
             Self::Text(words) => Ok(words.expect_end()?),
-            // Some programs end the last line of a binary file, too.
+            // Some programs append a line break to binary files.
             Self::Binary { bytes, at, .. } if bytes[*at..].trim_ascii().is_empty() => Ok(()),
             Self::Binary { bytes, at, .. } => {
                 Err(SurfaceFault::Length { announced: *at as u64, found: bytes.len() as u64 })
@@ -133,7 +133,7 @@ impl<'a> Data<'a> {
     }
 }
 
-/// A number of a binary file; zero when the bytes are too few, which the caller excludes.
+/// Decodes a binary number; zero if there are too few bytes, which the caller excludes.
 fn decode(taken: &[u8], kind: Scalar, big: bool) -> f64 {
     let mut low = [0_u8; 8];
     for (i, slot) in low[..taken.len()].iter_mut().enumerate() {

@@ -1,10 +1,10 @@
-//! The head of a PLY file: which elements follow, with which properties, in which encoding.
+//! Header of a PLY file: encoding, elements and properties.
 
 use crate::surface::error::SurfaceFault;
 use crate::text::Place;
 use crate::text::{TextFault, Words};
 
-/// How the numbers are written.
+/// Encoding of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -12,7 +12,7 @@ pub(super) enum Encoding {
     Big,
 }
 
-/// The type of a number.
+/// Number type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
     I8,
@@ -40,7 +40,7 @@ impl Scalar {
         })
     }
 
-    /// Bytes of such a number.
+    /// Size of a number, in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -55,51 +55,51 @@ impl Scalar {
     }
 }
 
-/// One property of an element.
+/// Property of an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Property {
     pub(super) name: Vec<u8>,
-    /// Type of the count, when it is a list.
+    /// Type of the count, for a list.
     pub(super) count: Option<Scalar>,
-    /// Type of the value, or of each value of the list.
+    /// Type of the value, or of each list item.
     pub(super) value: Scalar,
 }
 
-/// A kind of items.
+/// Declared element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Element {
     pub(super) name: Vec<u8>,
-    /// How many items there are, as the file says.
+    /// Number of items announced by the file.
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
 }
 
 impl Element {
-    /// The fewest bytes an item takes.
+    /// Minimum size of an item, in bytes.
     pub(super) fn least(&self, encoding: Encoding) -> usize {
-        // A number of a text takes a digit and a blank.
+        // A number in text takes at least a digit and a space.
         let size = |p: &Property| if encoding == Encoding::Text { 2 } else { p.count.unwrap_or(p.value).size() };
         self.properties.iter().map(size).sum()
     }
 
-    /// Which property has a name.
+    /// Index of the property with one of these names.
     pub(super) fn property(&self, names: &[&[u8]]) -> Option<usize> {
         self.properties.iter().position(|p| names.contains(&p.name.as_slice()))
     }
 }
 
-/// What the head says.
+/// Parsed header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Head {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// Where the data begin.
+    /// Byte offset of the data.
     pub(super) end: usize,
-    /// In which line the data begin.
+    /// Line number of the data.
     pub(super) line: usize,
 }
 
-/// Parses the head.
+/// Parses the header.
 pub(super) fn parse(bytes: &[u8]) -> Result<Head, SurfaceFault> {
     let mut head = Head { encoding: Encoding::Text, elements: Vec::new(), end: 0, line: 1 };
     let mut encoded = false;

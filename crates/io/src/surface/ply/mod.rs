@@ -1,5 +1,5 @@
-//! PLY: elements with properties in any order; the vertices' `x`, `y`, `z` and the faces' `vertex_indices` are taken,
-//! all others passed over.
+//! PLY format. The vertex properties `x`, `y`, `z` and the face property `vertex_indices` are read, in any order;
+//! others are skipped.
 
 mod data;
 mod head;

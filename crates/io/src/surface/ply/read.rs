@@ -1,4 +1,4 @@
-//! Reads vertices and faces, whatever stands between them.
+//! Reader of vertices and faces; other elements are skipped.
 
 use super::data::Data;
 use super::head::{Element, parse};
@@ -12,7 +12,7 @@ pub(in crate::surface) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFa
     let head = parse(bytes)?;
     let mut positions = Vec::new();
     let mut list = None;
-    // Faces may stand before the vertices: their corners are compared with the number of points that is announced.
+    // Faces may precede the vertices, so their corners are checked against the announced number of points.
     let points = head.elements.iter().find(|e| e.name == b"vertex").map_or(0, |e| e.count);
     let points = usize::try_from(points).unwrap_or(usize::MAX).min(u32::MAX as usize - 1);
     let mut data = Data::new(bytes, &head);
@@ -36,7 +36,7 @@ pub(in crate::surface) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFa
 }
 
 fn skip_items(data: &mut Data, element: &Element) -> Result<(), SurfaceFault> {
-    // Items without properties are not in the file, however many there are.
+    // Items without properties occupy no bytes, whatever their count.
     let count = if element.properties.is_empty() { 0 } else { element.count };
     for _ in 0..count {
         for index in 0..element.properties.len() {

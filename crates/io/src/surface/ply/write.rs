@@ -1,18 +1,18 @@
-//! Writes binary files.
+//! Writer of binary files.
 
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::boundary::BoundarySurface;
 use anastomesh_mesh::geometry::Point3;
 use std::io::{self, Write};
 
-/// Writes binary, little endian, with doubles.
+/// Writes a surface as little-endian binary with doubles.
 pub(in crate::surface) fn write(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
     write_head(out, mesh.points.len(), mesh.triangles.len(), "")?;
     write_points(out, &mesh.points)?;
     mesh.triangles.iter().try_for_each(|triangle| out.write_all(&face(triangle)))
 }
 
-/// Writes a boundary likewise, each face with its patch.
+/// Writes a boundary in the binary format, with the patch of each face.
 pub(in crate::surface) fn write_boundary(out: &mut impl Write, surface: &BoundarySurface) -> io::Result<()> {
     let counts = surface.counts();
     write_head(out, counts.points, counts.boundary, "property int patch\n")?;
@@ -25,9 +25,9 @@ pub(in crate::surface) fn write_boundary(out: &mut impl Write, surface: &Boundar
     })
 }
 
-/// `more`: properties of faces beside their vertices.
+/// `more` declares additional face properties.
 fn write_head(out: &mut impl Write, points: usize, faces: usize, more: &str) -> io::Result<()> {
-    // Some programs know no unsigned indices.
+    // Some programs do not support unsigned indices.
     let index = if i32::try_from(points).is_ok() { "int" } else { "uint" };
     write!(
         out,

@@ -1,4 +1,4 @@
-//! A ZIP archive that is written entry by entry, compressed with deflate. Nothing of it depends on the time.
+//! Streaming ZIP writer with deflate compression. The output does not depend on the time.
 
 use flate2::write::DeflateEncoder;
 use flate2::{Compression, Crc};
@@ -7,16 +7,16 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 const LOCAL_HEAD: u32 = 0x0403_4B50;
 const CENTRAL_HEAD: u32 = 0x0201_4B50;
 const END: u32 = 0x0605_4B50;
-/// The version of the format that knows deflate.
+/// First format version with deflate.
 const NEEDED: u16 = 20;
 const DEFLATE: u16 = 8;
-/// The first of January 1980, the first day of the format.
+/// 1 January 1980, the first day of the format.
 const DAY: u16 = 0x0021;
 
-/// An archive under way.
+/// Archive under construction.
 pub(super) struct Archive<W: Write + Seek> {
     out: W,
-    /// Where it begins in the stream.
+    /// Start of the archive in the stream.
     start: u64,
     entries: Vec<Entry>,
 }
@@ -43,7 +43,7 @@ impl<W: Write + Seek> Archive<W> {
     ) -> io::Result<()> {
         let at = self.position()?;
         let mut entry = Entry { name, at, crc: 0, packed: 0, size: 0 };
-        // What is not known yet is written over afterwards.
+        // Unknown values are overwritten afterwards.
         self.out.write_all(&entry.local_head())?;
         self.out.write_all(name.as_bytes())?;
         let first = self.position()?;
@@ -62,7 +62,7 @@ impl<W: Write + Seek> Archive<W> {
         Ok(())
     }
 
-    /// Writes the list of the entries.
+    /// Writes the central directory.
     pub(super) fn finish(mut self) -> io::Result<()> {
         let at = self.position()?;
         for entry in &self.entries {
@@ -71,7 +71,7 @@ impl<W: Write + Seek> Archive<W> {
         }
         let (size, count) = (self.position()? - at, self.entries.len() as u16);
         let mut end = END.to_le_bytes().to_vec();
-        // No other disks; no comment.
+        // Single disk, no comment.
         end.extend([0, 0, count, count].map(u16::to_le_bytes).as_flattened());
         end.extend([size, at].map(u32::to_le_bytes).as_flattened());
         end.extend([0; 2]);
@@ -104,7 +104,7 @@ impl Entry {
         head
     }
 
-    /// What both heads have.
+    /// Appends the common part of both headers.
     fn append_common(&self, head: &mut Vec<u8>) {
         for n in [NEEDED, 0, DEFLATE, 0, DAY] {
             head.extend(n.to_le_bytes());
@@ -118,7 +118,7 @@ impl Entry {
     }
 }
 
-/// Counts what passes, and sums it up.
+/// Counts bytes and computes their CRC.
 struct Counted<W> {
     out: W,
     crc: Crc,
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn entries_stand_where_the_list_says() {
-        // It need not be the first thing in the stream.
+        // The archive may start anywhere in the stream.
         let mut out = Cursor::new(b"before".to_vec());
         out.set_position(6);
         let mut archive = Archive::new(&mut out).unwrap();

@@ -1,4 +1,4 @@
-//! 3MF, which slicers read: an archive with a model in XML. Lengths are millimetres, as nothing says otherwise.
+//! 3MF format for slicers: an archive with a model in XML. Lengths are in millimetres by default.
 
 mod archive;
 

@@ -1,54 +1,54 @@
-//! What can be wrong with a Medit file.
+//! Errors of Medit files.
 
 use crate::text::TextFault;
 
-/// Why the content of a file is no tetrahedral mesh of Medit's. Cells are numbered from 0 within their list.
+/// Content errors of a Medit file. Cells are numbered from 0 within their list.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeditFault {
-    /// Its words are not those of the format.
+    /// A word is invalid.
     #[error(transparent)]
     Text(#[from] TextFault),
-    /// The file does not begin as every such file does.
+    /// The first line does not identify a Medit file.
     #[error("line {line}: '{found}' stands where MeshVersionFormatted has to be; is it a Medit text file?")]
     NotMedit {
         line: usize,
-        /// What is there.
+        /// Text found.
         found: String,
     },
-    /// Points are not in space.
+    /// The points are not three-dimensional.
     #[error("line {line}: the mesh has the dimension {dimension}; it has to be 3")]
     Dimension { line: usize, dimension: i64 },
     /// There are cells that are neither tetrahedra nor triangles.
     #[error("line {line}: there are {kind}; only tetrahedra and triangles are supported")]
     UnsupportedCells {
         line: usize,
-        /// Their keyword.
+        /// Keyword of the list.
         kind: String,
     },
-    /// A list comes a second time.
+    /// A list occurs twice.
     #[error("line {line}: a second list of {kind}; there may be one")]
     Repeated {
         line: usize,
-        /// Its keyword.
+        /// Keyword of the list.
         kind: &'static str,
     },
-    /// A cell names a point that does not exist.
+    /// A cell refers to a missing point.
     #[error("{kind} {cell} names the point {index}, but the points are numbered from 1 to {points}: correct it")]
     BadIndex {
-        /// The list of the cell.
+        /// List of the cell.
         kind: &'static str,
         /// The first such cell.
         cell: usize,
-        /// What it names.
+        /// Invalid index.
         index: i64,
-        /// How many points there are.
+        /// Number of points.
         points: usize,
     },
-    /// Something that every mesh has is not there.
+    /// A required list is missing.
     #[error("the list of {what} is missing: was it written completely?")]
     Missing {
-        /// The list.
+        /// Name of the list.
         what: &'static str,
     },
 }

@@ -1,4 +1,4 @@
-//! Medit's text format `.mesh`: keyworded lists of vertices, triangles and tetrahedra, each item with a reference.
+//! Medit text format `.mesh`: lists of vertices, triangles and tetrahedra, each with references.
 
 mod error;
 mod names;

@@ -1,4 +1,4 @@
-//! The keywords of the lists that are read and written.
+//! Keywords of the lists.
 
 pub(super) const VERTICES: &str = "Vertices";
 pub(super) const TRIANGLES: &str = "Triangles";

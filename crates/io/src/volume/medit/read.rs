@@ -1,4 +1,4 @@
-//! Reads Medit files.
+//! Reader of Medit files.
 
 use super::error::MeditFault;
 use super::names::{TETRAHEDRA, TRIANGLES, VERTICES};
@@ -6,11 +6,11 @@ use crate::patches::usual_patches;
 use crate::text::{TextFault, Words, shown};
 use anastomesh_mesh::{TetMesh, VolumeMesh};
 
-/// Reads a mesh from the bytes of a file. References of tetrahedra become blocks, those of triangles patches with their
-/// usual names; the blocks under the boundary are not in the file and stay 0. Lists of other things are passed over.
+/// Reads a mesh from the bytes of a file. References of tetrahedra become blocks, those of triangles patches with
+/// default names. The blocks of boundary faces are not in the file and are 0. Other lists are skipped.
 ///
 /// # Errors
-/// When the bytes are no such file, or it is incomplete, or holds other cells.
+/// The bytes violate the format, are incomplete, or contain other cells.
 pub(in crate::volume) fn read(bytes: &[u8]) -> Result<VolumeMesh, MeditFault> {
     let mut words = Words::new(bytes, true);
     let first = words.need("MeshVersionFormatted")?;
@@ -97,7 +97,7 @@ fn read_cells<const N: usize>(words: &mut Words, kind: &'static str, cells: &mut
     Ok(())
 }
 
-/// Passes over a list of something that bounds and fills nothing.
+/// Skips a list of elements that are not cells.
 fn skip_list(words: &mut Words, keyword: &[u8]) -> Result<(), MeditFault> {
     let cells = [&b"Quadrilaterals"[..], b"Hexahedra", b"Hexaedra", b"Prisms", b"Pyramids"].contains(&keyword);
     if cells && words.peek() != Some(b"0") {

@@ -1,4 +1,4 @@
-//! What is written is read; files by other hands are read; no file makes a panic.
+//! Tests of round trips, of files of other programs, and of damaged files.
 
 use super::error::MeditFault;
 use super::read::read;
@@ -46,7 +46,7 @@ fn by_hand() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Whatever befalls a file, it is read or refused; what is read is sound.
+    /// Damaged files are read or rejected; meshes from them are valid.
     #[test]
     fn damaged_files_make_no_panic(damage in damage()) {
         if let Ok(volume) = read(&damage.done_to(MESH.as_bytes())) {

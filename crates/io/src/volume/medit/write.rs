@@ -1,14 +1,14 @@
-//! Writes Medit files.
+//! Writer of Medit files.
 
 use super::names::{TETRAHEDRA, TRIANGLES, VERTICES};
 use anastomesh_mesh::source::MeshSource;
 use std::io::{self, Write};
 
-/// Writes a mesh to a stream: blocks and patches become references; points have the reference 0. Memory does not grow
-/// with the mesh, which is read in one pass.
+/// Writes a mesh to a stream. Blocks and patches become references; points have reference 0. The mesh is read in one
+/// pass, and memory does not grow with it.
 ///
 /// # Errors
-/// What the stream or reading the mesh reports.
+/// The stream or the mesh source fails.
 pub(in crate::volume) fn write(out: &mut impl Write, mesh: &dyn MeshSource) -> io::Result<()> {
     let counts = mesh.counts();
     writeln!(out, "MeshVersionFormatted 2\nDimension 3\n{VERTICES}\n{}", counts.points)?;

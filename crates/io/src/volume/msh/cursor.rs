@@ -1,17 +1,17 @@
-//! A place in an MSH file, text or binary: its sections and its numbers.
+//! Cursor over the sections and numbers of a text or binary MSH file.
 
 use super::error::MshFault;
 
-/// Versions that differ in what their sections hold.
+/// Versions with different section contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Version {
-    /// 2 to 2.2, as text.
+    /// Versions 2 to 2.2, as text.
     Two,
-    /// 4.1.
+    /// Version 4.1.
     Four,
 }
 
-/// A place in the file.
+/// Position in the file.
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -19,7 +19,7 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// The beginning of a file.
+    /// Starts at the beginning of a file.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, binary: false }
     }
@@ -28,7 +28,7 @@ impl<'a> Cursor<'a> {
         &self.bytes[self.at..]
     }
 
-    /// The rest of the line, as text.
+    /// Takes the rest of the line as text.
     pub(super) fn line(&mut self) -> Result<&'a str, MshFault> {
         let rest = self.rest();
         let length = rest.iter().position(|&b| b == b'\n').ok_or(MshFault::CutShort)?;
@@ -36,12 +36,12 @@ impl<'a> Cursor<'a> {
         std::str::from_utf8(&rest[..length]).map(str::trim).map_err(|_| self.bad())
     }
 
-    /// What stands here is not what has to.
+    /// Error of an unexpected item at this position.
     pub(super) fn bad(&self) -> MshFault {
         MshFault::BadNumber { byte: self.at }
     }
 
-    /// The next word of a text.
+    /// Takes the next word of a text.
     fn word(&mut self) -> Result<&'a str, MshFault> {
         let rest = self.rest();
         let start = rest.iter().position(|b| !b.is_ascii_whitespace()).ok_or(MshFault::CutShort)?;
@@ -51,7 +51,7 @@ impl<'a> Cursor<'a> {
         Ok(word)
     }
 
-    /// The next number: bytes in a binary file, a word in a text.
+    /// Takes the next number: bytes in a binary file, a word in a text.
     fn number<T: std::str::FromStr, const W: usize>(&mut self, of: impl Fn([u8; W]) -> T) -> Result<T, MshFault> {
         if self.binary {
             let (taken, rest) = self.rest().split_first_chunk().ok_or(MshFault::CutShort)?;
@@ -70,7 +70,7 @@ impl<'a> Cursor<'a> {
         self.number(u64::from_le_bytes)
     }
 
-    /// The next `N` sizes or tags.
+    /// Takes the next `N` sizes or tags.
     pub(super) fn sizes<const N: usize>(&mut self) -> Result<[u64; N], MshFault> {
         let mut sizes = [0; N];
         for size in &mut sizes {
@@ -83,12 +83,12 @@ impl<'a> Cursor<'a> {
         self.number(f64::from_le_bytes)
     }
 
-    /// Passes over numbers.
+    /// Skips numbers.
     pub(super) fn skip_floats(&mut self, count: usize) -> Result<(), MshFault> {
         (0..count).try_for_each(|_| self.float().map(drop))
     }
 
-    /// Moves to the next section; its name, or none at the end of the file.
+    /// Moves to the next section and returns its name; `None` at the end of the file.
     pub(super) fn next_section(&mut self) -> Result<Option<&'a str>, MshFault> {
         let Some(start) = self.rest().iter().position(|b| !b.is_ascii_whitespace()) else { return Ok(None) };
         self.at += start;
@@ -98,7 +98,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Moves behind the line that ends a section.
+    /// Moves past the line that ends a section.
     pub(super) fn finish_section(&mut self, name: &str) -> Result<(), MshFault> {
         let end = format!("$End{name}");
         let found =
@@ -107,7 +107,7 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    /// Reads the section that says how the others are written; which version it is.
+    /// Reads the format section and returns the version.
     pub(super) fn read_format(&mut self) -> Result<Version, MshFault> {
         let line = self.line()?;
         let mut words = line.split_whitespace();

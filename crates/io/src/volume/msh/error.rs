@@ -1,34 +1,34 @@
-//! What can be wrong with an MSH file.
+//! Errors of MSH files.
 
-/// Why a file is no tetrahedral mesh in Gmsh's MSH 4.1 or 2.2.
+/// Errors of a tetrahedral mesh in Gmsh's MSH 4.1 or 2.2.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MshFault {
-    /// Something that every such file has is not there.
+    /// A required section is missing.
     #[error("'{what}' is missing: was it written or copied completely?")]
     Missing {
         /// Name of the section.
         what: &'static str,
     },
-    /// The file ends before it is complete.
+    /// The file is truncated.
     #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
     CutShort,
-    /// Something else stands where a number or name has to be.
+    /// A number or name is invalid.
     #[error("no number or name of the format before byte {byte}: was it written or copied completely?")]
     BadNumber {
-        /// Where.
+        /// Byte offset.
         byte: usize,
     },
-    /// Two nodes have the same tag.
+    /// Two nodes have an equal tag.
     #[error("two nodes have the tag {tag}: give each its own")]
     RepeatedTag { tag: u64 },
-    /// A version of the format that is not read.
+    /// The format version is not supported.
     #[error("version {version} of the format is not read; Gmsh writes 4.1 with -format msh41")]
     UnsupportedVersion { version: String },
-    /// There are elements that are neither tetrahedra nor triangles.
+    /// An element is neither a tetrahedron nor a triangle.
     #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]
     UnsupportedCell {
-        /// Type of the element, in the numbers of the format.
+        /// Element type, as a number of the format.
         kind: i64,
         /// The first such element.
         cell: usize,

@@ -1,9 +1,8 @@
-//! Gmsh's MSH 4.1, binary: one volume, one surface per patch, physical groups of the patches' names; and 2.2, text.
+//! Gmsh formats MSH 4.1 (binary) with one volume, one surface and physical group per patch, and MSH 2.2 (text).
 //!
 //! Node and element tags count from 1 in the order of the mesh (tetrahedra first), so that reading restores the order.
-//! Values beside the mesh become data of nodes and elements; tags then follow the file.
-//! What a later check needs to know has no place in the format; it goes into a section of our own, which Gmsh and
-//! others pass over.
+//! Additional values become node and element data; tags are then in file order. Data for later checks are in a custom
+//! section, which Gmsh and other programs ignore.
 
 mod cursor;
 mod error;

@@ -1,21 +1,21 @@
-//! What writer and reader have to agree on: numbers and names, and our own section.
+//! Numbers and names shared by writer and reader, and the custom section.
 
 use crate::volume::content::MeshNotes;
 use anastomesh_mesh::check::Expectation;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::{Cap, Patch};
 
-/// Gmsh's element types.
+/// Gmsh element types.
 pub(super) const MSH_TRIANGLE: i32 = 2;
 pub(super) const MSH_TETRA: i32 = 4;
 
 /// Name of the volume's physical group.
 pub(super) const VOLUME_NAME: &str = "lumen";
 
-/// Name of our own section.
+/// Name of the custom section.
 pub(super) const SECTION: &str = "Anastomesh";
 
-/// What our own section holds, as JSON.
+/// Contents of the custom section, as JSON.
 #[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Extra {
     generator: String,
@@ -25,7 +25,7 @@ pub(super) struct Extra {
     caps: Vec<ExtraCap>,
 }
 
-/// A cap in our own section.
+/// Cap in the custom section.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 struct ExtraCap {
     patch: i32,
@@ -53,7 +53,7 @@ impl Extra {
         }
     }
 
-    /// The notes, and the caps with their patches.
+    /// Returns the notes, and the caps with their patches.
     pub(super) fn into_notes(self) -> (MeshNotes, Vec<(i32, Cap)>) {
         let terminals = self.terminals.unwrap_or_default();
         let expectation = self.loops.map(|loops| Expectation { loops, terminals });

@@ -1,4 +1,4 @@
-//! Reads tetrahedral meshes from Gmsh's MSH: 4.1, text or binary, and 2.2, text.
+//! Reader of Gmsh's MSH format: 4.1 (text or binary) and 2.2 (text).
 
 use super::cursor::{Cursor, Version};
 use super::error::MshFault;
@@ -9,11 +9,11 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::{Cap, Patch};
 use rustc_hash::FxHashMap;
 
-/// Reads a mesh from the bytes of a `.msh` file of version 4.1, or 2.2 as text. Tetrahedra and triangles are taken, points and lines
-/// among the elements passed over; a triangle's label is the first physical group of its surface.
+/// Reads a mesh from the bytes of a `.msh` file, version 4.1 or 2.2 as text. Tetrahedra and triangles are read; points
+/// and lines are skipped. The label of a triangle is the first physical group of its surface.
 ///
 /// # Errors
-/// When the file is no such file or incomplete, or holds other elements.
+/// The file is invalid or incomplete, or has other elements.
 pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
     let mut cursor = Cursor::new(bytes);
     let mut parts = Parts::default();
@@ -44,7 +44,7 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
     parts.into_file()
 }
 
-/// The sections' content.
+/// Contents of the sections.
 #[derive(Default)]
 struct Parts {
     /// Names of the physical groups of surfaces.
@@ -61,7 +61,7 @@ struct Parts {
 
 impl Parts {
     fn read_names(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
-        // Text also in binary files.
+        // Text even in binary files.
         let count: u64 = cursor.line()?.parse().map_err(|_| cursor.bad())?;
         for _ in 0..count {
             let line = cursor.line()?;
@@ -141,7 +141,7 @@ impl Parts {
         Ok(())
     }
 
-    /// Version 2: a tag and a place each.
+    /// Reads nodes of version 2: a tag and a position each.
     fn read_node_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
         for _ in 0..cursor.size()? {
             let tag = cursor.size()?;
@@ -150,7 +150,7 @@ impl Parts {
         Ok(())
     }
 
-    /// Version 2: a tag, a type, a number of further tags (the first is the physical group), those, and the corners.
+    /// Reads elements of version 2: tag, type, count of further tags (first the physical group), these tags, corners.
     fn read_element_list(&mut self, cursor: &mut Cursor) -> Result<(), MshFault> {
         for _ in 0..cursor.size()? {
             let (tag, kind, tags) = (cursor.size()?, cursor.int()?, cursor.size()?);
@@ -161,7 +161,7 @@ impl Parts {
             }
             match kind {
                 MSH_TRIANGLE => {
-                    // What a reader of version 4.1 knows from the entities.
+                    // In version 4.1 the entities have this information.
                     self.group_of_surface.insert(group, group);
                     self.triangles.push((tag, cursor.sizes()?, group));
                 }
@@ -194,12 +194,12 @@ impl Parts {
         let volume = &mut file.volume;
         volume.mesh.points = self.nodes.iter().map(|&(_, p)| p).collect();
         volume.mesh.tets = self.tets.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
-        // One group is the name of the whole; several are regions.
+        // A single group names the whole mesh; several groups are regions.
         let regions = self.tets.iter().any(|tet| Some(tet.2) != self.tets.first().map(|first| first.2));
         volume.tet_block = self.tets.iter().map(|tet| if regions { tet.2 } else { 0 }).collect();
         let (notes, caps) = std::mem::take(&mut self.extra).into_notes();
         file.notes = notes;
-        // Triangles without a group are no labelled boundary.
+        // Triangles without a group are not a labelled boundary.
         if self.triangles.iter().any(|&(.., group)| group != 0) {
             file.labelled = true;
             volume.boundary = self.triangles.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
@@ -210,7 +210,7 @@ impl Parts {
         Ok(file)
     }
 
-    /// Index of the node with a tag; one beyond all when there is none.
+    /// Index of the node with a tag; out of range if there is none.
     fn index(&self, tag: u64) -> u32 {
         let guess = tag.wrapping_sub(1) as usize;
         if self.nodes.get(guess).is_some_and(|node| node.0 == tag) {

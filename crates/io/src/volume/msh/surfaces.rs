@@ -1,8 +1,8 @@
-//! Which points and boundary faces belong to which surface of an MSH file: a surface for each patch.
+//! Assignment of points and boundary faces to the surfaces of an MSH file, one per patch.
 //!
-//! A point belongs to the surface of lowest id that has a face with it; points without are inside. Of the first surface
-//! (the vessel wall, nearly all of the boundary) only a bit for each point is kept, and its faces are read again when
-//! they are written; those of the others (caps) are few, and held.
+//! A point belongs to the surface of lowest id that has a face with it, or else to the inside. The first surface (the
+//! vessel wall, nearly all of the boundary) is stored as one bit per point. Its faces are read again for writing. The
+//! few faces of other surfaces (caps) are held in memory.
 
 use anastomesh_mesh::bits::Bits;
 use anastomesh_mesh::geometry::{Aabb, Point3};
@@ -10,42 +10,42 @@ use anastomesh_mesh::source::MeshSource;
 use rustc_hash::FxHashMap;
 use std::io;
 
-/// The boundary faces of one patch.
+/// Boundary faces of one patch.
 pub(super) struct Surface {
     pub patch: i32,
-    /// How many faces it has.
+    /// Number of faces.
     pub faces: usize,
-    /// How many points it has that are on none before it.
+    /// Number of points that are on no earlier surface.
     pub points: usize,
-    /// Box round it.
+    /// Bounding box.
     pub bounds: Aabb,
 }
 
-/// A face of a surface that is not the first.
+/// Face of a surface other than the first.
 pub(super) struct HeldFace {
     patch: i32,
-    /// Number among the boundary faces.
+    /// Index among the boundary faces.
     pub face: usize,
     pub corners: [u32; 3],
 }
 
-/// The surfaces of a mesh, in ascending order of their patches.
+/// Surfaces of a mesh, in ascending order of their patches.
 pub(super) struct Surfaces {
-    /// Those that have faces.
+    /// Surfaces with faces.
     pub list: Vec<Surface>,
-    /// The points of the first surface.
+    /// Points of the first surface.
     pub first: Bits,
     /// All points on the boundary.
     pub outer: Bits,
     /// Faces of the other surfaces, by surface.
     held: Vec<HeldFace>,
-    /// Points of the other surfaces, ascending, those of the first among them.
+    /// Points of the other surfaces, ascending, including those shared with the first.
     points: Vec<(u32, Point3)>,
-    /// Points that belong to the other surfaces, by surface: indices into `points`.
+    /// Points owned by the other surfaces, by surface: indices into `points`.
     owned: Vec<(i32, u32)>,
-    /// Box round all points.
+    /// Bounding box of all points.
     pub bounds: Aabb,
-    /// Largest patch that occurs.
+    /// Largest patch id in use.
     pub largest: Option<i32>,
 }
 
@@ -53,7 +53,7 @@ impl Surfaces {
     /// Reads the boundary twice and the points once. Faces without a patch belong to no surface.
     ///
     /// # Errors
-    /// What reading the mesh fails with; `InvalidData` when a face names a point that does not exist.
+    /// The mesh source fails; `InvalidData` if a face refers to a missing point.
     pub(super) fn of(mesh: &dyn MeshSource) -> io::Result<Self> {
         let points = mesh.counts().points;
         let mut surfaces = Self {
@@ -95,12 +95,12 @@ impl Surfaces {
             before += piece.faces.len();
             Ok(())
         })?;
-        // Stable: faces stay in order.
+        // Stable sort: faces stay in order.
         self.held.sort_by_key(|held| held.patch);
         Ok(())
     }
 
-    /// Gives each point of the held faces to the first surface that has it.
+    /// Assigns each point of the held faces to the first surface that contains it.
     fn give_points(&mut self) {
         let mut ids: Vec<u32> = self.held.iter().flat_map(|held| held.corners).collect();
         ids.sort_unstable();
@@ -118,7 +118,7 @@ impl Surfaces {
         self.points = ids.into_iter().map(|v| (v, Point3::origin())).collect();
     }
 
-    /// Finds the positions of the points of held faces, and the boxes round all points and the first surface.
+    /// Reads the positions of points on held faces, and the boxes of all points and of the first surface.
     fn read_points(&mut self, mesh: &dyn MeshSource) -> io::Result<()> {
         let (mut before, mut next) = (0_u32, 0);
         let mut of_first = Aabb::EMPTY;
@@ -156,18 +156,18 @@ impl Surfaces {
         }
     }
 
-    /// Faces of a surface that is not the first, in order.
+    /// Faces of a surface other than the first, in order.
     pub(super) fn faces_of(&self, patch: i32) -> &[HeldFace] {
         run(&self.held, patch, |held| held.patch)
     }
 
-    /// Points of a surface that is not the first, in order.
+    /// Points of a surface other than the first, in order.
     pub(super) fn points_of(&self, patch: i32) -> impl Iterator<Item = &(u32, Point3)> {
         run(&self.owned, patch, |owned| owned.0).iter().filter_map(|&(_, i)| self.points.get(i as usize))
     }
 }
 
-/// The patches that have faces, with the number of these.
+/// Patches with their numbers of faces.
 fn counted(mesh: &dyn MeshSource) -> io::Result<Vec<Surface>> {
     let mut faces: FxHashMap<i32, usize> = FxHashMap::default();
     mesh.each_faces(|piece| {
@@ -182,7 +182,7 @@ fn counted(mesh: &dyn MeshSource) -> io::Result<Vec<Surface>> {
     Ok(list)
 }
 
-/// What of a sorted list has the key.
+/// Part of a sorted list with this key.
 pub(super) fn run<T>(sorted: &[T], key: i32, of: impl Fn(&T) -> i32) -> &[T] {
     let start = sorted.partition_point(|item| of(item) < key);
     let length = sorted[start..].partition_point(|item| of(item) == key);

@@ -1,24 +1,24 @@
-//! The numbers by which nodes and elements of version 4.1 are known.
+//! Tags of nodes and elements in version 4.1.
 
 use super::surfaces::Surfaces;
 use anastomesh_mesh::bits::Ranks;
 use rustc_hash::FxHashMap;
 
-/// Tags count from 1: as the mesh counts, tetrahedra first, so that reading restores its order; or, where data follow, as they
-/// stand in the file, as some readers (meshio) ask of nodes and elements with data.
+/// Tags count from 1. They follow the mesh, tetrahedra first, so that reading restores its order. If data sections
+/// follow, tags are in file order, which some readers (meshio) require.
 pub(super) struct Tags<'a> {
     surfaces: &'a Surfaces,
     in_file: Option<InFile<'a>>,
     elements: usize,
 }
 
-/// Where nodes stand in the file: those of the first surface, those of the others, those inside.
+/// File positions of nodes: those of the first surface, of the other surfaces, and inside.
 struct InFile<'a> {
     first: Ranks<'a>,
     outer: Ranks<'a>,
-    /// Those of the other surfaces.
+    /// Positions of nodes on the other surfaces.
     owned: FxHashMap<u32, u32>,
-    /// How many are on the boundary.
+    /// Number of nodes on the boundary.
     on_boundary: u32,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Tags<'a> {
         Self { surfaces, in_file: as_in_file.then(in_file), elements: 0 }
     }
 
-    /// Of a node, by its index.
+    /// Tag of the node with this index.
     pub(super) fn node(&self, v: u32) -> usize {
         let index = match &self.in_file {
             None => v,
@@ -47,7 +47,7 @@ impl<'a> Tags<'a> {
         index as usize + 1
     }
 
-    /// Of the element that is written next, by its index.
+    /// Tag of the next element in the file, which has this index.
     pub(super) fn element(&mut self, index: usize) -> usize {
         self.elements += 1;
         if self.in_file.is_some() { self.elements } else { index + 1 }

@@ -1,4 +1,4 @@
-//! What is written can be read again; text as Gmsh writes it is read.
+//! Tests of round trips, and of text files written by Gmsh.
 
 use super::error::MshFault;
 use super::read::read;
@@ -72,7 +72,7 @@ fn regions_become_volumes() {
     }
 }
 
-/// The height of each place.
+/// Height of each point.
 struct Heights;
 
 impl Beside for Heights {
@@ -97,7 +97,7 @@ impl Beside for Heights {
     }
 }
 
-/// Tags and values of a section of data.
+/// Tags and values of a data section.
 fn rows(bytes: &[u8], section: &str, name: &str, binary: bool) -> Vec<(i32, f64)> {
     let head = format!("${section}\n1\n\"{name}\"\n1\n0.0\n3\n0\n1\n");
     let start = bytes.windows(head.len()).position(|w| w == head.as_bytes()).unwrap() + head.len();
@@ -124,7 +124,7 @@ fn values_stand_beside_nodes_and_elements() {
     let (volume, mut notes) = labelled_tube(5);
     let mean =
         |points: &[Point3], cell: &[u32]| cell.iter().map(|&v| points[v as usize].z).sum::<f64>() / cell.len() as f64;
-    // Patches and notes are there as without values, and tetrahedra and faces as often, wherever they are.
+    // Patches and notes are as without values; tetrahedra and faces are equal up to order.
     let known = |file: MeshFile| {
         let points = &file.volume.mesh.points;
         let mut tets: Vec<f64> = file.volume.mesh.tets.iter().map(|tet| mean(points, tet)).collect();
@@ -177,7 +177,7 @@ fn every_cut_is_noticed() {
     for write in WRITERS {
         let mut whole = Vec::new();
         write(&mut whole, &volume, &notes).unwrap();
-        // Once the elements are complete only what a check would want to know is lost.
+        // After the elements, only data for checks are lost.
         let end = b"$EndElements";
         let end = whole.windows(end.len()).position(|window| window == end).unwrap() + end.len();
         for cut in (0..end).step_by(31).chain([end - 1]) {

@@ -1,5 +1,4 @@
-//! Columns of values beside a mesh: sections of data of nodes or elements, the same in both versions, in the order in which nodes
-//! and elements stand in the file, which is that of their tags.
+//! Data sections of nodes and elements, shared by both versions. Rows are in file order, which is that of the tags.
 
 use super::surfaces::Surfaces;
 use anastomesh_mesh::beside::{Beside, Column};
@@ -7,28 +6,28 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;
 use std::io::{self, Write};
 
-/// A section that is being written: tags, each with its value.
+/// Section under construction: tags with their values.
 struct Rows<'a, W> {
     out: &'a mut W,
-    /// Whether rows are bytes; what stands before them is text in any file.
+    /// True for binary rows; the section header is always text.
     binary: bool,
     section: &'static str,
     tag: i32,
 }
 
 impl<'a, W: Write> Rows<'a, W> {
-    /// Begins the section of a column with so many rows.
+    /// Starts the section of a column with this number of rows.
     fn begin(out: &'a mut W, binary: bool, column: &Column, rows: usize) -> io::Result<Self> {
         let section = if column.at_points { "NodeData" } else { "ElementData" };
         if i32::try_from(rows).is_err() {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "data of Gmsh count to 2,147,483,647 only"));
         }
-        // A text, the name; a number, the time; three whole ones: the step, how many values each has, and how many rows.
+        // String tag: the name. Real tag: the time. Integer tags: step, number of components, number of rows.
         write!(out, "${section}\n1\n\"{}\"\n1\n0.0\n3\n0\n1\n{rows}\n", column.name)?;
         Ok(Self { out, binary, section, tag: 0 })
     }
 
-    /// Adds the values of the nodes or elements that come next.
+    /// Appends the values of the next nodes or elements.
     fn add(&mut self, values: &[f64]) -> io::Result<()> {
         for value in values {
             self.tag += 1;
@@ -48,10 +47,10 @@ impl<'a, W: Write> Rows<'a, W> {
     }
 }
 
-/// Values of nodes and elements of version 2.2: another pass over these for each column.
+/// Writes values of nodes and elements for version 2.2, with one more pass over them per column.
 ///
 /// # Errors
-/// What the writer `out` or reading the mesh reports.
+/// The output `out` or the mesh source fails.
 pub(super) fn write_values_2(out: &mut impl Write, mesh: &dyn MeshSource, values: &dyn Beside) -> io::Result<()> {
     let counts = mesh.counts();
     for (column, named) in values.columns().iter().enumerate() {
@@ -68,11 +67,11 @@ pub(super) fn write_values_2(out: &mut impl Write, mesh: &dyn MeshSource, values
     Ok(())
 }
 
-/// Values of nodes and elements of version 4.1, which stand surface by surface: two passes over the points, one over faces and
-/// tetrahedra for each column. `regions` are those of the volumes, in order; none is all tetrahedra.
+/// Writes values of nodes and elements for version 4.1, surface by surface. Each column takes two passes over the
+/// points, and one over faces and tetrahedra. `regions` are those of the volumes, in order; `None` is all tetrahedra.
 ///
 /// # Errors
-/// What the writer `out` or reading the mesh reports.
+/// The output `out` or the mesh source fails.
 pub(super) fn write_values(
     out: &mut impl Write,
     mesh: &dyn MeshSource,
@@ -118,7 +117,7 @@ pub(super) fn write_values(
     Ok(())
 }
 
-/// Gives points, but only those that are chosen.
+/// Calls `each` with batches of the selected points.
 fn each_chosen(
     mesh: &dyn MeshSource,
     is_chosen: impl Fn(u32) -> bool,

@@ -1,4 +1,4 @@
-//! Writes meshes as Gmsh does, in binary.
+//! Writer of Gmsh's binary format.
 
 use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME};
 use super::surfaces::{Surfaces, run};
@@ -12,17 +12,17 @@ use anastomesh_mesh::{Patch, VolumeMesh};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-/// Part of the tetrahedra: a volume.
+/// Volume entity with a part of the tetrahedra.
 struct Volume {
-    /// The physical group, and the name of it; none for regions whose id can be no physical tag.
+    /// Physical group and its name; `None` for regions with an invalid tag.
     group: Option<(i32, String)>,
-    /// How many tetrahedra it has.
+    /// Number of tetrahedra.
     tets: usize,
-    /// The region whose tetrahedra these are; none for all.
+    /// Region of the tetrahedra; `None` for all.
     region: Option<i32>,
 }
 
-/// One volume for all, or one for each region.
+/// One volume in total, or one per region.
 fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> io::Result<Vec<Volume>> {
     if notes.regions {
         let mut sizes: BTreeMap<i32, usize> = BTreeMap::new();
@@ -45,15 +45,15 @@ fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> 
     Ok(vec![Volume { group: Some((tag, VOLUME_NAME.into())), tets, region: None }])
 }
 
-/// Writes a mesh as MSH 4.1. Blocks that are regions become volumes; other blocks are not written: the format has no
-/// place for them.
+/// Writes a mesh as MSH 4.1. Blocks that are regions become volumes; other blocks have no representation in the format
+/// and are not written.
 ///
-/// Points and boundary are read three times, tetrahedra once, and each once more for every column of values. What is held is
-/// two bits for each point, and the faces and points of all surfaces but that of lowest id (the wall). Each region costs a pass
-/// over the tetrahedra of its own, or, of a mesh in memory, all together 8 bytes for each tetrahedron.
+/// Points and boundary are read three times, tetrahedra once, and each once more per column of values. Memory holds two
+/// bits per point, and the faces and points of all surfaces except the first (the wall). Each region takes a pass over
+/// the tetrahedra; for a mesh in memory, all regions take 8 bytes per tetrahedron instead.
 ///
 /// # Errors
-/// What the writer `out` or reading the mesh reports.
+/// The output `out` or the mesh source fails.
 pub(in crate::volume) fn write(
     out: &mut impl Write,
     mesh: &dyn MeshSource,
@@ -106,7 +106,7 @@ fn write_entities(out: &mut impl Write, surfaces: &Surfaces, volumes: &[Volume])
     for (i, surface) in surfaces.list.iter().enumerate() {
         ints(out, &[i as i32 + 1])?;
         floats(out, &corners(&surface.bounds))?;
-        // Physical tags are positive: a patch without such an id stays outside the groups.
+        // Physical tags are positive: a patch with another id is in no group.
         let groups: &[i32] = if surface.patch > 0 { &[surface.patch] } else { &[] };
         sizes(out, &[groups.len()])?;
         ints(out, groups)?;
@@ -118,7 +118,7 @@ fn write_entities(out: &mut impl Write, surfaces: &Surfaces, volumes: &[Volume])
         let group = volume.group.as_ref().map(|group| group.0);
         sizes(out, &[usize::from(group.is_some())])?;
         ints(out, group.as_slice())?;
-        // Which surfaces bound which region is not known here.
+        // The surfaces of each region are unknown here.
         let bounding = if volumes.len() == 1 { count } else { 0 };
         sizes(out, &[bounding])?;
         for i in 0..bounding {
@@ -156,7 +156,7 @@ fn write_nodes(out: &mut impl Write, mesh: &dyn MeshSource, surfaces: &Surfaces,
     out.write_all(b"\n$EndNodes\n")
 }
 
-/// The tags of some points, then their positions.
+/// Writes the tags of the selected points, then their positions.
 fn write_chosen_points(
     out: &mut impl Write,
     mesh: &dyn MeshSource,
@@ -218,7 +218,7 @@ fn write_elements(
     out.write_all(b"\n$EndElements\n")
 }
 
-/// The tetrahedra of a mesh in memory by their region: many regions need not as many passes.
+/// Tetrahedra of a mesh in memory sorted by region, which avoids one pass per region.
 fn by_region(mesh: &VolumeMesh) -> Vec<(i32, u32)> {
     let mut tets: Vec<(i32, u32)> = mesh.tet_block.iter().copied().zip(0..mesh.mesh.tets.len() as u32).collect();
     tets.sort_unstable();
@@ -237,7 +237,7 @@ fn write_faces(out: &mut impl Write, mesh: &dyn MeshSource, patch: i32, tags: &m
     })
 }
 
-/// The tetrahedra of one region, or all.
+/// Writes the tetrahedra of one region, or all.
 fn write_tets(out: &mut impl Write, mesh: &dyn MeshSource, region: Option<i32>, tags: &mut Tags) -> io::Result<()> {
     let mut before = 0;
     mesh.each_tets(|piece| {
@@ -250,7 +250,7 @@ fn write_tets(out: &mut impl Write, mesh: &dyn MeshSource, region: Option<i32>, 
     })
 }
 
-/// An element, given by its index and those of its corners.
+/// Writes an element, given by the indices of itself and its corners.
 fn write_element<const N: usize>(
     out: &mut impl Write,
     tags: &mut Tags,

@@ -1,4 +1,4 @@
-//! Writes meshes in Gmsh's older format 2.2, as text: what MFEM, NGSolve, OpenFOAM's converter and others read.
+//! Writer of Gmsh's older format 2.2 as text, read by MFEM, NGSolve, OpenFOAM's converter and others.
 
 use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME};
 use super::values::write_values_2;
@@ -8,16 +8,16 @@ use anastomesh_mesh::source::MeshSource;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-/// The physical groups of a mesh.
+/// Physical groups of a mesh.
 struct Groups {
-    /// Of tetrahedra: that of all, or the regions.
+    /// Groups of tetrahedra: one for all, or the regions.
     regions: BTreeSet<i32>,
-    /// That of all tetrahedra: above all patches.
+    /// Group of all tetrahedra, above all patches.
     lumen: i32,
 }
 
 impl Groups {
-    /// Reads the labels once.
+    /// Collects the groups in one pass over the labels.
     fn of(mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<Self> {
         let mut largest = mesh.patches().iter().map(|p| p.id).max().unwrap_or(0);
         mesh.each_face_labels(|piece| {
@@ -34,12 +34,12 @@ impl Groups {
         Ok(Self { regions, lumen: largest.max(0).saturating_add(1) })
     }
 
-    /// The group of a tetrahedron; 0, none, for regions whose id can be no group.
+    /// Group of a tetrahedron; 0 (none) for regions with an invalid group id.
     fn of_tet(&self, block: i32) -> i32 {
         if self.regions.len() > 1 { block.max(0) } else { self.lumen }
     }
 
-    /// The groups of tetrahedra, with their names.
+    /// Groups of tetrahedra with their names.
     fn named(&self) -> Vec<(i32, String)> {
         match self.regions.len() {
             0 | 1 => vec![(self.lumen, VOLUME_NAME.into())],
@@ -48,11 +48,11 @@ impl Groups {
     }
 }
 
-/// Writes a mesh as MSH 2.2: points, boundary faces and tetrahedra are read in one pass each, their labels in another;
-/// memory does not grow with the mesh. Faces come first, as Gmsh has it.
+/// Writes a mesh as MSH 2.2. Points, boundary faces and tetrahedra are each read in one pass, their labels in another.
+/// Memory does not grow with the mesh. Faces come first, as in Gmsh.
 ///
 /// # Errors
-/// What the writer `out` or reading the mesh reports.
+/// The output `out` or the mesh source fails.
 pub(in crate::volume) fn write(
     out: &mut impl Write,
     mesh: &dyn MeshSource,
@@ -106,7 +106,7 @@ pub(in crate::volume) fn write(
     write!(out, "\n$End{SECTION}\n")
 }
 
-/// A tag, a type, two further tags: the physical group, and the number of the surface or volume.
+/// Writes an element: tag, type, and two further tags, the physical group and the number of the surface or volume.
 fn write_element(out: &mut impl Write, tag: u64, kind: i32, tags: [i32; 2], corners: &[u32]) -> io::Result<()> {
     write!(out, "{tag} {kind} 2 {} {}", tags[0], tags[1])?;
     for &v in corners {

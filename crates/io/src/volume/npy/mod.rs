@@ -1,5 +1,5 @@
-//! Meshes as arrays in a folder `.npyd`: `points` (n, 3), `tets` (m, 4) and `tet_blocks` (m), `triangles` (k, 3) of the boundary
-//! with `triangle_patches` (k) and `triangle_blocks` (k), and `mesh.json` with what is no array: the names of patches, caps, notes.
+//! Meshes as arrays in a folder `.npyd`: `points` (n, 3), `tets` (m, 4), `tet_blocks` (m), boundary `triangles` (k, 3),
+//! `triangle_patches` (k) and `triangle_blocks` (k). `mesh.json` contains patch names, caps and notes.
 
 mod names;
 mod notes;

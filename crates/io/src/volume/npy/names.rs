@@ -1,4 +1,4 @@
-//! What writer and reader have to agree on.
+//! Names shared by writer and reader.
 
 pub(super) const POINTS: &str = "points";
 pub(super) const TETS: &str = "tets";
@@ -10,5 +10,5 @@ pub(super) const TRIANGLE_BLOCKS: &str = "triangle_blocks";
 /// All arrays of a mesh.
 pub(super) const ARRAYS: [&str; 6] = [POINTS, TETS, TET_BLOCKS, TRIANGLES, TRIANGLE_PATCHES, TRIANGLE_BLOCKS];
 
-/// The file with what is no array.
+/// File with the data besides arrays.
 pub(super) const NOTES: &str = "mesh.json";

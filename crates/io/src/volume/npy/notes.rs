@@ -1,4 +1,4 @@
-//! What is no array: names of patches, caps, and what a check has to find.
+//! Data besides arrays: patch names, caps, and expectations for checks.
 
 use crate::volume::content::MeshNotes;
 use anastomesh_mesh::check::Expectation;
@@ -6,13 +6,13 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::{Cap, Patch};
 use serde::{Deserialize, Serialize};
 
-/// The content of `mesh.json`.
+/// Contents of `mesh.json`.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct Notes {
     generator: String,
     options: String,
-    /// Whether blocks are regions.
+    /// True if blocks are regions.
     regions: bool,
     expected: Option<Expected>,
     patches: Vec<NamedPatch>,

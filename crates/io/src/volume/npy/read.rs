@@ -1,4 +1,4 @@
-//! Reads meshes.
+//! Reader of meshes.
 
 use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
 use super::notes::Notes;
@@ -12,20 +12,20 @@ use std::path::Path;
 /// Reads a folder.
 ///
 /// # Errors
-/// `Read` with the system's reason, or `Content` with the array and the row that is wrong.
+/// `Read` with the error of the operating system, or `Content` with the array and row at fault.
 pub(in crate::volume) fn read(folder: &Path) -> Result<MeshFile, FileError<NpyError>> {
     mesh_of(&Arrays::read(folder, &ARRAYS, Some(NOTES))?).map_err(FileError::content(folder))
 }
 
-/// Reads a mesh from the bytes of the files of a folder.
+/// Reads a mesh from the bytes of the files in a folder.
 ///
 /// # Errors
-/// The array and the row that is wrong.
+/// Returns the array and row at fault.
 pub fn read_mesh_arrays(files: &[(&str, &[u8])]) -> Result<MeshFile, NpyError> {
     mesh_of(&Arrays::of(files))
 }
 
-/// Points and tetrahedra are needed, all else may be missing; patches without names get their usual ones.
+/// Requires points and tetrahedra; everything else is optional. Patches without names get default names.
 fn mesh_of(arrays: &Arrays) -> Result<MeshFile, NpyError> {
     let points = arrays.points(POINTS)?;
     let of_points = ("points.npy", points.len());

@@ -1,4 +1,4 @@
-//! Meshes come back as they were; arrays that do not fit each other are named.
+//! Tests of round trips and of inconsistent arrays.
 
 use super::{read, write};
 use crate::volume::content::{MeshFile, MeshNotes};

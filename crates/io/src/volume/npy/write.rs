@@ -1,4 +1,4 @@
-//! Writes meshes.
+//! Writer of meshes.
 
 use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
 use super::notes::Notes;
@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// What values beside the mesh are called: at points, in tetrahedra, in boundary faces.
+/// Name prefixes of additional values: at points, in tetrahedra, in boundary faces.
 const VALUES: [&str; 3] = ["point_", "tet_", "triangle_"];
 
 fn is_ours(file: &str) -> bool {
@@ -21,16 +21,16 @@ fn is_ours(file: &str) -> bool {
     file == NOTES || file.strip_suffix(".npy").is_some_and(is_array)
 }
 
-/// Makes sure that the folder can be made or replaced. Leaves nothing behind.
+/// Checks that the folder can be created or replaced, without side effects.
 pub(in crate::volume) fn ensure_writable(path: &Path) -> io::Result<()> {
     AtomicFolder::create(path, is_ours).map(drop)
 }
 
-/// Writes a mesh in passes, whole or not at all. Corners are `int32`, as programs want them, and `uint32` where there are more
-/// points than that numbers. `values` become arrays of their own: `point_radius`, `tet_branch`, `triangle_branch`.
+/// Writes a multi-pass mesh atomically. Corners are `int32`, which most programs expect, or `uint32` for large point
+/// counts. `values` become separate arrays: `point_radius`, `tet_branch`, `triangle_branch`.
 ///
 /// # Errors
-/// What the operating system or reading the mesh reports.
+/// The operating system or the mesh source fails.
 pub(in crate::volume) fn write(
     path: &Path,
     mesh: &dyn MeshSource,
@@ -58,13 +58,13 @@ pub(in crate::volume) fn write(
     folder.commit()
 }
 
-/// Writes arrays into a folder.
+/// Writer of arrays in a folder.
 struct Writer<'a> {
     folder: &'a AtomicFolder,
     progress: &'a dyn Progress,
 }
 
-/// What an array is written to.
+/// Output stream of an array.
 type Out<'a> = Asked<'a, BufWriter<File>>;
 
 impl Writer<'_> {
@@ -81,7 +81,7 @@ impl Writer<'_> {
         out.flush()
     }
 
-    /// The corners of tetrahedra and boundary faces.
+    /// Writes the corners of tetrahedra and boundary faces.
     fn cells<T: Item>(&self, mesh: &dyn MeshSource, number: impl Fn(u32) -> T) -> io::Result<()> {
         let counts = mesh.counts();
         self.array::<T>(TETS, counts.tets, 4, |out| {
@@ -92,7 +92,7 @@ impl Writer<'_> {
         })
     }
 
-    /// Blocks and patches.
+    /// Writes blocks and patches.
     fn labels(&self, mesh: &dyn MeshSource) -> io::Result<()> {
         let counts = mesh.counts();
         self.array::<i32>(TET_BLOCKS, counts.tets, 1, |out| {
@@ -143,10 +143,10 @@ impl Writer<'_> {
     }
 }
 
-/// What takes values.
+/// Callback for values.
 type Give<'a> = &'a mut dyn FnMut(&[f64]) -> io::Result<()>;
 
-/// Labels that are not known are 0.
+/// Writes labels, 0 if unknown.
 fn put_labels(out: &mut Out, labels: &[i32], count: usize) -> io::Result<()> {
     (0..count).try_for_each(|i| labels.get(i).copied().unwrap_or(0).put(out))
 }

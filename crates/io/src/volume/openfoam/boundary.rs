@@ -1,4 +1,4 @@
-//! The patches of a case: their names, and where their faces stand among all.
+//! Patches of a case: names and face ranges.
 
 use crate::patches::usual_name;
 use crate::volume::conditions::{Role, plain};
@@ -7,27 +7,27 @@ use anastomesh_mesh::source::{MeshSource, miscounted};
 use std::collections::BTreeMap;
 use std::io;
 
-/// A patch of a case.
+/// Patch of a case.
 pub(super) struct FoamPatch {
     pub(super) patch: Patch,
-    /// Its name as a word of OpenFOAM's.
+    /// Name as an OpenFOAM word.
     pub(super) name: String,
     pub(super) role: Role,
     pub(super) faces: u64,
-    /// Number of its first face.
+    /// Index of its first face.
     pub(super) first: u64,
 }
 
-/// All patches, in ascending order of their id; their faces follow those inside.
+/// Patches in ascending order of id; their faces follow the inner ones.
 pub(super) struct Boundary {
     pub(super) patches: Vec<FoamPatch>,
-    /// Number of faces inside.
+    /// Number of inner faces.
     pub(super) inner: u64,
     pub(super) outer: u64,
 }
 
 impl Boundary {
-    /// Reads the labels once.
+    /// Collects the patches in one pass over the labels.
     pub(super) fn of(mesh: &dyn MeshSource) -> io::Result<Self> {
         let counts = mesh.counts();
         let outer = counts.boundary as u64;

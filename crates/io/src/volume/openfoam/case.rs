@@ -1,11 +1,11 @@
-//! The dictionaries of a case: steady laminar flow, given at the inlets, against no pressure at the outlets.
+//! Dictionaries of a case: steady laminar flow with given inflow and zero pressure at the outlets.
 
 use super::boundary::{Boundary, FoamPatch};
 use super::head;
 use crate::volume::conditions::{Flow, Role};
 use std::fmt::Write;
 
-/// The list of patches. Inlets and outlets are groups, so that a case names them at once however many they are.
+/// Patch list. Inlets and outlets form groups, so that a case can address them together.
 pub(super) fn boundary(boundary: &Boundary) -> String {
     let mut text = head::text("polyBoundaryMesh", "constant/polyMesh/boundary");
     let _ = writeln!(text, "{}\n(", boundary.patches.len());
@@ -15,7 +15,7 @@ pub(super) fn boundary(boundary: &Boundary) -> String {
             Role::Inlet => ("patch", "inlets"),
             Role::Outlet => ("patch", "outlets"),
         };
-        // A group that is called as its patch is none.
+        // A group with the name of its patch is omitted.
         let groups = if name == group { String::new() } else { format!("inGroups 1({group}); ") };
         let _ = writeln!(text, "    {name} {{ type {kind}; {groups}nFaces {faces}; startFace {first}; }}");
     }
@@ -51,7 +51,7 @@ pub(super) fn pressure(boundary: &Boundary) -> String {
     text + &per_name(boundary, Role::Wall, "type zeroGradient;") + "}\n"
 }
 
-/// One entry for all patches of a role: the pattern of their names, or, of walls, each name.
+/// Entry for all patches of a role: by name pattern, or for walls by each name.
 fn per_name(boundary: &Boundary, role: Role, entry: &str) -> String {
     let names: Vec<String> = match role {
         Role::Inlet => vec!["\"inlet.*\"".into()],

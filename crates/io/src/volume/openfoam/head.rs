@@ -1,11 +1,11 @@
-//! The block at the top of every file.
+//! Header of every file.
 
-/// A file of text.
+/// Header of a text file.
 pub(super) fn text(class: &str, path: &str) -> String {
     head("ascii", "", class, path)
 }
 
-/// A file with numbers as they are in memory, their least byte first.
+/// Header of a little-endian binary file.
 pub(super) fn binary(class: &str, path: &str, note: &str) -> String {
     let arch = format!("    arch        \"LSB;label=32;scalar=64\";\n    note        \"{note}\";\n");
     head("binary", &arch, class, path)

@@ -1,4 +1,4 @@
-//! Cases for `OpenFOAM`: a folder with the mesh in `constant/polyMesh` and all that `simpleFoam` asks for beside it.
+//! `OpenFOAM` cases: a folder with the mesh in `constant/polyMesh` and all dictionaries for `simpleFoam`.
 
 mod boundary;
 mod case;
@@ -16,7 +16,7 @@ use boundary::Boundary;
 use std::io;
 use std::path::Path;
 
-/// The folder's files beside those of the mesh, and what writes them.
+/// Writer of a text file in the folder.
 type Text = fn(&Boundary, &Flow) -> String;
 
 const TEXTS: [(&str, Text); 9] = [
@@ -31,10 +31,10 @@ const TEXTS: [(&str, Text); 9] = [
     ("0/p", |boundary, _| case::pressure(boundary)),
 ];
 
-/// What `ParaView` opens: an empty file that stands for the folder.
+/// Empty marker file that `ParaView` opens.
 const FOR_PARAVIEW: &str = "case.foam";
 
-/// Makes sure that the folder can be made or replaced. Leaves nothing behind.
+/// Checks that the folder can be created or replaced, without side effects.
 pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
     AtomicFolder::create(path, is_ours).map(drop)
 }
@@ -43,13 +43,13 @@ fn is_ours(name: &str) -> bool {
     name == FOR_PARAVIEW || poly_mesh::FILES.contains(&name) || TEXTS.iter().any(|(text, _)| *text == name)
 }
 
-/// Writes a case, whole or not at all. Results of a solver that are in the folder are an error.
+/// Writes a case atomically. Solver results in an existing folder are an error.
 ///
-/// Tetrahedra are read twice, points once, the boundary three times. Held are the faces at which parts of the mesh meet, with
-/// some 50 bytes each, and of every patch its place: memory grows with nothing else.
+/// Tetrahedra are read twice, points once, the boundary three times. Memory holds the faces between parts of the mesh,
+/// about 50 bytes each, and the position of every patch.
 ///
 /// # Errors
-/// What the operating system reports, or reading the mesh; `InvalidData` when the labelled faces are not its boundary.
+/// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary.
 pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progress: &dyn Progress) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
     let boundary = Boundary::of(mesh)?;

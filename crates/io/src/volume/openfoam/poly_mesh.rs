@@ -1,5 +1,5 @@
-//! The mesh: points, faces, and the cell on either side of each face. Binary, so that each face has its place before those
-//! before it are written: patches are bunched without being held.
+//! Mesh files: points, faces, and the cells on both sides of each face. Binary faces have fixed positions, so patches
+//! are grouped without being held in memory.
 
 use super::boundary::Boundary;
 use super::head;
@@ -16,11 +16,11 @@ const FACES: &str = "constant/polyMesh/faces";
 const OWNER: &str = "constant/polyMesh/owner";
 const NEIGHBOUR: &str = "constant/polyMesh/neighbour";
 
-/// The largest number of a label of 32 bits, the usual ones.
+/// Maximum value of a 32-bit label, the default size.
 const LARGEST: u64 = i32::MAX as u64;
 
-/// Writes points, faces, owners and neighbours. Faces inside come first, ascending by the lower cell, which owns them, then
-/// by the other one: upper-triangular order; then those of each patch by their cell.
+/// Writes points, faces, owners and neighbours. Inner faces come first in upper-triangular order: by the lower cell,
+/// which owns them, then by the other. Those of each patch follow by their cell.
 pub(super) fn write(
     folder: &AtomicFolder,
     mesh: &dyn MeshSource,
@@ -76,7 +76,7 @@ fn write_points(folder: &AtomicFolder, mesh: &dyn MeshSource, progress: &dyn Pro
     file.commit()
 }
 
-/// The lists that are written side by side.
+/// Lists that are written in parallel.
 struct Lists {
     corners: List,
     owner: List,
@@ -84,7 +84,7 @@ struct Lists {
 }
 
 impl Lists {
-    /// Faces of one patch, from the place of the first.
+    /// Writes faces of one patch, starting at a given position.
     fn put_outer(&mut self, place: u64, faces: &[OuterFace]) -> io::Result<()> {
         let corners: Vec<[u32; 3]> = faces.iter().map(|face| face.vertices).collect();
         self.corners.put(place, corners.as_flattened())?;
@@ -92,16 +92,16 @@ impl Lists {
     }
 }
 
-/// A list of labels in a file, so many for each face, which are put where they belong.
+/// Label list in a file with random access, with a fixed number of labels per face.
 struct List {
     file: AtomicFile,
-    /// Where the first label is.
+    /// Offset of the first label.
     start: u64,
-    /// Where the last one ends.
+    /// End of the last label.
     end: u64,
-    /// Labels of a face.
+    /// Labels per face.
     width: u64,
-    /// Where the file is.
+    /// Current file offset.
     at: u64,
 }
 
@@ -112,7 +112,7 @@ impl List {
         Ok(Self { file, start, end: start + 4 * width * faces, width, at: start })
     }
 
-    /// Puts the labels of some faces, which follow each other.
+    /// Writes the labels of consecutive faces.
     fn put(&mut self, face: u64, labels: &[u32]) -> io::Result<()> {
         let place = self.start + 4 * self.width * face;
         if place != self.at {
@@ -136,9 +136,9 @@ fn label_list(folder: &AtomicFolder, path: &str, note: &str, faces: u64) -> io::
     List::begin(file, 1, faces)
 }
 
-/// The corners of all faces, after the list of where those of each face begin.
+/// Corners of all faces, after the list of each face's offset.
 fn corner_list(folder: &AtomicFolder, note: &str, faces: u64, progress: &dyn Progress) -> io::Result<List> {
-    /// Labels that are written at a time.
+    /// Number of labels per write.
     const AT_A_TIME: u32 = 1 << 16;
     let mut file = folder.file(FACES)?;
     let out = &mut Asked { out: &mut file, progress };

@@ -4,7 +4,7 @@ use crate::volume::write_mesh;
 use anastomesh_mesh::{TET_FACES, VolumeMesh, face_key};
 use std::fs;
 
-/// The lists of a binary file, as words.
+/// Lists of a binary file, as words.
 fn lists(path: &Path) -> Vec<Vec<u32>> {
     let bytes = fs::read(path).unwrap();
     let mut at = bytes.windows(3).position(|w| w == b"}\n\n").unwrap() + 3;
@@ -54,7 +54,7 @@ fn faces_are_in_upper_triangular_order_and_patches_bunched() {
     assert!(starts.iter().zip(0..).all(|(&start, i)| start == 3 * i) && starts.len() == owner.len() + 1);
     let cells: Vec<(u32, u32)> = owner.iter().copied().zip(neighbour.iter().copied()).collect();
     assert!(cells.is_sorted() && cells.iter().all(|(a, b)| a < b));
-    // Each face is one of its owner's, turned outwards.
+    // Each face belongs to its owner and is oriented outwards.
     let (faces, _) = corners.as_chunks::<3>();
     let of = |cell: u32| TET_FACES.map(|side| side.map(|corner| volume.mesh.tets[cell as usize][corner]));
     assert!(faces.iter().zip(owner).all(|(face, &cell)| of(cell).contains(face)));

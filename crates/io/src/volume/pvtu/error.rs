@@ -1,28 +1,28 @@
-//! What can be wrong with a mesh in pieces.
+//! Errors of meshes in pieces.
 
 use crate::volume::vtu::VtuFault;
 use crate::vtk_xml::VtkError;
 
-/// Why files are no mesh in pieces.
+/// Errors of a mesh in pieces.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PvtuFault {
-    /// The index is no sound VTK XML file.
+    /// The index is an invalid VTK XML file.
     #[error(transparent)]
     Vtk(#[from] VtkError),
-    /// A piece is no mesh.
+    /// A piece is invalid.
     #[error(transparent)]
     Piece(#[from] VtuFault),
-    /// Something that every index has is not there.
+    /// A required element or attribute is missing.
     #[error("'{what}' is missing: was it written completely?")]
     Missing {
         /// Name of the element or attribute.
         what: &'static str,
     },
-    /// Two pieces say of a point that they share that it is elsewhere.
+    /// Two pieces have different positions for a shared point.
     #[error("the pieces have different positions for the point {id}: they are not of one mesh; write them again")]
     PointsDiffer {
-        /// Its global id.
+        /// Global id.
         id: i64,
     },
 }

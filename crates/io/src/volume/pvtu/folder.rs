@@ -1,30 +1,30 @@
-//! A folder of pieces that appears whole, together with the file that names them, or not at all.
+//! Atomic piece folder: appears completely, together with its index file, or not at all.
 
 use crate::file::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A folder under a temporary name beside its target; `commit` moves it there, dropping it removes it.
+/// Folder under a temporary name next to its target; `commit` moves it there, dropping it removes it.
 #[derive(Debug)]
 pub(in crate::volume) struct PieceFolder {
     temporary: PathBuf,
-    /// Says that the temporary folder is in use.
+    /// Lock that marks the temporary folder as in use.
     lock: Option<File>,
     target: PathBuf,
-    /// What the names of its files begin with.
+    /// Common start of its file names.
     stem: String,
 }
 
 impl PieceFolder {
-    /// The folder of the pieces of `index`: the path without its extension.
+    /// Folder for the pieces of `index`: its path without the extension.
     fn target_of(index: &Path) -> io::Result<(PathBuf, String)> {
         let stem = index.file_stem().and_then(|stem| stem.to_str());
         let stem = stem.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the name is no Unicode text"))?;
         Ok((index.with_file_name(stem), stem.to_owned()))
     }
 
-    /// Makes sure that the folder can be made or replaced: what is there is at most pieces of an earlier mesh.
+    /// Checks that the folder can be created or replaced: it contains only pieces of an earlier mesh.
     pub(in crate::volume) fn ensure_replaceable(index: &Path) -> io::Result<()> {
         let (target, stem) = Self::target_of(index)?;
         let taken = |what: &str| {
@@ -45,7 +45,7 @@ impl PieceFolder {
         Ok(())
     }
 
-    /// Makes a new temporary folder.
+    /// Creates a new temporary folder.
     pub(super) fn create(index: &Path) -> io::Result<Self> {
         Self::ensure_replaceable(index)?;
         let (target, stem) = Self::target_of(index)?;
@@ -54,21 +54,21 @@ impl PieceFolder {
         Ok(Self { lock: locked(File::open(&temporary)), temporary, target, stem })
     }
 
-    /// Path of a piece, as long as the folder is temporary.
+    /// Path of a piece in the temporary folder.
     pub(super) fn piece(&self, number: usize) -> PathBuf {
         self.temporary.join(piece_name(&self.stem, number))
     }
 
-    /// Where a piece will be, as seen from the folder of the index.
+    /// Final path of a piece, relative to the folder of the index.
     pub(super) fn source(&self, number: usize) -> String {
         format!("{}/{}", self.stem, piece_name(&self.stem, number))
     }
 
-    /// Moves the folder and its index to their targets, replacing what was there. When that fails both are as before.
+    /// Moves the folder and its index to their targets and replaces earlier ones. On failure both are unchanged.
     pub(super) fn commit(mut self, mut index: AtomicFile, path: &Path) -> io::Result<()> {
         index.complete()?;
         Self::ensure_replaceable(path)?;
-        // An empty folder takes the place that the one of the earlier pieces is moved to.
+        // An empty folder reserves the name to which the earlier one is moved.
         let earlier = if self.target.exists() {
             Some(make_hidden(&self.target, "old", |old| fs::create_dir(old))?.0)
         } else {
@@ -88,7 +88,7 @@ impl PieceFolder {
             })
         });
         match (&earlier, &done) {
-            // Of the way back nothing can be asked more than to be tried.
+            // Restoring the old folder is best effort.
             (Some(old), Err(_)) => drop(fs::rename(old, &self.target)),
             (Some(old), Ok(())) => remove_pieces(old, &self.stem),
             (None, _) => {}
@@ -112,21 +112,21 @@ fn piece_name(stem: &str, number: usize) -> String {
     format!("{stem}_{number:04}.vtu")
 }
 
-/// Whether a file's name is that of a piece.
+/// True for the file name of a piece.
 fn is_piece(name: &std::ffi::OsStr, stem: &str) -> bool {
     let number = name.to_str().and_then(|name| name.strip_prefix(stem)?.strip_prefix('_')?.strip_suffix(".vtu"));
     number.is_some_and(|digits| digits.len() >= 4 && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
-/// Whether a file is a piece that was not written to its end.
+/// True for the file name of an incomplete piece.
 fn is_part(name: &std::ffi::OsStr, stem: &str) -> bool {
     let piece = name.to_str().and_then(|name| name.strip_prefix('.')?.find(".vtu.").map(|end| &name[1..end + 5]));
     piece.is_some_and(|piece| is_piece(piece.as_ref(), stem) && is_hidden_name(name, piece, "part"))
 }
 
-/// Removes a folder of pieces, and nothing else: a folder in which there is more stays.
+/// Removes a folder of pieces; a folder with other files is kept.
 fn remove_pieces(folder: &Path, stem: &str) {
-    // Nothing can be done about a failure here, and no target is touched.
+    // Failures are ignored, and no target is affected.
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if is_piece(&entry.file_name(), stem) || is_part(&entry.file_name(), stem) {
             let _ = fs::remove_file(entry.path());
@@ -195,7 +195,7 @@ mod tests {
             fs::write(left.join(".out_0001.vtu.12-0.part"), "half").unwrap();
             File::open(&left).unwrap().set_modified(long_ago).unwrap();
         }
-        // Something that nobody here has made.
+        // A file from elsewhere.
         let theirs = parent.path().join(".out.12-1.part/notes.txt");
         fs::write(&theirs, "mine").unwrap();
         File::open(theirs.parent().unwrap()).unwrap().set_modified(long_ago).unwrap();

@@ -1,8 +1,8 @@
-//! Meshes in pieces (`.pvtu`): an index, and beside it a folder of VTU files, each some blocks that hang together, so that
-//! programs load what they need, and in parallel.
+//! Meshes in pieces (`.pvtu`): an index and a folder of VTU files. Each file holds connected blocks, so that programs
+//! can load parts, also in parallel.
 //!
-//! Points that several pieces share are in each of them; the point array `GlobalPointIds` (`Int64`) says which is which.
-//! Cells have the arrays of a VTU, and the first piece has its field data.
+//! Shared points are in each of their pieces, identified by the point array `GlobalPointIds` (`Int64`). Cells have the
+//! arrays of a VTU file, and the first piece has its field data.
 
 mod error;
 mod folder;

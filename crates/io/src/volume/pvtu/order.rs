@@ -1,5 +1,5 @@
-//! The order in which the parts of a mesh go into pieces: along the tree of parts that share points, so that pieces, which are
-//! ranges of this order, are cut from each other at few joints.
+//! Order of mesh parts for pieces: along the tree of parts that share points. Pieces are ranges of this order and thus
+//! separated at few joints.
 
 use anastomesh_mesh::Patch;
 use anastomesh_mesh::geometry::Point3;
@@ -8,20 +8,20 @@ use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::io;
 
-/// No part.
+/// Marks the absence of a part.
 const NONE: u32 = u32::MAX;
 
-/// A mesh whose cells are read in another order of its parts. Points keep their order, and so their numbers.
+/// Mesh with its parts in another order. Points keep their order and numbers.
 pub(super) struct Reordered<'a> {
     mesh: &'a dyn MeshSource,
     order: Vec<u32>,
 }
 
 impl<'a> Reordered<'a> {
-    /// Along the tree where each part is a block of its own, else as it is. Reads points and tetrahedra once.
+    /// Orders parts along the tree if each is a separate block, else keeps the order. Reads points and tetrahedra once.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// The mesh source fails.
     pub(super) fn along_the_tree(mesh: &'a dyn MeshSource) -> io::Result<Self> {
         let parts = Parts::of(mesh)?;
         let order = parts.map_or_else(|| (0..mesh.parts()).collect(), |parts| parts.in_preorder());
@@ -71,23 +71,23 @@ impl MeshSource for Reordered<'_> {
     }
 }
 
-/// What a part says of itself.
+/// Properties of a part.
 struct Joined {
-    /// Its block, if all of it is one.
+    /// Block of the part, if it is unique.
     block: Option<i32>,
     tets: u64,
-    /// The other parts of whose points it has some.
+    /// Other parts that own some of its points.
     owners: Vec<u32>,
 }
 
 impl Joined {
-    /// `starts`: the first of the points that each part adds.
+    /// Computes the properties; `starts` holds the first point added by each part.
     fn of(piece: &TetPiece, part: u32, starts: &[u32]) -> Self {
         let own = starts[part as usize]..starts[part as usize + 1];
         let mut others: Vec<u32> = piece.tets.as_flattened().iter().copied().filter(|v| !own.contains(v)).collect();
         others.sort_unstable();
         others.dedup();
-        // A point that does not exist is a fault which the writer finds.
+        // A missing point is an error that the writer detects.
         others.retain(|v| starts.last().is_some_and(|end| v < end));
         let mut owners: Vec<u32> =
             others.into_iter().map(|v| starts.partition_point(|&start| start <= v) as u32 - 1).collect();
@@ -97,14 +97,14 @@ impl Joined {
     }
 }
 
-/// The graph of parts, joined where they share points.
+/// Graph of parts, connected if they share points.
 struct Parts {
     neighbors: Vec<Vec<u32>>,
     tets: Vec<u64>,
 }
 
 impl Parts {
-    /// None if some part is not one block, or a block several parts.
+    /// Returns `None` if a part has several blocks, or a block several parts.
     fn of(mesh: &dyn MeshSource) -> io::Result<Option<Self>> {
         let mut starts = vec![0_u32];
         let mut sum = 0;
@@ -137,9 +137,8 @@ impl Parts {
         Ok(Some(parts).filter(|_| blocks.len() == count && blocks.iter().all(Option::is_some)))
     }
 
-    /// Each part before those behind it, small branches before large ones: wherever this order is cut, what lies before is
-    /// joined to what lies behind at some logarithm of the number of parts of places, as each branch that is begun and not
-    /// ended is at most half of the one before.
+    /// Preorder with small subtrees before large ones. Every cut of this order separates O(log n) joints, as each open
+    /// subtree has at most half the size of its parent.
     fn in_preorder(&self) -> Vec<u32> {
         let (outward, parents) = self.spanning_trees();
         let mut sizes = self.tets.clone();
@@ -161,14 +160,14 @@ impl Parts {
         while let Some(part) = pending.pop() {
             order.push(part);
             let own = &mut children[part as usize];
-            // What is pushed last comes first.
+            // The last item pushed comes first.
             own.sort_by_key(|&child| std::cmp::Reverse((sizes[child as usize], child)));
             pending.append(own);
         }
         order
     }
 
-    /// The parts breadth first from the lowest of each component, and the part before each.
+    /// Breadth-first order of the parts from the lowest of each component, with their parents.
     fn spanning_trees(&self) -> (Vec<u32>, Vec<u32>) {
         let count = self.tets.len();
         let (mut order, mut parents, mut seen) = (Vec::with_capacity(count), vec![NONE; count], vec![false; count]);
@@ -195,7 +194,7 @@ impl Parts {
 mod tests {
     use super::*;
 
-    /// The graph with these joints; all parts are of one size.
+    /// Graph with these joints; all parts have equal size.
     fn graph(count: usize, joints: &[[u32; 2]]) -> Parts {
         let mut parts = Parts { neighbors: vec![Vec::new(); count], tets: vec![1; count] };
         for &[a, b] in joints {
@@ -217,7 +216,7 @@ mod tests {
 
     #[test]
     fn a_cut_parts_few_joints() {
-        // A full binary tree, its joints numbered after its nodes as connectors are after clusters.
+        // A full binary tree, with joints numbered after its nodes like connectors after clusters.
         let nodes = 1023_u32;
         let joints: Vec<[u32; 2]> =
             (1..nodes).flat_map(|n| [[(n - 1) / 2, nodes + n - 1], [n, nodes + n - 1]]).collect();

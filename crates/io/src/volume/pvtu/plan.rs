@@ -1,35 +1,35 @@
-//! Which tetrahedra and boundary faces go into which piece of a mesh.
+//! Assignment of tetrahedra and boundary faces to pieces.
 
 use anastomesh_mesh::source::MeshSource;
 use rustc_hash::FxHashMap;
 use std::io;
 
-/// The pieces: consecutive ranges of tetrahedra.
+/// Pieces as consecutive ranges of tetrahedra.
 #[derive(Debug)]
 pub(super) struct Plan {
-    /// Where each piece ends. There is at least one piece.
+    /// End of each piece; there is at least one piece.
     pub ends: Vec<usize>,
-    /// Where the tetrahedra of each block are.
+    /// Pieces of each block's tetrahedra.
     spans: FxHashMap<i32, Span>,
     /// All pieces, for faces of blocks without tetrahedra.
     everywhere: Span,
 }
 
-/// The pieces that a block lies in.
+/// Range of pieces with parts of a block.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     first: usize,
     last: usize,
-    /// How many boundary faces the block has.
+    /// Number of the block's boundary faces.
     faces: usize,
 }
 
 impl Plan {
-    /// Cuts between blocks, so that no piece has more than `limit` tetrahedra; within a block only when it is larger.
-    /// Reads the tetrahedra and the boundary once. What is held grows with the number of blocks alone.
+    /// Cuts between blocks so that pieces have at most `limit` tetrahedra, and within larger blocks. Reads the
+    /// tetrahedra and the boundary once. Memory grows with the number of blocks only.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// The mesh source fails.
     pub(super) fn of(mesh: &dyn MeshSource, limit: usize) -> io::Result<Self> {
         let mut cutter = Cutter { limit: limit.max(1), ..Cutter::default() };
         mesh.each_tets(|piece| {
@@ -52,22 +52,21 @@ impl Plan {
         self.spans.get_mut(&block).unwrap_or(&mut self.everywhere)
     }
 
-    /// A new pass over the boundary faces.
+    /// Starts a pass over the boundary faces.
     pub(super) fn faces(&self) -> FacePlan<'_> {
         FacePlan { plan: self, seen: FxHashMap::default() }
     }
 }
 
-/// Tells of one boundary face after another where it belongs.
+/// Assigns consecutive boundary faces to pieces.
 pub(super) struct FacePlan<'a> {
     plan: &'a Plan,
-    /// How many faces have come of blocks that lie in several pieces, or nowhere (none).
+    /// Number of faces seen per block in several pieces, or in none (`None`).
     seen: FxHashMap<Option<i32>, usize>,
 }
 
 impl FacePlan<'_> {
-    /// The piece of the next face, which is one of its block. The faces of a block that lies in several are shared out
-    /// between these, in their order.
+    /// Piece of the next face, among those of its block. Faces of a block in several pieces are distributed in order.
     pub(super) fn next(&mut self, block: i32) -> usize {
         let (key, span) = match self.plan.spans.get(&block) {
             Some(span) => (Some(block), span),
@@ -83,16 +82,16 @@ impl FacePlan<'_> {
     }
 }
 
-/// Finds the cuts.
+/// Computes the cuts.
 #[derive(Default)]
 struct Cutter {
     limit: usize,
     at: usize,
     start: usize,
-    /// Where the block under way begins.
+    /// Start of the current block.
     change: usize,
     block: Option<i32>,
-    /// Blocks that end in the piece under way.
+    /// Blocks that end in the current piece.
     pending: Vec<i32>,
     ends: Vec<usize>,
     spans: FxHashMap<i32, Span>,
@@ -165,7 +164,7 @@ mod tests {
         };
         plan.span_mut(8).faces = 6;
         assert_eq!(pieces(&plan, &[8, 7, 8, 8, 9, 8, 8, 8]), [1, 0, 1, 2, 3, 2, 3, 3]);
-        // A block that no tetrahedron has.
+        // A block without tetrahedra.
         plan.span_mut(5).faces += 4;
         assert_eq!(pieces(&plan, &[5, 5, 5, 5]), [0, 1, 2, 3]);
     }

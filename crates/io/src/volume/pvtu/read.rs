@@ -1,4 +1,4 @@
-//! Reads a mesh in pieces: the index, then every piece, and unites the points that pieces share.
+//! Reader of meshes in pieces: reads the index and every piece, and merges shared points.
 
 use super::error::PvtuFault;
 use crate::file::{FileError, read_bytes};
@@ -9,11 +9,11 @@ use anastomesh_mesh::VolumeMesh;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Reads a mesh in pieces. Points are united by their global ids, and are in the order of these; when a piece has none,
-/// points that pieces share stay apart. Cells that a piece has only as ghosts are left out.
+/// Reads a mesh in pieces. Points are merged and sorted by their global ids. If a piece has none, shared points stay
+/// separate. Ghost cells are skipped.
 ///
 /// # Errors
-/// `Read` with the system's reason, `Empty`, or `Content` with what is wrong, all with the path of the index or piece.
+/// `Read` with the system's error, `Empty`, or `Content` with the fault, each with the path of index or piece.
 pub(in crate::volume) fn read(path: &Path) -> Result<MeshFile, FileError<PvtuFault>> {
     let sources = sources(&read_bytes(path)?).map_err(FileError::content(path))?;
     if sources.is_empty() {
@@ -29,7 +29,7 @@ pub(in crate::volume) fn read(path: &Path) -> Result<MeshFile, FileError<PvtuFau
     Ok(file)
 }
 
-/// Unites the points that are the same by their global ids, if there are such: afterwards points are in the order of these.
+/// Merges points with equal global ids, if there are ids; points are then sorted by them.
 fn unite(volume: &mut VolumeMesh, ids: &[i64]) -> Result<(), PvtuFault> {
     if ids.is_empty() {
         return Ok(());
@@ -55,7 +55,7 @@ fn unite(volume: &mut VolumeMesh, ids: &[i64]) -> Result<(), PvtuFault> {
     Ok(())
 }
 
-/// Paths of the pieces, from the folder of the index.
+/// Paths of the pieces, relative to the folder of the index.
 fn sources(bytes: &[u8]) -> Result<Vec<PathBuf>, PvtuFault> {
     let xml = VtkXml::parse(bytes, "PUnstructuredGrid")?;
     let grid = xml.child(VtkXml::ROOT, "PUnstructuredGrid");

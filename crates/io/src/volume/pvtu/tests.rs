@@ -1,4 +1,4 @@
-//! A mesh in pieces is the mesh, however it is cut and read; what is there stays when something goes wrong.
+//! Tests of round trips for any partition, and of preserved files after failures.
 
 use super::error::PvtuFault;
 use super::write::{Pieces, write};
@@ -10,12 +10,12 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// A tube in blocks of so many tetrahedra, the last in the middle of the first.
+/// A tube in blocks of `block` tetrahedra, the last inside the first.
 fn tube(layers: u32, block: usize) -> (VolumeMesh, MeshNotes) {
     let (mut volume, notes) = labelled_tube(layers);
     let blocks = volume.mesh.tets.len() / block;
     volume.tet_block = (0..volume.mesh.tets.len()).map(|i| (i / block) as i32).collect();
-    // As labels go: a face has the block of a tetrahedron with it.
+    // Consistent labels: a face has the block of its tetrahedron.
     let mut owner = rustc_hash::FxHashMap::default();
     for (tet, &block) in volume.mesh.tets.iter().zip(&volume.tet_block) {
         for side in anastomesh_mesh::TET_FACES {
@@ -32,7 +32,7 @@ fn sorted(mut face: [u32; 3]) -> [u32; 3] {
     face
 }
 
-/// The boundary in an order that does not depend on the pieces.
+/// Boundary in an order that does not depend on the pieces.
 fn in_order(mut volume: VolumeMesh) -> VolumeMesh {
     let mut faces: Vec<_> = volume
         .boundary
@@ -131,14 +131,14 @@ fn odd_meshes() {
         in_order(read_mesh(&path).unwrap().volume)
     };
     assert_eq!(back(&VolumeMesh::default()), VolumeMesh::default());
-    // Points that nothing has, blocks that alternate, faces of a block without tetrahedra.
+    // Unused points, alternating blocks, and faces of a block without tetrahedra.
     let (mut volume, _) = labelled_tube(5);
     for at in [0.5, 7.0] {
         volume.mesh.points.push(anastomesh_mesh::geometry::Point3::new(at, 0.0, 0.0));
     }
     volume.boundary_block[3] = 99;
     assert_eq!(back(&volume), in_order(volume.clone()));
-    // Nothing known but the mesh itself, and one block for all.
+    // No labels, and a single block.
     for values in [&mut volume.tet_block, &mut volume.boundary_block, &mut volume.boundary_patch] {
         values.fill(0);
     }

@@ -1,4 +1,4 @@
-//! Writes a mesh in pieces, as many at a time as memory allows.
+//! Writer of meshes in pieces, as many at a time as memory permits.
 
 use super::folder::PieceFolder;
 use super::order::Reordered;
@@ -16,16 +16,16 @@ use rayon::prelude::*;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// How a mesh is cut into pieces.
+/// Options of the partition into pieces.
 #[derive(Clone, Copy)]
 pub(in crate::volume) struct Pieces<'a> {
-    /// Tetrahedra in a piece at most. Cuts lie between blocks, unless one has more.
+    /// Maximum tetrahedra per piece. Cuts lie between blocks, unless a block exceeds it.
     pub tets: usize,
-    /// How many bytes of pieces are held at a time, about; one piece is, in any case.
+    /// Approximate memory for pieces in bytes; at least one piece is held.
     pub memory: usize,
-    /// How each of them is written.
+    /// Options of each piece.
     pub grid: GridOptions,
-    /// Values beside the mesh.
+    /// Additional values of the mesh.
     pub values: Option<&'a dyn Beside>,
 }
 
@@ -35,15 +35,14 @@ impl Default for Pieces<'_> {
     }
 }
 
-/// Writes a mesh in pieces: `path`, and the folder of the same name without the extension. Both appear whole or not at
-/// all, and pieces of an earlier mesh are replaced; a folder that holds other things is not.
+/// Writes a mesh in pieces to `path` and the folder with its name minus the extension, atomically. Pieces of an earlier
+/// mesh are replaced; a folder with other files is not.
 ///
-/// Blocks that are parts of their own are put in an order in which pieces part few joints. Of a mesh that is read in passes, as
-/// many pieces are held at a time as `pieces.memory` allows. Tetrahedra are read three times, points once and once more for
-/// every so many pieces, the boundary likewise.
+/// Separate blocks are ordered so that pieces cut few joints. For a multi-pass source, `pieces.memory` limits the
+/// number of pieces held. Tetrahedra are read three times; points and boundary once, and once more per batch of pieces.
 ///
 /// # Errors
-/// What the operating system reports, or reading the mesh; `InvalidData` when a cell names a point that does not exist.
+/// The operating system or the mesh source fails; `InvalidData` if a cell refers to a missing point.
 pub(in crate::volume) fn write(
     path: &Path,
     mesh: &dyn MeshSource,
@@ -74,7 +73,7 @@ pub(in crate::volume) fn write(
     folder.commit(index, path)
 }
 
-/// Bytes that a piece takes in memory, about: its share of points and faces, a half more for those on its rim.
+/// Approximate memory of a piece: its share of points and faces, plus half for those on its rim.
 fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
     let counts = mesh.counts();
     let shared = (28 * counts.points + 20 * counts.boundary) as f64 * 1.5 / counts.tets.max(1) as f64;
@@ -104,7 +103,7 @@ fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, how: P
     out.write_all(b"</PUnstructuredGrid>\n</VTKFile>\n")
 }
 
-/// What the index says of the columns at points, or of those in cells.
+/// Declarations in the index of the columns at points, or of those in cells.
 fn announced(columns: &[Column], at_points: bool) -> String {
     let line = |column: &Column| {
         let kind = if column.is_integer { "Int32" } else { "Float64" };
@@ -113,35 +112,35 @@ fn announced(columns: &[Column], at_points: bool) -> String {
     columns.iter().filter(|column| column.at_points == at_points).map(line).collect()
 }
 
-/// Writes pieces, some in each pass over points and boundary.
+/// Writer of pieces, with one batch per pass over points and boundary.
 struct Writer<'a> {
     mesh: &'a dyn MeshSource,
     notes: &'a MeshNotes,
     plan: &'a Plan,
     folder: &'a PieceFolder,
-    /// How many pieces may be held.
+    /// Maximum number of pieces held.
     room: usize,
     grid: GridOptions,
     values: Option<&'a dyn Beside>,
     progress: &'a dyn Progress,
-    /// The points of the piece under way.
+    /// Points of the current piece.
     piece: Bits,
-    /// The points of all pieces so far.
+    /// Points of all pieces so far.
     used: Bits,
 }
 
-/// A piece: a mesh of its own, first in the numbers of the whole, then in its own.
+/// Piece: a separate mesh, first with global, then with local numbers.
 #[derive(Default)]
 struct Piece {
     volume: VolumeMesh,
-    /// Its points in the whole mesh, ascending.
+    /// Global point numbers, ascending.
     ids: Vec<u32>,
 }
 
-/// Pieces that are held at a time.
+/// Pieces held at a time.
 #[derive(Default)]
 struct Batch {
-    /// Number of the first.
+    /// Number of the first piece.
     first: usize,
     pieces: Vec<Piece>,
 }
@@ -172,7 +171,7 @@ impl Writer<'_> {
         self.write_batch(&mut batch)
     }
 
-    /// Begins another piece; those before it are written when no more can be held.
+    /// Starts another piece; writes the batch if it is full.
     fn open_next(&mut self, batch: &mut Batch) -> io::Result<()> {
         if batch.pieces.len() >= self.room {
             self.write_batch(batch)?;
@@ -181,7 +180,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// A piece that is still empty.
+    /// Creates an empty piece.
     fn piece_of(&self, number: usize) -> Piece {
         let before = number.checked_sub(1).and_then(|n| self.plan.ends.get(n)).copied().unwrap_or(0);
         let tets = self.plan.ends.get(number).map_or(0, |end| end - before);
@@ -221,7 +220,7 @@ impl Writer<'_> {
         })
     }
 
-    /// Finds the points of a piece and gives them numbers of its own. Points that no cell has go into the last piece.
+    /// Assigns local numbers to the points of a piece. Unused points go to the last piece.
     fn number(&mut self, piece: &mut Piece, last: bool) -> io::Result<()> {
         let (tets, faces) = (&mut piece.volume.mesh.tets, &mut piece.volume.boundary);
         self.piece.clear();

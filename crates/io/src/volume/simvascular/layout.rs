@@ -1,11 +1,11 @@
-//! What the files are called.
+//! File names of the folder.
 
 pub(super) const MESH: &str = "mesh-complete.mesh.vtu";
 pub(super) const EXTERIOR: &str = "mesh-complete.exterior.vtp";
 pub(super) const WALLS: &str = "walls_combined.vtp";
 pub(super) const SOLVER: &str = "solver.xml";
 
-/// The file of a patch.
+/// File of a patch.
 pub(super) fn surface_path(patch: &str) -> String {
     format!("mesh-surfaces/{patch}.vtp")
 }

@@ -1,5 +1,5 @@
-//! The `mesh-complete` folder of `SimVascular`, which `svMultiPhysics` runs: tetrahedra, the boundary as a whole and patch by
-//! patch, everything numbered from 1 in 32 bits, and a `solver.xml`.
+//! `SimVascular` folder `mesh-complete` for `svMultiPhysics`: tetrahedra, whole boundary, patches, and `solver.xml`.
+//! All numbers count from 1 in 32 bits.
 
 mod layout;
 mod sheet;
@@ -26,18 +26,18 @@ use std::collections::BTreeMap;
 use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
 
-/// Makes sure that the folder can be made or replaced. Leaves nothing behind.
+/// Checks that the folder can be created or replaced, without side effects.
 pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
     AtomicFolder::create(path, is_ours).map(drop)
 }
 
-/// Writes a folder, whole or not at all.
+/// Writes a folder atomically.
 ///
-/// The boundary is put down in a file without a name, with the tetrahedron under each face, and read from there. Held are
-/// the faces of inlets and outlets, those at which parts of the mesh meet, and a bit for each point.
+/// The boundary is stored in a temporary file, with the tetrahedron at each face, and read from it. Memory holds the
+/// faces of inlets and outlets, those between parts of the mesh, and a bit per point.
 ///
 /// # Errors
-/// What the operating system reports, or reading the mesh; `InvalidData` when the labelled faces are not its boundary.
+/// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary.
 pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progress: &dyn Progress) -> io::Result<()> {
     ensure_countable(mesh)?;
     let folder = AtomicFolder::create(path, is_ours)?;
@@ -62,7 +62,7 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
 
 type Out<'a> = Asked<'a, &'a mut AtomicFile>;
 
-/// A file of the folder.
+/// Writes a file of the folder.
 fn put(
     folder: &AtomicFolder,
     name: &str,
@@ -74,7 +74,7 @@ fn put(
     file.commit()
 }
 
-/// A file of the faces that are chosen.
+/// Writes a file with the selected faces.
 fn put_wide(
     folder: &AtomicFolder,
     name: &str,
@@ -88,7 +88,7 @@ fn put_wide(
     put(folder, name, progress, &|out| write_sheet(out, &sheet))
 }
 
-/// The faces of every patch but the wall.
+/// Faces of every patch except the wall.
 fn caps(spool: &Spool) -> io::Result<BTreeMap<i32, Vec<OuterFace>>> {
     let mut caps: BTreeMap<i32, Vec<OuterFace>> = BTreeMap::new();
     spool.each(|faces| {
@@ -100,7 +100,7 @@ fn caps(spool: &Spool) -> io::Result<BTreeMap<i32, Vec<OuterFace>>> {
     Ok(caps)
 }
 
-/// Its readers count in 32 bits.
+/// Checks that all counts fit into 32 bits, as the readers require.
 fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
     let counts = mesh.counts();
     if Width::of(counts) == Width::Int32 {
@@ -113,7 +113,7 @@ fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
     Err(io::Error::new(io::ErrorKind::InvalidInput, text))
 }
 
-/// Tetrahedra alone: the solver reads no other cells beside them.
+/// Writes tetrahedra only, as the solver accepts no other cells.
 fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource) -> io::Result<()> {
     let mesh: &dyn MeshSource = &TetsAlone(mesh);
     let counts = mesh.counts();
@@ -132,7 +132,7 @@ fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource) -> io::Resul
     File { kind: "UnstructuredGrid", counts, arrays, raw: false }.write(out)
 }
 
-/// A surface, with the numbers that its points and the tetrahedra under its faces have in the mesh.
+/// Writes a surface with the mesh numbers of its points and adjacent tetrahedra.
 fn write_sheet(out: &mut (impl Write + Seek), sheet: &dyn Sheet) -> io::Result<()> {
     let (points, faces) = sheet.counts();
     let corners = Array::new(Place::Polys, "connectivity", INT32, 3 * faces, |out| {

@@ -1,4 +1,4 @@
-//! Parts of the boundary as surfaces of their own: those that are as large as the mesh, and caps.
+//! Parts of the boundary as separate surfaces: large ones, and caps.
 
 use super::spool::Spool;
 use anastomesh_mesh::bits::{Bits, Ranks};
@@ -7,24 +7,24 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::{MeshSource, miscounted};
 use std::io;
 
-/// What takes some of many things at a time.
+/// Callback for items in batches.
 pub(super) type Take<'a, T> = &'a mut dyn FnMut(&[T]) -> io::Result<()>;
 
-/// A part of the boundary. Its points are numbered anew, in the order that they have in the mesh.
+/// Part of the boundary. Its points are renumbered in the order of the mesh.
 pub(super) trait Sheet: Sync {
-    /// Numbers of points and faces.
+    /// Number of points and faces.
     fn counts(&self) -> (usize, usize);
-    /// Gives the points.
+    /// Provides the points.
     fn each_points(&self, each: Take<Point3>) -> io::Result<()>;
-    /// Gives the numbers of the points in the mesh.
+    /// Provides the numbers of the points in the mesh.
     fn each_ids(&self, each: Take<u32>) -> io::Result<()>;
-    /// Gives the faces, in the numbers of the mesh.
+    /// Provides the faces, with point numbers of the mesh.
     fn each_faces(&self, each: Take<OuterFace>) -> io::Result<()>;
-    /// The number here of a point of the mesh.
+    /// Number in this part of a mesh point.
     fn own_number(&self, id: u32) -> u32;
 }
 
-/// A part that may be large: nothing but a bit and a half for each point of the mesh is held.
+/// Possibly large part: memory holds only 1.5 bits per mesh point.
 pub(super) struct WideSheet<'a> {
     pub(super) mesh: &'a dyn MeshSource,
     pub(super) spool: &'a Spool,
@@ -34,7 +34,7 @@ pub(super) struct WideSheet<'a> {
     pub(super) faces: usize,
 }
 
-/// The points that some faces have, and how many faces these are.
+/// Points of the selected faces, and number of these faces.
 pub(super) fn used(mesh: &dyn MeshSource, spool: &Spool, has: fn(&OuterFace) -> bool) -> io::Result<(Bits, usize)> {
     let (mut used, mut count) = (Bits::new(mesh.counts().points), 0);
     spool.each(|faces| {
@@ -81,7 +81,7 @@ impl Sheet for WideSheet<'_> {
     }
 }
 
-/// An inlet or outlet, or several: small, and held.
+/// One or several inlets or outlets: small, and held in memory.
 pub(super) struct CapSheet<'a> {
     faces: &'a [OuterFace],
     ids: Vec<u32>,

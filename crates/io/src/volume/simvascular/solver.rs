@@ -1,14 +1,14 @@
-//! What `svMultiPhysics` is told: steady laminar flow, given at the inlets, against a resistance at each outlet.
+//! Input of `svMultiPhysics`: steady laminar flow with given inflow and a resistance at each outlet.
 
 use super::layout::{MESH, surface_path};
 use crate::volume::conditions::{Flow, Role, plain};
 use anastomesh_mesh::Patch;
 use std::fmt::Write;
 
-/// How many steps it takes until nothing changes, each a tenth of the time in which friction spreads over the widest inlet.
+/// Number of time steps to a steady state. Each is a tenth of the diffusion time of the widest inlet.
 const STEPS: u32 = 30;
 
-/// The file.
+/// Contents of the file.
 pub(super) fn text(patches: &[Patch], flow: &Flow) -> String {
     let mut faces = String::new();
     let mut conditions = String::new();
@@ -24,7 +24,7 @@ pub(super) fn text(patches: &[Patch], flow: &Flow) -> String {
     let radius =
         patches.iter().filter(|p| p.is_inlet()).filter_map(|p| Some(p.cap.as_ref()?.radius)).fold(0.0, f64::max);
     let step = 0.1 * radius * radius * flow.density / flow.viscosity;
-    // Of an inlet of unknown width nothing can be said.
+    // Default for inlets of unknown width.
     let step = if step > 0.0 { step } else { 1e-3 };
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svMultiPhysicsFile version=\"0.1\">\n\n<GeneralSimulationParameters>\n  \
@@ -42,7 +42,7 @@ pub(super) fn text(patches: &[Patch], flow: &Flow) -> String {
 fn condition(patch: &Patch, flow: &Flow) -> String {
     let at = flow.at(patch);
     match Role::of(patch) {
-        // What goes in runs against the normal.
+        // Inflow is opposite to the normal.
         Role::Inlet => format!(
             "    <Type> Dir </Type>\n    <Time_dependence> Steady </Time_dependence>\n    <Profile> Parabolic </Profile>\n    \
              <Impose_flux> true </Impose_flux>\n    <Value> {:e} </Value>\n",

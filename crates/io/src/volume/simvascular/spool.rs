@@ -1,4 +1,4 @@
-//! The faces of the boundary with the tetrahedra under them, in a file without a name: they are found once and read often.
+//! Temporary file of boundary faces and their tetrahedra, which are computed once and read several times.
 
 use anastomesh_mesh::faces::{Faces, OuterFace};
 use anastomesh_mesh::progress::{Progress, ask};
@@ -7,15 +7,15 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, Write};
 use std::path::Path;
 
-/// A file of faces.
+/// File of faces.
 pub(super) struct Spool(File);
 
-/// Bytes of a face, and faces that are read at a time.
+/// Bytes per face, and number of faces per read.
 const FACE: usize = 20;
 const AT_A_TIME: usize = 1 << 14;
 
 impl Spool {
-    /// Finds all faces and puts them down on the disk of `beside`.
+    /// Computes all faces and stores them on the disk of `beside`.
     pub(super) fn of(mesh: &dyn MeshSource, beside: &Path, progress: &dyn Progress) -> io::Result<Self> {
         let folder = beside.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut file = tempfile::tempfile_in(folder)?;
@@ -33,7 +33,7 @@ impl Spool {
         out.flush()?;
         drop(out);
         if !all {
-            // In the order of their tetrahedra all the same.
+            // Sorted by tetrahedron nevertheless.
             file.rewind()?;
             file.set_len(0)?;
             let mut out = BufWriter::with_capacity(1 << 18, &file);
@@ -43,7 +43,7 @@ impl Spool {
         Ok(Self(file))
     }
 
-    /// Gives all faces, in their order.
+    /// Calls `each` with batches of all faces, in order.
     pub(super) fn each(&self, mut each: impl FnMut(&[OuterFace]) -> io::Result<()>) -> io::Result<()> {
         let mut file = &self.0;
         file.rewind()?;

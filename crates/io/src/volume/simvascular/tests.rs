@@ -67,7 +67,7 @@ fn a_cap_has_the_points_of_its_faces_by_their_numbers_in_the_mesh() {
         ranks: used.ranks(),
         faces: count,
     };
-    // What is held and what is read in passes is the same surface.
+    // Held and multi-pass surfaces are equal.
     let bytes = |sheet: &dyn Sheet| {
         let mut bytes = Cursor::new(Vec::new());
         write_sheet(&mut bytes, sheet).unwrap();

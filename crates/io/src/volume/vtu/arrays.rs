@@ -1,4 +1,4 @@
-//! The arrays of an unstructured grid, and where their values come from.
+//! Arrays of an unstructured grid and the sources of their values.
 
 use super::names::{GLOBAL_IDS, VTK_TETRA, VTK_TRIANGLE, field};
 use crate::volume::content::MeshNotes;
@@ -10,7 +10,7 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::{MeshSource, SourceCounts};
 use std::io;
 
-/// Where an array stands in the file.
+/// Section of an array in the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::volume) enum Place {
     Field,
@@ -21,7 +21,7 @@ pub(in crate::volume) enum Place {
     CellData,
 }
 
-/// The name of a type of values, and the bytes that one takes.
+/// Name of a value type, and its size in bytes.
 pub(in crate::volume) type Kind = (&'static str, usize);
 
 const UINT8: Kind = ("UInt8", 1);
@@ -30,20 +30,20 @@ const INT64: Kind = ("Int64", 8);
 const FLOAT32: Kind = ("Float32", 4);
 const FLOAT64: Kind = ("Float64", 8);
 
-/// Gives an array's values, as little-endian bytes.
+/// Writes the values of an array as little-endian bytes.
 pub(in crate::volume) type Fill<'a> = Box<dyn Fn(&mut Blocks) -> io::Result<()> + 'a>;
 
-/// One array of the file: what it is called and where its values come from.
+/// Array of the file: name, type and source of its values.
 pub(in crate::volume) struct Array<'a> {
     pub place: Place,
     pub name: &'static str,
     pub kind: &'static str,
-    /// Bytes of a value.
+    /// Bytes per value.
     pub width: usize,
     pub components: usize,
     pub values: usize,
     pub fill: Fill<'a>,
-    /// Whether compression saves enough for the time it takes: coordinates and vertex numbers shrink little.
+    /// True if compression is worthwhile: coordinates and vertex numbers compress little.
     pub shrinks: bool,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Array<'a> {
     }
 }
 
-/// Points, cells and their labels.
+/// Points, cells and labels of a mesh.
 pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool) -> Vec<Array<'_>> {
     let mut all = vec![points_array(mesh.counts().points, float32, |each| mesh.each_points(each))];
     all.extend(cell_arrays(mesh, Width::of(mesh.counts())));
@@ -67,10 +67,10 @@ pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool) -> Vec<Array<'_>> {
     all
 }
 
-/// Patches with larger ids have no name in the file: the list has a place for every number below.
+/// Maximum patch id with a name in the file: the name list has an entry for every smaller number.
 pub(super) const LARGEST_NAMED: i32 = 1 << 16;
 
-/// Names by patch id: `lumen` stands for the inside (0), ids that no patch has stay empty.
+/// Names by patch id: `lumen` for the inside (0), empty for unused ids.
 fn patch_names(patches: &[Patch]) -> Vec<String> {
     let largest = patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
     let mut names = vec![String::new(); largest + 1];
@@ -85,7 +85,7 @@ fn patch_names(patches: &[Patch]) -> Vec<String> {
     names
 }
 
-/// The field data.
+/// Field data of a mesh.
 pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<Array<'a>> {
     let caps: Vec<_> = patches.iter().filter_map(|p| p.cap.map(|cap| (p.id, cap))).collect();
     let mut arrays = vec![strings(field::PATCH_NAMES, &patch_names(patches))];
@@ -106,13 +106,13 @@ pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<Array<'
             arrays.push(strings(name, std::slice::from_ref(text)));
         }
     }
-    // An array without values is legal in VTK but trips other readers.
+    // Empty arrays are legal in VTK but break other readers.
     arrays.retain(|array| array.values > 0);
     arrays
 }
 
-/// Texts as bytes, the characters of each and a zero behind it, as VTK's string arrays have them; but such an array makes
-/// other readers (meshio) give the whole file up, and bytes do not.
+/// Texts as bytes with terminating zeros, like VTK's string arrays. Real string arrays make some readers (meshio)
+/// reject the file, bytes do not.
 fn strings<'a>(name: &'static str, texts: &[String]) -> Array<'a> {
     let mut bytes = Vec::new();
     for text in texts {
@@ -133,16 +133,16 @@ fn floats<'a>(name: &'static str, components: usize, values: Vec<f64>) -> Array<
     Array { components, ..Array::new(Place::Field, name, FLOAT64, count, fill) }
 }
 
-/// Which point of the whole mesh each point of a piece is.
+/// Number in the whole mesh of each point of a piece.
 pub(super) fn of_ids(ids: &[u32]) -> Array<'_> {
     let fill = |out: &mut Blocks| out.push(ids.len(), |i| u64::from(ids[i]).to_le_bytes());
     Array::new(Place::PointData, GLOBAL_IDS, INT64, ids.len(), fill)
 }
 
-/// Does something with points, some at a time.
+/// Callback for points in batches.
 type EachPoints<'a> = dyn FnMut(&[Point3]) -> io::Result<()> + 'a;
 
-/// `pass`: gives all points.
+/// Coordinates array; `pass` provides all points.
 pub(in crate::volume) fn points_array<'a>(
     count: usize,
     float32: bool,
@@ -171,7 +171,7 @@ fn point_bytes<const W: usize, const N: usize>(p: &Point3, word: impl Fn(f64) ->
     bytes
 }
 
-/// How wide vertex numbers and offsets are.
+/// Integer width of vertex numbers and offsets.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(in crate::volume) enum Width {
     Int32,
@@ -179,7 +179,7 @@ pub(in crate::volume) enum Width {
 }
 
 impl Width {
-    /// Ids are u32: within the signed range they can be written as they are, else they need 64 bits.
+    /// Ids are u32: within the signed range they fit into 32 bits, otherwise 64 bits are needed.
     pub(in crate::volume) fn of(counts: SourceCounts) -> Self {
         let fits = |count: usize| i32::try_from(count).is_ok();
         let narrow = fits(4 * counts.tets + 3 * counts.boundary) && fits(counts.points);
@@ -245,7 +245,7 @@ pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec
     ]
 }
 
-/// Values beside a mesh, at its points and in its cells. Those of cells follow from their corners.
+/// Additional values at points and in cells. Cell values derive from the corners.
 pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) -> Vec<Array<'a>> {
     let SourceCounts { points, tets, boundary } = mesh.counts();
     let array = |(column, named): (usize, &Column)| {
@@ -271,7 +271,7 @@ pub(super) fn of_values<'a>(mesh: &'a dyn MeshSource, values: &'a dyn Beside) ->
     values.columns().iter().enumerate().map(array).collect()
 }
 
-/// Patches of the boundary faces; those of tetrahedra are 0.
+/// Patches of the boundary faces; tetrahedra have 0.
 fn patch_array(mesh: &dyn MeshSource) -> Array<'_> {
     let SourceCounts { tets, boundary, .. } = mesh.counts();
     Array::new(Place::CellData, "patch", INT32, tets + boundary, move |out| {
@@ -288,7 +288,7 @@ fn block_array(mesh: &dyn MeshSource) -> Array<'_> {
     })
 }
 
-/// Pushes `count` values, 0 where they are not known.
+/// Appends `count` values, 0 where unknown.
 fn push_known(out: &mut Blocks, values: &[i32], count: usize) -> io::Result<()> {
     let known = values.len().min(count);
     out.push_ints(&values[..known])?;

@@ -1,40 +1,40 @@
-//! What can be wrong with a VTU file.
+//! Errors of VTU files.
 
 use crate::vtk_xml::VtkError;
 
-/// Why a file is no tetrahedral mesh as VTK's unstructured grid.
+/// Errors of a tetrahedral mesh in a VTK unstructured grid.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VtuFault {
-    /// It is no sound VTK XML file.
+    /// The VTK XML file is invalid.
     #[error(transparent)]
     Vtk(#[from] VtkError),
-    /// Something that every such file has is not there.
+    /// A required element or array is missing.
     #[error("'{what}' is missing: was it written completely?")]
     Missing {
         /// Name of the element or array.
         what: &'static str,
     },
-    /// An array is as long as the others do not say.
+    /// The length of an array is inconsistent with the others.
     #[error("array '{array}' has {found} values instead of {expected}: write or copy it again")]
     Length {
-        /// Its name.
+        /// Array name.
         array: String,
-        /// How long it had to be.
+        /// Expected length.
         expected: usize,
-        /// How long it is.
+        /// Length found.
         found: usize,
     },
-    /// The offsets of the cells do not ascend by their sizes.
+    /// The cell offsets are inconsistent with the cell types.
     #[error("cell {cell} has another number of points than its type: correct its type or its offsets")]
     BadOffset {
         /// The first such cell.
         cell: usize,
     },
-    /// There are cells that are neither tetrahedra nor triangles.
+    /// A cell is neither a tetrahedron nor a triangle.
     #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]
     UnsupportedCell {
-        /// Type of the cell, in the numbers of the format.
+        /// Cell type, as a number of the format.
         kind: i64,
         /// The first such cell.
         cell: usize,

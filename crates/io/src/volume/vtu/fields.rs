@@ -1,4 +1,4 @@
-//! The field data of a VTU file: names of patches, caps, and what a check has to find.
+//! Field data of a VTU file: patch names, caps, and expectations for checks.
 
 use super::error::VtuFault;
 use super::names::field;
@@ -10,12 +10,12 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::{Cap, Patch};
 use rustc_hash::FxHashMap;
 
-/// Whether an array of bytes holds texts, by its name.
+/// True if a byte array contains text, by its name.
 fn holds_text(name: &str) -> bool {
     name.ends_with("_names") || [field::GENERATOR, field::OPTIONS].contains(&name)
 }
 
-/// The field data of a file.
+/// Field data of a file.
 #[derive(Default)]
 pub(super) struct Fields {
     ints: FxHashMap<String, Vec<i64>>,
@@ -59,7 +59,7 @@ impl Fields {
     }
 
     pub(super) fn notes(&self) -> MeshNotes {
-        // An empty list is not written: a mesh of loops alone has no terminals.
+        // Empty lists are not written: a mesh of loops only has no terminals.
         let expectation = self
             .counts(field::LOOPS)
             .map(|loops| Expectation { loops, terminals: self.counts(field::TERMINALS).unwrap_or_default() });
@@ -72,8 +72,7 @@ impl Fields {
         }
     }
 
-    /// The patches: those with a name or a cap (names end at some id); when none has a name, those that occur, under
-    /// their usual names.
+    /// Patches with a name or a cap (names end at some id). If none has a name, the occurring ones with default names.
     pub(super) fn patches(&self, label_array: &str, used: &[i32]) -> Vec<Patch> {
         self.named_patches(label_array).unwrap_or_else(|| {
             let caps = self.caps();
@@ -82,7 +81,7 @@ impl Fields {
         })
     }
 
-    /// The patches with a name or a cap; none when the file names none.
+    /// Patches with a name or a cap; `None` if the file has no names.
     pub(super) fn named_patches(&self, label_array: &str) -> Option<Vec<Patch>> {
         let names = self.strings.get(&format!("{label_array}_names"))?;
         let mut caps = self.caps();
@@ -95,7 +94,7 @@ impl Fields {
         Some(patches)
     }
 
-    /// Caps by patch; none when the arrays about them do not fit each other.
+    /// Caps by patch; empty if their arrays are inconsistent.
     fn caps(&self) -> FxHashMap<i32, Cap> {
         let ints = |name| self.ints.get(name).map_or(&[][..], Vec::as_slice);
         let floats = |name| self.floats.get(name).map_or(&[][..], Vec::as_slice);

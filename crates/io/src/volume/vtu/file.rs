@@ -1,4 +1,4 @@
-//! A file of VTK: the text with the places of the arrays, and the arrays behind it.
+//! VTK file: XML with the array offsets, followed by the arrays.
 
 use super::arrays::{Array, Place};
 use super::names::GLOBAL_IDS;
@@ -7,18 +7,18 @@ use flate2::Compression;
 use std::fmt::Write as _;
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// What goes into a file of one piece.
+/// Contents of a single-piece file.
 pub(in crate::volume) struct File<'a> {
-    /// VTK's name of the kind of file.
+    /// VTK name of the file type.
     pub kind: &'static str,
-    /// How many points and cells there are, as attributes of the piece.
+    /// Number of points and cells, as attributes of the piece.
     pub counts: String,
     pub arrays: Vec<Array<'a>>,
-    /// Whether arrays are left as they are instead of compressed.
+    /// True for uncompressed arrays.
     pub raw: bool,
 }
 
-/// The sections of a piece, in their order.
+/// Sections of a piece in file order.
 const SECTIONS: [(Place, &str); 5] = [
     (Place::PointData, "PointData"),
     (Place::Points, "Points"),
@@ -27,16 +27,16 @@ const SECTIONS: [(Place, &str); 5] = [
     (Place::CellData, "CellData"),
 ];
 
-/// What is shown first, where it is there.
+/// Array that viewers show first, if present.
 const LABELS: &str = "patch";
 
 const APPENDED_OPEN: &[u8] = b"\n<AppendedData encoding=\"raw\">\n_";
 pub(super) const APPENDED_CLOSE: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
 
 impl File<'_> {
-    /// Writes it.
+    /// Writes the file.
     pub(in crate::volume) fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
-        // The offsets are known only after compression: room for the longest possible header is left in front.
+        // Offsets are known only after compression, so space for the longest possible header is reserved.
         let reserved = self.header(&vec![u64::MAX; self.arrays.len()]).len();
         let start = out.stream_position()?;
         write_spaces(out, reserved)?;
@@ -96,17 +96,17 @@ impl File<'_> {
     }
 }
 
-/// What the text says of an array, beside where it is.
+/// XML attributes of an array, except its offset.
 fn attributes_of(array: &Array) -> String {
     let Array { name, kind, components, .. } = array;
-    // Field arrays carry their length; elsewhere the piece knows it.
+    // Field arrays need their length; for others it follows from the piece.
     let tuples = match array.place {
         Place::Field => format!(" NumberOfTuples=\"{}\"", array.values / components),
         _ => String::new(),
     };
-    // VTK takes global ids only from arrays of its own type of ids.
+    // VTK accepts global ids only in arrays of its id type.
     let ids = if *name == GLOBAL_IDS { " IdType=\"1\"" } else { "" };
-    // One component is the default, and readers shape an explicit one as a column.
+    // One component is the default; readers give an explicit one the shape of a column.
     let width = if *components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
     format!("type=\"{kind}\"{ids} Name=\"{name}\"{width}{tuples}")
 }

@@ -1,4 +1,4 @@
-//! Whether a VTU file is laid out block by block, and where its arrays and blocks are.
+//! Layout of a blockwise VTU file: positions of its arrays and blocks.
 
 use super::fields::Fields;
 use super::names::{VTK_TETRA, VTK_TRIANGLE};
@@ -17,7 +17,7 @@ pub(super) struct Counts {
     pub cells: u64,
 }
 
-/// One block of the mesh: its cells.
+/// Cells of one block of the mesh.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub block: i32,
@@ -25,17 +25,17 @@ pub(super) struct Piece {
     pub faces: Range<u64>,
 }
 
-/// Why a file was not opened in pieces.
+/// Reasons why a file cannot be opened in pieces.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VtuPiecesError {
-    /// It has another layout than the files that are written here.
+    /// The layout differs from that of files written by this program.
     #[error("the file is not laid out block by block ({what})")]
     Layout {
-        /// What differs.
+        /// Difference of the layout.
         what: &'static str,
     },
-    /// It could not be read.
+    /// The file cannot be read.
     #[error(transparent)]
     Read(#[from] io::Error),
 }
@@ -44,11 +44,11 @@ fn layout(what: &'static str) -> VtuPiecesError {
     VtuPiecesError::Layout { what }
 }
 
-/// What stands in front of the arrays of the mesh.
+/// Header of a file, before the arrays of the mesh.
 pub(super) struct Head {
     pub counts: Counts,
     pub wide: bool,
-    /// Whether the arrays are compressed.
+    /// True if the arrays are compressed.
     pub zlib: bool,
     /// Bytes of a coordinate.
     pub coordinate: u64,
@@ -63,7 +63,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// Reads it, and the field arrays, which stand before the points.
+    /// Reads the header and the field arrays, which precede the points.
     pub(super) fn read(file: &BlockFile, memory: usize) -> Result<Self, VtuPiecesError> {
         let bytes = text_of(file)?;
         let points = {
@@ -83,7 +83,7 @@ impl Head {
         Ok(head)
     }
 
-    /// All that the text says.
+    /// Parses the XML.
     fn of(xml: &VtkXml) -> Result<Self, VtuPiecesError> {
         let (data, zlib) = xml.packed_data().ok_or_else(|| layout("its data are not appended as bytes"))?;
         let grid = grid(xml)?;
@@ -114,7 +114,7 @@ impl Head {
             array("Points", "Points", &["Float32", "Float64"]).ok_or_else(|| layout("it has no points"))?;
         let count = |name| xml.count(piece, name).map_err(|_| layout("its counts are no numbers"));
         let (points, cells) = (count("NumberOfPoints")? as u64, count("NumberOfCells")? as u64);
-        // Numbers of points are 32 bits wide; twice as many cells as that would be none of these points'.
+        // Point numbers have 32 bits; twice as many cells cannot belong to these points.
         if wide != wide_offsets || points >= u64::from(u32::MAX) || cells >= 1 << 40 {
             return Err(layout("its counts or kinds of numbers are others"));
         }
@@ -139,10 +139,10 @@ fn grid(xml: &VtkXml) -> Result<ElementId, VtuPiecesError> {
     xml.child(VtkXml::ROOT, "UnstructuredGrid").ok_or_else(|| layout("no VTU file"))
 }
 
-/// The text in front of the data, and some of these.
+/// XML before the data, with some data bytes.
 fn text_of(file: &BlockFile) -> Result<Vec<u8>, VtuPiecesError> {
     const TAG: &[u8] = b"<AppendedData";
-    /// The text of such a file has some thousand bytes.
+    /// Maximum length of the XML in bytes; typical files have some thousand.
     const LONGEST: u64 = 1 << 20;
     let bytes = file.bytes(0..LONGEST.min(file.length()))?;
     match bytes.windows(TAG.len()).position(|window| window == TAG) {
@@ -151,7 +151,7 @@ fn text_of(file: &BlockFile) -> Result<Vec<u8>, VtuPiecesError> {
     }
 }
 
-/// Looks at all blocks of an array, on all threads; what is made of each, in order.
+/// Maps all blocks of an array in parallel; results are in order.
 fn each_block<T: Send>(
     file: &BlockFile,
     array: &PackedArray,
@@ -160,7 +160,7 @@ fn each_block<T: Send>(
     (0..array.blocks()).into_par_iter().map(|i| Ok(look(array.first_value(i), &file.block(array, i)?))).collect()
 }
 
-/// Number of tetrahedra, which come first; all other cells are triangles.
+/// Number of tetrahedra, which come first; all other cells must be triangles.
 pub(super) fn count_tets(file: &BlockFile, types: &PackedArray, cells: u64) -> Result<u64, VtuPiecesError> {
     let look = |_, kinds: &[u8]| {
         let tets = kinds.iter().take_while(|&&kind| kind == VTK_TETRA).count();
@@ -178,7 +178,7 @@ pub(super) fn count_tets(file: &BlockFile, types: &PackedArray, cells: u64) -> R
     if seen == cells { Ok(tets) } else { Err(layout("it has fewer types than cells")) }
 }
 
-/// Makes sure that cells end where their sizes say.
+/// Checks that cell offsets match the cell sizes.
 pub(super) fn check_offsets(file: &BlockFile, ends: &PackedArray, wide: bool, tets: u64) -> Result<(), VtuPiecesError> {
     let end_of = |cell: u64| if cell < tets { 4 * (cell + 1) } else { 4 * tets + 3 * (cell - tets + 1) };
     let fit = |first: u64, bytes: &[u8]| {
@@ -192,7 +192,7 @@ pub(super) fn check_offsets(file: &BlockFile, ends: &PackedArray, wide: bool, te
     if all { Ok(()) } else { Err(layout("its cells have other sizes than their types")) }
 }
 
-/// Runs of cells with the same block: the block, and how many.
+/// Runs of cells with equal block: block and length.
 pub(super) fn runs(file: &BlockFile, block: &PackedArray) -> io::Result<Vec<(i32, u64)>> {
     let look = |_, bytes: &[u8]| {
         let (words, _) = bytes.as_chunks::<4>();
@@ -208,7 +208,7 @@ pub(super) fn runs(file: &BlockFile, block: &PackedArray) -> io::Result<Vec<(i32
     Ok(runs)
 }
 
-/// The cells of each block, which stand together among the tetrahedra and among the faces.
+/// Cells of each block, which must be contiguous among tetrahedra and among faces.
 pub(super) fn pieces(runs: &[(i32, u64)], counts: Counts) -> Result<Vec<Piece>, VtuPiecesError> {
     let scattered = || layout("the cells of a block do not stand together");
     let mut pieces: Vec<Piece> = Vec::new();

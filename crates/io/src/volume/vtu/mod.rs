@@ -1,9 +1,9 @@
-//! VTK unstructured grids (`.vtu`): a labelled tetrahedral mesh, in appended data compressed with zlib or as they are; and
-//! its boundary alone as poly data (`.vtp`).
+//! VTK unstructured grids (`.vtu`): labelled tetrahedral meshes with raw or zlib-compressed appended data. Boundaries
+//! alone are poly data (`.vtp`).
 //!
-//! Tetrahedra come first, then the boundary triangles; the `Int32` cell arrays `patch` and `block` say where each
-//! belongs (a tetrahedron's patch is 0). Field data name the patches (`patch_names`, indexed by the id) and hold what a
-//! later check needs to know: the caps, the loops of each component, the terminals.
+//! Tetrahedra precede the boundary triangles. The `Int32` cell arrays `patch` and `block` hold the labels (the patch of
+//! a tetrahedron is 0). Field data contain the patch names (`patch_names`, indexed by id) and the data for later
+//! checks: caps, loops of each component, terminals.
 
 pub(super) mod arrays;
 mod error;

@@ -1,10 +1,10 @@
-//! What writer and reader have to agree on.
+//! Names shared by writer and reader.
 
-/// VTK's cell types.
+/// VTK cell types.
 pub(super) const VTK_TRIANGLE: u8 = 5;
 pub(super) const VTK_TETRA: u8 = 10;
 
-/// Names of the field arrays, shared by writer and reader.
+/// Names of the field arrays.
 pub(super) mod field {
     pub const PATCH_NAMES: &str = "patch_names";
     pub const CAP_PATCH: &str = "cap_patch";
@@ -18,5 +18,5 @@ pub(super) mod field {
     pub const OPTIONS: &str = "options";
 }
 
-/// Name of the point array that says which point of the whole mesh each point of a piece is.
+/// Name of the point array with the number of each point in the whole mesh.
 pub(in crate::volume) const GLOBAL_IDS: &str = "GlobalPointIds";

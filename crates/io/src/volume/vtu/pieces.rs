@@ -1,5 +1,4 @@
-//! VTU files that are too large to be held, read a block of the mesh at a time: those that are written here, where the
-//! tetrahedra and the faces of each block stand together.
+//! Blockwise reader of large VTU files written by this program, which store tetrahedra and faces block by block.
 
 use super::layout::{Counts, Head, Piece, VtuPiecesError, check_offsets, count_tets, pieces, runs};
 use crate::volume::content::MeshNotes;
@@ -12,19 +11,19 @@ use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-/// Points further apart in the file are not read in one go.
+/// Maximum gap in point numbers within one read.
 const GAP: u32 = 64;
 
-/// A mesh in a file, by its blocks.
+/// Mesh in a file, accessed by blocks.
 #[derive(Debug)]
 pub struct VtuPieces {
     file: BlockFile,
     points: PackedArray,
     connectivity: PackedArray,
     patch: PackedArray,
-    /// Whether vertex numbers take 8 bytes.
+    /// True if vertex numbers have 8 bytes.
     wide: bool,
-    /// Whether coordinates take 8 bytes.
+    /// True if coordinates have 8 bytes.
     double: bool,
     counts: Counts,
     pieces: Vec<Piece>,
@@ -33,11 +32,11 @@ pub struct VtuPieces {
 }
 
 impl VtuPieces {
-    /// Opens a file, keeping about `memory` bytes of its data at a time.
+    /// Opens a file with a data cache of about `memory` bytes.
     ///
     /// # Errors
-    /// `Layout` when the mesh cannot be read in pieces (that says nothing about whether it is sound), `Read` with the
-    /// system's reason or `InvalidData` when an array cannot be decompressed.
+    /// `Layout` if the mesh cannot be read in pieces, which does not mean that it is invalid. `Read` with the error of
+    /// the operating system, or `InvalidData` if an array cannot be decompressed.
     pub fn open(path: &Path, memory: usize) -> Result<Self, VtuPiecesError> {
         let file = BlockFile::open(path, memory)?;
         let head = Head::read(&file, memory)?;
@@ -49,7 +48,7 @@ impl VtuPieces {
         let block = array(head.block, counts.cells, 4)?;
         let counts = Counts { tets: count_tets(&file, &types, counts.cells)?, ..counts };
         check_offsets(&file, &ends, head.wide, counts.tets)?;
-        // Without faces nothing says where blocks meet and where the boundary is.
+        // Without faces, the boundary and the interfaces of blocks are unknown.
         if counts.tets == counts.cells && counts.cells > 0 {
             return Err(VtuPiecesError::Layout { what: "it labels no boundary" });
         }
@@ -68,12 +67,12 @@ impl VtuPieces {
         })
     }
 
-    /// What else the file says.
+    /// Additional information of the file.
     pub fn notes(&self) -> &MeshNotes {
         &self.notes
     }
 
-    /// Points of these numbers.
+    /// Reads a range of points.
     fn points_at(&self, points: Range<u64>) -> io::Result<Vec<Point3>> {
         let bytes = self.file.values(&self.points, 3 * points.start..3 * points.end)?;
         let values: Vec<f64> = if self.double {
@@ -84,11 +83,11 @@ impl VtuPieces {
         Ok(values.as_chunks::<3>().0.iter().map(|&p| Point3::from(p)).collect())
     }
 
-    /// Vertices of cells, `N` for each.
+    /// Reads vertices of cells, `N` per cell.
     fn corners<const N: usize>(&self, values: Range<u64>) -> io::Result<Vec<[u32; N]>> {
         let bytes = self.file.values(&self.connectivity, values)?;
         let ids: Vec<u32> = if self.wide {
-            // What is no number of a point stays none.
+            // Invalid point numbers stay invalid.
             bytes.as_chunks().0.iter().map(|w| u32::try_from(u64::from_le_bytes(*w)).unwrap_or(u32::MAX)).collect()
         } else {
             bytes.as_chunks().0.iter().map(|w| u32::from_le_bytes(*w)).collect()
@@ -111,7 +110,7 @@ impl MeshSource for VtuPieces {
         self.pieces.len() as u32
     }
 
-    /// Points stand in the file regardless of blocks: every part has its share of them.
+    /// Points are stored independently of blocks, so every part gets an equal share.
     fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
         let (parts, part) = (u64::from(self.parts()), u64::from(part));
         let share = |part: u64| part * self.counts.points / parts;

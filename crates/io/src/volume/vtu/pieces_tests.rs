@@ -1,4 +1,4 @@
-//! What is written can be read in pieces; what cannot is said, and damaged files are errors.
+//! Tests of blockwise reading, of unsupported layouts, and of damaged files.
 
 use super::super::names::{VTK_TETRA, VTK_TRIANGLE};
 use super::*;
@@ -11,7 +11,7 @@ use anastomesh_mesh::source::gather;
 use flate2::Compression;
 use std::io::{Cursor, Seek, Write};
 
-/// A tube in some blocks, each standing together.
+/// A tube with contiguous blocks.
 fn blocks(layers: u32, count: usize) -> (VolumeMesh, MeshNotes) {
     let (mut volume, notes) = labelled_tube(layers);
     let (tets, faces) = (volume.mesh.tets.len(), volume.boundary.len());
@@ -68,7 +68,7 @@ fn other_layouts_are_told_apart() {
         Err(VtuPiecesError::Layout { what }) => what,
         other => panic!("{other:?}"),
     };
-    // Blocks in turns.
+    // Alternating blocks.
     let (volume, notes) = labelled_tube(3);
     assert_eq!(said(&volume, &notes), "the cells of a block do not stand together");
     let (mut volume, notes) = blocks(3, 2);
@@ -98,7 +98,7 @@ fn damaged_files_are_errors() {
     for cut in (0..end).step_by(61).chain([end - 1]) {
         assert!(!reads(&whole[..cut]), "cut at {cut} of {end}");
     }
-    // Whatever stands in a byte, nothing panics or takes memory.
+    // No value of a byte causes a panic or excessive memory use.
     for at in (0..end).step_by(3) {
         let mut other = whole.clone();
         other[at] ^= 1 << (at % 8);

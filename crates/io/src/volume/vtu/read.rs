@@ -1,4 +1,4 @@
-//! Reads tetrahedral meshes from VTK unstructured grids: those that are written here, and those of other programs.
+//! Reader of tetrahedral meshes in VTK unstructured grids, from this and other programs.
 
 use super::error::VtuFault;
 use super::fields::Fields;
@@ -8,7 +8,7 @@ use crate::vtk_xml::{ElementId, VtkXml};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::geometry::Point3;
 
-/// Cell arrays that are taken for the labels of the boundary, in order of preference.
+/// Cell arrays that are used as boundary labels, in order of preference.
 const LABEL_ARRAYS: [&str; 9] = [
     "patch",
     "PatchId",
@@ -21,26 +21,26 @@ const LABEL_ARRAYS: [&str; 9] = [
     "medit:ref",
 ];
 
-/// Reads a mesh from the bytes of a `.vtu` file. Tetrahedra and triangles are taken, points and lines among the cells
-/// passed over. A point id that is negative or beyond 32 bits becomes `u32::MAX`, for a check to find.
+/// Reads a mesh from the bytes of a `.vtu` file. Tetrahedra and triangles are read; vertex and line cells are skipped.
+/// Point ids that are negative or exceed 32 bits become `u32::MAX`, which a check detects.
 ///
 /// # Errors
-/// When the file is no such file or incomplete, its arrays do not fit each other, or it holds other cells.
+/// The file is invalid or incomplete, its arrays are inconsistent, or it has other cells.
 pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, VtuFault> {
     let mut reader = GridReader::default();
     reader.read(bytes)?;
     Ok(reader.finish().0)
 }
 
-/// A mesh that is read from one file, or from several, one after another.
+/// Mesh read from one or several consecutive files.
 #[derive(Default)]
 pub(in crate::volume) struct GridReader {
     volume: VolumeMesh,
-    /// Name of the array of labels; a later piece uses that of the first.
+    /// Name of the label array; later pieces use that of the first.
     label_array: Option<&'static str>,
-    /// The field data of the first file that has any.
+    /// Field data of the first file that has any.
     fields: Fields,
-    /// The number of each point in the mesh of which this is a piece.
+    /// Number of each point in the mesh of which this is a piece.
     global_ids: Vec<i64>,
 }
 
@@ -58,7 +58,7 @@ impl GridReader {
         Ok(())
     }
 
-    /// What was read, and the global ids of its points: of all, or of none.
+    /// Returns the mesh, and the global ids of its points, which are complete or empty.
     pub(in crate::volume) fn finish(self) -> (MeshFile, Vec<i64>) {
         let mut file = MeshFile { volume: self.volume, labelled: false, notes: self.fields.notes() };
         match self.label_array {
@@ -66,7 +66,7 @@ impl GridReader {
                 file.labelled = true;
                 file.volume.patches = self.fields.patches(name, &file.volume.boundary_patch);
             }
-            // Triangles that no array labels are no boundary.
+            // Triangles without labels are not a boundary.
             _ => {
                 file.volume.boundary.clear();
                 file.volume.boundary_patch.clear();
@@ -94,7 +94,7 @@ impl GridReader {
         self.add_cells(&cells, first_point as i64, &CellData { labels, blocks, ghosts })
     }
 
-    /// Takes the cells of a piece whose points begin at a number.
+    /// Adds the cells of a piece whose points start at `first_point`.
     fn add_cells(&mut self, cells: &Cells, first_point: i64, data: &CellData) -> Result<(), VtuFault> {
         let volume = &mut self.volume;
         let at = |values: &Option<Vec<i64>>, cell: usize| values.as_ref().map_or(0, |v| v[cell] as i32);
@@ -118,7 +118,7 @@ impl GridReader {
                     volume.boundary_block.push(at(&data.blocks, cell));
                 }
                 (VTK_TETRA | VTK_TRIANGLE, _) => return Err(VtuFault::BadOffset { cell }),
-                // Empty cells, points and lines bound no volume.
+                // Empty, vertex and line cells bound no volume.
                 (0..=4, _) => {}
                 _ => return Err(VtuFault::UnsupportedCell { kind, cell }),
             }
@@ -126,7 +126,7 @@ impl GridReader {
         Ok(())
     }
 
-    /// The labels of the cells of a piece.
+    /// Labels of the cells of a piece.
     fn label_values(&mut self, xml: &VtkXml, data: ElementId, count: usize) -> Result<Option<Vec<i64>>, VtuFault> {
         for name in LABEL_ARRAYS {
             if self.label_array.is_none_or(|chosen| chosen == name)
@@ -140,10 +140,10 @@ impl GridReader {
     }
 }
 
-/// The bit in VTK's array of ghosts of a cell that another piece has.
+/// Bit in VTK's ghost array for cells that belong to another piece.
 const DUPLICATE: i32 = 1;
 
-/// The global id of each point; empty when the file does not know.
+/// Global id of each point; empty if unknown.
 fn global_ids(xml: &VtkXml, piece: ElementId, points: usize) -> Result<Vec<i64>, VtuFault> {
     let Some(data) = xml.child(piece, "PointData") else { return Ok(Vec::new()) };
     let name = xml.attribute(data, "GlobalIds").unwrap_or(GLOBAL_IDS);
@@ -165,7 +165,7 @@ fn read_points(xml: &VtkXml, piece: ElementId, into: &mut Vec<Point3>) -> Result
     Ok(())
 }
 
-/// What the cells of a piece carry; none where the file has no such array.
+/// Cell arrays of a piece; `None` if missing in the file.
 struct CellData {
     labels: Option<Vec<i64>>,
     blocks: Option<Vec<i64>>,
@@ -195,8 +195,7 @@ impl Cells {
     }
 }
 
-/// The integer array of one name among an element's arrays; none when there is none of that name, or it is not of
-/// integers.
+/// Integer array of an element with this name; `None` if it is missing or not an integer array.
 fn int_array(xml: &VtkXml, parent: ElementId, name: &str, length: usize) -> Result<Option<Vec<i64>>, VtuFault> {
     let Some((_, array)) = xml.arrays(parent).find(|(n, _)| *n == name) else { return Ok(None) };
     let Some(values) = xml.read(array)?.into_ints() else { return Ok(None) };

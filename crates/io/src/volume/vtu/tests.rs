@@ -1,4 +1,4 @@
-//! What is written can be read again, unchanged, for any number of threads.
+//! Tests of round trips for any number of threads.
 
 use super::arrays::{LARGEST_NAMED, Width, cell_arrays};
 use super::file::APPENDED_CLOSE;
@@ -51,7 +51,7 @@ fn options_change_how_it_stands_in_the_file() {
     assert!(!alone.labelled && alone.volume.boundary.is_empty());
 }
 
-/// The height of a point, and the number of corners of a cell.
+/// Height of a point, and number of corners of a cell.
 struct Heights([Column; 2]);
 
 impl Beside for Heights {
@@ -147,7 +147,7 @@ fn every_cut_is_noticed() {
 
 #[test]
 fn files_of_other_programs() {
-    // Two pieces, a line among the cells, labels under another name and without names for them, one bad index.
+    // Two pieces, a line among the cells, unnamed labels under another array name, and one bad index.
     let text = r#"<VTKFile type="UnstructuredGrid"><UnstructuredGrid>
         <Piece NumberOfPoints="4" NumberOfCells="3">
         <Points><DataArray type="Float32" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>

@@ -1,4 +1,4 @@
-//! Writes unstructured grids, and boundaries as poly data.
+//! Writer of unstructured grids, and of boundaries as poly data.
 
 use super::arrays;
 use super::file::File;
@@ -12,12 +12,12 @@ use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece};
 use std::borrow::Cow;
 use std::io::{self, Seek, Write};
 
-/// Writes a mesh as VTU. The bytes depend on the mesh, the notes and the options alone, not on the number of threads, nor on
-/// the pieces in which the mesh is read. Points, tetrahedra and boundary faces are read in one pass each, their labels in
-/// others; memory does not grow with the mesh: some blocks for each thread are all that is held.
+/// Writes a mesh as VTU. The bytes depend only on mesh, notes and options, not on threads or on the parts of the
+/// source. Points, tetrahedra and boundary faces are each read in one pass, labels in others. Memory does not grow with
+/// the mesh: it holds some blocks per thread.
 ///
 /// # Errors
-/// What the writer `out` or reading the mesh reports.
+/// The output `out` or the mesh source fails.
 pub(in crate::volume) fn write(
     out: &mut (impl Write + Seek),
     mesh: &dyn MeshSource,
@@ -28,15 +28,15 @@ pub(in crate::volume) fn write(
     Grid { mesh, notes: Some(notes), global_ids: None, options, values }.write(out)
 }
 
-/// What goes into a file.
+/// Contents of a file.
 pub(in crate::volume) struct Grid<'a> {
     pub mesh: &'a dyn MeshSource,
-    /// What the field data say; none for a piece without.
+    /// Field data; `None` for a piece without them.
     pub notes: Option<&'a MeshNotes>,
-    /// For a piece of a mesh: which point of the whole each point is.
+    /// For a piece of a mesh: number of each point in the whole mesh.
     pub global_ids: Option<&'a [u32]>,
     pub options: GridOptions,
-    /// Values beside the mesh.
+    /// Additional values of the mesh.
     pub values: Option<&'a dyn Beside>,
 }
 
@@ -55,10 +55,10 @@ impl Grid<'_> {
     }
 }
 
-/// Writes a boundary as poly data (`.vtp`), with the arrays that a grid has.
+/// Writes a boundary as poly data (`.vtp`), with the arrays of a grid.
 ///
 /// # Errors
-/// What the writer `out` or reading the mesh reports.
+/// The output `out` or the mesh source fails.
 pub fn write_boundary(
     out: &mut (impl Write + Seek),
     surface: &BoundarySurface,
@@ -72,7 +72,7 @@ pub fn write_boundary(
     File { kind: "PolyData", counts, arrays: all, raw: options.raw }.write(out)
 }
 
-/// A mesh without its boundary.
+/// Mesh without its boundary.
 pub(in crate::volume) struct TetsAlone<'a>(pub &'a dyn MeshSource);
 
 impl MeshSource for TetsAlone<'_> {

@@ -1,12 +1,12 @@
-//! The boxes of all parts: which are near each other, and an order in which neighbours follow each other.
+//! Bounding boxes of all parts, with a spatial order and neighbour search.
 
 use crate::geometry::{Aabb, Bvh};
 
-/// The boxes of parts, each held once.
+/// Boxes of parts, each stored once.
 #[derive(Debug)]
 pub(super) struct Boxes {
     tree: Bvh,
-    /// The place of each part along the tree's curve.
+    /// Position of each part along the tree's curve.
     rank: Vec<u32>,
 }
 
@@ -28,12 +28,12 @@ impl Boxes {
         &self.tree
     }
 
-    /// All parts, neighbours near each other.
+    /// All parts in spatial order.
     pub(super) fn along_curve(&self) -> &[u32] {
         self.tree.order()
     }
 
-    /// Pairs of a part with those further along that it may meet, in their order.
+    /// Pairs of a part with later parts that it may intersect, in their order.
     pub(super) fn partners(&self, part: u32) -> Vec<[u32; 2]> {
         let rank = |part: u32| self.rank[part as usize];
         let mut found = Vec::new();
@@ -46,7 +46,7 @@ impl Boxes {
         found
     }
 
-    /// By the parts' numbers.
+    /// Boxes by part index.
     pub(super) fn into_vec(self) -> Vec<Aabb> {
         self.tree.into_boxes()
     }

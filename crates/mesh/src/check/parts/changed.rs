@@ -1,7 +1,7 @@
-//! Walls of parts that are not as they were, against those that are near them.
+//! Tests the walls of changed parts against those near them.
 //!
-//! No verdict: nothing is held against its certificate here. It says where the check of all parts would find that walls
-//! meet, so that this can be asked again and again while a few parts are made anew.
+//! This gives no verdict and compares nothing with certificates. It finds the intersections of walls that the check of
+//! all parts would find, fast enough to be repeated while a few parts are remeshed.
 
 use super::Parts;
 use super::walls::{self, Wall, Walls};
@@ -9,22 +9,22 @@ use crate::geometry::{Aabb, Bvh};
 use rayon::prelude::*;
 use std::io;
 
-/// Pairs whose walls are in memory at a time.
+/// Pairs with walls in memory at a time.
 const TESTED: usize = 256;
 
-/// Parts of which some have changed.
+/// A set of changed parts among all parts.
 #[derive(Clone, Copy, Debug)]
 pub struct Changed<'a> {
     /// Boxes of all parts.
     pub boxes: &'a [Aabb],
-    /// Those that have changed, ascending.
+    /// Changed parts, ascending.
     pub parts: &'a [u32],
 }
 
-/// Pairs of parts whose walls meet, ascending, of which at least one has changed.
+/// Finds the pairs of parts with intersecting walls, ascending, at least one of them changed.
 ///
 /// # Errors
-/// What reading the parts fails with.
+/// Errors of reading the parts.
 pub fn meetings_of(parts: &dyn Parts, changed: Changed) -> io::Result<Vec<[u32; 2]>> {
     let mut walls = Walls::default();
     let mut found = Vec::new();
@@ -37,7 +37,7 @@ pub fn meetings_of(parts: &dyn Parts, changed: Changed) -> io::Result<Vec<[u32; 
 }
 
 impl Changed<'_> {
-    /// Pairs whose boxes overlap, each once, ascending.
+    /// Pairs with overlapping boxes, each once, ascending.
     fn pairs(&self) -> Vec<[u32; 2]> {
         let boxes: Vec<Aabb> = self.parts.iter().map(|&part| self.boxes[part as usize]).collect();
         let tree = Bvh::new(&boxes);

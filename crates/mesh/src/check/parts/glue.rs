@@ -1,4 +1,4 @@
-//! The parts' certificates, held in a small form and put together.
+//! Certificates of the parts, in compact form, and their combination.
 
 use super::tallies::Tallies;
 use super::{Certificate, FacesApart, HeldCap, HeldJoint, HeldSurface, Parts, sums};
@@ -12,7 +12,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::io;
 use std::ops::Range;
 
-/// Certificates that are read at a time.
+/// Certificates read at a time.
 const READ: usize = 4096;
 
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ struct Part {
     first_component: u32,
 }
 
-/// What there are most of: four for each connector.
+/// Stored compactly: there are four for each connector.
 #[derive(Clone, Copy, Debug)]
 struct Joint {
     faces: u32,
@@ -33,7 +33,7 @@ struct Joint {
     sum: u64,
 }
 
-/// All parts, by numbers that run through all surfaces, joints and components.
+/// All parts; surfaces, joints and components are numbered across parts.
 #[derive(Debug, Default)]
 pub(super) struct Held {
     parts: Vec<Part>,
@@ -41,7 +41,7 @@ pub(super) struct Held {
     joints: Vec<Joint>,
     /// Surface and component of the joints that are not on the first ones of their parts.
     elsewhere: FxHashMap<u32, [u32; 2]>,
-    /// Parts in which something was wrong alone.
+    /// Parts with faults of their own.
     faulty: FxHashSet<u32>,
     components: u32,
     pub caps: Vec<HeldCap>,
@@ -58,7 +58,7 @@ pub(super) fn invalid(what: impl Into<String>) -> io::Error {
 }
 
 impl Held {
-    /// With the boxes of the parts.
+    /// Reads the certificates. Also returns the boxes of the parts.
     pub(super) fn read(parts: &dyn Parts, tallies: &mut Tallies) -> io::Result<(Self, Vec<Aabb>)> {
         let count = u32::try_from(parts.count()).map_err(|_| invalid("more than 2^32 parts"))?;
         let mut held = Self { parts: Vec::with_capacity(count as usize), ..Self::default() };
@@ -92,7 +92,7 @@ impl Held {
         let wrong = |j: &HeldJoint| {
             j.faces > 0 && !c.unsound && (j.surface as usize >= c.surfaces.len() || j.component >= c.components)
         };
-        // Joints that are not on the boundary are faults already.
+        // Joints off the boundary are faults already.
         if c.faults.is_empty() && c.joints.iter().any(wrong) {
             return Err(invalid(format!("the certificate of part {part} contradicts itself")));
         }
@@ -126,7 +126,7 @@ impl Held {
         self.parts.len() as u32
     }
 
-    /// Whether there is nothing: neither a tetrahedron nor, in a part that is not filled, a surface.
+    /// True if there is neither a tetrahedron nor, in a hollow part, a surface.
     pub(super) fn is_empty(&self) -> bool {
         self.tets == 0 && self.surfaces.is_empty()
     }
@@ -139,19 +139,19 @@ impl Held {
         self.parts[part as usize].points
     }
 
-    /// Whether nothing was wrong with a part alone.
+    /// True if a part has no faults of its own.
     pub(super) fn is_sound(&self, part: u32) -> bool {
         !self.faulty.contains(&part)
     }
 
-    /// The number of a part's joint, if there is such a joint.
+    /// Global number of a part's joint, if it exists.
     pub(super) fn joint_number(&self, (part, joint): (u32, u32)) -> Option<u32> {
         let range = self.joints_of(part)?;
         let number = range.start.checked_add(joint)?;
         range.contains(&number).then_some(number)
     }
 
-    /// A joint of a part, by its number among all, as the part numbers it.
+    /// Number within its part of a joint given by its global number.
     pub(super) fn joint_place(&self, (part, number): (u32, u32)) -> (u32, u32) {
         (part, number - self.parts[part as usize].first_joint)
     }
@@ -168,14 +168,14 @@ impl Held {
         Some(first..end)
     }
 
-    /// The numbers of a part's surfaces.
+    /// Numbers of a part's surfaces.
     pub(super) fn surfaces_of(&self, part: u32) -> Range<u32> {
         let first = self.parts[part as usize].first_surface;
         let end = self.parts.get(part as usize + 1).map_or(self.surfaces.len() as u32, |next| next.first_surface);
         first..end
     }
 
-    /// The part that has a surface.
+    /// Part of a surface.
     pub(super) fn part_of_surface(&self, number: u32) -> u32 {
         self.parts.partition_point(|part| part.first_surface <= number).saturating_sub(1) as u32
     }
@@ -184,7 +184,7 @@ impl Held {
         &self.surfaces[number as usize]
     }
 
-    /// Faces that a part's wall has, joints that are joined to nothing included.
+    /// Number of faces of a part's wall, including joints without partner.
     pub(super) fn faces_of(&self, part: u32, is_joined: &[bool]) -> u64 {
         self.wall(part, is_joined).0
     }
@@ -198,8 +198,7 @@ impl Held {
         })
     }
 
-    /// Whether a wall is the one that was certified. (With a joint that is not on the boundary none is, but that is a
-    /// fault already.)
+    /// True if a wall is the certified one. Joints off the boundary are faults already.
     pub(super) fn is_wall(&self, part: u32, is_joined: &[bool], wall: &FacesApart) -> bool {
         let (faces, sum) = self.wall(part, is_joined);
         let Some(found) = sum_of(&wall.points, &wall.faces) else { return false };
@@ -208,7 +207,7 @@ impl Held {
     }
 }
 
-/// The sum of faces; none when they name points that do not exist.
+/// Checksum of faces; `None` if they refer to missing points.
 pub(super) fn sum_of(points: &[Point3], faces: &[[u32; 3]]) -> Option<u64> {
     let mut sum = 0_u64;
     for face in faces {
@@ -218,11 +217,11 @@ pub(super) fn sum_of(points: &[Point3], faces: &[[u32; 3]]) -> Option<u64> {
     Some(sum)
 }
 
-/// The components and boundary surfaces of the whole.
+/// Components and boundary surfaces of the whole.
 #[derive(Debug)]
 pub(super) struct Glued {
     pub components: usize,
-    /// For each surface of a part the smallest that it is joined to, itself included.
+    /// For each surface of a part, the smallest one connected to it.
     roots: Vec<u32>,
     /// Euler number of each root.
     eulers: Vec<i64>,
@@ -230,7 +229,7 @@ pub(super) struct Glued {
 }
 
 impl Glued {
-    /// Joins parts by pairs of joints, given by their numbers with their parts.
+    /// Connects parts by pairs of joints, given by their numbers with their parts.
     pub(super) fn new(held: &Held, pairs: &[[(u32, u32); 2]]) -> Self {
         let mut components = DisjointSets::new(held.components as usize);
         let mut surfaces = DisjointSets::new(held.surfaces.len());
@@ -262,22 +261,22 @@ impl Glued {
         Self { components, roots, eulers, enclosed }
     }
 
-    /// The smallest surface that a surface is joined to.
+    /// Smallest surface connected to a surface.
     pub(super) fn root(&self, surface: u32) -> u32 {
         self.roots[surface as usize]
     }
 
-    /// The surfaces of the whole, by their smallest surfaces.
+    /// Surfaces of the whole, by their smallest surfaces.
     pub(super) fn surfaces(&self) -> impl Iterator<Item = u32> {
         (0..).zip(&self.roots).filter(|&(i, &root)| i == root).map(|(_, &root)| root)
     }
 
-    /// The surfaces of parts of which this is the root.
+    /// Surfaces of parts with this root.
     pub(super) fn joined_to(&self, root: u32) -> impl Iterator<Item = u32> {
         (0..).zip(&self.roots).filter(move |&(_, &of)| of == root).map(|(i, _)| i)
     }
 
-    /// Number of the parts' surfaces, and of roots at most.
+    /// Number of surfaces of all parts, an upper bound on the number of roots.
     pub(super) fn roots_len(&self) -> usize {
         self.roots.len()
     }
@@ -291,7 +290,7 @@ impl Glued {
     }
 }
 
-/// The lines that have no meaning while the arrays of a part cannot be used.
+/// True for conditions that require usable arrays in all parts.
 pub(super) fn needs_sound_arrays(line: Line) -> bool {
     !matches!(line, Line::NotEmpty | Line::FinitePoints | Line::IndicesInRange)
 }

@@ -1,7 +1,7 @@
-//! Ids: no id stands for two points but where joints are joined.
+//! Uniqueness of ids: no id stands for two points except at connected joints.
 //!
-//! A vertex is in one joint at most, so joints make pairs of vertices, and the whole has as many points as the parts less
-//! the vertices of the joints. When the ids are those numbers and all of them occur, no others are shared.
+//! A vertex is in at most one joint, so joints give pairs of vertices. The whole has as many points as the parts minus
+//! the vertices of the joints. If the ids are those numbers and all of them occur, no others are shared.
 
 use super::Parts;
 use super::glue::{Held, invalid};
@@ -19,7 +19,7 @@ pub(super) fn count(held: &Held, joined: &Joined) -> u64 {
     held.points.saturating_sub(shared)
 }
 
-/// Looks at all ids; joints must be sound.
+/// Checks all ids; joints must be valid.
 pub(super) fn check(parts: &dyn Parts, held: &Held, joined: &Joined, tallies: &mut Tallies) -> io::Result<()> {
     let count = count(held, joined);
     let size = usize::try_from(count.div_ceil(64)).map_err(|_| invalid("too many points"))?;
@@ -49,7 +49,7 @@ fn vertices(parts: &dyn Parts, held: &Held, part: u32) -> io::Result<Vec<u32>> {
     }
 }
 
-/// Ids that are too large, and those that stand for more points than joints allow.
+/// Reports ids that are too large, and those used by more points than joints allow.
 fn name_faults(parts: &dyn Parts, held: &Held, joined: &Joined, count: u64, tallies: &mut Tallies) -> io::Result<()> {
     let size = usize::try_from(count).map_err(|_| invalid("too many points"))?;
     let mut uses = vec![0_u8; size];

@@ -1,4 +1,4 @@
-//! Joined joints: the same faces with the same ids, turned against each other, and bit-equal points.
+//! Comparison of connected joints: same faces with the same ids and opposite orientation, and bit-equal points.
 
 use super::glue::{Held, invalid, sum_of};
 use super::tallies::Tallies;
@@ -11,19 +11,19 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::io;
 
-/// Pairs of joints that are compared at a time.
+/// Pairs of joints compared at a time.
 const COMPARED: usize = 1 << 14;
 
-/// What came of the joints.
+/// Result of the comparison of joints.
 #[derive(Debug, Default)]
 pub(super) struct Joined {
-    /// Pairs that are joined, as (part, number of the joint).
+    /// Connected pairs, as (part, number of the joint).
     pub pairs: Vec<[(u32, u32); 2]>,
-    /// A line that is broken because a joint is.
+    /// Condition violated by a joint.
     pub broken: Option<Line>,
 }
 
-/// For each joint, by its number, whether it is joined to something.
+/// Flags per joint number, true for connected joints.
 pub(super) fn flags(parts: &dyn Parts, held: &Held) -> io::Result<Vec<bool>> {
     let mut flags = vec![false; held.joint_count()];
     for pair in parts.joined() {
@@ -41,7 +41,7 @@ fn numbers(held: &Held, pair: &[(u32, u32); 2]) -> io::Result<[u32; 2]> {
     }
 }
 
-/// Looks at every pair of joints.
+/// Checks every pair of joints.
 pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io::Result<Joined> {
     let mut joined = Joined { pairs: Vec::with_capacity(parts.joined().len()), broken: None };
     let mut seen = vec![false; held.joint_count()];
@@ -82,10 +82,10 @@ pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io
     Ok(joined)
 }
 
-/// The faces of a joint that is joined more than once.
+/// Reports the faces of a joint that is connected more than once.
 fn third_tets(joint: &FacesApart, tallies: &mut Tallies) {
     for face in &joint.faces {
-        // Both joints may be named: the same faces, turned against each other.
+        // Both joints may be reported: the same faces with opposite orientation.
         let mut offender = face_of(joint, *face);
         offender.ids.sort_unstable();
         tallies.add(Line::FacesSharedByTwo, offender);
@@ -100,12 +100,11 @@ fn face_of(joint: &FacesApart, face: [u32; 3]) -> Offender {
 #[derive(Default)]
 struct Differences {
     found: Vec<(Line, Offender)>,
-    /// Nothing is the same.
+    /// True if no face is common.
     all: bool,
 }
 
-/// Reads a joint and makes sure that it is the one that was certified. None where a joint is not on the boundary, which
-/// is a fault already.
+/// Reads a joint and verifies that it is the certified one. `None` for a joint off the boundary, already a fault.
 fn read(parts: &dyn Parts, held: &Held, (part, joint): (u32, u32)) -> io::Result<Option<FacesApart>> {
     let read = parts.joint(part, joint)?;
     let sum = sum_of(&read.points, &read.faces).filter(|_| read.points.len() == read.vertices.len());
@@ -129,7 +128,7 @@ fn compare(parts: &dyn Parts, held: &Held, pair: &[(u32, u32); 2]) -> io::Result
     Ok(differences)
 }
 
-/// The faces by their ids, ascending.
+/// Faces sorted by their ids.
 fn by_ids(joint: &FacesApart) -> Vec<([u32; 3], [u32; 3], [u32; 3])> {
     let ids = |face: &[u32; 3]| face.map(|v| joint.vertices[v as usize]);
     let mut faces: Vec<_> = joint.faces.iter().map(|face| (face_key(ids(face)), ids(face), *face)).collect();
@@ -162,7 +161,7 @@ fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut Differences) 
     differences.all = same == 0;
 }
 
-/// Ids that both have must have the same points, and stand for one point each.
+/// Compares points: common ids need equal points, and stand for one point each.
 fn compare_points(a: &FacesApart, b: &FacesApart, differences: &mut Differences) {
     let by_id = |joint: &FacesApart| {
         let mut ids: Vec<(u32, Point3)> = joint.vertices.iter().copied().zip(joint.points.iter().copied()).collect();

@@ -1,4 +1,4 @@
-//! Boundary surfaces of the whole that lie where the mesh already is, by a ray from a point of each.
+//! Search for nested boundary surfaces of the whole, by a ray from a point of each.
 
 use super::boxes::Boxes;
 use super::glue::{Glued, invalid};
@@ -10,7 +10,7 @@ use crate::geometry::{Aabb, Bvh, Point3, crossing};
 use rayon::prelude::*;
 use std::io;
 
-/// A vertex of each surface that lies within the mesh. Walls must be closed and must not meet.
+/// Returns a vertex of each surface inside the mesh. Walls must be closed and must not intersect.
 pub(super) fn within(reader: Reader, glued: &Glued, parts: &Boxes) -> io::Result<Vec<Offender>> {
     let boxes = boxes(&reader, glued, parts);
     let surfaces: Vec<Aabb> = glued.surfaces().map(|root| boxes[root as usize]).collect();
@@ -30,7 +30,7 @@ pub(super) fn within(reader: Reader, glued: &Glued, parts: &Boxes) -> io::Result
     Ok(found.into_iter().flatten().collect())
 }
 
-/// The boxes of the whole's surfaces, by their roots.
+/// Bounding boxes of the whole's surfaces, by their roots.
 fn boxes(reader: &Reader, glued: &Glued, parts: &Boxes) -> Vec<Aabb> {
     let mut boxes = vec![Aabb::EMPTY; glued.roots_len()];
     for part in 0..reader.held.count() {
@@ -52,7 +52,7 @@ fn vertex_of(reader: &Reader, surface: u32) -> io::Result<(u32, Point3)> {
     Ok((id, *p))
 }
 
-/// How often all surfaces but one wind round a point of that one.
+/// Winding number of all other surfaces around a point of a surface.
 fn winding(reader: &Reader, glued: &Glued, tree: &Bvh, own: u32, p: &Point3) -> io::Result<i64> {
     let mut parts = Vec::new();
     tree.query(&Aabb { min: *p, max: Point3::new(f64::INFINITY, p.y, p.z) }, |part| parts.push(part));
@@ -75,7 +75,7 @@ fn winding(reader: &Reader, glued: &Glued, tree: &Bvh, own: u32, p: &Point3) -> 
     Ok(sum)
 }
 
-/// The surface of each point of a wall. What joints leave of a surface is connected.
+/// Surface of each point of a wall. The rest of a surface without its joints is connected.
 fn surfaces_of_points(reader: &Reader, part: u32, wall: &Wall) -> Vec<Option<u32>> {
     let surfaces = reader.held.surfaces_of(part);
     if surfaces.len() == 1 {

@@ -1,8 +1,8 @@
-//! A labelled mesh that is read a part at a time, checked as such: what no label covers of a piece's boundary are its joints to
-//! other pieces, and these are found by their faces.
+//! Check of a labelled mesh that is read in pieces, as parts. Unlabelled boundary faces of a piece are its joints to
+//! other pieces, matched by their faces.
 //!
-//! Pieces that cannot be parts, because they touch elsewhere or labels are not what they should be, are [`Unfit`]: the
-//! mesh may be valid or not, and has to be checked as a whole.
+//! Pieces are [`Unfit`] as parts if they touch elsewhere or labels are inconsistent. The mesh may still be valid, and
+//! must be checked as a whole.
 
 use super::{Certificate, FacesApart, PartView, Parts, certify_with, check_parts, sums};
 use crate::adjacency::{NONE, face_vertices, tet_adjacency};
@@ -17,43 +17,43 @@ use rustc_hash::FxHashMap;
 use std::io;
 use std::ops::Range;
 
-/// Why pieces cannot be checked as parts. Pieces are counted from 0.
+/// Reason why pieces cannot be checked as parts. Pieces are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unfit {
-    /// A tetrahedron or a labelled face names a point that does not exist, or that the piece does not use.
+    /// A tetrahedron or labelled face refers to a missing point, or one not used by the piece.
     #[error("piece {0} names points that it does not have")]
     Points(u32),
-    /// A labelled face is not on the boundary of the piece, is turned over, or is labelled twice.
+    /// A labelled face is not on the boundary of the piece, is reversed, or is labelled twice.
     #[error("labelled faces of piece {0} are not its boundary")]
     Labels(u32),
     /// A face is neither wall nor of a cap.
     #[error("faces of piece {0} are neither wall nor cap")]
     Patch(u32),
-    /// Faces without label that no other piece, or more than one, has.
+    /// Faces without label that occur in no other piece, or in more than one.
     #[error("piece {0} has faces without label that it does not share with one other piece")]
     Joint(u32),
-    /// Pieces share points outside of joints, or there are points that no piece uses.
+    /// Pieces share points outside joints, or some points are in no piece.
     #[error("pieces share points outside of common faces, or points are not used")]
     Shared,
 }
 
-/// Why pieces were not checked.
+/// Reason why pieces were not checked.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PiecesError {
-    /// They could not be read.
+    /// Reading failed.
     #[error(transparent)]
     Read(#[from] io::Error),
-    /// They are no parts.
+    /// The pieces are not parts.
     #[error(transparent)]
     Unfit(#[from] Unfit),
 }
 
-/// Checks a mesh whose parts are pieces that it can be cut into. Of walls some `memory` bytes are held at a time, of every piece about a kilobyte.
+/// Checks a mesh in pieces that serve as parts. Holds `memory` bytes of walls at a time, and about 1 kB per piece.
 ///
 /// # Errors
-/// When the pieces cannot be read, or are not parts that meet in joints alone.
+/// If the pieces cannot be read, or meet elsewhere than in joints.
 pub fn check_pieces(
     pieces: &dyn MeshSource,
     expectation: Option<&Expectation>,
@@ -77,28 +77,28 @@ struct Cut<'a> {
     joined: Vec<[(u32, u32); 2]>,
 }
 
-/// What is held of a piece.
+/// Data stored per piece.
 struct Known {
-    /// In postcard's form, which is smaller.
+    /// Serialized by postcard, which is smaller.
     certificate: Vec<u8>,
     points: u32,
     tets: u32,
     joints: Vec<KnownJoint>,
 }
 
-/// What is held of a joint.
+/// Data stored per joint.
 struct KnownJoint {
-    /// The same for the same faces, whichever piece has them.
+    /// Checksum of the faces, equal in both pieces.
     sum: u64,
     vertices: u32,
     /// Its faces, as handles into the piece's tetrahedra.
     faces: Box<[u32]>,
 }
 
-/// The points of a piece by their numbers in the whole, ascending; places in it are the piece's own numbers.
+/// Global ids of the points of a piece, ascending; positions are the piece's local ids.
 struct Ids {
     all: Vec<u32>,
-    /// The longest run of consecutive numbers, by place: nearly all of the ids that are looked up.
+    /// Positions of the longest run of consecutive ids, which contains nearly all ids that are looked up.
     run: Range<u32>,
 }
 
@@ -125,7 +125,7 @@ impl Ids {
     }
 }
 
-/// Numbers, ascending, each once.
+/// Distinct ids, ascending.
 fn distinct(ids: &[u32]) -> Vec<u32> {
     let mut all = ids.to_vec();
     all.sort_unstable();
@@ -133,7 +133,7 @@ fn distinct(ids: &[u32]) -> Vec<u32> {
     all
 }
 
-/// A piece in its own numbers.
+/// A piece with local ids.
 struct Local {
     ids: Ids,
     mesh: TetMesh,
@@ -153,7 +153,7 @@ impl Local {
         Ok(Self { ids, mesh: TetMesh { points, tets } })
     }
 
-    /// Labelled faces in the piece's numbers, ascending by their sorted vertices, each with its patch.
+    /// Labelled faces with local ids, sorted by their vertices, each with its patch.
     fn labelled(&self, pieces: &dyn MeshSource, piece: u32) -> Result<Vec<([u32; 3], i32)>, PiecesError> {
         let FacePiece { faces, patches, .. } = pieces.boundary(piece)?;
         let mut labelled = Vec::with_capacity(faces.len());
@@ -171,7 +171,7 @@ impl Local {
         handles.iter().map(|&handle| face_vertices(&self.mesh.tets, handle)).collect()
     }
 
-    /// A number for some faces, in the numbers of the whole, whatever their order and orientation.
+    /// Checksum of faces by global ids, independent of order and orientation.
     fn sum(&self, faces: &[[u32; 3]]) -> u64 {
         let id = |v: u32| self.ids.all[v as usize];
         faces.iter().fold(0, |sum, face| sum.wrapping_add(sums::id_sum(face_key(face.map(id)))))
@@ -209,7 +209,7 @@ impl Known {
     }
 }
 
-/// Faces by what hangs together by vertices, each in ascending order.
+/// Groups of faces connected by vertices, each in ascending order.
 fn connected(mesh: &TetMesh, handles: Vec<u32>) -> Vec<Vec<u32>> {
     if handles.is_empty() {
         return Vec::new();
@@ -233,7 +233,7 @@ fn connected(mesh: &TetMesh, handles: Vec<u32>) -> Vec<Vec<u32>> {
     all
 }
 
-/// The caps of a piece with their faces, by the ids of their patches; none when a face is neither wall nor of a cap.
+/// Caps of a piece with their faces, by patch id; `None` if a face is neither wall nor of a cap.
 fn caps_of(labelled: &[([u32; 3], i32)], caps: &FxHashMap<i32, Cap>) -> Option<Vec<(Cap, Vec<[u32; 3]>)>> {
     let mut of_caps: Vec<(i32, [u32; 3])> =
         labelled.iter().filter(|(_, patch)| *patch != WALL).map(|&(face, patch)| (patch, face)).collect();
@@ -242,7 +242,7 @@ fn caps_of(labelled: &[([u32; 3], i32)], caps: &FxHashMap<i32, Cap>) -> Option<V
     of_caps.chunk_by(|a, b| a.0 == b.0).map(with_cap).collect()
 }
 
-/// Joins those joints that have the same faces.
+/// Connects the joints with equal faces.
 fn join(known: &[Known]) -> Result<Vec<[(u32, u32); 2]>, Unfit> {
     let mut all: Vec<([u64; 2], (u32, u32))> = Vec::new();
     for (part, known) in (0..).zip(known) {
@@ -262,7 +262,7 @@ fn join(known: &[Known]) -> Result<Vec<[(u32, u32); 2]>, Unfit> {
 }
 
 impl Cut<'_> {
-    /// Number of points of the whole if pieces share those of joints alone.
+    /// Number of points of the whole if pieces share only those of joints.
     fn points(&self) -> u64 {
         let all: u64 = self.known.iter().map(|known| u64::from(known.points)).sum();
         let vertices = |(part, joint): (u32, u32)| u64::from(self.known[part as usize].joints[joint as usize].vertices);
@@ -299,12 +299,12 @@ impl Parts for Cut<'_> {
     }
 
     fn vertex(&self, part: u32, local: u32) -> u32 {
-        // Asked for offenders alone.
+        // Called for offenders only.
         self.ids(part).ok().and_then(|ids| ids.get(local as usize).copied()).unwrap_or(NONE)
     }
 
     fn tet(&self, part: u32, local: u32) -> u64 {
-        // Asked for offenders alone, too.
+        // Called for offenders only, too.
         let before: u64 = self.known[..part as usize].iter().map(|known| u64::from(known.tets)).sum();
         before + u64::from(local)
     }
@@ -314,7 +314,7 @@ impl Parts for Cut<'_> {
     }
 }
 
-/// Faces in the numbers of the whole with points of their own.
+/// Copies faces with global ids to a point array of their own.
 fn apart(pieces: &dyn MeshSource, faces: &[[u32; 3]]) -> io::Result<FacesApart> {
     let vertices = distinct(faces.as_flattened());
     let points = pieces.points_of(&vertices)?;

@@ -1,9 +1,8 @@
-//! Sums that tie what is read later to what was certified.
+//! Checksums that link data read later to the certified data.
 
 use crate::geometry::Point3;
 
-/// A number for a triangle, the same from whichever corner it is read, another when it is turned over. Numbers of faces
-/// are added up, so their order does not matter.
+/// Checksum of a triangle, invariant under rotation but not reversal. Sums of checksums do not depend on order.
 pub(super) fn face_sum(corners: [&Point3; 3]) -> u64 {
     let [a, b, c] = corners.map(point_sum);
     let turned = |x: u64, y: u64, z: u64| mix(x ^ mix(y ^ mix(z).rotate_left(17)).rotate_left(29));
@@ -14,7 +13,7 @@ fn point_sum(p: &Point3) -> u64 {
     p.iter().fold(0x2545_f491_4f6c_dd1d, |sum: u64, x| mix(sum ^ x.to_bits()))
 }
 
-/// The finaliser of `SplitMix64`.
+/// Finalizer of `SplitMix64`.
 fn mix(mut x: u64) -> u64 {
     x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -22,7 +21,7 @@ fn mix(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// A number for a triangle of sorted vertices.
+/// Checksum of a triangle of sorted vertices.
 pub(super) fn id_sum(vertices: [u32; 3]) -> u64 {
     vertices.into_iter().fold(0x2545_f491_4f6c_dd1d, |sum, v| mix(sum ^ u64::from(v)))
 }

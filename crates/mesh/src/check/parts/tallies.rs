@@ -1,13 +1,13 @@
-//! What breaks lines, collected from parts in numbers of the whole.
+//! Violations of conditions, collected from parts in the numbering of the whole.
 
 use super::{Fault, Parts};
 use crate::check::result::{KEPT_OFFENDERS, Line, LineResult, Offender, OffenderKind, Outcome, Tally};
 use std::collections::BTreeMap;
 
-/// More offenders than that are not held at a time.
+/// Maximum offenders held at a time.
 const MOST_HELD: usize = 4096;
 
-/// Offenders of lines, in numbers of the whole.
+/// Offenders of conditions, in the numbering of the whole.
 #[derive(Debug, Default)]
 pub(super) struct Tallies(BTreeMap<Line, (u64, Vec<Offender>)>);
 
@@ -26,7 +26,7 @@ impl Tallies {
         }
     }
 
-    /// Adds what a part breaks.
+    /// Adds a fault of a part.
     pub(super) fn add_fault(&mut self, parts: &dyn Parts, part: u32, fault: &Fault) {
         let id = |kind: OffenderKind, id: i64| match (kind, u32::try_from(id)) {
             (OffenderKind::Patch | OffenderKind::Node, _) | (_, Err(_)) => id,
@@ -56,7 +56,7 @@ impl Tallies {
     }
 }
 
-/// Sorts offenders; how many were there twice (as both parts of a joint name what is on it).
+/// Sorts offenders and removes duplicates, since both parts of a joint report its faces. Returns the number removed.
 fn tidy(offenders: &mut Vec<Offender>) -> u64 {
     let before = offenders.len();
     offenders.sort_by(|a, b| a.ids.cmp(&b.ids));

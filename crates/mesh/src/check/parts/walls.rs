@@ -1,6 +1,6 @@
-//! Walls of different parts against each other: boxes of parts, then boxes of faces, then exactly.
+//! Test of walls of different parts against each other: boxes of parts, then boxes of faces, then exactly.
 //!
-//! Parts are taken along the Hilbert curve of their boxes; as many pairs at a time as have walls that fit in memory.
+//! Parts are visited along the Hilbert curve of their boxes, in batches of pairs whose walls fit in memory.
 
 use super::boxes::Boxes;
 use super::glue::{Held, invalid};
@@ -12,19 +12,19 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::io;
 use std::sync::Arc;
 
-/// Parts whose neighbours are looked up at a time.
+/// Parts whose neighbours are searched at a time.
 const LOOKED_UP: usize = 2048;
 
-/// Bytes of a wall beside its faces.
+/// Bytes of a wall besides its faces.
 const OVERHEAD: u64 = 200;
 
-/// Bytes per face of a wall: three numbers, half a point, half an id.
+/// Bytes per face of a wall: three indices, half a point, half an id.
 const PER_FACE: u64 = 12 + 14;
 
-/// More pairs of faces than that are looked for in a tree.
+/// Maximum pairs of faces tested without a tree.
 const FEW: usize = 1 << 13;
 
-/// The wall of a part.
+/// Wall of a part.
 #[derive(Debug)]
 pub(super) struct Wall {
     pub points: Vec<Point3>,
@@ -34,10 +34,10 @@ pub(super) struct Wall {
     aabb: Aabb,
 }
 
-/// Walls that are in memory, by their parts.
+/// Walls in memory, by part.
 pub(super) type Walls = FxHashMap<u32, Arc<Wall>>;
 
-/// Reads walls, and makes sure that they are those that were certified.
+/// Reads walls and verifies that they are the certified ones.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a> {
     pub parts: &'a dyn Parts,
@@ -59,15 +59,15 @@ impl Reader<'_> {
     }
 }
 
-/// What walls of different parts have in common that they should not.
+/// Improper intersections of walls of different parts.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Meetings {
     pub intersections: Vec<(Intersection, Point3)>,
-    /// Edges that both walls have, outside of joints.
+    /// Edges common to both walls, outside joints.
     pub edges: Vec<([u32; 2], Point3)>,
-    /// Points with different ids in one place.
+    /// Points with different ids at one position.
     pub twins: Vec<([u32; 2], Point3)>,
-    /// Pairs of parts of whose walls any of this is true.
+    /// Pairs of parts with any of these.
     pub parts: Vec<[u32; 2]>,
 }
 
@@ -84,7 +84,7 @@ impl Meetings {
     }
 }
 
-/// Tests all walls against each other, with some `memory` bytes of them at a time.
+/// Tests all walls against each other, with about `memory` bytes of them at a time.
 pub(super) fn meetings(reader: Reader, boxes: &Boxes, memory: usize) -> io::Result<Meetings> {
     let mut all = Meetings::default();
     let mut walls: Walls = FxHashMap::default();
@@ -102,7 +102,7 @@ pub(super) fn meetings(reader: Reader, boxes: &Boxes, memory: usize) -> io::Resu
     Ok(all)
 }
 
-/// Number of pairs, one at least, whose walls fit in memory.
+/// Number of pairs, at least one, whose walls fit in memory.
 fn fitting(reader: &Reader, pairs: &[[u32; 2]], memory: u64) -> usize {
     let mut needed: FxHashSet<u32> = FxHashSet::default();
     let mut bytes = 0;
@@ -119,7 +119,7 @@ fn fitting(reader: &Reader, pairs: &[[u32; 2]], memory: u64) -> usize {
     pairs.len()
 }
 
-/// Reads the walls of the pairs that are not there yet, and lets go of all others.
+/// Loads the missing walls of the pairs, and drops all others.
 pub(super) fn load(
     read: impl Fn(u32) -> io::Result<Wall> + Sync,
     pairs: &[[u32; 2]],
@@ -138,7 +138,7 @@ pub(super) fn load(
 /// Tests pairs of walls.
 pub(super) fn test(pairs: &[[u32; 2]], walls: &Walls) -> Meetings {
     let test = |pair: &[u32; 2]| {
-        // The same whichever comes first along the curve.
+        // Independent of the order along the curve.
         let parts = [pair[0].min(pair[1]), pair[0].max(pair[1])];
         let [Some(a), Some(b)] = parts.map(|part| walls.get(&part)) else { return None };
         let meetings = test_pair(a, b);
@@ -194,7 +194,7 @@ fn test_pair(a: &Wall, b: &Wall) -> Meetings {
     for (i, j) in overlapping(&first, &second) {
         let (p, q) = (a.triangle(i), b.triangle(j));
         match classify_triangles(p, q) {
-            // Faces without area are named by their own part, and met by nothing.
+            // Faces without area are reported by their own part.
             Contact::Apart | Contact::Neighbours | Contact::Improper(Improper::Degenerate) => {}
             Contact::Improper(kind) => {
                 let place = crate::check::cells::middle(p.corners.into_iter().chain(q.corners));
@@ -207,7 +207,7 @@ fn test_pair(a: &Wall, b: &Wall) -> Meetings {
     meetings
 }
 
-/// Pairs of faces whose boxes overlap, ascending.
+/// Pairs of faces with overlapping boxes, ascending.
 fn overlapping(first: &[(u32, Aabb)], second: &[(u32, Aabb)]) -> Vec<(u32, u32)> {
     let mut pairs = Vec::new();
     if first.len() * second.len() <= FEW {
@@ -223,7 +223,7 @@ fn overlapping(first: &[(u32, Aabb)], second: &[(u32, Aabb)]) -> Vec<(u32, u32)>
     pairs
 }
 
-/// Vertices with different ids in one place.
+/// Vertices with different ids at one position.
 fn twins(p: Triangle, q: Triangle) -> Vec<([u32; 2], Point3)> {
     let mut found = Vec::new();
     for (i, a) in p.ids.into_iter().zip(p.corners) {
@@ -236,7 +236,7 @@ fn twins(p: Triangle, q: Triangle) -> Vec<([u32; 2], Point3)> {
     found
 }
 
-/// Edges that both walls have. The rim of a joint has one face of either; what has more is no rim.
+/// Finds edges common to both walls. The rim of a joint has one face of either; an edge with more is no rim.
 fn common_edges(
     a: &Wall,
     first: &[(u32, Aabb)],
@@ -299,7 +299,7 @@ mod tests {
         let chord = test_pair(&wall(&[7, 9, 1, 2], &two, 1.0), &wall(&[7, 9, 3, 4], &two, -1.0));
         assert_eq!(chord.edges.iter().map(|edge| edge.0).collect::<Vec<_>>(), [[7, 9]]);
         assert!(chord.intersections.is_empty() && chord.twins.is_empty());
-        // Without common ids the edges lie on each other.
+        // Without common ids, the edges coincide geometrically.
         let apart = test_pair(&wall(&[7, 9, 1, 2], &two, 1.0), &wall(&[17, 19, 3, 4], &two, -1.0));
         assert_eq!((apart.edges.len(), apart.intersections.len(), apart.twins.len()), (0, 4, 8));
     }

@@ -1,4 +1,4 @@
-//! The lines of the whole.
+//! Conditions on the whole.
 
 use super::boxes::Boxes;
 use super::glue::{Glued, Held, needs_sound_arrays};
@@ -18,7 +18,7 @@ use crate::geometry::Aabb;
 use rustc_hash::FxHashMap;
 use std::io;
 
-/// The lines from which it follows that no two points are equal.
+/// Conditions that together exclude equal points.
 const EXCLUDE_EQUAL_POINTS: [Line; 8] = [
     Line::NoRepeatedVertex,
     Line::NoDuplicateTets,
@@ -30,11 +30,11 @@ const EXCLUDE_EQUAL_POINTS: [Line; 8] = [
     Line::NoSelfIntersection,
 ];
 
-/// Checks a mesh that is made of parts. Of walls some `memory` bytes are held at a time (two walls at least), of every
-/// part some 300 bytes. The result does not depend on the number of threads.
+/// Checks a mesh in parts. Holds about `memory` bytes of walls at a time (at least two walls), and about 300 bytes per
+/// part. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// What reading the parts fails with, and `InvalidData` where certificates, walls and joints do not belong together.
+/// Errors of reading the parts, and `InvalidData` if certificates, walls and joints are inconsistent.
 pub fn check_parts(
     parts: &dyn Parts,
     patches: &[Patch],
@@ -44,22 +44,22 @@ pub fn check_parts(
     Looked::at(parts, memory)?.check(patches, expectation)
 }
 
-/// The first half of a check: certificates are read, walls are held against each other. Whoever has something to do about
-/// walls that meet does without the second half.
+/// First half of a check: reads the certificates and tests walls against each other. Callers that repair intersecting
+/// walls skip the second half.
 pub struct Looked<'a> {
     parts: &'a dyn Parts,
     held: Held,
     tallies: Tallies,
-    /// A line about the arrays of a part that is broken: then nothing else was looked at.
+    /// Violated condition on the arrays of a part, if any; nothing else was tested then.
     unusable: Option<Line>,
     boxes: Boxes,
-    /// For each joint whether it is joined to something.
+    /// Flags per joint, true for connected joints.
     is_joined: Vec<bool>,
     meetings: Meetings,
 }
 
 impl<'a> Looked<'a> {
-    /// Looks at parts, with some `memory` bytes of walls at a time.
+    /// Reads and tests parts, with about `memory` bytes of walls at a time.
     ///
     /// # Errors
     /// As [`check_parts`].
@@ -84,17 +84,17 @@ impl<'a> Looked<'a> {
         Reader { parts: self.parts, held: &self.held, is_joined: &self.is_joined }
     }
 
-    /// Pairs of parts whose walls meet elsewhere than at the rims of their joints, ascending.
+    /// Pairs of parts with walls that intersect elsewhere than at the rims of their joints, ascending.
     pub fn meeting(&self) -> &[[u32; 2]] {
         &self.meetings.parts
     }
 
-    /// The boxes of the parts.
+    /// Boxes of the parts.
     pub fn into_boxes(self) -> Vec<Aabb> {
         self.boxes.into_vec()
     }
 
-    /// The rest of the check.
+    /// Second half of the check.
     ///
     /// # Errors
     /// As [`check_parts`].
@@ -125,7 +125,7 @@ struct Whole<'a> {
 
 impl Whole<'_> {
     fn check(mut self, mut counts: Counts) -> io::Result<PartsCheck> {
-        // What follows from joints is only looked at where they are sound.
+        // Consequences of joints are only checked if the joints are valid.
         let sound = self.joined.broken.is_none()
             && self.looked.tallies.first_of(&[Line::BoundaryFans, Line::LabelsMatchBoundary]).is_none();
         if sound {
@@ -151,7 +151,7 @@ impl Whole<'_> {
             .sum();
         counts.caps = self.patches.iter().filter(|patch| patch.cap.is_some()).count();
         let mut lines = vec![components(self.expectation, glued.components), self.loops(&glued, &roots)];
-        // That no points are equal follows from the other lines: when one of them fails, it has not been shown.
+        // Distinct points follow from the other conditions, so this is not checked if one of them fails.
         if let Some(line) = self.joined.broken.or(self.looked.tallies.first_of(&EXCLUDE_EQUAL_POINTS))
             && !self.looked.tallies.fails(Line::NoDuplicatePoints)
         {
@@ -170,7 +170,7 @@ impl Whole<'_> {
         Ok(PartsCheck { report, meeting })
     }
 
-    /// All pairs of faces that meet, ascending.
+    /// All pairs of intersecting faces, ascending.
     fn take_meetings(&mut self, mut meetings: Meetings) -> Vec<Intersection> {
         let pair = |i: &Intersection| {
             let mut faces = i.faces.as_flattened().to_vec();
@@ -210,7 +210,7 @@ impl Whole<'_> {
         compare_loops(&expected.loops, found, |root| self.surface_offender(glued, root))
     }
 
-    /// A surface is named by the smallest of the vertices that name its parts' surfaces.
+    /// Identifies a surface by the smallest of its parts' surface vertices.
     fn surface_offender(&self, glued: &Glued, root: u32) -> Offender {
         let named = |surface: u32| {
             let part = self.looked.held.part_of_surface(surface);
@@ -235,7 +235,7 @@ impl Whole<'_> {
         lines
     }
 
-    /// The lines about the shapes of caps, and caps that no patch names.
+    /// Conditions on the shapes of caps, and caps without a patch.
     fn caps(&mut self) -> Vec<LineResult> {
         let mut tallies = labels::SHAPE_LINES.map(Tally::new);
         let mut by_node: FxHashMap<u32, Vec<(bool, &HeldCap)>> = FxHashMap::default();
@@ -247,7 +247,7 @@ impl Whole<'_> {
             let mut shape = [false; 5];
             for (i, (named, held)) in held.enumerate() {
                 *named = true;
-                // Several are one patch in pieces.
+                // Several caps are one patch in pieces.
                 shape = if i == 0 { held.shape } else { [false; 5] };
             }
             for (tally, _) in tallies.iter_mut().zip(shape).filter(|(_, holds)| !holds) {

@@ -1,31 +1,31 @@
-//! How far off the walls of a cavity a segment runs: floating point, and a proposal; exact predicates decide.
+//! Distance of a segment from the faces of a cavity, in floating point. Exact predicates verify the result.
 
 use super::space::Space;
 use anastomesh_mesh::geometry::implicit::OnTriangle;
 use anastomesh_mesh::geometry::{Point3, Vec3, unit_normal};
 
-/// Exchanges of a wall in the search for the deepest place; a handful are usual.
+/// Maximum steps in the search for the deepest position. A handful is typical.
 const EXCHANGES: usize = 64;
 
-/// The rest of a segment, behind the vertex to which it has come.
+/// Rest of a segment beyond its current vertex.
 pub(super) struct Course {
     start: Point3,
     along: Vec3,
-    /// Share of the segment that lies behind.
+    /// Fraction of the segment already covered.
     from: f64,
 }
 
-/// The place on a course that lies furthest from all walls.
+/// Position on a segment with the largest distance from all faces.
 pub(super) struct Deepest {
-    /// Share of the segment before it.
+    /// Position, as a fraction of the segment.
     share: f64,
-    /// Its distance from the nearest walls, over the size of the cavity; negative where no place sees all walls.
+    /// Distance from the nearest faces, relative to the size of the cavity; negative if no position sees all faces.
     pub depth: f64,
-    /// The nearest walls, as half-faces of the cavity.
+    /// Nearest faces, as half-faces of the cavity.
     pub tight: [Option<u32>; 2],
 }
 
-/// The distance from a wall, `at + slope · share`.
+/// Distance from a face, `at + slope · share`.
 #[derive(Clone, Copy)]
 struct Height {
     at: f64,
@@ -34,7 +34,7 @@ struct Height {
 }
 
 impl Height {
-    /// Where two are equal.
+    /// Position of equal distance.
     fn meets(&self, other: &Self) -> f64 {
         (self.at - other.at) / (other.slope - self.slope)
     }
@@ -48,18 +48,18 @@ impl Course {
         Self { start, along, from }
     }
 
-    /// Distances from a wall.
+    /// Distance from a face along the segment.
     fn height(&self, s: &Space, half: u32) -> Height {
         let [a, b, c] = s.wall(half).map(|v| s.point(v) - self.start);
         let n = unit_normal(a, b, c);
         Height { at: -n.dot(&a), slope: n.dot(&self.along), half: Some(half) }
     }
 
-    /// The deepest place in a cavity: its least distance from the walls is concave along the segment, so the walls that
-    /// bound it from both sides are exchanged until none is nearer.
+    /// Finds the deepest position in a cavity. The minimum distance from the faces is concave along the segment. The
+    /// face that limits it on either side is replaced until none is nearer.
     pub(super) fn deepest(&self, s: &Space, walls: &[u32]) -> Deepest {
         let size = self.along.norm();
-        // The ends of the segment bound the place as well.
+        // The ends of the segment limit the position, too.
         let mut low = Height { at: -self.from * size, slope: size, half: None };
         let mut high = Height { at: size, slope: -size, half: None };
         let heights: Vec<Height> = walls.iter().map(|&half| self.height(s, half)).collect();
@@ -90,14 +90,14 @@ impl Course {
         Deepest { share, depth: depth / room, tight: [low.half, high.half] }
     }
 
-    /// Distance of the furthest corner of some walls from a place.
+    /// Distance of the furthest corner of the faces from a position.
     fn size(&self, s: &Space, walls: &[u32], share: f64) -> f64 {
         let place = self.start + self.along * share;
         let far = |&half: &u32| s.wall(half).map(|v| (s.point(v) - place).norm_squared());
         walls.iter().flat_map(far).fold(f64::MIN_POSITIVE, f64::max).sqrt()
     }
 
-    /// Least distance of a vertex from the walls that it is no corner of, over the size of the cavity.
+    /// Minimum distance of a vertex from the faces without it, relative to the size of the cavity.
     pub(super) fn depth_from(&self, s: &Space, v: u32, walls: &[u32]) -> f64 {
         let p = s.point(v) - self.start;
         let mut least = f64::INFINITY;
@@ -111,9 +111,9 @@ impl Course {
         least / self.size(s, walls, self.from)
     }
 
-    /// The weight of a place, with no more bits than it takes to stay near: that makes exact arithmetic short.
+    /// Weight of a position, with as few bits as accuracy allows, to keep exact arithmetic short.
     pub(super) fn weight(place: &Deepest) -> u128 {
-        // Sixteenths of the depth, at least ten bits, at most what a number has.
+        // Resolution of 1/16 of the depth, 10 to 52 bits.
         let bits = (-(place.depth.max(1e-15) / 16.0).log2()).ceil().clamp(10.0, 52.0) as u32;
         let steps = (place.share.clamp(0.0, 1.0) * (1_u64 << bits) as f64).round() as u128;
         steps * (OnTriangle::ONE >> bits)

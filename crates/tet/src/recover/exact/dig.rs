@@ -1,5 +1,5 @@
-//! Cavities for vertices on a segment: what it crosses first, made wider where the part of the segment that sees all
-//! walls is too short, and then longer along the segment as far as one vertex can see.
+//! Cavities for vertices on a segment. A cavity is widened if too short a part of the segment sees all its faces. It is
+//! then lengthened along the segment as far as one vertex can see.
 
 use super::course::{Course, Deepest};
 use super::space::Space;
@@ -7,63 +7,62 @@ use crate::star::EdgeRing;
 use anastomesh_mesh::geometry::implicit::{self, OnTriangle, Site};
 use rustc_hash::FxHashMap;
 
-/// Bits of a weight below those that the length of its interval has.
+/// Bits of a weight below the leading bit of its interval's length.
 const BITS: u32 = 4;
 
-/// Steps by which a cavity grows at most.
+/// Maximum growth steps of a cavity.
 const STEPS: usize = 32;
 
-/// Steps by which it grows at most, where it is to be deep.
+/// Maximum growth steps of a deep cavity.
 const DEEP_STEPS: usize = 64;
 
-/// Steps without a gain after which it is as deep as it gets.
+/// Steps without gain after which a deep cavity stops growing.
 const PATIENCE: usize = 6;
 
-/// Distance of a vertex from the walls, over their size, that is deep enough. What is flatter than that counts as flat:
-/// far above what rounding of coordinates leaves of flat parts, even to single precision.
+/// Sufficient distance of a vertex from the faces, relative to their size. It is far above the rounding of coordinates
+/// in flat parts, even in single precision.
 const DEEP: f64 = 1e-5;
 
-/// Part of the segment that should see the walls.
+/// Sufficient length of the part of the segment that sees all faces, as a weight.
 const WIDE: i128 = (OnTriangle::ONE >> 24).cast_signed();
 
 /// A cavity.
 pub(super) enum Dug {
-    /// One that can be joined to the vertex from which the segment comes, which leads to the segment's end.
+    /// Cavity to be joined to the start vertex, which leads to the segment's end.
     Joins(Vec<u32>),
-    /// One all of whose walls are seen from a place on the segment.
+    /// Cavity with a weight on the segment from which all faces are visible.
     Place(Vec<u32>, u128),
 }
 
 pub(super) struct Dig<'a> {
     s: &'a Space,
-    /// Number of the input's points.
+    /// Number of input points.
     points: usize,
-    /// Edges that may not go.
+    /// True for edges that must stay.
     keep: &'a dyn Fn(u32, u32) -> bool,
-    /// Where the segment comes from.
+    /// Start vertex.
     at: u32,
     ends: [u32; 2],
     course: Course,
     known: FxHashMap<u32, Sight>,
 }
 
-/// The weights from which all walls are seen from inside, those between two, and the walls, as half-faces of the
-/// cavity, that bound them.
+/// Interval of weights from which all faces are visible from inside, and the half-faces of the cavity that limit it.
 #[derive(Clone, Copy)]
 struct View {
     low: (u128, u32),
     high: (u128, u32),
-    /// A wall that is seen from nowhere on the segment.
+    /// A face that is visible from nowhere on the segment.
     blind: Option<u32>,
 }
 
-/// Where on a segment a wall is seen from inside.
+/// Part of a segment that sees a face from inside.
 #[derive(Clone, Copy)]
 enum Sight {
     Everywhere,
-    /// Before this weight.
+    /// Below this weight.
     Before(u128),
-    /// Behind this weight.
+    /// Above this weight.
     Behind(u128),
     Nowhere,
 }
@@ -102,7 +101,7 @@ impl View {
         if self.blind.is_some() { i128::MIN } else { self.high.0.cast_signed() - self.low.0.cast_signed() }
     }
 
-    /// A weight in the middle half, with few bits: that makes exact arithmetic short.
+    /// Weight in the middle half of the interval, with few bits to keep exact arithmetic short.
     fn middle(&self) -> u128 {
         let (low, width) = (self.low.0, self.high.0 - self.low.0);
         let shift = width.max(1).ilog2().saturating_sub(BITS);
@@ -111,7 +110,7 @@ impl View {
     }
 }
 
-/// A weight on a segment from which all walls of a cavity are seen.
+/// Weight on a segment from which all faces of a cavity are visible.
 pub(super) fn middle(s: &Space, ends: [u32; 2], cavity: &[u32]) -> Option<u128> {
     let view = View::of(s.outer(cavity).into_iter().map(|half| (half, Sight::of(s, ends, half))));
     (view.width() > 0).then(|| view.middle())
@@ -128,13 +127,13 @@ impl<'a> Dig<'a> {
         Self { s, points, keep, at, ends, course: Course::new(s, at, ends), known: FxHashMap::default() }
     }
 
-    /// The cavity for the next vertex of the segment behind what it crosses first.
+    /// Cavity for the next vertex of the segment beyond its first crossing.
     pub(super) fn dig(&mut self, first: Vec<u32>, deep: bool) -> Option<Dug> {
         let dug = if deep { self.deep(first.clone()) } else { None };
         dug.or_else(|| self.seen(first))
     }
 
-    /// A cavity in which the vertex lies well off all walls: what is nearly flat is taken as well, on both sides.
+    /// Cavity in which the vertex lies well off all faces. Nearly flat tetrahedra on both sides are included.
     fn deep(&self, mut tets: Vec<u32>) -> Option<Dug> {
         let mut best: Option<(f64, Dug)> = None;
         let mut deepest_yet = (f64::NEG_INFINITY, 0);
@@ -174,15 +173,15 @@ impl<'a> Dig<'a> {
         best.map(|b| b.1)
     }
 
-    /// Least distance of the vertex from which the segment comes from the walls that it is no corner of, over their
-    /// size, if one of them has the segment's end.
+    /// Minimum distance of the start vertex from the faces without it, relative to their size. `None` if no face has
+    /// the end.
     fn depth_of_join(&self, walls: &[u32]) -> Option<f64> {
         let s = self.s;
         let leads = walls.iter().any(|&half| s.c.face(half).contains(&self.ends[1]));
         leads.then(|| self.course.depth_from(s, self.at, walls)).filter(|&depth| depth > 0.0)
     }
 
-    /// The weight of a place near the deepest one that sees all walls.
+    /// Weight of a position near the deepest one that sees all faces.
     fn place(&self, walls: &[u32], deepest: &Deepest) -> Option<u128> {
         let weight = Course::weight(deepest);
         let on = OnTriangle::on_segment(self.ends.map(|v| *self.s.point(v)), weight);
@@ -195,7 +194,7 @@ impl<'a> Dig<'a> {
         walls.iter().all(sees).then_some(weight)
     }
 
-    /// Adds what lies behind one of the walls nearest to the deepest place, the one that gains more.
+    /// Adds the tetrahedron behind one of the faces nearest to the deepest position, whichever gains more.
     fn deepen(&self, tets: &mut Vec<u32>, deepest: &Deepest) -> bool {
         let mut best: Option<(f64, u32)> = None;
         for half in deepest.tight.into_iter().flatten() {
@@ -214,7 +213,7 @@ impl<'a> Dig<'a> {
         best.is_some()
     }
 
-    /// A cavity whose walls are all seen from somewhere on the segment, however near they are.
+    /// Cavity with all faces visible from a position on the segment, however close they are.
     fn seen(&mut self, first: Vec<u32>) -> Option<Dug> {
         let mut tets = first;
         let mut best: Option<(Vec<u32>, View)> = None;
@@ -245,7 +244,7 @@ impl<'a> Dig<'a> {
         View::of(walls.iter().map(|&half| (half, *known.entry(half).or_insert_with(|| Sight::of(s, ends, half)))))
     }
 
-    /// Whether the vertex from which the segment comes sees all walls, one of which has the end.
+    /// True if the start vertex sees all faces and one of them has the end.
     fn joins(&self, walls: &[u32]) -> bool {
         let s = self.s;
         let sees = |half: u32| {
@@ -255,7 +254,7 @@ impl<'a> Dig<'a> {
         walls.iter().any(|&half| s.c.face(half).contains(&self.ends[1])) && walls.iter().all(|&half| sees(half))
     }
 
-    /// Adds what lies behind one of the walls that bound the view, the one that gains more.
+    /// Adds the tetrahedron behind one of the faces that limit the view, whichever gains more.
     fn widen(&mut self, tets: &mut Vec<u32>, view: &View) -> bool {
         let mut best: Option<(i128, u32)> = None;
         let bounds = if let Some(half) = view.blind { vec![half] } else { vec![view.low.1, view.high.1] };
@@ -276,7 +275,7 @@ impl<'a> Dig<'a> {
         best.is_some()
     }
 
-    /// Adds what the segment crosses next behind a cavity.
+    /// Adds the next tetrahedra that the segment crosses beyond the cavity.
     fn lengthen(&self, tets: &mut Vec<u32>) -> bool {
         let (s, [p, q]) = (self.s, self.ends);
         for half in self.s.outer(tets) {
@@ -321,13 +320,13 @@ impl<'a> Dig<'a> {
         true
     }
 
-    /// Whether nothing that has to stay is inside of a cavity.
+    /// True if no vertex, edge or face that must stay is inside the cavity.
     fn keeps(&self, tets: &[u32], walls: &[u32]) -> bool {
         let faces: Vec<[u32; 3]> = walls.iter().map(|&half| self.s.c.face(half)).collect();
         let has = |part: &[u32]| faces.iter().any(|f| part.iter().all(|x| f.contains(x)));
         tets.iter().all(|&t| {
             let v = self.s.c.verts(t);
-            // Free vertices may go.
+            // Free vertices may be removed.
             let stays = |x: u32| (x as usize) < self.points || self.s.is_implicit(x);
             let frozen = |half| self.s.c.is_frozen(half) && tets.contains(&(self.s.c.mate(half) >> 2));
             v.iter().all(|&x| !stays(x) || has(&[x]))

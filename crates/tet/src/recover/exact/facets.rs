@@ -1,6 +1,6 @@
-//! Facets: a missing triangle whose sides are chains of edges becomes a union of faces. A front moves inwards from the
-//! sides: behind an edge of it there is either a face in the facet, or an edge that pierces the facet. That one goes
-//! together with the tetrahedra around it, and a vertex in the facet takes its place.
+//! Covering of facets: a missing triangle with chains as sides becomes a union of faces. A front advances from the
+//! sides. Behind each front edge lies a face in the facet, or an edge that pierces the facet. A vertex in the facet
+//! replaces such an edge with the tetrahedra around it.
 
 use super::segments::Segments;
 use super::space::Space;
@@ -8,18 +8,18 @@ use crate::error::{Obstacle, Stuck, TetError};
 use anastomesh_mesh::geometry::implicit::{self, OnTriangle};
 use rustc_hash::FxHashSet;
 
-/// Bits of a weight that are left out if that leaves a vertex inside of its cavity.
+/// Low bits of a weight to drop if the vertex then still lies inside its cavity.
 const SHORT: u32 = 80;
 
 /// A facet that was missing.
 pub(super) struct Cover {
-    /// The faces that it consists of, counter-clockwise as the facet is.
+    /// Faces of the facet, with its orientation.
     pub pieces: Vec<[u32; 3]>,
-    /// Vertices inside of it.
+    /// Vertices inside the facet.
     pub inner: Vec<u32>,
 }
 
-/// Makes a union of faces of a missing triangle all of whose sides are chains or edges, and freezes it.
+/// Turns a missing triangle, whose sides exist as edges or chains, into a union of frozen faces.
 pub(super) fn cover(s: &mut Space, segments: &Segments, triangle: [u32; 3]) -> Result<Cover, TetError> {
     let edges = segments.outline(triangle);
     let open = edges.iter().copied().collect();
@@ -30,9 +30,9 @@ fn stuck(triangle: [u32; 3], reason: Stuck) -> TetError {
     TetError::Stuck { part: Obstacle::Triangle(triangle), reason }
 }
 
-/// What lies in a facet behind an edge of the front.
+/// Next part of a facet behind a front edge.
 enum Behind {
-    /// A face, by its third vertex.
+    /// Third vertex of a face.
     Face(u32),
     /// An edge that pierces the facet.
     Edge([u32; 2]),
@@ -42,9 +42,9 @@ struct Front<'a> {
     s: &'a mut Space,
     segments: &'a Segments<'a>,
     triangle: [u32; 3],
-    /// Directed edges, the facet's uncovered part to their left; some may be covered meanwhile.
+    /// Stack of directed edges with the uncovered part to their left; may contain covered ones.
     edges: Vec<[u32; 2]>,
-    /// Those that are not.
+    /// Front edges not yet covered.
     open: FxHashSet<[u32; 2]>,
 }
 
@@ -72,7 +72,7 @@ impl Front<'_> {
         Ok(cover)
     }
 
-    /// Moves the front over a face behind an edge.
+    /// Advances the front over the face behind an edge.
     fn advance(&mut self, [a, b]: [u32; 2], apex: u32) {
         self.open.remove(&[a, b]);
         for [p, q] in [[b, apex], [apex, a]] {
@@ -83,13 +83,13 @@ impl Front<'_> {
         }
     }
 
-    /// What the facet meets to the left of an edge that lies in it.
+    /// Finds the face or piercing edge to the left of a front edge.
     fn behind(&mut self, [a, b]: [u32; 2]) -> Option<Behind> {
         let ring = self.s.ring(a, b)?;
         let [x, y, z] = self.triangle;
         let side: Vec<i32> = ring.rim.iter().map(|&v| self.s.orient([x, y, z, v])).collect();
         let n = ring.len();
-        // Around the edge, the left half of the facet's plane lies where the sign goes up.
+        // The left half of the facet's plane lies where the sign rises around the edge.
         (0..n).find_map(|i| {
             let (before, here, after) = (side[(i + n - 1) % n], side[i], side[(i + 1) % n]);
             match (before, here, after) {
@@ -100,7 +100,7 @@ impl Front<'_> {
         })
     }
 
-    /// Puts a vertex where edge `u, v` pierces the facet.
+    /// Inserts a vertex where edge `u, v` pierces the facet.
     fn pierce(&mut self, [u, v]: [u32; 2]) -> Result<u32, TetError> {
         let triangle = self.triangle;
         if let Some(edge) = self.segments.of_piece(u, v) {
@@ -114,7 +114,7 @@ impl Front<'_> {
         let weights = weights.ok_or(stuck(triangle, Stuck::Precision))?;
         let corners = triangle.map(|x| *self.s.point(x));
         let walls = self.s.walls(&ring.tets);
-        // Fewer bits make exact arithmetic short; the place need only be near the crossing.
+        // Fewer bits shorten exact arithmetic; the vertex need only be near the crossing.
         let made = [SHORT, 0].into_iter().find_map(|bits| {
             let weights = weights.map(|w| (w >> bits) << bits);
             let inside = weights.iter().all(|&w| w > 0);

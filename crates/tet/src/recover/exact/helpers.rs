@@ -1,5 +1,5 @@
-//! Helpers for edges at which fewer than two facets meet: thin triangles beside them that make sectors of the room around
-//! them. They are cut into the complex like facets, and dropped when the edge is there.
+//! Helper triangles for edges with fewer than two facets. Thin triangles beside such an edge divide its star into
+//! sectors. They are cut into the complex like facets, and dropped once the edge is recovered.
 
 use super::parts::{Part, sides, sorted};
 use super::push::Push;
@@ -7,19 +7,19 @@ use crate::delaunay::hash;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 
-/// Height of a helper over the length of its edge, at first.
+/// Initial height of a helper relative to the length of its edge.
 const HEIGHT: f64 = 0.03;
 
-/// What the helpers of a part are.
+/// Helper triangles of a part.
 #[derive(Default)]
 pub(super) struct Helpers {
-    /// Their triangles, numbered behind those of the input.
+    /// Indices of the triangles, following those of the input.
     pub triangles: Vec<u32>,
-    /// Their sides, but for the edge that they help.
+    /// Sides of the triangles except the edge they help.
     pub edges: Vec<[u32; 2]>,
 }
 
-/// Adds triangles beside each edge of a part that has fewer than two facets; lower ones for another salt.
+/// Adds triangles beside each edge of a part that has fewer than two facets. Larger salts make lower triangles.
 pub(super) fn add_helpers(push: &mut Push, part: &Part, salt: u64) -> Helpers {
     let mut facets: FxHashMap<[u32; 2], Vec<u32>> = FxHashMap::default();
     for &t in &part.triangles {
@@ -29,7 +29,7 @@ pub(super) fn add_helpers(push: &mut Push, part: &Part, salt: u64) -> Helpers {
     }
     let mut helpers = Helpers::default();
     for &[a, b] in &part.edges {
-        // What was missing may have come with something else.
+        // Another recovery step may have made a missing edge.
         if push.s.has_edge(a, b) {
             continue;
         }
@@ -45,12 +45,12 @@ pub(super) fn add_helpers(push: &mut Push, part: &Part, salt: u64) -> Helpers {
     helpers
 }
 
-/// A new vertex beside the middle of an edge: away from a corner if there is one.
+/// Inserts a vertex beside the middle of an edge, away from `corner` if given.
 fn place_beside(push: &mut Push, [a, b]: [u32; 2], corner: Option<u32>, salt: u64) -> Option<u32> {
     let [p, q] = [a, b].map(|v| *push.s.point(v));
     let (along, length) = ((q - p).normalize(), (q - p).norm());
     let coin = |k: u64| (hash(hash(u64::from(a) << 32 | u64::from(b)) ^ k) >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
-    // One direction for both helpers of an edge, and back; never quite in a plane that the input may have.
+    // The helpers of an edge lie in opposite directions, chosen at random to avoid planes of the input.
     let any = Vec3::new(coin(1), coin(2), coin(3)) * if salt.is_multiple_of(2) { 1.0 } else { -1.0 };
     let aim = corner.map_or(any, |c| (p - push.s.point(c)) + any * (0.1 * length));
     let aside = (aim - along * aim.dot(&along)).try_normalize(0.0)?;

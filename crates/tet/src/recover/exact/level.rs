@@ -1,9 +1,8 @@
-//! Edges among faces that lie in one plane but for rounding: as in the plane, each edge in their way is exchanged for the
-//! other diagonal of its quadrilateral (Sloan, 'A fast algorithm for generating constrained Delaunay triangulations',
-//! 1993). In space that takes the ring around the edge apart: its two halves, above and below the quadrilateral, are
-//! joined each to a vertex that sees all of it, one of its corners, high above the plane if need be with what is in the
-//! way, or a new one. Nothing is put
-//! between points that lie in the plane, where there is no room.
+//! Recovery of edges among facets that are coplanar up to rounding. Each crossing edge is exchanged for the other
+//! diagonal of its quadrilateral (Sloan, 'A fast algorithm for generating constrained Delaunay triangulations', 1993).
+//! In space, the exchange removes the ring of tetrahedra around the edge. Each half of the ring, above and below the
+//! plane, is joined to an apex that sees all of it. The apex is a corner, a vertex far above the plane with the
+//! tetrahedra between removed, or a new vertex. Points of the plane leave no clearance for vertices between them.
 
 use super::parts::{Missing, sides, sorted};
 use super::plane::{Patch, Plane};
@@ -21,47 +20,46 @@ use anastomesh_mesh::geometry::{Point3, unit_normal};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 
-/// Edges in the way of one, at most.
+/// Maximum edges that cross one missing edge.
 const FAR: usize = 1024;
 
-/// Vertices put into a plane for one edge at most: a long one crosses many edges that pierce the plane.
+/// Maximum vertices inserted into a plane for one edge. A long edge crosses many edges that pierce the plane.
 const PIERCED: usize = 128;
 
-/// Tetrahedra that are added to one half of a ring at most.
+/// Maximum tetrahedra added to one half of a ring.
 const STEPS: usize = 6;
 
-/// Corners of one half of a ring that are tried as vertices to which all is joined, the highest ones.
+/// Maximum corners of one half of a ring tried as its apex, highest first.
 const HIGHEST: usize = 12;
 
-/// Least distance of such a corner from what it sees, over its height.
+/// Minimum distance of such a corner from the faces that it sees, relative to its height.
 const MARGIN: f64 = 1e-3;
 
-/// Tetrahedra at most that go as well, so that it sees all, looked at for all of these corners: among needles these are
-/// many, and still fewer than those that vertices lower down would cost.
+/// Maximum tetrahedra removed, over all these corners, so that a corner sees the whole half. Needles need many; apices
+/// further down would cost more.
 const IN_VIEW: usize = 1000;
 
-/// What an exchange that is refused costs, in exchanges.
+/// Cost of a refused exchange, in exchanges.
 const REFUSED: usize = 8;
 
-/// So many of the levels are tried before a wider cavity is.
+/// Apex heights to try before the cavity is enlarged.
 const AMPLE: usize = 4;
 
-/// Facets that are looked at for the plane of one.
+/// Maximum facets used to estimate the plane of one facet.
 const AROUND: usize = 200;
 
-/// How coarsely planes are looked at, in heights that count as flat.
+/// Tolerances of coplanarity, in units of the flatness tolerance.
 #[derive(Clone, Copy)]
 struct Measure {
-    /// What is flat.
+    /// Maximum height of a flat tetrahedron.
     flat: f64,
-    /// Least distance of new vertices from the planes around.
+    /// Minimum distance of new vertices from the surrounding planes.
     clearance: f64,
-    /// Triangles that are less high than this are not made on the way, since rounding may have tilted them by any angle.
+    /// Minimum height of an intermediate triangle. Rounding may tilt a thinner one by any angle.
     thin: f64,
 }
 
-/// Strict at first, since what is low is in the way of what follows; the more edges are there the less is in the way of
-/// the others.
+/// Strict first, since vertices with little clearance obstruct later edges. Recovered edges leave fewer obstacles.
 const MEASURES: [Measure; 4] = [
     Measure { flat: 1.0, clearance: 20.0, thin: 1.0 },
     Measure { flat: 1.0, clearance: 5.0, thin: 1.0 },
@@ -69,56 +67,56 @@ const MEASURES: [Measure; 4] = [
     Measure { flat: 4.0, clearance: 0.3, thin: 0.0 },
 ];
 
-/// Share of the edges that have to come with one measure, for the next to be tried.
+/// Minimum fraction of the edges recovered with one measure before the next is tried.
 const GAIN: f64 = 0.1;
 
-/// Share of the edges, and at least so many, that tell how many of the others will come.
+/// Fraction of the edges tried before the number of failures is extrapolated.
 const SAMPLE: f64 = 0.25;
 
-/// See [`SAMPLE`].
+/// Minimum number of edges tried before the number of failures is extrapolated.
 const MANY: usize = 64;
 
-/// Exchanges for one edge, over the number of edges in its way and on top of it.
+/// Maximum exchanges for one edge: per crossing edge, plus a constant.
 const WORK: (usize, usize) = (8, 32);
 
-/// An edge that is in the way, and the vertices across from it on both sides in the plane.
+/// A crossing edge and the two opposite vertices of its quadrilateral in the plane.
 #[derive(Clone, Copy)]
 struct Diagonal {
     edge: [u32; 2],
     across: [u32; 2],
 }
 
-/// Puts edges into planes of faces.
+/// Inserts edges into planes of facets.
 pub(super) struct Level<'a> {
     pub s: &'a mut Space,
     pub keep: &'a SurfaceEdges,
     /// Missing facets at each of their sides.
     pub facets: FxHashMap<[u32; 2], Vec<[u32; 3]>>,
-    /// Vertices that may be put into planes for the edge at hand.
+    /// Vertices that may still be inserted into planes for the current edge.
     pub spare: usize,
-    /// Points of the input.
+    /// Number of input points.
     pub points: usize,
-    /// What is thinner than that is flat.
+    /// Maximum height of a flat tetrahedron.
     pub tolerance: f64,
-    /// Least distance of a new vertex from the planes around.
+    /// Minimum distance of a new vertex from the surrounding planes.
     pub clearance: f64,
-    /// Least height of a triangle that is made on the way.
+    /// Minimum height of an intermediate triangle.
     thin: f64,
-    /// The planes of missing facets and the areas that tell of them, as far as they are known.
+    /// Cached planes of missing facets, with the areas they were estimated from.
     planes: FxHashMap<[u32; 3], (f64, Plane)>,
-    /// New vertices that lie on nothing.
+    /// New vertices that lie in no plane.
     pub made: Vec<u32>,
     /// New vertices in planes.
     pub inside: Vec<(u32, Plane)>,
-    /// The same, as a set.
+    /// New vertices in planes, as a set.
     pub within: FxHashSet<u32>,
 }
 
-/// Edges and triangles.
+/// Missing edges and triangles.
 type Left = (Vec<[u32; 2]>, Vec<u32>);
 
-/// Recovers what lies in planes of faces but for rounding. Returns the edges and triangles that are still missing; nothing
-/// if these are more than a share of all edges, as soon as that is to be seen.
+/// Recovers edges that lie in planes of facets up to rounding. Returns the edges and triangles still missing. Returns
+/// `None` as soon as more than `share` of all edges are expected to stay missing.
 pub(super) fn level_out(
     push: &mut Push,
     keep: &SurfaceEdges,
@@ -139,7 +137,7 @@ pub(super) fn level_out(
     for (measure, others) in MEASURES.into_iter().zip((0..MEASURES.len()).rev()) {
         level.look(measure);
         let before = left.len();
-        // The next measures seldom gain more than the one before.
+        // Later measures seldom gain more than the current one.
         let hopeless = |tried: usize, failed: usize| {
             let lost = failed as f64 / tried as f64 * before as f64;
             let told = tried >= MANY && tried as f64 >= SAMPLE * before as f64;
@@ -204,8 +202,7 @@ impl<'a> Level<'a> {
         self.planes.clear();
     }
 
-    /// Makes an edge if it lies in the plane of one of its facets and that is one of faces. What has changed when this
-    /// does not succeed is as good as before.
+    /// Makes an edge if it lies in the plane of one of its facets. After a failure, harmless changes stay.
     pub(super) fn insert(&mut self, [a, b]: [u32; 2]) -> bool {
         if self.s.has_edge(a, b) {
             return true;
@@ -220,7 +217,7 @@ impl<'a> Level<'a> {
         })
     }
 
-    /// Whether a vertex lies in a plane but for rounding: one of the input, or one that was put there.
+    /// True if an input vertex, or one inserted into a plane, lies in `plane` up to rounding.
     pub(super) fn lies_in(&self, v: u32, plane: &Plane) -> bool {
         ((v as usize) < self.points || self.within.contains(&v))
             && plane.height(self.s.point(v)).abs() < 4.0 * self.tolerance
@@ -235,8 +232,8 @@ impl<'a> Level<'a> {
         plane
     }
 
-    /// The plane of a facet, told by all of the facets around that lie in it, and their area. That of a needle alone is
-    /// known only near its long side.
+    /// Fits the plane of a facet to all coplanar facets around it; returns their area, too. A needle alone defines its
+    /// plane only near its long side.
     fn plane(&self, facet: [u32; 3]) -> (f64, Plane) {
         let mut patch = Patch::new(self.s, facet);
         let mut near = vec![facet];
@@ -260,7 +257,7 @@ impl<'a> Level<'a> {
         (patch.area(), patch.plane())
     }
 
-    /// Exchanges the edges that cross one, as far as they come loose.
+    /// Exchanges the edges that cross the missing edge as far as possible.
     fn turn(&mut self, [a, b]: [u32; 2], mut waiting: VecDeque<[u32; 2]>, plane: &Plane) -> bool {
         let mut work = WORK.0 * waiting.len() + WORK.1;
         let mut refused = 0;
@@ -286,16 +283,16 @@ impl<'a> Level<'a> {
         self.s.has_edge(a, b)
     }
 
-    /// On which side of an edge a vertex lies, seen from above: to its left is positive.
+    /// Side of an edge on which a vertex lies, seen from above: positive to the left.
     fn side(&self, [a, b]: [u32; 2], v: u32, plane: &Plane) -> i32 {
         self.s.orient_to([a, b, v], &plane.above)
     }
 
-    /// The edges that one crosses from its first end to its second, in a plane of faces.
+    /// Edges that the missing edge crosses from its first end to its second, in a plane.
     fn course(&mut self, [a, b]: [u32; 2], plane: &Plane) -> Option<VecDeque<[u32; 2]>> {
         let first = self.first([a, b], plane);
         let first = first.or_else(|| if self.pierce_before([a, b], plane) { self.first([a, b], plane) } else { None });
-        // Always directed so that the end lies to its right.
+        // Always directed so that `b` lies to its right.
         let mut edge = first?;
         let mut course = VecDeque::from([edge]);
         while course.len() < FAR {
@@ -320,7 +317,7 @@ impl<'a> Level<'a> {
         None
     }
 
-    /// The first edge that one crosses behind a face at its first end in a plane; from right to left.
+    /// First edge crossed beyond a face at the first end, directed from right to left.
     fn first(&mut self, [a, b]: [u32; 2], plane: &Plane) -> Option<[u32; 2]> {
         let mut best: Option<(f64, [u32; 2])> = None;
         for t in self.s.star(a) {
@@ -347,7 +344,7 @@ impl<'a> Level<'a> {
         best.map(|(_, edge)| edge)
     }
 
-    /// The vertices across from an edge, to its right and to its left seen from above, that lie in one plane with it.
+    /// Vertices opposite an edge that are coplanar with it, to its right and left seen from above.
     fn quadrilateral(&mut self, edge: [u32; 2], plane: &Plane) -> Option<Diagonal> {
         let ring = self.s.ring(edge[0], edge[1])?;
         let side = |&v: &u32| if self.lies_in(v, plane) { self.side(edge, v, plane) } else { 0 };
@@ -368,14 +365,14 @@ impl<'a> Level<'a> {
         self.side(across, p, plane) * self.side(across, q, plane) < 0
     }
 
-    /// Whether an edge may be made on the way to one: not if that makes a triangle that is too thin.
+    /// True if an edge may be made as an intermediate. It must not make a triangle that is too thin.
     fn may_be(&self, [x, y]: [u32; 2], corners: [u32; 2], wanted: [u32; 2]) -> bool {
         let (p, along) = (self.s.point(x), self.s.point(y) - self.s.point(x));
         let high = |&v: &u32| along.cross(&(self.s.point(v) - p)).norm() > self.thin * along.norm();
         sorted(x, y) == sorted(wanted[0], wanted[1]) || self.keep.contains(x, y) || corners.iter().all(high)
     }
 
-    /// Exchanges an edge for the one across.
+    /// Exchanges an edge for the other diagonal.
     fn exchange(&mut self, &Diagonal { edge: [p, q], across: [x, y] }: &Diagonal) -> bool {
         let Some(ring) = self.s.ring(p, q) else { return false };
         if (0..ring.len()).any(|i| ring.spoke(&self.s.c, i).is_none_or(|half| self.s.c.is_frozen(half))) {
@@ -390,7 +387,7 @@ impl<'a> Level<'a> {
         filled.is_some_and(|filled| self.fill(&old, &filled))
     }
 
-    /// Fills the room of some tetrahedra, sector by sector, each joined to its apex.
+    /// Replaces tetrahedra by sectors, each joined to its apex.
     pub(super) fn fill(&mut self, old: &[u32], sectors: &[(Sector, Apex)]) -> bool {
         let before = self.s.c.points.len() as u32;
         let fits = refill(self.s, old, sectors, &[]).is_some();
@@ -398,8 +395,8 @@ impl<'a> Level<'a> {
         fits
     }
 
-    /// A sector, with a vertex that sees its faces from well above: a corner of theirs if there is one, or else a new one;
-    /// where there is none, a wider sector.
+    /// Finds an apex well above the faces of a sector: a corner of the sector if possible, otherwise a new vertex.
+    /// Enlarges the sector if neither exists.
     pub(super) fn apex(&self, wider: &mut Wider, sector: Sector) -> Option<(Sector, Apex)> {
         let origin = wider.origin;
         let least = self.least(&Room::new(self.s, origin, &sector.faces));
@@ -423,8 +420,8 @@ impl<'a> Level<'a> {
         Some(self.raised(origin, sector, apex, least))
     }
 
-    /// A sector and a corner of its faces that sees them all; or one of the highest, and what is in its view goes as well.
-    /// As long as few vertices high above see all of the plane, the next exchanges have room; new ones would be ever lower.
+    /// Finds a corner that sees all faces of a sector, or a high corner with the tetrahedra in its view removed. As
+    /// long as few high vertices see the whole plane, later exchanges have clearance; each new vertex would be lower.
     fn corner(&self, wider: &mut Wider, sector: &Sector, ample: &[f64], least: f64) -> Option<(Sector, Apex)> {
         let room = Room::new(self.s, wider.origin, &sector.faces);
         if let Some(w) = ample.iter().find_map(|level| room.neighbor(self.s, level.max(least)).ok()) {
@@ -447,7 +444,7 @@ impl<'a> Level<'a> {
         })
     }
 
-    /// A sector and its apex, a new one as high as can be above the new faces: then the next exchanges there have room.
+    /// Raises a new apex as far as possible above the new faces, to leave clearance for later exchanges.
     fn raised(&self, origin: Point3, sector: Sector, apex: Apex, least: f64) -> (Sector, Apex) {
         let mut apex = apex;
         if let (Apex::Point(_), Some(&face)) = (apex, sector.faces.last()) {
@@ -460,13 +457,13 @@ impl<'a> Level<'a> {
         (sector, apex)
     }
 
-    /// Least distance over the size of a room that is asked for.
+    /// Minimum clearance relative to the size.
     fn least(&self, room: &Room) -> f64 {
         self.clearance / room.size
     }
 }
 
-/// The two halves of a ring as sectors, without its edge, with the two triangles that have the edge from `x` to `y`.
+/// Splits a ring, without its edge, into two sectors closed by the two triangles at the edge from `x` to `y`.
 fn halves(s: &Space, ring: &EdgeRing, [x, y]: [u32; 2]) -> Option<[Sector; 2]> {
     let n = ring.len();
     let at = |v: u32| ring.rim.iter().position(|&w| w == v);

@@ -1,45 +1,45 @@
-//! What is known of the room around vertices. Their stars are looked at again and again for less and less room; as long
-//! as they have not changed, what was found the last time tells whether that is worth it.
+//! Cache of failed searches for a vertex position. The same stars are searched repeatedly for less and less clearance.
+//! While a star is unchanged, the last result tells if another search is worthwhile.
 
-/// How a place for a vertex is looked for.
+/// Search methods for the position of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Way {
-    /// At its neighbors.
+    /// Existing neighbors only.
     Corners,
-    /// There, or anywhere in its star.
+    /// Neighbors, then points in the star.
     Points,
-    /// There, or in a wider cavity.
+    /// Neighbors, then points in an enlarged cavity.
     Wider,
 }
 
-/// What is known of one vertex.
+/// Search results for one vertex.
 #[derive(Clone, Copy, Default)]
 struct Known {
-    /// When the star changed.
+    /// Time of the last change of the star.
     changed: u32,
-    /// When a place was looked for in each way, and the largest room that one may have.
+    /// Time of the last search by each method, and the upper bound on the clearance it found.
     places: [(u32, f64); 3],
-    /// When it was looked at for a better place.
+    /// Time of the last search for a better position.
     relaxed: u32,
 }
 
-/// What is known of all vertices. Times are counted in changes.
+/// Search results for all vertices. Time is counted in changes.
 #[derive(Clone, Default)]
 pub(super) struct Looks {
     now: u32,
-    /// Before this nothing was known.
+    /// Results from before this time are forgotten.
     since: u32,
     known: Vec<Known>,
 }
 
 impl Looks {
-    /// Forgets everything.
+    /// Forgets all results.
     pub(super) fn forget(&mut self) {
         self.now += 1;
         self.since = self.now;
     }
 
-    /// The stars of all corners of some faces change.
+    /// Marks the stars of the given corners as changed.
     pub(super) fn change(&mut self, corners: impl Iterator<Item = u32>) {
         self.now += 1;
         let now = self.now;
@@ -48,7 +48,7 @@ impl Looks {
         }
     }
 
-    /// Whether there may be a place with at least `least` room for a vertex.
+    /// True if a position with clearance of at least `least` may exist.
     pub(super) fn worth(&mut self, v: u32, least: f64, way: Way) -> bool {
         let since = self.since;
         let known = self.of(v);
@@ -56,13 +56,13 @@ impl Looks {
         when <= known.changed.max(since) || room >= least
     }
 
-    /// There is no place with more than that much room for a vertex.
+    /// Records that no position has more clearance than `room`.
     pub(super) fn found(&mut self, v: u32, room: f64, way: Way) {
         let now = self.now + 1;
         self.of(v).places[way as usize] = (now, room);
     }
 
-    /// Whether a vertex may have a better place now; it is taken to be looked for.
+    /// True if a better position may exist. Records a search.
     pub(super) fn worth_relaxing(&mut self, v: u32) -> bool {
         let (now, since) = (self.now + 1, self.since);
         let known = self.of(v);

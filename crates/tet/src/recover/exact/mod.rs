@@ -1,13 +1,12 @@
-//! The exact tier, which does not fail in exact arithmetic: what is missing is cut into the complex with implicit vertices
-//! on it, which are then moved off the surface (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary
-//! polyhedron', 2003). Only what is crossed changes.
+//! Exact recovery, which cannot fail in exact arithmetic. Implicit vertices are inserted at crossings, then moved off
+//! the surface (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary polyhedron', 2003). Tetrahedra
+//! that no missing part crosses stay unchanged.
 //!
-//! What lies in planes of faces but for rounding is recovered before, by turning edges there ([`level`], [`pierce`]). Then:
+//! Edges in planes of facets, up to rounding, are first recovered by exchanges there ([`level`], [`pierce`]). Then:
 //!
 //! 1. [`segments`]: missing edges become chains of edges, with a vertex at each face or edge that they cross.
 //! 2. [`facets`]: missing triangles become unions of faces, with a vertex at each edge that pierces them.
-//! 3. [`push`]: each of these vertices gives way to copies inside the sectors between the facets around it ([`sectors`],
-//!    [`room`]); where a sector is too narrow, what lies beside it is taken as well ([`wider`]).
+//! 3. [`push`]: copies inside the sectors between facets replace each vertex ([`sectors`], [`room`], [`wider`]).
 
 mod course;
 mod dig;
@@ -43,13 +42,13 @@ use segments::Segments;
 use space::Space;
 pub(crate) use ways::Way;
 
-/// Recovers what is missing in a complex that has all the rest of the surface, its triangles frozen, in the first of the
-/// ways that succeeds. The surface may not meet itself; its triangles may share whole edges and vertices in any way, well
-/// inside the complex. What is thinner than `flat` counts as flat where that chooses between ways.
+/// Recovers the missing parts in a complex that has the rest of the surface with its triangles frozen. The ways are
+/// tried in order until one succeeds. The surface must not intersect itself; its triangles may share whole edges and
+/// vertices in any way. `flat` is the thickness below which a part counts as flat in the choice between ways.
 ///
 /// # Errors
-/// [`TetError::EdgeMeets`]; [`TetError::Stuck`] where no floating-point position was found off the surface, or too many
-/// vertices were needed; [`TetError::Cancelled`].
+/// [`TetError::EdgeMeets`]; [`TetError::Stuck`] if no floating-point position off the surface exists or the vertex
+/// budget is exceeded; [`TetError::Cancelled`].
 pub(crate) fn recover_exact(
     c: &Complex,
     surface: &TriMesh,
@@ -84,7 +83,7 @@ pub(crate) fn recover_exact(
     Err(last)
 }
 
-/// A complex, and what of the surface is missing in it.
+/// A complex and the edges and triangles of the surface that it lacks.
 #[derive(Clone)]
 struct Start<'a> {
     push: Push<'a>,
@@ -93,7 +92,7 @@ struct Start<'a> {
 }
 
 impl Start<'_> {
-    /// With what lies in planes of faces recovered; nothing where more than a share of the edges would be left.
+    /// Recovers edges in facet planes. Returns `None` if more than `share` of the edges would remain missing.
     fn leveled(&self, edges: &SurfaceEdges, share: f64, watch: &Watch) -> Result<Option<Self>, TetError> {
         let mut push = self.push.clone();
         let missing = Missing { edges: &self.edges, triangles: &self.triangles };

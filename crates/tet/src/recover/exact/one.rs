@@ -1,4 +1,4 @@
-//! One part of what is missing, from its edges to vertices that have given way.
+//! Exact recovery of one part, up to the removal of its implicit vertices.
 
 use super::facets::cover;
 use super::helpers::add_helpers;
@@ -9,18 +9,18 @@ use crate::error::{Obstacle, Stuck, TetError};
 use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
 
-/// What the exact tier did.
+/// Counts of the exact recovery.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ExactSummary {
-    /// Vertices that were put on edges.
+    /// Vertices inserted on edges.
     pub on_segments: usize,
-    /// Vertices that were put inside of triangles.
+    /// Vertices inserted inside triangles.
     pub on_facets: usize,
-    /// Vertices off the surface that remain.
+    /// Steiner points that remain, off the surface.
     pub steiner_points: usize,
 }
 
-/// What happens to helpers is told of the edge that they were to help.
+/// Attributes errors of helpers to the edge that they help.
 pub(super) fn about_input(error: TetError, surface: &TriMesh, part: &Part) -> TetError {
     let known = |v: &u32| (*v as usize) < surface.points.len();
     let of_input = |part: &Obstacle| match part {
@@ -43,10 +43,10 @@ pub(super) fn about_input(error: TetError, surface: &TriMesh, part: &Part) -> Te
     dangling.map_or(error, |&edge| TetError::Stuck { part: Obstacle::Edge(edge), reason: Stuck::Dangling })
 }
 
-/// Recovers one part: its edges, then its triangles, then what was put on them gives way.
+/// Recovers one part: its edges, then its triangles, then pushes the inserted vertices off them.
 ///
 /// # Errors
-/// As the tier; `push` is of no use then.
+/// Errors of the exact recovery; `push` must be discarded then.
 pub(super) fn recover_part(
     push: &mut Push,
     part: &Part,
@@ -61,8 +61,8 @@ pub(super) fn recover_part(
         if over { Err(TetError::Stuck { part: on, reason: Stuck::Budget }) } else { Ok(()) }
     };
     let helpers = add_helpers(push, part, salt);
-    // At random: fans of long thin triangles come in halves of halves then, where one after the other each next chain
-    // would have to fit between the one before and what lies beyond.
+    // Random order halves fans of long thin triangles recursively. In sequence, each chain would have to fit between
+    // the one before and the tetrahedra beyond.
     let mut edges = part.edges.clone();
     edges.sort_by_key(|&[a, b]| (hash(salt ^ (u64::from(a) << 32 | u64::from(b))), a, b));
     for &ends in &edges {

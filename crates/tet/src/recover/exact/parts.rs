@@ -1,23 +1,23 @@
-//! What is missing, in parts that have no edge in common.
+//! Partition of the missing edges and triangles into parts without a common edge.
 
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 
-/// What the surface has and the complex lacks.
+/// Edges and triangles of the surface that the complex lacks.
 #[derive(Clone, Copy)]
 pub(crate) struct Missing<'a> {
     pub edges: &'a [[u32; 2]],
     pub triangles: &'a [u32],
 }
 
-/// Missing edges and the missing triangles at them.
+/// Missing edges and their missing triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Part {
     pub edges: Vec<[u32; 2]>,
     pub triangles: Vec<u32>,
 }
 
-/// The parts, in the order of their first edges; then triangles that have all of their edges.
+/// Splits into parts, in the order of their first edges, followed by triangles with all edges present.
 pub(super) fn parts(triangles: &[[u32; 3]], missing: Missing) -> Vec<Part> {
     let id: FxHashMap<[u32; 2], usize> = missing.edges.iter().map(|e| sorted(e[0], e[1])).zip(0..).collect();
     let sides_of = |t: u32| sides(triangles[t as usize]).into_iter().filter_map(|e| id.get(&e).copied());
@@ -53,7 +53,7 @@ pub(super) fn parts(triangles: &[[u32; 3]], missing: Missing) -> Vec<Part> {
     parts
 }
 
-/// The edges of a triangle, smaller vertex first.
+/// Edges of a triangle, smaller vertex first.
 pub(super) fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [sorted(a, b), sorted(b, c), sorted(c, a)]
 }

@@ -1,5 +1,5 @@
-//! Vertices put into planes for a while: where an edge of the complex pierces a plane it is split, so that the plane is
-//! one of faces there, and when all edges of the surface are there the vertex gives way to one on either side.
+//! Temporary vertices in facet planes. A complex edge that pierces a plane is split, so that the plane consists of
+//! faces there. Once all surface edges are recovered, a vertex on each side replaces it.
 
 use super::level::Level;
 use super::plane::Plane;
@@ -12,7 +12,7 @@ use anastomesh_mesh::geometry::{Point3, unit_normal};
 use rustc_hash::FxHashMap;
 
 impl Level<'_> {
-    /// Splits the edge that pierces a plane next to one that lies in it, to its right; returns the new vertex.
+    /// Splits the edge that pierces a plane to the right of an edge in it. Returns the new vertex.
     pub(super) fn pierce_beside(&mut self, edge: [u32; 2], plane: &Plane) -> Option<u32> {
         let ring = self.s.ring(edge[0], edge[1])?;
         let n = ring.len();
@@ -23,7 +23,7 @@ impl Level<'_> {
         })
     }
 
-    /// Splits the edges that pierce a plane in front of a vertex in it, towards another. Whether there were any.
+    /// Splits the edges that pierce a plane ahead of vertex `a`, towards `b`. Returns true if any was split.
     pub(super) fn pierce_before(&mut self, [a, b]: [u32; 2], plane: &Plane) -> bool {
         let ahead = |s: &Space, t: u32| {
             let half = 4 * t + s.c.slot_of(t, a)? as u32;
@@ -36,7 +36,7 @@ impl Level<'_> {
         sides.into_iter().filter(|&edge| self.pierce(edge, plane, |_, _| true).is_some()).count() > 0
     }
 
-    /// Splits an edge where it pierces a plane well off its ends, if `wanted` of that place.
+    /// Splits an edge that pierces a plane well away from its ends, if `wanted` accepts the point.
     fn pierce(&mut self, [u, v]: [u32; 2], plane: &Plane, wanted: impl Fn(&Space, &Point3) -> bool) -> Option<u32> {
         let s = &*self.s;
         let (p, q) = (*s.point(u), *s.point(v));
@@ -62,13 +62,13 @@ impl Level<'_> {
         Some(w)
     }
 
-    /// Whether a point lies above a face, and not too near.
+    /// True if a point lies sufficiently far above a face.
     fn sees(&self, f: [u32; 3], p: &Point3) -> bool {
         let [a, b, c] = f.map(|v| self.s.point(v).coords);
         self.s.orient_to(f, p) > 0 && unit_normal(a, b, c).dot(&(p.coords - a)) > 0.5 * self.clearance
     }
 
-    /// Takes the vertices out of planes again that were put into them.
+    /// Removes the inserted vertices from their planes.
     pub(super) fn leave(&mut self) {
         let mut inside = std::mem::take(&mut self.inside);
         loop {
@@ -81,8 +81,8 @@ impl Level<'_> {
         self.made.extend(inside.into_iter().map(|(w, _)| w));
     }
 
-    /// Moves a vertex out of its plane: the faces around it in the plane are replaced by others without it, and what lies
-    /// above and below is joined to a vertex on that side.
+    /// Moves a vertex out of its plane. Its faces in the plane are retriangulated without it, and the cavities above
+    /// and below are joined to a vertex on each side.
     fn take_out(&mut self, w: u32, plane: &Plane) -> bool {
         let star = self.s.star(w);
         let mut old = Vec::new();

@@ -1,9 +1,9 @@
-//! Planes in which parts of the surface lie but for rounding.
+//! Planes of surface parts that are flat up to rounding.
 
 use super::space::Space;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
-/// A plane, and a point well above it from which it is looked at.
+/// A plane and a point well above it as viewpoint.
 #[derive(Clone, Copy)]
 pub(super) struct Plane {
     at: Point3,
@@ -17,22 +17,22 @@ impl Plane {
     }
 }
 
-/// Some triangles that lie in one plane, summed up.
+/// Area-weighted sums over coplanar triangles.
 #[derive(Clone, Copy)]
 pub(super) struct Patch {
-    /// A corner, from which sums are taken.
+    /// First corner, the origin of the sums.
     origin: Point3,
-    /// The sum of normals as long as twice the areas.
+    /// Sum of normals of twice the area in length.
     normal: Vec3,
-    /// Sums of twice the areas, and of three times the centers times these.
+    /// Sums of twice the areas, and of these times three times the centers.
     weight: f64,
     moment: Vec3,
-    /// Length of the longest side of the first.
+    /// Longest side of the first triangle.
     size: f64,
 }
 
 impl Patch {
-    /// One triangle, whose plane is looked at from as far as it is long.
+    /// Starts with one triangle. Its longest side is the height of the viewpoint.
     pub(super) fn new(s: &Space, triangle: [u32; 3]) -> Self {
         let [a, b, c] = triangle.map(|v| *s.point(v));
         let size = (b - a).norm().max((c - a).norm()).max((c - b).norm());
@@ -40,7 +40,7 @@ impl Patch {
         Self { origin: a, normal: none, weight: 0.0, moment: none, size }.with(s, triangle)
     }
 
-    /// With another triangle.
+    /// Adds another triangle.
     pub(super) fn with(mut self, s: &Space, triangle: [u32; 3]) -> Self {
         let [a, b, c] = triangle.map(|v| s.point(v) - self.origin);
         let normal = (b - a).cross(&(c - a));

@@ -7,7 +7,7 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
-/// A point off the plane of a triangle, from which it runs counter-clockwise.
+/// Point off the plane of a triangle that sees it counter-clockwise.
 pub(super) fn point_above(s: &Space, triangle: [u32; 3]) -> Result<Point3, TetError> {
     let [a, b, c] = triangle.map(|v| *s.point(v));
     let size = (b - a).norm().max((c - a).norm());
@@ -21,8 +21,8 @@ pub(super) fn point_above(s: &Space, triangle: [u32; 3]) -> Result<Point3, TetEr
     above.ok_or(TetError::Stuck { part: Obstacle::Triangle(triangle), reason: Stuck::Precision })
 }
 
-/// Triangulates a simple polygon in the plane below `above`, counter-clockwise seen from there, some of whose corners
-/// may be flat: ears are cut off, the best-shaped first. False when it is not simple.
+/// Triangulates a simple polygon in the plane below `above` by ear clipping, best-shaped ears first. The polygon is
+/// counter-clockwise from there and may have flat corners. Returns false if it is not simple.
 pub(super) fn triangulate(s: &Space, polygon: &[u32], above: &Point3, out: &mut Vec<[u32; 3]>) -> bool {
     out.clear();
     if polygon.len() < 3 {
@@ -39,18 +39,18 @@ pub(super) fn triangulate(s: &Space, polygon: &[u32], above: &Point3, out: &mut 
     rest.turn[k] == Some(1)
 }
 
-/// What is left of a polygon.
+/// Remaining polygon.
 struct Ears<'a> {
     s: &'a Space,
     polygon: &'a [u32],
     above: Site<'a>,
     before: Vec<usize>,
     after: Vec<usize>,
-    /// How the polygon turns at each corner that is left.
+    /// Orientation of each remaining corner.
     turn: Vec<Option<i32>>,
-    /// Corners where it turns inwards, the best-shaped first.
+    /// Convex corners, best-shaped first.
     convex: BTreeSet<(Reverse<u64>, usize)>,
-    /// A corner in the triangle of each, where one was found: as long as it is there, the first is no ear.
+    /// A corner inside the triangle of each corner, if found. As long as it remains, the first is no ear.
     inside: Vec<Option<usize>>,
 }
 
@@ -81,7 +81,7 @@ impl<'a> Ears<'a> {
         implicit::orient3d([self.s.site(p), self.s.site(q), self.s.site(r), self.above])
     }
 
-    /// Shapes are not negative, so their bits have their order.
+    /// Shapes are non-negative, so their bits sort like the values.
     fn key(&self, k: usize) -> (Reverse<u64>, usize) {
         (Reverse(shape(self.s, self.corner(k)).to_bits()), k)
     }
@@ -95,8 +95,8 @@ impl<'a> Ears<'a> {
         }
     }
 
-    /// The best-shaped corner whose triangle has no other corner in it. Where one lies in it, one at which the polygon
-    /// does not turn inwards does.
+    /// Best-shaped corner whose triangle contains no other corner. If it contains any, it contains a corner that is not
+    /// convex, so only those are tested.
     fn next_ear(&mut self) -> Option<usize> {
         let is_blunt = |turn: Option<i32>| turn.is_some_and(|t| t <= 0);
         let mut blunt: Option<Vec<usize>> = None;
@@ -131,7 +131,7 @@ impl<'a> Ears<'a> {
     }
 }
 
-/// Area over the square of the longest side; a heuristic.
+/// Shape heuristic: area over the squared longest side.
 fn shape(s: &Space, corners: [u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| s.point(v));
     let longest = (q - p).norm_squared().max((r - q).norm_squared()).max((p - r).norm_squared());

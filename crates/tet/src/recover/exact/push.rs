@@ -1,6 +1,6 @@
-//! Vertices on segments and facets are moved off them, one copy into each of the sectors between the facets around them
-//! (George, Borouchaki, Saltel, 'Ultimate robustness in meshing an arbitrary polyhedron', 2003). Positions are floating
-//! point and proved by exact predicates.
+//! Moves vertices off segments and facets, one copy into each sector between facets (George, Borouchaki, Saltel,
+//! 'Ultimate robustness in meshing an arbitrary polyhedron', 2003). Positions are floating point and verified by exact
+//! predicates.
 
 use super::dig;
 use super::facets::Cover;
@@ -17,36 +17,36 @@ use anastomesh_mesh::geometry::implicit::OnTriangle;
 use rustc_hash::FxHashMap;
 use std::ops::Range;
 
-/// Tetrahedra that are added to one sector at most.
+/// Maximum tetrahedra added to one sector.
 const STEPS: usize = 24;
 
-/// Where one in so many goes or fewer, the others are given less room: each look at them takes as long.
+/// The clearance level drops when a pass moves less than 1/64 of the vertices: every pass costs the same.
 const SLOW: usize = 64;
 
-/// Place in [`LEVELS`] of the room that wider cavities have to have: they cost most, and are for what is left.
+/// Index in [`LEVELS`] of the first clearance for wider cavities. They are the most expensive, and a last resort.
 const WIDER_FROM: usize = 3;
 
 #[cfg(test)]
 thread_local! {
-    /// Whether wider cavities are not kept for what is left.
+    /// True if wider cavities are tried first instead of last.
     pub(super) static WIDER_FIRST: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
 }
 
-/// What a vertex that has to go lies on.
+/// Segment or facet that carries a vertex to be moved off.
 #[derive(Clone, Copy, Debug)]
 enum Host {
     /// Index of a segment.
     Segment(u32),
     /// Index of a facet.
     Facet(u32),
-    /// Nothing any more.
+    /// No longer on a segment or facet.
     Free(u32),
 }
 
-/// What came of a vertex.
+/// Result of pushing a vertex.
 enum Pushed {
     Off,
-    /// There is at most that much room, over its size.
+    /// No position has more clearance than `room`, relative to the size.
     Not {
         room: f64,
     },
@@ -56,15 +56,15 @@ enum Pushed {
 pub(super) struct Push<'a> {
     pub s: Space,
     pub segments: Segments<'a>,
-    /// Those of the input, then helpers.
+    /// Input triangles, then helpers.
     pub triangles: Vec<[u32; 3]>,
-    /// Vertices that lie on something.
+    /// Vertices to be pushed off their segment or facet.
     left: Vec<(Host, u32)>,
-    /// The faces of facets that have vertices.
+    /// Faces of the facets that carry vertices.
     pieces: FxHashMap<u32, Vec<[u32; 3]>>,
     /// Facets at segments.
     around: FxHashMap<u32, Vec<u32>>,
-    /// Vertices that were made here and are free now.
+    /// Vertices made here that lie on no segment or facet.
     free: Vec<u32>,
     looks: Looks,
 }
@@ -75,12 +75,12 @@ impl<'a> Push<'a> {
         Self { s, segments, triangles, left: Vec::new(), pieces, around, free: Vec::new(), looks }
     }
 
-    /// Takes vertices that lie on nothing; those that are not needed go.
+    /// Takes over free vertices; unneeded ones are removed later.
     pub(super) fn adopt(&mut self, free: Vec<u32>) {
         self.free.extend(free);
     }
 
-    /// Takes a facet that has been covered; the vertices inside of it have to go. Returns their number.
+    /// Registers a covered facet, whose interior vertices have to be pushed off. Returns their number.
     pub(super) fn add_facet(&mut self, id: u32, cover: Cover) -> usize {
         self.bind(&cover.inner);
         self.left.extend(cover.inner.iter().map(|&v| (Host::Facet(id), v)));
@@ -93,7 +93,7 @@ impl<'a> Push<'a> {
         cover.inner.len()
     }
 
-    /// Takes a segment whose facets are there; its vertices have to go. Returns their number.
+    /// Registers a segment with recovered facets, whose inner vertices have to be pushed off. Returns their number.
     pub(super) fn add_segment(&mut self, id: u32) -> usize {
         let chain = &self.segments.list[id as usize].chain;
         let inner = chain[1..chain.len() - 1].to_vec();
@@ -102,7 +102,7 @@ impl<'a> Push<'a> {
         inner.len()
     }
 
-    /// Vertices that lay on something by chance are free no longer.
+    /// Removes vertices from the free ones that lie exactly on a segment or facet.
     fn bind(&mut self, on: &[u32]) {
         let met: Vec<u32> = on.iter().copied().filter(|&v| !self.s.is_implicit(v)).collect();
         if !met.is_empty() {
@@ -110,14 +110,14 @@ impl<'a> Push<'a> {
         }
     }
 
-    /// Takes a facet that has been covered and is only a helper.
+    /// Registers a covered helper facet.
     pub(super) fn add_helper(&mut self, id: u32, cover: Cover) -> Vec<u32> {
         let inner = cover.inner.clone();
         self.add_facet(id, Cover { inner: Vec::new(), ..cover });
         inner
     }
 
-    /// Drops helpers: their faces, and the segments at their sides. What lies on them has to go, as `inner` has.
+    /// Drops helpers with their faces and the segments at their sides. Vertices on them, and `inner`, must be removed.
     pub(super) fn drop_helpers(&mut self, triangles: &[u32], segments: Range<u32>, inner: Vec<u32>) {
         for id in triangles {
             for piece in self.pieces.remove(id).unwrap_or_default() {
@@ -132,15 +132,15 @@ impl<'a> Push<'a> {
             let chain = self.segments.forget(id);
             self.bind(&chain[1..chain.len() - 1]);
             self.left.extend(chain[1..chain.len() - 1].iter().map(|&v| (Host::Free(v), v)));
-            // The corners beside the edge are free, and may go as well.
+            // The corners beside the edge are free and may be removed, too.
             self.free.extend(chain.last());
         }
         self.free.sort_unstable();
         self.free.dedup();
     }
 
-    /// Pushes all vertices off what they lie on. Those that have no room are tried again when others have gone; little
-    /// room is taken only when there is no better, since it leaves even less to others.
+    /// Pushes all vertices off their segments and facets. Vertices without clearance are retried after others have
+    /// moved. The clearance level drops only if nothing better exists, since tight positions leave less to others.
     pub(super) fn settle(&mut self) -> Result<(), TetError> {
         let mut left = std::mem::take(&mut self.left);
         #[cfg(test)]
@@ -167,7 +167,7 @@ impl<'a> Push<'a> {
         Ok(())
     }
 
-    /// Ends a part. Returns the number of vertices that were made.
+    /// Ends a part. Returns the number of new vertices that stay.
     pub(super) fn finish(&mut self) -> usize {
         self.looks.forget();
         self.relax(0.0);
@@ -177,12 +177,12 @@ impl<'a> Push<'a> {
         std::mem::take(&mut self.free).len()
     }
 
-    /// Pushes as many as there is room for, at all levels.
+    /// Pushes off all vertices that have clearance, level by level.
     fn clear(&mut self, left: &mut Vec<(Host, u32)>) -> Result<(), TetError> {
         let mut level = 0;
         while level < LEVELS.len() && !left.is_empty() {
             let before = left.len();
-            // Vertices that go without a trace give room to the others, so they come first.
+            // Vertices that merge with a neighbor leave clearance for the others, so they come first.
             self.pass(left, level, Way::Corners)?;
             let slow = |left: &[(Host, u32)]| (before - left.len()) * SLOW < before;
             if slow(left) {
@@ -194,7 +194,7 @@ impl<'a> Push<'a> {
         Ok(())
     }
 
-    /// Pushes vertices that have no room into wider cavities.
+    /// Pushes vertices without clearance into wider cavities.
     fn clear_wider(&mut self, left: &mut Vec<(Host, u32)>) -> Result<(), TetError> {
         let mut level = WIDER_FROM;
         #[cfg(test)]
@@ -213,7 +213,7 @@ impl<'a> Push<'a> {
         Ok(())
     }
 
-    /// Moves a vertex on a segment to the middle of the part from which it sees all that is around it now.
+    /// Moves a vertex along its segment to the middle of the interval that sees its whole star.
     fn slide(&mut self, host: Host, v: u32) -> bool {
         let Host::Segment(id) = host else { return false };
         let ends = self.segments.list[id as usize].ends;
@@ -244,7 +244,7 @@ impl<'a> Push<'a> {
         Ok(())
     }
 
-    /// Removes free vertices that are not needed, and moves the others to where they have most room.
+    /// Removes unneeded free vertices, and moves the others to the largest clearance.
     fn relax(&mut self, least: f64) {
         let mut free = std::mem::take(&mut self.free);
         free.retain(|&v| {
@@ -321,7 +321,7 @@ impl<'a> Push<'a> {
         Ok(Pushed::Off)
     }
 
-    /// The facets around a vertex without it; nothing where they are not what they should be.
+    /// Retriangulated facets around a vertex without it. Returns `None` if a facet is inconsistent.
     fn fans(&self, host: Host, v: u32) -> Result<Option<Vec<Fan>>, TetError> {
         let fan = |facet: u32, ends| {
             let pieces = self.pieces.get(&facet).map_or(&[][..], |p| p);
@@ -343,7 +343,7 @@ impl<'a> Push<'a> {
         Ok(Some(fans))
     }
 
-    /// Puts the new apices in the place of a vertex.
+    /// Replaces a vertex by its new apices.
     fn commit(&mut self, v: u32, cavity: &[u32], fans: &[Fan], sectors: &[(Sector, Apex)]) -> bool {
         let before = self.s.c.points.len() as u32;
         let facets: Vec<[u32; 3]> = fans.iter().flat_map(|fan| &fan.new).copied().collect();

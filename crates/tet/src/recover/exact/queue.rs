@@ -1,5 +1,5 @@
-//! Parts one after the other. One that is stuck is undone and waits until all others are there; then it is tried in other
-//! orders, and with cavities of the other kind: what was in its way has changed by then.
+//! Recovery of parts one after another. A part that fails is undone and waits until all others are recovered. Then it
+//! is tried in other orders, and with the other kind of cavity; by then its obstacles have changed.
 
 use super::level::level_out;
 use super::one::{ExactSummary, about_input, recover_part};
@@ -12,44 +12,44 @@ use crate::progress::Watch;
 use crate::recover::flat::dissolve_flat;
 use anastomesh_mesh::TriMesh;
 
-/// Times that parts are tried in one way.
+/// Maximum rounds over the waiting parts.
 const ROUNDS: u64 = 6;
 
-/// The same for large ones, which take most of the time.
+/// Maximum rounds if a large part is left, since large parts take most of the time.
 const ROUNDS_LARGE: u64 = 2;
 
-/// After this time, what is left is turned in planes of faces.
+/// Round after which the remaining edges are tried in planes of facets.
 const LEVEL_AFTER: u64 = 1;
 
-/// Missing edges of a part that is large, and of those parts that are done again when the next one is undone.
+/// Minimum missing edges of a large part. Also the number of recovered edges after which the state is saved.
 const LARGE: usize = 100;
 
-/// So many parts may wait, and this share of all, before a way is given up.
+/// Maximum waiting parts before a strategy is abandoned: a constant, plus this fraction of all parts.
 const WAITING: (usize, f64) = (16, 0.25);
 
-/// Why parts could not be recovered, and whether all may be tried again.
+/// Error of a failed recovery, and a flag for retry.
 pub(super) struct Failed {
     pub error: TetError,
     pub again: bool,
 }
 
-/// Recovers parts in a way.
+/// Recovers parts with one strategy.
 pub(super) struct Queue<'a, 'b> {
     push: Push<'a>,
     summary: ExactSummary,
     surface: &'b TriMesh,
     edges: &'b SurfaceEdges,
     way: Way,
-    /// Implicit vertices allowed.
+    /// Maximum implicit vertices.
     budget: usize,
     watch: &'b Watch<'b>,
 }
 
-/// What can be gone back to.
+/// State to return to when a part fails.
 struct Saved<'a, 'p> {
     push: Push<'a>,
     summary: ExactSummary,
-    /// Recovered since.
+    /// Parts recovered since the state was saved.
     since: Vec<&'p Part>,
 }
 
@@ -63,7 +63,7 @@ impl<'a, 'b> Queue<'a, 'b> {
         Self { push, summary: ExactSummary::default(), surface, edges, way, budget, watch }
     }
 
-    /// Recovers all that is missing.
+    /// Recovers all missing parts.
     pub(super) fn run(mut self, missing: Missing) -> Result<(Push<'a>, ExactSummary), Failed> {
         let mut waiting = parts(&self.surface.triangles, missing);
         for round in 0..ROUNDS {
@@ -82,8 +82,7 @@ impl<'a, 'b> Queue<'a, 'b> {
         Ok((self.push, self.summary))
     }
 
-    /// Turns edges in planes of faces, for what is left, where flat tetrahedra are in the way no longer. Returns what is
-    /// left then.
+    /// Recovers remaining edges in planes of facets, after dissolving flat tetrahedra. Returns the parts still missing.
     fn level(&mut self, waiting: &[Part]) -> Result<Vec<Part>, Failed> {
         let edges: Vec<[u32; 2]> = waiting.iter().flat_map(|part| &part.edges).copied().collect();
         let triangles: Vec<u32> = waiting.iter().flat_map(|part| &part.triangles).copied().collect();
@@ -97,7 +96,7 @@ impl<'a, 'b> Queue<'a, 'b> {
         Ok(parts(&self.surface.triangles, Missing { edges: &edges, triangles: &triangles }))
     }
 
-    /// Tries parts once. Returns those that are stuck, and why the last of them is.
+    /// Tries each part once. Returns the failed parts and the last error.
     fn pass<'p>(&mut self, parts: &'p [Part], round: u64) -> Result<(Vec<&'p Part>, Option<TetError>), Failed> {
         let mut saved = self.save();
         let (mut stuck, mut last) = (Vec::new(), None);
@@ -126,7 +125,7 @@ impl<'a, 'b> Queue<'a, 'b> {
         Saved { push: self.push.clone(), summary: self.summary, since: Vec::new() }
     }
 
-    /// Undoes the last part: goes back to what was saved, and does again what came since, as it was done before.
+    /// Undoes the last part: restores the saved state and repeats the parts recovered since.
     fn go_back(&mut self, saved: &mut Saved<'a, '_>, round: u64) -> Result<(), Failed> {
         (self.push, self.summary) = (saved.push.clone(), saved.summary);
         let done = std::mem::take(&mut saved.since);
@@ -144,7 +143,7 @@ impl<'a, 'b> Queue<'a, 'b> {
         let done = recover_part(&mut self.push, part, salt, &mut self.summary, self.budget, self.watch);
         done.map_err(|error| {
             let error = about_input(error, self.surface, part);
-            // The surface does not meet itself, so whatever was in the way may not be there another time.
+            // The surface does not intersect itself, so the obstacle may be gone at the next attempt.
             let again = matches!(error, TetError::Stuck { reason, .. } if reason != Stuck::Budget);
             Failed { error, again }
         })

@@ -1,40 +1,38 @@
-//! The room that faces leave for a vertex, and its deepest point: a linear program in four variables. That is
-//! floating point, and a proposal; exact predicates decide.
+//! Clearance that faces leave for a vertex, and its deepest point, from a linear program in four variables. The result
+//! is a floating-point proposal that exact predicates verify.
 
 use super::space::Space;
 use anastomesh_mesh::geometry::{Point3, Vec3, unit_normal};
 use nalgebra::{Matrix4, Vector4};
 
-/// Least distances of a new vertex from the planes around, over the size of its room, that are asked for one after the
-/// other.
+/// Minimum distances of a new vertex from the surrounding planes, relative to the size, in the order tried.
 pub(super) const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-5, 1e-8, 1e-11, 0.0];
 
-/// Shares of the way from the segment to the deepest point of the room at which a position is looked for.
+/// Fractions of the way from the segment to the deepest point at which a position is tried.
 const SHARES: [f64; 9] = [1.0, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4];
 
-/// Roundoff of distances over the size of the room.
+/// Roundoff error of distances, relative to the size.
 const ROUNDOFF: f64 = 1e-14;
 
-/// Exchanges of a constraint in a linear program at most; ten are usual.
+/// Maximum pivots of a linear program. Ten are typical.
 const EXCHANGES: usize = 100;
 
-/// What takes the place of a vertex in a sector.
+/// Replacement for a vertex in a sector.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Apex {
-    /// One of the vertices around it.
+    /// An existing vertex of the sector.
     Vertex(u32),
-    /// A new one.
+    /// A new point.
     Point(Point3),
 }
 
-/// The room that some faces leave for a vertex that has to see all of them counter-clockwise, in coordinates relative
-/// to a place nearby.
+/// Room for a vertex that has to see all given faces counter-clockwise, in coordinates relative to a nearby origin.
 pub(super) struct Room<'a> {
     origin: Point3,
     faces: &'a [[u32; 3]],
-    /// Unit normal towards the room and height of the origin, per face.
+    /// Inward unit normal and height of the origin, per face.
     planes: Vec<(Vec3, f64)>,
-    /// Largest distance of a corner.
+    /// Largest distance of a corner from the origin.
     pub size: f64,
 }
 
@@ -51,12 +49,12 @@ impl<'a> Room<'a> {
         Self { origin, faces, planes, size }
     }
 
-    /// Least distance from the planes of the faces.
+    /// Minimum distance from the planes of the faces.
     pub(super) fn depth(&self, x: &Vec3) -> f64 {
         self.planes.iter().map(|(n, h)| n.dot(x) + h).fold(f64::INFINITY, f64::min)
     }
 
-    /// Least distance of corner `w` from the planes of the faces that it is no corner of, if it is above a bound.
+    /// Minimum distance of corner `w` from the planes of faces without it, if above `bound`.
     fn depth_of(&self, s: &Space, w: u32, bound: f64) -> Option<f64> {
         let x = s.point(w) - self.origin;
         let mut least = f64::INFINITY;
@@ -72,13 +70,13 @@ impl<'a> Room<'a> {
         Some(least)
     }
 
-    /// The corner that sees all faces that do not have it, the one furthest from their planes; at least `least` times
-    /// the size. Where there is none, the largest such distance over the size that a corner further down has.
+    /// Corner that sees all faces without it, with the largest distance from their planes, at least `least` times the
+    /// size. The error is an upper bound on that distance, relative to the size.
     pub(super) fn neighbor(&self, s: &Space, least: f64) -> Result<u32, f64> {
         let mut rim: Vec<u32> = self.faces.iter().flatten().copied().collect();
         rim.sort_unstable();
         rim.dedup();
-        // Where nothing is asked for, roundoff may not decide.
+        // With `least` zero, exact predicates decide, not roundoff.
         let bound = (least - ROUNDOFF) * self.size;
         let mut near = f64::NEG_INFINITY;
         let mut deep: Vec<(f64, u32)> = Vec::new();
@@ -94,22 +92,22 @@ impl<'a> Room<'a> {
         deep.into_iter().map(|(_, w)| w).find(|&w| sees(w)).ok_or(near / self.size + ROUNDOFF)
     }
 
-    /// What may take the place of the vertex, with at least `least` times the size of room; a corner if there is one.
+    /// Apex with a clearance of at least `least` times the size; a corner if possible.
     pub(super) fn apex(&self, s: &Space, least: f64) -> Result<Apex, f64> {
         self.neighbor(s, least)
             .map(Apex::Vertex)
             .or_else(|at_corners| self.place(s, least).map(Apex::Point).map_err(|inside| inside.max(at_corners)))
     }
 
-    /// The faces that bound the room at its deepest point, up to four, and its depth over the size.
+    /// Faces closest to the deepest point, at most four, and the depth relative to the size.
     pub(super) fn bounds(&self) -> Option<(Vec<usize>, f64)> {
         let highest = highest(&constraints(&self.planes, self.size))?;
         let faces = highest.tight.iter().filter_map(|i| i.checked_sub(BOUNDS)).collect();
         Some((faces, highest.x[3]))
     }
 
-    /// A point that sees all faces and lies as far in a direction as can be, from a distance of at least `least` times the
-    /// size: between walls that are steep it is taller than the deepest place, and leaves more room below.
+    /// Point that sees all faces and lies as far as possible in direction `up`, with clearance of at least `least`
+    /// times the size. Between steep faces it is higher than the deepest point and leaves more clearance below.
     pub(super) fn tallest(&self, s: &Space, up: &Vec3, least: f64) -> Option<Point3> {
         let mut constraints = constraints(&self.planes, self.size);
         let deepest = highest(&constraints)?.x[3];
@@ -127,8 +125,8 @@ impl<'a> Room<'a> {
         self.faces.iter().all(|f| s.orient_to(*f, &p) > 0).then_some(p)
     }
 
-    /// A point that sees all faces, from a distance of at least `least` times the size. Where there is none, the largest
-    /// such distance over the size, if a look for less may find one.
+    /// Point that sees all faces with a clearance of at least `least` times the size. The error is the largest possible
+    /// clearance relative to the size, if a search for less may succeed.
     pub(super) fn place(&self, s: &Space, least: f64) -> Result<Point3, f64> {
         let Highest { x, .. } = highest(&constraints(&self.planes, self.size)).ok_or(f64::NEG_INFINITY)?;
         let (aim, depth) = (x.xyz() * self.size, x[3]);
@@ -140,17 +138,17 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Part of the room's depth that its tallest place keeps from the walls.
+/// Fraction of the depth that the tallest point keeps from the faces.
 const KEPT: f64 = 0.1;
 
 /// `a · x ≤ b`.
 type Constraint = (Vector4<f64>, f64);
 
-/// Constraints that bound all coordinates.
+/// Number of constraints that bound all coordinates.
 const BOUNDS: usize = 8;
 
-/// That the point `x`, given as its coordinates over `size` and a distance over `size`, lies no nearer than that to the
-/// planes `normal · x + height = 0`, on their positive sides; normals have length 1.
+/// Constraints that keep a point at distance `x[3]` or more from the planes `normal · x + height = 0`, on their
+/// positive sides. Coordinates and distance are relative to `size`; normals have unit length.
 fn constraints(planes: &[(Vec3, f64)], size: f64) -> Vec<Constraint> {
     let mut constraints = Vec::with_capacity(planes.len() + BOUNDS);
     constraints.extend((0..BOUNDS).map(|k| (Vector4::ith(k % 4, if k < 4 { 1.0 } else { -1.0 }), 1.0)));
@@ -158,22 +156,22 @@ fn constraints(planes: &[(Vec3, f64)], size: f64) -> Vec<Constraint> {
     constraints
 }
 
-/// A solution of a linear program.
+/// Solution of a linear program.
 struct Highest {
     x: Vector4<f64>,
-    /// Constraints that hold with equality there, by number.
+    /// Indices of the tight constraints.
     tight: [usize; 4],
 }
 
-/// The point with the largest last coordinate that satisfies all constraints, the first four of which bound it from
-/// above. Dual simplex method: four constraints hold with equality; the most violated one takes the place of one of them
-/// as long as there is one.
+/// Returns the point with the largest last coordinate that satisfies all constraints, by the dual simplex method. It
+/// starts with the first four constraints tight, which bound it from above. The most violated constraint replaces one
+/// of the four until none is violated.
 fn highest(constraints: &[Constraint]) -> Option<Highest> {
     let mut tight = [0, 1, 2, 3];
     for _ in 0..EXCHANGES {
         let rows = Matrix4::from_rows(&tight.map(|i: usize| constraints[i].0.transpose()));
         let lu = rows.lu();
-        // Not by the inverse: the tight constraints hold to the last bits, however thin the wedge between them is.
+        // Solved by LU, not by the inverse, so that tight constraints of thin wedges hold to the last bits.
         let x = lu.solve(&Vector4::from(tight.map(|i| constraints[i].1)))?;
         let inverse = lu.try_inverse()?;
         let mut worst = (1e-13, None);
@@ -184,7 +182,7 @@ fn highest(constraints: &[Constraint]) -> Option<Highest> {
             }
         }
         let Some(enters) = worst.1 else { return Some(Highest { x, tight }) };
-        // The objective's gradient is a sum of these rows with weights that are not negative, and stays one.
+        // The gradient of the objective stays a combination of these rows with non-negative weights.
         let weight = inverse.row(3);
         let share = inverse.tr_mul(&constraints[enters].0);
         let slack = |k: usize| weight[k].max(0.0) / share[k];
@@ -201,7 +199,7 @@ mod tests {
     use super::*;
     use crate::delaunay::hash;
 
-    /// The deepest point between planes, and its distance from them.
+    /// Deepest point between planes, and its distance from them.
     fn deepest(planes: &[(Vec3, f64)], size: f64) -> Option<(Vec3, f64)> {
         highest(&constraints(planes, size)).map(|h| (h.x.xyz() * size, h.x[3] * size))
     }

@@ -1,4 +1,4 @@
-//! The star of a vertex on the surface, cut into sectors by the facets around it, and these facets without the vertex.
+//! Sectors of the star of a surface vertex, separated by its facets, and these facets without the vertex.
 
 use super::polygon::{point_above, triangulate};
 use super::room::Apex;
@@ -7,7 +7,7 @@ use crate::complex::face_key;
 use crate::error::TetError;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// A facet around a vertex that lies on it: its faces at the vertex, and those that take their place.
+/// A facet around a vertex that lies on it: its faces at the vertex and their replacements.
 pub(super) struct Fan {
     pub facet: u32,
     pub old: Vec<[u32; 3]>,
@@ -15,8 +15,8 @@ pub(super) struct Fan {
 }
 
 impl Fan {
-    /// A facet without the vertex `v`; on a segment between `ends`, or inside of the facet. Nothing if its faces make no
-    /// simple polygon.
+    /// Retriangulates a facet without vertex `v`, which lies between `ends` on a segment or inside the facet. Returns
+    /// `None` if the faces do not form a simple polygon.
     pub(super) fn of(
         s: &Space,
         pieces: &[[u32; 3]],
@@ -39,7 +39,7 @@ impl Fan {
     }
 }
 
-/// The vertices around one, in order: from one of `ends` to the other, or all around.
+/// Vertices around a vertex in order: from one of `ends` to the other, or all around.
 pub(super) fn outline(next: &FxHashMap<u32, u32>, ends: Option<[u32; 2]>) -> Option<Vec<u32>> {
     let (start, last) = match ends {
         Some([p, q]) if next.contains_key(&p) => (p, q),
@@ -62,16 +62,16 @@ pub(super) fn outline(next: &FxHashMap<u32, u32>, ends: Option<[u32; 2]>) -> Opt
     (faces == next.len() && polygon.len() >= 3).then_some(polygon)
 }
 
-/// The faces that the vertex that takes the place of another has to see in one sector, counter-clockwise from there.
+/// Faces that an apex in one sector has to see, counter-clockwise from the apex.
 #[derive(Clone)]
 pub(super) struct Sector {
     pub faces: Vec<[u32; 3]>,
-    /// What the first of these are as half-faces of the sector's tetrahedra; the others are new faces of facets.
+    /// Half-faces of the sector's tetrahedra, for the first faces. The others are new faces of facets.
     pub halves: Vec<u32>,
 }
 
-/// The sectors around a vertex. They have the faces of the star opposite to the vertex, and the new faces of fans. Nothing
-/// if a frozen face is none of the fans'.
+/// Sectors around a vertex, bounded by the opposite faces of its star and the new faces of fans. Returns `None` if a
+/// frozen face belongs to no fan.
 pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<Vec<Sector>> {
     let mut of: FxHashMap<[u32; 3], (usize, [u32; 3])> = FxHashMap::default();
     for (k, fan) in fans.iter().enumerate() {
@@ -84,7 +84,7 @@ pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<V
             continue;
         }
         let mut halves = Vec::new();
-        // Per fan, whether the sector lies in front of it, behind it.
+        // For each fan, true if the sector lies in front of it or behind it.
         let mut touched = vec![[false; 2]; fans.len()];
         let mut stack = vec![first];
         while let Some(t) = stack.pop() {
@@ -93,7 +93,7 @@ pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<V
                 if s.c.apex(half) == v {
                     halves.push(half);
                 } else if let Some(&(k, piece)) = of.get(&face_key(f)) {
-                    // Seen from outside its tetrahedron the face runs as the facet: the sector lies behind.
+                    // If the outward face has the orientation of the facet, the sector lies behind it.
                     touched[k][usize::from(same_turn(f, piece))] = true;
                 } else if s.c.is_frozen(half) {
                     return None;
@@ -119,8 +119,8 @@ pub(super) fn sectors(s: &Space, v: u32, star: &[u32], fans: &[Fan]) -> Option<V
     Some(sectors)
 }
 
-/// Fills the room of some tetrahedra, sector by sector, each joined to its apex. The new faces of facets are frozen, and
-/// what was frozen between sectors. Returns the new tetrahedra; nothing happens when they do not fit.
+/// Replaces a cavity by sectors, each joined to its apex. Freezes the new faces of facets and the frozen faces between
+/// sectors. Returns the new tetrahedra; changes nothing if they do not fit.
 pub(super) fn refill(
     s: &mut Space,
     cavity: &[u32],
@@ -153,7 +153,7 @@ pub(super) fn refill(
     Some(new)
 }
 
-/// Whether two orders of the same three vertices have the same orientation.
+/// True if two orders of the same vertices have the same orientation.
 fn same_turn(f: [u32; 3], g: [u32; 3]) -> bool {
     f == g || f == [g[1], g[2], g[0]] || f == [g[2], g[0], g[1]]
 }

@@ -1,6 +1,5 @@
-//! Segments: a missing edge becomes a chain of edges. What it crosses first, a face or an edge, goes together with the
-//! tetrahedra around it, and a vertex on the segment that sees all of the hole takes its place; then the rest of the
-//! segment crosses less.
+//! Cutting of segments: a missing edge becomes a chain of edges. The first face or edge that it crosses is removed with
+//! the tetrahedra around it. A vertex on the segment that sees the whole cavity replaces them.
 
 use super::dig::{Dig, Dug};
 use super::parts::sorted;
@@ -11,21 +10,21 @@ use crate::star::EdgeRing;
 use anastomesh_mesh::geometry::implicit::OnTriangle;
 use rustc_hash::FxHashMap;
 
-/// A missing edge of the input and the vertices on it, from its first end to its second.
+/// A missing input edge and its vertices, from the first end to the second.
 #[derive(Clone, Debug)]
 pub(super) struct Segment {
     pub ends: [u32; 2],
     pub chain: Vec<u32>,
 }
 
-/// The edges of the input, and the chains of those that were missing.
+/// Input edges, and the chains of those that were missing.
 #[derive(Clone)]
 pub(super) struct Segments<'a> {
     input: &'a SurfaceEdges,
-    /// Points of the input.
+    /// Number of input points.
     pub points: usize,
     pub list: Vec<Segment>,
-    /// Whether vertices are put well off all walls, where that can be.
+    /// True if new vertices should lie well off all faces.
     pub deep: bool,
     /// Segment of each pair of ends, smaller vertex first.
     by_ends: FxHashMap<[u32; 2], u32>,
@@ -33,7 +32,7 @@ pub(super) struct Segments<'a> {
     pieces: FxHashMap<[u32; 2], u32>,
 }
 
-/// What a line meets first on leaving its start.
+/// First crossing of a segment after its start.
 enum Crossing {
     Exists,
     Face(u32),
@@ -54,12 +53,12 @@ impl<'a> Segments<'a> {
         }
     }
 
-    /// The segment between two points of the input, if it was missing.
+    /// Segment between two input points, if it was missing.
     pub(super) fn between(&self, a: u32, b: u32) -> Option<u32> {
         self.by_ends.get(&sorted(a, b)).copied()
     }
 
-    /// The ends of the edge of the input that `a, b` is or is a piece of.
+    /// Ends of the input edge that contains the edge `a, b`.
     pub(super) fn of_piece(&self, a: u32, b: u32) -> Option<[u32; 2]> {
         if self.input.contains(a, b) {
             return Some([a, b]);
@@ -67,7 +66,7 @@ impl<'a> Segments<'a> {
         self.pieces.get(&sorted(a, b)).map(|&i| self.list[i as usize].ends)
     }
 
-    /// Lets a segment be nothing any more. Returns its chain.
+    /// Removes a segment from the maps. Returns its chain.
     pub(super) fn forget(&mut self, id: u32) -> Vec<u32> {
         let Segment { ends, chain } = self.list[id as usize].clone();
         self.by_ends.remove(&sorted(ends[0], ends[1]));
@@ -77,7 +76,7 @@ impl<'a> Segments<'a> {
         chain
     }
 
-    /// The sides of a facet, or the pieces of their chains, directed, the facet to their left.
+    /// Directed sides of a facet, or the pieces of their chains, with the facet to the left.
     pub(super) fn outline(&self, [a, b, c]: [u32; 3]) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         for (p, q) in [(a, b), (b, c), (c, a)] {
@@ -96,7 +95,7 @@ impl<'a> Segments<'a> {
         edges
     }
 
-    /// Makes a chain of a missing edge. Returns where in the list it is.
+    /// Turns a missing edge into a chain. Returns its index in the list.
     pub(super) fn cut(&mut self, s: &mut Space, ends: [u32; 2]) -> Result<u32, TetError> {
         let id = self.list.len() as u32;
         self.by_ends.insert(sorted(ends[0], ends[1]), id);
@@ -104,7 +103,7 @@ impl<'a> Segments<'a> {
         let mut at = ends[0];
         while at != ends[1] {
             let next = self.step(s, at, ends)?.unwrap_or(ends[1]);
-            // At once: what is there may not be destroyed again by what follows.
+            // Register now, so that later steps do not remove the piece.
             self.pieces.insert(sorted(at, next), id);
             self.list[id as usize].chain.push(next);
             at = next;
@@ -112,8 +111,7 @@ impl<'a> Segments<'a> {
         Ok(id)
     }
 
-    /// The edge of a face that a segment passes nearer than what counts as flat, the nearest one; it may not be one that
-    /// has to stay.
+    /// Nearest edge of a face that a segment passes within the flatness tolerance, unless the edge must stay.
     fn grazed(&self, s: &Space, half: u32, ends: [u32; 2]) -> Option<[u32; 2]> {
         let [p, q] = ends.map(|v| s.point(v).coords);
         let f = s.c.face(half);
@@ -127,8 +125,8 @@ impl<'a> Segments<'a> {
         (near < s.flat && self.of_piece(edge[0], edge[1]).is_none()).then_some(edge)
     }
 
-    /// Goes from vertex `at` of a segment to the next one on it, which is made where there is none; nothing when an edge
-    /// leads to its end.
+    /// Advances from vertex `at` to the next vertex on the segment, inserting it if needed. Returns `None` at the last
+    /// piece.
     fn step(&self, s: &mut Space, at: u32, ends: [u32; 2]) -> Result<Option<u32>, TetError> {
         let meets = |obstacle| TetError::EdgeMeets { edge: ends, obstacle };
         let first = match first_crossing(s, at, ends) {
@@ -171,7 +169,7 @@ impl<'a> Segments<'a> {
     }
 }
 
-/// The tetrahedra around an edge of one.
+/// Tetrahedra around an edge of a tetrahedron.
 fn ring(s: &Space, t: u32, [p, q]: [u32; 2]) -> Vec<u32> {
     let mut ring = EdgeRing::default();
     ring.collect(&s.c, t, p, q, usize::MAX);
@@ -182,7 +180,7 @@ pub(super) fn stuck(edge: [u32; 2], reason: Stuck) -> TetError {
     TetError::Stuck { part: Obstacle::Edge(edge), reason }
 }
 
-/// What the rest of the segment `p, q` meets first behind its vertex `a`.
+/// First crossing of the segment `p, q` beyond its vertex `a`.
 fn first_crossing(s: &mut Space, a: u32, [p, q]: [u32; 2]) -> Crossing {
     let tets = s.star(a);
     if tets.iter().any(|&t| s.c.slot_of(t, q).is_some()) {
@@ -203,7 +201,7 @@ fn first_crossing(s: &mut Space, a: u32, [p, q]: [u32; 2]) -> Crossing {
         if !inside {
             continue;
         }
-        // The cone opposite has all signs reversed; only where two vanish the direction has to be looked at.
+        // The opposite cone has all signs reversed, so the direction matters only if two signs are zero.
         let zeros: Vec<usize> = (0..3).filter(|&k| sides[k] == 0).collect();
         match zeros[..] {
             [] => return Crossing::Face(half),

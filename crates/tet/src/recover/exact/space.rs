@@ -1,4 +1,4 @@
-//! A complex some of whose vertices are implicit, and the exact predicates on its vertices.
+//! A complex with implicit vertices, and exact predicates on its vertices.
 
 use crate::complex::{Complex, NONE};
 use crate::star::{EdgeRing, Star};
@@ -7,15 +7,15 @@ use anastomesh_mesh::geometry::implicit::{self, OnTriangle, Site};
 use anastomesh_mesh::geometry::predicates;
 use std::cmp::Ordering;
 
-/// A complex whose points are rounded where they are implicit.
+/// A complex that stores implicit points by their rounded coordinates.
 #[derive(Clone)]
 pub(super) struct Space {
     pub c: Complex,
-    /// What is thinner than that is flat.
+    /// Maximum thickness that counts as flat.
     pub flat: f64,
-    /// What the implicit points are.
+    /// Exact definitions of the implicit points.
     on: Vec<OnTriangle>,
-    /// For each vertex its place in `on`, or [`NONE`].
+    /// Index in `on` of each vertex, or [`NONE`].
     place: Vec<u32>,
     created: Vec<u32>,
     star: Star,
@@ -27,12 +27,12 @@ impl Space {
         Self { c, flat, on: Vec::new(), place, created: Vec::new(), star: Star::default() }
     }
 
-    /// The tetrahedra at a vertex.
+    /// Tetrahedra at a vertex.
     pub(super) fn star(&mut self, v: u32) -> Vec<u32> {
         self.star.around(&self.c, v).to_vec()
     }
 
-    /// The ring around an edge, inside the complex.
+    /// Ring of tetrahedra around an interior edge.
     pub(super) fn ring(&mut self, a: u32, b: u32) -> Option<EdgeRing> {
         let t = self.star.find_edge(&self.c, a, b)?;
         let mut ring = EdgeRing::default();
@@ -43,7 +43,7 @@ impl Space {
         self.star.find_edge(&self.c, a, b).is_some()
     }
 
-    /// The half-face with three vertices.
+    /// Half-face with three given vertices.
     pub(super) fn find_face(&mut self, face: [u32; 3]) -> Option<u32> {
         self.star.find_face(&self.c, face)
     }
@@ -63,7 +63,7 @@ impl Space {
         self.place[v as usize] != NONE
     }
 
-    /// Number of implicit vertices that were made.
+    /// Number of implicit vertices made.
     pub(super) fn implicit_vertices(&self) -> usize {
         self.on.len()
     }
@@ -74,7 +74,7 @@ impl Space {
         self.c.add_point(p)
     }
 
-    /// Takes back the points added last, without tetrahedra, down to so many.
+    /// Removes the last points, which have no tetrahedra, until `count` are left.
     pub(super) fn forget_points(&mut self, count: usize) {
         while self.c.points.len() > count {
             self.c.pop_point();
@@ -82,8 +82,8 @@ impl Space {
         }
     }
 
-    /// Puts a vertex in the place of `cavity`, joined to all its walls, which are counter-clockwise seen from inside;
-    /// nothing happens when they do not fit.
+    /// Replaces `cavity` by a new vertex joined to all its faces, which are counter-clockwise seen from inside. Changes
+    /// nothing if they do not fit.
     pub(super) fn fill(&mut self, cavity: &[u32], walls: &[[u32; 3]], p: Point3) -> Option<u32> {
         let v = self.add_point(p);
         let new: Vec<[u32; 4]> = walls.iter().map(|&[a, b, c]| [a, b, c, v]).collect();
@@ -94,7 +94,7 @@ impl Space {
         None
     }
 
-    /// Puts an implicit vertex in the place of `cavity`. It has to see all its walls; nothing happens when it does not.
+    /// Replaces `cavity` by an implicit vertex. Changes nothing unless the vertex sees all faces.
     pub(super) fn insert(&mut self, cavity: &[u32], walls: &[[u32; 3]], on: OnTriangle) -> Option<u32> {
         let at = on.rounded();
         let site = Site { at: &at, on: Some(&on) };
@@ -111,7 +111,7 @@ impl Space {
         fits.then_some(v)
     }
 
-    /// Puts a vertex into the tetrahedron that has a place inside; nothing where none has.
+    /// Inserts a vertex into the tetrahedron that strictly contains it. Returns `None` if there is none.
     pub(super) fn insert_point(&mut self, p: Point3) -> Option<u32> {
         let inside = |t: u32| (4 * t..4 * t + 4).all(|half| self.orient_to(self.c.face(half), &p) < 0);
         let t = self.c.real_tets().find(|&t| inside(t))?;
@@ -119,7 +119,7 @@ impl Space {
         self.fill(&[t], &walls, p)
     }
 
-    /// Moves an implicit vertex, whose star has the walls, to where it sees them all; nothing happens when it does not.
+    /// Moves an implicit vertex along its segment or facet. Changes nothing unless it still sees all faces of its star.
     pub(super) fn move_to(&mut self, v: u32, walls: &[[u32; 3]], on: OnTriangle) -> bool {
         let at = on.rounded();
         let site = Site { at: &at, on: Some(&on) };
@@ -136,31 +136,31 @@ impl Space {
         true
     }
 
-    /// Joins all walls of `cavity` to one of its vertices, if that sees those that it is no corner of.
+    /// Joins all faces of `cavity` to one of its vertices, if that vertex sees them.
     pub(super) fn join(&mut self, cavity: &[u32], walls: &[[u32; 3]], apex: u32) -> bool {
         let others = walls.iter().filter(|f| !f.contains(&apex));
         let new: Vec<[u32; 4]> = others.map(|&[a, b, c]| [a, c, b, apex]).collect();
         new.iter().all(|&tet| self.orient(tet) > 0) && self.c.replace(cavity, &new, &mut self.created)
     }
 
-    /// The half-faces of some tetrahedra that have their mate outside.
+    /// Half-faces of the given tetrahedra with their mate outside.
     pub(super) fn outer(&self, cavity: &[u32]) -> Vec<u32> {
         let halves = cavity.iter().flat_map(|&t| 4 * t..4 * t + 4);
         halves.filter(|&half| !cavity.contains(&(self.c.mate(half) >> 2))).collect()
     }
 
-    /// The faces around some tetrahedra, counter-clockwise seen from outside.
+    /// Faces around the given tetrahedra, counter-clockwise seen from outside.
     pub(super) fn walls(&self, cavity: &[u32]) -> Vec<[u32; 3]> {
         self.outer(cavity).into_iter().map(|half| self.c.face(half)).collect()
     }
 
-    /// A half-face as a wall of a cavity that has its tetrahedron, counter-clockwise seen from inside.
+    /// Vertices of a half-face, counter-clockwise seen from inside the cavity with its tetrahedron.
     pub(super) fn wall(&self, half: u32) -> [u32; 3] {
         let [a, b, c] = self.c.face(half);
         [a, c, b]
     }
 
-    /// The sign of the orientation of four vertices. Exact.
+    /// Exact sign of the orientation of four vertices.
     #[inline]
     pub(super) fn orient(&self, v: [u32; 4]) -> i32 {
         if v.iter().any(|&x| self.is_implicit(x)) {
@@ -171,18 +171,18 @@ impl Space {
         i32::from(o > 0.0) - i32::from(o < 0.0)
     }
 
-    /// The same for a point that is no vertex.
+    /// Exact sign of the orientation of three vertices and a point.
     #[inline]
     pub(super) fn orient_to(&self, [a, b, c]: [u32; 3], p: &Point3) -> i32 {
         implicit::orient3d([self.site(a), self.site(b), self.site(c), Site { at: p, on: None }])
     }
 
-    /// Lexicographic order of two vertices. Exact.
+    /// Exact lexicographic comparison of two vertices.
     pub(super) fn compare(&self, v: u32, w: u32) -> Ordering {
         implicit::compare(self.site(v), self.site(w))
     }
 
-    /// Whether all tetrahedra are positive, with implicit points as they are. For tests.
+    /// Asserts that all tetrahedra are positive, with exact implicit points. For tests.
     #[cfg(test)]
     pub(super) fn check(&self) {
         if self.c.slots() > 50_000 {

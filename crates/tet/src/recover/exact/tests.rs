@@ -11,7 +11,7 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::Vec3;
 use proptest::prelude::*;
 
-/// Recovers all of a surface by this tier alone, carves, certifies.
+/// Recovers a whole surface by exact recovery alone, then carves and certifies.
 fn fills(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<ExactSummary, TetError> {
     let edges = validate(surface, segments, kind)?;
     let mut points = surface.points.clone();
@@ -36,7 +36,7 @@ fn fills_all(surface: &TriMesh) -> ExactSummary {
     fills(surface, &[], InputKind::Closed).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A prism over a regular polygon, its top turned, with the diagonals that make its sides bend inwards.
+/// Twisted prism over a regular polygon, with diagonals that make its sides concave.
 fn twisted_prism(n: u32, turn: f64, height: f64) -> TriMesh {
     let mut s = TriMesh::default();
     for (z, turn) in [(0.0, 0.0), (height, turn)] {
@@ -57,7 +57,7 @@ fn twisted_prism(n: u32, turn: f64, height: f64) -> TriMesh {
     s
 }
 
-/// The point of a box over a grid of `n × n` squares, below or above.
+/// Point of a box over a grid of `n × n` squares, at the bottom or top.
 fn corner(n: u32, i: u32, j: u32, top: u32) -> u32 {
     (i * (n + 1) + j) * 2 + top
 }
@@ -77,7 +77,7 @@ fn box_of_squares(n: u32, mut square: impl FnMut(u32, u32, u32, u32)) {
     }
 }
 
-/// A thin box with `n × n` squares above and below, the diagonals turned by a coin.
+/// Thin box with `n × n` squares at bottom and top, and random diagonals.
 fn sheet(n: u32, thickness: f64, origin: f64, salt: u64) -> TriMesh {
     let mut s = TriMesh::default();
     for i in 0..=n {
@@ -95,10 +95,10 @@ fn sheet(n: u32, thickness: f64, origin: f64, salt: u64) -> TriMesh {
     s
 }
 
-/// The polyhedron of Chazelle: a box with wedge-shaped notches from above and below that nearly meet in a saddle.
+/// Chazelle's polyhedron: a box with wedge-shaped notches from above and below that nearly meet in a saddle.
 fn chazelle(notches: u32, gap: f64) -> TriMesh {
-    // Ridges of the bottom notches run along x on z = x y, those of the top notches along y on z = x y + gap; both are
-    // approximated by one zigzag sheet each over a grid.
+    // Ridges of the bottom notches run along x on z = x y, those of the top notches along y on z = x y + gap. One
+    // zigzag sheet over a grid approximates each.
     let n = 2 * notches;
     let mut s = TriMesh::default();
     let half = f64::from(n) / 2.0;
@@ -118,7 +118,7 @@ fn chazelle(notches: u32, gap: f64) -> TriMesh {
 
 #[test]
 fn twisted_prisms_are_filled() {
-    // Schönhardt's is the one with three sides; those with more have only triangles that bend inwards as well.
+    // Three sides make Schönhardt's polyhedron; more sides have only concave triangles, too.
     for n in 3..9 {
         for turn in [-0.5, -0.1, 0.3] {
             for height in [0.3, 1.0, 20.0] {
@@ -164,7 +164,7 @@ proptest! {
     fn spheres_of_random_points_are_filled(
         raw in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, 0.2..1.0f64), 12..60), flat in 0.01..1.0f64
     ) {
-        // The hull of random points on a sphere, then moved along their rays: star-shaped, with long thin triangles.
+        // Convex hull of random points on a sphere, moved along their rays: star-shaped, with long thin triangles.
         let points: Vec<Point3> = raw
             .iter()
             .map(|&(x, y, z, _)| Point3::from(Vec3::new(x, y, z).normalize()))
@@ -187,7 +187,7 @@ proptest! {
     }
 }
 
-/// A fan of long thin triangles from one point, closed by another fan below, with the rim in a zigzag.
+/// Fan of long thin triangles from one point, closed by another fan below, with a zigzag rim.
 fn fan(n: u32, length: f64) -> TriMesh {
     let mut s =
         TriMesh { points: vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.1, 0.0, -0.05)], ..TriMesh::default() };
@@ -211,7 +211,7 @@ fn fans_of_thin_triangles_are_filled() {
     }
 }
 
-/// Points in a box at random.
+/// Random points in a box.
 fn scatter(n: u64) -> Vec<Point3> {
     let coin = |k: u64| (crate::delaunay::hash(k) >> 11) as f64 / (1u64 << 53) as f64;
     (0..n).map(|k| Point3::new(coin(3 * k), coin(3 * k + 1), coin(3 * k + 2))).collect()
@@ -219,7 +219,7 @@ fn scatter(n: u64) -> Vec<Point3> {
 
 #[test]
 fn facets_that_edges_pierce_are_recovered() {
-    // Pairs of points above and below a triangle, nearer to each other than to its corners.
+    // Pairs of points above and below a triangle, closer to each other than to its corners.
     let mut points: Vec<Point3> =
         [(-9.0, -5.0), (9.0, -5.5), (0.5, 9.0)].map(|(x, y)| Point3::new(x, y, 0.01 * x)).into();
     for p in scatter(12) {

@@ -1,45 +1,42 @@
-//! Ways to recover: what fails in one comes loose in another.
+//! Recovery strategies. Parts that fail with one often succeed with another.
 
-/// Implicit vertices allowed: for each missing edge, and in any case.
+/// Maximum implicit vertices: per missing edge, plus a constant.
 const VERTICES: (usize, usize) = (256, 1_000_000);
 
-/// The same where cavities are deep, which takes longer for each.
+/// Maximum implicit vertices with deep cavities, where each vertex takes longer.
 const VERTICES_DEEP: (usize, usize) = (64, 100_000);
 
-/// The same where other ways are left that may need fewer.
+/// Maximum implicit vertices while other strategies remain that may need fewer.
 const VERTICES_FIRST: (usize, usize) = (4, 25_000);
 
-/// Share of the missing edges that may be left when what lies in planes is recovered; beyond that it gains little, and new
-/// vertices are in the way.
+/// Maximum fraction of missing edges left after recovery in planes. Beyond it, new vertices are mere obstacles.
 const WORTHWHILE: f64 = 0.2;
 
-/// A way to recover what is missing.
+/// A recovery strategy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
-    /// Whether edges in planes of faces are turned first; then the share of those missing that may be left for the others
-    /// to be gone on with.
+    /// If set, edges in facet planes are recovered first; the strategy stops if more than this fraction remains.
     pub level: Option<f64>,
-    /// Whether cavities are to be deep, not only seen.
+    /// True if new vertices must lie well off the faces of their cavity, rather than merely see them.
     pub deep: bool,
-    /// Chooses the order in which edges are cut.
+    /// Seed of the order in which edges are cut.
     pub salt: u64,
-    /// Implicit vertices allowed: for each missing edge, and in any case.
+    /// Maximum implicit vertices: per missing edge, plus a constant.
     vertices: (usize, usize),
 }
 
 impl Way {
-    /// What is quickest where it succeeds, given up early.
+    /// Fastest strategy, with a small vertex budget.
     pub(crate) const FIRST: [Self; 1] = [Self { vertices: VERTICES_FIRST, ..Self::seen(0) }];
 
-    /// For parts that are flat but for rounding.
+    /// Strategies for parts that are flat up to rounding.
     pub(crate) const TURNED: [Self; 5] =
         [Self::deep(true, 0), Self::level(1), Self::deep(true, 2), Self::deep(false, 0), Self::deep(false, 1)];
 
-    /// What is left to try.
+    /// Remaining strategies.
     pub(crate) const OTHERS: [Self; 4] = [Self::seen(0), Self::seen(1), Self::deep(true, 2), Self::deep(false, 3)];
 
-    /// What is tried at last, for parts that may be flat: edges in planes are turned, be it worthwhile or not, and then
-    /// there are other orders.
+    /// Last strategies, for parts that may be flat. They exchange edges in planes whatever the gain.
     pub(crate) const LAST: [Self; 7] = [
         Self::deep(true, 0).in_any_case(),
         Self::level(1).in_any_case(),
@@ -67,7 +64,7 @@ impl Way {
         Self { level: Some(f64::INFINITY), ..self }
     }
 
-    /// Implicit vertices allowed for so many missing edges.
+    /// Implicit vertices allowed for a number of missing edges.
     pub(super) const fn budget(self, edges: usize) -> usize {
         self.vertices.0 * edges + self.vertices.1
     }

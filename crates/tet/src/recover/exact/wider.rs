@@ -1,5 +1,5 @@
-//! Cavities that are wider than a sector of a star: where the room in a sector is too small, the tetrahedra behind the
-//! walls that bound it, or that a vertex does not see, are taken as well.
+//! Cavities wider than a sector of a star. If a sector has too little clearance, the tetrahedra behind its limiting or
+//! hidden faces are added.
 
 use super::parts::{sides, sorted};
 use super::room::{Apex, Room};
@@ -8,15 +8,15 @@ use super::space::Space;
 use anastomesh_mesh::geometry::{Point3, unit_normal};
 use rustc_hash::FxHashSet;
 
-/// Makes sectors around one vertex, or place, wider.
+/// Enlarges sectors around one vertex or position.
 pub(super) struct Wider<'a> {
     s: &'a Space,
-    /// Edges that have to stay.
+    /// True for edges that must stay.
     stays: &'a dyn Fn(u32, u32) -> bool,
-    /// The vertex that goes.
+    /// Vertex to be removed.
     v: Option<u32>,
     pub origin: Point3,
-    /// All tetrahedra that go.
+    /// All tetrahedra to be removed.
     pub cavity: Vec<u32>,
 }
 
@@ -31,8 +31,7 @@ impl<'a> Wider<'a> {
         Self { s, stays, v, origin, cavity }
     }
 
-    /// What takes the place of the vertex in a sector that is made wider, by so many tetrahedra at most, until it has at
-    /// least `least` times its size of room.
+    /// Finds an apex with clearance of at least `least` times the size. Adds at most `steps` tetrahedra to the sector.
     pub(super) fn apex(&mut self, sector: &mut Sector, least: f64, steps: usize) -> Option<Apex> {
         for _ in 0..steps {
             if let Ok(apex) = Room::new(self.s, self.origin, &sector.faces).apex(self.s, least) {
@@ -45,8 +44,8 @@ impl<'a> Wider<'a> {
         None
     }
 
-    /// A sector that is made wider, by so many tetrahedra at most, until a vertex sees all its faces from further than
-    /// `least`; tells how many are left then. Vertices that are free may go.
+    /// Enlarges a sector by at most `steps` tetrahedra until vertex `w` sees all its faces from further than `least`.
+    /// Leaves the rest of the budget in `steps`. Only vertices that are `free` may be removed.
     pub(super) fn seen_from(
         &mut self,
         sector: &Sector,
@@ -75,8 +74,8 @@ impl<'a> Wider<'a> {
         wide
     }
 
-    /// Takes what lies behind walls that are not seen, until all are; returns these. Nothing where something frozen is in
-    /// the way, or more than so many tetrahedra.
+    /// Adds the tetrahedra behind faces that are not visible until all faces are; returns these faces. Returns `None`
+    /// if a frozen face or a ghost is in the way, or after `steps` tetrahedra.
     fn grow(&mut self, halves: &[u32], sees: impl Fn([u32; 3]) -> bool, steps: usize) -> Option<Vec<u32>> {
         let c = &self.s.c;
         let before = self.cavity.len();
@@ -112,7 +111,7 @@ impl<'a> Wider<'a> {
         Some(walls)
     }
 
-    /// Whether what has to stay of some tetrahedra lies on the faces of a sector.
+    /// True if all vertices and edges of `tets` that must stay lie on the faces of the sector.
     fn keeps(&self, sector: &Sector, tets: &[u32], free: impl Fn(u32) -> bool) -> bool {
         let corners: FxHashSet<u32> = sector.faces.iter().flatten().copied().collect();
         let edges: FxHashSet<[u32; 2]> = sector.faces.iter().flat_map(|&f| sides(f)).collect();
@@ -122,8 +121,7 @@ impl<'a> Wider<'a> {
         })
     }
 
-    /// Adds to a sector the tetrahedron behind one of the walls that bound its room, the one that gains most. False when
-    /// there is none.
+    /// Adds the tetrahedron behind the limiting face that gains most clearance. Returns false if there is none.
     fn step(&mut self, sector: &mut Sector) -> bool {
         let Some((walls, _)) = Room::new(self.s, self.origin, &sector.faces).bounds() else { return false };
         let mut best: Option<(f64, u32, Sector)> = None;
@@ -142,7 +140,7 @@ impl<'a> Wider<'a> {
         true
     }
 
-    /// A sector with one more tetrahedron, unless something that has to stay would be inside.
+    /// Adds a tetrahedron to a sector, unless a vertex or edge that must stay would become interior.
     fn add(&self, sector: &Sector, next: u32) -> Option<Sector> {
         let c = &self.s.c;
         let corners = c.verts(next);

@@ -84,16 +84,16 @@ fn faults_of_joints() {
     let (moved, lines) = planted(&bar, |c| c.pieces[5].mesh.points[v as usize].x += 1e-9);
     assert_eq!(lines, [Line::NoDuplicatePoints]);
     assert_eq!(moved.check().line(Line::NoDuplicatePoints).unwrap().offenders[0].ids, [id]);
-    // A joint that is joined to nothing: twice the same faces.
+    // An unconnected joint: the same faces occur twice.
     let (_, lines) = planted(&bar, |c| {
         c.joined.remove(4);
     });
     assert!(lines.contains(&Line::NoSelfIntersection) && lines.contains(&Line::Components), "{lines:?}");
-    // Joined twice.
+    // Connected twice.
     let (twice, lines) = planted(&bar, |c| c.joined.push(c.joined[4]));
     assert_eq!(lines, [Line::FacesSharedByTwo]);
     assert_eq!(twice.check().line(Line::FacesSharedByTwo).unwrap().count, bar.pieces[5].joints[0].len() as u64);
-    // A face less in one of its parts.
+    // One face fewer in one of its parts.
     let face = bar.pieces[5].joints[0][3];
     let (less, lines) = planted(&bar, |c| {
         c.pieces[5].joints[0].remove(3);
@@ -102,10 +102,10 @@ fn faults_of_joints() {
     let ids: BTreeSet<i64> = face.iter().map(|&v| i64::from(bar.pieces[5].vertices[v as usize])).collect();
     let named = &less.check().line(Line::LabelsMatchBoundary).unwrap().offenders[0].ids.clone();
     assert_eq!(named.iter().copied().collect::<BTreeSet<_>>(), ids);
-    // Turned the wrong way.
+    // Reversed orientation.
     let (_, lines) = planted(&bar, |c| c.pieces[5].joints[0].iter_mut().for_each(|f| f.swap(0, 1)));
     assert!(lines.contains(&Line::LabelsMatchBoundary), "{lines:?}");
-    // Two ids exchanged in one of its parts.
+    // Two ids swapped in one of its parts.
     let (_, lines) = planted(&bar, |c| {
         let w = c.pieces[5].joints[0][0][1];
         c.pieces[5].vertices.swap(v as usize, w as usize);
@@ -120,7 +120,7 @@ fn faults_of_joints() {
     let mut piece = bar.pieces[5].clone();
     piece.joints[0][0] = [1_000_000, 0, 1];
     assert_eq!(piece.certificate().faults[0].line, Line::LabelsMatchBoundary);
-    // Joints that do not exist are no mesh at all.
+    // Joints that do not exist are an error.
     let mut wrong = bar.clone();
     wrong.joined.push([(3, 9), (4, 0)]);
     assert!(check_parts(&wrong, &wrong.patches, None, 0).is_err());
@@ -128,11 +128,11 @@ fn faults_of_joints() {
 
 #[test]
 fn joints_are_discs_without_common_vertices() {
-    // A bar of square section cut lengthwise into four: each two neighbours meet in a strip, all four in a line.
+    // A bar of square section cut lengthwise into four: neighbours meet in a strip, all four in a line.
     let quarters = voxels(2, vec![0], |[x, y, _]| Some(2 * x + y));
     assert_eq!(quarters.whole().verdict, Verdict::Valid);
     assert!(quarters.failing().contains(&Line::BoundaryFans));
-    // A ring round a core: the joint is an annulus of four sides.
+    // A ring around a core: the joint is an annulus of four sides.
     let core = voxels(3, vec![0], |[x, y, _]| Some(u32::from(x == 1 && y == 1)));
     assert_eq!(core.failing(), [Line::BoundaryFans]);
     let mut empty = star();
@@ -145,7 +145,7 @@ fn joints_are_discs_without_common_vertices() {
 
 #[test]
 fn faults_of_ids() {
-    // A point of an arm's tip is called as one of another arm's.
+    // A point of one arm's tip has the id of one of another arm's.
     let star = star();
     let ids: Vec<u32> = star.pieces[1].vertices.clone();
     let free = ids.iter().copied().find(|id| !star.pieces[0].vertices.contains(id)).unwrap();
@@ -159,7 +159,7 @@ fn faults_of_ids() {
     assert_eq!(lines, [Line::IndicesInRange, Line::NoUnusedPoints]);
 }
 
-/// Adds a part that is joined to nothing, and expects a component more.
+/// Adds an unconnected part, and expects one more component.
 fn with_part(cut: &Cut, mesh: TetMesh) -> (Cut, Vec<Line>) {
     planted(cut, |c| {
         let first = c.pieces.iter().flat_map(|p| &p.vertices).max().unwrap() + 1;
@@ -183,8 +183,8 @@ fn parts_that_meet_are_found() {
     assert_same(&with_part(&star, cube_at([2.0, 0.0, 0.0], 0.1)).0);
     let seventh = 1.0 / 7.0;
     let cases = [
-        // Within two parts, through their joint; on a wall with a corner; with an edge on an edge; corner to corner; face to
-        // face.
+        // Within two parts, through their joint; on a wall with a corner; with an edge on an edge; corner to corner;
+        // face to face.
         [0.7, 0.45, 0.43],
         [5.0 * seventh, 0.45, 0.69],
         [5.0 * seventh, 5.0 * seventh, 0.5],
@@ -210,7 +210,7 @@ fn faces(i: &Intersection) -> BTreeSet<[u32; 3]> {
     i.faces.iter().map(|&f| face_key(f)).collect()
 }
 
-/// The same lines fail, as often.
+/// Asserts that the same conditions fail, with the same counts.
 fn fails_alike(parts: &CheckReport, whole: &CheckReport) {
     for (p, w) in parts.lines.iter().zip(&whole.lines) {
         assert!(p.outcome == w.outcome || is_unknown(p), "{p:?} {w:?}");
@@ -227,7 +227,7 @@ fn a_part_within_another_is_found_and_one_in_a_cavity_is_not() {
     let (parts, whole) = (nested.check(), nested.whole());
     same_offenders(&parts, &whole, Line::NoSelfIntersection);
     fails_alike(&parts, &whole);
-    // A hollow block in two halves would have a joint that is no disc; in one part with a stem it is legal.
+    // A hollow block in two halves would have a joint that is no disc; in one part with a stem it is valid.
     let hollow = voxels(5, vec![0, 0], |c| {
         if c.iter().all(|&x| x == 1) {
             return None;
@@ -272,7 +272,7 @@ fn faults_of_caps() {
     assert_same(&tilted);
 }
 
-/// Walls that were changed after they were certified.
+/// Walls changed after certification.
 #[test]
 fn what_was_not_certified_is_refused() {
     let mut cut = bar();

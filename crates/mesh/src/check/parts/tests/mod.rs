@@ -1,4 +1,4 @@
-//! Meshes cut into parts: the check of the parts says what the check of the whole says, and planted faults are found.
+//! Meshes cut into parts: the checks of parts and whole agree, and planted faults are found.
 
 mod faults;
 mod pieces;
@@ -41,7 +41,7 @@ impl Piece {
         certify_with(&view, || tet_adjacency(&self.mesh.tets, self.mesh.points.len()))
     }
 
-    /// Some of its faces, with points and ids of their own.
+    /// Some of its faces with a point array and ids of their own.
     fn faces(&self, faces: &[[u32; 3]]) -> FacesApart {
         let mut used: Vec<u32> = faces.as_flattened().to_vec();
         used.sort_unstable();
@@ -95,7 +95,7 @@ impl Parts for Cut {
 }
 
 impl Cut {
-    /// Cuts a mesh; faces between two parts that hang together by vertices are a joint.
+    /// Cuts a mesh. Faces between two parts that are connected by vertices form a joint.
     fn new(mesh: &TetMesh, part_of: impl Fn(Vec3) -> u32, caps: &[Patch], loops: Vec<u32>) -> Self {
         let middle = |t: &[u32; 4]| t.iter().fold(Vec3::zeros(), |s, &v| s + mesh.points[v as usize].coords) / 4.0;
         let parts: Vec<u32> = mesh.tets.iter().map(|t| part_of(middle(t))).collect();
@@ -177,7 +177,7 @@ impl Cut {
         self.certificates = self.pieces.iter().map(Piece::certificate).collect();
     }
 
-    /// The mesh put together by ids.
+    /// Mesh merged by ids.
     fn merged(&self) -> VolumeMesh {
         let mut points = BTreeMap::new();
         let mut tets = BTreeMap::new();
@@ -220,7 +220,7 @@ impl Cut {
     }
 }
 
-/// Certifies again after a change, and names the lines that fail.
+/// Certifies again after a change, and returns the failing conditions.
 fn planted(cut: &Cut, change: impl FnOnce(&mut Cut)) -> (Cut, Vec<Line>) {
     let mut cut = cut.clone();
     change(&mut cut);
@@ -238,12 +238,12 @@ fn same_offenders(parts: &CheckReport, whole: &CheckReport, line: Line) {
     assert_eq!(named(parts), named(whole), "{line:?}");
 }
 
-/// Where other lines fail, equal points of different parts need not be known.
+/// If other conditions fail, equal points of different parts may stay unknown.
 fn is_unknown(line: &LineResult) -> bool {
     line.line == Line::NoDuplicatePoints && matches!(line.outcome, Outcome::NotChecked(Skipped::Because(_)))
 }
 
-/// Everything but roundoff is the same.
+/// Asserts equality except roundoff.
 fn assert_same(cut: &Cut) {
     let (parts, whole) = (cut.check(), cut.whole());
     assert_eq!(parts.verdict, whole.verdict, "{:?}", parts.failed().collect::<Vec<_>>());
@@ -321,7 +321,7 @@ fn star() -> Cut {
     })
 }
 
-/// A square frame, in this many parts.
+/// A square frame in the given number of parts.
 fn ring(parts: u32) -> Cut {
     voxels(5, vec![1], |[x, y, z]| {
         let on = z == 2 && (x == 0 || x == 4 || y == 0 || y == 4);

@@ -1,11 +1,11 @@
-//! Meshes that are read in pieces: joints are found, and what cannot be a part is refused.
+//! Meshes read in pieces: joints are found, and unsuitable pieces are refused.
 
 use super::*;
 use crate::check::parts::pieces::Unfit;
 use crate::source::{FacePiece, MeshSource, SourceCounts, TetPiece};
 use std::borrow::Cow;
 
-/// A mesh whose pieces stand one behind the other.
+/// A mesh with its pieces stored one after another.
 #[derive(Clone)]
 struct Stack {
     whole: VolumeMesh,
@@ -30,7 +30,7 @@ impl Stack {
         check_pieces(self, Some(&self.expectation), 1 << 20)
     }
 
-    /// Why it is no parts, after a change.
+    /// Reason for refusal after a change.
     fn refused(&self, change: impl FnOnce(&mut Self)) -> Unfit {
         let mut stack = self.clone();
         change(&mut stack);
@@ -40,7 +40,7 @@ impl Stack {
         }
     }
 
-    /// Everything but roundoff is as the check of the whole says.
+    /// Asserts agreement with the check of the whole except roundoff.
     fn assert_same(&self) -> CheckReport {
         let (pieces, whole) = (self.check().unwrap(), check_volume(&self.whole, Some(&self.expectation)));
         assert_eq!(pieces.verdict, whole.verdict);
@@ -101,7 +101,7 @@ fn pieces_are_checked_as_the_whole_is() {
 #[test]
 fn faults_are_named_in_numbers_of_the_whole() {
     let mut stack = Stack::of(&bar());
-    // One that has no face on the boundary.
+    // A tetrahedron without a face on the boundary.
     let on_wall: BTreeSet<u32> = stack.whole.boundary.as_flattened().iter().copied().collect();
     let inner = stack.whole.mesh.tets.iter().rposition(|t| !t.iter().any(|v| on_wall.contains(v))).unwrap();
     stack.whole.mesh.tets[inner].swap(0, 1);
@@ -118,7 +118,7 @@ fn faults_are_named_in_numbers_of_the_whole() {
 #[test]
 fn walls_that_meet_are_found() {
     let mut stack = Stack::of(&star());
-    // The end of one arm is drawn into another.
+    // Moves the end of one arm into another.
     let end = |axis: usize, side: f64| {
         let at = |p: &Point3| if side > 0.0 { p[axis] > 0.99 } else { p[axis] < 0.01 };
         stack.whole.mesh.points.iter().position(at).unwrap()
@@ -142,13 +142,13 @@ fn what_cannot_be_parts_is_refused() {
     assert_eq!(refused(&|s| s.whole.boundary_patch[last] = 77), Unfit::Patch(piece));
     assert_eq!(refused(&|s| s.whole.mesh.tets[0][0] = 1_000_000), Unfit::Points(0));
     assert_eq!(refused(&|s| s.whole.mesh.points.push(Point3::origin())), Unfit::Shared);
-    // A face that has lost its label.
+    // A face without its label.
     let unlabelled = refused(&|s| {
         s.sizes[piece as usize].1 -= 1;
         s.whole.boundary.pop();
     });
     assert_eq!(unlabelled, Unfit::Joint(piece));
-    // The first face of a joint belongs to three.
+    // The first face of a joint belongs to three tetrahedra.
     let thrice = refused(&|s| {
         let t = s.whole.mesh.tets[0];
         s.whole.mesh.tets.push(t);

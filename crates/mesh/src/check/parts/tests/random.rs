@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 
-/// The parts of a bar of random length, cut anywhere.
+/// Parts of a bar of random length, cut at random layers.
 fn any_cut() -> impl Strategy<Value = Cut> {
     (2_u32..4, 4_u32..12, prop::collection::vec(any::<bool>(), 12), 0..1000_u64).prop_map(
         |(rings, layers, cuts, seed)| {
@@ -22,7 +22,7 @@ fn any_cut() -> impl Strategy<Value = Cut> {
     )
 }
 
-/// Anything that can happen to a part.
+/// Kinds of damage to a part.
 #[derive(Clone, Copy, Debug)]
 enum Harm {
     MovePoint(f64),
@@ -42,7 +42,7 @@ fn any_harm() -> impl Strategy<Value = Harm> {
     ]
 }
 
-/// Harms a tetrahedron that has no vertex in a joint; false when nothing was done.
+/// Damages a tetrahedron without a vertex in a joint. Returns false if nothing was done.
 fn harm(cut: &mut Cut, harm: Harm, part: usize, at: usize) -> bool {
     let next = cut.pieces.iter().flat_map(|p| &p.tets).max().unwrap() + 1;
     let part = part % cut.pieces.len();
@@ -50,7 +50,7 @@ fn harm(cut: &mut Cut, harm: Harm, part: usize, at: usize) -> bool {
     let on_joint = |v: u32| piece.joints.iter().flatten().flatten().any(|&w| w == v);
     let tet = at % piece.mesh.tets.len();
     let other = (at / 7 % piece.mesh.points.len()) as u32;
-    // At a vertex of a joint parts are judged more strictly than the whole.
+    // At a vertex of a joint, parts are judged more strictly than the whole.
     if piece.mesh.tets[tet].iter().any(|&v| on_joint(v)) || on_joint(other) {
         return false;
     }
@@ -80,7 +80,7 @@ proptest! {
         prop_assert_eq!(cut.failing(), []);
     }
 
-    /// Whatever happens inside of a part: the same lines fail.
+    /// For any damage inside a part, the same conditions fail.
     #[test]
     fn harmed_parts_fail_as_the_whole_does(cut in any_cut(), how in any_harm(), part in 0..12_usize, at in 0..10_000_usize) {
         let mut cut = cut;
