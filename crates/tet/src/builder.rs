@@ -1,7 +1,7 @@
 //! The library's front door.
 
-use super::certify::{Place, certify_conforming};
-use super::complex::Complex;
+use super::certify::Place;
+use super::certify_hull::certify_hull;
 use super::contacts;
 use super::error::TetError;
 use super::fill::fill;
@@ -304,7 +304,9 @@ impl Tetrahedralizer {
         watch.report(Stage::Validate, 1, 1)
     }
 
-    /// The Delaunay tetrahedralization of points. `faces` are those of the convex hull.
+    /// The Delaunay tetrahedralization of points. `faces` are those of the convex hull. Success means that it has passed a certificate:
+    /// every tetrahedron is positive, tetrahedra meet face to face and fill the convex hull of the points without overlaps.
+    /// Empty spheres are not part of the certificate.
     ///
     /// ```
     /// use anastomesh_mesh::Point3;
@@ -324,9 +326,8 @@ impl Tetrahedralizer {
         let complex = delaunay::delaunay_watched(points, &watch)?;
         watch.report(Stage::Delaunay, 1, 1)?;
         watch.report(Stage::Certify, 0, 1)?;
-        let faces = hull(&complex);
+        let faces = certify_hull(&complex)?;
         let mesh = complex.into_mesh();
-        certify_conforming(&mesh)?;
         watch.report(Stage::Certify, 1, 1)?;
         Ok(Tetrahedralization { mesh, faces, ..Tetrahedralization::default() })
     }
@@ -334,12 +335,6 @@ impl Tetrahedralizer {
 
 fn triangle_ids(surface: &TriMesh) -> Vec<u32> {
     (0..surface.triangles.len() as u32).collect()
-}
-
-/// The faces under the ghosts, oriented outwards.
-fn hull(c: &Complex) -> Vec<[u32; 3]> {
-    let halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
-    halves.filter(|&h| c.is_ghost(c.mate(h) >> 2)).map(|h| c.face(h)).collect()
 }
 
 impl std::fmt::Debug for Tetrahedralizer {

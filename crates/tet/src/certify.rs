@@ -77,6 +77,26 @@ pub enum CertifyError {
         /// Vertices of the face.
         face: [u32; 3],
     },
+    /// A point that no tetrahedron has.
+    #[error("point {point} has no tetrahedron")]
+    PointUnused {
+        /// The point.
+        point: u32,
+    },
+    /// A face of a convex hull with a part of the mesh on its outer side.
+    #[error("the hull is not convex at face {face:?}")]
+    NotConvex {
+        /// Vertices of the face.
+        face: [u32; 3],
+    },
+    /// A ray from inside a tetrahedron does not cross the convex hull once.
+    #[error("a ray from tetrahedron {tet} crosses the hull {crossed} times instead of once")]
+    Winding {
+        /// The tetrahedron.
+        tet: u32,
+        /// Number of hull faces that the ray crosses.
+        crossed: usize,
+    },
     /// The volumes of mesh and surface differ by more than rounding.
     #[error("the mesh has volume {mesh}, the surface encloses {surface}")]
     Volume {
@@ -197,24 +217,6 @@ pub fn certify_left_out(
         let pairs = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));
         if let Some(&id) = pairs.into_iter().find_map(|(i, j)| edges.get(&edge(t[i], t[j]))) {
             return Err(CertifyError::NotOutside { what: "segment", id });
-        }
-    }
-    Ok(())
-}
-
-/// Proves that a mesh is one of positive tetrahedra that meet face to face.
-///
-/// # Errors
-/// The first face or tetrahedron that is not so.
-pub fn certify_conforming(mesh: &TetMesh) -> Result<(), CertifyError> {
-    all_positive(mesh)?;
-    let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
-    if let Some(&half) = adjacency.crowded.first() {
-        return Err(CertifyError::NotConforming { face: face_vertices(&mesh.tets, half) });
-    }
-    for (half, &mate) in (0_u32..).zip(adjacency.neighbors.as_flattened()) {
-        if mate != u32::MAX && mate > half {
-            opposed(mesh, half, mate)?;
         }
     }
     Ok(())

@@ -64,9 +64,10 @@ pub enum ComplexError {
     BadVertexTet { vertex: u32 },
 }
 
-/// A tetrahedron: its vertices, and the mate of the face opposite each vertex. Half a cache line.
+/// Tetrahedron: its vertices, and the mate of the face opposite each vertex. Half a cache line, aligned like its vertices
+/// (see [`Complex::into_mesh`]).
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
+#[repr(C)]
 pub(super) struct Cell {
     pub(super) verts: [u32; 4],
     pub(super) mates: [u32; 4],
@@ -254,9 +255,12 @@ impl Complex {
         }
     }
 
-    /// Returns the real tetrahedra in slot order, and all points.
+    /// Returns the real tetrahedra in slot order, and all points. Collects in place: tetrahedra reuse the memory of the
+    /// cells, which have the same alignment.
     pub fn into_mesh(self) -> TetMesh {
-        let tets = self.real_tets().map(|t| self.cells[t as usize].verts).collect();
+        let real = |cell: &Cell| cell.verts[0] != DEAD && cell.verts[3] != GHOST;
+        let mut tets: Vec<[u32; 4]> = self.cells.into_iter().filter(real).map(|cell| cell.verts).collect();
+        tets.shrink_to_fit();
         TetMesh { points: self.points, tets }
     }
 
@@ -305,6 +309,13 @@ impl Complex {
     #[inline]
     pub(super) fn cell(&self, t: u32) -> &Cell {
         &self.cells[t as usize]
+    }
+
+    /// Returns up to `count` cells from slot `first` on.
+    #[inline]
+    pub(super) fn block(&self, first: u32, count: usize) -> &[Cell] {
+        let rest = &self.cells[first as usize..];
+        &rest[..count.min(rest.len())]
     }
 
     /// Half-face paired with `half`.
@@ -536,6 +547,7 @@ impl Complex {
 
 /// True if two faces are the same face with opposite orientation.
 pub fn opposed(f: [u32; 3], g: [u32; 3]) -> bool {
-    let back = [g[0], g[2], g[1]];
-    f == back || f == [back[1], back[2], back[0]] || f == [back[2], back[0], back[1]]
+    // Branch-free: the rotation cannot be predicted.
+    let difference = |i: usize, j: usize, k: usize| (f[0] ^ g[i]) | (f[1] ^ g[j]) | (f[2] ^ g[k]);
+    difference(0, 2, 1).min(difference(2, 1, 0)).min(difference(1, 0, 2)) == 0
 }

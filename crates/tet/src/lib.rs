@@ -43,6 +43,7 @@
 mod builder;
 mod carve;
 pub(crate) mod certify;
+mod certify_hull;
 pub(crate) mod complex;
 mod conform;
 mod contacts;
