@@ -21,7 +21,7 @@ use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::Inset;
 use anastomesh_tet::{
     TetError,
-    parts::{Watch, tetrahedralize_watched},
+    parts::{Watch, fill_outward},
 };
 
 /// The flat disc that closes a terminal.
@@ -137,7 +137,7 @@ struct Inside {
 
 fn inside(cluster: &Cluster, surface: &CappedSurface, params: &BlockParams, watch: &Watch) -> Result<Inside, TetError> {
     let discs: Vec<Vec<[u32; 3]>> = (0..cluster.ends.len() as u32).map(|end| faces_of(surface, end)).collect();
-    let fill = |surface: &TriMesh| tetrahedralize_watched(surface, &filling(surface, params.core), watch);
+    let fill = |surface: &TriMesh| fill_outward(&filling(surface, params.core), surface, watch);
     if let Some(layers) = &params.layers {
         let caps = surface.cap.iter().map(|cap| cap.map(|end| cluster.ends[end as usize].section.origin)).collect();
         let axes = cluster.tubes.iter().map(|tube| [tube.a, tube.b]).collect();

@@ -4,7 +4,7 @@ use super::error::BlockError;
 use anastomesh_mesh::TriMesh;
 use anastomesh_skeleton::resolution::{FOLLOW, KAPPA, RHO};
 use anastomesh_tet::Effort;
-use anastomesh_tet::{Interior, Layers, parts::TetOptions};
+use anastomesh_tet::{Interior, Layers, Tetrahedralizer};
 
 /// How a cluster ends at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -139,10 +139,10 @@ const WIDE: [f64; 2] = [1.0, 3.0];
 
 /// How a block is filled whose edges are `core` times as long on the axes of its vessels as at the wall. There is no
 /// certificate: the whole mesh is checked in the end.
-pub(super) fn filling(surface: &TriMesh, core: f64) -> TetOptions {
+pub(super) fn filling(surface: &TriMesh, core: f64) -> Tetrahedralizer {
     let wide = ((half_width(surface) / surface.mean_edge() - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
     let interior = Interior::Local { cell: CELL * (1.0 + (core - 1.0) * wide), clearance: CLEARANCE };
-    TetOptions::default().interior(interior).effort(Effort::Quick).certify(false)
+    Tetrahedralizer::new().interior(interior).effort(Effort::Quick)
 }
 
 /// Twice the volume over the area of a surface: the radius of a tube.

@@ -21,8 +21,7 @@ pub mod smooth;
 pub mod source;
 pub mod units;
 
-pub use bounds::Bounds;
-pub use bounds::REGULAR_DIHEDRAL;
+pub use bounds::{Bound, Bounds, REGULAR_DIHEDRAL};
 pub use keep::Kept;
 pub use keys::{face_key, tet_key};
 

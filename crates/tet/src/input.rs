@@ -2,8 +2,8 @@
 //! input but for sorting; what only shows in space (parts that meet) is the business of [`super::contacts`].
 
 use super::certify::enclosed_volume;
-use super::error::{NAMED, TetError};
-use super::plc::{InputKind, Plc};
+use super::error::{InputArray, NAMED, TetError};
+use super::plc::{InputKind, PlcRef};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::place_key;
@@ -93,17 +93,17 @@ pub(super) fn validate(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind
     }
 }
 
-/// The short form takes surfaces that enclose a positive volume only.
+/// Checks that a surface encloses a positive volume.
 pub(super) fn outward(surface: &TriMesh) -> Result<(), TetError> {
     let (volume, _) = enclosed_volume(surface);
     if volume < 0.0 { Err(TetError::InsideOut { volume }) } else { Ok(()) }
 }
 
 /// Checks that arrays are as long as they have to be.
-pub(super) fn check_lengths(plc: &Plc) -> Result<(), TetError> {
-    let (found, expected) = (plc.markers.len(), plc.triangles.len());
+pub(super) fn check_lengths(plc: PlcRef) -> Result<(), TetError> {
+    let (found, expected) = (plc.markers.len(), plc.surface.triangles.len());
     if found != 0 && found != expected {
-        return Err(TetError::WrongLength { what: "markers of triangles", found, expected });
+        return Err(TetError::WrongLength { array: InputArray::Markers, found, expected });
     }
     Ok(())
 }

@@ -1,21 +1,22 @@
 //! Which layers can be asked for along a wall.
 
-/// What layers are asked for.
+/// Options of layers of thin tetrahedra along a wall.
 ///
 /// ```
 /// use anastomesh_tet::Layers;
 ///
-/// let layers = Layers { count: 3, growth: 2.0, thickness: 0.35 };
+/// let layers = Layers::default().count(3).growth(2.0).thickness(0.35);
 /// assert_eq!(layers.depths(), [1.0 / 7.0, 3.0 / 7.0, 1.0]);
-/// assert!(Layers { growth: 0.0, ..layers }.check().is_err());
+/// assert!(layers.growth(0.0).check().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
 pub struct Layers {
-    /// How many.
+    /// Number of layers.
     pub count: u32,
-    /// How much thicker each is than the one before it, from the wall on.
+    /// Thickness of each layer over that of the one before it, from the wall on.
     pub growth: f64,
-    /// Thickness of all together, as a share of the radius: for surfaces that are no vessels, of half the way across.
+    /// Thickness of all layers together, as a share of the radius; for surfaces that are no vessels, of the half width.
     pub thickness: f64,
 }
 
@@ -57,6 +58,27 @@ impl Default for Layers {
 }
 
 impl Layers {
+    /// Sets the number of layers.
+    #[must_use]
+    pub fn count(mut self, count: u32) -> Self {
+        self.count = count;
+        self
+    }
+
+    /// Sets the thickness of each layer over that of the one before it.
+    #[must_use]
+    pub fn growth(mut self, growth: f64) -> Self {
+        self.growth = growth;
+        self
+    }
+
+    /// Sets the thickness of all layers together, as a share of the radius.
+    #[must_use]
+    pub fn thickness(mut self, thickness: f64) -> Self {
+        self.thickness = thickness;
+        self
+    }
+
     /// Most layers.
     pub const MOST: u32 = 30;
     /// Limits of the growth.

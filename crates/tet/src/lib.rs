@@ -58,6 +58,8 @@ mod names;
 pub(crate) mod optimize;
 mod options;
 mod outside;
+#[doc(hidden)]
+pub mod parts;
 mod plc;
 mod progress;
 mod recover;
@@ -69,76 +71,22 @@ mod split;
 pub(crate) mod star;
 mod survey;
 
-pub use anastomesh_mesh::repair::{Repaired, repair};
-pub use builder::{Tetrahedralization, Tetrahedralizer};
+pub use anastomesh_mesh::check::{CheckReport, check_tets};
+pub use anastomesh_mesh::progress::{Progress, Stage};
+pub use anastomesh_mesh::quality::TetQuality;
+pub use anastomesh_mesh::repair::{RepairReport, Repaired, repair, repair_facets};
+pub use anastomesh_mesh::{Bound, Bounds, Point3, TetMesh, TriMesh, nalgebra};
+pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use certify::{CertifyError, certify};
-pub use error::TetError;
+pub use complex::ComplexError;
+pub use error::{InputArray, InputPart, LayersConflict, Obstacle, SeedKind, Stuck, TetError};
 pub use layer::{Layers, LayersError};
 pub use layers::LayerSummary;
-pub use optimize::Effort;
-use options::TetOptions;
+pub use optimize::{Effort, OptimizeReport};
 pub use options::{Boundary, Interior, Refinement, Sizing};
-pub use plc::{InputKind, Plc, Region};
-use progress::Watch;
-
-/// Parts of the tetrahedralizer that the vascular mesher assembles itself. Not covered by semantic versioning.
-#[doc(hidden)]
-pub mod parts {
-    pub use crate::complex::Complex;
-    pub use crate::delaunay::delaunay;
-    pub use crate::error::Stuck;
-    pub use crate::layers::{Directions, Inset, Numbers, Places, inset, rims, toward};
-    pub use crate::names::Names;
-    pub use crate::optimize::{OptimizeOptions, optimize};
-    pub use crate::options::TetOptions;
-    pub use crate::plc::LeftOut;
-    pub use crate::progress::Watch;
-    pub use crate::{tetrahedralize, tetrahedralize_watched};
-}
-
-use anastomesh_mesh::{TetMesh, TriMesh};
-use certify::Place;
-
-/// Fills a closed surface, oriented outwards, with tetrahedra. The points of the mesh begin with the surface's, in
-/// their order and bit for bit; interior points follow. Every triangle of the surface is a boundary face with the same
-/// orientation, and there are no others: the result is certified ([`certify::certify`], unless the options say otherwise)
-/// or an error.
-///
-/// # Errors
-/// [`TetError`]: what is wrong with the surface, or what could not be recovered.
-pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh, TetError> {
-    tetrahedralize_watched(surface, options, &Watch::NOBODY)
-}
-
-/// As [`tetrahedralize`], watched.
-///
-/// # Errors
-/// [`TetError`]; [`TetError::Cancelled`] when the watch says so.
-pub fn tetrahedralize_watched(surface: &TriMesh, options: &TetOptions, watch: &Watch) -> Result<TetMesh, TetError> {
-    let edges = input::validate(surface, &[], InputKind::Closed)?;
-    input::outward(surface)?;
-    let filled = fill::fill(&request::Request {
-        surface,
-        edges: &edges,
-        segments: &[],
-        kind: InputKind::Closed,
-        holes: &[],
-        regions: &[],
-        interior: &options.interior,
-        refinement: None,
-        sizing: &Sizing::Surface,
-        optimize: options.optimize,
-        certify: options.certify,
-        effort: options.effort,
-        strict: true,
-        label: false,
-        watch,
-    })?;
-    match filled.places.iter().position(|&p| p != Place::Boundary) {
-        Some(triangle) => Err(TetError::NotSeparating { triangle: triangle as u32 }),
-        None => Ok(filled.mesh),
-    }
-}
+pub use plc::{InputKind, LeftOut, Plc, PlcRef, Region};
+pub use recover::RecoverySummary;
+pub use refine::RefineReport;
 
 #[cfg(test)]
 mod input_tests;

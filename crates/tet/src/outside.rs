@@ -3,7 +3,7 @@
 
 use super::carve::Sides;
 use super::complex::Complex;
-use super::error::{NAMED, TetError};
+use super::error::{InputPart, NAMED, TetError};
 use super::plc::LeftOut;
 use super::star::{EdgeRing, Star};
 use anastomesh_mesh::TriMesh;
@@ -46,12 +46,12 @@ impl LeftOut {
 
     /// The error that it is where nothing may be left out.
     pub(super) fn as_error(&self) -> Option<TetError> {
-        let (what, ids) = match (self.triangles.as_slice(), self.segments.as_slice()) {
+        let (part, ids) = match (self.triangles.as_slice(), self.segments.as_slice()) {
             ([], []) => return None,
-            ([], segments) => ("segments", segments),
-            (triangles, _) => ("triangles", triangles),
+            ([], segments) => (InputPart::Segments, segments),
+            (triangles, _) => (InputPart::Triangles, triangles),
         };
-        Some(TetError::Outside { what, ids: ids.iter().take(NAMED).copied().collect(), count: ids.len() })
+        Some(TetError::Outside { part, ids: ids.iter().take(NAMED).copied().collect(), count: ids.len() })
     }
 
     /// The surface without what is left out of it; all points stay.

@@ -66,7 +66,7 @@ fn what_cannot_be_is_refused_with_the_limits() {
 fn layers_are_for_closed_surfaces_that_stay() {
     let plc = Plc::from(sphere_surface(1));
     let layers = || Tetrahedralizer::new().layers(Some(THREE));
-    let dangling = Plc { edges: vec![[0, 1]], ..plc.clone() };
+    let dangling = plc.clone().segments(vec![[0, 1]]);
     let refused = [
         layers().kind(InputKind::Plc).run(&plc),
         layers().boundary(Boundary::Split).run(&plc),
