@@ -68,7 +68,8 @@ struct Merged {
 
 fn two_blocks() -> (Merged, Vec<Joint>, Vec<bool>) {
     let length = f64::from(LAYERS) * STEP;
-    let [lower, upper] = [-length, 0.0].map(|z0| Tetrahedralizer::new().effort(Effort::Fast).run(&tube(z0)).expect("a tube").mesh);
+    let [lower, upper] =
+        [-length, 0.0].map(|z0| Tetrahedralizer::new().effort(Effort::Fast).run(&tube(z0)).expect("a tube").mesh);
     let key = |p: &Point3| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()];
     let surface = tube(0.0).points.len();
     let below: HashMap<_, u32> = lower.points.iter().zip(0..).take(surface).map(|(p, v)| (key(p), v)).collect();

@@ -26,6 +26,13 @@ mod text;
 pub mod volume;
 mod vtk_xml;
 
+/// Faults that several formats share: paths, words and numbers, VTK's XML.
+pub mod faults {
+    pub use crate::file::FileError;
+    pub use crate::text::{Place, TextFault};
+    pub use crate::vtk_xml::VtkError;
+}
+
 pub use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 pub use file::{ensure_text_writable, write_bytes, write_text};
 pub use network::{NetworkArray, NetworkFile, NetworkFileError, NetworkOptions, read_network, write_network};

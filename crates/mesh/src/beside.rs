@@ -5,6 +5,7 @@ use crate::geometry::Point3;
 /// A column of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
+    /// Name of the column.
     pub name: &'static str,
     /// Whether there is a value for each point, or else for each cell.
     pub at_points: bool,

@@ -23,16 +23,16 @@ mod size_at;
 mod tests;
 mod walk;
 
-pub use branch::{Branch, Branches};
+pub use branch::{Branch, Branches, Place};
 pub use clean::{CleanReport, clean};
 pub use crowding::CrowdedTerminals;
 pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, separation};
 pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};
 pub use error::{LARGEST, SkeletonError};
 pub use extend::Extended;
-pub use graph::{Adjacency, Component};
+pub use graph::{Adjacency, Component, Components};
 pub use groups::LineGroup;
-pub use metrics::{Barrier, Metrics, NARROW, Share};
+pub use metrics::{Barrier, Metrics, NARROW, PairGradient, Share};
 pub use overlap::{Overlap, Overlaps};
 pub use size_at::{BadSize, FineFork, LEAST_SIZE, NodeSizes, SizeAt};
 

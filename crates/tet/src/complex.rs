@@ -37,6 +37,7 @@ pub enum ComplexError {
     BadVertices {
         /// The tetrahedron.
         tet: u32,
+        /// Its vertices.
         vertices: [u32; 4],
     },
     /// A tetrahedron that is flat or inverted by the exact predicate.
@@ -44,6 +45,7 @@ pub enum ComplexError {
     NotPositive {
         /// The tetrahedron.
         tet: u32,
+        /// Its vertices.
         vertices: [u32; 4],
     },
     /// A face that more than two tetrahedra share, or two on the same side of it.
@@ -62,7 +64,10 @@ pub enum ComplexError {
     },
     /// The tetrahedron kept for a vertex does not contain it.
     #[error("the tetrahedron kept for vertex {vertex} does not contain it")]
-    BadVertexTet { vertex: u32 },
+    BadVertexTet {
+        /// The vertex.
+        vertex: u32,
+    },
 }
 
 /// A tetrahedron: its vertices, and across each of them the half-face glued to the opposite face. One half of a cache

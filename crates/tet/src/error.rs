@@ -2,8 +2,8 @@
 
 use super::complex::{ComplexError, face_key};
 use super::layer::LayersError;
-use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::Bound;
+use anastomesh_mesh::geometry::Point3;
 
 /// A part of the surface that another part meets; ids are those of the surface's points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -405,6 +405,12 @@ pub enum TetError {
         part: Obstacle,
         /// Why.
         reason: Stuck,
+    },
+    /// A triangle of a closed surface has the inside, or the outside, on both of its sides.
+    #[error("triangle {triangle} does not separate inside from outside")]
+    NotSeparating {
+        /// The triangle.
+        triangle: u32,
     },
     /// The facets enclose nothing: all of space is reached from infinity or from a hole without crossing one.
     #[error("the facets enclose no volume")]

@@ -54,6 +54,7 @@ impl TetError {
                 faces(triangles);
             }
             Self::Stuck { part: met, .. } => part(met),
+            Self::NotSeparating { triangle } => *triangle = names.triangle(*triangle),
             Self::Outside { part: InputPart::Triangles, ids, .. } => faces(ids),
             _ => {}
         }

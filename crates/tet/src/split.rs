@@ -14,8 +14,8 @@ use super::plc::LeftOut;
 use super::plc::{Plc, PlcRef};
 use super::sized;
 use anastomesh_mesh::Bounds;
-use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::TetMesh;
+use anastomesh_mesh::geometry::Point3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
@@ -167,7 +167,8 @@ impl Tetrahedralizer {
             Err(error @ (TetError::Stuck { .. } | TetError::NotRecovered { .. })) => error,
             other => return other,
         };
-        let bare = self.clone().boundary(Boundary::Keep).interior(Interior::None).refine(None::<Refinement>).optimize(false);
+        let bare =
+            self.clone().boundary(Boundary::Keep).interior(Interior::None).refine(None::<Refinement>).optimize(false);
         match bare.sizing(Sizing::Surface).run(plc) {
             Ok(Tetrahedralization { summary, .. }) if !summary.left_out.is_empty() => {
                 self.run_without(plc, summary.left_out)

@@ -69,7 +69,9 @@ fn place(error: &TetError, input: &Input) -> String {
 /// Whose fault it is.
 fn exit(error: &TetError) -> Exit {
     match error {
-        TetError::BadSize { .. } | TetError::BadBound { .. } | TetError::Layers(_) | TetError::LayersAlong(_) => Exit::Usage,
+        TetError::BadSize { .. } | TetError::BadBound { .. } | TetError::Layers(_) | TetError::LayersAlong(_) => {
+            Exit::Usage
+        }
         TetError::NotRecovered { .. } | TetError::NotCertified(_) | TetError::Broken(_) | TetError::TooLarge { .. } => {
             Exit::StageFailed
         }
@@ -104,6 +106,7 @@ fn remedy(error: &TetError) -> Option<&'static str> {
         TetError::Outside { .. } => {
             "remove them, or the hole that they lie in, or leave --strict out: then the mesh goes without them"
         }
+        TetError::NotSeparating { .. } => "give --repair, which orients shells",
         TetError::NotRecovered { .. } => {
             "the surface is valid as far as was checked: give --split if it may be split, and please report it"
         }

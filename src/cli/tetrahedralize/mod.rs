@@ -156,8 +156,11 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     if !input.only_points {
         report.bounds = BoundResult::of(&plan.bounds, mesh, &made.faces);
         let plc = Some(&input.plc).filter(|_| !plan.split);
-        let unmet =
-            |size| plc.and_then(|plc| SizeUnmet::of(size, Boundary::LONGER, &plc.surface.points, &plc.surface.triangles, &plc.segments));
+        let unmet = |size| {
+            plc.and_then(|plc| {
+                SizeUnmet::of(size, Boundary::LONGER, &plc.surface.points, &plc.surface.triangles, &plc.segments)
+            })
+        };
         report.size_unmet = plan.size.and_then(unmet);
         let how = if args.tetgen.is_some() { "leaving out Y" } else { "--split" };
         report.to_split = (!plan.split).then_some(how);

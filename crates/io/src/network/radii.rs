@@ -46,6 +46,7 @@ pub enum NodeArrayFault {
     /// The array has several numbers for each node.
     #[error("array '{array}' has {components} numbers for each node: one is needed")]
     Components {
+        /// Name of the array.
         array: String,
         /// How many.
         components: usize,

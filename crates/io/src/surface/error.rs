@@ -85,13 +85,17 @@ pub enum SurfaceFault {
     },
     /// Something that every such file has is not there.
     #[error("{what} is missing: write the file again")]
-    Missing { what: &'static str },
+    Missing {
+        /// Missing or wrong item.
+        what: &'static str,
+    },
     /// A binary file does not have the length that its counts say.
     #[error(
         "the counts of the file announce at least {announced} bytes, it has {found}: \
          it was not written or copied completely, or its counts are wrong"
     )]
     Length {
+        /// Number that the file announces.
         announced: u64,
         /// How long it is.
         found: u64,

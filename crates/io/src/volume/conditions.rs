@@ -24,8 +24,9 @@ pub struct CapFlow {
     pub resistance: f64,
 }
 
-/// Blood, in SI units.
+/// Density of blood, in kg/m³.
 pub const BLOOD_DENSITY: f64 = 1060.0;
+/// Dynamic viscosity of blood, in Pa·s.
 pub const BLOOD_VISCOSITY: f64 = 3.5e-3;
 
 /// The Reynolds number, of mean velocity and diameter, at an inlet whose flow nobody has given: of creeping flow, whatever the

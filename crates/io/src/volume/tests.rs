@@ -2,7 +2,8 @@
 //! an error.
 
 use super::content::MeshNotes;
-use super::fixtures::{Cut, labelled_tube};
+use super::cut::Cut;
+use super::fixtures::labelled_tube;
 use super::format::MeshFormat;
 use super::options::WriteOptions;
 use super::read::read_mesh;

@@ -42,16 +42,27 @@ pub enum VtkError {
     /// It is a VTK file of another kind.
     #[error("a VTK file of type '{found}', but '{wanted}' is needed here: name another file, or save this one as such")]
     WrongFileType {
+        /// Text that was found.
         found: String,
         /// What was expected.
         wanted: &'static str,
     },
     /// An attribute of `VTKFile` has a value that is not supported.
     #[error("{attribute}=\"{value}\" is not supported; save the file with zlib compression or none")]
-    UnknownLayout { attribute: &'static str, value: String },
+    UnknownLayout {
+        /// Attribute.
+        attribute: &'static str,
+        /// Value that was found.
+        value: String,
+    },
     /// A number of points, cells, … is no number.
     #[error("{attribute}=\"{value}\" is not a count: correct it")]
-    BadCount { attribute: &'static str, value: String },
+    BadCount {
+        /// Attribute.
+        attribute: &'static str,
+        /// Value that was found.
+        value: String,
+    },
     /// `AppendedData` has an encoding other than raw and base64.
     #[error("the encoding of <AppendedData> is neither raw nor base64: save the file with one of these")]
     BadAppendedData,
@@ -68,6 +79,8 @@ pub enum VtkError {
     UnknownFormat {
         /// Name of the array.
         array: String,
+
+        /// Format that was found.
         format: String,
     },
     /// An array's offset is missing, no number, or beyond the end of the appended data.

@@ -73,6 +73,7 @@ pub fn faults(check: &CheckReport) -> String {
     out
 }
 
+/// Returns a verdict as words.
 pub fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Valid => "valid",
@@ -102,6 +103,7 @@ pub fn conditions(check: &CheckReport) -> String {
     out
 }
 
+/// Returns why a line was skipped.
 pub fn reason(why: Skipped) -> String {
     match why {
         Skipped::NoLabels => "the boundary has no labels".into(),
@@ -130,6 +132,7 @@ fn list(numbers: &[u32]) -> String {
     }
 }
 
+/// Returns an offender as words, with its ids.
 pub fn describe(offender: &Offender) -> String {
     let kind = match offender.kind {
         OffenderKind::Point => "point",

@@ -5,6 +5,7 @@
 pub struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
+    /// Returns `n` sets of one element each.
     pub fn new(n: usize) -> Self {
         Self((0..n as u32).collect())
     }

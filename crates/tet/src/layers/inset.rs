@@ -21,6 +21,7 @@ const ROUNDS: usize = 100;
 
 /// A surface and where its vertices would best be further in.
 pub struct Places<'a> {
+    /// The surface.
     pub surface: &'a TriMesh,
     /// Its triangles that have layers.
     pub wall: &'a [[u32; 3]],

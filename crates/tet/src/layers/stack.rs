@@ -18,6 +18,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
+    /// Numbers of the vertices of a surface, some of which have copies in each layer.
     pub fn new(copied: impl IntoIterator<Item = bool>, is_rim: Vec<bool>, layers: u32) -> Self {
         let mut next = 0;
         let mut slot = |copied: bool| {

@@ -18,13 +18,24 @@ pub enum AmiraError {
     Text(#[from] TextFault),
     /// A declaration cannot be understood.
     #[error("line {line}: a declaration such as 'VERTEX {{ float[3] VertexCoordinates }} @1' is needed: correct it")]
-    BadDeclaration { line: usize },
+    BadDeclaration {
+        /// Line of the file, from 1.
+        line: usize,
+    },
     /// A section of data is declared nowhere.
     #[error("line {line}: the data '{mark}' are declared nowhere: correct the declarations at the head")]
-    Undeclared { line: usize, mark: String },
+    Undeclared {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Mark of the data section.
+        mark: String,
+    },
     /// Something that every spatial graph has is missing.
     #[error("there is no {what} in the file: is it a spatial graph (HxSpatialGraph)?")]
-    Missing { what: &'static str },
+    Missing {
+        /// Missing or wrong item.
+        what: &'static str,
+    },
     /// The edges have together another number of points than there are.
     #[error("edges have {found} points together, but {expected} are there: correct NumEdgePoints")]
     PointsDiffer {
@@ -36,6 +47,7 @@ pub enum AmiraError {
     /// An edge names a vertex that does not exist.
     #[error("edge {edge} (from 0) names vertex {vertex}, but there are only {vertices} vertices (from 0): correct it")]
     UnknownVertex {
+        /// Edge, from 0.
         edge: usize,
         /// What it names.
         vertex: i64,

@@ -37,7 +37,11 @@ pub enum GraphXmlError {
     NoAttribute {
         /// Where.
         byte: usize,
+
+        /// Element.
         element: &'static str,
+
+        /// Attribute.
         attribute: &'static str,
     },
     /// The file ends inside an element.

@@ -13,10 +13,18 @@ pub enum PajekError {
     NoVertices,
     /// A section of matrices and the like.
     #[error("line {line}: the section '{section}' cannot be read: save vertices, arcs and edges as lists")]
-    UnknownSection { line: usize, section: String },
+    UnknownSection {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Section.
+        section: String,
+    },
     /// A line lacks numbers.
     #[error("line {line}: an edge needs the numbers of two vertices: complete it")]
-    TooShort { line: usize },
+    TooShort {
+        /// Line of the file, from 1.
+        line: usize,
+    },
     /// The graph is no network.
     #[error(transparent)]
     Graph(#[from] GraphFault),

@@ -2,7 +2,8 @@
 
 use super::{read, write};
 use crate::volume::content::{MeshFile, MeshNotes};
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::cut::Cut;
+use crate::volume::fixtures::labelled_tube;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::source::MeshSource;
 use std::fs;

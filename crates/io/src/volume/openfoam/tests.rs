@@ -1,5 +1,6 @@
 use super::*;
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::cut::Cut;
+use crate::volume::fixtures::labelled_tube;
 use crate::volume::write_mesh;
 use anastomesh_mesh::{TET_FACES, VolumeMesh, face_key};
 use std::fs;

@@ -2,8 +2,9 @@
 
 use super::error::PvtuFault;
 use super::write::{Pieces, write};
+use crate::volume::cut::Cut;
 use crate::volume::error::MeshFault;
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::fixtures::labelled_tube;
 use crate::volume::{MeshFileError, MeshNotes, ensure_writable, read_mesh, write_mesh};
 use anastomesh_mesh::VolumeMesh;
 use std::fs;

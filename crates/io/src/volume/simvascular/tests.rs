@@ -1,5 +1,6 @@
 use super::*;
-use crate::volume::fixtures::{Cut, labelled_tube};
+use crate::volume::cut::Cut;
+use crate::volume::fixtures::labelled_tube;
 use crate::volume::{read_mesh, write_mesh};
 use std::fs;
 
