@@ -3,7 +3,8 @@
 mod common;
 
 use anastomesh::io::{NetworkOptions, read_network};
-use anastomesh::network::{CleanReport, Skeleton, clean};
+use anastomesh::network::{Skeleton, clean};
+use anastomesh::skeleton::CleanReport;
 use anastomesh::testing::NetworkInfo;
 use anastomesh::testing::split;
 use std::path::Path;

@@ -5,8 +5,9 @@ mod common;
 
 use anastomesh::Point3;
 use anastomesh::io::{NetworkOptions, read_network};
-use anastomesh::network::{Edge, Node, NodeId, PrepareParams, Prepared, Skeleton, Touching, prepare};
-use anastomesh::testing::{Aabb, Bvh, Fault, SpurReason, TouchedBy, Tube, point_segment};
+use anastomesh::network::{Fault, PrepareParams, Prepared, Skeleton, SpurReason, TouchedBy, Touching, prepare};
+use anastomesh::skeleton::{Edge, Node, NodeId};
+use anastomesh::testing::{Aabb, Bvh, Tube, point_segment};
 use proptest::prelude::*;
 use std::path::Path;
 

@@ -4,8 +4,7 @@
 #![no_main]
 
 use anastomesh::Point3;
-use anastomesh::tet::{Boundary, InputKind, Interior, Plc, Refinement, TetError, Tetrahedralizer};
-use anastomesh::testing::Stuck;
+use anastomesh::tet::{Boundary, InputKind, Interior, Plc, Refinement, Stuck, TetError, Tetrahedralizer};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -17,6 +17,7 @@ pub struct CutEnd {
 /// The triangles at a cut.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EndSurface {
+    /// The cut.
     pub cut: CutId,
     /// Which side of the cut this is.
     pub side: u8,

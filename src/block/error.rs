@@ -37,10 +37,16 @@ pub enum FlattenFailure {
 pub enum BlockError {
     /// A parameter makes no sense.
     #[error("block parameter {name} = {value} is out of range")]
-    Parameter { name: &'static str, value: f64 },
+    Parameter {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The wall could not be made.
     #[error("cluster {}: {source}", cluster.0)]
     Surface {
+        /// The cluster.
         cluster: ClusterId,
         /// Why.
         source: SurfaceError,
@@ -48,6 +54,7 @@ pub enum BlockError {
     /// The wall has other handles than the skeleton has loops: neighbours fused, or a loop closed over.
     #[error("cluster {}: the wall has {handles} handles, the skeleton {loops} loops", cluster.0)]
     Genus {
+        /// The cluster.
         cluster: ClusterId,
         /// Genus of the wall.
         handles: i64,
@@ -57,6 +64,7 @@ pub enum BlockError {
     /// The wall leaves a vessel's axis out.
     #[error("cluster {}: the axis of a vessel is not within the wall near {at:?}", cluster.0)]
     Outside {
+        /// The cluster.
         cluster: ClusterId,
         /// A place of the axis.
         at: [f64; 3],
@@ -64,6 +72,7 @@ pub enum BlockError {
     /// Vessels that are far from each other along the skeleton have one lumen, whatever the genus says.
     #[error("cluster {}: two vessels fused near {at:?}", cluster.0)]
     Fused {
+        /// The cluster.
         cluster: ClusterId,
         /// A place on the axis of one of them.
         at: [f64; 3],
@@ -71,6 +80,7 @@ pub enum BlockError {
     /// A terminal could not be capped.
     #[error("cluster {}: {source}", cluster.0)]
     Cap {
+        /// The cluster.
         cluster: ClusterId,
         /// Which end, and why.
         source: CapError,
@@ -78,6 +88,7 @@ pub enum BlockError {
     /// A cluster's surface could not be filled.
     #[error("cluster {}: {source}", cluster.0)]
     Tetrahedra {
+        /// The cluster.
         cluster: ClusterId,
         /// Why.
         source: TetError,
@@ -85,6 +96,7 @@ pub enum BlockError {
     /// A cluster has no sound end at a cut.
     #[error("cluster {}, cut {}: {failure} near {at:?}", cluster.0, cut.0)]
     End {
+        /// The cluster.
         cluster: ClusterId,
         /// Index of the end in `Cluster::ends`.
         end: u32,
@@ -124,6 +136,7 @@ pub enum BlockError {
     /// No way of building a connector works.
     #[error("connector of cut {} near {at:?}: {}", cut.0, attempts.last().map_or_else(String::new, |a| a.failure.to_string()))]
     Connector {
+        /// The cut.
         cut: CutId,
         /// Middle of the cut's path.
         at: [f64; 3],

@@ -42,7 +42,8 @@ use std::process::ExitCode;
 use std::path::PathBuf;
 
 use clap::{ArgMatches, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
-use exit::{Exit, Failure};
+pub use exit::Exit;
+use exit::Failure;
 use log::LogFormat;
 
 /// From the skeleton of a vascular network to one valid tetrahedral volume mesh.

@@ -20,13 +20,11 @@ use anastomesh_skeleton::course::Courses;
 use anastomesh_skeleton::cuttability::BranchEnd;
 use anastomesh_skeleton::{BranchId, Skeleton};
 
-pub use check::check_partition;
+pub use check::{PartitionFlaw, check_partition};
 pub use layout::Layout;
 pub use params::{PartitionError, PartitionParams};
-#[cfg(test)]
-pub(crate) use parts::PartitionWarning;
-pub use parts::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, Piece};
-pub use summary::PartitionSummary;
+pub use parts::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, Piece, UncutReason};
+pub use summary::{PartitionSummary, UncutCounts};
 
 /// Cuts a skeleton into clusters and connectors (3.2.1 of the paper, read for graphs with loops).
 ///

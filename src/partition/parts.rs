@@ -43,7 +43,10 @@ impl Partition {
 /// A piece of a branch in a cluster.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
+    /// The cluster.
     pub cluster: ClusterId,
+
+    /// The branch.
     pub branch: BranchId,
     /// Arc lengths between which it lies.
     pub arc: [f64; 2],
@@ -78,6 +81,7 @@ pub enum UncutReason {
 pub enum PartitionWarning {
     /// A terminal's overrun was shortened, as a vessel is in its way.
     ShortOverrun {
+        /// The cluster.
         cluster: ClusterId,
         /// The terminal.
         node: NodeId,
@@ -88,6 +92,7 @@ pub enum PartitionWarning {
     },
     /// A terminal lies within or too close to another vessel of its cluster: its cap may fail.
     CapNotClear {
+        /// The cluster.
         cluster: ClusterId,
         /// The terminal.
         node: NodeId,

@@ -8,7 +8,6 @@ use super::report::RunReport;
 use super::store::StoreError;
 use super::terminals::NotATerminal;
 use crate::partition::PartitionError;
-use crate::woven::LabelError;
 use anastomesh_mesh::progress::Cancelled;
 
 /// Why there is no mesh.
@@ -35,7 +34,7 @@ pub enum RunError {
     BlocksFailed(Box<RunReport>),
     /// Caps are not where they should be: a fault of the program.
     #[error("{0}; this is a fault of the program")]
-    Label(#[from] LabelError),
+    Label(String),
     /// It was told to stop. Blocks that were finished are in the store.
     #[error("cancelled")]
     Cancelled,

@@ -61,14 +61,14 @@ pub struct Estimate {
 
 impl Estimate {
     /// Of all blocks of a network.
-    pub fn of(partition: &Layout, plan: &MeshPlan) -> Self {
+    pub(crate) fn of(partition: &Layout, plan: &MeshPlan) -> Self {
         let clusters = partition.clusters().map(|cluster| cluster_cost(&cluster, plan));
         let connectors = partition.cuts().map(|cut| connector_cost(&cut, plan));
         Self::sum(clusters.chain(connectors))
     }
 
     /// Of a network that is not cut yet; each edge counts as a block.
-    pub fn rough(skeleton: &Skeleton, plan: &MeshPlan) -> Self {
+    pub(crate) fn rough(skeleton: &Skeleton, plan: &MeshPlan) -> Self {
         Self::sum(skeleton.edges.iter().map(|edge| {
             let [a, b] = edge.nodes.map(|n| skeleton.node(n).position);
             let radius = 0.5 * (edge.radii[0] + edge.radii[1]);
@@ -77,7 +77,7 @@ impl Estimate {
     }
 
     /// Of one block.
-    pub fn of_dump(dump: &BlockDump) -> Self {
+    pub(crate) fn of_dump(dump: &BlockDump) -> Self {
         let BlockParams { rho, voxel_factor, follow, .. } = dump.params;
         let plan = MeshPlan { rho: rho / voxel_factor, follow, ..MeshPlan::default() };
         let cost = match &dump.input {

@@ -19,8 +19,8 @@ mod touching;
 
 pub use directed::directed;
 pub use islands::Island;
-pub use lumen::JoinedReport;
-pub use merge::MergeReport;
+pub use lumen::{ClosedLoop, JoinedNodes, JoinedReport};
+pub use merge::{MergeReport, Merged, Parting};
 pub use radii::{Fault, FilledRadius};
 pub use report::{PrepareReport, Size};
 pub use resample::ResampleReport;

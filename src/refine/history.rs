@@ -19,7 +19,9 @@ pub struct Sample {
 /// How far nodes have moved, in the unit of the skeleton unless it says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Displacement {
+    /// Mean over the nodes.
     pub mean: f64,
+    /// Median over the nodes.
     pub median: f64,
     /// 95th percentile.
     pub p95: f64,

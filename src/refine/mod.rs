@@ -23,9 +23,9 @@ pub use figures::{Figures, Metric};
 pub use history::{Displacement, Sample};
 pub use leash::FarNode;
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
-pub use residual::{ResidualReport, Treatment};
+pub use residual::{ResidualPair, ResidualReport, Treatment};
 
-pub use split::{split, split_shared};
+pub use split::{SplitNode, SplitReport, split, split_shared};
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
@@ -99,7 +99,7 @@ pub struct RefineReport {
     /// Metrics that are worse in the end than they were given.
     pub worse: Vec<Metric>,
     /// The metrics over the iterations.
-    pub history: Vec<Sample>,
+    pub(crate) history: Vec<Sample>,
 }
 
 /// Refines a skeleton (3.1 of the paper): nodes of more than three vessels are split; the paper's three forces act; then

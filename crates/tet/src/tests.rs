@@ -1,5 +1,6 @@
 use super::complex::Complex;
 use super::error::{Obstacle, Stuck};
+use super::progress::Watch;
 use super::*;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::TetQuality;

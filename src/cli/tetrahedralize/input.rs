@@ -12,7 +12,6 @@ use anastomesh_io::surface::{
     ArrayComplex, ArrayRegion, SurfaceContent, read_complex, read_content_as, read_content_from,
 };
 use anastomesh_io::tetgen::{self, Nodes};
-use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::facets::{self, FacetTriangles};
 use anastomesh_mesh::repair::{RepairReport, Repaired, repair, repair_facets};
 use anastomesh_tet::{Plc, Region};

@@ -28,10 +28,8 @@ use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::quality::TetQuality;
 use anastomesh_mesh::units::grouped;
-use anastomesh_tet::{
-    Boundary, TetError, Tetrahedralization,
-    parts::{LeftOut as LeftOutIds, Names},
-};
+use anastomesh_tet::parts::Names;
+use anastomesh_tet::{Boundary, LeftOut as LeftOutIds, TetError, Tetrahedralization};
 pub use args::Args;
 use format::{InputFormat, Target, is_stream};
 use input::Input;

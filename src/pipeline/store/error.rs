@@ -123,7 +123,14 @@ pub enum Difference {
     /// Another network.
     Network,
     /// Another option.
-    Option { name: String, was: String, is: String },
+    Option {
+        /// Name of the option.
+        name: String,
+        /// Value of the earlier run.
+        was: String,
+        /// Value of this run.
+        is: String,
+    },
 }
 
 /// So many shards are listed.

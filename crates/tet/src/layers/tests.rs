@@ -153,7 +153,7 @@ fn bounds_are_for_what_is_inside_of_the_layers() {
         let plc = Plc::from(sphere_surface(2));
         let made = Tetrahedralizer::new().layers(Some(THREE)).refine(refinement).run(&plc).expect("certified");
         let layers = made.summary.layers.expect("a summary").tets;
-        assert_eq!(layers, 9 * plc.triangles.len());
+        assert_eq!(layers, 9 * plc.surface.triangles.len());
         made.mesh.tets.len() - layers
     };
     let fine = crate::Refinement::default().max_volume(2e-4);
