@@ -9,6 +9,7 @@ use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::format::FormatArgs;
 use super::grid::GridArgs;
+use super::hint;
 use super::kind::{Kind, OpenedMesh, boundary_of};
 use super::log;
 use super::progress::Bars;
@@ -192,7 +193,7 @@ impl Args {
     fn convert_network(&self) -> Result<Written, Failure> {
         // Radii that nothing can be meshed with are converted as they are.
         let options = NetworkOptions { any_radii: true, ..NetworkOptions::default() };
-        let file = read_network(&self.input, &options).map_err(|e| Failure::input(e.to_string()))?;
+        let file = read_network(&self.input, &options).map_err(|e| Failure::input(hint::of_file(&e)))?;
         let network = directed(&file.skeleton);
         write_tree(&self.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;
         Ok(Written::Network { nodes: network.nodes.len(), edges: network.edges.len() })

@@ -11,6 +11,7 @@ use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
+use super::hint;
 use super::layers::LayerArgs;
 use super::log;
 use super::network::{NetworkArgs, PreparedNetwork};
@@ -262,7 +263,7 @@ impl Args {
         if bytes > plan.memory {
             let (why, instead) = ("woven joints", "--joint disc");
             let refused = TooLarge::Whole { estimate, why, instead, bytes, memory: plan.memory };
-            return Err(Failure::input(refused.to_string()));
+            return Err(Failure::input(hint::of_size(&refused)));
         }
         let result = pipeline::mesh_network(&before.network, plan, bars);
         let result = result.map_err(|e| self.explain(e, plan, before))?;
@@ -373,7 +374,7 @@ impl Args {
         match error {
             RunError::Cancelled => self.stopped(),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
-            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),
+            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(hint::of_run(error)),
             _ => Failure::stage(error.to_string()),
         }
     }

@@ -15,6 +15,7 @@ mod format;
 mod generate;
 mod grid;
 mod help;
+mod hint;
 mod info;
 mod kind;
 mod layers;

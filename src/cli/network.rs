@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::exit::Failure;
+use super::hint;
 use super::units::Units;
 use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare_lines};
 use crate::report::inlets::{Inlets, NoTerminal};
@@ -102,7 +103,7 @@ impl NetworkArgs {
             )));
         }
         let file = read_network(&self.network, options);
-        let mut file = file.map_err(|e| Failure::input(e.to_string()))?;
+        let mut file = file.map_err(|e| Failure::input(hint::of_file(&e)))?;
         if let Some([from, to]) = self.units.map(Units::names) {
             file.notes.push(NetworkNote::Unit { from, to });
         }
@@ -143,7 +144,7 @@ impl Network {
 
     /// Lines for people on what was read and cleaned.
     pub fn remarks(&self) -> Vec<String> {
-        let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
+        let mut lines: Vec<String> = self.notes.iter().map(hint::of_note).collect();
         lines.extend(self.cleaned.counts().iter().map(|(count, what)| format!("{count} {what}")));
         lines
     }
@@ -179,7 +180,7 @@ impl PreparedNetwork {
 
     /// Lines for people on what was read and done; with `all` at length.
     pub fn remarks(&self, all: bool) -> Vec<String> {
-        let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
+        let mut lines: Vec<String> = self.notes.iter().map(hint::of_note).collect();
         if self.report.changed() {
             lines.extend(text(&self.report, all).lines().map(ToString::to_string));
         }

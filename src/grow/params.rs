@@ -123,7 +123,7 @@ pub enum GenerateError {
         length: f64,
     },
     /// A bed in a kidney.
-    #[error("capillaries fill a piece of tissue evenly: give --organ ellipsoid")]
+    #[error("capillaries fill a piece of tissue evenly: choose the organ ellipsoid")]
     BedOfKidney,
     /// The organ could not be filled.
     #[error("only {placed} of {terminals} terminals found a place: give a larger size, thinner terminals or fewer")]

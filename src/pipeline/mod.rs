@@ -50,9 +50,9 @@ pub(crate) use run::mesh_shared;
 pub use run::{Meshed, Stored, mesh_into, mesh_network};
 #[cfg(feature = "cli")]
 pub use share::{ShareReport, make_share};
-pub use store::{Difference, Manifest, Shard, Store};
+pub use store::{Difference, Manifest, Shard, Store, StoreError};
 #[cfg(feature = "cli")]
-pub use store::{KeyMaker, NoShard, Role, StoreError, fingerprint, two_numbers};
+pub use store::{KeyMaker, NoShard, Role, fingerprint, two_numbers};
 pub use terminals::NotATerminal;
 #[cfg(feature = "cli")]
 pub use timing::Clock;

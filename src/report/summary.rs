@@ -95,9 +95,12 @@ pub fn of_mesh(check: &CheckReport) -> String {
     row("mesh", &sizes(check)) + &shape
 }
 
+/// Options that show more faults.
+const MORE_FAULTS: &str = " (-v shows ten, --report where they are)";
+
 /// What a check found: how many conditions hold, those that do not, and the verdict. `listed`: all of them stand elsewhere.
 pub fn of_check(check: &CheckReport, listed: bool) -> String {
-    format!("{}{}{}\n", row("check", &tally(check, listed)), faults(check), verdict(check.verdict))
+    format!("{}{}{}\n", row("check", &tally(check, listed)), faults(check, MORE_FAULTS), verdict(check.verdict))
 }
 
 /// How a mesh keeps its network: where vessels were moved, how far; else how far the wall is from the radius.

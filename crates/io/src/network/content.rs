@@ -159,11 +159,7 @@ impl fmt::Display for NetworkNote {
             }
             Self::Halved { array } => write!(f, "array '{array}' holds diameters by its name: halved"),
             Self::NotUsed { arrays } => {
-                write!(
-                    f,
-                    "arrays that could be radii too, not used: {} (choose with --radius-array)",
-                    arrays.join(", ")
-                )
+                write!(f, "arrays that could be radii too, not used: {}", arrays.join(", "))
             }
             Self::Grouped { vessels } => write!(f, "arrays GroupIds and Blanking: lines of {vessels} vessels"),
             Self::OtherCells { count } => write!(f, "{count} cells that are no lines were ignored"),
@@ -179,11 +175,9 @@ impl fmt::Display for NetworkNote {
                 f,
                 "{count} vessels begin at another place than the joint they leave from: a short vessel put between"
             ),
-            Self::OutOfProportion { radius, extent } => write!(
-                f,
-                "the largest radius is {radius} in a network of extent {extent}: are both in one unit? \
-                 (--radius-scale multiplies radii alone)"
-            ),
+            Self::OutOfProportion { radius, extent } => {
+                write!(f, "the largest radius is {radius} in a network of extent {extent}: are both in one unit?")
+            }
         }
     }
 }

@@ -13,10 +13,7 @@ pub(super) const GROUPS: [&str; 2] = ["GroupIds", "Blanking"];
 #[non_exhaustive]
 pub enum RadiusFault {
     /// No array is known as a radius.
-    #[error(
-        "no array on nodes or vessels is named like a radius; there are: {}; choose with --radius-array",
-        list(available)
-    )]
+    #[error("no array on nodes or vessels is named like a radius; there are: {}; choose one of them", list(available))]
     NoRadius {
         /// Names of the arrays there are.
         available: Vec<String>,

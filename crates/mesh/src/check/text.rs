@@ -54,8 +54,9 @@ pub fn tally(check: &CheckReport, listed: bool) -> String {
     }
 }
 
-/// The conditions that do not hold, with the first offenders of each.
-pub fn faults(check: &CheckReport) -> String {
+/// The conditions that do not hold, with the first offenders of each. `hint` follows the number of offenders that are not
+/// shown.
+pub fn faults(check: &CheckReport, hint: &str) -> String {
     let mut out = String::new();
     for failed in check.failed() {
         // Writing to a string cannot fail.
@@ -67,7 +68,7 @@ pub fn faults(check: &CheckReport) -> String {
         let hidden = failed.count.saturating_sub(shown as u64);
         if hidden > 0 {
             let hidden = grouped(hidden as usize);
-            let _ = writeln!(out, "         and {hidden} more (-v shows ten, --report where they are)");
+            let _ = writeln!(out, "         and {hidden} more{hint}");
         }
     }
     out
