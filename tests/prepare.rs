@@ -339,7 +339,7 @@ fn furthest(from: &Skeleton, of: &Skeleton) -> f64 {
 }
 
 fn read(path: &Path) -> Skeleton {
-    let options = NetworkOptions { any_radii: true, ..NetworkOptions::default() };
+    let options = NetworkOptions::default().any_radii(true);
     read_network(path, &options).unwrap_or_else(|e| panic!("{e}")).skeleton
 }
 

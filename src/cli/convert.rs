@@ -163,12 +163,10 @@ impl Args {
 
     fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: Kind, bars: &Bars) -> Result<Written, Failure> {
         if to == Kind::Mesh {
-            let options = WriteOptions {
-                format: self.format.format,
-                memory: Some((self.memory / 4) as usize),
-                grid: self.grid.options(),
-                values: None,
-            };
+            let options = WriteOptions::default()
+                .format(self.format.format)
+                .memory((self.memory / 4) as usize)
+                .grid(self.grid.options());
             write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
             let SourceCounts { points, tets, boundary } = mesh.counts();
             return Ok(Written::Mesh { points, tets, boundary_faces: boundary });
@@ -192,7 +190,7 @@ impl Args {
 
     fn convert_network(&self) -> Result<Written, Failure> {
         // Radii that nothing can be meshed with are converted as they are.
-        let options = NetworkOptions { any_radii: true, ..NetworkOptions::default() };
+        let options = NetworkOptions::default().any_radii(true);
         let file = read_network(&self.input, &options).map_err(|e| Failure::input(hint::of_file(&e)))?;
         let network = directed(&file.skeleton);
         write_tree(&self.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;

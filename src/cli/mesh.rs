@@ -306,12 +306,11 @@ impl Args {
         let Done { mesh, expectation, check, mut report } = done;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh));
-        let options = WriteOptions {
-            format: self.format.format,
-            memory: Some((self.blocks.memory / 4) as usize),
-            grid: self.grid.options(),
-            values: data.as_ref().map(|data| data as &dyn Beside),
-        };
+        let options = WriteOptions::default()
+            .format(self.format.format)
+            .memory((self.blocks.memory / 4) as usize)
+            .grid(self.grid.options())
+            .values(data.as_ref().map(|data| data as &dyn Beside));
         // Passes over the blocks end when the run is to end.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }

@@ -80,14 +80,12 @@ pub struct PreparedNetwork {
 impl NetworkArgs {
     /// How the network is to be read.
     pub fn options(&self, any_radii: bool) -> NetworkOptions {
-        NetworkOptions {
-            radius_array: self.radius_array.clone(),
-            diameters: self.diameters,
-            radius_scale: self.radius_scale,
-            scale: self.scale.or(self.units.and_then(Units::factor)),
-            any_radii,
-            node_array: None,
-        }
+        NetworkOptions::default()
+            .radius_array(self.radius_array.clone())
+            .diameters(self.diameters)
+            .radius_scale(self.radius_scale)
+            .scale(self.scale.or(self.units.and_then(Units::factor)))
+            .any_radii(any_radii)
     }
 
     /// Reads the network as it stands in its file.
@@ -117,8 +115,7 @@ impl NetworkArgs {
 
     /// The same with the numbers of an array on its nodes.
     pub fn prepared_with(&self, params: &PrepareParams, array: Option<&str>) -> Result<PreparedNetwork, Failure> {
-        let file =
-            self.file_with(&NetworkOptions { node_array: array.map(str::to_owned), ..self.options(params.radii) })?;
+        let file = self.file_with(&self.options(params.radii).node_array(array.map(str::to_owned)))?;
         let prepared = prepare_lines(&file.skeleton, &file.groups, params);
         let prepared =
             prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;

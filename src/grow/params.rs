@@ -45,6 +45,7 @@ impl Organ {
 
 /// What to grow. Lengths are in µm.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct GenerateParams {
     /// What is filled.
     pub organ: Organ,
@@ -59,6 +60,15 @@ pub struct GenerateParams {
     /// Longest extent of the organ; by default that at which terminals are as dense as in a rat's kidney.
     pub size: Option<f64>,
 }
+
+anastomesh_mesh::setters!(GenerateParams {
+    organ: Organ,
+    terminals: u32,
+    seed: u64,
+    terminal_radius: f64,
+    exponent: f64,
+    size: impl Into<Option<f64>>,
+});
 
 /// Why no network can be grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -62,6 +62,21 @@ pub struct PrepareParams {
     pub radius_tolerance: f64,
 }
 
+anastomesh_mesh::setters!(PrepareParams {
+    only_measured: bool,
+    radii: bool,
+    merge: bool,
+    spurs: bool,
+    join: bool,
+    short_tips: bool,
+    touching: Touching,
+    drop_islands: usize,
+    resample: bool,
+    smooth: bool,
+    axis_tolerance: f64,
+    radius_tolerance: f64,
+});
+
 impl Default for PrepareParams {
     fn default() -> Self {
         let touching = Touching::Retract;

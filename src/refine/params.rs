@@ -52,6 +52,7 @@ pub enum Freedom {
 /// How a skeleton is refined. Lengths are in the paper's unit (`unit` of the report: the length in which the median
 /// radius of an edge is 0.448) or in radii, so that the unit of the file makes no difference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct RefineParams {
     /// Steps at most.
     pub iterations: usize,
@@ -86,6 +87,25 @@ pub struct RefineParams {
     /// The metrics are measured every so many iterations, and after each of the first ten; 0: at the ends only.
     pub every: usize,
 }
+
+anastomesh_mesh::setters!(RefineParams {
+    iterations: usize,
+    forces: f64,
+    barrier_rate: f64,
+    repel_rate: f64,
+    angle_rate: f64,
+    clearance: f64,
+    free_terminals: f64,
+    furthest: f64,
+    freedom: Freedom,
+    bends: bool,
+    crowded: Crowded,
+    hold: Vec<Metric>,
+    residual: Residual,
+    shrink: f64,
+    rho: f64,
+    every: usize,
+});
 
 impl Default for RefineParams {
     fn default() -> Self {

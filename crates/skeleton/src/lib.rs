@@ -1,4 +1,28 @@
-//! Floor 2: the vessel skeleton, a graph whose nodes are points with a radius and whose edges are vessels.
+//! Skeletons of vascular networks: graphs whose nodes are points with a radius and whose edges are vessels.
+//!
+//! ```
+//! use anastomesh_mesh::Point3;
+//! use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton, clean};
+//!
+//! let node = |z: f64, original| Node { position: Point3::new(0.0, 0.0, z), radius: 1.0, original };
+//! let edges = vec![Edge { nodes: [NodeId(0), NodeId(1)], radii: [1.0; 2] }];
+//! let vessel = Skeleton { nodes: vec![node(0.0, 0), node(9.0, 1)], edges };
+//! let (vessel, report) = clean(&vessel)?;
+//! assert!(report.is_empty());
+//! assert_eq!(vessel.components(&vessel.adjacency()).list.len(), 1);
+//! # Ok::<(), anastomesh_skeleton::SkeletonError>(())
+//! ```
+//!
+//! | to | use |
+//! |---|---|
+//! | clean a skeleton that was read | [`clean`] |
+//! | split it into branches and connected components | [`Branches`], [`Components`], [`Chains`] |
+//! | find overlapping vessels | [`Overlaps`] |
+//! | find where branches can be cut | [`cuttability`], [`course`] |
+//! | measure it | [`Metrics`] |
+//! | choose edge lengths | [`SizeAt`], [`resolution`] |
+//!
+//! The crate has no features.
 
 mod branch;
 mod chains;
@@ -42,3 +66,8 @@ pub use metrics::paper_unit;
 pub use overlap::{JOINED, deepest_apart};
 pub use size_at::Leg;
 pub use walk::LocalDistances;
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

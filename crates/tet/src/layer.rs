@@ -20,6 +20,8 @@ pub struct Layers {
     pub thickness: f64,
 }
 
+anastomesh_mesh::setters!(Layers { count: u32, growth: f64, thickness: f64 });
+
 /// Layers that cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -58,27 +60,6 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// Sets the number of layers.
-    #[must_use]
-    pub fn count(mut self, count: u32) -> Self {
-        self.count = count;
-        self
-    }
-
-    /// Sets the thickness of each layer over that of the one before it.
-    #[must_use]
-    pub fn growth(mut self, growth: f64) -> Self {
-        self.growth = growth;
-        self
-    }
-
-    /// Sets the thickness of all layers together, as a share of the radius.
-    #[must_use]
-    pub fn thickness(mut self, thickness: f64) -> Self {
-        self.thickness = thickness;
-        self
-    }
-
     /// Most layers.
     pub const MOST: u32 = 30;
     /// Limits of the growth.

@@ -1,21 +1,43 @@
-//! Floor 3: the tetrahedralizer. A closed surface or a piecewise linear complex goes in, a tetrahedral mesh that keeps
-//! every triangle of it comes out. Knows nothing of vessels.
-//!
-//! One Delaunay run over the surface's points, interior points and the corners of a box around them; recovery of what
-//! the surface has and the complex lacks; carving; improvement; certificate.
-//!
-//! A box with a wall across it, of which both halves are filled and told apart:
+//! Tetrahedral meshes of closed triangle surfaces and piecewise linear complexes that keep every triangle of the input.
 //!
 //! ```
-//! use anastomesh_mesh::Point3;
-//! use anastomesh_tet::{InputKind, Interior, Plc, Region, Tetrahedralizer};
+//! use anastomesh_tet::{Point3, Tetrahedralizer, TriMesh};
+//!
+//! let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+//! let surface = TriMesh { points, triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] };
+//! let made = Tetrahedralizer::new().run(&surface)?;
+//! assert_eq!(made.faces, surface.triangles);
+//! assert_eq!(made.mesh.points[..4], surface.points);
+//! # Ok::<(), anastomesh_tet::TetError>(())
+//! ```
+//!
+//! | to | use |
+//! |---|---|
+//! | fill a surface or a complex | [`Tetrahedralizer::run`] with a [`TriMesh`] or a [`Plc`] |
+//! | choose points inside, edge lengths, bounds, layers | [`Interior`], [`Sizing`], [`Refinement`], [`Layers`] |
+//! | mark faces, leave holes, tell regions apart | [`Plc::markers`], [`Plc::holes`], [`Region`] |
+//! | correct a surface | [`repair`], [`repair_facets`] |
+//! | find the first fault of an input | [`Tetrahedralizer::check`] |
+//! | tetrahedralize points | [`Tetrahedralizer::delaunay`] |
+//! | verify a mesh, and measure it | [`certify`], [`check_tets`], [`TetQuality`] |
+//! | follow a run, and stop it | [`Progress`] |
+//!
+//! A run makes one Delaunay tetrahedralization of the points of the input, of points inside and of the corners of a box. It
+//! recovers the segments and triangles that are missing, removes the tetrahedra outside, improves the others, and certifies
+//! the result. The crate has no features. Types of meshes are those of [`anastomesh_mesh`], with its policy on [`nalgebra`].
+//!
+//! A box with a wall across it, both halves of which are filled as regions:
+//!
+//! ```
+//! use anastomesh_tet::{InputKind, Interior, Plc, Point3, Region, Tetrahedralizer};
 //!
 //! let mut plc = Plc::default();
 //! for x in [0.0, 1.0, 2.0] {
-//!     plc.points.extend([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(y, z)| Point3::new(x, y, z)));
+//!     let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+//!     plc.surface.points.extend(corners.map(|(y, z)| Point3::new(x, y, z)));
 //! }
 //! let mut square = |a: u32, b: u32, c: u32, d: u32, marker: i32| {
-//!     plc.triangles.extend([[a, b, c], [a, c, d]]);
+//!     plc.surface.triangles.extend([[a, b, c], [a, c, d]]);
 //!     plc.markers.extend([marker; 2]);
 //! };
 //! square(0, 3, 2, 1, 1); // an end
@@ -25,12 +47,12 @@
 //!     square(i, j, j + 4, i + 4, 4);
 //!     square(i + 4, j + 4, j + 8, i + 8, 4);
 //! }
-//! plc.regions.push(Region { seed: Point3::new(1.5, 0.5, 0.5), id: 7, max_volume: None });
+//! let plc = plc.regions(vec![Region::new(Point3::new(1.5, 0.5, 0.5), 7)]);
 //!
 //! let out = Tetrahedralizer::new().kind(InputKind::Plc).interior(Interior::None).run(&plc)?;
 //! assert_eq!(out.summary.regions, 2);
-//! assert_eq!(out.mesh.points[..12], plc.points);
-//! assert_eq!((out.faces.len(), out.face_markers[2]), (plc.triangles.len(), 2));
+//! assert_eq!(out.mesh.points[..12], plc.surface.points);
+//! assert_eq!((out.faces.len(), out.face_markers[2]), (plc.surface.triangles.len(), 2));
 //! let volume_of = |region: i32| -> f64 {
 //!     let corners = |t: &[u32; 4]| t.map(|v| out.mesh.points[v as usize]);
 //!     let tets = out.mesh.tets.iter().zip(&out.regions).filter(|(_, r)| **r == region);
@@ -87,6 +109,11 @@ pub use options::{Boundary, Interior, Refinement, Sizing};
 pub use plc::{InputKind, LeftOut, Plc, PlcRef, Region};
 pub use recover::RecoverySummary;
 pub use refine::RefineReport;
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 #[cfg(test)]
 mod input_tests;

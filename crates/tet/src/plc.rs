@@ -39,35 +39,14 @@ impl Plc {
     pub fn new(points: Vec<Point3>, triangles: Vec<[u32; 3]>) -> Self {
         Self::from(TriMesh { points, triangles })
     }
-
-    /// Sets the marker of each triangle.
-    #[must_use]
-    pub fn markers(mut self, markers: Vec<i32>) -> Self {
-        self.markers = markers;
-        self
-    }
-
-    /// Sets the segments.
-    #[must_use]
-    pub fn segments(mut self, segments: Vec<[u32; 2]>) -> Self {
-        self.segments = segments;
-        self
-    }
-
-    /// Sets the seeds of holes.
-    #[must_use]
-    pub fn holes(mut self, holes: Vec<Point3>) -> Self {
-        self.holes = holes;
-        self
-    }
-
-    /// Sets the regions.
-    #[must_use]
-    pub fn regions(mut self, regions: Vec<Region>) -> Self {
-        self.regions = regions;
-        self
-    }
 }
+
+anastomesh_mesh::setters!(Plc {
+    markers: Vec<i32>,
+    segments: Vec<[u32; 2]>,
+    holes: Vec<Point3>,
+    regions: Vec<Region>,
+});
 
 /// Borrowed input of a run, made from a [`TriMesh`] or a [`Plc`] without copying either.
 #[derive(Clone, Copy, Debug)]
@@ -118,14 +97,11 @@ impl Region {
     pub fn new(seed: Point3, id: i32) -> Self {
         Self { seed, id, max_volume: None }
     }
-
-    /// Sets the bound on the volume of its tetrahedra.
-    #[must_use]
-    pub fn max_volume(mut self, bound: impl Into<Option<f64>>) -> Self {
-        self.max_volume = bound.into();
-        self
-    }
 }
+
+anastomesh_mesh::setters!(Region {
+    max_volume: impl Into<Option<f64>>,
+});
 
 impl From<&TriMesh> for Plc {
     fn from(surface: &TriMesh) -> Self {

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// How to read a network.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct NetworkOptions {
     /// Name of the array (on points, cells or both) that holds the radius; by default it is found by its name.
     pub radius_array: Option<String>,
@@ -22,6 +23,15 @@ pub struct NetworkOptions {
     /// default they are an error.
     pub any_radii: bool,
 }
+
+anastomesh_mesh::setters!(NetworkOptions {
+    radius_array: impl Into<Option<String>>,
+    diameters: bool,
+    radius_scale: impl Into<Option<f64>>,
+    scale: impl Into<Option<f64>>,
+    node_array: impl Into<Option<String>>,
+    any_radii: bool,
+});
 
 /// A network as it stands in its file: `skeleton::clean` makes it usable.
 #[derive(Clone, Debug, Default, PartialEq)]

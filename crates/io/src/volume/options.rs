@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// How a mesh is written; each format takes what concerns it.
 #[derive(Clone, Copy, Default)]
+#[non_exhaustive]
 pub struct WriteOptions<'a> {
     /// The format, if not that of the extension.
     pub format: Option<MeshFormat>,
@@ -17,8 +18,16 @@ pub struct WriteOptions<'a> {
     pub values: Option<&'a dyn Beside>,
 }
 
+anastomesh_mesh::setters!(WriteOptions<'a> {
+    format: impl Into<Option<MeshFormat>>,
+    memory: impl Into<Option<usize>>,
+    grid: GridOptions,
+    values: impl Into<Option<&'a dyn Beside>>,
+});
+
 /// How VTK's files are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct GridOptions {
     /// Coordinates are rounded to 32 bits.
     pub float32: bool,
@@ -27,6 +36,8 @@ pub struct GridOptions {
     /// Arrays stand in the file as they are instead of compressed.
     pub raw: bool,
 }
+
+anastomesh_mesh::setters!(GridOptions { float32: bool, tets_alone: bool, raw: bool });
 
 /// Where the boundary goes that a grid of tetrahedra alone leaves out.
 pub(super) fn boundary_beside(path: &Path) -> PathBuf {
