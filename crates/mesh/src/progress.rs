@@ -125,7 +125,10 @@ impl Cancelled {
     }
 }
 
-/// Whether to go on.
+/// Fails with [`Cancelled`] when the operation has to stop.
+///
+/// # Errors
+/// [`Cancelled`].
 pub fn ask(progress: &dyn Progress) -> io::Result<()> {
     if progress.is_cancelled() { Err(io::Error::other(Cancelled)) } else { Ok(()) }
 }

@@ -56,6 +56,11 @@ impl<'a> Courses<'a> {
         self.chains.len()
     }
 
+    /// Returns `true` if there are none.
+    pub fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+
     /// Returns the course of a branch.
     pub fn get(self, branch: u32) -> Course {
         Course::new(self.skeleton, self.chains.branch(self.skeleton, branch))

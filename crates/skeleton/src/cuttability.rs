@@ -177,7 +177,10 @@ impl<'a> Cuttability<'a> {
         Self { adjacency, courses, rules, first, leaving }
     }
 
-    /// Where a branch may be cut, or why nowhere.
+    /// Returns where a branch may be cut.
+    ///
+    /// # Errors
+    /// The reason when it may be cut nowhere.
     pub fn window(&self, branch: u32) -> Result<CutWindow, Uncuttable> {
         let course = &self.courses.get(branch);
         let [[near0, angle0], [near1, angle1]] = [Way::Onward, Way::Back].map(|way| self.distances(branch, way));

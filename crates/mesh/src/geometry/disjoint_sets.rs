@@ -22,6 +22,11 @@ impl DisjointSets {
         self.0.len()
     }
 
+    /// Returns `true` if there are no numbers.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The smallest number in the set of `i`.
     pub fn root(&mut self, mut i: u32) -> u32 {
         while self.0[i as usize] != i {

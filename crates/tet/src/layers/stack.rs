@@ -43,6 +43,11 @@ impl Numbers {
         self.slot.len() as u32 + self.copied * self.layers
     }
 
+    /// Returns `true` if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.slot.is_empty()
+    }
+
     /// The surface's vertices and their copies, each `depths[i]` of the way to its place further in; vertices without copies
     /// at that place.
     pub fn points(&self, outer: &[Point3], inner: &[Point3], depths: &[f64]) -> Vec<Point3> {
