@@ -45,7 +45,7 @@ pub use anastomesh_tet as tet;
 /// Vessel networks: cleaning, preparation, refinement and meshing.
 ///
 /// Each operation has its options, its result, and a report of what it did. The other types of networks are in
-/// [`skeleton`](crate::skeleton).
+/// [`crate::skeleton`].
 pub mod network {
     // Cleaned.
     pub use anastomesh_skeleton::{Skeleton, clean};
@@ -72,7 +72,7 @@ pub mod network {
 
 /// Validity check of a mesh, and the quality of its tetrahedra.
 ///
-/// The contents of a report are described in [`mesh::check`](crate::mesh::check).
+/// The contents of a report are described in [`crate::mesh::check`].
 pub mod check {
     pub use anastomesh_mesh::check::{CheckReport, Expectation, Line, Outcome, Verdict, check_tets, check_volume};
     pub use anastomesh_mesh::quality::TetQuality;

@@ -112,10 +112,9 @@ fn joined(mut a: TriMesh, b: &TriMesh, scale: f64, shift: Vec3) -> TriMesh {
     a
 }
 
-/// Fills a surface as the vascular mesher does, with the certificate.
+/// Fills a surface as the vascular mesher does.
 fn fill(surface: &TriMesh, tetrahedralizer: &Tetrahedralizer) -> Result<TetMesh, TetError> {
-    input::outward(surface)?;
-    Ok(tetrahedralizer.clone().effort(Effort::Fast).strict(true).run(surface)?.mesh)
+    parts::fill_outward(&tetrahedralizer.clone().effort(Effort::Fast), surface, &Watch::NOBODY)
 }
 
 fn fills(s: &TriMesh) -> TetMesh {

@@ -1,7 +1,7 @@
 //! The check of a mesh that is made of parts, without holding it.
 //!
 //! Parts meet in joints alone: a joint is a disc of faces, the same faces in both parts. Each part is certified alone
-//! ([`certify`]); the whole is checked from the certificates, the joints and the walls ([`check_parts`]). The verdict is
+//! ([`certify_with`]); the whole is checked from the certificates, the joints and the walls ([`check_parts`]). The verdict is
 //! that of [`check_volume`](super::check_volume) on the merged mesh.
 //!
 //! # Why that is enough
