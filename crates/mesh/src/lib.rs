@@ -6,7 +6,7 @@
 //! let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
 //! let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3]] };
 //! assert!(check_tets(&mesh, None).failed().next().is_none());
-//! assert!(TetQuality::of(&mesh).mean > 0.8);
+//! assert!(TetQuality::of(&mesh).mean > 0.7);
 //! ```
 //!
 //! | module | contents |

@@ -209,7 +209,7 @@ pub enum NetworkArray {
 /// use anastomesh_io::{NetworkOptions, read_network, write_network};
 ///
 /// let network = read_network("../../fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?.skeleton;
-/// let unchanged: Vec<u32> = (0..network.edges.len() as u32).collect();
+/// let unchanged: Vec<_> = network.nodes.iter().map(|node| node.position).collect();
 /// let folder = tempfile::tempdir()?;
 /// write_network(&folder.path().join("refined.vtp"), &network, &refinement_arrays(&network, &unchanged))?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
