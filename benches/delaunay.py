@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Delaunay tetrahedralization of points beside TetGen's, as a table in Markdown.
 
-    cargo build --release --example delaunay
+    cargo build --release -p anastomesh-tet --example delaunay
     python3 benches/delaunay.py [--kind cube|grid|sphere|cylinder] [--points N] [--runs K] [--program PATH] [--tetgen PATH]
 
 cube      random points in the unit cube

@@ -5,7 +5,8 @@
 //! ```
 
 use anastomesh::WALL;
-use anastomesh::network::{Edge, MeshPlan, Node, NodeId, Skeleton, clean, mesh_network};
+use anastomesh::network::{MeshPlan, Skeleton, clean, mesh_network};
+use anastomesh::skeleton::{Edge, Node, NodeId};
 use anastomesh::{Point3, TetMesh};
 use std::error::Error;
 

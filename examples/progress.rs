@@ -6,7 +6,7 @@
 
 use anastomesh::io::{NetworkOptions, read_network, read_surface};
 use anastomesh::network::{MeshPlan, RunError, clean, mesh_network};
-use anastomesh::tet::{Plc, TetError, Tetrahedralizer};
+use anastomesh::tet::{TetError, Tetrahedralizer};
 use anastomesh::{Point3, Progress, Stage};
 use std::error::Error;
 use std::path::Path;
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let stop = Arc::new(AtomicBool::new(false));
     let tetrahedralizer = Tetrahedralizer::new().progress(Until { stage: Stage::Recover, stop: Arc::clone(&stop) });
-    let torus = Plc::from(read_surface(&fixtures.join("torus.off"))?);
+    let torus = read_surface(&fixtures.join("torus.off"))?;
     assert_eq!(tetrahedralizer.run(&torus), Err(TetError::Cancelled));
     // It can be used again: points alone need no recovery.
     stop.store(false, Ordering::Relaxed);

@@ -36,27 +36,44 @@ mod view;
 mod woven;
 
 pub use anastomesh_io as io;
-pub use anastomesh_mesh::geometry::{Point3, Vec3};
+pub use anastomesh_mesh as mesh;
 pub use anastomesh_mesh::progress::{Progress, Stage};
 pub use anastomesh_mesh::source::MeshSource;
-pub use anastomesh_mesh::{Cap, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
+pub use anastomesh_mesh::{Cap, Patch, Point3, TetMesh, TriMesh, Vec3, VolumeMesh, WALL};
+pub use anastomesh_skeleton as skeleton;
 pub use anastomesh_tet as tet;
 
-/// Vessel networks: made usable, moved apart, and meshed.
+/// Vessel networks: cleaning, preparation, refinement and meshing.
+///
+/// Each operation has its options, its result, and a report of what it did. The other types of networks are in
+/// [`crate::skeleton`].
 pub mod network {
-    pub use crate::pipeline::{
-        JointStyle, Manifest, MeshPlan, Meshed, RunError, RunReport, Store, Stored, mesh_into, mesh_network,
+    // Cleaned.
+    pub use anastomesh_skeleton::{Skeleton, clean};
+    // Measured networks prepared.
+    pub use crate::prepare::{
+        ClosedLoop, FilledRadius, Island, JoinedNodes, JoinedReport, MergeReport, Merged, Parting, PrepareParams,
+        PrepareReport, Prepared, RadiusDefect, ResampleReport, ShortTip, Size, Spur, SpurReason, TouchedBy, Touching,
+        TouchingTip, prepare,
     };
-    pub use crate::prepare::{PrepareParams, Prepared, Touching, prepare};
+    // Overlapping vessels moved apart.
     pub use crate::refine::{
-        Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
+        Crowded, CrowdedPair, Displacement, FarNode, Figures, Freedom, Metric, RefineError, RefineParams, RefineReport,
+        Refined, Residual, ResidualPair, ResidualReport, Treatment, refine,
     };
-    pub use anastomesh_skeleton::{
-        BadSize, CleanReport, Edge, Node, NodeId, NodeSizes, SizeAt, Skeleton, SkeletonError, clean,
+    // Meshed.
+    pub use crate::block::ThinLayers;
+    pub use crate::partition::PartitionError;
+    pub use crate::pipeline::{
+        BlockCounts, Difference, Estimate, FailedBlock, FilledLoops, FusedBlock, JointStyle, Manifest, Meeting,
+        MeshPlan, MeshSize, Meshed, NotATerminal, PlanError, Retry, RunError, RunReport, Shard, Store, StoreError,
+        Stored, ThinBlock, TooLarge, Whole, mesh_into, mesh_network,
     };
 }
 
-/// Whether a mesh is valid, line by line, and how well its tetrahedra are shaped.
+/// Validity check of a mesh, and the quality of its tetrahedra.
+///
+/// The contents of a report are described in [`crate::mesh::check`].
 pub mod check {
     pub use anastomesh_mesh::check::{CheckReport, Expectation, Line, Outcome, Verdict, check_tets, check_volume};
     pub use anastomesh_mesh::quality::TetQuality;
@@ -71,10 +88,24 @@ pub mod testing {
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
-    pub use crate::prepare::{RadiusDefect, SpurReason, TouchedBy};
     pub use crate::refine::split;
     pub use crate::report::info::NetworkInfo;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
+
+    // Types of their signatures.
+    pub use crate::block::{
+        Astray, BlockError, CapFaces, ConnectorAttempt, ConnectorFailure, ConnectorFault, Division, EndFault,
+        EndSurface, FlattenFailure, NotOnBoundary,
+    };
+    pub use crate::flow::NetworkFlow;
+    pub use crate::grow::{OrderFigures, Published};
+    pub use crate::partition::{
+        BranchPiece, Cut, Partition, PartitionFlaw, PartitionWarning, UncutCounts, UncutReason,
+    };
+    pub use crate::refine::{SplitNode, SplitReport};
+    pub use crate::report::info::{Quartiles, UnitGuess};
+    pub use crate::report::inlets::{Inlet, Why};
+    pub use crate::surface::{CapError, CapFailure, SharedDisc, SurfaceError};
     pub use anastomesh_io::network::{
         NetworkFormat, read_network_arrays, read_network_from, refinement_arrays, write_tree,
     };
@@ -86,7 +117,7 @@ pub mod testing {
     pub use anastomesh_mesh::geometry::{
         Aabb, Bvh, Improper, Section, Tube, point_segment, point_tube, self_contacts, self_intersections,
     };
-    pub use anastomesh_tet::parts::{Stuck, delaunay};
+    pub use anastomesh_tet::parts::delaunay;
 
     /// A cluster with trimmed ends.
     ///

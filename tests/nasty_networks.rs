@@ -2,9 +2,8 @@
 //! number of each kind instead of one; results are printed by kind.
 
 use anastomesh::Point3;
-use anastomesh::network::{
-    Edge, MeshPlan, Node, NodeId, PrepareParams, RefineParams, RunError, Skeleton, mesh_network, prepare, refine,
-};
+use anastomesh::network::{MeshPlan, PrepareParams, RefineParams, RunError, Skeleton, mesh_network, prepare, refine};
+use anastomesh::skeleton::{Edge, Node, NodeId};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 

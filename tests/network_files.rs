@@ -3,13 +3,14 @@
 mod common;
 
 use anastomesh::io::{NetworkOptions, read_network};
-use anastomesh::network::{CleanReport, Skeleton, clean};
+use anastomesh::network::{Skeleton, clean};
+use anastomesh::skeleton::CleanReport;
 use anastomesh::testing::NetworkInfo;
 use anastomesh::testing::split;
 use std::path::Path;
 
 fn read(path: &Path, radius_array: Option<&str>) -> (Skeleton, CleanReport) {
-    let options = NetworkOptions { radius_array: radius_array.map(str::to_owned), ..NetworkOptions::default() };
+    let options = NetworkOptions::default().radius_array(radius_array.map(str::to_owned));
     let network = read_network(path, &options).unwrap_or_else(|e| panic!("{e}"));
     clean(&network.skeleton).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }

@@ -2,14 +2,15 @@
 
 mod common;
 
-use anastomesh::network::{NodeId, Skeleton};
+use anastomesh::network::Skeleton;
+use anastomesh::skeleton::NodeId;
 use anastomesh::testing::network_flow;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// Conductance of each edge, for a viscosity of 1.
 fn conductances(skeleton: &Skeleton) -> Vec<f64> {
-    let of = |edge: &anastomesh::network::Edge| {
+    let of = |edge: &anastomesh::skeleton::Edge| {
         let [a, b] = edge.radii;
         let [p, q] = edge.nodes.map(|node| skeleton.nodes[node.0 as usize].position);
         3.0 * PI * (a * b).powi(3) / (8.0 * (q - p).norm() * (a * a + a * b + b * b))

@@ -5,8 +5,9 @@ mod common;
 
 use anastomesh::Point3;
 use anastomesh::io::{NetworkOptions, read_network};
-use anastomesh::network::{Edge, Node, NodeId, PrepareParams, Prepared, Skeleton, Touching, prepare};
-use anastomesh::testing::{Aabb, Bvh, RadiusDefect, SpurReason, TouchedBy, Tube, point_segment};
+use anastomesh::network::{PrepareParams, Prepared, RadiusDefect, Skeleton, SpurReason, TouchedBy, Touching, prepare};
+use anastomesh::skeleton::{Edge, Node, NodeId};
+use anastomesh::testing::{Aabb, Bvh, Tube, point_segment};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -341,7 +342,7 @@ fn furthest(from: &Skeleton, of: &Skeleton) -> f64 {
 }
 
 fn read(path: &Path) -> Skeleton {
-    let options = NetworkOptions { any_radii: true, ..NetworkOptions::default() };
+    let options = NetworkOptions::default().any_radii(true);
     read_network(path, &options).unwrap_or_else(|e| panic!("{e}")).skeleton
 }
 

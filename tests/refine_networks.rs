@@ -33,7 +33,7 @@ fn the_fixture_can_be_cut_afterwards() {
 fn the_kidney_tree() {
     let Some(shared) = common::shared() else { return };
     let tree = common::network(&shared.join("data/kidney/tree_original.vtp"));
-    let keep = RefineParams { residual: Residual::Report, ..RefineParams::default() };
+    let keep = RefineParams::default().residual(Residual::Report);
     let report = refined(&tree, &keep).report;
     println!("{:?}\n{:?}", report.result, report.displacement);
     let (r, d) = (&report.result, &report.displacement);

@@ -3,7 +3,8 @@
 mod common;
 
 use anastomesh::check::Line;
-use anastomesh::network::{Edge, Meshed, Node, NodeId, Skeleton};
+use anastomesh::network::{Meshed, Skeleton};
+use anastomesh::skeleton::{Edge, Node, NodeId};
 use anastomesh::{Point3, Vec3, VolumeMesh, WALL};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};

@@ -4,15 +4,14 @@
 #![no_main]
 
 use anastomesh_mesh::Point3;
-use anastomesh_tet::parts::Stuck;
-use anastomesh_tet::{Boundary, InputKind, Interior, Plc, Refinement, TetError, Tetrahedralizer};
+use anastomesh_tet::{Boundary, InputKind, Interior, Plc, Refinement, Stuck, TetError, Tetrahedralizer};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&mode, rest)) = bytes.split_first() else { return };
     let (places, facets) = rest.split_at(rest.len().min(3 * (4 + usize::from(mode & 15))));
-    let mut plc = Plc { points: points(places, mode & 16 != 0), ..Plc::default() };
-    let inner = plc.points.len() as u8;
+    let mut plc = Plc::new(points(places, mode & 16 != 0), Vec::new());
+    let inner = plc.surface.points.len() as u8;
     if inner == 0 {
         return;
     }
@@ -35,7 +34,7 @@ fuzz_target!(|bytes: &[u8]| {
     match made {
         Ok(made) => {
             let outside = made.summary.left_out.triangles.len();
-            let inside = plc.triangles.len() - outside;
+            let inside = plc.surface.triangles.len() - outside;
             assert!(made.faces.len() == inside || (splits && made.faces.len() > inside));
             assert!(mode & 32 == 0 || outside == 0);
         }
@@ -62,18 +61,18 @@ fn points(bytes: &[u8], fine: bool) -> Vec<Point3> {
 
 /// Adds a box around all points.
 fn add_box(plc: &mut Plc) {
-    let first = plc.points.len() as u32;
+    let first = plc.surface.points.len() as u32;
     let side = |high: bool| if high { 9.0 } else { -1.0 };
-    plc.points.extend((0..8).map(|i| Point3::new(side(i & 1 != 0), side(i & 2 != 0), side(i & 4 != 0))));
+    plc.surface.points.extend((0..8).map(|i| Point3::new(side(i & 1 != 0), side(i & 2 != 0), side(i & 4 != 0))));
     for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
-        plc.triangles.extend([[a, b, c], [a, c, d]].map(|t| t.map(|v| v + first)));
+        plc.surface.triangles.extend([[a, b, c], [a, c, d]].map(|t| t.map(|v| v + first)));
     }
 }
 
 /// Adds a triangle unless it makes the complex invalid.
 fn add(plc: &mut Plc, triangle: [u32; 3]) {
-    plc.triangles.push(triangle);
-    if Tetrahedralizer::new().kind(InputKind::Plc).check(plc).is_err() {
-        plc.triangles.pop();
+    plc.surface.triangles.push(triangle);
+    if Tetrahedralizer::new().kind(InputKind::Plc).check(&*plc).is_err() {
+        plc.surface.triangles.pop();
     }
 }

@@ -20,7 +20,7 @@ use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::{Inset, split_corner_tets};
 use anastomesh_tet::{
     TetError,
-    parts::{Watch, tetrahedralize_watched},
+    parts::{Watch, fill_outward},
 };
 
 /// Flat cap of a terminal.
@@ -141,7 +141,7 @@ fn inside(
     watch: &Watch,
 ) -> Result<FilledSurface, TetError> {
     let discs: Vec<Vec<[u32; 3]>> = (0..cluster.ends.len() as u32).map(|end| faces_of(surface, end)).collect();
-    let fill = |surface: &TriMesh| tetrahedralize_watched(surface, &filling(surface, params.core), watch);
+    let fill = |surface: &TriMesh| fill_outward(&filling(surface, params.core), surface, watch);
     if let Some(layers) = &params.layers {
         let caps = surface.cap.iter().map(|cap| cap.map(|end| cluster.ends[end as usize].section.origin)).collect();
         let axes = cluster.tubes.iter().map(|tube| [tube.a, tube.b]).collect();

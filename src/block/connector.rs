@@ -10,8 +10,8 @@ use super::template::{self, FilledTube};
 use crate::partition::{Cut, CutId};
 use anastomesh_mesh::geometry::Section;
 use anastomesh_mesh::{TetMesh, TriMesh};
-use anastomesh_tet::parts::Inset;
-use anastomesh_tet::{TetError, parts::tetrahedralize};
+use anastomesh_tet::TetError;
+use anastomesh_tet::parts::{Inset, Watch, fill_outward};
 
 /// Mesh of a connector.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,7 +107,7 @@ fn image(tube: FilledTube, hollow: bool) -> ConnectorMesh {
 
 /// Fills the tube of a connector along a path.
 fn filled(tube: ConnectorSurface, path: &[Section], params: &BlockParams) -> Result<ConnectorMesh, TetError> {
-    let fill = |surface: &TriMesh| tetrahedralize(surface, &filling(surface, params.core));
+    let fill = |surface: &TriMesh| fill_outward(&filling(surface, params.core), surface, &Watch::NOBODY);
     let ConnectorSurface { surface, shared, end_triangles, rings } = tube;
     let (hull, failed) = (Vec::new(), Vec::new());
     let Some(layers) = &params.layers else {

@@ -17,6 +17,7 @@ pub struct CutEnd {
 /// Triangles at a cut.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EndSurface {
+    /// The cut.
     pub cut: CutId,
     /// Side of the cut.
     pub side: u8,

@@ -37,13 +37,19 @@ pub enum FlattenFailure {
 pub enum BlockError {
     /// A parameter is out of range.
     #[error("block parameter {name} = {value} is out of range")]
-    Parameter { name: &'static str, value: f64 },
+    Parameter {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// Trimmed ends are an optional part of the program.
     #[error("this program was built without woven joints: build it with the cargo feature `woven`")]
     NoWovenJoints,
     /// The wall could not be created.
     #[error("cluster {}: {source}", cluster.0)]
     Surface {
+        /// The cluster.
         cluster: ClusterId,
         /// Reason of the failure.
         source: SurfaceError,
@@ -51,6 +57,7 @@ pub enum BlockError {
     /// The wall's genus differs from the skeleton's loop count: neighbours fused, or a loop closed.
     #[error("cluster {}: the wall has {handles} handles, the skeleton {loops} loops", cluster.0)]
     Genus {
+        /// The cluster.
         cluster: ClusterId,
         /// Genus of the wall.
         handles: i64,
@@ -60,6 +67,7 @@ pub enum BlockError {
     /// A part of a vessel's axis lies outside the wall.
     #[error("cluster {}: the axis of a vessel is not within the wall near {at:?}", cluster.0)]
     Outside {
+        /// The cluster.
         cluster: ClusterId,
         /// Point on the axis.
         at: [f64; 3],
@@ -67,6 +75,7 @@ pub enum BlockError {
     /// Vessels that are distant along the skeleton share one lumen, whatever the genus.
     #[error("cluster {}: two vessels fused near {at:?}", cluster.0)]
     Fused {
+        /// The cluster.
         cluster: ClusterId,
         /// Point on the axis of one of them.
         at: [f64; 3],
@@ -74,6 +83,7 @@ pub enum BlockError {
     /// A terminal could not be capped.
     #[error("cluster {}: {source}", cluster.0)]
     Cap {
+        /// The cluster.
         cluster: ClusterId,
         /// End and reason of the failure.
         source: CapError,
@@ -81,6 +91,7 @@ pub enum BlockError {
     /// A cluster's surface could not be filled.
     #[error("cluster {}: {source}", cluster.0)]
     Tetrahedra {
+        /// The cluster.
         cluster: ClusterId,
         /// Reason of the failure.
         source: TetError,
@@ -88,6 +99,7 @@ pub enum BlockError {
     /// A cluster has no valid end at a cut.
     #[error("cluster {}, cut {}: {failure} near {at:?}", cluster.0, cut.0)]
     End {
+        /// The cluster.
         cluster: ClusterId,
         /// Index of the end in `Cluster::ends`.
         end: u32,
@@ -127,6 +139,7 @@ pub enum BlockError {
     /// No division of a connector works.
     #[error("connector of cut {} near {at:?}: {}", cut.0, attempts.last().map_or_else(String::new, |a| a.failure.to_string()))]
     Connector {
+        /// The cut.
         cut: CutId,
         /// Point on the cut's path.
         at: [f64; 3],

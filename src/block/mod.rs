@@ -31,13 +31,13 @@ pub(crate) use buried::buried;
 pub use cluster::{CapFaces, ClusterMesh, mesh_cluster};
 pub(crate) use cluster::{cut_ends, mesh_cluster_watched};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector};
-pub use connector_surface::ConnectorEnd;
 #[cfg(test)]
-pub(crate) use connector_surface::{Division, connector_surface};
+pub(crate) use connector_surface::connector_surface;
+pub use connector_surface::{ConnectorEnd, ConnectorFault, Division};
 pub use dump::{BlockDump, BlockInput};
-pub use end_surface::{CutEnd, EndSurface, StoredEnd};
+pub use end_surface::{CutEnd, EndFault, EndSurface, StoredEnd};
 pub(crate) use end_surface::{CutPlane, cross, crossing, disc_rim};
-pub use error::{BlockError, ConnectorAttempt, FlattenFailure};
+pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
 pub use faithful::Astray;
 pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
 pub use free_ends::shared_ends;

@@ -4,7 +4,7 @@ use super::error::BlockError;
 use anastomesh_mesh::TriMesh;
 use anastomesh_skeleton::resolution::{FOLLOW, KAPPA, RHO};
 use anastomesh_tet::Effort;
-use anastomesh_tet::{Interior, Layers, parts::TetOptions};
+use anastomesh_tet::{Interior, Layers, Tetrahedralizer};
 
 /// Type of a cluster's end at a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -135,10 +135,10 @@ const WIDE: [f64; 2] = [1.0, 3.0];
 
 /// Fill options of a block whose edges are `core` times as long on the vessel axes as at the wall. No certificate is
 /// needed, as the whole mesh is checked at the end.
-pub(super) fn filling(surface: &TriMesh, core: f64) -> TetOptions {
+pub(super) fn filling(surface: &TriMesh, core: f64) -> Tetrahedralizer {
     let wide = ((half_width(surface) / surface.mean_edge() - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
     let interior = Interior::Local { cell: CELL * (1.0 + (core - 1.0) * wide), clearance: CLEARANCE };
-    TetOptions::default().interior(interior).effort(Effort::Quick).certify(false)
+    Tetrahedralizer::new().interior(interior).effort(Effort::Quick)
 }
 
 /// Twice the volume over the area of a surface: the radius of a tube.

@@ -9,6 +9,7 @@ use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::format::FormatArgs;
 use super::grid::GridArgs;
+use super::hint;
 use super::kind::{FileKind, OpenedMesh, boundary_of};
 use super::limits;
 use super::log;
@@ -166,12 +167,10 @@ impl Args {
 
     fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: FileKind, bars: &Bars) -> Result<Written, Failure> {
         if to == FileKind::Mesh {
-            let options = WriteOptions {
-                format: self.format.format,
-                memory: Some((self.memory / 4) as usize),
-                grid: self.grid.options(),
-                values: None,
-            };
+            let options = WriteOptions::default()
+                .format(self.format.format)
+                .memory((self.memory / 4) as usize)
+                .grid(self.grid.options());
             write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
             let SourceCounts { points, tets, boundary } = mesh.counts();
             return Ok(Written::Mesh { points, tets, boundary_faces: boundary });
@@ -195,8 +194,8 @@ impl Args {
 
     fn convert_network(&self) -> Result<Written, Failure> {
         // Radii that nothing can be meshed with are converted as they are.
-        let options = NetworkOptions { any_radii: true, ..NetworkOptions::default() };
-        let file = read_network(&self.input, &options).map_err(|e| Failure::input(e.to_string()))?;
+        let options = NetworkOptions::default().any_radii(true);
+        let file = read_network(&self.input, &options).map_err(|e| Failure::input(hint::of_file(&e)))?;
         let network = directed(&file.skeleton);
         write_tree(&self.output, &network, &[]).map_err(|e| Failure::input(e.to_string()))?;
         Ok(Written::Network { nodes: network.nodes.len(), edges: network.edges.len() })

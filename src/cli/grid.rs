@@ -35,10 +35,9 @@ enum Compress {
 impl GridArgs {
     /// The options of a writer.
     pub fn options(self) -> GridOptions {
-        GridOptions {
-            float32: self.float32,
-            tets_alone: self.cells == Cells::Tets,
-            raw: self.compress == Compress::None,
-        }
+        GridOptions::default()
+            .float32(self.float32)
+            .tets_alone(self.cells == Cells::Tets)
+            .raw(self.compress == Compress::None)
     }
 }

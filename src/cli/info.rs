@@ -2,6 +2,7 @@
 
 use super::common::print;
 use super::exit::{Exit, Failure};
+use super::hint;
 use super::network::NetworkArgs;
 use crate::report::info::NetworkInfo;
 
@@ -18,7 +19,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let network = args.network.read()?;
     let inlets = network.inlets(&[])?;
-    let notes = network.notes.iter().map(ToString::to_string).collect();
+    let notes = network.notes.iter().map(hint::of_note).collect();
     let mut info = NetworkInfo::new(&network.skeleton, network.cleaned, notes);
     info.inlets.clone_from(&inlets.list);
     print(args.json, &info, || format!("{info}{}", inlets.remarks().join("\n")))?;

@@ -29,7 +29,7 @@ impl LayerArgs {
     /// What is asked for.
     pub fn asked(&self) -> Result<Option<Layers>, Failure> {
         let Some(count) = self.layers else { return Ok(None) };
-        let layers = Layers { count, growth: self.layer_growth, thickness: self.layer_thickness };
+        let layers = Layers::default().count(count).growth(self.layer_growth).thickness(self.layer_thickness);
         layers.check().map_err(|e| Failure::usage(e.to_string()))?;
         Ok(Some(layers))
     }

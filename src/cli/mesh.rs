@@ -11,6 +11,7 @@ use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
+use super::hint;
 use super::layers::LayerArgs;
 use super::limits::{self, BlockPlace};
 use super::log;
@@ -261,7 +262,7 @@ impl Args {
         if bytes > plan.memory {
             let (why, instead) = ("woven joints", "--joint disc");
             let refused = TooLarge::Whole { estimate, why, instead, bytes, memory: plan.memory };
-            return Err(Failure::input(refused.to_string()));
+            return Err(Failure::input(hint::of_size(&refused)));
         }
         let result = pipeline::mesh_network(&before.network, plan, bars);
         let result = result.map_err(|e| self.explain(e, plan, before))?;
@@ -304,12 +305,11 @@ impl Args {
         let Done { mesh, expectation, check, mut report } = done;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh)).transpose()?;
-        let options = WriteOptions {
-            format: self.format.format,
-            memory: Some((self.blocks.memory / 4) as usize),
-            grid: self.grid.options(),
-            values: data.as_ref().map(|data| data as &dyn Beside),
-        };
+        let options = WriteOptions::default()
+            .format(self.format.format)
+            .memory((self.blocks.memory / 4) as usize)
+            .grid(self.grid.options())
+            .values(data.as_ref().map(|data| data as &dyn Beside));
         // Passes over the blocks end when the run is to end.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
@@ -365,7 +365,7 @@ impl Args {
         match error {
             RunError::Cancelled => self.stopped(),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
-            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),
+            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(hint::of_run(error)),
             _ => Failure::stage(error.to_string()),
         }
     }

@@ -15,6 +15,7 @@ mod format;
 mod generate;
 mod grid;
 mod help;
+mod hint;
 mod info;
 mod kind;
 mod layers;
@@ -42,7 +43,8 @@ use std::process::ExitCode;
 use std::path::PathBuf;
 
 use clap::{ArgMatches, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
-use exit::{Exit, Failure};
+pub use exit::Exit;
+use exit::Failure;
 use log::LogFormat;
 
 /// From the skeleton of a vascular network to one valid tetrahedral volume mesh.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::exit::Failure;
+use super::hint;
 use super::units::Units;
 use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare_lines};
 use crate::report::inlets::{Inlets, NoTerminal};
@@ -79,14 +80,12 @@ pub struct PreparedNetwork {
 impl NetworkArgs {
     /// How the network is to be read.
     pub fn options(&self, any_radii: bool) -> NetworkOptions {
-        NetworkOptions {
-            radius_array: self.radius_array.clone(),
-            diameters: self.diameters,
-            radius_scale: self.radius_scale,
-            scale: self.scale.or(self.units.and_then(Units::factor)),
-            any_radii,
-            node_array: None,
-        }
+        NetworkOptions::default()
+            .radius_array(self.radius_array.clone())
+            .diameters(self.diameters)
+            .radius_scale(self.radius_scale)
+            .scale(self.scale.or(self.units.and_then(Units::factor)))
+            .any_radii(any_radii)
     }
 
     /// Reads the network as it stands in its file.
@@ -102,7 +101,7 @@ impl NetworkArgs {
             )));
         }
         let file = read_network(&self.network, options);
-        let mut file = file.map_err(|e| Failure::input(e.to_string()))?;
+        let mut file = file.map_err(|e| Failure::input(hint::of_file(&e)))?;
         if let Some([from, to]) = self.units.map(Units::names) {
             file.notes.push(NetworkNote::Unit { from, to });
         }
@@ -116,8 +115,7 @@ impl NetworkArgs {
 
     /// The same with the numbers of an array on its nodes.
     pub fn prepared_with(&self, params: &PrepareParams, array: Option<&str>) -> Result<PreparedNetwork, Failure> {
-        let file =
-            self.file_with(&NetworkOptions { node_array: array.map(str::to_owned), ..self.options(params.radii) })?;
+        let file = self.file_with(&self.options(params.radii).node_array(array.map(str::to_owned)))?;
         let prepared = prepare_lines(&file.skeleton, &file.groups, params);
         let prepared =
             prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;
@@ -143,7 +141,7 @@ impl Network {
 
     /// Lines for people on what was read and cleaned.
     pub fn remarks(&self) -> Vec<String> {
-        let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
+        let mut lines: Vec<String> = self.notes.iter().map(hint::of_note).collect();
         lines.extend(self.cleaned.counts().iter().map(|(count, what)| format!("{count} {what}")));
         lines
     }
@@ -179,7 +177,7 @@ impl PreparedNetwork {
 
     /// Lines for people on what was read and done; with `all` at length.
     pub fn remarks(&self, all: bool) -> Vec<String> {
-        let mut lines: Vec<String> = self.notes.iter().map(ToString::to_string).collect();
+        let mut lines: Vec<String> = self.notes.iter().map(hint::of_note).collect();
         if self.report.changed() {
             lines.extend(text(&self.report, all).lines().map(ToString::to_string));
         }

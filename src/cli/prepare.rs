@@ -139,7 +139,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         super::common::print(true, &output, String::new)?;
     } else if !args.common.quiet {
         for note in &prepared.notes {
-            log::note(&note.to_string());
+            log::note(&super::hint::of_note(note));
         }
         let cures = text(&prepared.report, args.common.verbose);
         log::result(&format!("{cures}{}{}", row_of(&prepared.report), ended(&[&args.output]).rows(&[])));

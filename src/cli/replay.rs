@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
+use super::hint;
 use super::limits::size;
 use super::log;
 use super::progress::Bars;
@@ -73,7 +74,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let dump = BlockDump::from_json(&text).map_err(|e| refused(&e))?;
     let estimate = Estimate::of_dump(&dump);
     if estimate.largest_block_bytes > args.memory {
-        return Err(refused(&TooLarge::Block { estimate, memory: args.memory }));
+        return Err(refused(&hint::of_size(&TooLarge::Block { estimate, memory: args.memory })));
     }
     let pool = super::common::thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;

@@ -8,6 +8,7 @@ use super::before::{Before, Made, Meshing};
 use super::blocks::BlockArgs;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::hint;
 use super::limits::{self, BlockPlace};
 use super::log;
 use super::network::NetworkArgs;
@@ -129,7 +130,7 @@ impl Args {
             }
             RunError::Cancelled => Failure::stopped(NOTHING_KEPT),
             RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
-            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(error.to_string()),
+            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(hint::of_run(&error)),
             _ => Failure::stage(error.to_string()),
         }
     }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::common::print;
 use super::exit::{Exit, Failure};
+use super::hint;
 use super::limits::{self, BlockPlace};
 use super::log;
 use super::progress::Bars;
@@ -42,7 +43,7 @@ pub struct WorkDir {
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        Self::input(error.to_string())
+        Self::input(hint::of_store(&error))
     }
 }
 

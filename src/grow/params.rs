@@ -44,6 +44,7 @@ impl Organ {
 
 /// Parameters of a grown network. Lengths are in µm.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct GenerateParams {
     /// Organ to fill.
     pub organ: Organ,
@@ -58,6 +59,15 @@ pub struct GenerateParams {
     /// Longest extent of the organ; the default gives the terminal density of a rat kidney.
     pub size: Option<f64>,
 }
+
+anastomesh_mesh::setters!(GenerateParams {
+    organ: Organ,
+    terminals: u32,
+    seed: u64,
+    terminal_radius: f64,
+    exponent: f64,
+    size: impl Into<Option<f64>>,
+});
 
 /// Reasons why no network can be grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -122,7 +132,7 @@ pub enum GenerateError {
         length: f64,
     },
     /// A capillary bed was requested in a kidney.
-    #[error("capillaries fill a piece of tissue evenly: give --organ ellipsoid")]
+    #[error("capillaries fill a piece of tissue evenly: choose the organ ellipsoid")]
     BedOfKidney,
     /// The organ could not be filled.
     #[error("only {placed} of {terminals} terminals found a place: give a larger size, thinner terminals or fewer")]

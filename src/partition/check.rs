@@ -14,6 +14,7 @@ pub enum PartitionFlaw {
     /// Pieces and connectors do not cover a branch exactly once.
     #[error("branch {} is not covered once around arc length {arc}", branch.0)]
     Coverage {
+        /// The branch.
         branch: BranchId,
         /// Arc length of the flaw.
         arc: f64,
@@ -21,20 +22,30 @@ pub enum PartitionFlaw {
     /// The tubes of a piece do not follow the vessel's axis or are not connected.
     #[error("the tubes of cluster {} leave branch {} at {at}", cluster.0, branch.0)]
     Tubes {
+        /// The cluster.
         cluster: ClusterId,
+
+        /// The branch.
         branch: BranchId,
         /// Position of the flaw.
         at: Point3,
     },
     /// A node is in no cluster, in several clusters, or in the wrong one.
     #[error("node {} is not in exactly one cluster", node.0)]
-    Node { node: NodeId },
+    Node {
+        /// The node.
+        node: NodeId,
+    },
     /// The pieces of a cluster are not connected.
     #[error("cluster {} is not connected", cluster.0)]
-    Disconnected { cluster: ClusterId },
+    Disconnected {
+        /// The cluster.
+        cluster: ClusterId,
+    },
     /// An end and its cut do not refer to each other, or a terminal has no end.
     #[error("end {end} of cluster {} is not what its cut or terminal says", cluster.0)]
     End {
+        /// The cluster.
         cluster: ClusterId,
         /// Index of the end.
         end: u32,
@@ -42,6 +53,7 @@ pub enum PartitionFlaw {
     /// An end's plane or overrun does not continue its vessel outwards.
     #[error("end {end} of cluster {} does not point outwards along its vessel", cluster.0)]
     Direction {
+        /// The cluster.
         cluster: ClusterId,
         /// Index of the end.
         end: u32,
@@ -49,6 +61,7 @@ pub enum PartitionFlaw {
     /// A connector's path does not connect the end planes, or its cross-sections intersect.
     #[error("the path of cut {} is bad at section {section}", cut.0)]
     Path {
+        /// The cut.
         cut: CutId,
         /// Index of the section.
         section: usize,

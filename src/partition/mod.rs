@@ -20,13 +20,13 @@ use anastomesh_skeleton::course::Courses;
 use anastomesh_skeleton::cuttability::BranchEnd;
 use anastomesh_skeleton::{BranchId, Skeleton};
 
-pub use check::check_partition;
+pub use check::{PartitionFlaw, check_partition};
 pub use layout::Layout;
 pub use params::{PartitionError, PartitionParams};
-#[cfg(test)]
-pub(crate) use parts::PartitionWarning;
-pub use parts::{BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition};
-pub use summary::PartitionSummary;
+pub use parts::{
+    BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, UncutReason,
+};
+pub use summary::{PartitionSummary, UncutCounts};
 
 /// Partitions a skeleton into clusters and connectors (section 3.2.1 of the paper, generalized to graphs with loops).
 ///

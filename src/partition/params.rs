@@ -127,17 +127,30 @@ impl Overruns {
 pub enum PartitionError {
     /// A parameter is not a positive number.
     #[error("partition parameter {name} is {value}; it has to be a positive number")]
-    Parameter { name: &'static str, value: f64 },
+    Parameter {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// An edge refers to a node that does not exist.
     #[error("edge {} joins node {}, which does not exist", edge.0, node.0)]
     NoSuchNode {
+        /// The edge.
         edge: EdgeId,
         /// The missing node.
         node: NodeId,
     },
     /// An edge has a length or radius that is zero, negative or not a number.
     #[error("edge {} has length {length} and radii {} and {}; all have to be positive", edge.0, radii[0], radii[1])]
-    BadEdge { edge: EdgeId, length: f64, radii: [f64; 2] },
+    BadEdge {
+        /// The edge.
+        edge: EdgeId,
+        /// Its length.
+        length: f64,
+        /// Radii at its ends.
+        radii: [f64; 2],
+    },
 }
 
 /// Checks the preconditions of the partition.

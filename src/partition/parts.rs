@@ -43,7 +43,10 @@ impl Partition {
 /// Piece of a branch in a cluster.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BranchPiece {
+    /// The cluster.
     pub cluster: ClusterId,
+
+    /// The branch.
     pub branch: BranchId,
     /// Arc lengths of its two ends.
     pub arc: [f64; 2],
@@ -78,6 +81,7 @@ pub enum UncutReason {
 pub enum PartitionWarning {
     /// Overrun of a terminal, shortened because a vessel is in its way.
     ShortOverrun {
+        /// The cluster.
         cluster: ClusterId,
         /// Node of the terminal.
         node: NodeId,
@@ -88,6 +92,7 @@ pub enum PartitionWarning {
     },
     /// Terminal inside or too close to another vessel of its cluster: its cap may fail.
     CapNotClear {
+        /// The cluster.
         cluster: ClusterId,
         /// Node of the terminal.
         node: NodeId,

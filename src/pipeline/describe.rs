@@ -32,7 +32,7 @@ pub(super) fn announce(report: &RunReport, observer: &dyn Progress) {
     }
     let (count, pairs) = (places.len(), report.overlaps.len());
     observer.note(&format!(
-        "vessels overlap at {count} places ({pairs} pairs of edges; --json lists all); the deepest, edges by their nodes:"
+        "vessels overlap at {count} places ({pairs} pairs of edges, all in the report); the deepest, edges by their nodes:"
     ));
     for m in places.iter().take(LISTED) {
         let [[a, b], [c, d]] = m.edges;

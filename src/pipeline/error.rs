@@ -34,8 +34,7 @@ pub enum RunError {
     BlocksFailed(Box<RunReport>),
     /// Caps are not where they should be: a fault of the program.
     #[error("{0}; this is a fault of the program")]
-    #[cfg(feature = "woven")]
-    Label(#[from] crate::woven::LabelError),
+    Label(String),
     /// It was told to stop. Blocks that were finished are in the store.
     #[error("cancelled")]
     Cancelled,

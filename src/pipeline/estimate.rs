@@ -61,14 +61,14 @@ pub struct Estimate {
 
 impl Estimate {
     /// Of all blocks of a network.
-    pub fn of(partition: &Layout, plan: &MeshPlan) -> Self {
+    pub(crate) fn of(partition: &Layout, plan: &MeshPlan) -> Self {
         let clusters = partition.clusters().map(|cluster| cluster_cost(&cluster, plan));
         let connectors = partition.cuts().map(|cut| connector_cost(&cut, plan));
         Self::sum(clusters.chain(connectors))
     }
 
     /// Of a network that is not cut yet; each edge counts as a block.
-    pub fn rough(skeleton: &Skeleton, plan: &MeshPlan) -> Self {
+    pub(crate) fn rough(skeleton: &Skeleton, plan: &MeshPlan) -> Self {
         Self::sum(skeleton.edges.iter().map(|edge| {
             let [a, b] = edge.nodes.map(|n| skeleton.node(n).position);
             let radius = 0.5 * (edge.radii[0] + edge.radii[1]);
@@ -77,7 +77,7 @@ impl Estimate {
     }
 
     /// Of one block.
-    pub fn of_dump(dump: &BlockDump) -> Self {
+    pub(crate) fn of_dump(dump: &BlockDump) -> Self {
         let BlockParams { rho, voxel_factor, follow, .. } = dump.params;
         let plan = MeshPlan { rho: rho / voxel_factor, follow, ..MeshPlan::default() };
         let cost = match &dump.input {
@@ -108,8 +108,8 @@ impl Estimate {
 pub enum TooLarge {
     /// The largest block does not fit into the memory that is allowed.
     #[error(
-        "the largest block would have about {:.3e} tetrahedra and need {} of memory, {} are allowed; \
-         give --memory more, or a smaller --rho (the whole mesh would have about {:.3e} tetrahedra)",
+        "the largest block would have about {:.3e} tetrahedra and need {} of memory, {} are allowed (the \
+         whole mesh would have about {:.3e} tetrahedra); allow more memory, or give a smaller rho",
         estimate.largest_block_tets, gibibytes(estimate.largest_block_bytes), gibibytes(*memory), estimate.tets
     )]
     Block {
@@ -121,7 +121,7 @@ pub enum TooLarge {
     /// The whole mesh, which has to be held, does not fit.
     #[error(
         "the mesh would have about {:.3e} tetrahedra and need {} of memory, as {why} hold it whole; {} are allowed; \
-         give --memory more, or {instead}",
+         give {instead}, or allow more memory",
         estimate.tets, gibibytes(*bytes), gibibytes(*memory)
     )]
     Whole {
@@ -139,7 +139,7 @@ pub enum TooLarge {
     /// The disk is too small.
     #[error(
         "the mesh would have about {:.3e} tetrahedra; blocks and mesh would need {} on {place}, where {} are free; \
-         make room, name another place, or a smaller --rho",
+         make room, name another place, or give a smaller rho",
         estimate.tets, gibibytes(*bytes), gibibytes(*free)
     )]
     Disk {

@@ -232,7 +232,7 @@ mod tests {
             MeshPlan { stretch: 2.0, ..plan.clone() },
             MeshPlan { core: 2.0, ..plan.clone() },
             MeshPlan { layers: Some(Layers::default()), ..plan.clone() },
-            MeshPlan { layers: Some(Layers { growth: 1.5, ..Layers::default() }), ..plan.clone() },
+            MeshPlan { layers: Some(Layers::default().growth(1.5)), ..plan.clone() },
             MeshPlan { joint: JointStyle::Woven, ..plan.clone() },
             MeshPlan { fuse: true, ..plan.clone() },
             MeshPlan { hollow: true, ..plan.clone() },

@@ -43,20 +43,20 @@ pub use estimate::{Estimate, TooLarge};
 pub use forecast::Forecast;
 #[cfg(feature = "cli")]
 pub use once::replay;
-pub use plan::{JointStyle, MeshPlan};
-#[cfg(test)]
-pub use report::{FailedBlock, Meeting};
-pub use report::{RunReport, ThinBlock};
+pub use plan::{JointStyle, MeshPlan, PlanError};
+pub use report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, MeshSize, Retry, RunReport, ThinBlock};
 #[cfg(feature = "cli")]
 pub(crate) use run::mesh_shared;
 pub use run::{Meshed, Stored, mesh_into, mesh_network};
 #[cfg(feature = "cli")]
 pub use share::{ShareReport, make_share};
+pub use store::{Difference, Manifest, Shard, Store, StoreError};
 #[cfg(feature = "cli")]
-pub use store::{KeyMaker, NoShard, Role, Shard, StoreError, fingerprint, two_numbers};
-pub use store::{Manifest, Store};
+pub use store::{KeyMaker, NoShard, Role, fingerprint, two_numbers};
+pub use terminals::NotATerminal;
 #[cfg(feature = "cli")]
 pub use timing::Clock;
 pub use timing::StageTime;
 #[cfg(feature = "cli")]
 pub use whole::LeftWhole;
+pub use whole::Whole;

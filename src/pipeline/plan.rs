@@ -25,11 +25,10 @@ pub enum JointStyle {
 /// Parameters of a run of the mesher.
 ///
 /// ```
-/// let mut plan = anastomesh::network::MeshPlan::default();
-/// plan.rho = 2.0;
-/// assert!(plan.validate().is_err());
-/// plan.rho = 4.0;
-/// assert!(plan.validate().is_ok());
+/// use anastomesh::network::MeshPlan;
+///
+/// assert!(MeshPlan::default().rho(2.0).validate().is_err());
+/// assert!(MeshPlan::default().rho(4.0).fuse(true).validate().is_ok());
 /// ```
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[non_exhaustive]
@@ -71,6 +70,23 @@ pub struct MeshPlan {
     #[serde(skip)]
     pub dump_dir: Option<std::path::PathBuf>,
 }
+
+anastomesh_mesh::setters!(MeshPlan {
+    rho: f64,
+    follow: f64,
+    stretch: f64,
+    size_at: impl Into<Option<SizeAt>>,
+    core: f64,
+    layers: impl Into<Option<Layers>>,
+    joint: JointStyle,
+    frozen_joints: bool,
+    memory: u64,
+    roots: Vec<u32>,
+    fuse: bool,
+    hollow: bool,
+    keep_going: bool,
+    dump_dir: impl Into<Option<std::path::PathBuf>>,
+});
 
 impl Default for MeshPlan {
     fn default() -> Self {

@@ -49,7 +49,7 @@ pub struct FusedBlock {
     pub uncapped: Vec<u32>,
     /// An axis that is not within the wall, vessels that became one lumen: the genus need not tell.
     #[serde(flatten)]
-    pub astray: Astray,
+    pub(crate) astray: Astray,
 }
 
 /// A cluster in which loops of the skeleton enclose nothing: they lie within their own lumen.
@@ -75,12 +75,14 @@ pub struct ThinBlock {
     pub layers: ThinLayers,
 }
 
+/// Numbers of blocks of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BlockCounts {
     /// Number of clusters.
     pub clusters: usize,
     /// Number of connectors.
     pub connectors: usize,
+    /// Number of nodes of the largest cluster.
     pub largest_cluster_nodes: usize,
 }
 
@@ -97,6 +99,7 @@ pub struct Meeting {
     pub radii: f64,
 }
 
+/// Size of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MeshSize {
     /// Number of tetrahedra.
@@ -138,10 +141,10 @@ pub struct RunReport {
     /// The blocks.
     pub blocks: BlockCounts,
     /// The partition in figures.
-    pub partition: Option<crate::partition::PartitionSummary>,
+    pub(crate) partition: Option<crate::partition::PartitionSummary>,
     /// The joints.
     #[cfg(feature = "woven")]
-    pub joints: Option<crate::woven::JointReport>,
+    pub(crate) joints: Option<crate::woven::JointReport>,
     /// Blocks that needed another try.
     pub retries: Vec<Retry>,
     /// Clusters in which overlapping vessels changed the topology.
@@ -159,7 +162,7 @@ pub struct RunReport {
     /// What the run was expected to take.
     pub estimate: super::Estimate,
     /// Wall time.
-    pub stages: Vec<StageTime>,
+    pub(crate) stages: Vec<StageTime>,
     /// How long blocks took.
-    pub block_times: BlockTimes,
+    pub(crate) block_times: BlockTimes,
 }

@@ -182,7 +182,8 @@ fn mesh_smoothed(
     let mut assembly = clock.time(progress, Stage::Merge, 0, || Assembly::new(&whole, whole.joint_vertices()?))?;
     report.joints = Some(clock.time(progress, Stage::Joints, 0, || assembly.smooth(progress)));
     ask(progress)?;
-    let (mesh, neighbors) = clock.time(progress, Stage::Merge, 0, || assembly.label())?;
+    let labelled = clock.time(progress, Stage::Merge, 0, || assembly.label());
+    let (mesh, neighbors) = labelled.map_err(|error| RunError::Label(error.to_string()))?;
     ask(progress)?;
     let check = || check_volume_with(&mesh, neighbors, Some(&expectation));
     let check = clock.time(progress, Stage::Check, 0, check);

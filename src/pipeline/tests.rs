@@ -69,7 +69,7 @@ fn the_threads_do_not_show_in_the_mesh() {
 #[test]
 fn layers_go_through_forks_tubes_joints_and_caps() {
     let plain = run(&h(12.0), &MeshPlan::default()).expect("meshed");
-    for layers in [Layers::default(), Layers { count: 5, growth: 1.0, thickness: 0.5 }] {
+    for layers in [Layers::default(), Layers::default().count(5).growth(1.0).thickness(0.5)] {
         let plan = MeshPlan { layers: Some(layers), ..MeshPlan::default() };
         let meshed = run(&h(12.0), &plan).expect("meshed");
         assert!(meshed.check.is_valid(), "{:?}", meshed.check.failed().collect::<Vec<_>>());

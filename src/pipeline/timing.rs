@@ -51,6 +51,7 @@ pub struct BlockTimes {
     pub connectors: f64,
     /// The longest one: `cluster 12` or `connector 7`.
     pub longest: String,
+    /// Seconds of the longest one.
     pub longest_seconds: f64,
     /// Number of blocks per bin: the first holds those below 2^-10 s, each further one those below twice as much.
     pub histogram: Vec<u64>,

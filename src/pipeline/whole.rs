@@ -52,7 +52,7 @@ impl<'a> Whole<'a> {
     ///
     /// # Errors
     /// When there are too many vertices or a block cannot be read.
-    pub fn new(
+    pub(crate) fn new(
         store: &'a Store,
         progress: &'a dyn Progress,
         skeleton: &Skeleton,
@@ -82,7 +82,7 @@ impl<'a> Whole<'a> {
     ///
     /// # Errors
     /// When there are too many vertices.
-    pub fn of_walls(store: &'a Store, progress: &'a dyn Progress, blocks: &Blocks) -> io::Result<Self> {
+    pub(crate) fn of_walls(store: &'a Store, progress: &'a dyn Progress, blocks: &Blocks) -> io::Result<Self> {
         let plan = Cow::Owned(Numbering::of(blocks, WALL + 1)?);
         Ok(Self { store, listener: CancelOnly(progress), plan })
     }
@@ -169,7 +169,7 @@ impl<'a> Whole<'a> {
     }
 
     /// Counts it.
-    pub fn size(&self) -> MeshSize {
+    pub(crate) fn size(&self) -> MeshSize {
         let SourceCounts { points, tets, boundary } = self.plan.counts;
         let cap_triangles = self.plan.cap_faces;
         MeshSize { tets, points, wall_triangles: boundary - cap_triangles, cap_triangles }
@@ -179,22 +179,22 @@ impl<'a> Whole<'a> {
     ///
     /// # Errors
     /// When a block cannot be read.
-    pub fn look(&self, memory: u64) -> io::Result<Looked<'_>> {
+    pub(crate) fn look(&self, memory: u64) -> io::Result<Looked<'_>> {
         Looked::at(self, memory as usize)
     }
 
     /// The number of a part among all blocks, those that are missing included.
-    pub fn block_of(&self, part: u32) -> u32 {
+    pub(crate) fn block_of(&self, part: u32) -> u32 {
         self.plan.part(part).block as u32
     }
 
     /// The numbers of all parts, in order.
-    pub fn blocks(&self) -> impl Iterator<Item = u32> {
+    pub(crate) fn blocks(&self) -> impl Iterator<Item = u32> {
         self.plan.parts.iter().map(|part| part.block as u32)
     }
 
     /// Pairs of blocks whose walls meet, by their numbers.
-    pub fn blocks_that_meet(&self, looked: &Looked) -> Meetings {
+    pub(crate) fn blocks_that_meet(&self, looked: &Looked) -> Meetings {
         looked.meeting().iter().map(|pair| pair.map(|part| self.block_of(part))).collect()
     }
 
@@ -202,7 +202,7 @@ impl<'a> Whole<'a> {
     ///
     /// # Errors
     /// When the block cannot be read.
-    pub fn bounds(&self, part: u32) -> io::Result<Aabb> {
+    pub(crate) fn bounds(&self, part: u32) -> io::Result<Aabb> {
         Ok(self.certificate(part)?.bounds())
     }
 
@@ -210,7 +210,7 @@ impl<'a> Whole<'a> {
     ///
     /// # Errors
     /// When a block cannot be read.
-    pub fn joint_vertices(&self) -> io::Result<Vec<Vec<u32>>> {
+    pub(crate) fn joint_vertices(&self) -> io::Result<Vec<Vec<u32>>> {
         let mut all = Vec::with_capacity(self.plan.joined.len());
         for part in self.plan.clusters..self.plan.parts.len() as u32 {
             let bytes = self.record(self.plan.part(part))?;

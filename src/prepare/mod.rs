@@ -19,8 +19,8 @@ mod touching;
 
 pub use directed::directed;
 pub use islands::Island;
-pub use lumen::JoinedReport;
-pub use merge::MergeReport;
+pub use lumen::{ClosedLoop, JoinedNodes, JoinedReport};
+pub use merge::{MergeReport, Merged, Parting};
 pub use radii::{FilledRadius, RadiusDefect};
 pub use report::{PrepareReport, Size};
 pub use resample::ResampleReport;
@@ -60,6 +60,21 @@ pub struct PrepareParams {
     /// Maximum relative difference of a resampled radius.
     pub radius_tolerance: f64,
 }
+
+anastomesh_mesh::setters!(PrepareParams {
+    only_measured: bool,
+    radii: bool,
+    merge: bool,
+    spurs: bool,
+    join: bool,
+    short_tips: bool,
+    touching: Touching,
+    drop_islands: usize,
+    resample: bool,
+    smooth: bool,
+    axis_tolerance: f64,
+    radius_tolerance: f64,
+});
 
 impl Default for PrepareParams {
     fn default() -> Self {

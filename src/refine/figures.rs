@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Figures {
+    /// Metrics of the paper (Fig. 11).
     pub metrics: Metrics,
     /// Overlapping pairs of edges.
     pub overlaps: usize,
@@ -101,6 +102,7 @@ impl Metric {
 }
 
 impl Figures {
+    /// Figures of a skeleton.
     pub fn of(skeleton: &Skeleton) -> Self {
         Self::with_overlaps(skeleton).0
     }

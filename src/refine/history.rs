@@ -19,7 +19,9 @@ pub struct HistorySample {
 /// Displacement statistics of nodes, in the unit of the skeleton unless stated otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Displacement {
+    /// Mean over the nodes.
     pub mean: f64,
+    /// Median over the nodes.
     pub median: f64,
     /// 95th percentile.
     pub p95: f64,

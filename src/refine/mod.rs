@@ -23,9 +23,9 @@ pub use figures::{Figures, Metric};
 pub use history::{Displacement, HistorySample};
 pub use leash::FarNode;
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
-pub use residual::{ResidualReport, Treatment};
+pub use residual::{ResidualPair, ResidualReport, Treatment};
 
-pub use split::{split, split_shared};
+pub use split::{SplitNode, SplitReport, split, split_shared};
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
@@ -98,7 +98,7 @@ pub struct RefineReport {
     /// Metrics in which the result is worse than the input.
     pub worse: Vec<Metric>,
     /// Metrics over the iterations.
-    pub history: Vec<HistorySample>,
+    pub(crate) history: Vec<HistorySample>,
 }
 
 /// Refines a skeleton (section 3.1 of the paper). Nodes of more than three vessels are split, then the paper's three

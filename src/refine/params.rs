@@ -52,6 +52,7 @@ pub enum Freedom {
 /// Parameters of the refinement. Lengths are in radii or in the paper's unit (`unit` of the report), in which the
 /// median edge radius is 0.448. Results are thus independent of the unit of the file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct RefineParams {
     /// Maximum number of iterations.
     pub iterations: usize,
@@ -86,6 +87,25 @@ pub struct RefineParams {
     /// Sampling interval of the metrics, in iterations, in addition to the first ten. 0 samples only start and end.
     pub every: usize,
 }
+
+anastomesh_mesh::setters!(RefineParams {
+    iterations: usize,
+    forces: f64,
+    barrier_rate: f64,
+    repel_rate: f64,
+    angle_rate: f64,
+    clearance: f64,
+    free_terminals: f64,
+    furthest: f64,
+    freedom: Freedom,
+    bends: bool,
+    crowded: Crowded,
+    hold: Vec<Metric>,
+    residual: Residual,
+    shrink: f64,
+    rho: f64,
+    every: usize,
+});
 
 impl Default for RefineParams {
     fn default() -> Self {

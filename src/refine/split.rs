@@ -8,6 +8,7 @@ use std::sync::Arc;
 /// Maximum halvings of the shift if an edge would become too short.
 const HALVINGS: u32 = 8;
 
+/// Node that was split, with the nodes and edges made of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SplitNode {
     /// The node; it keeps its id and moves upstream.

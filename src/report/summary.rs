@@ -95,9 +95,12 @@ pub fn of_mesh(check: &CheckReport) -> String {
     row("mesh", &sizes(check)) + &shape
 }
 
+/// Options that show more faults.
+const MORE_FAULTS: &str = " (-v shows ten, --report where they are)";
+
 /// Result of a check: passed conditions, failed ones, verdict. With `listed`, all are printed elsewhere.
 pub fn of_check(check: &CheckReport, listed: bool) -> String {
-    format!("{}{}{}\n", row("check", &tally(check, listed)), faults(check), verdict(check.verdict))
+    format!("{}{}{}\n", row("check", &tally(check, listed)), faults(check, MORE_FAULTS), verdict(check.verdict))
 }
 
 /// Fidelity of a mesh: displacement if vessels were moved, else the radius error of the wall.

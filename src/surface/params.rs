@@ -64,12 +64,19 @@ pub enum SurfaceError {
     },
     /// A parameter is out of its range.
     #[error("{name} = {value} is out of range")]
-    InvalidParameter { name: &'static str, value: f64 },
+    InvalidParameter {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The wall would cross too many cells.
     #[error("the wall crosses about {cells:.3e} grid cells, more than the limit of {limit}")]
     TooLarge {
         /// Estimated or counted cells.
         cells: f64,
+
+        /// Largest number of cells.
         limit: usize,
     },
     /// The grid is too coarse to resolve a tube.

@@ -9,7 +9,7 @@ use anastomesh_mesh::quality::TetQuality;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_tet::parts::Complex;
 use anastomesh_tet::parts::{OptimizeOptions, optimize};
-use anastomesh_tet::parts::{TetOptions, tetrahedralize};
+use anastomesh_tet::{Effort, Tetrahedralizer};
 
 const SIDES: u32 = 14;
 const LAYERS: u32 = 8;
@@ -68,7 +68,8 @@ struct JoinedBlocks {
 
 fn two_blocks() -> (JoinedBlocks, Vec<Joint>, Vec<bool>) {
     let length = f64::from(LAYERS) * STEP;
-    let [lower, upper] = [-length, 0.0].map(|z0| tetrahedralize(&tube(z0), &TetOptions::default()).expect("a tube"));
+    let [lower, upper] =
+        [-length, 0.0].map(|z0| Tetrahedralizer::new().effort(Effort::Fast).run(&tube(z0)).expect("a tube").mesh);
     let key = |p: &Point3| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()];
     let surface = tube(0.0).points.len();
     let below: HashMap<_, u32> = lower.points.iter().zip(0..).take(surface).map(|(p, v)| (key(p), v)).collect();

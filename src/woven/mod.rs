@@ -16,7 +16,6 @@ mod trim;
 pub use assembly::Assembly;
 pub use cluster::mesh_trimmed;
 pub use joints::JointReport;
-pub use label::LabelError;
 
 #[cfg(test)]
 mod joint_tests;

@@ -20,14 +20,14 @@ struct Filled {
 fn ours(plc: &Plc) -> Filled {
     let run = Tetrahedralizer::new().kind(InputKind::Plc).interior(Interior::None).optimize(false).run(plc);
     let out = run.unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(out.mesh.points[..plc.points.len()], plc.points);
+    assert_eq!(out.mesh.points[..plc.surface.points.len()], plc.surface.points);
     Filled { faces: out.faces.len(), regions: out.summary.regions, volume: volume(&out.mesh) }
 }
 
 fn theirs(plc: &Plc) -> Option<Filled> {
-    let mut poly = points_section(&plc.points);
-    let _ = writeln!(poly, "{} 0", plc.triangles.len());
-    for [a, b, c] in &plc.triangles {
+    let mut poly = points_section(&plc.surface.points);
+    let _ = writeln!(poly, "{} 0", plc.surface.triangles.len());
+    for [a, b, c] in &plc.surface.triangles {
         let _ = writeln!(poly, "1\n3 {a} {b} {c}");
     }
     let _ = writeln!(poly, "{}", plc.holes.len());
@@ -58,9 +58,9 @@ fn compare(case: &str, plc: &Plc) {
 }
 
 fn add(plc: &mut Plc, points: &[Point3], triangles: &[[u32; 3]]) {
-    let first = plc.points.len() as u32;
-    plc.points.extend(points);
-    plc.triangles.extend(triangles.iter().map(|t| t.map(|v| v + first)));
+    let first = plc.surface.points.len() as u32;
+    plc.surface.points.extend(points);
+    plc.surface.triangles.extend(triangles.iter().map(|t| t.map(|v| v + first)));
 }
 
 /// Box of twelve triangles.
@@ -90,12 +90,12 @@ fn partitioned(cells: u32) -> Plc {
     let mut plc = Plc::default();
     for i in 0..=cells {
         let x = f64::from(i) * 1.3;
-        plc.points.extend([(0.0, 0.0), (1.0, 0.0), (1.0, 1.1), (0.0, 1.1)].map(|(y, z)| Point3::new(x, y, z)));
+        plc.surface.points.extend([(0.0, 0.0), (1.0, 0.0), (1.0, 1.1), (0.0, 1.1)].map(|(y, z)| Point3::new(x, y, z)));
         let f = 4 * i;
-        plc.triangles.extend([[f, f + 1, f + 2], [f, f + 2, f + 3]]);
+        plc.surface.triangles.extend([[f, f + 1, f + 2], [f, f + 2, f + 3]]);
         for (j, k) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
             if i < cells {
-                plc.triangles.extend([[f + j, f + k, f + k + 4], [f + j, f + k + 4, f + j + 4]]);
+                plc.surface.triangles.extend([[f + j, f + k, f + k + 4], [f + j, f + k + 4, f + j + 4]]);
             }
         }
     }

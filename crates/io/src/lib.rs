@@ -1,10 +1,30 @@
-//! Floor 3: readers and writers.
+//! Readers and writers of vascular networks, triangle surfaces and tetrahedral meshes.
 //!
-//! Three families of files, each with a folder per format: `volume` (tetrahedral meshes), `network` and `surface`. `tetgen`
-//! stands apart because its files are more than one of these. What formats share: `file` (paths, whole files), `text` (words
-//! and numbers with their lines), `vtk_xml`, `npy` (arrays of `NumPy`), `patches` (names).
+//! ```
+//! use anastomesh_io::{read_surface, write_surface};
+//! use anastomesh_mesh::shapes::sphere_surface;
 //!
-//! A new format of a family takes
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("sphere.ply");
+//! write_surface(&path, &sphere_surface(2))?;
+//! assert_eq!(read_surface(&path)?, sphere_surface(2));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | module | files |
+//! |---|---|
+//! | [`network`] | skeletons of vascular networks |
+//! | [`surface`] | triangle surfaces, and boundaries of meshes |
+//! | [`volume`] | tetrahedral meshes with labelled boundaries, and cases for solvers |
+//! | [`npy`] | arrays of `NumPy`, which all three families have |
+//! | [`faults`] | faults that formats share |
+//!
+//! The format is that of the file's extension. The crate has no features.
+//!
+//! # A new format
+//!
+//! Each family has a folder for each format. Formats share `file` (paths, whole files), `text` (words and numbers with their
+//! lines), `vtk_xml`, `npy`, and `patches` (names). A new format takes
 //! 1. a folder with `error` (an enum of what can be wrong with such a file), `read` and `write`: from bytes or a path to the
 //!    family's `content` and from there to a stream. It knows neither the other formats nor what paths there are;
 //! 2. a variant of the enum in the family's `format`, with its extensions, and one of the enum of faults in its `error`;
@@ -27,6 +47,13 @@ mod text;
 pub mod volume;
 mod vtk_xml;
 mod xml;
+
+/// Faults that several formats share: paths, words and numbers, VTK's XML.
+pub mod faults {
+    pub use crate::file::FileError;
+    pub use crate::text::{Place, TextFault};
+    pub use crate::vtk_xml::VtkError;
+}
 
 pub use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 pub use file::{ensure_text_writable, write_bytes, write_text};

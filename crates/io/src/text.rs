@@ -29,6 +29,7 @@ pub enum TextFault {
     /// A word is not a number.
     #[error("line {line}: '{text}' stands where {what} has to be: correct it")]
     NotANumber {
+        /// Line of the file, from 1.
         line: usize,
         /// Expected item.
         what: &'static str,
@@ -38,6 +39,7 @@ pub enum TextFault {
     /// A coordinate is infinite or NaN.
     #[error("line {line}: {what} is '{text}'; it must be a finite number: correct it")]
     NotFinite {
+        /// Line of the file, from 1.
         line: usize,
         /// Name of the number.
         what: &'static str,
@@ -47,6 +49,7 @@ pub enum TextFault {
     /// A number is out of range.
     #[error("line {line}: {what} is {value}, which is too small or too large: correct it")]
     OutOfRange {
+        /// Line of the file, from 1.
         line: usize,
         /// Name of the number.
         what: &'static str,
@@ -59,14 +62,22 @@ pub enum TextFault {
          correct it, or write or copy the file again if it is cut short"
     )]
     CountTooLarge {
+        /// Line of the file, from 1.
         line: usize,
         /// Counted item.
         what: &'static str,
+
+        /// Number that was found.
         count: i64,
     },
     /// A line ends before it is complete.
     #[error("line {line} ends before {missing}: complete it")]
-    LineTooShort { line: usize, missing: &'static str },
+    LineTooShort {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Missing item.
+        missing: &'static str,
+    },
     /// The file ends before it is complete.
     #[error(
         "line {line}: the file ends before {missing}: a count in it is wrong, or it was not written or copied completely"
@@ -74,11 +85,16 @@ pub enum TextFault {
     CutShort {
         /// Last line.
         line: usize,
+
+        /// Missing item.
         missing: &'static str,
     },
     /// The file has more data than announced.
     #[error("line {line} lies behind all that the counts of the file announce: correct the counts or remove it")]
-    Surplus { line: usize },
+    Surplus {
+        /// Line of the file, from 1.
+        line: usize,
+    },
 }
 
 /// Cursor over the words of a text.

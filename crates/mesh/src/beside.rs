@@ -5,6 +5,7 @@ use crate::geometry::Point3;
 /// A column of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
+    /// Name of the column.
     pub name: &'static str,
     /// True for values at points, false for values in cells.
     pub at_points: bool,

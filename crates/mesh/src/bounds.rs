@@ -15,14 +15,36 @@ pub struct Bounds {
     pub max_volume: Option<f64>,
 }
 
+/// One of the [`Bounds`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Bound {
+    /// `max_radius_edge`.
+    MaxRadiusEdge,
+    /// `min_dihedral`.
+    MinDihedral,
+    /// `max_volume`.
+    MaxVolume,
+}
+
+impl std::fmt::Display for Bound {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::MaxRadiusEdge => "max_radius_edge",
+            Self::MinDihedral => "min_dihedral",
+            Self::MaxVolume => "max_volume",
+        })
+    }
+}
+
 impl Bounds {
     /// Name and value of the first bound that no mesh can meet.
-    pub fn senseless(&self) -> Option<(&'static str, f64)> {
+    pub fn senseless(&self) -> Option<(Bound, f64)> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let angle = |x: f64| (0.0..REGULAR_DIHEDRAL).contains(&x);
         let wrong = |name, bound: Option<f64>, good: &dyn Fn(f64) -> bool| Some((name, bound.filter(|&b| !good(b))?));
-        wrong("max_radius_edge", self.max_radius_edge, &positive)
-            .or_else(|| wrong("max_volume", self.max_volume, &positive))
-            .or_else(|| wrong("min_dihedral", self.min_dihedral, &angle))
+        wrong(Bound::MaxRadiusEdge, self.max_radius_edge, &positive)
+            .or_else(|| wrong(Bound::MaxVolume, self.max_volume, &positive))
+            .or_else(|| wrong(Bound::MinDihedral, self.min_dihedral, &angle))
     }
 }

@@ -14,6 +14,7 @@ type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 /// Length of normals, relative to the facet's squared extent, below which they do not define its plane.
 const NO_NORMAL: f64 = 1e-9;
 
+/// Triangulation of a facet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FacetTriangles {
     /// Triangles with the orientation of the facet's first polygon.
@@ -39,13 +40,19 @@ pub enum FacetError {
     },
     /// Two of its points coincide, seen along the axis nearest to its normal.
     #[error("its points {} and {} are at the same place, or one above the other: keep one of them", points[0], points[1])]
-    Coincident { points: [u32; 2] },
+    Coincident {
+        /// The two points.
+        points: [u32; 2],
+    },
     /// It encloses nothing.
     #[error("it encloses no area: its corners lie on one line, or its polygons do not close")]
     NoArea,
     /// A coordinate is not finite, or out of range for exact arithmetic.
     #[error("the coordinates of its point {point} are not finite or out of the range of exact arithmetic")]
-    OutOfRange { point: u32 },
+    OutOfRange {
+        /// The point.
+        point: u32,
+    },
     /// A polygon refers to a missing point.
     #[error("it names the point {point}, which does not exist")]
     NoSuchPoint {

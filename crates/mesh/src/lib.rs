@@ -1,4 +1,32 @@
-//! Floor 2: what concerns one mesh, wherever it came from: arrays, adjacency, quality, smoothing, validity.
+//! Triangle and tetrahedral meshes: exact predicates, self-intersections, quality, repair, and a validity check.
+//!
+//! ```
+//! use anastomesh_mesh::{Point3, TetMesh, check::check_tets, quality::TetQuality};
+//!
+//! let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+//! let mesh = TetMesh { points, tets: vec![[0, 1, 2, 3]] };
+//! assert!(check_tets(&mesh, None).failed().next().is_none());
+//! assert!(TetQuality::of(&mesh).mean > 0.7);
+//! ```
+//!
+//! | module | contents |
+//! |---|---|
+//! | [`check`] | validity of a mesh, in one piece or in parts |
+//! | [`quality`], [`dihedral`] | radius ratios and dihedral angles |
+//! | [`repair`], [`facets`] | surfaces corrected; polygons with holes cut into triangles |
+//! | [`source`], [`boundary`] | meshes and boundaries that are read a part at a time |
+//! | [`adjacency`], [`faces`], [`relabel`], [`beside`] | neighbours, faces, labels, values beside a mesh |
+//! | [`smooth`], [`shapes`] | smoothing; spheres, tubes and other shapes |
+//! | [`geometry`], [`bits`] | predicates, intersections, distances, search trees; bits of numbers |
+//! | [`progress`], [`units`] | progress and cancellation; numbers for people |
+//!
+//! The crate has no features.
+//!
+//! # nalgebra
+//!
+//! [`Point3`] and [`Vec3`] are types of `nalgebra`, which is re-exported as [`nalgebra`]. A program that uses
+//! `anastomesh_mesh::nalgebra` needs no dependency of its own and no matching version. A new major version of `nalgebra` (0.x counts
+//! as major) comes only with a new major version of this crate; before 1.0, with a new minor version.
 
 pub mod adjacency;
 pub mod beside;
@@ -16,13 +44,13 @@ pub mod progress;
 pub mod quality;
 pub mod relabel;
 pub mod repair;
+mod setters;
 pub mod shapes;
 pub mod smooth;
 pub mod source;
 pub mod units;
 
-pub use bounds::Bounds;
-pub use bounds::REGULAR_DIHEDRAL;
+pub use bounds::{Bound, Bounds, REGULAR_DIHEDRAL};
 pub use keep::Kept;
 pub use keys::{face_key, tet_key};
 

@@ -12,6 +12,7 @@ use crate::geometry::Point3;
 /// How much a mesh holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SourceCounts {
+    /// Points.
     pub points: usize,
     /// Tetrahedra.
     pub tets: usize,

@@ -121,6 +121,7 @@ pub struct Branches {
 }
 
 impl Skeleton {
+    /// Splits the skeleton at its junctions into branches.
     pub fn branches(&self, adjacency: &Adjacency) -> Branches {
         let chains = self.chains(adjacency);
         let mut of_edge = vec![(BranchId(0), 0); self.edges.len()];

@@ -20,6 +20,11 @@ impl Chains {
         self.first.len() - 1
     }
 
+    /// Returns `true` if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     fn range(&self, branch: u32) -> std::ops::Range<usize> {
         self.first[branch as usize] as usize..self.first[branch as usize + 1] as usize
     }

@@ -44,7 +44,9 @@ impl Way {
 /// Courses of all branches, each built on access.
 #[derive(Clone, Copy)]
 pub struct Courses<'a> {
+    /// The skeleton.
     pub skeleton: &'a Skeleton,
+    /// Its branches.
     pub chains: &'a Chains,
 }
 
@@ -54,10 +56,17 @@ impl<'a> Courses<'a> {
         self.chains.len()
     }
 
+    /// Returns `true` if there are none.
+    pub fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+
+    /// Returns the course of a branch.
     pub fn get(self, branch: u32) -> Course {
         Course::new(self.skeleton, self.chains.branch(self.skeleton, branch))
     }
 
+    /// Iterates over the courses of all branches.
     pub fn iter(self) -> impl Iterator<Item = Course> + 'a {
         (0..self.len() as u32).map(move |branch| self.get(branch))
     }
@@ -65,6 +74,7 @@ impl<'a> Courses<'a> {
 
 /// A branch with its geometry.
 pub struct Course {
+    /// The branch.
     pub branch: Branch,
     /// Positions of `branch.nodes`.
     pub points: Vec<Point3>,
@@ -73,12 +83,14 @@ pub struct Course {
 }
 
 impl Course {
+    /// Course of a branch of the skeleton.
     pub fn new(skeleton: &Skeleton, branch: Branch) -> Self {
         let points = branch.nodes.iter().map(|n| skeleton.nodes[n.0 as usize].position).collect();
         let radii = branch.tubes(skeleton).map(|t| [t.ra, t.rb]).collect();
         Self { branch, points, radii }
     }
 
+    /// Returns the length of the branch.
     pub fn length(&self) -> f64 {
         self.branch.length()
     }

@@ -91,9 +91,12 @@ pub struct CutWindow {
     pub straight: Vec<[f64; 2]>,
 }
 
+/// Kind of node at the end of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BranchEnd {
+    /// A node of three or more edges.
     Junction,
+    /// A node of one edge.
     Terminal,
     /// Node where a ring was opened, of valence 2.
     Seam,

@@ -190,6 +190,7 @@ impl Skeleton {
         second
     }
 
+    /// Returns the length of an edge.
     pub fn length(&self, id: EdgeId) -> f64 {
         let [a, b] = self.edge(id).nodes;
         (self.node(b).position - self.node(a).position).norm()

@@ -1,4 +1,28 @@
-//! Floor 2: the vessel skeleton, a graph whose nodes are points with a radius and whose edges are vessels.
+//! Skeletons of vascular networks: graphs whose nodes are points with a radius and whose edges are vessels.
+//!
+//! ```
+//! use anastomesh_mesh::Point3;
+//! use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton, clean};
+//!
+//! let node = |z: f64, original| Node { position: Point3::new(0.0, 0.0, z), radius: 1.0, original };
+//! let edges = vec![Edge { nodes: [NodeId(0), NodeId(1)], radii: [1.0; 2] }];
+//! let vessel = Skeleton { nodes: vec![node(0.0, 0), node(9.0, 1)], edges };
+//! let (vessel, report) = clean(&vessel)?;
+//! assert!(report.is_empty());
+//! assert_eq!(vessel.components(&vessel.adjacency()).list.len(), 1);
+//! # Ok::<(), anastomesh_skeleton::SkeletonError>(())
+//! ```
+//!
+//! | to | use |
+//! |---|---|
+//! | clean a skeleton that was read | [`clean`] |
+//! | split it into branches and connected components | [`Branches`], [`Components`], [`Chains`] |
+//! | find overlapping vessels | [`Overlaps`] |
+//! | find where branches can be cut | [`cuttability`], [`course`] |
+//! | measure it | [`Metrics`] |
+//! | choose edge lengths | [`SizeAt`], [`resolution`] |
+//!
+//! The crate has no features.
 
 mod branch;
 mod chains;
@@ -23,16 +47,16 @@ mod size_at;
 mod tests;
 mod walk;
 
-pub use branch::{Branch, Branches};
+pub use branch::{Branch, Branches, Place};
 pub use clean::{CleanReport, clean};
 pub use crowding::CrowdedTerminals;
 pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, separation};
 pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};
 pub use error::{LARGEST, SkeletonError};
 pub use extend::Extended;
-pub use graph::{Adjacency, Component};
+pub use graph::{Adjacency, Component, Components};
 pub use groups::LineGroup;
-pub use metrics::{Barrier, Metrics, NARROW, Share};
+pub use metrics::{Barrier, Metrics, NARROW, PairGradient, Share};
 pub use overlap::{Overlap, Overlaps};
 pub use size_at::{BadSize, FineFork, LEAST_SIZE, NodeSizes, SizeAt};
 

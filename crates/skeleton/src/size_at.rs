@@ -105,7 +105,9 @@ pub struct FineFork {
 /// A vessel that leaves a fork.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
+    /// Unit vector out of the fork.
     pub direction: Vec3,
+    /// Radius at the fork.
     pub radius: f64,
 }
 

@@ -3,15 +3,15 @@
 use super::certify::Place;
 use super::certify_hull::certify_hull;
 use super::contacts;
-use super::error::TetError;
+use super::error::{LayersConflict, TetError};
 use super::fill::fill;
 use super::layer::Layers;
 use super::layers::{LayerSummary, layered};
 use super::optimize::{Effort, OptimizeReport};
-use super::options::{Boundary, Interior, Refinement, Sizing, TetOptions};
+use super::options::{Boundary, Interior, Refinement, Sizing};
 use super::outside::without;
 use super::plc::LeftOut;
-use super::plc::{InputKind, Plc};
+use super::plc::{InputKind, PlcRef};
 use super::progress::{Progress, Stage, Watch};
 use super::recover::RecoverySummary;
 use super::refine::RefineReport;
@@ -27,10 +27,10 @@ use std::sync::Arc;
 /// It can be cloned, sent to other threads and used again; runs share nothing.
 ///
 /// ```
-/// use anastomesh_tet::{Interior, Plc, Tetrahedralizer};
+/// use anastomesh_tet::{Interior, Tetrahedralizer};
 ///
 /// let surface = anastomesh_mesh::shapes::sphere_surface(2);
-/// let made = Tetrahedralizer::new().interior(Interior::None).optimize(false).run(&Plc::from(&surface))?;
+/// let made = Tetrahedralizer::new().interior(Interior::None).optimize(false).run(&surface)?;
 /// assert_eq!(made.faces, surface.triangles);
 /// # Ok::<(), anastomesh_tet::TetError>(())
 /// ```
@@ -93,15 +93,14 @@ pub struct Summary {
 
 impl Default for Tetrahedralizer {
     fn default() -> Self {
-        let TetOptions { interior, optimize, .. } = TetOptions::default();
         Self {
             kind: InputKind::default(),
-            interior,
+            interior: Interior::Lattice { cell: None, clearance: None },
             refinement: None,
             sizing: Sizing::default(),
             boundary: Boundary::default(),
             layers: None,
-            optimize,
+            optimize: true,
             effort: Effort::Full,
             strict: false,
             progress: None,
@@ -132,8 +131,8 @@ impl Tetrahedralizer {
 
     /// Delaunay refinement: tetrahedra that are too large or badly shaped are split.
     #[must_use]
-    pub fn refine(mut self, refinement: Option<Refinement>) -> Self {
-        self.refinement = refinement;
+    pub fn refine(mut self, refinement: impl Into<Option<Refinement>>) -> Self {
+        self.refinement = refinement.into();
         self
     }
 
@@ -154,8 +153,8 @@ impl Tetrahedralizer {
     /// Layers of thin tetrahedra along a closed surface, in place of the same as everywhere. What else is asked for holds inside
     /// of them.
     #[must_use]
-    pub fn layers(mut self, layers: Option<Layers>) -> Self {
-        self.layers = layers;
+    pub fn layers(mut self, layers: impl Into<Option<Layers>>) -> Self {
+        self.layers = layers.into();
         self
     }
 
@@ -197,30 +196,34 @@ impl Tetrahedralizer {
         self.progress.as_deref().map_or(Watch::NOBODY, |progress| Watch::of(progress))
     }
 
-    /// Makes a mesh of a complex. Success means that it has passed the certificate: each triangle of the input that bounds or lies in what is filled is a face
-    /// of it.
+    /// Makes a mesh of a surface (`&TriMesh`) or a complex (`&Plc`), neither of which is copied. Success means that the mesh
+    /// has passed the certificate: each triangle of the input on or in the filled volume is a face of it.
     ///
     /// # Errors
     /// [`TetError`]: what is wrong with the input, or what could not be recovered.
-    pub fn run(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
+    pub fn run<'a>(&self, input: impl Into<PlcRef<'a>>) -> Result<Tetrahedralization, TetError> {
+        self.run_borrowed(input.into())
+    }
+
+    fn run_borrowed(&self, plc: PlcRef) -> Result<Tetrahedralization, TetError> {
         let watch = self.watch();
         watch.report(Stage::Validate, 0, 1)?;
         input::check_lengths(plc)?;
-        let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
-        let edges = input::validate(&surface, &plc.edges, self.kind)?;
+        let surface = plc.surface;
+        let edges = input::validate(surface, plc.segments, self.kind)?;
         watch.report(Stage::Validate, 1, 1)?;
         self.check_layers(plc)?;
         if self.boundary == Boundary::Split {
-            sized::check(self.refinement.as_ref(), &self.sizing, plc.points.len())?;
+            sized::check(self.refinement.as_ref(), &self.sizing, surface.points.len())?;
             return self.run_split(plc);
         }
         let request = Request {
-            surface: &surface,
+            surface,
             edges: &edges,
-            segments: &plc.edges,
+            segments: plc.segments,
             kind: self.kind,
-            holes: if self.kind == InputKind::Plc { &plc.holes } else { &[] },
-            regions: &plc.regions,
+            holes: if self.kind == InputKind::Plc { plc.holes } else { &[] },
+            regions: plc.regions,
             interior: &self.interior,
             refinement: self.refinement.as_ref(),
             sizing: &self.sizing,
@@ -241,11 +244,11 @@ impl Tetrahedralizer {
         };
         let count = |wanted: Place| filled.places.iter().filter(|&&p| p == wanted).count();
         let outside = &filled.left_out.triangles;
-        let kept = filled.left_out.kept_surface(&surface);
-        let origins = if outside.is_empty() { Vec::new() } else { without(&triangle_ids(&surface), outside) };
+        let kept = filled.left_out.kept_surface(surface);
+        let origins = if outside.is_empty() { Vec::new() } else { without(&triangle_ids(surface), outside) };
         Ok(Tetrahedralization {
             faces: kept.triangles.iter().zip(&filled.places).map(outward).collect(),
-            face_markers: without(&plc.markers, outside),
+            face_markers: without(plc.markers, outside),
             origins,
             summary: Summary {
                 recovery: filled.recovery,
@@ -263,14 +266,14 @@ impl Tetrahedralizer {
     }
 
     /// Whether the layers that are asked for make sense, and with what they are asked for.
-    fn check_layers(&self, plc: &Plc) -> Result<(), TetError> {
+    fn check_layers(&self, plc: PlcRef) -> Result<(), TetError> {
         let Some(layers) = &self.layers else { return Ok(()) };
         layers.check()?;
         let along = |what| Err(TetError::LayersAlong(what));
         match () {
-            () if self.boundary == Boundary::Split => along("they may not be split"),
-            () if self.kind == InputKind::Plc => along("this is a complex of facets"),
-            () if !plc.edges.is_empty() => along("there are segments besides"),
+            () if self.boundary == Boundary::Split => along(LayersConflict::SplitBoundary),
+            () if self.kind == InputKind::Plc => along(LayersConflict::Facets),
+            () if !plc.segments.is_empty() => along(LayersConflict::Segments),
             () => Ok(()),
         }
     }
@@ -280,27 +283,28 @@ impl Tetrahedralizer {
     /// triangle. Segments are not tested against triangles.
     ///
     /// ```
-    /// use anastomesh_tet::{Plc, TetError, Tetrahedralizer};
+    /// use anastomesh_tet::{TetError, Tetrahedralizer};
     ///
     /// let mut surface = anastomesh_mesh::shapes::sphere_surface(2);
     /// surface.triangles.pop();
-    /// let fault = Tetrahedralizer::new().check(&Plc::from(surface));
+    /// let fault = Tetrahedralizer::new().check(&surface);
     /// assert!(matches!(fault, Err(TetError::Open { edges: 3, .. })), "{fault:?}");
     /// # Ok::<(), anastomesh_tet::TetError>(())
     /// ```
     ///
     /// # Errors
     /// The first fault, with the ids of the offenders.
-    pub fn check(&self, plc: &Plc) -> Result<(), TetError> {
+    pub fn check<'a>(&self, input: impl Into<PlcRef<'a>>) -> Result<(), TetError> {
+        let plc = input.into();
+        let surface = plc.surface;
         let watch = self.watch();
         watch.report(Stage::Validate, 0, 1)?;
         input::check_lengths(plc)?;
-        let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
-        input::validate(&surface, &plc.edges, self.kind)?;
+        input::validate(surface, plc.segments, self.kind)?;
         input::no_duplicate_points(&surface.points)?;
         input::no_duplicate_triangles(&surface.triangles)?;
-        contacts::no_contacts(&surface, &watch)?;
-        contacts::no_points_in_triangles(&surface)?;
+        contacts::no_contacts(surface, &watch)?;
+        contacts::no_points_in_triangles(surface)?;
         watch.report(Stage::Validate, 1, 1)
     }
 
@@ -331,6 +335,35 @@ impl Tetrahedralizer {
         watch.report(Stage::Certify, 1, 1)?;
         Ok(Tetrahedralization { mesh, faces, ..Tetrahedralization::default() })
     }
+}
+
+/// Fills a closed surface that is oriented outwards, with the interior, the improvement and the effort that the
+/// tetrahedralizer has. The points of the mesh begin with those of the surface. There is no certificate: callers check what they
+/// make of the mesh.
+///
+/// # Errors
+/// [`TetError`]; [`TetError::Cancelled`] when the watch says so.
+pub fn fill_outward(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<TetMesh, TetError> {
+    let edges = input::validate(surface, &[], InputKind::Closed)?;
+    input::outward(surface)?;
+    let request = Request {
+        surface,
+        edges: &edges,
+        segments: &[],
+        kind: InputKind::Closed,
+        holes: &[],
+        regions: &[],
+        interior: &by.interior,
+        refinement: None,
+        sizing: &Sizing::Surface,
+        optimize: by.optimize,
+        certify: false,
+        effort: by.effort,
+        strict: true,
+        label: false,
+        watch,
+    };
+    Ok(fill(&request)?.mesh)
 }
 
 fn triangle_ids(surface: &TriMesh) -> Vec<u32> {

@@ -1,7 +1,7 @@
 //! Carving: removal of the tetrahedra outside the recovered surface.
 
 use super::complex::{Complex, NONE};
-use super::error::TetError;
+use super::error::{SeedKind, TetError};
 use super::plc::InputKind;
 use super::regions::tets_of_seeds;
 use super::star::Star;
@@ -115,7 +115,7 @@ fn sides_by_reach(c: &Complex, holes: &[Point3]) -> Result<Vec<u8>, TetError> {
     let mut side = vec![INSIDE; c.slots()];
     let mut stack: Vec<u32> = infinity(c).into_iter().collect();
     for (index, (t, &position)) in tets_of_seeds(c, holes).into_iter().zip(holes).enumerate() {
-        stack.push(t.ok_or(TetError::BadSeed { what: "holes", index: index as u32, position })?);
+        stack.push(t.ok_or(TetError::BadSeed { seed: SeedKind::Hole, index: index as u32, position })?);
     }
     for &t in &stack {
         side[t as usize] = OUTSIDE;

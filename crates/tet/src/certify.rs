@@ -1,6 +1,7 @@
 //! The certificate: what has to hold before a mesh may be called the tetrahedralization of a surface.
 
 use super::complex::{face_key, face_of};
+use super::error::InputPart;
 use super::plc::InputKind;
 use super::plc::LeftOut;
 use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
@@ -64,10 +65,10 @@ pub enum CertifyError {
         segment: u32,
     },
     /// What was left out of the mesh as lying outside is a face or an edge of it.
-    #[error("{what} {id} of the input was left out, and the mesh has it")]
+    #[error("item {id} of the {part} of the input was left out, and the mesh has it")]
     NotOutside {
-        /// `"triangle"` or `"segment"`.
-        what: &'static str,
+        /// Triangle or segment.
+        part: InputPart,
         /// Its id.
         id: u32,
     },
@@ -112,10 +113,10 @@ pub enum CertifyError {
 /// triangle for triangle, with the same orientation; the volumes agree to rounding.
 ///
 /// ```
-/// use anastomesh_tet::{Plc, Tetrahedralizer, certify};
+/// use anastomesh_tet::{Tetrahedralizer, certify};
 ///
 /// let surface = anastomesh_mesh::shapes::sphere_surface(2);
-/// let mut made = Tetrahedralizer::new().run(&Plc::from(&surface))?;
+/// let mut made = Tetrahedralizer::new().run(&surface)?;
 /// assert!(certify(&made.mesh, &surface).is_ok());
 /// made.mesh.tets.pop();
 /// assert!(certify(&made.mesh, &surface).is_err());
@@ -212,11 +213,11 @@ pub fn certify_left_out(
         left_out.segments.iter().map(|&i| (edge(segments[i as usize][0], segments[i as usize][1]), i)).collect();
     for t in &mesh.tets {
         if let Some(&id) = (0..4).find_map(|i| triangles.get(&face_key(face_of(t, i)))) {
-            return Err(CertifyError::NotOutside { what: "triangle", id });
+            return Err(CertifyError::NotOutside { part: InputPart::Triangles, id });
         }
         let pairs = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));
         if let Some(&id) = pairs.into_iter().find_map(|(i, j)| edges.get(&edge(t[i], t[j]))) {
-            return Err(CertifyError::NotOutside { what: "segment", id });
+            return Err(CertifyError::NotOutside { part: InputPart::Segments, id });
         }
     }
     Ok(())

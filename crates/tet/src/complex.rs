@@ -36,6 +36,7 @@ pub enum ComplexError {
     BadVertices {
         /// The tetrahedron.
         tet: u32,
+        /// Its vertices.
         vertices: [u32; 4],
     },
     /// A tetrahedron that is flat or inverted by the exact predicate.
@@ -43,6 +44,7 @@ pub enum ComplexError {
     NotPositive {
         /// The tetrahedron.
         tet: u32,
+        /// Its vertices.
         vertices: [u32; 4],
     },
     /// A face shared by more than two tetrahedra, or by two on the same side of it.
@@ -61,7 +63,10 @@ pub enum ComplexError {
     },
     /// The tetrahedron stored for a vertex does not contain it.
     #[error("the tetrahedron kept for vertex {vertex} does not contain it")]
-    BadVertexTet { vertex: u32 },
+    BadVertexTet {
+        /// The vertex.
+        vertex: u32,
+    },
 }
 
 /// Tetrahedron: its vertices, and the mate of the face opposite each vertex. Half a cache line, aligned like its vertices

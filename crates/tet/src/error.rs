@@ -2,6 +2,7 @@
 
 use super::complex::{ComplexError, face_key};
 use super::layer::LayersError;
+use anastomesh_mesh::Bound;
 use anastomesh_mesh::geometry::Point3;
 
 /// A part of the surface that another part meets; ids are those of the surface's points.
@@ -58,6 +59,83 @@ fn twice(pairs: &[[u32; 2]], count: usize) -> String {
             let named = list_as(pairs, count, |[first, again]| format!("{first} (also as {again})"));
             format!("{count} triangles are there twice: {named}")
         }
+    }
+}
+
+/// An array of the input with one value for each of something else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum InputArray {
+    /// Markers, one for each triangle.
+    Markers,
+    /// Edge lengths, one for each point.
+    Sizes,
+}
+
+impl std::fmt::Display for InputArray {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Markers => "markers of triangles",
+            Self::Sizes => "edge lengths at points",
+        })
+    }
+}
+
+/// Parts of the input that may lie outside of the filled volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputPart {
+    /// Triangles.
+    Triangles,
+    /// Segments.
+    Segments,
+}
+
+impl std::fmt::Display for InputPart {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Triangles => "triangles",
+            Self::Segments => "segments",
+        })
+    }
+}
+
+/// Kind of a seed point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SeedKind {
+    /// Seed of a hole.
+    Hole,
+    /// Seed of a region.
+    Region,
+}
+
+impl std::fmt::Display for SeedKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Hole => "hole",
+            Self::Region => "region",
+        })
+    }
+}
+
+/// Inputs and options that exclude layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LayersConflict {
+    /// The boundary may be split.
+    SplitBoundary,
+    /// The input is a complex of facets.
+    Facets,
+    /// The input has segments.
+    Segments,
+}
+
+impl std::fmt::Display for LayersConflict {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::SplitBoundary => "they may not be split",
+            Self::Facets => "this is a complex of facets",
+            Self::Segments => "there are segments besides",
+        })
     }
 }
 
@@ -152,7 +230,7 @@ pub enum TetError {
     /// Segments with an index out of range or equal ends.
     #[error("{count} segments have ends out of range or not distinct: {}", list(segments, *count))]
     BadSegment {
-        /// The segments, as indices into [`super::Plc::edges`].
+        /// The segments, as indices into [`super::Plc::segments`].
         segments: Vec<u32>,
         /// Number of segments.
         count: usize,
@@ -179,10 +257,10 @@ pub enum TetError {
         count: usize,
     },
     /// An array that has to have a value for each of something else has not.
-    #[error("{found} {what} were given, {expected} are needed")]
+    #[error("{found} {array} were given, {expected} are needed")]
     WrongLength {
-        /// What the array holds.
-        what: &'static str,
+        /// The array.
+        array: InputArray,
         /// Its length.
         found: usize,
         /// The length it has to have.
@@ -246,7 +324,8 @@ pub enum TetError {
         /// Number of such edges.
         edges: usize,
     },
-    /// The surface encloses a negative volume: its triangles face inwards. An error of the short form only.
+    /// The surface encloses a negative volume: its triangles face inwards. [`Tetrahedralizer::run`](crate::Tetrahedralizer::run)
+    /// accepts either orientation and does not return this error.
     #[error("the surface is oriented inwards: it encloses the volume {volume}")]
     InsideOut {
         /// The volume enclosed, negative.
@@ -261,20 +340,26 @@ pub enum TetError {
         position: Point3,
     },
     /// The seed of a hole or region that lies in no such part of space.
-    #[error("the seed {index} of the {what} at {position} lies in none")]
+    #[error("the seed {index} of the {seed}s at {position} lies in none")]
     BadSeed {
-        /// `"holes"` or `"regions"`.
-        what: &'static str,
+        /// The kind of seed.
+        seed: SeedKind,
         /// Index among them.
         index: u32,
         /// Where it is.
         position: Point3,
     },
-    /// An option with a value that makes no sense.
-    #[error("the option {option} has the value {value}, which makes no sense")]
-    BadOption {
-        /// Its name.
-        option: &'static str,
+    /// An edge length of [`Sizing`](crate::Sizing) that is not positive and finite.
+    #[error("the edge length {value} is not a positive finite number")]
+    BadSize {
+        /// The edge length.
+        value: f64,
+    },
+    /// A bound of [`Refinement`](crate::Refinement) that no mesh satisfies.
+    #[error("no mesh satisfies the bound {bound} = {value}")]
+    BadBound {
+        /// The bound.
+        bound: Bound,
         /// Its value.
         value: f64,
     },
@@ -283,7 +368,7 @@ pub enum TetError {
     Layers(#[from] LayersError),
     /// Layers are put along closed surfaces that stay as they are, and nothing else.
     #[error("layers are made along closed surfaces whose triangles stay as they are: {0}")]
-    LayersAlong(&'static str),
+    LayersAlong(LayersConflict),
     /// The surface meets itself: pairs of triangles have more in common than the vertices that they share.
     #[error(
         "the surface meets itself: {}{count} pairs of triangles intersect: {}",
@@ -321,8 +406,7 @@ pub enum TetError {
         /// Why.
         reason: Stuck,
     },
-    /// The orientation of the surface does not tell inside from outside: shells are nested the wrong way. An error of
-    /// the short form only.
+    /// A triangle of a closed surface has the inside, or the outside, on both of its sides.
     #[error("triangle {triangle} does not separate inside from outside")]
     NotSeparating {
         /// The triangle.
@@ -332,20 +416,14 @@ pub enum TetError {
     #[error("the facets enclose no volume")]
     NothingEnclosed,
     /// Facets or segments that are not part of the volume: both sides of the facet lie outside or in a hole.
-    #[error("{count} {what} lie outside of what is filled: {}", list(ids, *count))]
+    #[error("{count} {part} lie outside of what is filled: {}", list(ids, *count))]
     Outside {
-        /// `"triangles"` or `"segments"`.
-        what: &'static str,
+        /// Triangles or segments.
+        part: InputPart,
         /// Their ids.
         ids: Vec<u32>,
         /// Number of them.
         count: usize,
-    },
-    /// An option, or a combination of options, that is not there.
-    #[error("not supported: {what}")]
-    Unsupported {
-        /// What was asked for.
-        what: &'static str,
     },
     /// The caller's callback said so.
     #[error("cancelled")]

@@ -2,8 +2,8 @@
 //! (intersecting parts) are checked in [`super::contacts`].
 
 use super::certify::enclosed_volume;
-use super::error::{NAMED, TetError};
-use super::plc::{InputKind, Plc};
+use super::error::{InputArray, NAMED, TetError};
+use super::plc::{InputKind, PlcRef};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::place_key;
@@ -99,10 +99,10 @@ pub(super) fn outward(surface: &TriMesh) -> Result<(), TetError> {
 }
 
 /// Checks the lengths of optional arrays.
-pub(super) fn check_lengths(plc: &Plc) -> Result<(), TetError> {
-    let (found, expected) = (plc.markers.len(), plc.triangles.len());
+pub(super) fn check_lengths(plc: PlcRef) -> Result<(), TetError> {
+    let (found, expected) = (plc.markers.len(), plc.surface.triangles.len());
     if found != 0 && found != expected {
-        return Err(TetError::WrongLength { what: "markers of triangles", found, expected });
+        return Err(TetError::WrongLength { array: InputArray::Markers, found, expected });
     }
     Ok(())
 }

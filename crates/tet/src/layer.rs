@@ -1,23 +1,26 @@
 //! Which layers can be asked for along a wall.
 
-/// What layers are asked for.
+/// Options of layers of thin tetrahedra along a wall.
 ///
 /// ```
 /// use anastomesh_tet::Layers;
 ///
-/// let layers = Layers { count: 3, growth: 2.0, thickness: 0.35 };
+/// let layers = Layers::default().count(3).growth(2.0).thickness(0.35);
 /// assert_eq!(layers.depths(), [1.0 / 7.0, 3.0 / 7.0, 1.0]);
-/// assert!(Layers { growth: 0.0, ..layers }.check().is_err());
+/// assert!(layers.growth(0.0).check().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
 pub struct Layers {
-    /// How many.
+    /// Number of layers.
     pub count: u32,
-    /// How much thicker each is than the one before it, from the wall on.
+    /// Thickness of each layer over that of the one before it, from the wall on.
     pub growth: f64,
-    /// Thickness of all together, as a share of the radius: for surfaces that are no vessels, of half the way across.
+    /// Thickness of all layers together, as a share of the radius; for surfaces that are no vessels, of the half width.
     pub thickness: f64,
 }
+
+anastomesh_mesh::setters!(Layers { count: u32, growth: f64, thickness: f64 });
 
 /// Layers that cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -1,21 +1,43 @@
-//! Floor 3: the tetrahedralizer. A closed surface or a piecewise linear complex goes in, a tetrahedral mesh that keeps
-//! every triangle of it comes out. Knows nothing of vessels.
-//!
-//! One Delaunay run over the surface's points, interior points and the corners of a box around them; recovery of what
-//! the surface has and the complex lacks; carving; improvement; certificate.
-//!
-//! A box with a wall across it, of which both halves are filled and told apart:
+//! Tetrahedral meshes of closed triangle surfaces and piecewise linear complexes that keep every triangle of the input.
 //!
 //! ```
-//! use anastomesh_mesh::Point3;
-//! use anastomesh_tet::{InputKind, Interior, Plc, Region, Tetrahedralizer};
+//! use anastomesh_tet::{Point3, Tetrahedralizer, TriMesh};
+//!
+//! let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+//! let surface = TriMesh { points, triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] };
+//! let made = Tetrahedralizer::new().run(&surface)?;
+//! assert_eq!(made.faces, surface.triangles);
+//! assert_eq!(made.mesh.points[..4], surface.points);
+//! # Ok::<(), anastomesh_tet::TetError>(())
+//! ```
+//!
+//! | to | use |
+//! |---|---|
+//! | fill a surface or a complex | [`Tetrahedralizer::run`] with a [`TriMesh`] or a [`Plc`] |
+//! | choose points inside, edge lengths, bounds, layers | [`Interior`], [`Sizing`], [`Refinement`], [`Layers`] |
+//! | mark faces, leave holes, tell regions apart | [`Plc::markers`], [`Plc::holes`], [`Region`] |
+//! | correct a surface | [`repair`], [`repair_facets`] |
+//! | find the first fault of an input | [`Tetrahedralizer::check`] |
+//! | tetrahedralize points | [`Tetrahedralizer::delaunay`] |
+//! | verify a mesh, and measure it | [`certify`], [`check_tets`], [`TetQuality`] |
+//! | follow a run, and stop it | [`Progress`] |
+//!
+//! A run makes one Delaunay tetrahedralization of the points of the input, of points inside and of the corners of a box. It
+//! recovers the segments and triangles that are missing, removes the tetrahedra outside, improves the others, and certifies
+//! the result. The crate has no features. Types of meshes are those of [`anastomesh_mesh`], with its policy on [`nalgebra`].
+//!
+//! A box with a wall across it, both halves of which are filled as regions:
+//!
+//! ```
+//! use anastomesh_tet::{InputKind, Interior, Plc, Point3, Region, Tetrahedralizer};
 //!
 //! let mut plc = Plc::default();
 //! for x in [0.0, 1.0, 2.0] {
-//!     plc.points.extend([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(y, z)| Point3::new(x, y, z)));
+//!     let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+//!     plc.surface.points.extend(corners.map(|(y, z)| Point3::new(x, y, z)));
 //! }
 //! let mut square = |a: u32, b: u32, c: u32, d: u32, marker: i32| {
-//!     plc.triangles.extend([[a, b, c], [a, c, d]]);
+//!     plc.surface.triangles.extend([[a, b, c], [a, c, d]]);
 //!     plc.markers.extend([marker; 2]);
 //! };
 //! square(0, 3, 2, 1, 1); // an end
@@ -25,12 +47,12 @@
 //!     square(i, j, j + 4, i + 4, 4);
 //!     square(i + 4, j + 4, j + 8, i + 8, 4);
 //! }
-//! plc.regions.push(Region { seed: Point3::new(1.5, 0.5, 0.5), id: 7, max_volume: None });
+//! let plc = plc.regions(vec![Region::new(Point3::new(1.5, 0.5, 0.5), 7)]);
 //!
 //! let out = Tetrahedralizer::new().kind(InputKind::Plc).interior(Interior::None).run(&plc)?;
 //! assert_eq!(out.summary.regions, 2);
-//! assert_eq!(out.mesh.points[..12], plc.points);
-//! assert_eq!((out.faces.len(), out.face_markers[2]), (plc.triangles.len(), 2));
+//! assert_eq!(out.mesh.points[..12], plc.surface.points);
+//! assert_eq!((out.faces.len(), out.face_markers[2]), (plc.surface.triangles.len(), 2));
 //! let volume_of = |region: i32| -> f64 {
 //!     let corners = |t: &[u32; 4]| t.map(|v| out.mesh.points[v as usize]);
 //!     let tets = out.mesh.tets.iter().zip(&out.regions).filter(|(_, r)| **r == region);
@@ -60,6 +82,8 @@ mod names;
 pub(crate) mod optimize;
 mod options;
 mod outside;
+#[doc(hidden)]
+pub mod parts;
 mod plc;
 mod progress;
 mod recover;
@@ -71,77 +95,27 @@ mod split;
 pub(crate) mod star;
 mod survey;
 
-pub use anastomesh_mesh::repair::{Repaired, repair};
-pub use builder::{Tetrahedralization, Tetrahedralizer};
+pub use anastomesh_mesh::check::{CheckReport, check_tets};
+pub use anastomesh_mesh::progress::{Progress, Stage};
+pub use anastomesh_mesh::quality::TetQuality;
+pub use anastomesh_mesh::repair::{RepairReport, Repaired, repair, repair_facets};
+pub use anastomesh_mesh::{Bound, Bounds, Point3, TetMesh, TriMesh, nalgebra};
+pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use certify::{CertifyError, certify};
-pub use error::TetError;
+pub use complex::ComplexError;
+pub use error::{InputArray, InputPart, LayersConflict, Obstacle, SeedKind, Stuck, TetError};
 pub use layer::{Layers, LayersError};
 pub use layers::LayerSummary;
-pub use optimize::Effort;
-use options::TetOptions;
+pub use optimize::{Effort, OptimizeReport};
 pub use options::{Boundary, Interior, Refinement, Sizing};
-pub use plc::{InputKind, Plc, Region};
-use progress::Watch;
+pub use plc::{InputKind, LeftOut, Plc, PlcRef, Region};
+pub use recover::RecoverySummary;
+pub use refine::RefineReport;
 
-/// Parts of the tetrahedralizer that the vascular mesher assembles itself. Not covered by semantic versioning.
-#[doc(hidden)]
-pub mod parts {
-    pub use crate::complex::Complex;
-    pub use crate::corner_tets::split_corner_tets;
-    pub use crate::delaunay::delaunay;
-    pub use crate::error::Stuck;
-    pub use crate::layers::{Directions, Inset, Numbers, Places, inset, rims, toward};
-    pub use crate::names::Names;
-    pub use crate::optimize::{OptimizeOptions, optimize};
-    pub use crate::options::TetOptions;
-    pub use crate::plc::LeftOut;
-    pub use crate::progress::Watch;
-    pub use crate::{tetrahedralize, tetrahedralize_watched};
-}
-
-use anastomesh_mesh::{TetMesh, TriMesh};
-use certify::Place;
-
-/// Fills a closed surface, oriented outwards, with tetrahedra. The points of the mesh begin with the surface's, in
-/// their order and bit for bit; interior points follow. Every triangle of the surface is a boundary face with the same
-/// orientation, and there are no others: the result is certified ([`certify::certify`], unless the options say otherwise)
-/// or an error.
-///
-/// # Errors
-/// [`TetError`]: what is wrong with the surface, or what could not be recovered.
-pub fn tetrahedralize(surface: &TriMesh, options: &TetOptions) -> Result<TetMesh, TetError> {
-    tetrahedralize_watched(surface, options, &Watch::NOBODY)
-}
-
-/// As [`tetrahedralize`], watched.
-///
-/// # Errors
-/// [`TetError`]; [`TetError::Cancelled`] when the watch says so.
-pub fn tetrahedralize_watched(surface: &TriMesh, options: &TetOptions, watch: &Watch) -> Result<TetMesh, TetError> {
-    let edges = input::validate(surface, &[], InputKind::Closed)?;
-    input::outward(surface)?;
-    let filled = fill::fill(&request::Request {
-        surface,
-        edges: &edges,
-        segments: &[],
-        kind: InputKind::Closed,
-        holes: &[],
-        regions: &[],
-        interior: &options.interior,
-        refinement: None,
-        sizing: &Sizing::Surface,
-        optimize: options.optimize,
-        certify: options.certify,
-        effort: options.effort,
-        strict: true,
-        label: false,
-        watch,
-    })?;
-    match filled.places.iter().position(|&p| p != Place::Boundary) {
-        Some(triangle) => Err(TetError::NotSeparating { triangle: triangle as u32 }),
-        None => Ok(filled.mesh),
-    }
-}
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 #[cfg(test)]
 mod input_tests;
@@ -153,8 +127,3 @@ mod refined_tests;
 mod tests;
 #[cfg(test)]
 mod turned_tests;
-
-/// The examples of the README are tests.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;

@@ -1,6 +1,6 @@
 //! Errors told with the ids of their reader: those of a file, say, whose polygons were cut into triangles.
 
-use super::error::{Obstacle, TetError};
+use super::error::{InputPart, Obstacle, TetError};
 
 /// What the items of an input are called elsewhere.
 pub trait Names {
@@ -55,7 +55,7 @@ impl TetError {
             }
             Self::Stuck { part: met, .. } => part(met),
             Self::NotSeparating { triangle } => *triangle = names.triangle(*triangle),
-            Self::Outside { what: "triangles", ids, .. } => faces(ids),
+            Self::Outside { part: InputPart::Triangles, ids, .. } => faces(ids),
             _ => {}
         }
         self

@@ -1,6 +1,5 @@
 //! What can be asked for.
 
-use super::optimize::Effort;
 use anastomesh_mesh::Bounds;
 use anastomesh_mesh::geometry::Point3;
 use std::sync::Arc;
@@ -71,11 +70,11 @@ impl std::fmt::Debug for Sizing {
 /// When a tetrahedron is split. Each bound that is set holds for all tetrahedra, as far as the boundary allows.
 ///
 /// ```
-/// use anastomesh_tet::{Plc, Refinement, Tetrahedralizer};
+/// use anastomesh_tet::{Refinement, Tetrahedralizer};
 ///
 /// let surface = anastomesh_mesh::shapes::sphere_surface(2);
 /// let fine = Refinement::default().max_radius_edge(2.0).max_points(5000);
-/// let made = Tetrahedralizer::new().refine(Some(fine)).run(&Plc::from(surface))?;
+/// let made = Tetrahedralizer::new().refine(fine).run(&surface)?;
 /// assert!(made.summary.refine.is_some());
 /// # Ok::<(), anastomesh_tet::TetError>(())
 /// ```
@@ -138,52 +137,4 @@ pub enum Boundary {
 impl Boundary {
     /// Edges of the input may be this much longer than wanted before they are split, where they may be.
     pub const LONGER: f64 = 1.5;
-}
-
-/// How a surface is tetrahedralized by the short form [`super::tetrahedralize`].
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct TetOptions {
-    /// Points inside.
-    pub interior: Interior,
-    /// Whether the mesh is improved, with its boundary as it is.
-    pub optimize: bool,
-    /// Whether the mesh is proved to fill the surface. Only for callers who check what they make of it.
-    pub certify: bool,
-    /// How hard the improvement tries.
-    pub effort: Effort,
-}
-
-impl Default for TetOptions {
-    fn default() -> Self {
-        Self {
-            interior: Interior::Lattice { cell: None, clearance: None },
-            optimize: true,
-            certify: true,
-            effort: Effort::Fast,
-        }
-    }
-}
-
-impl TetOptions {
-    /// With other points inside.
-    #[must_use]
-    pub fn interior(mut self, interior: Interior) -> Self {
-        self.interior = interior;
-        self
-    }
-
-    /// With another effort of improvement.
-    #[must_use]
-    pub fn effort(mut self, effort: Effort) -> Self {
-        self.effort = effort;
-        self
-    }
-
-    /// With or without the certificate.
-    #[must_use]
-    pub fn certify(mut self, certify: bool) -> Self {
-        self.certify = certify;
-        self
-    }
 }

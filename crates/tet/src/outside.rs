@@ -2,7 +2,7 @@
 
 use super::carve::Sides;
 use super::complex::Complex;
-use super::error::{NAMED, TetError};
+use super::error::{InputPart, NAMED, TetError};
 use super::plc::LeftOut;
 use super::star::{EdgeRing, Star};
 use anastomesh_mesh::TriMesh;
@@ -45,12 +45,12 @@ impl LeftOut {
 
     /// Error for left-out parts where none are allowed.
     pub(super) fn as_error(&self) -> Option<TetError> {
-        let (what, ids) = match (self.triangles.as_slice(), self.segments.as_slice()) {
+        let (part, ids) = match (self.triangles.as_slice(), self.segments.as_slice()) {
             ([], []) => return None,
-            ([], segments) => ("segments", segments),
-            (triangles, _) => ("triangles", triangles),
+            ([], segments) => (InputPart::Segments, segments),
+            (triangles, _) => (InputPart::Triangles, triangles),
         };
-        Some(TetError::Outside { what, ids: ids.iter().take(NAMED).copied().collect(), count: ids.len() })
+        Some(TetError::Outside { part, ids: ids.iter().take(NAMED).copied().collect(), count: ids.len() })
     }
 
     /// Surface without the left-out parts; all points stay.

@@ -8,18 +8,18 @@ use anastomesh_mesh::geometry::Point3;
 const SIDES: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
 fn add_box(plc: &mut Plc, low: f64, high: f64) {
-    let first = plc.points.len() as u32;
+    let first = plc.surface.points.len() as u32;
     let at = |i: usize| if i & 1 == 0 { low } else { high };
-    plc.points.extend((0..8).map(|i| Point3::new(at(i), at(i >> 1), at(i >> 2))));
+    plc.surface.points.extend((0..8).map(|i| Point3::new(at(i), at(i >> 1), at(i >> 2))));
     for [a, b, c, d] in SIDES.map(|side| side.map(|v| v + first)) {
-        plc.triangles.extend([[a, b, c], [a, c, d]]);
+        plc.surface.triangles.extend([[a, b, c], [a, c, d]]);
     }
 }
 
 fn add(plc: &mut Plc, corners: [[f64; 3]; 3]) {
-    let n = plc.points.len() as u32;
-    plc.points.extend(corners.map(Point3::from));
-    plc.triangles.push([n, n + 1, n + 2]);
+    let n = plc.surface.points.len() as u32;
+    plc.surface.points.extend(corners.map(Point3::from));
+    plc.surface.triangles.push([n, n + 1, n + 2]);
 }
 
 /// A box of side 4 with a hole of side 1 in it. Triangle 0 lies outside, 25 in the hole, 26 at an edge of the box
@@ -30,12 +30,12 @@ fn with_things_outside() -> Plc {
     add_box(&mut plc, 0.0, 4.0);
     add_box(&mut plc, 1.0, 2.0);
     add(&mut plc, [[1.2, 1.2, 1.5], [1.8, 1.2, 1.5], [1.5, 1.3, 1.5]]);
-    plc.points.push(Point3::new(-1.0, -1.0, 2.0));
-    plc.triangles.push([3, 7, plc.points.len() as u32 - 1]);
+    plc.surface.points.push(Point3::new(-1.0, -1.0, 2.0));
+    plc.surface.triangles.push([3, 7, plc.surface.points.len() as u32 - 1]);
     add(&mut plc, [[2.5, 2.5, 3.0], [3.5, 2.5, 3.0], [3.5, 3.5, 3.0]]);
-    plc.edges = vec![[1, 22], [10, 25], [11, 18]];
+    plc.segments = vec![[1, 22], [10, 25], [11, 18]];
     plc.holes = vec![Point3::new(1.1, 1.5, 1.9)];
-    plc.markers = (0..plc.triangles.len() as i32).map(|i| 100 + i).collect();
+    plc.markers = (0..plc.surface.triangles.len() as i32).map(|i| 100 + i).collect();
     plc
 }
 
@@ -59,9 +59,9 @@ fn what_lies_outside_or_in_a_hole_is_left_out() {
         assert_eq!(made.origins, kept);
         assert_eq!(made.face_markers, kept.iter().map(|&i| 100 + i as i32).collect::<Vec<_>>());
         for (face, &origin) in made.faces.iter().zip(&made.origins) {
-            assert_eq!(complex::face_key(*face), complex::face_key(plc.triangles[origin as usize]));
+            assert_eq!(complex::face_key(*face), complex::face_key(plc.surface.triangles[origin as usize]));
         }
-        assert_eq!(made.mesh.points[..plc.points.len()], plc.points);
+        assert_eq!(made.mesh.points[..plc.surface.points.len()], plc.surface.points);
         assert_eq!(made.summary.interior_faces, 1);
         assert!((volume(&made.mesh) - 63.0).abs() < 1e-9);
     }
@@ -72,14 +72,14 @@ fn a_strict_run_refuses_it() {
     let mut plc = with_things_outside();
     let strict = tetrahedralizer().strict(true);
     let error = strict.run(&plc).unwrap_err();
-    assert_eq!(error, TetError::Outside { what: "triangles", ids: vec![0, 25, 26], count: 3 });
+    assert_eq!(error, TetError::Outside { part: InputPart::Triangles, ids: vec![0, 25, 26], count: 3 });
     for i in [26, 25, 0] {
-        plc.triangles.remove(i);
+        plc.surface.triangles.remove(i);
         plc.markers.remove(i);
     }
     let error = strict.run(&plc).unwrap_err();
-    assert_eq!(error, TetError::Outside { what: "segments", ids: vec![0, 2], count: 2 });
-    plc.edges = vec![plc.edges[1]];
+    assert_eq!(error, TetError::Outside { part: InputPart::Segments, ids: vec![0, 2], count: 2 });
+    plc.segments = vec![plc.segments[1]];
     let made = strict.run(&plc).unwrap();
     assert!(made.summary.left_out.is_empty() && made.origins.is_empty());
     assert_eq!(made, tetrahedralizer().run(&plc).unwrap());
@@ -101,7 +101,7 @@ fn pieces_are_left_out_under_the_number_of_the_whole() {
 fn what_cannot_be_recovered_in_pieces_is_none_of_the_mesh_outside() {
     let mut plc = with_things_outside();
     // A diagonal of the hole: valid as it is, but not recoverable once the walls of the hole are split.
-    plc.edges = vec![[11, 18]];
+    plc.segments = vec![[11, 18]];
     let wanted = Refinement::default().max_radius_edge(1.4).max_volume(0.2);
     let made = tetrahedralizer().boundary(Boundary::Split).refine(Some(wanted)).run(&plc).unwrap();
     let left_out = &made.summary.left_out;
@@ -114,19 +114,19 @@ fn what_cannot_be_recovered_in_pieces_is_none_of_the_mesh_outside() {
 fn the_certificate_finds_what_was_left_out_and_is_there() {
     let plc = with_things_outside();
     let made = tetrahedralizer().run(&plc).unwrap();
-    let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
-    let check = |left_out: LeftOut| certify_left_out(&made.mesh, &surface, &plc.edges, &left_out);
+    let surface = TriMesh { points: plc.surface.points.clone(), triangles: plc.surface.triangles.clone() };
+    let check = |left_out: LeftOut| certify_left_out(&made.mesh, &surface, &plc.segments, &left_out);
     assert_eq!(check(made.summary.left_out.clone()), Ok(()));
     let wrong = LeftOut { triangles: vec![0, 27], segments: vec![] };
-    assert_eq!(check(wrong), Err(CertifyError::NotOutside { what: "triangle", id: 27 }));
+    assert_eq!(check(wrong), Err(CertifyError::NotOutside { part: InputPart::Triangles, id: 27 }));
     let wrong = LeftOut { triangles: vec![], segments: vec![0, 1] };
-    assert_eq!(check(wrong), Err(CertifyError::NotOutside { what: "segment", id: 1 }));
+    assert_eq!(check(wrong), Err(CertifyError::NotOutside { part: InputPart::Segments, id: 1 }));
 }
 
 #[test]
 fn facets_that_enclose_nothing_are_no_volume() {
     let mut plc = Plc::default();
     add_box(&mut plc, 0.0, 1.0);
-    plc.triangles.pop();
+    plc.surface.triangles.pop();
     assert_eq!(tetrahedralizer().run(&plc).unwrap_err(), TetError::NothingEnclosed);
 }

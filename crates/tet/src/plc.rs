@@ -3,29 +3,86 @@
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 
-/// Points, triangles and segments that the mesh has to keep, and what lies between them.
+/// Piecewise linear complex: points, triangles and segments that the mesh keeps, with holes and regions.
 ///
-/// Lengths are in any unit. Triangles and segments may meet in common points and edges only. What a [`Plc`] has to be
-/// beyond that, an [`InputKind`] says.
+/// Lengths are in any unit. Triangles and segments meet in common points and edges only. [`InputKind`] lists the other
+/// requirements.
+///
+/// ```
+/// use anastomesh_tet::{InputKind, Plc, Point3, Region, Tetrahedralizer};
+///
+/// let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
+/// let plc = Plc::new(points, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+///     .markers(vec![1, 2, 2, 2])
+///     .regions(vec![Region::new(Point3::new(0.1, 0.1, 0.1), 5)]);
+/// let made = Tetrahedralizer::new().kind(InputKind::Plc).run(&plc)?;
+/// assert!(made.regions.iter().all(|&region| region == 5));
+/// # Ok::<(), anastomesh_tet::TetError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Plc {
-    /// Positions; all of them become points of the mesh, with their index.
-    pub points: Vec<Point3>,
-    /// Vertices of each triangle.
-    pub triangles: Vec<[u32; 3]>,
-    /// Marker of each triangle, handed on to the faces; may be empty.
+    /// Points and triangles. All points become points of the mesh, with their index.
+    pub surface: TriMesh,
+    /// Marker of each triangle, copied to the faces; may be empty.
     pub markers: Vec<i32>,
     /// Segments to keep besides the edges of the triangles, for instance dangling ones.
-    pub edges: Vec<[u32; 2]>,
-    /// A point in each part of space that is to stay empty. Looked at for [`InputKind::Plc`] only: what bounds a volume
-    /// says itself where its holes are.
+    pub segments: Vec<[u32; 2]>,
+    /// A point in each part of space that stays empty. Used for [`InputKind::Plc`] only.
     pub holes: Vec<Point3>,
     /// Regions with an id of their own.
     pub regions: Vec<Region>,
 }
 
-/// A connected part of the volume, bounded by triangles: the one around a point.
+impl Plc {
+    /// Complex of points and triangles.
+    pub fn new(points: Vec<Point3>, triangles: Vec<[u32; 3]>) -> Self {
+        Self::from(TriMesh { points, triangles })
+    }
+}
+
+anastomesh_mesh::setters!(Plc {
+    markers: Vec<i32>,
+    segments: Vec<[u32; 2]>,
+    holes: Vec<Point3>,
+    regions: Vec<Region>,
+});
+
+/// Borrowed input of a run, made from a [`TriMesh`] or a [`Plc`] without copying either.
+#[derive(Clone, Copy, Debug)]
+pub struct PlcRef<'a> {
+    pub(super) surface: &'a TriMesh,
+    pub(super) markers: &'a [i32],
+    pub(super) segments: &'a [[u32; 2]],
+    pub(super) holes: &'a [Point3],
+    pub(super) regions: &'a [Region],
+}
+
+impl PlcRef<'_> {
+    /// Copies the input.
+    pub(super) fn to_owned(self) -> Plc {
+        let (markers, segments) = (self.markers.to_vec(), self.segments.to_vec());
+        let (holes, regions) = (self.holes.to_vec(), self.regions.to_vec());
+        Plc { surface: self.surface.clone(), markers, segments, holes, regions }
+    }
+}
+
+impl<'a> From<&'a TriMesh> for PlcRef<'a> {
+    fn from(surface: &'a TriMesh) -> Self {
+        Self { surface, markers: &[], segments: &[], holes: &[], regions: &[] }
+    }
+}
+
+impl<'a> From<&'a Plc> for PlcRef<'a> {
+    fn from(plc: &'a Plc) -> Self {
+        let Plc { surface, markers, segments, holes, regions } = plc;
+        Self { surface, markers, segments, holes, regions }
+    }
+}
+
+/// Connected part of the volume, bounded by triangles, that contains a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Region {
     /// A point in the region.
     pub seed: Point3,
@@ -35,15 +92,26 @@ pub struct Region {
     pub max_volume: Option<f64>,
 }
 
+impl Region {
+    /// Region around a point, without a bound on volumes.
+    pub fn new(seed: Point3, id: i32) -> Self {
+        Self { seed, id, max_volume: None }
+    }
+}
+
+anastomesh_mesh::setters!(Region {
+    max_volume: impl Into<Option<f64>>,
+});
+
 impl From<&TriMesh> for Plc {
     fn from(surface: &TriMesh) -> Self {
-        Self { points: surface.points.clone(), triangles: surface.triangles.clone(), ..Self::default() }
+        Self::from(surface.clone())
     }
 }
 
 impl From<TriMesh> for Plc {
     fn from(surface: TriMesh) -> Self {
-        Self { points: surface.points, triangles: surface.triangles, ..Self::default() }
+        Self { surface, ..Self::default() }
     }
 }
 
@@ -66,7 +134,7 @@ pub enum InputKind {
 pub struct LeftOut {
     /// The triangles, ascending.
     pub triangles: Vec<u32>,
-    /// The segments as indices into [`Plc::edges`], ascending.
+    /// The segments as indices into [`Plc::segments`], ascending.
     pub segments: Vec<u32>,
 }
 

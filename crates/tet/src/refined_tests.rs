@@ -55,10 +55,10 @@ fn volumes_are_bounded_and_what_is_not_a_number_is_refused() {
     let bounds = [Refinement::default().max_volume(-1.0), Refinement::default().max_radius_edge(f64::NAN)];
     for bad in bounds.into_iter().chain([angle(-1.0), angle(REGULAR_DIHEDRAL), angle(f64::NAN)]) {
         let error = Tetrahedralizer::new().refine(Some(bad)).run(&Plc::from(&s)).unwrap_err();
-        assert!(matches!(error, TetError::BadOption { .. }), "{error}");
+        assert!(matches!(error, TetError::BadBound { .. }), "{error}");
     }
     let few = Tetrahedralizer::new().sizing(Sizing::PerVertex(vec![0.1])).run(&Plc::from(&s));
-    assert!(matches!(few, Err(TetError::BadOption { .. })));
+    assert!(matches!(few, Err(TetError::WrongLength { array: InputArray::Sizes, .. })));
 }
 
 #[test]

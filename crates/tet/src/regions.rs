@@ -1,7 +1,7 @@
 //! Regions: connected parts of the volume, bounded by frozen faces.
 
 use super::complex::Complex;
-use super::error::TetError;
+use super::error::{SeedKind, TetError};
 use super::plc::Region;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3};
@@ -60,7 +60,7 @@ impl Regions {
         let places: Vec<Point3> = seeds.iter().map(|r| r.seed).collect();
         let mut seed_of = vec![None; count];
         for (index, (t, &position)) in (0..).zip(tets_of_seeds(c, &places).into_iter().zip(&places)) {
-            let t = t.ok_or(TetError::BadSeed { what: "regions", index, position })?;
+            let t = t.ok_or(TetError::BadSeed { seed: SeedKind::Region, index, position })?;
             seed_of[of[t as usize] as usize].get_or_insert(index);
         }
         let mut taken: Vec<i32> = seeds.iter().map(|r| r.id).collect();

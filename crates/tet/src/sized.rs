@@ -1,7 +1,7 @@
 //! Size field and goals of a run, from its options.
 
 use super::complex::Complex;
-use super::error::TetError;
+use super::error::{InputArray, TetError};
 use super::options::{Interior, Refinement, Sizing};
 use super::progress::Stage;
 use super::refine::{
@@ -21,23 +21,23 @@ const MARGIN: f64 = 0.7;
 /// Checks the values of a refinement and a sizing for a surface with `points` points.
 ///
 /// # Errors
-/// [`TetError::BadOption`].
+/// [`TetError::BadSize`], [`TetError::WrongLength`], [`TetError::BadBound`].
 pub(super) fn check(refinement: Option<&Refinement>, sizing: &Sizing, points: usize) -> Result<(), TetError> {
-    let positive = |option, value: f64| {
-        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(TetError::BadOption { option, value }) }
+    let positive = |value: f64| {
+        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(TetError::BadSize { value }) }
     };
     match sizing {
-        Sizing::Constant(size) => positive("size", *size)?,
+        Sizing::Constant(size) => positive(*size)?,
         Sizing::PerVertex(sizes) => {
             if sizes.len() != points {
-                return Err(TetError::BadOption { option: "number of sizes", value: sizes.len() as f64 });
+                return Err(TetError::WrongLength { array: InputArray::Sizes, found: sizes.len(), expected: points });
             }
-            sizes.iter().try_for_each(|&s| positive("size", s))?;
+            sizes.iter().try_for_each(|&s| positive(s))?;
         }
         Sizing::Surface | Sizing::Function(_) => {}
     }
     match refinement.and_then(|r| r.bounds.senseless()) {
-        Some((option, value)) => Err(TetError::BadOption { option, value }),
+        Some((bound, value)) => Err(TetError::BadBound { bound, value }),
         None => Ok(()),
     }
 }

@@ -8,14 +8,14 @@
 use super::builder::{Tetrahedralization, Tetrahedralizer};
 use super::complex::face_key;
 use super::error::TetError;
-use super::options::{Boundary, Interior, Sizing};
+use super::options::{Boundary, Interior, Refinement, Sizing};
 use super::outside::without;
 use super::plc::LeftOut;
-use super::plc::Plc;
+use super::plc::{Plc, PlcRef};
 use super::sized;
 use anastomesh_mesh::Bounds;
+use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_mesh::{TetMesh, TriMesh};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
@@ -46,54 +46,54 @@ fn edges_of(t: [u32; 3]) -> [[u32; 2]; 3] {
 }
 
 impl Pieces {
-    fn new(plc: &Plc) -> Self {
+    fn new(plc: Plc) -> Self {
         let mut at_edge: FxHashMap<[u32; 2], Vec<u32>> = FxHashMap::default();
-        for (i, t) in plc.triangles.iter().enumerate() {
+        for (i, t) in plc.surface.triangles.iter().enumerate() {
             for e in edges_of(*t) {
                 at_edge.entry(e).or_default().push(i as u32);
             }
         }
-        let segments = plc.edges.iter().zip(0..).map(|(e, i)| (edge(e[0], e[1]), i)).collect();
-        let origin = (0..plc.triangles.len() as u32).collect();
-        let segment_origin = (0..plc.edges.len() as u32).collect();
-        Self { plc: plc.clone(), origin, segment_origin, at_edge, segments }
+        let segments = plc.segments.iter().zip(0..).map(|(e, i)| (edge(e[0], e[1]), i)).collect();
+        let origin = (0..plc.surface.triangles.len() as u32).collect();
+        let segment_origin = (0..plc.segments.len() as u32).collect();
+        Self { plc, origin, segment_origin, at_edge, segments }
     }
 
     fn length(&self, [a, b]: [u32; 2]) -> f64 {
-        (self.plc.points[a as usize] - self.plc.points[b as usize]).norm()
+        (self.plc.surface.points[a as usize] - self.plc.surface.points[b as usize]).norm()
     }
 
     fn middle(&self, [a, b]: [u32; 2]) -> Point3 {
-        nalgebra::center(&self.plc.points[a as usize], &self.plc.points[b as usize])
+        nalgebra::center(&self.plc.surface.points[a as usize], &self.plc.surface.points[b as usize])
     }
 
     /// Halves an edge and its triangles. An edge too short to have a midpoint stays.
     fn halve(&mut self, e: [u32; 2]) -> bool {
         let middle = self.middle(e);
-        let ends = e.map(|v| self.plc.points[v as usize]);
+        let ends = e.map(|v| self.plc.surface.points[v as usize]);
         let segment = self.segments.remove(&e);
         let triangles = self.at_edge.remove(&e).unwrap_or_default();
-        let full = self.plc.triangles.len() + triangles.len() > MAX_TRIANGLES;
+        let full = self.plc.surface.triangles.len() + triangles.len() > MAX_TRIANGLES;
         if ends.contains(&middle) || full || (triangles.is_empty() && segment.is_none()) {
             return false;
         }
-        let m = self.plc.points.len() as u32;
-        self.plc.points.push(middle);
+        let m = self.plc.surface.points.len() as u32;
+        self.plc.surface.points.push(middle);
         let [a, b] = e;
         if let Some(s) = segment {
-            self.plc.edges[s as usize] = [a, m];
+            self.plc.segments[s as usize] = [a, m];
             self.segments.insert(edge(a, m), s);
-            self.segments.insert(edge(m, b), self.plc.edges.len() as u32);
-            self.plc.edges.push([m, b]);
+            self.segments.insert(edge(m, b), self.plc.segments.len() as u32);
+            self.plc.segments.push([m, b]);
             self.segment_origin.push(self.segment_origin[s as usize]);
         }
         for i in triangles {
-            let t = self.plc.triangles[i as usize];
-            let new = self.plc.triangles.len() as u32;
+            let t = self.plc.surface.triangles[i as usize];
+            let new = self.plc.surface.triangles.len() as u32;
             let first = t.map(|v| if v == b { m } else { v });
             let second = t.map(|v| if v == a { m } else { v });
-            self.plc.triangles[i as usize] = first;
-            self.plc.triangles.push(second);
+            self.plc.surface.triangles[i as usize] = first;
+            self.plc.surface.triangles.push(second);
             self.origin.push(self.origin[i as usize]);
             if let Some(&marker) = self.plc.markers.get(i as usize) {
                 self.plc.markers.push(marker);
@@ -115,7 +115,7 @@ impl Pieces {
     /// Halves edges until none is much longer than `size` at its midpoint. The longest edge of a triangle goes first,
     /// so that angles do not shrink.
     fn split_to(&mut self, size: &dyn Fn(&Point3) -> f64) {
-        let mut due: Vec<u32> = (0..self.plc.triangles.len() as u32).collect();
+        let mut due: Vec<u32> = (0..self.plc.surface.triangles.len() as u32).collect();
         while !due.is_empty() {
             let mut next = Vec::new();
             for i in due {
@@ -123,10 +123,10 @@ impl Pieces {
                 let wanted = size(&self.middle(longest));
                 if wanted > 0.0 && self.length(longest) > Boundary::LONGER * wanted {
                     let touched = self.at_edge.get(&longest).cloned().unwrap_or_default();
-                    let first = self.plc.triangles.len() as u32;
+                    let first = self.plc.surface.triangles.len() as u32;
                     if self.halve(longest) {
                         next.extend(touched);
-                        next.extend(first..self.plc.triangles.len() as u32);
+                        next.extend(first..self.plc.surface.triangles.len() as u32);
                     }
                 }
             }
@@ -150,7 +150,7 @@ impl Pieces {
     }
 
     fn longest(&self, triangle: u32) -> [u32; 2] {
-        let mut edges = edges_of(self.plc.triangles[triangle as usize]);
+        let mut edges = edges_of(self.plc.surface.triangles[triangle as usize]);
         edges.sort_unstable_by(|x, y| self.length(*y).total_cmp(&self.length(*x)).then(x.cmp(y)));
         edges[0]
     }
@@ -162,12 +162,13 @@ impl Tetrahedralizer {
     ///
     /// # Errors
     /// As [`Tetrahedralizer::run`].
-    pub(super) fn run_split(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
+    pub(super) fn run_split(&self, plc: PlcRef) -> Result<Tetrahedralization, TetError> {
         let error = match self.run_pieces(plc) {
             Err(error @ (TetError::Stuck { .. } | TetError::NotRecovered { .. })) => error,
             other => return other,
         };
-        let bare = self.clone().boundary(Boundary::Keep).interior(Interior::None).refine(None).optimize(false);
+        let bare =
+            self.clone().boundary(Boundary::Keep).interior(Interior::None).refine(None::<Refinement>).optimize(false);
         match bare.sizing(Sizing::Surface).run(plc) {
             Ok(Tetrahedralization { summary, .. }) if !summary.left_out.is_empty() => {
                 self.run_without(plc, summary.left_out)
@@ -178,15 +179,16 @@ impl Tetrahedralizer {
     }
 
     /// Meshes the complex without its outside parts.
-    fn run_without(&self, plc: &Plc, left_out: LeftOut) -> Result<Tetrahedralization, TetError> {
-        let kept: Vec<u32> = without(&(0..plc.triangles.len() as u32).collect::<Vec<_>>(), &left_out.triangles);
-        let inner = Plc {
-            triangles: without(&plc.triangles, &left_out.triangles),
-            markers: without(&plc.markers, &left_out.triangles),
-            edges: without(&plc.edges, &left_out.segments),
-            ..plc.clone()
+    fn run_without(&self, plc: PlcRef, left_out: LeftOut) -> Result<Tetrahedralization, TetError> {
+        let kept: Vec<u32> = without(&(0..plc.surface.triangles.len() as u32).collect::<Vec<_>>(), &left_out.triangles);
+        let surface = left_out.kept_surface(plc.surface);
+        let inner = PlcRef {
+            surface: &surface,
+            markers: &without(plc.markers, &left_out.triangles),
+            segments: &without(plc.segments, &left_out.segments),
+            ..plc
         };
-        let mut done = self.run_pieces(&inner)?;
+        let mut done = self.run_pieces(inner)?;
         for id in &mut done.origins {
             *id = kept[*id as usize];
         }
@@ -194,12 +196,11 @@ impl Tetrahedralizer {
         Ok(done)
     }
 
-    fn run_pieces(&self, plc: &Plc) -> Result<Tetrahedralization, TetError> {
+    fn run_pieces(&self, plc: PlcRef) -> Result<Tetrahedralization, TetError> {
         let (refinement, sizing) = self.wishes();
-        let surface = TriMesh { points: plc.points.clone(), triangles: plc.triangles.clone() };
         let volume = refinement.and_then(|r| r.bounds.max_volume);
-        let size = Arc::new(sized::size_function(&surface, sizing, volume));
-        let mut pieces = Pieces::new(plc);
+        let size = Arc::new(sized::size_function(plc.surface, sizing, volume));
+        let mut pieces = Pieces::new(plc.to_owned());
         if volume.is_some() || !matches!(sizing, Sizing::Surface) {
             pieces.split_to(&*size);
         }
@@ -214,7 +215,8 @@ impl Tetrahedralizer {
         };
         let goals = sized::goals(refinement);
         let shape = super::refine::Goals { bounds: Bounds { max_volume: None, ..goals.bounds }, ..goals };
-        for round in 0.. {
+        let mut round = 0;
+        loop {
             let mut done = keep.run(&pieces.plc)?;
             let split = if round < ROUNDS { to_split(&done.mesh, &pieces, &shape) } else { Vec::new() };
             let changed = split.into_iter().filter(|&e| pieces.halve(e)).count();
@@ -222,8 +224,8 @@ impl Tetrahedralizer {
                 pieces.name_origins(&mut done);
                 return Ok(done);
             }
+            round += 1;
         }
-        Err(TetError::Unsupported { what: "endless splitting" })
     }
 }
 
@@ -231,7 +233,7 @@ impl Tetrahedralizer {
 /// relative to the tetrahedron.
 fn to_split(mesh: &TetMesh, pieces: &Pieces, goals: &super::refine::Goals) -> Vec<[u32; 2]> {
     let mut triangle: FxHashMap<[u32; 3], u32> = FxHashMap::default();
-    for (i, t) in pieces.plc.triangles.iter().enumerate() {
+    for (i, t) in pieces.plc.surface.triangles.iter().enumerate() {
         triangle.insert(face_key(*t), i as u32);
     }
     let mut found: FxHashSet<[u32; 2]> = FxHashSet::default();

@@ -1,5 +1,6 @@
 use super::complex::Complex;
 use super::error::{Obstacle, Stuck};
+use super::progress::Watch;
 use super::*;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::TetQuality;
@@ -111,12 +112,17 @@ fn joined(mut a: TriMesh, b: &TriMesh, scale: f64, shift: Vec3) -> TriMesh {
     a
 }
 
+/// Fills a surface as the vascular mesher does.
+fn fill(surface: &TriMesh, tetrahedralizer: &Tetrahedralizer) -> Result<TetMesh, TetError> {
+    parts::fill_outward(&tetrahedralizer.clone().effort(Effort::Fast), surface, &Watch::NOBODY)
+}
+
 fn fills(s: &TriMesh) -> TetMesh {
     let mut last = TetMesh::default();
     for interior in [Interior::None, Interior::Lattice { cell: None, clearance: None }] {
         for optimize in [false, true] {
-            let options = TetOptions { interior: interior.clone(), optimize, ..TetOptions::default() };
-            last = tetrahedralize(s, &options).unwrap();
+            let options = Tetrahedralizer::new().interior(interior.clone()).optimize(optimize);
+            last = fill(s, &options).unwrap();
             certify::certify(&last, s).unwrap();
             Complex::from_mesh(last.points.clone(), &last.tets).unwrap().sanity_check().unwrap();
         }
@@ -161,7 +167,7 @@ fn nested_shells_and_several_components_are_filled() {
 #[test]
 fn wrong_surfaces_are_typed_errors() {
     let s = sphere_surface(1);
-    let error = |s: &TriMesh| tetrahedralize(s, &TetOptions::default()).unwrap_err();
+    let error = |s: &TriMesh| fill(s, &Tetrahedralizer::new()).unwrap_err();
     assert!(matches!(error(&TriMesh::default()), TetError::Empty { .. }));
     assert!(matches!(error(&flipped(s.clone())), TetError::InsideOut { .. }));
     let mut open = s.clone();
@@ -181,16 +187,16 @@ fn wrong_surfaces_are_typed_errors() {
     assert!(matches!(error(&nan), TetError::OutOfRange { ref points, .. } if points == &[5]));
     let twin = joined(s.clone(), &s, 1.0, Vec3::zeros());
     assert!(matches!(error(&twin), TetError::DuplicatePoints { .. }));
-    // A solid ball inside a solid ball: the inner shell does not separate inside from outside.
+    // A solid ball inside a solid ball: the inner shell is filled as a hole, and turned over.
     let inside = joined(s.clone(), &s, 0.5, Vec3::zeros());
-    assert!(tetrahedralize(&inside, &TetOptions::default()).is_err());
+    assert_eq!(Tetrahedralizer::new().run(&inside).unwrap().summary.reversed, s.triangles.len());
 }
 
 #[test]
 fn points_in_triangles_are_found_before_anything_is_made() {
     let check = |p: Point3| {
         let mut plc = Plc::from(&cube(1));
-        plc.points.push(p);
+        plc.surface.points.push(p);
         let tetrahedralizer = Tetrahedralizer::new();
         let checked = tetrahedralizer.check(&plc);
         assert_eq!(checked.clone().err(), tetrahedralizer.run(&plc).err());
@@ -209,18 +215,18 @@ fn points_in_triangles_are_found_before_anything_is_made() {
 fn surfaces_that_meet_themselves_end_in_an_error() {
     let s = sphere_surface(2);
     let crossing = joined(s.clone(), &s, 1.0, Vec3::new(0.9, 0.1, 0.05));
-    let error = tetrahedralize(&crossing, &TetOptions::default()).unwrap_err();
+    let error = fill(&crossing, &Tetrahedralizer::new()).unwrap_err();
     assert!(matches!(error, TetError::SelfIntersection { .. }), "{error:?}");
     // Two boxes that share part of a plane, so that triangles overlap without piercing.
     let beside = joined(cube(2), &cube(2), 0.9, Vec3::new(2.0, 0.07, 0.11));
-    let error = tetrahedralize(&beside, &TetOptions::default()).unwrap_err();
+    let error = fill(&beside, &Tetrahedralizer::new()).unwrap_err();
     assert!(matches!(error, TetError::SelfIntersection { .. }), "{error:?}");
     // A point of one ball inside a triangle of the other.
     let (a, b) = (sphere_surface(0), sphere_surface(1));
     let corner = |i: u32| a.points[i as usize].coords;
     let middle = a.triangles[0].map(corner).iter().sum::<Vec3>() / 3.0;
     let touching = joined(a.clone(), &b, 0.25, middle - b.points[0].coords * 0.25);
-    assert!(tetrahedralize(&touching, &TetOptions::default()).is_err());
+    assert!(fill(&touching, &Tetrahedralizer::new()).is_err());
 }
 
 proptest! {
@@ -286,14 +292,14 @@ fn points_given_are_used_and_points_outside_are_dropped() {
     let s = sphere_surface(2);
     let given = vec![Point3::new(0.1, 0.0, 0.0), Point3::new(9.0, 0.0, 0.0), Point3::new(0.0, 0.3, 0.2)];
     let interior = Interior::Points(given.clone());
-    let options = TetOptions { interior, optimize: false, ..TetOptions::default() };
-    let mesh = tetrahedralize(&s, &options).unwrap();
+    let options = Tetrahedralizer::new().interior(interior).optimize(false);
+    let mesh = fill(&s, &options).unwrap();
     assert_eq!(mesh.points[s.points.len()..], [given[0], given[2]]);
     let twice = vec![given[0], given[2], given[0]];
-    let error = tetrahedralize(&s, &options.clone().interior(Interior::Points(twice))).unwrap_err();
+    let error = fill(&s, &options.clone().interior(Interior::Points(twice))).unwrap_err();
     assert!(matches!(error, TetError::BadInteriorPoint { index: 2, .. }), "{error:?}");
     let nan = vec![given[0], Point3::new(0.0, f64::NAN, 0.0)];
-    let error = tetrahedralize(&s, &options.interior(Interior::Points(nan))).unwrap_err();
+    let error = fill(&s, &options.interior(Interior::Points(nan))).unwrap_err();
     assert!(matches!(error, TetError::BadInteriorPoint { index: 1, .. }), "{error:?}");
 }
 
@@ -301,7 +307,7 @@ fn points_given_are_used_and_points_outside_are_dropped() {
 fn the_certificate_finds_every_kind_of_fault() {
     use certify::{CertifyError, certify};
     let s = sphere_surface(1);
-    let mesh = tetrahedralize(&s, &TetOptions { optimize: false, ..TetOptions::default() }).unwrap();
+    let mesh = fill(&s, &Tetrahedralizer::new().optimize(false)).unwrap();
     certify(&mesh, &s).unwrap();
     let mut moved = mesh.clone();
     moved.points[3].x = moved.points[3].x.next_up();
@@ -340,6 +346,6 @@ fn a_graded_lattice_is_the_lattice_near_the_wall_and_thinner_inside() {
     let within = |points: &[Point3], r: f64| points.len() - beyond(points, r);
     assert!(within(&graded, 0.7) * 7 < within(&all, 0.7) && within(&graded, 0.7) * 60 > within(&all, 0.7));
     let interior = Interior::Graded { cell: Some(cell), clearance: Some(clearance) };
-    let mesh = tetrahedralize(&s, &TetOptions::default().interior(interior)).unwrap();
+    let mesh = fill(&s, &Tetrahedralizer::new().interior(interior)).unwrap();
     assert!(TetQuality::of(&mesh).percentile_1 > 0.45, "{:?}", TetQuality::of(&mesh));
 }

@@ -105,7 +105,7 @@ fn split(s: &TriMesh) -> TriMesh {
 /// Fills a surface, or asserts that its self-intersection is reported. Returns true if it was filled.
 fn fills(s: &TriMesh, what: &str) -> bool {
     let plc = Plc::from(s);
-    let tetrahedralizer = Tetrahedralizer::new().interior(Interior::None).refine(None).optimize(false);
+    let tetrahedralizer = Tetrahedralizer::new().interior(Interior::None).optimize(false);
     match tetrahedralizer.run(&plc) {
         Ok(made) => {
             assert_eq!(made.faces, s.triangles, "{what}");

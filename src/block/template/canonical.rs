@@ -10,15 +10,8 @@ use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_mesh::quality::radius_ratio;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_skeleton::BranchId;
-use anastomesh_tet::parts::{Inset, split_corner_tets};
-use anastomesh_tet::{
-    Effort,
-    parts::{OptimizeOptions, optimize},
-};
-use anastomesh_tet::{
-    Interior, Layers, TetError,
-    parts::{TetOptions, tetrahedralize},
-};
+use anastomesh_tet::parts::{Inset, OptimizeOptions, Watch, fill_outward, optimize, split_corner_tets};
+use anastomesh_tet::{Effort, Interior, Layers, TetError, Tetrahedralizer};
 use rustc_hash::FxHashMap;
 use std::f64::consts::TAU;
 use std::sync::{Arc, LazyLock, OnceLock, PoisonError, RwLock};
@@ -197,8 +190,8 @@ fn core(surface: &TriMesh, inside: &Rings) -> Result<TetMesh, TetError> {
     let ways = [0, 1].map(|shift| Interior::Points(inside.points(shift)));
     let mut best: Result<(f64, TetMesh), TetError> = Err(TetError::Flat);
     for interior in ways.into_iter().chain(lattice) {
-        let options = TetOptions::default().interior(interior).effort(Effort::Quick).certify(false);
-        let made = tetrahedralize(surface, &options).map(|mesh| (worth(&mesh), mesh));
+        let tetrahedralizer = Tetrahedralizer::new().interior(interior).effort(Effort::Quick);
+        let made = fill_outward(&tetrahedralizer, surface, &Watch::NOBODY).map(|mesh| (worth(&mesh), mesh));
         if best.as_ref().map_or(f64::NEG_INFINITY, |best| best.0)
             < made.as_ref().map_or(f64::NEG_INFINITY, |made| made.0)
         {

@@ -7,7 +7,7 @@ use super::input::Input;
 use super::numbers::FileNumbers;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::stop::NOTHING_KEPT;
-use anastomesh_tet::{TetError, parts::Names};
+use anastomesh_tet::{InputPart, TetError, parts::Names};
 
 /// The message and exit code for an error; `from` names the input.
 pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
@@ -53,12 +53,12 @@ fn place(error: &TetError, input: &Input) -> String {
         TetError::Open { edge, .. }
         | TetError::NotShared { edge, .. }
         | TetError::NotManifold { edge, .. }
-        | TetError::NotOriented { edge, .. } => match edge.map(|v| input.plc.points.get(v as usize)) {
+        | TetError::NotOriented { edge, .. } => match edge.map(|v| input.plc.surface.points.get(v as usize)) {
             [Some(a), Some(b)] => format!(" from {a} to {b}"),
             _ => String::new(),
         },
-        TetError::Outside { what: "segments", ids, .. } | TetError::BadSegment { segments: ids, .. } => {
-            let ends = ids.iter().filter_map(|&i| input.plc.edges.get(i as usize));
+        TetError::Outside { part: InputPart::Segments, ids, .. } | TetError::BadSegment { segments: ids, .. } => {
+            let ends = ids.iter().filter_map(|&i| input.plc.segments.get(i as usize));
             let ends = ends.map(|[a, b]| format!("{}-{}", input.numbers.point(*a), input.numbers.point(*b)));
             format!(", between the points {}{}", ends.collect::<Vec<_>>().join(", "), input.numbers.legend(false, true))
         }
@@ -69,7 +69,7 @@ fn place(error: &TetError, input: &Input) -> String {
 /// Whose fault it is.
 fn exit(error: &TetError) -> Exit {
     match error {
-        TetError::BadOption { .. } | TetError::Unsupported { .. } | TetError::Layers(_) | TetError::LayersAlong(_) => {
+        TetError::BadSize { .. } | TetError::BadBound { .. } | TetError::Layers(_) | TetError::LayersAlong(_) => {
             Exit::Usage
         }
         TetError::NotRecovered { .. } | TetError::NotCertified(_) | TetError::Broken(_) | TetError::TooLarge { .. } => {

@@ -12,7 +12,6 @@ use anastomesh_io::surface::{
     ArrayComplex, ArrayRegion, SurfaceContent, read_complex, read_content_as, read_content_from,
 };
 use anastomesh_io::tetgen::{self, Nodes};
-use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::facets::{self, FacetTriangles};
 use anastomesh_mesh::repair::{RepairReport, Repaired, repair, repair_facets};
 use anastomesh_tet::{Plc, Region};
@@ -80,16 +79,14 @@ impl Input {
     /// Orients the triangles and joins what is there twice; says what it did.
     pub fn repair(&mut self, is_complex: bool) -> Vec<String> {
         let plc = &mut self.plc;
-        let surface =
-            TriMesh { points: std::mem::take(&mut plc.points), triangles: std::mem::take(&mut plc.triangles) };
         let repair = if is_complex { repair_facets } else { repair };
-        let Repaired { surface, source, point, report, .. } = repair(&surface);
+        let Repaired { surface, source, point, report, .. } = repair(&plc.surface);
         plc.markers = source.iter().filter_map(|&i| plc.markers.get(i as usize).copied()).collect();
         let named = |v: u32| point.get(v as usize).copied().unwrap_or(u32::MAX);
-        plc.edges = plc.edges.iter().map(|edge| edge.map(named)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        plc.edges.retain(|[a, b]| a != b);
-        plc.edges.sort_unstable();
-        plc.edges.dedup();
+        plc.segments = plc.segments.iter().map(|edge| edge.map(named)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        plc.segments.retain(|[a, b]| a != b);
+        plc.segments.sort_unstable();
+        plc.segments.dedup();
         // The first of equal points speaks for all of them.
         let mut kept = vec![u32::MAX; surface.points.len()];
         for (old, &new) in point.iter().enumerate().rev() {
@@ -103,7 +100,7 @@ impl Input {
         let attributes =
             kept.iter().filter_map(|&i| self.point_attributes.get(i as usize * each..(i as usize + 1) * each));
         self.point_attributes = attributes.flatten().copied().collect();
-        (plc.points, plc.triangles) = (surface.points, surface.triangles);
+        plc.surface = surface;
         said(&report)
     }
 
@@ -111,7 +108,7 @@ impl Input {
     pub fn leave_out(&mut self, ids: &[u32]) {
         let mut ids = ids.iter().peekable();
         let mut i = 0;
-        self.plc.edges.retain(|_| {
+        self.plc.segments.retain(|_| {
             i += 1;
             ids.next_if_eq(&&(i - 1)).is_none()
         });
@@ -152,7 +149,7 @@ impl Input {
 
     fn of_points(nodes: Nodes) -> Self {
         Self {
-            plc: Plc { points: nodes.points, ..Plc::default() },
+            plc: Plc::new(nodes.points, Vec::new()),
             only_points: true,
             first: nodes.first,
             numbers: FileNumbers { first: nodes.first, ..FileNumbers::default() },
@@ -165,10 +162,8 @@ impl Input {
 
     fn of_arrays(complex: ArrayComplex, plan: &TetPlan) -> Self {
         let ArrayComplex { mesh, markers, segments, holes, regions } = complex;
-        let region = |ArrayRegion { point: seed, id, max_volume }| Region {
-            seed,
-            id,
-            max_volume: max_volume.filter(|_| plan.region_volumes),
+        let region = |ArrayRegion { point, id, max_volume }| {
+            Region::new(point, id).max_volume(max_volume.filter(|_| plan.region_volumes))
         };
         let mut input = Self {
             marked: !markers.is_empty(),
@@ -177,9 +172,9 @@ impl Input {
             ..Self::default()
         };
         let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-        input.plc.edges = segments.into_iter().map(ordered).filter(|[a, b]| a != b).collect();
-        input.plc.edges.sort_unstable();
-        input.plc.edges.dedup();
+        input.plc.segments = segments.into_iter().map(ordered).filter(|[a, b]| a != b).collect();
+        input.plc.segments.sort_unstable();
+        input.plc.segments.dedup();
         input.plc.markers = markers;
         input.plc.holes = holes;
         input.plc.regions = regions.into_iter().map(region).collect();
@@ -209,15 +204,15 @@ impl Input {
             let face_of = &mut input.numbers.face_of;
             face_of.resize(face_of.len() + triangles.len(), facet as u32);
             input.plc.markers.resize(input.plc.markers.len() + triangles.len(), piece.marker);
-            input.plc.triangles.extend(triangles);
-            input.plc.edges.extend(segments);
+            input.plc.surface.triangles.extend(triangles);
+            input.plc.segments.extend(segments);
         }
-        input.plc.edges.sort_unstable();
-        input.plc.edges.dedup();
+        input.plc.segments.sort_unstable();
+        input.plc.segments.dedup();
         input.plc.regions = regions(&file.regions, plan)?;
-        input.plc.points = file.points;
+        input.plc.surface.points = file.points;
         input.plc.holes = file.holes;
-        input.only_points = input.plc.triangles.is_empty() && input.plc.edges.is_empty();
+        input.only_points = input.plc.surface.triangles.is_empty() && input.plc.segments.is_empty();
         Ok(input)
     }
 }
@@ -248,7 +243,7 @@ fn regions(listed: &[tetgen::Region], plan: &TetPlan) -> Result<Vec<Region>, Com
             return Err(ComplexError::Attribute { region, attribute });
         }
         let max_volume = max_volume.filter(|_| plan.region_volumes);
-        regions.push(Region { seed: point, id: attribute as i32, max_volume });
+        regions.push(Region::new(point, attribute as i32).max_volume(max_volume));
     }
     Ok(regions)
 }

@@ -28,10 +28,8 @@ use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::quality::TetQuality;
 use anastomesh_mesh::units::grouped;
-use anastomesh_tet::{
-    Boundary, TetError, Tetrahedralization,
-    parts::{LeftOut as LeftOutIds, Names},
-};
+use anastomesh_tet::parts::Names;
+use anastomesh_tet::{Boundary, LeftOut as LeftOutIds, TetError, Tetrahedralization};
 pub use args::Args;
 use format::{InputFormat, Target, is_stream};
 use input::Input;
@@ -101,7 +99,7 @@ fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetr
         return tetrahedralizer.check(&input.plc).map(|()| None);
     }
     let mut made = if input.only_points {
-        tetrahedralizer.delaunay(&input.plc.points)?
+        tetrahedralizer.delaunay(&input.plc.surface.points)?
     } else {
         tetrahedralizer.run(&input.plc)?
     };
@@ -131,10 +129,10 @@ fn write_page(args: &Args, plan: &TetPlan, report: &TetReport, mesh: &VolumeMesh
 
 fn size_of(input: &Input) -> InputSize {
     InputSize {
-        points: input.plc.points.len(),
-        facets: input.facets.filter(|&facets| facets != input.plc.triangles.len()),
-        triangles: input.plc.triangles.len(),
-        segments: input.plc.edges.len(),
+        points: input.plc.surface.points.len(),
+        facets: input.facets.filter(|&facets| facets != input.plc.surface.triangles.len()),
+        triangles: input.plc.surface.triangles.len(),
+        segments: input.plc.segments.len(),
         holes: input.plc.holes.len(),
     }
 }
@@ -143,7 +141,7 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     let mesh = &made.mesh;
     report.mesh = OutputSize {
         points: mesh.points.len(),
-        added_points: mesh.points.len().saturating_sub(input.plc.points.len()),
+        added_points: mesh.points.len().saturating_sub(input.plc.surface.points.len()),
         tets: mesh.tets.len(),
         faces: made.faces.len(),
         interior_faces: made.summary.interior_faces,
@@ -156,8 +154,11 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     if !input.only_points {
         report.bounds = BoundResult::of(&plan.bounds, mesh, &made.faces);
         let plc = Some(&input.plc).filter(|_| !plan.split);
-        let unmet =
-            |size| plc.and_then(|plc| SizeUnmet::of(size, Boundary::LONGER, &plc.points, &plc.triangles, &plc.edges));
+        let unmet = |size| {
+            plc.and_then(|plc| {
+                SizeUnmet::of(size, Boundary::LONGER, &plc.surface.points, &plc.surface.triangles, &plc.segments)
+            })
+        };
         report.size_unmet = plan.size.and_then(unmet);
         let how = if args.tetgen.is_some() { "leaving out Y" } else { "--split" };
         report.to_split = (!plan.split).then_some(how);
@@ -176,8 +177,8 @@ fn left_out(made: &Tetrahedralization, input: &Input) -> LeftOut {
     let LeftOutIds { triangles, segments, .. } = &made.summary.left_out;
     let mut faces: Vec<u32> = triangles.iter().map(|&t| input.numbers.triangle(t)).collect();
     faces.dedup();
-    let ends = segments.iter().filter_map(|&s| input.plc.edges.get(s as usize));
-    let mut used = vec![false; input.plc.points.len()];
+    let ends = segments.iter().filter_map(|&s| input.plc.segments.get(s as usize));
+    let mut used = vec![false; input.plc.surface.points.len()];
     for &v in made.mesh.tets.iter().flatten() {
         if let Some(used) = used.get_mut(v as usize) {
             *used = true;

@@ -109,7 +109,7 @@ fn family<'a>(volume: &'a VolumeMesh, input: &'a Input, plan: &TetPlan, regions:
     let mut family = MeshFamily::new(&volume.mesh)
         .boundary(&volume.boundary, &volume.boundary_patch)
         .point_attributes(&input.point_attributes, input.attribute_count)
-        .segments(&input.plc.edges)
+        .segments(&input.plc.segments)
         .faces(extent(plan.family.faces))
         .edges(extent(plan.family.edges))
         .neighbors(plan.family.neighbors)

@@ -4,7 +4,7 @@ use super::args::Args;
 use super::format::{InputFormat, Target};
 use super::switches::Switches;
 use crate::cli::exit::Failure;
-use anastomesh_mesh::{Bounds, REGULAR_DIHEDRAL};
+use anastomesh_mesh::{Bound, Bounds, REGULAR_DIHEDRAL};
 use anastomesh_tet::{Boundary, Effort, InputKind, Interior, Layers, Refinement, Region, Sizing, Tetrahedralizer};
 use serde::Serialize;
 
@@ -147,13 +147,13 @@ impl TetPlan {
     }
 
     fn validate(args: &Args) -> Result<(), Failure> {
-        let flag = |name: &str| format!("--{}", name.replace('_', "-"));
+        let flag = |bound: Bound| format!("--{}", bound.to_string().replace('_', "-"));
         match bounds_of(args).senseless() {
-            Some((name @ "min_dihedral", angle)) => Err(Failure::usage(format!(
+            Some((bound @ Bound::MinDihedral, angle)) => Err(Failure::usage(format!(
                 "{} is {angle}; give degrees from 0 to below {REGULAR_DIHEDRAL:.2}, the angle of the regular tetrahedron",
-                flag(name)
+                flag(bound)
             ))),
-            Some((name, value)) => Err(not_positive(&flag(name), value)),
+            Some((bound, value)) => Err(not_positive(&flag(bound), value)),
             None => match args.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
                 Some(size) => Err(not_positive("--size", size)),
                 None => Ok(()),

@@ -63,7 +63,7 @@ pub enum StoreError {
     },
     /// Shards have not been made to their end.
     #[error(
-        "{}: {} not been made to the end; run {}, or give --make-missing to have this run make what is not there",
+        "{}: {} not been made to the end; run {}",
         path.display(), listed(shards), if shards.len() == 1 { "it" } else { "them" }
     )]
     Missing {
@@ -74,8 +74,7 @@ pub enum StoreError {
     },
     /// A shard's file is not what it was when the shard ended.
     #[error(
-        "{}: of {bytes} bytes only the first {end} are whole records; run shard {shard} again, which makes the others, or \
-         give --make-missing to have this run make them",
+        "{}: of {bytes} bytes only the first {end} are whole records; run shard {shard} again, which makes the others",
         path.display()
     )]
     Damaged {
@@ -90,7 +89,7 @@ pub enum StoreError {
     },
     /// The folder holds the blocks of another version of the program, another network or other options.
     #[error(
-        "{}: this work directory was begun with {difference}; name another one, or give --restart to throw its blocks away",
+        "{}: this work directory was begun with {difference}; name another one",
         path.display()
     )]
     Other {
@@ -108,7 +107,7 @@ pub enum StoreError {
         source: io::Error,
     },
     /// A block cannot be read back.
-    #[error("a finished block cannot be read back: {0}; check the disk, or start anew with --restart")]
+    #[error("a finished block cannot be read back: {0}; check the disk")]
     Read(#[from] io::Error),
 }
 
@@ -123,7 +122,14 @@ pub enum Difference {
     /// Another network.
     Network,
     /// Another option.
-    Option { name: String, was: String, is: String },
+    Option {
+        /// Name of the option.
+        name: String,
+        /// Value of the earlier run.
+        was: String,
+        /// Value of this run.
+        is: String,
+    },
 }
 
 /// So many shards are listed.
@@ -143,9 +149,9 @@ fn listed(shards: &[Shard]) -> String {
 fn advice(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "make room or name a --work-dir on a larger disk; blocks in a --work-dir are kept, so the next run goes on there"
+            "make room or name a work directory on a larger disk; blocks in a work directory are kept, so the next run goes on there"
         }
-        _ => "check the disk; blocks in a --work-dir are kept, so the next run goes on there",
+        _ => "check the disk; blocks in a work directory are kept, so the next run goes on there",
     }
 }
 

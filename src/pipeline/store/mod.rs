@@ -30,7 +30,7 @@ use rustc_hash::FxHashMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-pub use error::StoreError;
+pub use error::{Difference, StoreError};
 #[cfg(feature = "cli")]
 pub(crate) use extents::Extents;
 pub use folder::Role;
@@ -104,7 +104,7 @@ impl Store {
     ///
     /// # Errors
     /// When the folder cannot be used, is in use, belongs to something else, or shards there have not come to their end.
-    pub fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
+    pub(crate) fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
         let folder::Opened { own, others, keys } = folder::open(folder, manifest, role)?;
         let known = keys.into_iter().zip(0..).map(|(key, i)| (key.short(), RecordId(i))).collect();
         Ok(Self { place: Backend::Folder(folder.to_path_buf(), others, own), known: Mutex::new(known) })

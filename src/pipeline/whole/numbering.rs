@@ -46,7 +46,7 @@ pub(super) struct PartPlan {
 
 /// More vertices than 32 bits can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the whole mesh has {0} points, more than 32 bits can count; mesh its parts, or give a smaller --rho")]
+#[error("the whole mesh has {0} points, more than 32 bits can count; mesh its parts, or give a smaller rho")]
 pub struct TooManyPoints(pub u64);
 
 impl Numbering {

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// Options for reading a network.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct NetworkOptions {
     /// Name of the radius array (on points, cells or both); detected by its name if `None`.
     pub radius_array: Option<String>,
@@ -21,6 +22,15 @@ pub struct NetworkOptions {
     /// Keep unusable radii (zero, negative, infinite, NaN) for `prepare` to replace. By default they are an error.
     pub any_radii: bool,
 }
+
+anastomesh_mesh::setters!(NetworkOptions {
+    radius_array: impl Into<Option<String>>,
+    diameters: bool,
+    radius_scale: impl Into<Option<f64>>,
+    scale: impl Into<Option<f64>>,
+    node_array: impl Into<Option<String>>,
+    any_radii: bool,
+});
 
 /// Network as stored in its file; `skeleton::clean` makes it usable.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -158,11 +168,7 @@ impl fmt::Display for NetworkNote {
             }
             Self::Halved { array } => write!(f, "array '{array}' holds diameters by its name: halved"),
             Self::NotUsed { arrays } => {
-                write!(
-                    f,
-                    "arrays that could be radii too, not used: {} (choose with --radius-array)",
-                    arrays.join(", ")
-                )
+                write!(f, "arrays that could be radii too, not used: {}", arrays.join(", "))
             }
             Self::Grouped { vessels } => write!(f, "arrays GroupIds and Blanking: lines of {vessels} vessels"),
             Self::OtherCells { count } => write!(f, "{count} cells that are no lines were ignored"),
@@ -178,11 +184,9 @@ impl fmt::Display for NetworkNote {
                 f,
                 "{count} vessels begin at another place than the joint they leave from: a short vessel put between"
             ),
-            Self::OutOfProportion { radius, extent } => write!(
-                f,
-                "the largest radius is {radius} in a network of extent {extent}: are both in one unit? \
-                 (--radius-scale multiplies radii alone)"
-            ),
+            Self::OutOfProportion { radius, extent } => {
+                write!(f, "the largest radius is {radius} in a network of extent {extent}: are both in one unit?")
+            }
         }
     }
 }
@@ -204,7 +208,7 @@ pub enum NetworkArray {
 /// use anastomesh_io::{NetworkOptions, read_network, write_network};
 ///
 /// let network = read_network("../../fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?.skeleton;
-/// let unchanged: Vec<u32> = (0..network.edges.len() as u32).collect();
+/// let unchanged: Vec<_> = network.nodes.iter().map(|node| node.position).collect();
 /// let folder = tempfile::tempdir()?;
 /// write_network(&folder.path().join("refined.vtp"), &network, &refinement_arrays(&network, &unchanged))?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -2,10 +2,12 @@
 
 use super::amira::AmiraError;
 use super::csv::CsvError;
+use super::graph::GraphFault;
 use super::graph_xml::GraphXmlError;
 use super::json::JsonError;
 use super::npy::NpyNetworkError;
 use super::pajek::PajekError;
+use super::radii::RadiusFault;
 use super::sv1d::Sv1dError;
 use super::swc::SwcError;
 use super::vtk::VtkLegacyError;
@@ -52,6 +54,26 @@ pub enum NetworkFileError {
         /// Error of the operating system.
         source: std::io::Error,
     },
+}
+
+impl NetworkFileError {
+    /// Reports that no array of the file is named like a radius, so that
+    /// [`radius_array`](super::NetworkOptions::radius_array) has to name one.
+    pub fn lacks_radii(&self) -> bool {
+        let Self::File(FileError::Content { fault, .. }) = self else { return false };
+        let (NetworkFault::Vtp(VtpError::Radius(radius))
+        | NetworkFault::Vtk(VtkLegacyError::Radius(radius))
+        | NetworkFault::Amira(AmiraError::Radius(radius))
+        | NetworkFault::Npy(NpyNetworkError::Radius(radius))
+        | NetworkFault::GraphXml(GraphXmlError::Graph(GraphFault::Radius(radius)))
+        | NetworkFault::Pajek(PajekError::Graph(GraphFault::Radius(radius)))
+        | NetworkFault::Json(JsonError::Graph(GraphFault::Radius(radius)))
+        | NetworkFault::Csv(CsvError::Graph(GraphFault::Radius(radius)))) = fault
+        else {
+            return false;
+        };
+        matches!(radius, RadiusFault::NoRadius { .. })
+    }
 }
 
 /// Errors of the contents of a network file.

@@ -41,13 +41,28 @@ pub enum GraphFault {
     NoNodes,
     /// There are no edges.
     #[error("there is no edge in the file ({nodes} nodes): a network needs vessels")]
-    NoEdges { nodes: usize },
+    NoEdges {
+        /// Number of nodes.
+        nodes: usize,
+    },
     /// Two nodes have an equal name.
     #[error("{place}: node '{name}' is there already, at {first}; names must differ")]
-    RepeatedNode { place: GraphPlace, name: String, first: GraphPlace },
+    RepeatedNode {
+        /// Place in the file.
+        place: GraphPlace,
+        /// Name in the file.
+        name: String,
+        /// Place of the first one.
+        first: GraphPlace,
+    },
     /// An edge refers to a missing node.
     #[error("{place}: an edge ends at node '{name}', which is not in the file: correct it")]
-    UnknownNode { place: GraphPlace, name: String },
+    UnknownNode {
+        /// Place in the file.
+        place: GraphPlace,
+        /// Name in the file.
+        name: String,
+    },
     /// No positions are known.
     #[error(
         "the nodes have no coordinates: attributes x, y (and z), or a list named position, pos or coords; there are: {}",
@@ -59,10 +74,24 @@ pub enum GraphFault {
     },
     /// A node has no position.
     #[error("{place}: node '{name}' has no {what}: complete it")]
-    NoPosition { place: GraphPlace, name: String, what: String },
+    NoPosition {
+        /// Place in the file.
+        place: GraphPlace,
+        /// Name in the file.
+        name: String,
+        /// Item.
+        what: String,
+    },
     /// A value is not a number.
     #[error("{place}: {what} is '{text}', which is no number: correct it")]
-    NotANumber { place: GraphPlace, what: String, text: String },
+    NotANumber {
+        /// Place in the file.
+        place: GraphPlace,
+        /// Item.
+        what: String,
+        /// Text that was found.
+        text: String,
+    },
     /// No attribute is usable as radius.
     #[error(transparent)]
     Radius(#[from] RadiusFault),

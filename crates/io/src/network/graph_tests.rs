@@ -138,7 +138,7 @@ fn tables_say_where() {
     says("1,3", "1,3,3", "line 10, table of edges: 3 columns where the first row has 2");
     says("source,target", "one,two", "where edges begin and end");
     says("x,y,z,radius", "a,b,c,radius", "coordinates");
-    says("radius", "size", "--radius-array");
+    says("radius", "size", "choose one of them");
     says("\n\n", "\n", "one table alone");
 }
 
@@ -208,7 +208,7 @@ fn amira_and_the_solver_say_where() {
     amira("@3\n3\n", "@3\n4\n", "edges have 6 points together, but 5");
     amira("@3\n3\n", "@3\n1\n", "edges have 3 points together, but 5");
     amira("\n@5\n", "\n@6\n", "'@6' are declared nowhere");
-    amira("thickness", "colour", "--radius-array");
+    amira("thickness", "colour", "choose one of them");
     amira("EDGE { int[2] EdgeConnectivity } @2", "EDGE { int[2] EdgeConnectivity @2", "line 14");
     let solver = |from: &str, to: &str, what: &str| says(SV1D, NetworkFormat::Sv1d, from, to, what);
     solver("NODE 3 0", "NODE 3 zero", "line 6: 'zero' stands where coordinate x");

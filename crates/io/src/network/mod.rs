@@ -27,6 +27,24 @@ mod write;
 
 pub use content::{NetworkArray, NetworkFile, NetworkNote, NetworkOptions, NodeNames, refinement_arrays};
 pub use error::NetworkFileError;
+
+/// Contents of [`NetworkFileError`]: the faults of each format.
+pub mod faults {
+    pub use super::amira::AmiraError;
+    pub use super::csv::{CsvError, Table};
+    pub use super::error::NetworkFault;
+    pub use super::graph::{GraphFault, GraphPlace};
+    pub use super::graph_xml::GraphXmlError;
+    pub use super::json::JsonError;
+    pub use super::npy::NpyNetworkError;
+    pub use super::pajek::PajekError;
+    pub use super::radii::{NodeArrayFault, RadiusFault};
+    pub use super::sv1d::Sv1dError;
+    pub use super::swc::SwcError;
+    pub use super::vtk::VtkLegacyError;
+    pub use super::vtp::VtpError;
+}
+
 pub use format::NetworkFormat;
 pub use read::{read_network, read_network_arrays, read_network_from};
 pub use write::{ensure_network_writable, ensure_tree_writable};

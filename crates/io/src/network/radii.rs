@@ -13,10 +13,7 @@ pub(super) const GROUPS: [&str; 2] = ["GroupIds", "Blanking"];
 #[non_exhaustive]
 pub enum RadiusFault {
     /// No array name indicates a radius.
-    #[error(
-        "no array on nodes or vessels is named like a radius; there are: {}; choose with --radius-array",
-        list(available)
-    )]
+    #[error("no array on nodes or vessels is named like a radius; there are: {}; choose one of them", list(available))]
     NoRadius {
         /// Names of the existing arrays.
         available: Vec<String>,
@@ -46,6 +43,7 @@ pub enum NodeArrayFault {
     /// The array has several components.
     #[error("array '{array}' has {components} numbers for each node: one is needed")]
     Components {
+        /// Name of the array.
         array: String,
         /// Number of components.
         components: usize,

@@ -83,13 +83,17 @@ pub enum SurfaceFault {
     },
     /// A required part is missing.
     #[error("{what} is missing: write the file again")]
-    Missing { what: &'static str },
+    Missing {
+        /// Missing or wrong item.
+        what: &'static str,
+    },
     /// The length of a binary file differs from its counts.
     #[error(
         "the counts of the file announce at least {announced} bytes, it has {found}: \
          it was not written or copied completely, or its counts are wrong"
     )]
     Length {
+        /// Number that the file announces.
         announced: u64,
         /// Length found, in bytes.
         found: u64,

@@ -18,8 +18,8 @@ mod three_mf;
 mod write;
 
 pub use boundary::{ensure_boundary_writable, write_boundary, write_boundary_watched};
-pub use content::SurfaceContent;
-pub use error::SurfaceFileError;
+pub use content::{SurfaceContent, SurfaceNote};
+pub use error::{SurfaceFault, SurfaceFileError};
 pub use format::SurfaceFormat;
 pub use npy::{ArrayComplex, ArrayRegion, read_complex, read_complex_arrays};
 pub use read::{read_content_as, read_content_from, read_surface, read_surface_from};

@@ -35,7 +35,7 @@ impl CapFlow {
     }
 }
 
-/// Density of blood, kg/m³.
+/// Density of blood, in kg/m³.
 pub const BLOOD_DENSITY: f64 = 1060.0;
 /// Dynamic viscosity of blood, Pa·s.
 pub const BLOOD_VISCOSITY: f64 = 3.5e-3;

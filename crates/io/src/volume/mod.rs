@@ -26,6 +26,16 @@ mod write;
 pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 pub use content::{MeshFile, MeshNotes};
 pub use error::MeshFileError;
+
+/// Contents of [`MeshFileError`]: the faults of each format.
+pub mod faults {
+    pub use super::error::MeshFault;
+    pub use super::medit::MeditFault;
+    pub use super::msh::MshFault;
+    pub use super::pvtu::PvtuFault;
+    pub use super::vtu::VtuFault;
+}
+
 pub use format::MeshFormat;
 pub use npy::read_mesh_arrays;
 pub use options::GridOptions;

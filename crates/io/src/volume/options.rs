@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Options of writing a mesh; each format uses those that apply.
 #[derive(Clone, Copy, Default)]
+#[non_exhaustive]
 pub struct WriteOptions<'a> {
     /// Mesh format; that of the extension if `None`.
     pub format: Option<MeshFormat>,
@@ -17,8 +18,16 @@ pub struct WriteOptions<'a> {
     pub values: Option<&'a dyn Beside>,
 }
 
+anastomesh_mesh::setters!(WriteOptions<'a> {
+    format: impl Into<Option<MeshFormat>>,
+    memory: impl Into<Option<usize>>,
+    grid: GridOptions,
+    values: impl Into<Option<&'a dyn Beside>>,
+});
+
 /// Options of VTK files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct GridOptions {
     /// Round coordinates to 32 bits.
     pub float32: bool,
@@ -27,6 +36,8 @@ pub struct GridOptions {
     /// Write raw instead of compressed arrays.
     pub raw: bool,
 }
+
+anastomesh_mesh::setters!(GridOptions { float32: bool, tets_alone: bool, raw: bool });
 
 /// Path of the separate boundary file of a tetrahedra-only grid.
 pub(super) fn boundary_beside(path: &Path) -> PathBuf {

@@ -27,16 +27,27 @@ pub enum VtkError {
     /// The file type is wrong.
     #[error("a VTK file of type '{found}', but '{wanted}' is needed here: name another file, or save this one as such")]
     WrongFileType {
+        /// Text that was found.
         found: String,
         /// Expected type.
         wanted: &'static str,
     },
     /// An attribute of `VTKFile` has an unsupported value.
     #[error("{attribute}=\"{value}\" is not supported; save the file with zlib compression or none")]
-    UnknownLayout { attribute: &'static str, value: String },
+    UnknownLayout {
+        /// Attribute.
+        attribute: &'static str,
+        /// Value that was found.
+        value: String,
+    },
     /// A count attribute is not a number.
     #[error("{attribute}=\"{value}\" is not a count: correct it")]
-    BadCount { attribute: &'static str, value: String },
+    BadCount {
+        /// Attribute.
+        attribute: &'static str,
+        /// Value that was found.
+        value: String,
+    },
     /// `AppendedData` is neither raw nor base64.
     #[error("the encoding of <AppendedData> is neither raw nor base64: save the file with one of these")]
     BadAppendedData,
@@ -53,6 +64,8 @@ pub enum VtkError {
     UnknownFormat {
         /// Array name.
         array: String,
+
+        /// Format that was found.
         format: String,
     },
     /// The offset of an array is missing, not a number, or beyond the appended data.

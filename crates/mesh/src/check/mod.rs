@@ -18,7 +18,7 @@ pub mod text;
 mod tests;
 
 pub use result::{
-    CheckReport, Counts, Expectation, Line, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict,
+    CheckReport, Counts, Expectation, Intersection, Line, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict,
 };
 
 use super::adjacency::{TetAdjacency, face_vertices, tet_adjacency};

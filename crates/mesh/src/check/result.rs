@@ -165,6 +165,7 @@ pub enum Outcome {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OffenderKind {
+    /// One point.
     Point,
     /// Two points.
     Edge,
@@ -176,6 +177,7 @@ pub enum OffenderKind {
     Face,
     /// Six points: two faces.
     FacePair,
+    /// A patch of the boundary.
     Patch,
     /// A node of the network.
     Node,
@@ -202,8 +204,10 @@ impl Offender {
 /// Maximum offenders kept per condition.
 pub const KEPT_OFFENDERS: usize = 10;
 
+/// Result of one line of the check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LineResult {
+    /// The line.
     pub line: Line,
     /// Outcome of the condition.
     pub outcome: Outcome,

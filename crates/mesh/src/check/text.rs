@@ -54,7 +54,7 @@ pub fn tally(check: &CheckReport, listed: bool) -> String {
 }
 
 /// Failed conditions, with the first offenders of each.
-pub fn faults(check: &CheckReport) -> String {
+pub fn faults(check: &CheckReport, hint: &str) -> String {
     let mut out = String::new();
     for failed in check.failed() {
         // Writing to a string cannot fail.
@@ -66,12 +66,13 @@ pub fn faults(check: &CheckReport) -> String {
         let hidden = failed.count.saturating_sub(shown as u64);
         if hidden > 0 {
             let hidden = grouped(hidden as usize);
-            let _ = writeln!(out, "         and {hidden} more (-v shows ten, --report where they are)");
+            let _ = writeln!(out, "         and {hidden} more{hint}");
         }
     }
     out
 }
 
+/// Returns a verdict as words.
 pub fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Valid => "valid",
@@ -101,6 +102,7 @@ pub fn conditions(check: &CheckReport) -> String {
     out
 }
 
+/// Returns why a line was skipped.
 pub fn reason(why: Skipped) -> String {
     match why {
         Skipped::NoLabels => "the boundary has no labels".into(),
@@ -129,6 +131,7 @@ fn list(numbers: &[u32]) -> String {
     }
 }
 
+/// Returns an offender as words, with its ids.
 pub fn describe(offender: &Offender) -> String {
     let kind = match offender.kind {
         OffenderKind::Point => "point",

@@ -5,6 +5,7 @@
 pub struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
+    /// Returns `n` sets of one element each.
     pub fn new(n: usize) -> Self {
         Self((0..n as u32).collect())
     }
@@ -20,6 +21,11 @@ impl DisjointSets {
     /// Number of elements.
     pub fn len(&self) -> usize {
         self.0.len()
+    }
+
+    /// Returns `true` if there are no numbers.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// Smallest number in the set of `i`, with path compression.

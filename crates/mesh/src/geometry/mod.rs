@@ -26,7 +26,7 @@ pub use angle::turn;
 pub use bvh::Bvh;
 pub use convex::minimise_convex;
 pub use disjoint_sets::DisjointSets;
-pub use distance::{point_segment, point_triangle, point_tube, segment_segment, tube_tube};
+pub use distance::{SegmentPair, TubePair, point_segment, point_triangle, point_tube, segment_segment, tube_tube};
 pub use normal::unit_normal;
 pub use place::place_key;
 pub use ray::crossing;

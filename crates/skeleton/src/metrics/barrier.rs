@@ -23,6 +23,7 @@ const GAUSS: [(f64, f64); 6] = [
 /// Potential of a pair, and its derivatives by the ends of the first and second edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairGradient {
+    /// The potential.
     pub potential: f64,
     /// Derivatives by a, b of the first tube, then of the second.
     pub by_end: [Vec3; 4],

@@ -2,8 +2,7 @@
 
 mod barrier;
 
-pub use barrier::Barrier;
-pub use barrier::paper_unit;
+pub use barrier::{Barrier, PairGradient, paper_unit};
 
 use super::course::Courses;
 use super::cuttability::{BranchEnd, CUT_DISTANCE, CutRules, Cuttability, separation};

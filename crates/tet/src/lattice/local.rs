@@ -116,7 +116,7 @@ impl Taken {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Interior, TetOptions, tetrahedralize};
+    use crate::{Effort, Interior, Tetrahedralizer};
     use anastomesh_mesh::quality::TetQuality;
     use std::f64::consts::TAU;
 
@@ -167,7 +167,8 @@ mod tests {
             assert!(points[..i].iter().all(|q| (p - q).norm() > 0.5 * 0.87 * cell * edge * 0.8));
         }
         let interior = Interior::Local { cell, clearance };
-        let quality = TetQuality::of(&tetrahedralize(&s, &TetOptions::default().interior(interior)).unwrap());
+        let quality =
+            TetQuality::of(&Tetrahedralizer::new().effort(Effort::Fast).interior(interior).run(&s).unwrap().mesh);
         assert!(quality.mean > 0.8 && quality.percentile_1 > 0.4, "{quality:?}");
     }
 

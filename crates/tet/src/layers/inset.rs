@@ -20,6 +20,7 @@ const ROUNDS: usize = 100;
 
 /// A surface and the wanted inner positions of its vertices.
 pub struct Places<'a> {
+    /// The surface.
     pub surface: &'a TriMesh,
     /// Triangles with layers.
     pub wall: &'a [[u32; 3]],

@@ -18,6 +18,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
+    /// Numbers of the vertices of a surface, some of which have copies in each layer.
     pub fn new(copied: impl IntoIterator<Item = bool>, is_rim: Vec<bool>, layers: u32) -> Self {
         let mut next = 0;
         let mut slot = |copied: bool| {
@@ -40,6 +41,11 @@ impl Numbers {
     /// Number of vertices including all copies.
     pub fn len(&self) -> u32 {
         self.slot.len() as u32 + self.copied * self.layers
+    }
+
+    /// Returns `true` if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.slot.is_empty()
     }
 
     /// Positions of the surface's vertices and their copies, which lie at fraction `depths[i]` of the offset. Vertices

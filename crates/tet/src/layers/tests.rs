@@ -66,7 +66,7 @@ fn what_cannot_be_is_refused_with_the_limits() {
 fn layers_are_for_closed_surfaces_that_stay() {
     let plc = Plc::from(sphere_surface(1));
     let layers = || Tetrahedralizer::new().layers(Some(THREE));
-    let dangling = Plc { edges: vec![[0, 1]], ..plc.clone() };
+    let dangling = plc.clone().segments(vec![[0, 1]]);
     let refused = [
         layers().kind(InputKind::Plc).run(&plc),
         layers().boundary(Boundary::Split).run(&plc),
@@ -153,7 +153,7 @@ fn bounds_are_for_what_is_inside_of_the_layers() {
         let plc = Plc::from(sphere_surface(2));
         let made = Tetrahedralizer::new().layers(Some(THREE)).refine(refinement).run(&plc).expect("certified");
         let layers = made.summary.layers.expect("a summary").tets;
-        assert_eq!(layers, 9 * plc.triangles.len());
+        assert_eq!(layers, 9 * plc.surface.triangles.len());
         made.mesh.tets.len() - layers
     };
     let fine = crate::Refinement::default().max_volume(2e-4);

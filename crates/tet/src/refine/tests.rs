@@ -129,8 +129,8 @@ mod insertion {
     #[test]
     fn shape_is_bounded_where_the_boundary_allows_and_frozen_faces_stay() {
         let s = sphere_surface(3);
-        let options = crate::TetOptions { optimize: false, ..Default::default() }.interior(crate::Interior::None);
-        let mesh = crate::tetrahedralize(&s, &options).unwrap();
+        let plain = crate::Tetrahedralizer::new().optimize(false).interior(crate::Interior::None);
+        let mesh = plain.run(&s).unwrap().mesh;
         let mut c = Complex::from_mesh(mesh.points, &mesh.tets).unwrap();
         let before = TetQuality::of(&c.clone().into_mesh());
         let inner = c.real_tets().flat_map(|t| 4 * t..4 * t + 4).find(|&h| !c.is_ghost(c.mate(h) >> 2)).unwrap();

@@ -18,13 +18,24 @@ pub enum AmiraError {
     Text(#[from] TextFault),
     /// A declaration is malformed.
     #[error("line {line}: a declaration such as 'VERTEX {{ float[3] VertexCoordinates }} @1' is needed: correct it")]
-    BadDeclaration { line: usize },
+    BadDeclaration {
+        /// Line of the file, from 1.
+        line: usize,
+    },
     /// A data section has no declaration.
     #[error("line {line}: the data '{mark}' are declared nowhere: correct the declarations at the head")]
-    Undeclared { line: usize, mark: String },
+    Undeclared {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Mark of the data section.
+        mark: String,
+    },
     /// A required section of a spatial graph is missing.
     #[error("there is no {what} in the file: is it a spatial graph (HxSpatialGraph)?")]
-    Missing { what: &'static str },
+    Missing {
+        /// Missing or wrong item.
+        what: &'static str,
+    },
     /// The total point count of the edges differs from the number of points.
     #[error("edges have {found} points together, but {expected} are there: correct NumEdgePoints")]
     PointsDiffer {
@@ -36,6 +47,7 @@ pub enum AmiraError {
     /// An edge refers to a missing vertex.
     #[error("edge {edge} (from 0) names vertex {vertex}, but there are only {vertices} vertices (from 0): correct it")]
     UnknownVertex {
+        /// Edge, from 0.
         edge: usize,
         /// Invalid vertex index.
         vertex: i64,

@@ -27,7 +27,10 @@ pub enum CsvError {
     /// A row cannot be read.
     #[error("line {line}, {table}: {what}; correct the row")]
     Row {
+        /// Line of the file, from 1.
         line: usize,
+
+        /// Table.
         table: Table,
         /// Fault of the row.
         what: String,

@@ -4,6 +4,6 @@ mod error;
 mod partner;
 mod read;
 
-pub use error::CsvError;
+pub use error::{CsvError, Table};
 pub(super) use partner::partner;
 pub(super) use read::{read, read_tables};

@@ -21,7 +21,11 @@ pub enum GraphXmlError {
     NoAttribute {
         /// Byte offset.
         byte: usize,
+
+        /// Element.
         element: &'static str,
+
+        /// Attribute.
         attribute: &'static str,
     },
     /// The file ends inside an element.

@@ -20,7 +20,12 @@ pub enum JsonError {
     },
     /// An entry of a list is not an object, or lacks a key.
     #[error("{place}: '{key}' with a word or a number is needed: complete it")]
-    NoKey { place: GraphPlace, key: &'static str },
+    NoKey {
+        /// Place in the file.
+        place: GraphPlace,
+        /// Key.
+        key: &'static str,
+    },
     /// The graph is not a valid network.
     #[error(transparent)]
     Graph(#[from] GraphFault),

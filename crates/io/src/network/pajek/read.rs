@@ -13,10 +13,18 @@ pub enum PajekError {
     NoVertices,
     /// The section type is not supported, such as a matrix.
     #[error("line {line}: the section '{section}' cannot be read: save vertices, arcs and edges as lists")]
-    UnknownSection { line: usize, section: String },
+    UnknownSection {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Section.
+        section: String,
+    },
     /// A line has too few numbers.
     #[error("line {line}: an edge needs the numbers of two vertices: complete it")]
-    TooShort { line: usize },
+    TooShort {
+        /// Line of the file, from 1.
+        line: usize,
+    },
     /// The graph is not a valid network.
     #[error(transparent)]
     Graph(#[from] GraphFault),

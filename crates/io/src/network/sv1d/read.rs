@@ -16,19 +16,46 @@ pub enum Sv1dError {
     Text(#[from] TextFault),
     /// Two nodes, segments or lists have an equal name.
     #[error("line {line}: {what} '{name}' is there already: names must differ")]
-    Repeated { line: usize, what: &'static str, name: String },
+    Repeated {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Missing or wrong item.
+        what: &'static str,
+        /// Name in the file.
+        name: String,
+    },
     /// A reference has no target.
     #[error("line {line}: {what} '{name}' is not in the file: correct it")]
-    Unknown { line: usize, what: &'static str, name: String },
+    Unknown {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Missing or wrong item.
+        what: &'static str,
+        /// Name in the file.
+        name: String,
+    },
     /// A joint refers to a segment list that is missing or belongs to another joint.
     #[error("line {line}: there is no list of segments '{name}' for this joint alone: correct it")]
-    NoList { line: usize, name: String },
+    NoList {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Name in the file.
+        name: String,
+    },
     /// An area is not positive.
     #[error("line {line}: the area {area} cannot be that of a section: it must be above zero")]
-    BadArea { line: usize, area: f64 },
+    BadArea {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Area that was found.
+        area: f64,
+    },
     /// There are no segments.
     #[error("there is no SEGMENT in the file ({nodes} nodes): is it the input of a one-dimensional solver?")]
-    NoSegments { nodes: usize },
+    NoSegments {
+        /// Number of nodes.
+        nodes: usize,
+    },
     /// The number of nodes exceeds the index range.
     #[error("there are more nodes than can be numbered ({})", u32::MAX)]
     TooMany,

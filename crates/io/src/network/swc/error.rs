@@ -9,6 +9,7 @@ pub enum SwcError {
     /// A row has too few columns.
     #[error("line {line} has {found} columns; a row of an SWC file has seven: id, type, x, y, z, radius, parent")]
     TooFewColumns {
+        /// Line of the file, from 1.
         line: usize,
         /// Number of columns found.
         found: usize,
@@ -16,7 +17,10 @@ pub enum SwcError {
     /// A column does not contain a number.
     #[error("line {line}: the {column} is '{text}', not a number; columns are id, type, x, y, z, radius, parent")]
     NotANumber {
+        /// Line of the file, from 1.
         line: usize,
+
+        /// Column.
         column: &'static str,
         /// Text found.
         text: String,
@@ -26,9 +30,12 @@ pub enum SwcError {
         "line {line}: node {id} has the {column} {value:e}; coordinates must be finite and below {LARGEST:e}: correct it"
     )]
     BadCoordinate {
+        /// Line of the file, from 1.
         line: usize,
         /// Node id.
         id: i64,
+
+        /// Column.
         column: &'static str,
         /// Value found.
         value: f64,
@@ -38,6 +45,7 @@ pub enum SwcError {
         "line {line}: node {id} has the radius {radius}; radii must be finite and above zero: give it the radius of its vessel"
     )]
     BadRadius {
+        /// Line of the file, from 1.
         line: usize,
         /// Node id.
         id: i64,
@@ -47,7 +55,10 @@ pub enum SwcError {
     /// Two rows have an equal id.
     #[error("line {line}: node {id} was given in line {first} already; ids must differ")]
     RepeatedId {
+        /// Line of the file, from 1.
         line: usize,
+
+        /// Id that was found.
         id: i64,
         /// Line of the first occurrence.
         first: usize,
@@ -55,6 +66,7 @@ pub enum SwcError {
     /// A node is its own parent.
     #[error("line {line}: node {id} is its own parent; a root has the parent -1")]
     SelfParent {
+        /// Line of the file, from 1.
         line: usize,
         /// Node id.
         id: i64,
@@ -62,9 +74,12 @@ pub enum SwcError {
     /// The parent of a node does not exist.
     #[error("line {line}: node {id} has the parent {parent}, which is in no row; a root has the parent -1")]
     UnknownParent {
+        /// Line of the file, from 1.
         line: usize,
         /// Node id.
         id: i64,
+
+        /// Id of the parent that was found.
         parent: i64,
     },
     /// The file contains no nodes.

@@ -12,18 +12,30 @@ pub enum VtkLegacyError {
     NotVtk,
     /// The third line is neither ASCII nor BINARY.
     #[error("line 3 says '{found}' where ASCII or BINARY has to be: correct it")]
-    UnknownEncoding { found: String },
+    UnknownEncoding {
+        /// Text that was found.
+        found: String,
+    },
     /// The dataset type has no lines.
     #[error("a dataset of kind '{found}': save lines as POLYDATA or UNSTRUCTURED_GRID")]
-    WrongDataset { found: String },
+    WrongDataset {
+        /// Text that was found.
+        found: String,
+    },
     /// The keyword is unknown.
     #[error(
         "{place}: '{found}' is no keyword of a legacy VTK file: a count before it is wrong, or the file is damaged"
     )]
-    UnknownKeyword { place: Place, found: String },
+    UnknownKeyword {
+        /// Place in the file.
+        place: Place,
+        /// Text that was found.
+        found: String,
+    },
     /// A keyword line is incomplete or malformed.
     #[error("{place}: {keyword} needs {needed}: correct the line")]
     BadKeyword {
+        /// Place in the file.
         place: Place,
         /// Keyword of the line.
         keyword: String,
@@ -32,41 +44,61 @@ pub enum VtkLegacyError {
     },
     /// The value type is unknown.
     #[error("{place}: values of type '{kind}' cannot be read; save the file with numbers")]
-    UnknownType { place: Place, kind: String },
+    UnknownType {
+        /// Place in the file.
+        place: Place,
+        /// Kind that was found.
+        kind: String,
+    },
     /// The array is shorter than announced.
     #[error(
         "{place}: {array} is to have {count} values, more than the rest of the file holds; correct the count, or write \
          or copy the file again if it is cut short"
     )]
     CutShort {
+        /// Place in the file.
         place: Place,
         /// Array name.
         array: String,
+
+        /// Number that was found.
         count: usize,
     },
     /// A word is not a number.
     #[error("{place}: value {index} (from 0) of {array} is '{text}', which is no number of its type: correct it")]
     NotANumber {
+        /// Place in the file.
         place: Place,
         /// Array name.
         array: String,
+
+        /// Index that was found.
         index: usize,
+
+        /// Text that was found.
         text: String,
     },
     /// A cell list is inconsistent.
     #[error("{place}: cell {cell} (from 0) of {list} goes beyond its list, or offsets do not ascend: correct the list")]
     BadCells {
+        /// Place in the file.
         place: Place,
         /// Keyword of the list.
         list: &'static str,
+
+        /// Cell, from 0.
         cell: usize,
     },
     /// A required section is missing.
     #[error("there is no section {section} in the file: a network has points and lines; was it written completely?")]
-    MissingSection { section: &'static str },
+    MissingSection {
+        /// Section.
+        section: &'static str,
+    },
     /// The length of an array differs from the number of points or cells.
     #[error("array '{array}' has {found} values, but there are {expected} points or cells: correct the file")]
     WrongLength {
+        /// Name of the array.
         array: String,
         /// Expected number of values.
         expected: usize,
@@ -78,6 +110,7 @@ pub enum VtkLegacyError {
         "line cell {line} (from 0) names point {point}, but there are only {points} points (from 0): correct the list of cells"
     )]
     UnknownPoint {
+        /// Line of the file, from 1.
         line: usize,
         /// Invalid point index.
         point: i64,

@@ -12,7 +12,10 @@ pub enum VtpError {
     File(#[from] VtkError),
     /// A required element is missing.
     #[error("there is no <{element}> in the file: was it written completely?")]
-    MissingElement { element: &'static str },
+    MissingElement {
+        /// Element.
+        element: &'static str,
+    },
     /// The points do not have three components.
     #[error("the points have {components} coordinates; three are needed")]
     BadPoints {
@@ -22,6 +25,7 @@ pub enum VtpError {
     /// The length of an array differs from the number of points or cells.
     #[error("array '{array}' has {found} values, but the file announces {expected}: was it written completely?")]
     WrongLength {
+        /// Name of the array.
         array: String,
         /// Expected number of values.
         expected: usize,
@@ -30,14 +34,20 @@ pub enum VtpError {
     },
     /// Connectivity or offsets of the lines are not integers.
     #[error("array '{array}' of the lines holds no integers: write it as Int64")]
-    NotIntegers { array: &'static str },
+    NotIntegers {
+        /// Name of the array.
+        array: &'static str,
+    },
     /// The offsets of the lines are not ascending or exceed the connectivity.
     #[error(
         "line {line} (from 0) ends at offset {offset}, which is out of order or beyond the {length} indices there are: \
          correct the offsets"
     )]
     BadOffset {
+        /// Line of the file, from 1.
         line: usize,
+
+        /// Offset that was found.
         offset: i64,
         /// Number of indices.
         length: usize,
@@ -47,6 +57,7 @@ pub enum VtpError {
         "line {line} (from 0) names point {point}, but there are only {points} points (from 0): correct the connectivity"
     )]
     UnknownPoint {
+        /// Line of the file, from 1.
         line: usize,
         /// Invalid point index.
         point: i64,

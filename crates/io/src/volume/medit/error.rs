@@ -12,16 +12,23 @@ pub enum MeditFault {
     /// The first line does not identify a Medit file.
     #[error("line {line}: '{found}' stands where MeshVersionFormatted has to be; is it a Medit text file?")]
     NotMedit {
+        /// Line of the file, from 1.
         line: usize,
         /// Text found.
         found: String,
     },
     /// The points are not three-dimensional.
     #[error("line {line}: the mesh has the dimension {dimension}; it has to be 3")]
-    Dimension { line: usize, dimension: i64 },
+    Dimension {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Dimension that was found.
+        dimension: i64,
+    },
     /// There are cells that are neither tetrahedra nor triangles.
     #[error("line {line}: there are {kind}; only tetrahedra and triangles are supported")]
     UnsupportedCells {
+        /// Line of the file, from 1.
         line: usize,
         /// Keyword of the list.
         kind: String,
@@ -29,6 +36,7 @@ pub enum MeditFault {
     /// A list occurs twice.
     #[error("line {line}: a second list of {kind}; there may be one")]
     Repeated {
+        /// Line of the file, from 1.
         line: usize,
         /// Keyword of the list.
         kind: &'static str,

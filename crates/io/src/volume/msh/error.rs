@@ -21,10 +21,16 @@ pub enum MshFault {
     },
     /// Two nodes have an equal tag.
     #[error("two nodes have the tag {tag}: give each its own")]
-    RepeatedTag { tag: u64 },
+    RepeatedTag {
+        /// Tag that was found.
+        tag: u64,
+    },
     /// The format version is not supported.
     #[error("version {version} of the format is not read; Gmsh writes 4.1 with -format msh41")]
-    UnsupportedVersion { version: String },
+    UnsupportedVersion {
+        /// Version that was found.
+        version: String,
+    },
     /// An element is neither a tetrahedron nor a triangle.
     #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]
     UnsupportedCell {

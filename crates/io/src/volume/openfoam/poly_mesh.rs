@@ -30,7 +30,7 @@ pub(super) fn write(
     let faces = boundary.inner + boundary.outer;
     if 3 * faces > LARGEST || mesh.counts().points as u64 > LARGEST {
         let text = format!(
-            "the mesh has {faces} faces, more than labels of 32 bits can count; mesh its parts, or use a smaller --rho"
+            "the mesh has {faces} faces, more than labels of 32 bits can count; mesh its parts, or use a smaller rho"
         );
         return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
     }

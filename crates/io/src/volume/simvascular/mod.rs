@@ -107,7 +107,7 @@ fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
         return Ok(());
     }
     let text = format!(
-        "{} tetrahedra are more than SimVascular's numbers of 32 bits allow; mesh parts, or use a smaller --rho",
+        "{} tetrahedra are more than SimVascular's numbers of 32 bits allow; mesh parts, or use a smaller rho",
         counts.tets
     );
     Err(io::Error::new(io::ErrorKind::InvalidInput, text))

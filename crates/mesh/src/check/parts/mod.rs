@@ -57,7 +57,7 @@ mod tests;
 
 pub use certificate::{certify_hollow, certify_with};
 pub use changed::{Changed, meetings_of};
-pub use pieces::{PiecesError, check_pieces};
+pub use pieces::{PiecesError, Unfit, check_pieces};
 pub use whole::{Looked, check_parts};
 
 use super::nested::Enclosed;
@@ -82,6 +82,7 @@ pub struct PartView<'a> {
 /// A condition violated by a part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fault {
+    /// The line.
     pub line: Line,
     /// Number of offenders.
     pub count: u64,
@@ -175,6 +176,7 @@ struct HeldCap {
 /// Faces of a part with a point array of their own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FacesApart {
+    /// Positions of the points that the faces use.
     pub points: Vec<Point3>,
     /// Ids of the points in the whole.
     pub vertices: Vec<u32>,

@@ -1,12 +1,10 @@
-//! A surface filled, and its tetrahedra used: the mean temperature of a body whose temperature grows linearly along x.
+//! Fills a surface and integrates over its tetrahedra: the mean temperature of a body whose temperature grows linearly along x.
 //!
 //! ```sh
-//! cargo run --release --example fill
+//! cargo run --release -p anastomesh-tet --example fill
 //! ```
 
-use anastomesh::check::{TetQuality, check_tets};
-use anastomesh::tet::{Plc, Refinement, Sizing, Tetrahedralizer};
-use anastomesh::{Point3, TriMesh};
+use anastomesh_tet::{Point3, Refinement, Sizing, TetQuality, Tetrahedralizer, TriMesh, check_tets, repair};
 use std::error::Error;
 
 /// A cube whose sides are `n` by `n` squares, each cut in two.
@@ -30,15 +28,15 @@ fn cube(n: u32) -> TriMesh {
         }
     }
     // The squares' corners are there up to six times: one of each stays.
-    anastomesh::tet::repair(&soup).surface
+    repair(&soup).surface
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let surface = cube(4);
     let made = Tetrahedralizer::new()
-        .refine(Some(Refinement::default().max_radius_edge(2.0)))
+        .refine(Refinement::default().max_radius_edge(2.0))
         .sizing(Sizing::Constant(0.25))
-        .run(&Plc::from(&surface))?;
+        .run(&surface)?;
     // The surface is there as it was: points with their numbers, triangles in their order.
     assert_eq!(made.mesh.points[..surface.points.len()], surface.points);
     assert_eq!(made.faces, surface.triangles);

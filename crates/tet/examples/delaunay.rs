@@ -1,12 +1,11 @@
 //! Delaunay tetrahedralization of the points of a `.node` file of TetGen's, timed: reading and checking are left out.
 //!
 //! ```sh
-//! RAYON_NUM_THREADS=1 cargo run --release --example delaunay -- points.node
+//! RAYON_NUM_THREADS=1 cargo run --release -p anastomesh-tet --example delaunay -- points.node
 //! ```
 
-use anastomesh::io::tetgen::read_nodes;
-use anastomesh::tet::Tetrahedralizer;
-use anastomesh::{Progress, Stage};
+use anastomesh_io::tetgen::read_nodes;
+use anastomesh_tet::{Progress, Stage, Tetrahedralizer};
 use std::error::Error;
 use std::path::Path;
 use std::sync::{Arc, Mutex};

@@ -1,0 +1,10 @@
+//! Parts of the tetrahedralizer that the vascular mesher assembles itself. Not covered by semantic versioning.
+
+pub use crate::builder::fill_outward;
+pub use crate::complex::Complex;
+pub use crate::corner_tets::split_corner_tets;
+pub use crate::delaunay::delaunay;
+pub use crate::layers::{Directions, Inset, Numbers, Places, inset, rims, toward};
+pub use crate::names::Names;
+pub use crate::optimize::{OptimizeOptions, optimize};
+pub use crate::progress::Watch;
