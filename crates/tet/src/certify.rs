@@ -1,8 +1,8 @@
 //! The certificate: what has to hold before a mesh may be called the tetrahedralization of a surface.
 
 use super::complex::{face_key, face_of};
-use super::error::InputPart;
 use super::plc::InputKind;
+use super::plc::InputPart;
 use super::plc::LeftOut;
 use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
 use anastomesh_mesh::geometry::Point3;

@@ -2,6 +2,7 @@
 
 use super::complex::{ComplexError, face_key};
 use super::layer::LayersError;
+use super::plc::InputPart;
 use anastomesh_mesh::Bound;
 use anastomesh_mesh::geometry::Point3;
 
@@ -77,24 +78,6 @@ impl std::fmt::Display for InputArray {
         f.write_str(match self {
             Self::Markers => "markers of triangles",
             Self::Sizes => "edge lengths at points",
-        })
-    }
-}
-
-/// Parts of the input that may lie outside of the filled volume.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum InputPart {
-    /// Triangles.
-    Triangles,
-    /// Segments.
-    Segments,
-}
-
-impl std::fmt::Display for InputPart {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Triangles => "triangles",
-            Self::Segments => "segments",
         })
     }
 }

@@ -103,12 +103,12 @@ pub use anastomesh_mesh::{Bound, Bounds, Point3, TetMesh, TriMesh, nalgebra};
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use certify::{CertifyError, certify};
 pub use complex::ComplexError;
-pub use error::{InputArray, InputPart, LayersConflict, Obstacle, SeedKind, Stuck, TetError};
+pub use error::{InputArray, LayersConflict, Obstacle, SeedKind, Stuck, TetError};
 pub use layer::{Layers, LayersError};
 pub use layers::LayerSummary;
 pub use optimize::{Effort, OptimizeReport};
 pub use options::{Boundary, Interior, Refinement, Sizing};
-pub use plc::{InputKind, LeftOut, Plc, PlcRef, Region};
+pub use plc::{InputKind, InputPart, LeftOut, Plc, PlcRef, Region};
 pub use recover::RecoverySummary;
 pub use refine::RefineReport;
 

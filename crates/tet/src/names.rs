@@ -1,6 +1,7 @@
 //! Errors told with the ids of their reader: those of a file, say, whose polygons were cut into triangles.
 
-use super::error::{InputPart, Obstacle, TetError};
+use super::error::{Obstacle, TetError};
+use super::plc::InputPart;
 
 /// What the items of an input are called elsewhere.
 pub trait Names {

@@ -2,7 +2,8 @@
 
 use super::carve::Sides;
 use super::complex::Complex;
-use super::error::{InputPart, NAMED, TetError};
+use super::error::{NAMED, TetError};
+use super::plc::InputPart;
 use super::plc::LeftOut;
 use super::star::{EdgeRing, Star};
 use anastomesh_mesh::TriMesh;

@@ -144,3 +144,21 @@ impl LeftOut {
         self.triangles.is_empty() && self.segments.is_empty()
     }
 }
+
+/// Parts of the input that may lie outside of the filled volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputPart {
+    /// Triangles.
+    Triangles,
+    /// Segments.
+    Segments,
+}
+
+impl std::fmt::Display for InputPart {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Triangles => "triangles",
+            Self::Segments => "segments",
+        })
+    }
+}
