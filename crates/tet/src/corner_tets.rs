@@ -271,7 +271,7 @@ fn edges([a, b, c, d]: [u32; 4]) -> [[u32; 2]; 6] {
 mod tests {
     use super::*;
     use crate::tests::cube;
-    use crate::{certify, tetrahedralize};
+    use crate::{Tetrahedralizer, certify};
 
     fn corner_count(mesh: &TetMesh, surface: &TriMesh, outer: impl Fn(usize) -> bool) -> usize {
         let outer = surface.triangles.iter().enumerate().filter(|(i, _)| outer(*i));
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn a_filled_cube_loses_its_corner_tetrahedra_and_stays_certified() {
         let surface = cube(4);
-        let mut mesh = tetrahedralize(&surface, &crate::TetOptions::default()).unwrap();
+        let mut mesh = Tetrahedralizer::new().run(&surface).unwrap().mesh;
         let before = corner_count(&mesh, &surface, |_| true);
         split_corner_tets(&mut mesh, &surface, |_| true);
         let after = corner_count(&mesh, &surface, |_| true);
@@ -295,7 +295,7 @@ mod tests {
     #[test]
     fn triangles_that_are_not_on_the_boundary_of_the_whole_make_no_corner() {
         let surface = cube(4);
-        let given = tetrahedralize(&surface, &crate::TetOptions::default()).unwrap();
+        let given = Tetrahedralizer::new().run(&surface).unwrap().mesh;
         let mut mesh = given.clone();
         split_corner_tets(&mut mesh, &surface, |_| false);
         assert_eq!((mesh.points, mesh.tets), (given.points, given.tets));
