@@ -10,8 +10,8 @@ use anastomesh_mesh::{TetMesh, TriMesh, face_key};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
-/// Rounds at most: what is near each other is changed one after the other.
-const ROUNDS: usize = 8;
+/// Maximum passes over tetrahedra with two boundary faces. One pass changes only tetrahedra that are not neighbours.
+const MAX_CORNER_PASSES: usize = 8;
 /// What tetrahedra with a new vertex are worth beside those without: they are smaller than what is around them.
 const NEW: f64 = 0.85;
 /// A corner stays where it would give way to a flatter tetrahedron than this, by its radius ratio.
@@ -31,7 +31,7 @@ pub(super) fn part_corners(mesh: &mut TetMesh, surface: &TriMesh, outer: impl Fn
     let inner = surface.points.len() as u32;
     let of = |mesh: &TetMesh, tet: usize| Corner::of(&faces, inner, mesh.tets[tet], tet);
     let mut changed: Vec<u32> = Vec::new();
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_CORNER_PASSES {
         let corners: Vec<Corner> = (0..mesh.tets.len()).filter_map(|tet| of(mesh, tet)).collect();
         changed.extend(corners.iter().flat_map(|corner| mesh.tets[corner.tet]));
         if corners.is_empty() || !part(mesh, &corners) {

@@ -9,8 +9,8 @@ use rustc_hash::FxHashMap;
 /// Triangles of this shape are left as they are.
 const GOOD: f64 = 0.9;
 
-/// Rounds of flips and slides.
-const ROUNDS: usize = 3;
+/// Maximum passes of edge flips and vertex slides over the wall of a connector.
+const MAX_WALL_PASSES: usize = 3;
 
 /// What a flip or a slide must gain in the worst shape: less is rounding, by which changes could undo each other for ever.
 const GAIN: f64 = 1e-3;
@@ -46,7 +46,7 @@ impl<'a> Wall<'a> {
 
     /// Improves the wall. The rims' edges and vertices stay.
     pub(super) fn improve(&mut self) {
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_WALL_PASSES {
             let flips = self.flip();
             let slides = self.slide();
             if flips + slides == 0 {

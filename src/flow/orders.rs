@@ -13,8 +13,8 @@ pub struct Orders {
     pub by_diameter: Vec<u32>,
 }
 
-/// Rounds after which vessels that still move stay where they are.
-const ROUNDS: usize = 100;
+/// Maximum passes that assign diameter-defined orders. Vessels that still change order then keep the last one.
+const MAX_ORDER_PASSES: usize = 100;
 
 impl Orders {
     /// Of the vessels of a network with these pressures at its nodes.
@@ -29,7 +29,7 @@ impl Orders {
         let radii: Vec<f64> = branches.iter().map(|branch| radius(&branch.edges)).collect();
         let order = |edges: &[EdgeId]| edges.iter().map(|e| strahler[e.index()]).max().unwrap_or(1);
         let mut orders: Vec<u32> = branches.iter().map(|branch| order(&branch.edges)).collect();
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ORDER_PASSES {
             let bounds = bounds(&orders, &radii);
             let moved: Vec<u32> = radii.iter().map(|&r| 1 + bounds.iter().filter(|&&b| r > b).count() as u32).collect();
             if moved == orders {

@@ -7,8 +7,8 @@ use serde::Serialize;
 /// A branch that ends inside a vessel of its branch point is a spur up to this length, in radii of that vessel.
 const LONGEST: f64 = 4.0;
 
-/// Rounds at most: a branch point of n tips needs n of them; more than so many belong to no vessel.
-const ROUNDS: usize = 100;
+/// Maximum passes that remove spurs. One pass removes at most one spur of each branch point.
+const MAX_SPUR_PASSES: usize = 100;
 
 /// Why a branch is no vessel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -39,7 +39,7 @@ pub struct Spur {
 /// vessel.
 pub(super) fn take_off(skeleton: &Skeleton) -> Result<(Skeleton, Vec<Spur>), SkeletonError> {
     let (mut current, mut all) = (skeleton.clone(), Vec::new());
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_SPUR_PASSES {
         let adjacency = current.adjacency();
         let branches = current.branches(&adjacency);
         let found = spurs(&current, &adjacency, &branches);

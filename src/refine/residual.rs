@@ -6,8 +6,8 @@ use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Skelet
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::{Deserialize, Serialize};
 
-/// Rounds of shrinking at most: a vessel may have several others in its way, and one of them is looked at in a round.
-const ROUNDS: usize = 12;
+/// Maximum passes that shrink overlapping vessels. One pass treats one overlap of each vessel.
+const MAX_SHRINK_PASSES: usize = 12;
 /// Length over which a radius returns to its old value, in radii.
 const TAPER: f64 = 3.0;
 /// Pieces that shrinking makes are at least this long, in radii.
@@ -95,7 +95,7 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
     let place: FxHashMap<[EdgeId; 2], usize> = found.iter().enumerate().map(|(i, o)| (o.edges, i)).collect();
     let edges_before = shrinker.skeleton.edges.len();
     let mut touched = vec![false; edges_before];
-    for round in 0..ROUNDS {
+    for round in 0..MAX_SHRINK_PASSES {
         let overlaps = shrinker.skeleton.overlaps(&shrinker.skeleton.adjacency()).pairs;
         let mut changed = false;
         for overlap in &overlaps {

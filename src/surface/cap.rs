@@ -80,9 +80,9 @@ const LONGEST_TIP: f64 = 3.0;
 /// What lies further (in radii) from the axis than this belongs to another vessel.
 const WIDTH: f64 = 1.1;
 
-/// How often a rim that is not yet one loop may lose what spoils it: each time a row of triangles goes, and so many rows are
-/// far more than the four edge lengths that may go.
-const RIM_ROUNDS: usize = 20;
+/// Maximum passes that remove triangles from a rim until it is one loop. One pass removes one row of triangles; 20 rows are far
+/// more than the four edge lengths of `DEEPEST_RIM`.
+const MAX_RIM_PASSES: usize = 20;
 /// How far before the plane, in edge lengths, triangles may go for the rim's sake.
 const DEEPEST_RIM: f64 = 4.0;
 
@@ -272,7 +272,7 @@ impl Cutter<'_> {
     /// The loop in which the wall now ends, counter-clockwise about the axis; removes more where it is pinched, has
     /// teeth, or is not one loop.
     fn rim(&mut self, section: &Section, tip: &mut Vec<u32>, edge: f64) -> Result<Vec<u32>, CapFailure> {
-        for _ in 0..RIM_ROUNDS {
+        for _ in 0..MAX_RIM_PASSES {
             let boundary = self.boundary(tip);
             let extra = self.spoilers(&boundary);
             if extra.is_empty() {

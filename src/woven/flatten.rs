@@ -29,8 +29,8 @@ pub(super) struct Flat {
     pub rim: Vec<u32>,
 }
 
-/// Rounds of mending the topology before giving up.
-const ROUNDS: usize = 60;
+/// Maximum passes that repair the topology of one end before the attempt fails.
+const MAX_TOPOLOGY_REPAIRS: usize = 60;
 
 struct Flattener<'a> {
     region: &'a Region,
@@ -48,7 +48,7 @@ pub(super) fn flatten(region: &Region, points: &[Point3], seed: u32, attempt: At
     let mut f =
         Flattener { region, points, attempt, removed: vec![false; region.tets.len()], exposed: Vec::new(), checked: 0 };
     f.cut(seed)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_TOPOLOGY_REPAIRS {
         f.remove_folds()?;
         f.drop_islands();
         let faces = f.live_faces();

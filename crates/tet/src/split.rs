@@ -19,8 +19,8 @@ use anastomesh_mesh::{TetMesh, TriMesh};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
-/// Times that the surface is split for the sake of shape.
-const ROUNDS: usize = 3;
+/// Maximum passes that split surface edges for the shape of tetrahedra. Each pass fills the surface again.
+const MAX_SURFACE_SPLITS: usize = 3;
 
 /// Most triangles that the surface is split to.
 const MAX_TRIANGLES: usize = 20_000_000;
@@ -216,7 +216,7 @@ impl Tetrahedralizer {
         let shape = super::refine::Goals { bounds: Bounds { max_volume: None, ..goals.bounds }, ..goals };
         for round in 0.. {
             let mut done = keep.run(&pieces.plc)?;
-            let split = if round < ROUNDS { to_split(&done.mesh, &pieces, &shape) } else { Vec::new() };
+            let split = if round < MAX_SURFACE_SPLITS { to_split(&done.mesh, &pieces, &shape) } else { Vec::new() };
             let changed = split.into_iter().filter(|&e| pieces.halve(e)).count();
             if changed == 0 {
                 pieces.name_origins(&mut done);

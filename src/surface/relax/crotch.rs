@@ -8,8 +8,8 @@ use anastomesh_mesh::geometry::{Aabb, Point3, Vec3, self_intersections};
 
 /// How often what is left is looked at: each time halves the edges of a web, and evens out the triangles beside it.
 const PASSES: usize = 2;
-/// Rounds of evening out in each.
-const ROUNDS: usize = 2;
+/// Smoothing passes after each split of webs.
+const SMOOTHING_PASSES: usize = 2;
 /// An edge of a web leans by this (a cosine) towards the normals at both of its ends, out of the walls.
 const LEAN: f64 = 0.35;
 /// Its middle lies so far outside, in radii.
@@ -43,7 +43,7 @@ impl<L: Level> Relaxation<'_, L> {
             if !self.split_webs(&mut before) {
                 break;
             }
-            for _ in 0..ROUNDS {
+            for _ in 0..SMOOTHING_PASSES {
                 self.flip(Criterion::Angle);
                 self.collapse_short();
                 self.smooth();

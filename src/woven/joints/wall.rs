@@ -7,8 +7,8 @@ use anastomesh_mesh::geometry::{Point3, Vec3, predicates::orient3d};
 use anastomesh_mesh::quality::{radius_ratio, triangle_area_vector};
 use anastomesh_mesh::smooth::Taubin;
 
-/// Rounds of the search along the wall; its step halves in a round that finds nothing.
-const SEARCH_ROUNDS: usize = 10;
+/// Maximum steps of the direct search along the wall. A step that finds nothing better halves the step length.
+const MAX_SEARCH_STEPS: usize = 10;
 /// How far a vertex may come off its tangent plane in Taubin's steps, in mean edge lengths.
 const OFF_WALL: f64 = 0.25;
 /// How far a vertex may go along the wall in one search, in mean edge lengths.
@@ -162,7 +162,7 @@ impl Fan<'_> {
         let ways = [u, -u, w, -w, (u + w) * diagonal, (u - w) * diagonal, (w - u) * diagonal, -(u + w) * diagonal];
         let (mut best, mut worst) = (start, before);
         let mut step = 0.25 * self.edge;
-        for _ in 0..SEARCH_ROUNDS {
+        for _ in 0..MAX_SEARCH_STEPS {
             let from = best;
             for way in ways {
                 let p = from + way * step;

@@ -14,13 +14,13 @@ const MAX_RING: usize = 10;
 const GAIN: f64 = 1.1;
 /// Rise of the worst radius ratio beside needles, relative to the old one, that may cost strain.
 const LEAP: f64 = 3.0;
-/// Rounds over the stubborn tetrahedra.
-const ROUNDS: usize = 4;
+/// Maximum passes of vertex insertion and contraction over the stubborn tetrahedra.
+const MAX_STUBBORN_PASSES: usize = 4;
 
 impl Improver<'_> {
     /// Inserts and contracts vertices where tetrahedra are below the stubborn limit, the worst first.
     pub(super) fn treat_stubborn(&mut self) {
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_STUBBORN_PASSES {
             let list = self.worst_first(self.options.stubborn_below);
             let mut changes = 0;
             for &entry in &list {

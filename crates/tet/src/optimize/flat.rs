@@ -12,8 +12,8 @@ const THIN: f64 = 1e-3;
 const TO_BLAME: f64 = 0.1;
 /// Thin ones are tried once for so many tetrahedra of the mesh, or this many times where it is small.
 const MOST: (usize, usize) = (50, 50);
-/// Rounds over those that are left; what is around them may have changed.
-const ROUNDS: usize = 12;
+/// Maximum passes over the flat tetrahedra that are left. Their neighbours may have changed since the last pass.
+const MAX_FLAT_PASSES: usize = 12;
 /// Size of the cavities that are reconnected, and steps of the search.
 const CAVITY: (usize, usize) = (20, 5000);
 /// Layers of tetrahedra around a flat one in which a vertex is tried.
@@ -31,7 +31,7 @@ impl Improver<'_> {
         }
         let allowance = Allowance::of(&self.c);
         let mut purse = (self.c.real_tets().count() / MOST.0).max(MOST.1);
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_FLAT_PASSES {
             let list = self.worst_first(THIN);
             let mut changes = 0;
             for &(q, t) in &list {

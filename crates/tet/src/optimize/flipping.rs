@@ -7,8 +7,8 @@ use anastomesh_mesh::quality::TET_EDGES;
 const MAX_RING: usize = 7;
 /// What a flip must gain in the worst radius ratio, relative to the old one: stops endless exchanges for nothing.
 const GAIN: f64 = 1.02;
-/// Rounds over the tetrahedra that are still bad, the new ones included.
-const FLIP_ROUNDS: usize = 3;
+/// Maximum passes of flips over the bad tetrahedra, new ones included.
+const MAX_FLIP_PASSES: usize = 3;
 /// Rounds end when only one tetrahedron of so many that were tried has changed: the next would try the same in vain.
 const YIELD: usize = 50;
 
@@ -23,7 +23,7 @@ impl Improver<'_> {
     /// Removes faces and edges of tetrahedra below a radius ratio, the worst first; returns the number of changes.
     pub(super) fn flip_below(&mut self, below: f64) -> usize {
         let mut total = 0;
-        for _ in 0..FLIP_ROUNDS {
+        for _ in 0..MAX_FLIP_PASSES {
             let list = self.worst_first(below);
             let mut flips = 0;
             for &entry in &list {

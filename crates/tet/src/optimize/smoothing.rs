@@ -17,8 +17,8 @@ const SETTLED: f64 = 1e-3;
 const STIRRING: f64 = 1e-2;
 /// Radius ratio of a tetrahedron below which the thorough improvement leaves its vertices to the direct search.
 const HOPELESS: f64 = 0.15;
-/// Rounds of the direct search; its step halves in a round that finds nothing.
-const SEARCH_ROUNDS: usize = 12;
+/// Maximum steps of the direct search. A step that finds nothing better halves the step length.
+const MAX_SEARCH_STEPS: usize = 12;
 
 /// The thorough improvement ends by moving vertices of what is worst: one for so many tetrahedra, or this many where the
 /// mesh is small. On good surfaces that is all there are.
@@ -238,7 +238,7 @@ fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
     let (mut best, mut value) = (start, before);
     let mut step = 0.25 * reach;
     let mut last = None;
-    for _ in 0..SEARCH_ROUNDS {
+    for _ in 0..MAX_SEARCH_STEPS {
         let from = best;
         let guide = steepest(star, &from).map_or(Vec3::zeros(), |g| g * step);
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()].map(|e| e * step);

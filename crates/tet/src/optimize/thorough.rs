@@ -5,13 +5,14 @@
 use super::Improver;
 use super::allowance::Allowance;
 
-/// Rounds over the tetrahedra that are still bad.
-const ROUNDS: usize = 8;
+/// Maximum passes of the thorough improvement over the tetrahedra that are still bad.
+const MAX_THOROUGH_PASSES: usize = 8;
 /// Sizes of the cavities that are reconnected, and steps of the search in each.
 const CAVITIES: [(usize, usize); 2] = [(8, 150), (20, 400)];
 /// Radius ratio below which a tetrahedron is spared by making those on needles worse.
 const VERY_BAD: f64 = 0.2;
-const LAST_ROUNDS: usize = 3;
+/// Maximum passes that spare very bad tetrahedra at the cost of needles.
+const MAX_SPARING_PASSES: usize = 3;
 /// What moving must gain to count.
 const GAIN: f64 = 1.1;
 /// A round that mends fewer than one in so many is the last.
@@ -57,7 +58,7 @@ impl Improver<'_> {
     /// as the needle allows.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
         let mut purse = Purse::of(self.c.real_tets().count());
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_THOROUGH_PASSES {
             let list = self.worst_first(self.options.stubborn_below);
             if !purse.goes_on(self.strain_of_list(&list)) {
                 self.keep_list(list);
@@ -109,7 +110,7 @@ impl Improver<'_> {
         self.allowance = allowance;
         self.reconnection.forget();
         let mut purse = Purse::of(self.c.real_tets().count());
-        for _ in 0..LAST_ROUNDS {
+        for _ in 0..MAX_SPARING_PASSES {
             // What was in vain need not be now; small moves, which count for no news, can decide.
             self.tried.clear();
             let list = self.worst_first(self.options.stubborn_below);
