@@ -3,7 +3,7 @@
 //!
 //! | to | use |
 //! |---|---|
-//! | mesh a network | [`network::mesh_network`], with [`network::clean`] and [`network::refine`] before it |
+//! | mesh a network | [`network::Run`] |
 //! | fill a surface with tetrahedra | [`tet::Tetrahedralizer`] |
 //! | check a mesh | [`check::check_volume`], [`check::check_tets`] |
 //! | read and write files | [`io`] |
@@ -11,9 +11,6 @@
 //!
 //! Points, surfaces and meshes are the plain types of this page. Loops run in the current thread pool of `rayon`; results
 //! do not depend on its size. `ARCHITECTURE.md` describes the crates and modules.
-
-// Without the command line, what only it uses is not used at all.
-#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
 mod block;
 #[cfg(feature = "cli")]
@@ -28,7 +25,9 @@ mod picture;
 mod pipeline;
 mod prepare;
 mod refine;
+#[cfg(feature = "cli")]
 mod report;
+mod run;
 mod surface;
 #[cfg(feature = "cli")]
 mod view;
@@ -41,17 +40,28 @@ pub use anastomesh_mesh::source::MeshSource;
 pub use anastomesh_mesh::{Cap, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 pub use anastomesh_tet as tet;
 
-/// Vessel networks: made usable, moved apart, and meshed.
+/// Vessel networks: generated, made usable, refined, and meshed.
+///
+/// [`Run`] does all that the verb `mesh` does; the functions are its steps.
 pub mod network {
-    pub use crate::pipeline::{
-        JointStyle, Manifest, MeshPlan, Meshed, RunError, RunReport, Store, Stored, mesh_into, mesh_network,
+    pub use crate::fidelity::{Along, Displaced, Displacements, Fidelity};
+    pub use crate::grow::{
+        BedParams, Dual, GenerateError, GenerateParams, Looped, Morphometry, OrderFigures, Organ, Published,
+        RAT_KIDNEY, dual, generate, looped,
     };
-    pub use crate::prepare::{PrepareParams, Prepared, Touching, prepare};
+    pub use crate::pipeline::{
+        CapRow, Caps, Datum, Estimate, FailedBlock, Fluid, Forecast, Inlet, InletReason, Inlets, JointStyle, LeftWhole,
+        Manifest, Meeting, MeshPlan, Meshed, NoShard, NoTerminal, Outlets, PlanError, Role, RunError, RunReport, Shard,
+        ShareReport, StageTime, Store, StoreError, Stored, TooLarge, VesselData, Whole, make_share, mesh_into,
+        mesh_network,
+    };
+    pub use crate::prepare::{PrepareParams, PrepareReport, Prepared, Touching, TouchingTip, directed, prepare};
     pub use crate::refine::{
         Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual, refine,
     };
+    pub use crate::run::{Attempt, Defect, Fault, MeshingError, NetworkMesh, Networks, PreparedRun, Run, Strategy};
     pub use anastomesh_skeleton::{
-        BadSize, CleanReport, Edge, Node, NodeId, NodeSizes, SizeAt, Skeleton, SkeletonError, clean,
+        BadSize, CleanReport, Edge, LineGroup, Node, NodeId, NodeSizes, SizeAt, Skeleton, SkeletonError, clean,
     };
 }
 
@@ -64,14 +74,15 @@ pub mod check {
 /// For the tests, benchmarks and fuzz targets of this crate; not part of what it promises.
 #[doc(hidden)]
 pub mod testing {
-    pub use crate::block::{BlockParams, ClusterMesh, EndStyle, mesh_cluster};
+    pub use crate::block::{BlockDump, BlockParams, ClusterMesh, EndStyle, mesh_cluster};
     pub use crate::flow::solve as network_flow;
-    pub use crate::grow::{Dual, GenerateError, GenerateParams, Morphometry, Organ, RAT_KIDNEY, dual, generate};
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
+    pub use crate::pipeline::replay;
     pub use crate::prepare::{Fault, SpurReason, TouchedBy};
     pub use crate::refine::split;
+    #[cfg(feature = "cli")]
     pub use crate::report::info::NetworkInfo;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
     pub use anastomesh_io::network::{

@@ -1,6 +1,5 @@
 //! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
-mod before;
 mod blocks;
 mod check;
 mod colours;
@@ -30,6 +29,7 @@ mod refine;
 mod render;
 mod replay;
 mod room;
+mod run;
 mod stop;
 mod surface;
 mod tetrahedralize;

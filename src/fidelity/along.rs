@@ -19,9 +19,10 @@ pub struct Bin {
     pub quantiles: Option<[f64; 3]>,
 }
 
-/// How far the wall is from the given radius along the vessels: branches, from fork to fork.
+/// Distance of the wall from the given radius along the vessels: branches, from fork to fork.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Along {
+    /// Parts of the length, in order.
     pub bins: Vec<Bin>,
 }
 

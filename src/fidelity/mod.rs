@@ -4,11 +4,11 @@
 //! nowhere near the radius. So the network as it was given is held against the network that was meshed (its axis, its
 //! volume) and against the wall.
 
-#[cfg(feature = "cli")]
 mod along;
 mod axis;
 mod lumen;
 mod spread;
+mod text;
 mod tubes;
 mod wall;
 
@@ -18,7 +18,6 @@ use serde::Serialize;
 use spread::Spread;
 use std::io;
 
-#[cfg(feature = "cli")]
 pub use along::Along;
 pub use axis::{Displaced, Displacements};
 pub use tubes::Tubes;

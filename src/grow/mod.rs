@@ -30,5 +30,5 @@ pub use bed::BedParams;
 pub use dual::{Dual, dual};
 pub use generate::generate;
 pub use looped::{Looped, looped};
-pub use morphometry::{Morphometry, RAT_KIDNEY};
+pub use morphometry::{Morphometry, OrderFigures, Published, RAT_KIDNEY};
 pub use params::{GenerateError, GenerateParams, Organ};

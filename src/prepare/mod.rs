@@ -15,6 +15,7 @@ mod resample;
 mod short_tips;
 mod smooth;
 mod spurs;
+mod text;
 mod touching;
 
 pub use directed::directed;
@@ -26,6 +27,7 @@ pub use report::{PrepareReport, Size};
 pub use resample::ResampleReport;
 pub use short_tips::ShortTip;
 pub use spurs::{Spur, SpurReason};
+pub use text::touching_text;
 pub use touching::{TouchedBy, Touching, TouchingTip, take_back};
 
 use anastomesh_skeleton::{LineGroup, Skeleton, SkeletonError, clean};
@@ -113,6 +115,9 @@ pub struct Prepared {
 
 /// Makes a network as it was read fit for refinement and meshing.
 ///
+/// `groups` says for each node which vessel its line is drawn for, as [`NetworkFile::groups`](crate::io::NetworkFile::groups)
+/// does; empty if the file does not say. Lines of one vessel are merged only where they run together.
+///
 /// The order is that in which one cure needs another: radii first, for they say what lies in what; then lines become
 /// one graph, of which spurs, branch points and islands are judged; at last the lines are resampled, so that all before
 /// saw the axis as it was given.
@@ -120,12 +125,7 @@ pub struct Prepared {
 /// # Errors
 /// When a number cannot be used (with `radii`, only positions and networks without any usable radius), an edge names a
 /// node that does not exist, or no vessel remains.
-pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, SkeletonError> {
-    prepare_lines(raw, &[], params)
-}
-
-/// The same for a network whose file says of its nodes which vessel their lines are drawn for (empty: of none).
-pub(crate) fn prepare_lines(
+pub fn prepare(
     raw: &Skeleton,
     groups: &[Option<LineGroup>],
     params: &PrepareParams,

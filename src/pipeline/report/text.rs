@@ -1,7 +1,7 @@
-//! What a run of the mesher did, for people.
+//! Report of a run as text for people.
 
+use super::{RunReport, ThinBlock};
 use crate::block::ThinLayers;
-use crate::pipeline::{RunReport, ThinBlock};
 use anastomesh_mesh::units::grouped;
 use std::fmt;
 
