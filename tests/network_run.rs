@@ -66,17 +66,6 @@ fn a_refinement_that_does_not_help_is_followed_by_the_fallbacks() {
 }
 
 #[test]
-fn a_tip_within_another_vessel_is_retracted() {
-    let points = [[0.0, 0.0, -20.0], [0.0, 0.0, 20.0], [0.3, 0.0, 0.0], [20.0, 0.0, 0.0]];
-    let made = Run::of_skeleton(network(&points, &[(0, 1, 1.0), (2, 3, 0.5)])).mesh(&()).unwrap();
-    let [first, .., last] = &made.attempts[..] else { panic!("{:?}", made.attempts) };
-    assert_eq!((first.strategy, last.strategy), (Strategy::Planned, Strategy::RetractedTips));
-    assert_eq!((last.fault, made.kept), (None, made.attempts.len() - 1));
-    assert_eq!(made.networks.prepare.touching.iter().map(|tip| tip.tip).collect::<Vec<_>>(), [2]);
-    assert_eq!(made.defects, []);
-}
-
-#[test]
 fn inlets_are_named_as_the_file_names_them() {
     let tree = || network(&[[0.0; 3], [0.0, 0.0, 20.0]], &[(0, 1, 1.0)]);
     let made = Run::of_skeleton(tree()).roots(["1"]).mesh(&()).unwrap();

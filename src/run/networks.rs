@@ -96,3 +96,25 @@ impl Networks {
 fn shared(network: Skeleton, other: &Arc<Skeleton>) -> Arc<Skeleton> {
     if network == **other { Arc::clone(other) } else { Arc::new(network) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_skeleton::fixtures::network;
+
+    #[test]
+    fn another_attempt_begins_without_the_tips_that_were_retracted() {
+        // The tip of the second vessel ends in the wall of the first.
+        let points = [[0.0, 0.0, -20.0], [0.0, 0.0, 20.0], [1.2, 0.0, 0.0], [20.0, 0.0, 0.0]];
+        let given = network(&points, 1.0, &[(0, 1), (2, 3)]);
+        let mut networks =
+            Networks::new(given.clone(), given.clone(), given, NodeNames::default(), PrepareReport::default());
+        assert!(Arc::ptr_eq(&networks.given, &networks.network));
+        assert!(networks.retract(&[]).is_empty() && networks.retract(&[0]).is_empty());
+        let told = networks.retract(&[2]);
+        assert!(told.len() == 1 && told[0].tip == 2, "{told:?}");
+        assert!(networks.network.nodes[2].position.x > 2.0 && networks.prepare.touching == told);
+        let again = networks.again(None);
+        assert!(Arc::ptr_eq(&again.network, &again.prepared) && again.prepare.touching.is_empty());
+    }
+}
