@@ -11,10 +11,10 @@ use super::network::NetworkArgs;
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
-use super::run::remarks;
-use super::stop::{NOTHING_KEPT, Stop};
+use super::run::{refine_failure, remarks};
+use super::stop::Stop;
 use crate::prepare::PrepareReport;
-use crate::refine::{Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Residual, refine};
+use crate::refine::{Crowded, Freedom, Metric, RefineParams, RefineReport, Residual, refine};
 use crate::report::page;
 use crate::report::plot::svg;
 use crate::report::refine::{brief, csv, panels};
@@ -163,15 +163,6 @@ struct Output<'a> {
     report: &'a RefineReport,
 }
 
-/// Failure of a refinement.
-pub(super) fn failure(error: &RefineError) -> Failure {
-    match error {
-        RefineError::Skeleton(_) => Failure::input(error.to_string()),
-        RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
-        _ => Failure::usage(error.to_string()),
-    }
-}
-
 /// Refines a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
@@ -186,7 +177,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let params = RefineParams { every: args.every, ..args.how.params(args.iterations) }.fitted(network.report.measured);
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
-    let refined = pool.install(|| refine(&network.skeleton, &params, &bars)).map_err(|e| failure(&e))?;
+    let refined = pool.install(|| refine(&network.skeleton, &params, &bars)).map_err(|e| refine_failure(&e))?;
     stop.keep();
     write(&args.output, &refined.skeleton, &refined.origin)?;
     let report = &refined.report;

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::exit::Failure;
-use super::refine;
+use super::stop::NOTHING_KEPT;
 use crate::pipeline::RunError;
 use crate::prepare::PrepareReport;
+use crate::refine::RefineError;
 use crate::run::MeshingError;
 use anastomesh_io::network::NetworkNote;
 
@@ -23,10 +24,19 @@ pub fn failure(error: MeshingError, network: &Path, stopped: impl FnOnce() -> Fa
     match error {
         MeshingError::Skeleton(e) => Failure::input(format!("{}: {e}; correct the file", network.display())),
         MeshingError::Inlet(e) => Failure::usage(format!("--root: {e}")),
-        MeshingError::Refine(e) => refine::failure(&e),
+        MeshingError::Refine(e) => refine_failure(&e),
         MeshingError::Run(RunError::Cancelled) => stopped(),
         MeshingError::Run(e @ (RunError::Root(_) | RunError::Plan(_))) => Failure::usage(e.to_string()),
         MeshingError::Run(e @ (RunError::TooLarge(_) | RunError::Store(_))) => Failure::input(e.to_string()),
         e @ (MeshingError::Run(_) | MeshingError::Blocks { .. }) => Failure::stage(e.to_string()),
+    }
+}
+
+/// Failure of a refinement.
+pub fn refine_failure(error: &RefineError) -> Failure {
+    match error {
+        RefineError::Skeleton(_) => Failure::input(error.to_string()),
+        RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
+        _ => Failure::usage(error.to_string()),
     }
 }
