@@ -17,6 +17,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Meshes a network with refinement and writes the mesh.
+///
+/// # Errors
+/// If a file cannot be read or written, there is no mesh, or it has defects.
 pub fn mesh_network(network: &Path, output: &Path) -> Result<(), Box<dyn Error>> {
     // The cures fill radii that cannot be used.
     let file = read_network(network, &NetworkOptions { any_radii: true, ..NetworkOptions::default() })?;
